@@ -1,0 +1,122 @@
+# fettle: a suite of small tools. One executable for each tools/fettle-NAME.cc, one library from lib/.
+#
+#   make            build                     make demo      the whole chain on the samples, with pictures
+#   make test       build and run the tests   make figures   the chain's figures beside their targets
+#   make test TOOL=fettle-fit                 make bench     benchmarks
+#   make bless TOOL=fettle-fit                make docs      pages of docs/tools from --help
+#   make lint       format and scripts        make install PREFIX=/usr/local DESTDIR=
+#
+# `make test` and `make demo` need nothing but git and make beforehand: they install what packages.txt names.
+# B is the build folder.
+
+B        ?= build
+PREFIX   ?= /usr/local
+CXXFLAGS ?= -O2 -g
+JOBS     ?= $(shell nproc)
+
+TOOLS    := $(patsubst tools/%.cc,%,$(wildcard tools/fettle-*.cc))
+BINARIES := $(TOOLS:%=$(B)/bin/%)
+TESTS    := $(patsubst tests/lib/%.cc,$(B)/tests/%,$(wildcard tests/lib/*_test.cc))
+BENCHES  := $(patsubst tests/bench/%.cc,$(B)/bench/%,$(wildcard tests/bench/*_bench.cc))
+CASES    := $(sort $(wildcard tests/$(or $(TOOL),fettle-*)/*.sh))
+OBJECTS  := $(patsubst %.cc,$(B)/%.o,$(wildcard lib/*/*.cc))
+
+# -ffp-contract=off: the same digits on every processor. No -march: Debian's PCL is built without it, and Eigen's
+# alignment must agree with PCL's.
+override CXXFLAGS += -std=c++20 -Wall -Wextra -Wshadow -ffp-contract=off
+override CPPFLAGS += -Ilib $(addprefix -isystem ,$(wildcard /usr/include/pcl-1.*) /usr/include/eigen3) \
+                     -DFETTLE_VERSION='"$(shell sed -n 's/^## \([0-9.]*\).*/\1/p' CHANGELOG.md | head -n 1)"'
+override LDFLAGS  += -Wl,--as-needed
+
+.DELETE_ON_ERROR:
+.SECONDARY:
+.PHONY: all build deps test tests-built run-cases demo figures bench bless docs lint install clean
+
+all: deps
+	@$(MAKE) --no-print-directory -j$(JOBS) build
+
+build: $(BINARIES)
+
+# --- libraries, tool by tool: a heavy one is linked only where it is named ------------------------------------------
+PCD    := -lpcl_io -lpcl_common
+CERES  := -lceres -lglog
+EMBREE := -lembree3
+OPENCV := -lopencv_imgcodecs -lopencv_imgproc -lopencv_core
+LDLIBS_ALL := -ltbb
+
+include tools/libraries.mk
+
+# --- rules ----------------------------------------------------------------------------------------------------------
+$(B)/%.o: %.cc
+	@mkdir -p $(@D)
+	$(CXX) $(CPPFLAGS) $(CXXFLAGS) -MMD -MP -c $< -o $@
+
+$(B)/libfettle.a: $(OBJECTS)
+	@rm -f $@
+	$(AR) rcs $@ $^
+
+$(B)/bin/%: $(B)/tools/%.o $(B)/libfettle.a
+	@mkdir -p $(@D)
+	$(CXX) $(LDFLAGS) -o $@ $^ $(LDLIBS) $(LDLIBS_ALL)
+
+$(B)/tests/%: LDLIBS = $(CERES) $(EMBREE) $(OPENCV) $(PCD) -lpcl_kdtree -lpcl_search -lgtest_main -lgtest
+$(B)/tests/%: $(B)/tests/lib/%.o $(B)/libfettle.a
+	@mkdir -p $(@D)
+	$(CXX) $(LDFLAGS) -o $@ $^ $(LDLIBS) $(LDLIBS_ALL)
+
+$(B)/bench/%: LDLIBS = $(CERES) $(EMBREE) $(OPENCV) $(PCD) -lpcl_kdtree -lpcl_search -lbenchmark_main -lbenchmark
+$(B)/bench/%: $(B)/tests/bench/%.o $(B)/libfettle.a
+	@mkdir -p $(@D)
+	$(CXX) $(LDFLAGS) -o $@ $^ $(LDLIBS) $(LDLIBS_ALL)
+
+-include $(wildcard $(B)/*/*.d $(B)/*/*/*.d)
+
+# --- what a machine needs --------------------------------------------------------------------------------------------
+deps:
+	@.ci/install-packages packages.txt
+
+# --- tests: each golden case and each test program is a target of its own --------------------------------------------
+CASE_RUNS := $(CASES:.sh=.case)
+TEST_RUNS := $(if $(TOOL),,$(TESTS:%=%.run))
+.PHONY: $(CASE_RUNS) $(TEST_RUNS)
+
+test: deps
+	@rm -rf $(B)/results && mkdir -p $(B)/results
+	@$(MAKE) --no-print-directory -j$(JOBS) build $(if $(TOOL),,tests-built)
+	@$(MAKE) --no-print-directory -j$(JOBS) -k -s $(CASE_RUNS) $(TEST_RUNS) 2>/dev/null; tests/summary $(B)/results
+
+tests-built: $(TESTS)
+
+$(CASE_RUNS): %.case: %.sh
+	tests/run $(B) $<
+
+$(TEST_RUNS): %.run: %
+	tests/run $(B) $<
+
+bless: build
+	@FETTLE_BLESS=1 $(MAKE) --no-print-directory -k -s $(CASE_RUNS) B=$(B)
+
+# --- the rest ---------------------------------------------------------------------------------------------------------
+demo: all
+	@$(MAKE) --no-print-directory -j$(JOBS) -f pipelines/casting.mk B=$(B) demo
+
+figures: all
+	@$(MAKE) --no-print-directory -j$(JOBS) -f pipelines/casting.mk B=$(B) figures
+
+bench: deps
+	@$(MAKE) --no-print-directory -j$(JOBS) $(BENCHES)
+	@set -e; for bench in $(BENCHES); do $$bench; done
+
+docs: build
+	@mkdir -p docs/tools
+	@set -e; for tool in $(TOOLS); do tests/tool-page $(B)/bin/$$tool > docs/tools/$$tool.md; done
+
+lint:
+	@.ci/lint
+
+install: build
+	install -d $(DESTDIR)$(PREFIX)/bin
+	install $(BINARIES) $(DESTDIR)$(PREFIX)/bin
+
+clean:
+	rm -rf $(B)

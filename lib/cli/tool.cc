@@ -1,0 +1,334 @@
+#include "cli/tool.h"
+
+#include "core/file.h"
+#include "core/text.h"
+
+#include <CLI/CLI.hpp>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <chrono>
+#include <deque>
+#include <iostream>
+#include <thread>
+#include <unistd.h>
+
+namespace fettle {
+
+namespace {
+
+constexpr int kMostThreads = 1024;
+constexpr int kSeed = 1;
+
+std::string one_line(std::string message)
+{
+    std::replace(message.begin(), message.end(), '\n', ' ');
+    std::replace(message.begin(), message.end(), '\r', ' ');
+    while (!message.empty() && message.back() == ' ') message.pop_back();
+    return message;
+}
+
+double parse_in_range(const std::string& text, const Range& range)
+{
+    const std::optional<double> value = parse_number(text);
+    if (!value) throw CLI::ValidationError("expected a number, got '" + text + "'");
+    if (!range.contains(*value)) throw CLI::ValidationError("must be " + range.text() + ", got " + text);
+    return *value;
+}
+
+// CLI11 repeats the option's names in its own way; ours is "--tolerance: must be positive, got -1".
+CLI::Option* add_parsed(CLI::App& app, const std::string& names, const std::string& help,
+                        const std::function<void(const std::string&)>& parse)
+{
+    CLI::Option* option = app.add_option_function<std::string>(
+        names,
+        [names, parse](const std::string& text) {
+            const std::string shown = names.substr(names.find("--"));
+            try {
+                parse(text);
+            } catch (const CLI::ValidationError& error) {
+                throw CLI::ValidationError(shown + ": " + error.what());
+            } catch (const InputError& error) {
+                throw CLI::ValidationError(shown + ": " + error.what());
+            }
+        },
+        help);
+    return option;
+}
+
+std::string list(const std::vector<std::string>& words, const std::string& separator)
+{
+    std::string text;
+    for (const std::string& word : words) text += (text.empty() ? "" : separator) + word;
+    return text;
+}
+
+} // namespace
+
+struct Tool::State {
+    State(int count, char** values, const std::string& text) : app(text), argc(count), argv(values) {}
+
+    CLI::App app;
+    int argc;
+    char** argv;
+    std::string name;
+    // A deque never moves its elements: the references that were handed out stay good.
+    std::deque<bool> flags;
+    std::deque<double> numbers;
+    std::deque<std::optional<double>> optional_numbers;
+    std::deque<int> counts;
+    std::deque<std::string> texts;
+    std::deque<std::optional<Units::Length>> units;
+    std::string example;
+    std::string reference;
+
+    std::string output = "-";
+    std::string report_path;
+    double seed = kSeed;
+    int threads = 0;
+    bool quiet = false;
+    bool verbose = false;
+
+    json::Value report;
+    std::unique_ptr<tbb::global_control> thread_limit;
+    std::unique_ptr<OutputFile> bulk;
+    std::deque<OutputFile> others;
+};
+
+Tool::Tool(int argc, char** argv, const std::string& description)
+    : state_(std::make_unique<State>(argc, argv, description))
+{
+    State& s = *state_;
+    const std::string path = argv[0];
+    s.name = path.substr(path.find_last_of('/') + 1);
+    s.app.name(s.name);
+    s.app.set_help_flag("-h,--help", "This help");
+    s.app.set_version_flag("--version", s.name + " " + FETTLE_VERSION, "Version");
+}
+
+Tool::~Tool() = default;
+
+const std::string& Tool::file(const std::string& name, const std::string& help)
+{
+    std::string& value = state_->texts.emplace_back();
+    state_->app.add_option(name, value, help)->required()->type_name("FILE");
+    return value;
+}
+
+const std::string& Tool::input(const std::string& name, const std::string& help)
+{
+    std::string& value = state_->texts.emplace_back("-");
+    state_->app.add_option(name, value, help + "; stdin if it is - or missing")->type_name("FILE");
+    return value;
+}
+
+const bool& Tool::flag(const std::string& names, const std::string& help)
+{
+    bool& value = state_->flags.emplace_back(false);
+    state_->app.add_flag(names, value, help)->multi_option_policy(CLI::MultiOptionPolicy::Throw);
+    return value;
+}
+
+const double& Tool::number(const std::string& names, double otherwise, const std::string& unit, const std::string& help,
+                           const Range& range)
+{
+    double& value = state_->numbers.emplace_back(otherwise);
+    add_parsed(state_->app, names, help,
+               [&value, range](const std::string& text) { value = parse_in_range(text, range); })
+        ->type_name(unit)
+        ->default_str(to_text(otherwise));
+    return value;
+}
+
+const std::optional<double>& Tool::number_if_given(const std::string& names, const std::string& unit,
+                                                   const std::string& help, const Range& range)
+{
+    std::optional<double>& value = state_->optional_numbers.emplace_back();
+    add_parsed(state_->app, names, help, [&value, range](const std::string& text) {
+        value = parse_in_range(text, range);
+    })->type_name(unit);
+    return value;
+}
+
+const int& Tool::count(const std::string& names, int otherwise, const std::string& help, int least, int most)
+{
+    int& value = state_->counts.emplace_back(otherwise);
+    add_parsed(state_->app, names, help,
+               [&value, least, most](const std::string& text) {
+                   const double number = parse_in_range(text, Range::between(least, most));
+                   if (number != static_cast<int>(number)) throw CLI::ValidationError("must be whole, got " + text);
+                   value = static_cast<int>(number);
+               })
+        ->type_name("N")
+        ->default_str(std::to_string(otherwise));
+    return value;
+}
+
+const std::string& Tool::text(const std::string& names, const std::string& otherwise, const std::string& placeholder,
+                              const std::string& help)
+{
+    std::string& value = state_->texts.emplace_back(otherwise);
+    CLI::Option* option = state_->app.add_option(names, value, help)->type_name(placeholder);
+    if (!otherwise.empty()) option->default_str(otherwise);
+    return value;
+}
+
+const std::string& Tool::required_text(const std::string& names, const std::string& placeholder,
+                                       const std::string& help)
+{
+    std::string& value = state_->texts.emplace_back();
+    state_->app.add_option(names, value, help)->type_name(placeholder)->required();
+    return value;
+}
+
+const std::string& Tool::choice(const std::string& names, const std::string& otherwise,
+                                const std::vector<std::string>& choices, const std::string& help)
+{
+    std::string& value = state_->texts.emplace_back(otherwise);
+    CLI::Option* option = add_parsed(state_->app, names, help, [&value, choices](const std::string& text) {
+        if (std::find(choices.begin(), choices.end(), text) == choices.end()) {
+            const std::string guess = nearest_word(text, choices);
+            throw CLI::ValidationError("'" + text + "' is none of " + list(choices, ", ") +
+                                       (guess.empty() ? "" : "; did you mean '" + guess + "'?"));
+        }
+        value = text;
+    });
+    option->type_name(list(choices, "|"));
+    if (!otherwise.empty()) option->default_str(otherwise);
+    return value;
+}
+
+const std::optional<Units::Length>& Tool::length_unit(const std::string& names, const std::string& help)
+{
+    std::optional<Units::Length>& value = state_->units.emplace_back();
+    add_parsed(state_->app, names, help, [&value](const std::string& text) {
+        value = parse_length_unit(text);
+    })->type_name("mm|in|m");
+    return value;
+}
+
+void Tool::example(const std::string& command, const std::string& meaning)
+{
+    state_->example = "Example (in the folder samples/):\n  " + command + "\n      " + meaning;
+}
+
+void Tool::reference(const std::string& source) { state_->reference = "Reference: " + source; }
+
+void Tool::parse()
+{
+    State& s = *state_;
+    s.app.add_option("-o,--output", s.output, "Output; appears whole or not at all")
+        ->type_name("FILE")
+        ->default_str("stdout");
+    s.app.add_option("--report", s.report_path, "Numbers about the run, JSON")->type_name("FILE");
+    add_parsed(s.app, "--seed", "Seed of everything random",
+               [&s](const std::string& text) {
+                   s.seed = parse_in_range(text, Range::between(0, 4294967295.0));
+                   if (s.seed != std::floor(s.seed)) throw CLI::ValidationError("must be whole, got " + text);
+               })
+        ->type_name("N")
+        ->default_str(std::to_string(kSeed));
+    add_parsed(s.app, "--threads", "Threads; the result does not depend on them",
+               [&s](const std::string& text) {
+                   s.threads = static_cast<int>(parse_in_range(text, Range::between(1, kMostThreads)));
+               })
+        ->type_name("N")
+        ->default_str("all cores");
+    s.app.add_flag("-q,--quiet", s.quiet, "No warnings, no progress")
+        ->multi_option_policy(CLI::MultiOptionPolicy::Throw);
+    s.app.add_flag("-v,--verbose", s.verbose, "Say what is done")->multi_option_policy(CLI::MultiOptionPolicy::Throw);
+    s.app.footer(s.example + (s.reference.empty() ? "" : "\n\n" + s.reference));
+    s.app.get_formatter()->column_width(32);
+    s.app.parse(s.argc, s.argv);
+    if (s.threads > 0)
+        s.thread_limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
+                                                               static_cast<std::size_t>(s.threads));
+}
+
+std::uint64_t Tool::seed() const { return static_cast<std::uint64_t>(state_->seed); }
+
+bool Tool::verbose() const { return state_->verbose; }
+
+std::ostream& Tool::output()
+{
+    if (!state_->bulk) state_->bulk = std::make_unique<OutputFile>(state_->output);
+    return state_->bulk->stream();
+}
+
+std::ostream& Tool::output_file(const std::string& path) { return state_->others.emplace_back(path).stream(); }
+
+json::Value& Tool::report() { return state_->report; }
+
+void Tool::warn(const std::string& message) const
+{
+    if (!state_->quiet) std::cerr << state_->name << ": warning: " << one_line(message) << '\n';
+}
+
+void Tool::note(const std::string& message) const
+{
+    if (state_->verbose) std::cerr << state_->name << ": " << one_line(message) << '\n';
+}
+
+Progress Tool::progress(const std::string& label) const
+{
+    if (state_->quiet || isatty(STDERR_FILENO) == 0) return {};
+    using Clock = std::chrono::steady_clock;
+    struct Bar {
+        Clock::time_point next = Clock::now() + std::chrono::seconds(1); // short work shows nothing
+        bool shown = false;
+    };
+    return [label, bar = std::make_shared<Bar>()](double fraction) {
+        if (Clock::now() < bar->next && !(bar->shown && fraction >= 1)) return;
+        if (fraction >= 1 && !bar->shown) return;
+        bar->shown = true;
+        bar->next = Clock::now() + std::chrono::milliseconds(100);
+        constexpr int kWidth = 40;
+        const int done = static_cast<int>(std::clamp(fraction, 0.0, 1.0) * kWidth);
+        std::cerr << '\r' << label << " [" << std::string(done, '#') << std::string(kWidth - done, ' ') << "] "
+                  << static_cast<int>(100 * fraction) << " %" << (fraction >= 1 ? "\n" : "") << std::flush;
+    };
+}
+
+// Named outputs first, stdout last: a reader of the pipe may rely on the files.
+void Tool::finish()
+{
+    State& s = *state_;
+    if (!s.report_path.empty()) output_file(s.report_path) << s.report;
+    for (OutputFile& other : s.others) other.commit();
+    if (s.bulk) s.bulk->commit();
+}
+
+int tool_main(int argc, char** argv, const std::string& description, const std::function<Verdict(Tool&)>& body)
+{
+    std::string message;
+    std::string name = "fettle";
+    try {
+        Tool tool(argc, argv, description);
+        name = tool.state_->name;
+        try {
+            const Verdict verdict = body(tool);
+            tool.finish();
+            return static_cast<int>(verdict);
+        } catch (const CLI::Success& success) { // --help and --version
+            OutputFile out("-");
+            if (dynamic_cast<const CLI::CallForHelp*>(&success) != nullptr)
+                out.stream() << tool.state_->app.help();
+            else
+                out.stream() << name << ' ' << FETTLE_VERSION << '\n';
+            out.commit();
+            return 0;
+        } catch (const CLI::ParseError& error) {
+            message = std::string(error.what()) + " (see " + name + " --help)";
+        }
+    } catch (const InputError& error) {
+        message = error.what();
+    } catch (const std::bad_alloc&) {
+        message = "out of memory";
+    } catch (const std::exception& error) {
+        message = std::string("internal error: ") + error.what();
+    }
+    std::cerr << name << ": " << one_line(message) << '\n';
+    return 2;
+}
+
+} // namespace fettle

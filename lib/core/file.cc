@@ -1,0 +1,112 @@
+#include "core/file.h"
+
+#include "core/error.h"
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <ext/stdio_filebuf.h>
+#include <fcntl.h>
+#include <iostream>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace fettle {
+
+namespace {
+
+[[noreturn]] void fail(const std::string& path, const std::string& doing)
+{
+    throw InputError(display_name(path), doing + ": " + std::strerror(errno));
+}
+
+} // namespace
+
+std::string display_name(const std::string& path) { return path == "-" ? "stdin" : path; }
+
+std::string read_whole(const std::string& path)
+{
+    const int file = path == "-" ? dup(STDIN_FILENO) : open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    if (file < 0) fail(path, "cannot open");
+    struct stat status = {};
+    std::string bytes;
+    // One byte more than the size: the read that finds the end then needs no room of its own.
+    if (fstat(file, &status) == 0 && S_ISREG(status.st_mode))
+        bytes.reserve(static_cast<std::size_t>(status.st_size) + 1);
+    constexpr std::size_t kChunk = 1 << 18;
+    for (std::size_t size = 0;;) {
+        bytes.resize(std::max(bytes.capacity(), size + kChunk));
+        const ssize_t got = read(file, bytes.data() + size, bytes.size() - size);
+        if (got < 0 && errno == EINTR) continue;
+        if (got < 0) {
+            const int reason = errno;
+            close(file);
+            errno = reason;
+            fail(path, "cannot read");
+        }
+        size += static_cast<std::size_t>(got);
+        if (got == 0) {
+            bytes.resize(size);
+            break;
+        }
+    }
+    close(file);
+    return bytes;
+}
+
+struct OutputFile::State {
+    std::string path;      ///< as the user gave it
+    std::string temporary; ///< what is written; empty if the target is written directly
+    std::unique_ptr<__gnu_cxx::stdio_filebuf<char>> buffer;
+    std::unique_ptr<std::ostream> stream;
+};
+
+OutputFile::OutputFile(const std::string& path) : state_(std::make_unique<State>())
+{
+    State& s = *state_;
+    s.path = path == "-" ? "stdout" : path;
+    int file = -1;
+    struct stat status = {};
+    if (path == "-") {
+        file = dup(STDOUT_FILENO);
+    } else if (stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode)) {
+        file = open(path.c_str(), O_WRONLY | O_CLOEXEC);
+    } else {
+        s.temporary = path + ".XXXXXX";
+        file = mkostemp(s.temporary.data(), O_CLOEXEC);
+        if (file < 0) s.temporary.clear();
+        const mode_t mask = umask(0);
+        umask(mask);
+        if (file >= 0) fchmod(file, status.st_mode != 0 ? status.st_mode & 07777 : 0666 & ~mask);
+    }
+    if (file < 0) fail(s.path, "cannot write");
+    constexpr std::size_t kBuffer = 1 << 16;
+    s.buffer = std::make_unique<__gnu_cxx::stdio_filebuf<char>>(file, std::ios::out | std::ios::binary, kBuffer);
+    s.stream = std::make_unique<std::ostream>(s.buffer.get());
+}
+
+OutputFile::~OutputFile()
+{
+    if (!state_) return;
+    state_->buffer.reset();
+    if (!state_->temporary.empty()) unlink(state_->temporary.c_str());
+}
+
+std::ostream& OutputFile::stream() { return *state_->stream; }
+
+void OutputFile::commit()
+{
+    State& s = *state_;
+    errno = 0;
+    s.stream->flush();
+    const bool written = s.stream->good();
+    if (!written && errno == 0) errno = EIO;
+    if (!written) fail(s.path, "cannot write");
+    if (!s.temporary.empty() && fsync(s.buffer->fd()) != 0) fail(s.path, "cannot write");
+    if (!s.buffer->close()) fail(s.path, "cannot write");
+    if (s.temporary.empty()) return;
+    if (rename(s.temporary.c_str(), s.path.c_str()) != 0) fail(s.path, "cannot write");
+    s.temporary.clear();
+}
+
+} // namespace fettle

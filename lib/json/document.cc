@@ -1,0 +1,363 @@
+#include "json/document.h"
+
+#include "core/error.h"
+#include "core/file.h"
+#include "core/text.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <limits>
+#include <ostream>
+#include <set>
+
+namespace fettle::json {
+
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+// Deeper than any of our schemas; a file of 10^5 brackets must not cost memory before it is refused.
+constexpr int kMaxDepth = 32;
+
+Json number_to_json(double number) { return std::isfinite(number) ? Json(number) : Json(nullptr); }
+
+bool is_flat(const Json& json)
+{
+    for (const Json& element : json)
+        if (element.is_structured()) return false;
+    return true;
+}
+
+void dump(const Json& json, const std::string& indent, std::string& text)
+{
+    if (!json.is_structured() || json.empty()) {
+        text += json.dump(-1, ' ', false, Json::error_handler_t::replace);
+        return;
+    }
+    const bool object = json.is_object();
+    const bool one_line =
+        is_flat(json) && (!object || indent.size() > 0) && json.size() <= 1000000 && (!object || json.size() <= 6);
+    const std::string inner = indent + "  ";
+    text += object ? '{' : '[';
+    bool first = true;
+    for (auto member = json.begin(); member != json.end(); ++member) {
+        if (!first) text += one_line ? ", " : ",";
+        if (!one_line) text += '\n' + inner;
+        if (object) text += Json(member.key()).dump() + ": ";
+        dump(*member, inner, text);
+        first = false;
+    }
+    if (!one_line) text += '\n' + indent;
+    text += object ? '}' : ']';
+}
+
+std::string type_of(const Json& json)
+{
+    return json.is_null()      ? "null"
+           : json.is_boolean() ? "true or false"
+           : json.is_number()  ? "a number"
+           : json.is_string()  ? "text"
+           : json.is_array()   ? "an array"
+                               : "an object";
+}
+
+// Parser callback: refuses repeated keys and deep nesting while the text is read.
+class Strictness {
+  public:
+    explicit Strictness(const std::string& source) : source_(source) {}
+
+    bool operator()(int depth, Json::parse_event_t event, Json& parsed)
+    {
+        using Event = Json::parse_event_t;
+        if (depth > kMaxDepth) throw InputError(source_, "nested deeper than " + std::to_string(kMaxDepth) + " levels");
+        if (event == Event::object_start) keys_.emplace_back();
+        if (event == Event::object_end) keys_.pop_back();
+        if (event == Event::key && !keys_.back().insert(parsed.get<std::string>()).second)
+            throw InputError(source_, "key '" + parsed.get<std::string>() + "' stands twice");
+        return true;
+    }
+
+  private:
+    const std::string& source_;
+    std::vector<std::set<std::string>> keys_;
+};
+
+// nlohmann's messages read "[json.exception.parse_error.101] parse error at line 1, column 2: ...".
+std::string plain_message(std::string message)
+{
+    if (const std::size_t end = message.find("] "); end != std::string::npos) message.erase(0, end + 2);
+    for (char& c : message)
+        if (c == '\n') c = ' ';
+    return message;
+}
+
+} // namespace
+
+// --- writing ---
+
+Value::Value() : json_(std::make_unique<Json>(Json::object())) {}
+Value::Value(double number) : json_(std::make_unique<Json>(number_to_json(number))) {}
+Value::Value(int number) : json_(std::make_unique<Json>(number)) {}
+Value::Value(std::size_t number) : json_(std::make_unique<Json>(number)) {}
+Value::Value(bool flag) : json_(std::make_unique<Json>(flag)) {}
+Value::Value(const char* text) : json_(std::make_unique<Json>(text)) {}
+Value::Value(const std::string& text) : json_(std::make_unique<Json>(text)) {}
+
+Value::Value(const Eigen::VectorXd& numbers) : json_(std::make_unique<Json>(Json::array()))
+{
+    for (const double number : numbers) json_->push_back(number_to_json(number));
+}
+
+Value::Value(const Eigen::MatrixXd& rows) : json_(std::make_unique<Json>(Json::array()))
+{
+    for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+        Json row = Json::array();
+        for (Eigen::Index j = 0; j < rows.cols(); ++j) row.push_back(number_to_json(rows(i, j)));
+        json_->push_back(std::move(row));
+    }
+}
+
+Value::Value(const std::vector<Value>& elements) : json_(std::make_unique<Json>(Json::array()))
+{
+    for (const Value& element : elements) json_->push_back(*element.json_);
+}
+
+Value::Value(const Value& other) : json_(std::make_unique<Json>(*other.json_)) {}
+Value::Value(Value&&) noexcept = default;
+Value::~Value() = default;
+
+Value& Value::operator=(Value other)
+{
+    json_.swap(other.json_);
+    return *this;
+}
+
+Value& Value::set(const std::string& key, const Value& value)
+{
+    (*json_)[key] = *value.json_;
+    return *this;
+}
+
+std::string Value::text() const
+{
+    std::string text;
+    dump(*json_, "", text);
+    return text;
+}
+
+std::ostream& operator<<(std::ostream& out, const Value& value) { return out << value.text() << '\n'; }
+
+// --- reading ---
+
+struct Reader::Node {
+    std::shared_ptr<const Json> document; ///< keeps the whole tree alive
+    const Json* json;
+    std::set<std::string> asked;
+};
+
+Reader::Reader(std::shared_ptr<Node> node, std::string source, std::string path)
+    : node_(std::move(node)), source_(std::move(source)), path_(std::move(path))
+{
+}
+
+Reader Reader::open(const std::string& path) { return parse(read_whole(path), display_name(path)); }
+
+Reader Reader::parse(std::string_view text, const std::string& source)
+{
+    if (text.find_first_not_of(" \t\r\n") == std::string_view::npos) throw InputError(source, "empty, expected JSON");
+    std::shared_ptr<Json> document;
+    try {
+        document = std::make_shared<Json>(Json::parse(text, Strictness(source)));
+    } catch (const Json::exception& error) {
+        throw InputError(source, plain_message(error.what()));
+    }
+    if (!document->is_object()) throw InputError(source, "expected a JSON object, got " + type_of(*document));
+    return {std::make_shared<Node>(Node{document, document.get(), {}}), source, ""};
+}
+
+std::string Reader::path_of(const std::string& key) const
+{
+    return path_.empty() ? key : key.empty() ? path_ : path_ + "." + key;
+}
+
+void Reader::refuse(const std::string& key, const std::string& problem) const
+{
+    const std::string path = path_of(key);
+    throw InputError(source_, path.empty() ? problem : path + ": " + problem);
+}
+
+bool Reader::has(const std::string& key) const { return node_->json->contains(key); }
+
+const Json& Reader::member(const std::string& key, const char* wanted)
+{
+    node_->asked.insert(key);
+    const auto found = node_->json->find(key);
+    if (found == node_->json->end()) refuse(key, std::string("missing, expected ") + wanted);
+    return *found;
+}
+
+void Reader::expect_kind(const std::string& kind)
+{
+    const std::string got = text("kind");
+    if (got != kind) refuse("kind", "expected \"" + kind + "\", got \"" + got + "\"");
+}
+
+double Reader::number(const std::string& key, const Range& range)
+{
+    const Json& json = member(key, "a number");
+    if (!json.is_number()) refuse(key, "expected a number, got " + type_of(json));
+    const double value = json.get<double>();
+    if (!range.contains(value)) refuse(key, "must be " + range.text() + ", got " + to_text(value));
+    return value;
+}
+
+double Reader::number_or(const std::string& key, double otherwise, const Range& range)
+{
+    node_->asked.insert(key);
+    return has(key) ? number(key, range) : otherwise;
+}
+
+int Reader::integer(const std::string& key, int least, int most)
+{
+    const double value = number(key, Range::between(least, most));
+    if (value != std::floor(value)) refuse(key, "must be a whole number, got " + to_text(value));
+    return static_cast<int>(value);
+}
+
+bool Reader::flag_or(const std::string& key, bool otherwise)
+{
+    node_->asked.insert(key);
+    if (!has(key)) return otherwise;
+    const Json& json = member(key, "true or false");
+    if (!json.is_boolean()) refuse(key, "expected true or false, got " + type_of(json));
+    return json.get<bool>();
+}
+
+std::string Reader::text(const std::string& key)
+{
+    const Json& json = member(key, "text");
+    if (!json.is_string()) refuse(key, "expected text, got " + type_of(json));
+    return json.get<std::string>();
+}
+
+std::string Reader::text_or(const std::string& key, const std::string& otherwise)
+{
+    node_->asked.insert(key);
+    return has(key) ? text(key) : otherwise;
+}
+
+std::string Reader::choice(const std::string& key, const std::vector<std::string>& choices)
+{
+    const std::string word = text(key);
+    std::string list;
+    for (const std::string& candidate : choices) {
+        if (word == candidate) return word;
+        list += (list.empty() ? "" : ", ") + candidate;
+    }
+    const std::string guess = nearest_word(word, choices);
+    refuse(key, "\"" + word + "\" is none of " + list + (guess.empty() ? "" : "; did you mean \"" + guess + "\"?"));
+}
+
+std::string Reader::choice_or(const std::string& key, const std::string& otherwise,
+                              const std::vector<std::string>& choices)
+{
+    node_->asked.insert(key);
+    return has(key) ? choice(key, choices) : otherwise;
+}
+
+Eigen::VectorXd Reader::vector(const std::string& key, int size)
+{
+    const Json& json = member(key, "an array of numbers");
+    if (!json.is_array()) refuse(key, "expected an array of numbers, got " + type_of(json));
+    if (size >= 0 && json.size() != static_cast<std::size_t>(size))
+        refuse(key, "expected " + std::to_string(size) + " numbers, got " + std::to_string(json.size()));
+    Eigen::VectorXd values(static_cast<Eigen::Index>(json.size()));
+    for (std::size_t i = 0; i < json.size(); ++i) {
+        if (!json[i].is_number())
+            refuse(key + "[" + std::to_string(i) + "]", "expected a number, got " + type_of(json[i]));
+        values[static_cast<Eigen::Index>(i)] = json[i].get<double>();
+    }
+    return values;
+}
+
+Eigen::MatrixXd Reader::matrix(const std::string& key, int columns)
+{
+    const Eigen::MatrixXd values =
+        ragged(key, std::max(columns, 0), columns < 0 ? std::numeric_limits<int>::max() : columns);
+    if (values.hasNaN()) refuse(key, "rows of different length");
+    return values;
+}
+
+Eigen::MatrixXd Reader::ragged(const std::string& key, int least_columns, int most_columns)
+{
+    const Json& json = member(key, "an array of rows");
+    if (!json.is_array()) refuse(key, "expected an array of rows, got " + type_of(json));
+    std::size_t columns = 0;
+    for (const Json& row : json)
+        if (row.is_array()) columns = std::max(columns, row.size());
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    Eigen::MatrixXd values =
+        Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(json.size()), static_cast<Eigen::Index>(columns), nan);
+    for (std::size_t i = 0; i < json.size(); ++i) {
+        const std::string place = key + "[" + std::to_string(i) + "]";
+        if (!json[i].is_array()) refuse(place, "expected an array of numbers, got " + type_of(json[i]));
+        const std::size_t size = json[i].size();
+        if (size < static_cast<std::size_t>(least_columns) || size > static_cast<std::size_t>(most_columns))
+            refuse(place, "expected " + std::to_string(least_columns) +
+                              (least_columns == most_columns ? "" : " to " + std::to_string(most_columns)) +
+                              " numbers, got " + std::to_string(size));
+        for (std::size_t j = 0; j < size; ++j) {
+            if (!json[i][j].is_number())
+                refuse(place + "[" + std::to_string(j) + "]", "expected a number, got " + type_of(json[i][j]));
+            values(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = json[i][j].get<double>();
+        }
+    }
+    return values;
+}
+
+Reader Reader::object(const std::string& key)
+{
+    const Json& json = member(key, "an object");
+    if (!json.is_object()) refuse(key, "expected an object, got " + type_of(json));
+    return {std::make_shared<Node>(Node{node_->document, &json, {}}), source_, path_of(key)};
+}
+
+std::optional<Reader> Reader::object_or_none(const std::string& key)
+{
+    node_->asked.insert(key);
+    if (!has(key)) return std::nullopt;
+    return object(key);
+}
+
+std::vector<Reader> Reader::objects(const std::string& key)
+{
+    const Json& json = member(key, "an array of objects");
+    if (!json.is_array()) refuse(key, "expected an array of objects, got " + type_of(json));
+    std::vector<Reader> readers;
+    for (std::size_t i = 0; i < json.size(); ++i) {
+        const std::string place = key + "[" + std::to_string(i) + "]";
+        if (!json[i].is_object()) refuse(place, "expected an object, got " + type_of(json[i]));
+        readers.push_back({std::make_shared<Node>(Node{node_->document, &json[i], {}}), source_, path_of(place)});
+    }
+    return readers;
+}
+
+Value Reader::raw(const std::string& key)
+{
+    Value value;
+    *value.json_ = member(key, "a value");
+    return value;
+}
+
+void Reader::done() const
+{
+    const std::vector<std::string> known(node_->asked.begin(), node_->asked.end());
+    for (const auto& item : node_->json->items())
+        if (!node_->asked.contains(item.key())) {
+            const std::string guess = nearest_word(item.key(), known);
+            refuse(item.key(), "unknown key" + (guess.empty() ? std::string() : ", did you mean \"" + guess + "\"?"));
+        }
+}
+
+} // namespace fettle::json

@@ -1,0 +1,42 @@
+#pragma once
+
+#include "mesh/mesh.h"
+
+#include <memory>
+#include <optional>
+
+namespace fettle {
+
+/// Rays and closest points against a mesh; Embree inside, results refined in double. Thread-safe.
+class MeshIndex {
+  public:
+    /// The mesh must outlive the index.
+    explicit MeshIndex(const Mesh& mesh);
+    ~MeshIndex();
+
+    struct Hit {
+        double distance = 0; ///< along the ray, mm
+        Eigen::Index triangle = 0;
+        Eigen::Vector3d point;
+    };
+    /// The first hit; edges and vertices are watertight.
+    std::optional<Hit> cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& unit_direction) const;
+    /// The highest point of the mesh over (x, y).
+    std::optional<Hit> highest(double x, double y) const;
+
+    struct Closest {
+        Eigen::Vector3d point;
+        Eigen::Index triangle = 0;
+        Eigen::Vector3d barycentric; ///< of `point` in the triangle; exactly 0 off a vertex or edge that holds it
+    };
+    /// The closest point within `radius`, if there is one.
+    std::optional<Closest> closest(const Eigen::Vector3d& point, double radius) const;
+
+    const Mesh& mesh() const;
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+} // namespace fettle
