@@ -1,0 +1,90 @@
+# The chain, from a part with an anomaly to an error map, for each case in samples/: one rule a stage.
+#
+#   make -f pipelines/casting.mk demo       real scans and Wang's parts: a table, and pictures in $(R)
+#   make -f pipelines/casting.mk figures    the chain's figures beside what they must reach; exit 1 if one is missed
+#   make -f pipelines/casting.mk seeds      how the figures of Wang's parts spread over 20 draws of the touch noise
+#
+# The case and the seed stand in the path, so make is the cache and -j the scheduler.
+
+B       ?= build
+CHAIN   := $(B)/chain
+export PATH := $(abspath $(B)/bin):$(PATH)
+
+WANG    := wang1 wang2 wang3
+SCANS   := hammer panel
+HILLS   := hill hills moon
+CLOUDS  := panel
+# 99 % of the touches within ±0.005 in; the scans' jobs are in mm.
+NOISE_in := normal:0.005
+NOISE_mm := normal:0.127
+
+.DELETE_ON_ERROR:
+.SECONDARY:
+.SECONDEXPANSION:
+.PHONY: demo figures seeds
+
+# A path is $(CHAIN)/SEED/CASE/STAGE; % stands for SEED/CASE.
+case   = $(notdir $1)
+seed   = $(patsubst %/,%,$(dir $1))
+job    = samples/jobs/$(call case,$1).json
+spec   = samples/parts/$(call case,$1).json
+form   = $(if $(filter $(CLOUDS),$(call case,$1)),pcd,stl)
+part   = $(CHAIN)/parts/$(call case,$1).$(call form,$1)
+truth  = $(CHAIN)/parts/$(call case,$1)-truth.$(call form,$1)
+noise  = $(NOISE_$(if $(filter $(SCANS),$(call case,$1)),mm,in))
+
+# --- the stages -------------------------------------------------------------------------------------------------------
+$(CHAIN)/parts/%.stl $(CHAIN)/parts/%.pcd: samples/parts/%.json $(B)/bin/fettle-part
+	@mkdir -p $(@D)
+	fettle-part $< -o $@
+
+$(CHAIN)/parts/%-truth.stl $(CHAIN)/parts/%-truth.pcd: samples/parts/%.json $(B)/bin/fettle-part
+	@mkdir -p $(@D)
+	fettle-part $< --without-anomaly -o $@
+
+$(CHAIN)/%/samples.pcd: $$(call job,$$*) $$(call part,$$*) $(B)/bin/fettle-sample
+	@mkdir -p $(@D)
+	fettle-sample $< --on $(call part,$*) --noise $(call noise,$*) --seed $(call seed,$*) --report $(@D)/sample.json -o $@
+
+$(CHAIN)/%/fit.json: $$(call job,$$*) $(CHAIN)/%/samples.pcd $(B)/bin/fettle-fit $(B)/bin/fettle-estimate
+	fettle-estimate $< $(@D)/samples.pcd | fettle-fit $< -o $@
+
+$(CHAIN)/%/desired.json: $$(call job,$$*) $(CHAIN)/%/fit.json $(B)/bin/fettle-margin
+	fettle-margin $< $(@D)/fit.json -o $@
+
+$(CHAIN)/%/plan.json: $$(call job,$$*) $(CHAIN)/%/desired.json $(B)/bin/fettle-plan
+	fettle-plan $< $(@D)/desired.json -o $@
+
+$(CHAIN)/%/ground.pcd: $(CHAIN)/%/plan.json $$(call part,$$*) $(B)/bin/fettle-grind
+	fettle-grind $< --stock $(call part,$*) --gantry virtual --cell $(call cell,$*) --trace $(@D)/trace.pcd \
+	    --report $(@D)/grind.json -o $@
+
+# Out of tolerance (exit 1) is a result like another here: the table shows it.
+$(CHAIN)/%/errors.pcd: $(CHAIN)/%/ground.pcd $$(call truth,$$*) $(B)/bin/fettle-compare
+	fettle-compare $< --to $(call truth,$*) --within $(call job,$*) --tolerance $(call limit,$*) \
+	    --report $(@D)/errors.json -o $@ || test $$? -eq 1
+
+# The error of the fit itself, before the margin: its band is what the margin foretold.
+$(CHAIN)/%/band.json: $(CHAIN)/%/fit.json $$(call truth,$$*) $(B)/bin/fettle-mesh $(B)/bin/fettle-compare
+	fettle-mesh $< --within $(call job,$*) --step $(call step,$*) |                                                  \
+	    fettle-compare - --to $(call truth,$*) --within $(call job,$*) --mode z --report $@ -o /dev/null || test $$? -eq 1
+
+# --- pictures ---------------------------------------------------------------------------------------------------------
+$(CHAIN)/%/before.png: $$(call job,$$*) $$(call part,$$*) $(B)/bin/fettle-render
+	@mkdir -p $(@D)
+	fettle-render $(call part,$*) --within $< --title "$(call case,$*): before" -o $@
+
+$(CHAIN)/%/after.png: $$(call job,$$*) $(CHAIN)/%/ground.pcd $(B)/bin/fettle-render
+	fettle-render $(@D)/ground.pcd --field z --within $< --title "$(call case,$*): after" -o $@
+
+$(CHAIN)/%/errors.png: $$(call job,$$*) $(CHAIN)/%/errors.pcd $(B)/bin/fettle-render
+	fettle-render $(@D)/errors.pcd --within $< --title "$(call case,$*): ground surface against the truth" -o $@
+
+# --- what is asked for ------------------------------------------------------------------------------------------------
+SHOWN    := $(SCANS) $(WANG)
+results   = $(foreach c,$2,$(addprefix $(CHAIN)/$1/$c/,errors.pcd band.json))
+pictures  = $(foreach c,$2,$(addprefix $(CHAIN)/$1/$c/,before.png after.png errors.png))
+
+demo: $(call results,1,$(SHOWN)) $(call pictures,1,$(SHOWN))
+	@pipelines/chain-table $(CHAIN)/1 $(SHOWN)
+	@echo "pictures: $(CHAIN)/1/*/{before,after,errors}.png"
