@@ -26,19 +26,22 @@ struct Plane {
     Eigen::Vector2d slope; ///< a, b
 };
 
-/// The upper (convex, part below) or lower (concave) half of a sphere.   θ = (cx, cy, cz, R)
+/// A piece of a sphere about a point of it, by its curvature (Lukács, Martin and Marshall 1998), so that a nearly flat
+/// piece stays well conditioned:  k/2 |d|² + n·d = 0 with d = x - point. k = 0 is the plane.
+/// θ = (offset along n, tilts of n to tangents[0] and tangents[1], k)
 struct Sphere {
-    Eigen::Vector3d centre;
-    double radius = 0;
-    bool convex = true; ///< the metal is inside the sphere: z = cz + √(R² - r²)
+    Eigen::Vector3d point;  ///< on the surface, M
+    Eigen::Vector3d normal; ///< unit, out of the metal: up
+    double curvature = 0;   ///< 1/mm; > 0: convex (the metal is inside the sphere), < 0: concave
 };
 
-/// Cylinder, the half nearer to the probe.   θ = (lateral offset and height of the axis, its two tilts, R)
+/// A piece of a cylinder, likewise:  k/2 (|d|² - (a·d)²) + n·d = 0.
+/// θ = (offset along n, tilt of n across the axis, tilt of n and a along it, turn of a about n, k)
 struct Cylinder {
-    Eigen::Vector3d point; ///< on the axis, nearest the touches
-    Eigen::Vector3d axis;  ///< unit
-    double radius = 0;
-    bool convex = true;
+    Eigen::Vector3d point;  ///< on the surface, M
+    Eigen::Vector3d normal; ///< unit, out of the metal: up
+    Eigen::Vector3d axis;   ///< unit, along the axis, perpendicular to `normal`
+    double curvature = 0;   ///< 1/mm; > 0: convex, < 0: concave
 };
 
 /// Straight swept surface (Wang 2007, 4.4.2): a cubic section curve carried along a ruling line. With t the distance
@@ -53,8 +56,8 @@ struct Swept {
     double section_least = 0, section_most = 0; ///< the s that were touched; outside, the section is extrapolated
 };
 
-/// Tensor-product cubic B-spline height field over a rectangle turned by `angle`; knots uniform.
-/// θ = control heights, column-major.
+/// Tensor-product cubic B-spline height field over a rectangle turned by `angle`; knots uniform. Not defined outside
+/// the rectangle. θ = control heights, column-major.
 struct Bspline {
     double angle = 0;        ///< rad, from X_m to the grid's u axis
     Eigen::Vector2d origin;  ///< M, corner of the first cell
@@ -109,6 +112,8 @@ Eigen::Vector3d normal(const Surface& surface, const Eigen::Vector2d& xy);
 double sigma(const Surface& surface, const Eigen::Vector2d& xy);
 /// ∂z/∂θ, one column a point: covariance of the heights is Gᵀ C G.
 Eigen::MatrixXd height_gradients(const Shape& shape, const Eigen::Matrix2Xd& xy);
+/// Dimension of each θ, as a power of length.
+Eigen::VectorXi parameter_powers(const Shape& shape);
 
 Surface read_surface(const std::string& path);
 Surface parse_surface(json::Reader reader);

@@ -1,0 +1,16 @@
+#include "surface/shapes.h"
+
+namespace fettle {
+
+double height(const Plane& plane, const Eigen::Vector2d& xy) { return plane.z0 + plane.slope.dot(xy - plane.origin); }
+
+Eigen::Vector2d slope(const Plane& plane, const Eigen::Vector2d&) { return plane.slope; }
+
+Eigen::VectorXd height_gradient(const Plane& plane, const Eigen::Vector2d& xy)
+{
+    return Eigen::Vector3d(1, xy.x() - plane.origin.x(), xy.y() - plane.origin.y());
+}
+
+Eigen::VectorXi parameter_powers(const Plane&) { return Eigen::Vector3i(1, 0, 0); }
+
+} // namespace fettle

@@ -1,0 +1,54 @@
+#include "surface/quadratic.h"
+#include "surface/shapes.h"
+
+#include <Eigen/Geometry>
+
+namespace fettle {
+
+// F(x; θ) = k/2 |d|² + n·d, d = x - p, rises upward through the surface. Along a vertical line d = d0 + t e_z this is
+// a parabola in t. Implicitly, ∂z/∂θ = -F_θ / F_z, and ∂z/∂x = -F_x / F_z.
+
+namespace {
+
+Eigen::Vector3d offset(const Sphere& sphere, const Eigen::Vector2d& xy)
+{
+    const double k = sphere.curvature;
+    Eigen::Vector3d d(xy.x() - sphere.point.x(), xy.y() - sphere.point.y(), 0);
+    d.z() = rising_root(k / 2, sphere.normal.z(), k / 2 * d.squaredNorm() + sphere.normal.dot(d));
+    return d;
+}
+
+} // namespace
+
+double height(const Sphere& sphere, const Eigen::Vector2d& xy) { return sphere.point.z() + offset(sphere, xy).z(); }
+
+Eigen::Vector2d slope(const Sphere& sphere, const Eigen::Vector2d& xy)
+{
+    const Eigen::Vector3d rise = sphere.curvature * offset(sphere, xy) + sphere.normal; // ∇F
+    return -rise.head<2>() / rise.z();
+}
+
+Eigen::VectorXd height_gradient(const Sphere& sphere, const Eigen::Vector2d& xy)
+{
+    const Eigen::Vector3d d = offset(sphere, xy);
+    const std::array<Eigen::Vector3d, 2> t = tangents(sphere);
+    const double k = sphere.curvature;
+    const Eigen::Vector4d F_theta(-k * sphere.normal.dot(d) - 1, t[0].dot(d), t[1].dot(d), d.squaredNorm() / 2);
+    return -F_theta / (k * d.z() + sphere.normal.z());
+}
+
+Eigen::VectorXi parameter_powers(const Sphere&) { return Eigen::Vector4i(1, 0, 0, -1); }
+
+std::array<Eigen::Vector3d, 2> tangents(const Sphere& sphere)
+{
+    const Eigen::Vector3d first = Eigen::Vector3d(sphere.normal.z(), 0, -sphere.normal.x()).normalized();
+    return {first, sphere.normal.cross(first)};
+}
+
+Sphere sphere_about(const Eigen::Vector3d& centre, double radius, bool convex)
+{
+    const double side = convex ? 1 : -1;
+    return {centre + side * radius * Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitZ(), side / radius};
+}
+
+} // namespace fettle

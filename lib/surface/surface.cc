@@ -1,0 +1,88 @@
+#include "surface/surface.h"
+
+#include "surface/griddata.h"
+#include "surface/shapes.h"
+
+#include <tbb/parallel_for.h>
+
+#include <cmath>
+#include <limits>
+
+namespace fettle {
+
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// Griddata is piecewise: its slope by differences over a step that balances truncation (h²) and roundoff (1e-16 / h).
+Eigen::Vector2d slope(const Griddata& griddata, const Eigen::Vector2d& xy)
+{
+    constexpr double kStep = 1e-4; // mm
+    const double here = height(griddata, xy);
+    Eigen::Vector2d result;
+    for (int axis = 0; axis < 2; ++axis) {
+        const Eigen::Vector2d step = kStep * Eigen::Vector2d::Unit(axis);
+        const double above = height(griddata, xy + step);
+        const double below = height(griddata, xy - step);
+        // At the edge of the hull one side is not defined.
+        result[axis] = std::isnan(above)   ? (here - below) / kStep
+                       : std::isnan(below) ? (above - here) / kStep
+                                           : (above - below) / (2 * kStep);
+    }
+    return result;
+}
+
+Eigen::VectorXd gradient_of(const Shape& shape, const Eigen::Vector2d& xy)
+{
+    return std::visit([&](const auto& s) { return height_gradient(s, xy); }, shape);
+}
+
+} // namespace
+
+double height(const Surface& surface, const Eigen::Vector2d& xy)
+{
+    return std::visit([&](const auto& shape) { return height(shape, xy); }, surface.shape) + surface.shift;
+}
+
+Eigen::VectorXd heights(const Surface& surface, const Eigen::Matrix2Xd& xy)
+{
+    Eigen::VectorXd z(xy.cols());
+    tbb::parallel_for(Eigen::Index{0}, xy.cols(), [&](Eigen::Index i) { z[i] = height(surface, xy.col(i)); });
+    return z;
+}
+
+Eigen::Vector3d normal(const Surface& surface, const Eigen::Vector2d& xy)
+{
+    const Eigen::Vector2d z_xy = std::visit([&](const auto& shape) { return slope(shape, xy); }, surface.shape);
+    return Eigen::Vector3d(-z_xy.x(), -z_xy.y(), 1).normalized();
+}
+
+double sigma(const Surface& surface, const Eigen::Vector2d& xy)
+{
+    if (surface.covariance.size() == 0) return kNan;
+    const Eigen::VectorXd g = gradient_of(surface.shape, xy);
+    if (g.hasNaN()) return kNan;
+    // Only few entries of a spline's gradient differ from 0: σ² = Σ g_i C_ij g_j over those.
+    std::vector<Eigen::Index> used;
+    for (Eigen::Index i = 0; i < g.size(); ++i)
+        if (g[i] != 0) used.push_back(i);
+    const Eigen::VectorXd few = g(used);
+    const double variance = few.dot(surface.covariance(used, used) * few);
+    return std::sqrt(std::max(variance, 0.0));
+}
+
+Eigen::MatrixXd height_gradients(const Shape& shape, const Eigen::Matrix2Xd& xy)
+{
+    const Eigen::VectorXi powers = parameter_powers(shape);
+    Eigen::MatrixXd gradients(powers.size(), xy.cols());
+    tbb::parallel_for(Eigen::Index{0}, xy.cols(),
+                      [&](Eigen::Index i) { gradients.col(i) = gradient_of(shape, xy.col(i)); });
+    return gradients;
+}
+
+Eigen::VectorXi parameter_powers(const Shape& shape)
+{
+    return std::visit([](const auto& s) { return parameter_powers(s); }, shape);
+}
+
+} // namespace fettle

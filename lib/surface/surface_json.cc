@@ -1,0 +1,295 @@
+#include "core/error.h"
+#include "surface/griddata.h"
+#include "surface/shapes.h"
+
+#include <Eigen/Geometry>
+
+#include <cmath>
+#include <numbers>
+
+namespace fettle {
+
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+// Directions are read to full precision; a vector that is further from unit length was edited.
+constexpr double kUnitSlack = 1e-9;
+constexpr int kMostRoles = 5;
+
+using json::Reader;
+using json::Value;
+
+// --- shapes: lengths are divided by `mm` when written, multiplied by it when read ---
+
+Value write(const Plane& plane, double mm)
+{
+    Value value;
+    return value.set("type", "plane")
+        .set("origin", Value(Eigen::VectorXd(plane.origin / mm)))
+        .set("z0", plane.z0 / mm)
+        .set("slope", Value(Eigen::VectorXd(plane.slope)));
+}
+
+Value write(const Sphere& sphere, double mm)
+{
+    Value value;
+    return value.set("type", "sphere")
+        .set("point", Value(Eigen::VectorXd(sphere.point / mm)))
+        .set("normal", Value(Eigen::VectorXd(sphere.normal)))
+        .set("curvature", sphere.curvature * mm);
+}
+
+Value write(const Cylinder& cylinder, double mm)
+{
+    Value value;
+    return value.set("type", "cylinder")
+        .set("point", Value(Eigen::VectorXd(cylinder.point / mm)))
+        .set("normal", Value(Eigen::VectorXd(cylinder.normal)))
+        .set("axis", Value(Eigen::VectorXd(cylinder.axis)))
+        .set("curvature", cylinder.curvature * mm);
+}
+
+Value write(const Swept& swept, double mm)
+{
+    Value value;
+    return value.set("type", "swept")
+        .set("origin", Value(Eigen::VectorXd(swept.origin / mm)))
+        .set("ruling", Value(Eigen::VectorXd(swept.ruling)))
+        .set("scale", swept.scale / mm)
+        .set("section", Value(Eigen::VectorXd(swept.section / mm)))
+        .set("slope", swept.slope)
+        .set("section_least", swept.section_least / mm)
+        .set("section_most", swept.section_most / mm);
+}
+
+Value write(const Bspline& bspline, double mm)
+{
+    Value value;
+    return value.set("type", "bspline")
+        .set("angle_deg", bspline.angle / kDegree)
+        .set("origin", Value(Eigen::VectorXd(bspline.origin / mm)))
+        .set("cell", Value(Eigen::VectorXd(bspline.cell / mm)))
+        .set("heights", Value(Eigen::MatrixXd(bspline.heights / mm)));
+}
+
+Value write(const Griddata& griddata, double mm)
+{
+    Value value;
+    return value.set("type", "griddata")
+        .set("points", Value(Eigen::MatrixXd(griddata.points.transpose() / mm)))
+        .set("spacing", griddata.spacing / mm)
+        .set("angle_deg", griddata.angle / kDegree);
+}
+
+Eigen::VectorXd read_unit(Reader& reader, const std::string& key, int size)
+{
+    const Eigen::VectorXd direction = reader.vector(key, size);
+    if (std::abs(direction.norm() - 1) > kUnitSlack) reader.refuse(key, "must have length 1");
+    return direction;
+}
+
+Eigen::Vector3d read_upward(Reader& reader)
+{
+    const Eigen::Vector3d normal = read_unit(reader, "normal", 3);
+    if (normal.z() <= 0) reader.refuse("normal", "must point up");
+    return normal;
+}
+
+Shape read_cylinder(Reader& reader, double mm)
+{
+    const Cylinder cylinder{reader.vector("point", 3) * mm, read_upward(reader), read_unit(reader, "axis", 3),
+                            reader.number("curvature") / mm};
+    if (std::abs(cylinder.axis.dot(cylinder.normal)) > kUnitSlack)
+        reader.refuse("axis", "must be perpendicular to normal");
+    return cylinder;
+}
+
+Shape read_swept(Reader& reader, double mm)
+{
+    Swept swept;
+    swept.origin = reader.vector("origin", 2) * mm;
+    swept.ruling = read_unit(reader, "ruling", 2);
+    swept.scale = reader.number("scale", Range::positive()) * mm;
+    swept.section = reader.vector("section", 4) * mm;
+    swept.slope = reader.number("slope");
+    swept.section_least = reader.number("section_least") * mm;
+    swept.section_most = reader.number("section_most", Range::at_least(swept.section_least / mm)) * mm;
+    return swept;
+}
+
+Shape read_bspline(Reader& reader, double mm)
+{
+    Bspline bspline;
+    bspline.angle = reader.number("angle_deg") * kDegree;
+    bspline.origin = reader.vector("origin", 2) * mm;
+    bspline.cell = reader.vector("cell", 2) * mm;
+    if (bspline.cell.minCoeff() <= 0) reader.refuse("cell", "must be positive");
+    bspline.heights = reader.matrix("heights") * mm;
+    if (bspline.heights.rows() < 4 || bspline.heights.cols() < 4)
+        reader.refuse("heights", "expected at least 4 rows of 4 (one cubic cell)");
+    return bspline;
+}
+
+Shape read_griddata(Reader& reader, double mm)
+{
+    const Eigen::Matrix3Xd points = reader.matrix("points", 3).transpose() * mm;
+    const double spacing = reader.number("spacing", Range::at_least(0)) * mm;
+    const double angle = reader.number("angle_deg") * kDegree;
+    try {
+        return make_griddata(points, spacing, angle);
+    } catch (const InputError& error) {
+        reader.refuse("points", error.what());
+    }
+}
+
+Shape read_shape(Reader reader, double mm)
+{
+    const std::string type = reader.choice("type", {"plane", "sphere", "cylinder", "swept", "bspline", "griddata"});
+    Shape shape;
+    if (type == "plane")
+        shape = Plane{reader.vector("origin", 2) * mm, reader.number("z0") * mm, reader.vector("slope", 2)};
+    else if (type == "sphere")
+        shape = Sphere{reader.vector("point", 3) * mm, read_upward(reader), reader.number("curvature") / mm};
+    else if (type == "cylinder")
+        shape = read_cylinder(reader, mm);
+    else if (type == "swept")
+        shape = read_swept(reader, mm);
+    else if (type == "bspline")
+        shape = read_bspline(reader, mm);
+    else
+        shape = read_griddata(reader, mm);
+    reader.done();
+    return shape;
+}
+
+// --- covariance: the lower triangle, row by row; C_ij has the dimension of θ_i θ_j ---
+
+Eigen::VectorXd parameter_units(const Shape& shape, double mm)
+{
+    return parameter_powers(shape).unaryExpr([mm](int power) { return std::pow(mm, power); }).cast<double>();
+}
+
+Value write_covariance(const Surface& surface, double mm)
+{
+    const Eigen::VectorXd unit = parameter_units(surface.shape, mm);
+    const Eigen::Index n = unit.size();
+    Eigen::VectorXd packed(n * (n + 1) / 2);
+    for (Eigen::Index i = 0, k = 0; i < n; ++i)
+        for (Eigen::Index j = 0; j <= i; ++j) packed[k++] = surface.covariance(i, j) / (unit[i] * unit[j]);
+    return packed;
+}
+
+Eigen::MatrixXd read_covariance(Reader& reader, const Shape& shape, double mm)
+{
+    if (!reader.has("covariance")) return {};
+    const Eigen::VectorXd unit = parameter_units(shape, mm);
+    const Eigen::Index n = unit.size();
+    const Eigen::VectorXd packed = reader.vector("covariance", static_cast<int>(n * (n + 1) / 2));
+    Eigen::MatrixXd covariance(n, n);
+    for (Eigen::Index i = 0, k = 0; i < n; ++i)
+        for (Eigen::Index j = 0; j <= i; ++j, ++k) covariance(i, j) = covariance(j, i) = packed[k] * unit[i] * unit[j];
+    if (covariance.diagonal().minCoeff() < 0) reader.refuse("covariance", "has a negative variance");
+    return covariance;
+}
+
+// --- the fit, the touches, the prediction ---
+
+Value write_fit(const Surface& surface, double mm)
+{
+    Value fit;
+    fit.set("method", surface.method).set("touch_sigma", surface.touch_sigma / mm).set("rms", surface.rms / mm);
+    if (std::isfinite(surface.goodness)) fit.set("goodness", surface.goodness);
+    return fit.set("ignored", surface.ignored);
+}
+
+void read_fit(Reader reader, Surface& surface, double mm)
+{
+    surface.method = reader.text("method");
+    surface.touch_sigma = reader.number("touch_sigma", Range::at_least(0)) * mm;
+    surface.rms = reader.number("rms", Range::at_least(0)) * mm;
+    surface.goodness = reader.number_or("goodness", std::numeric_limits<double>::quiet_NaN(), Range::between(0, 1));
+    surface.ignored = reader.integer("ignored", 0, std::numeric_limits<int>::max());
+    reader.done();
+}
+
+Value write_touches(const Surface& surface, double mm)
+{
+    Eigen::MatrixXd rows(surface.touches.cols(), 4);
+    rows << surface.touches.transpose() / mm, surface.roles.cast<double>();
+    return rows;
+}
+
+void read_touches(Reader& reader, Surface& surface, double mm)
+{
+    if (!reader.has("touches")) return;
+    const Eigen::MatrixXd rows = reader.matrix("touches", 4);
+    if (rows.rows() == 0) reader.refuse("touches", "is empty");
+    surface.touches = rows.leftCols(3).transpose() * mm;
+    surface.roles = rows.col(3).cast<int>();
+    for (Eigen::Index i = 0; i < rows.rows(); ++i)
+        if (surface.roles[i] != rows(i, 3) || surface.roles[i] < 0 || surface.roles[i] > kMostRoles)
+            reader.refuse("touches[" + std::to_string(i) + "][3]", "is no role (0 to 5)");
+}
+
+Value write_prediction(const Prediction& prediction, double mm)
+{
+    Value value;
+    return value.set("method", prediction.method)
+        .set("confidence", prediction.confidence)
+        .set("band", prediction.band / mm)
+        .set("shift", prediction.shift / mm)
+        .set("clamped", prediction.clamped);
+}
+
+Prediction read_prediction(Reader reader, double mm)
+{
+    Prediction prediction;
+    prediction.method = reader.choice("method", {"posterior", "wang"});
+    prediction.confidence = reader.number("confidence", Range::between(0, 1));
+    prediction.band = reader.number("band", Range::at_least(0)) * mm;
+    prediction.shift = reader.number("shift") * mm;
+    prediction.clamped = reader.flag_or("clamped", false);
+    reader.done();
+    return prediction;
+}
+
+} // namespace
+
+json::Value to_json(const Surface& surface)
+{
+    const double mm = surface.units.mm();
+    Value units;
+    units.set("length", to_string(surface.units.length));
+    Value value;
+    value.set("kind", "surface").set("units", units);
+    value.set("shape", std::visit([mm](const auto& shape) { return write(shape, mm); }, surface.shape));
+    value.set("shift", surface.shift / mm);
+    if (surface.prediction) value.set("prediction", write_prediction(*surface.prediction, mm));
+    value.set("fit", write_fit(surface, mm));
+    if (surface.touches.cols() > 0) value.set("touches", write_touches(surface, mm));
+    if (surface.covariance.size() > 0) value.set("covariance", write_covariance(surface, mm));
+    return value;
+}
+
+Surface parse_surface(json::Reader reader)
+{
+    reader.expect_kind("surface");
+    Surface surface;
+    Reader units = reader.object("units");
+    surface.units.length = parse_length_unit(units.choice("length", {"mm", "in", "m"}));
+    units.done();
+    const double mm = surface.units.mm();
+    surface.shape = read_shape(reader.object("shape"), mm);
+    surface.shift = reader.number_or("shift", 0) * mm;
+    if (std::optional<Reader> prediction = reader.object_or_none("prediction"))
+        surface.prediction = read_prediction(*prediction, mm);
+    if (std::optional<Reader> fit = reader.object_or_none("fit")) read_fit(*fit, surface, mm);
+    read_touches(reader, surface, mm);
+    surface.covariance = read_covariance(reader, surface.shape, mm);
+    reader.done();
+    return surface;
+}
+
+Surface read_surface(const std::string& path) { return parse_surface(json::Reader::open(path)); }
+
+} // namespace fettle
