@@ -6,10 +6,11 @@ namespace fettle {
 
 /// What the machine knows: positions in the machine frame M, mm, N, s.
 struct GantryStatus {
-    double time = 0;           ///< since the start, s
-    Eigen::Vector3d commanded; ///< tool point the drives stand at
-    double deflection = 0;     ///< of the head's spring, upward: the tool point is `commanded` + deflection · Z
-    double force = 0;          ///< along the spring, vertical; 0 without contact
+    double time = 0;                                     ///< since the start, s
+    Eigen::Vector3d commanded = Eigen::Vector3d::Zero(); ///< tool point the drives stand at
+    double deflection = 0; ///< of the head's spring, upward: the tool point is `commanded` + deflection · Z
+    double force = 0;      ///< along the spring, vertical, at the end of the move; 0 without contact
+    double peak_force = 0; ///< the largest during the move
 };
 
 /// A machine that carries the wheel. The tool point is the lowest point of the wheel, at the middle of its width.
@@ -18,16 +19,18 @@ class Gantry {
   public:
     virtual ~Gantry() = default;
 
-    /// Travels without grinding: up to the safe height, across, down to `tool_point`.
+    /// Travels without grinding: up to the safe height, across, down to `tool_point`. The way down is guarded: the
+    /// drives stop early (see `commanded`) where the force reaches the head's F_max.
     virtual GantryStatus travel(const Eigen::Vector3d& tool_point) = 0;
     /// Grinds in a straight line to `tool_point` at `feed`, mm/s. One step of the strategy: a few tenths of a mm to
     /// some mm.
     virtual GantryStatus grind(const Eigen::Vector3d& tool_point, double feed) = 0;
-    /// Lifts straight up (or lowers) in place, without feed.
+    /// Lifts straight up, or lowers (guarded, as travel() does), in place, without feed.
     virtual GantryStatus lift(double commanded_z) = 0;
-    /// Touches the calibration plate P0 and measures the wheel's radius, mm. Costs time.
+    /// Touches the calibration plate P0 and measures the wheel's radius, mm; comes back over its place, at the safe
+    /// height. Costs time.
     virtual double touch_off() = 0;
-    /// Puts on a new wheel. Costs time.
+    /// Puts on a new wheel; comes back over its place, at the safe height. Costs time.
     virtual void change_wheel() = 0;
     virtual GantryStatus status() const = 0;
 };

@@ -1,0 +1,97 @@
+#include "removal/height_field.h"
+
+#include "core/error.h"
+#include "core/text.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <cmath>
+#include <limits>
+
+namespace fettle {
+namespace {
+
+/// Lengths that are a whole number of cells but for rounding count as whole; far above the rounding of coordinates
+/// (1e-12 of a cell), far below what a cell can resolve.
+constexpr double kWholeCell = 1e-6;
+/// 1.6 GB of heights, of which grinding keeps two copies.
+constexpr double kMostCells = 2e8;
+
+double whole_cells(double length, double cell) { return std::ceil(length / cell - kWholeCell); }
+
+bool has_material(const HeightField& field, const Eigen::Matrix2d& box)
+{
+    for (Eigen::Index j = 0; j < field.rows(); ++j)
+        for (Eigen::Index i = 0; i < field.columns(); ++i) {
+            const Eigen::Vector2d at = field.centre(i, j);
+            const bool inside = (at.array() >= box.col(0).array()).all() && (at.array() <= box.col(1).array()).all();
+            if (inside && !std::isnan(field.z(i, j))) return true;
+        }
+    return false;
+}
+
+} // namespace
+
+HeightField empty_height_field(const Eigen::Matrix2d& box, const Eigen::Vector2d& margin, double theta, double cell)
+{
+    if (!(cell > 0)) throw InputError("cell must be positive, not " + to_text(cell));
+    const Eigen::Array2d around(whole_cells(margin.x(), cell), whole_cells(margin.y(), cell));
+    const Eigen::Vector2d size = box.col(1) - box.col(0);
+    const Eigen::Array2d count = Eigen::Array2d(whole_cells(size.x(), cell), whole_cells(size.y(), cell)) + 2 * around;
+    if (!(count.prod() <= kMostCells))
+        throw InputError("a cell of " + to_text(cell) + " mm makes " + to_text(count.prod()) + " cells; at most " +
+                         to_text(kMostCells) + " are possible");
+
+    HeightField field;
+    field.theta = theta;
+    field.cell = cell;
+    field.origin = box.col(0).array() - cell * around;
+    field.z = Eigen::ArrayXXd::Constant(static_cast<Eigen::Index>(count.x()), static_cast<Eigen::Index>(count.y()),
+                                        std::numeric_limits<double>::quiet_NaN());
+    return field;
+}
+
+HeightField height_field(const Scan& scan, const Job& job, double cell)
+{
+    const Eigen::Matrix2d R_working_machine = rotation_working_machine(job.theta);
+    const Eigen::Matrix2d R_machine_working = R_working_machine.transpose();
+    const Eigen::Matrix2Xd corners = R_working_machine * job.anomaly.topRows<2>();
+    Eigen::Matrix2d box;
+    box << corners.rowwise().minCoeff(), corners.rowwise().maxCoeff();
+
+    HeightField field = empty_height_field(box, {job.wheel.width / 2, job.wheel.radius}, job.theta, cell);
+    tbb::parallel_for(tbb::blocked_range<Eigen::Index>(0, field.rows()), [&](const auto& range) {
+        for (Eigen::Index j = range.begin(); j < range.end(); ++j)
+            for (Eigen::Index i = 0; i < field.columns(); ++i)
+                if (const auto z = scan.height(R_machine_working * field.centre(i, j))) field.z(i, j) = *z;
+    });
+    if (!has_material(field, box)) throw InputError("the stock has no surface over the anomaly");
+    return field;
+}
+
+double volume_between(const HeightField& before, const HeightField& after)
+{
+    const Eigen::ArrayXXd depth = before.z - after.z;
+    return depth.isNaN().select(0, depth).sum() * before.cell * before.cell;
+}
+
+Cloud to_cloud(const HeightField& before, const HeightField& after)
+{
+    const Eigen::Index count = (!after.z.isNaN()).count();
+    const Eigen::Matrix2d R_machine_working = rotation_working_machine(after.theta).transpose();
+    Cloud cloud;
+    cloud.xyz.resize(3, count);
+    Eigen::VectorXd removed(count);
+    Eigen::Index n = 0;
+    for (Eigen::Index j = 0; j < after.rows(); ++j)
+        for (Eigen::Index i = 0; i < after.columns(); ++i) {
+            if (std::isnan(after.z(i, j))) continue;
+            cloud.xyz.col(n) << R_machine_working * after.centre(i, j), after.z(i, j);
+            removed[n++] = before.z(i, j) - after.z(i, j);
+        }
+    set_field(cloud, "removed", removed);
+    return cloud;
+}
+
+} // namespace fettle

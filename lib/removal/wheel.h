@@ -1,0 +1,58 @@
+#pragma once
+
+#include "removal/height_field.h"
+
+#include <Eigen/Core>
+
+#include <vector>
+
+namespace fettle {
+
+/// A grinding wheel in a stock: a disc whose axis lies along X_w. Its lowest line is at z_tip; over the distance y from
+/// it (along Y_w) its rim is at z_tip + R − √(R² − y²), the same for all |x| ≤ width / 2. The cells whose centres lie
+/// under the disc belong to it, what stands above the rim is in its way, however high.
+class WheelInStock {
+  public:
+    /// The stock must outlive the wheel, and nobody else may raise it.
+    WheelInStock(HeightField& stock, double width);
+
+    /// Stands the wheel over `xy` (W, its lowest line at mid-width).
+    /// @param lowest  no later z_tip of this place is below it
+    void place(const Eigen::Vector2d& xy, double radius, double lowest);
+
+    /// z_tip at which the wheel, lowered here, first meets stock; −∞ if there is none above `lowest`.
+    double touch() const { return touch_; }
+
+    /// What is in the way of the wheel.
+    struct Overlap {
+        double volume = 0; ///< of the stock above the rim, mm³
+        double area = 0;   ///< of the cells it stands on, seen from above, mm²: −dvolume/dz_tip
+    };
+    /// Piecewise linear and convex in z_tip.
+    Overlap overlap(double z_tip) const;
+
+    /// Removes it.
+    void cut(double z_tip);
+
+  private:
+    /// One row of cells under the wheel.
+    struct Row {
+        double* z;      ///< first cell under the wheel
+        double* top;    ///< highest of the cells, −∞ without material
+        double profile; ///< rim over z_tip
+    };
+    double top(Eigen::Index row);
+
+    HeightField& stock_;
+    double width_;
+    double highest_;                ///< of the whole stock, at the beginning
+    Eigen::Index first_column_ = 0; ///< under the wheel
+    Eigen::Index columns_ = 0;
+    std::vector<double> tops_;        ///< of each row between these columns, as far as they are known
+    std::vector<Eigen::Index> known_; ///< the visit (range of columns) for which tops_ holds
+    Eigen::Index visit_ = 0;
+    std::vector<Row> rows_; ///< of this place
+    double touch_ = 0;
+};
+
+} // namespace fettle
