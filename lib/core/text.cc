@@ -39,6 +39,13 @@ std::string to_text(double value) { return shortest(value); }
 
 std::string to_text(float value) { return shortest(value); }
 
+std::string to_short_text(double value)
+{
+    char buffer[32];
+    const auto written = std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, 6);
+    return {buffer, written.ptr};
+}
+
 std::optional<double> parse_number(std::string_view text)
 {
     if (!text.empty() && text.front() == '+') text.remove_prefix(1);

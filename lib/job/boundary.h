@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -15,11 +16,12 @@ using Polygon = Eigen::Matrix2Xd;
 /// The polygons of a job in the working frame W, checked (Wang 2007, 4.4.4): B the anomaly, S the sampling boundary.
 struct Boundaries {
     Polygon anomaly;  ///< B
-    Polygon sampling; ///< S; for free-form jobs the convex hull of the points; empty for a plane without one
+    Polygon sampling; ///< S; empty for a plane without one
 };
 
-/// @throws InputError for fewer than 3 points, a self-intersecting or flat polygon, B not inside S, S \ B empty; the
-///         message names the polygon and the place
+/// Clockwise input is turned; points that repeat their neighbour (a closed list) are dropped.
+/// @throws InputError for fewer than 3 points, a self-intersecting or flat polygon, B not inside S (free-form: not
+///         inside the convex hull of S), S \ B empty; the message names the polygon and the place, in M
 Boundaries boundaries(const Job& job);
 
 bool contains(const Polygon& polygon, const Eigen::Vector2d& point); ///< the edge belongs to it
@@ -34,6 +36,9 @@ std::vector<Interval> inside(const Polygon& polygon, const Eigen::Vector2d& orig
 /// a \ b and a ∩ b for sorted disjoint intervals; parts shorter than `least` are dropped.
 std::vector<Interval> subtract(const std::vector<Interval>& a, const std::vector<Interval>& b, double least = 0);
 std::vector<Interval> intersect(const std::vector<Interval>& a, const std::vector<Interval>& b, double least = 0);
+
+/// "(1.5, 2) in": a place in messages. @param xy  frame M, mm
+std::string place(const Eigen::Vector2d& xy, const Units& units);
 
 /// Distance of a point to the polygon's edge, mm.
 double distance_to_edge(const Polygon& polygon, const Eigen::Vector2d& point);

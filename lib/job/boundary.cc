@@ -1,0 +1,276 @@
+#include "job/boundary.h"
+
+#include "core/error.h"
+#include "core/text.h"
+
+#define BOOST_ALLOW_DEPRECATED_HEADERS // Boost.Geometry includes one of Boost's own
+#include <boost/geometry.hpp>
+#include <boost/geometry/geometries/point_xy.hpp>
+#include <boost/geometry/geometries/polygon.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace fettle {
+
+namespace {
+
+namespace bg = boost::geometry;
+using Point = bg::model::d2::point_xy<double>;
+using BoostPolygon = bg::model::polygon<Point, false, false>; // counter-clockwise, not closed
+using BoostPolygons = bg::model::multi_polygon<BoostPolygon>;
+
+// Corners turned into the frame W are off by some units in the last place (2e-16 of their distance from the origin);
+// this keeps a hundred times clear of that, and of anything a probe can tell.
+constexpr double kRoundoff = 1e-13;
+
+// A polygon with less area than this share of its diameter squared is a line: a strip a millionth as wide as long.
+constexpr double kFlat = 1e-6;
+
+double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+double size(const Polygon& polygon) { return polygon.cwiseAbs().maxCoeff(); }
+
+BoostPolygon to_boost(const Polygon& polygon)
+{
+    BoostPolygon result;
+    for (Eigen::Index i = 0; i < polygon.cols(); ++i) result.outer().emplace_back(polygon(0, i), polygon(1, i));
+    return result;
+}
+
+BoostPolygons difference(const Polygon& a, const Polygon& b)
+{
+    BoostPolygons result;
+    bg::difference(to_boost(a), to_boost(b), result);
+    return result;
+}
+
+double signed_area(const Polygon& polygon)
+{
+    if (polygon.cols() < 3) return 0;
+    double twice = 0;
+    const Eigen::Vector2d origin = polygon.col(0); // near the polygon: no cancellation far from the machine's zero
+    for (Eigen::Index i = 1; i + 1 < polygon.cols(); ++i)
+        twice += cross(polygon.col(i) - origin, polygon.col(i + 1) - origin);
+    return twice / 2;
+}
+
+// Parameters along the edges p→q and r→s where they meet; nothing if they are parallel or pass each other.
+std::optional<Eigen::Vector2d> meeting_point(const Eigen::Vector2d& p, const Eigen::Vector2d& q,
+                                             const Eigen::Vector2d& r, const Eigen::Vector2d& s)
+{
+    const double along = cross(q - p, s - r);
+    if (along == 0) {
+        for (const Eigen::Vector2d& end : {r, s}) // parallel: they meet where they overlap
+            if (cross(q - p, end - p) == 0 && (end - p).dot(end - q) <= 0) return end;
+        if (cross(s - r, p - r) == 0 && (p - r).dot(p - s) <= 0) return p;
+        return std::nullopt;
+    }
+    const double t = cross(r - p, s - r) / along;
+    const double u = cross(r - p, q - p) / along;
+    if (t < 0 || t > 1 || u < 0 || u > 1) return std::nullopt;
+    return p + t * (q - p);
+}
+
+// The first place where edges that are not neighbours meet, or neighbours fold back onto each other.
+Eigen::Vector2d place_of_crossing(const Polygon& polygon)
+{
+    const Eigen::Index n = polygon.cols();
+    for (Eigen::Index i = 0; i < n; ++i) {
+        const Eigen::Vector2d before = polygon.col(i), here = polygon.col((i + 1) % n),
+                              after = polygon.col((i + 2) % n);
+        if (cross(here - before, after - here) == 0 && (here - before).dot(after - here) < 0) return here;
+        for (Eigen::Index j = i + 2; j < n; ++j)
+            if ((j + 1) % n != i)
+                if (const auto meet = meeting_point(before, here, polygon.col(j), polygon.col((j + 1) % n)))
+                    return *meet;
+    }
+    return polygon.col(0);
+}
+
+// In the frame M, counter-clockwise.
+Polygon checked_polygon(const Job& job, const Eigen::Matrix3Xd& points, const std::string& name)
+{
+    if (points.cols() < 3)
+        throw InputError(job.source,
+                         name + ": " + std::to_string(points.cols()) + " boundary points, at least 3 are needed");
+    if (!points.topRows<2>().allFinite()) throw InputError(job.source, name + ": a boundary point without x and y");
+    std::vector<Eigen::Index> kept;
+    for (Eigen::Index i = 0; i < points.cols(); ++i)
+        if (points.col(i).head<2>() != points.col((i + 1) % points.cols()).head<2>()) kept.push_back(i);
+    Polygon polygon = points.topRows<2>()(Eigen::all, kept);
+    if (polygon.cols() < 3)
+        throw InputError(job.source, name + ": only " + std::to_string(polygon.cols()) +
+                                         " different boundary points, at least 3 are needed");
+    const double diameter = (polygon.rowwise().maxCoeff() - polygon.rowwise().minCoeff()).norm();
+    bg::validity_failure_type failure = bg::no_failure;
+    if (signed_area(polygon) < 0) polygon = Polygon(polygon.rowwise().reverse());
+    const bool valid = bg::is_valid(to_boost(polygon), failure);
+    if (!valid && (failure == bg::failure_self_intersections || failure == bg::failure_wrong_orientation))
+        throw InputError(job.source,
+                         name + ": the boundary crosses itself at " + place(place_of_crossing(polygon), job.units));
+    if (!valid || area(polygon) < kFlat * diameter * diameter)
+        throw InputError(job.source,
+                         name + ": the boundary encloses no area, near " + place(polygon.col(0), job.units));
+    return polygon;
+}
+
+// The point of the polygons that is farthest from the edge of `polygon`.
+Eigen::Vector2d farthest_point(const BoostPolygons& polygons, const Polygon& polygon)
+{
+    Eigen::Vector2d farthest = polygon.col(0);
+    double distance = -1;
+    for (const BoostPolygon& part : polygons)
+        for (const Point& corner : part.outer()) {
+            const Eigen::Vector2d xy(corner.x(), corner.y());
+            const double d = distance_to_edge(polygon, xy);
+            if (d > distance) farthest = xy, distance = d;
+        }
+    return farthest;
+}
+
+} // namespace
+
+std::string place(const Eigen::Vector2d& xy, const Units& units)
+{
+    return "(" + to_short_text(xy.x() / units.mm()) + ", " + to_short_text(xy.y() / units.mm()) + ") " +
+           to_string(units.length);
+}
+
+Boundaries boundaries(const Job& job)
+{
+    const Eigen::Matrix2d rotation = rotation_working_machine(job.theta);
+    const Polygon anomaly = checked_polygon(job, job.anomaly, "anomaly");
+    if (job.sampling.cols() == 0 && job.surface == SurfaceType::plane) return {rotation * anomaly, {}};
+    const Polygon sampling = checked_polygon(job, job.sampling, "sampling");
+
+    const bool freeform = job.surface == SurfaceType::freeform;
+    const Polygon around = freeform ? convex_hull(sampling) : sampling;
+    const BoostPolygons outside = difference(anomaly, around);
+    const double small = kFlat * area(anomaly);
+    if (bg::area(outside) > small)
+        throw InputError(job.source, "anomaly: not inside the sampling boundary" +
+                                         std::string(freeform ? "'s convex hull" : "") + ", at " +
+                                         place(farthest_point(outside, around), job.units));
+    if (bg::area(difference(sampling, anomaly)) <= small)
+        throw InputError(job.source, "sampling: no room between anomaly and sampling boundary, near " +
+                                         place(sampling.col(0), job.units));
+    return {rotation * anomaly, rotation * sampling};
+}
+
+bool contains(const Polygon& polygon, const Eigen::Vector2d& point)
+{
+    bool inside = false;
+    const Eigen::Index n = polygon.cols();
+    for (Eigen::Index i = 0, j = n - 1; i < n; j = i++) {
+        const Eigen::Vector2d a = polygon.col(j), b = polygon.col(i);
+        if ((a.y() > point.y()) == (b.y() > point.y())) continue;
+        if (point.x() < a.x() + (point.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x())) inside = !inside;
+    }
+    return inside || (n > 0 && distance_to_edge(polygon, point) <= kRoundoff * size(polygon));
+}
+
+double area(const Polygon& polygon) { return std::abs(signed_area(polygon)); }
+
+Polygon convex_hull(const Polygon& points)
+{
+    BoostPolygon hull;
+    bg::convex_hull(to_boost(points), hull);
+    Polygon result(2, static_cast<Eigen::Index>(hull.outer().size()));
+    for (Eigen::Index i = 0; i < result.cols(); ++i) {
+        const Point& corner = hull.outer()[static_cast<std::size_t>(i)];
+        result.col(i) << corner.x(), corner.y();
+    }
+    return result;
+}
+
+// Beside the line, at an infinitely small distance on either side of it, there are no special cases: there every edge
+// crosses or not. Edges whose ends lie at h >= 0 and h < 0 cross just below the line, those with h > 0 and h <= 0 just
+// above. A stretch of the line belongs to the polygon if one of its sides does, which takes edges along the line in.
+std::vector<Interval> inside(const Polygon& polygon, const Eigen::Vector2d& origin, const Eigen::Vector2d& direction)
+{
+    struct Crossing {
+        double t;
+        bool below, above;
+    };
+    std::vector<Crossing> crossings;
+    const Eigen::Index n = polygon.cols();
+    const double on_line = kRoundoff * std::max(size(polygon), origin.cwiseAbs().maxCoeff());
+    Eigen::VectorXd t(n), h(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+        const Eigen::Vector2d corner = polygon.col(i) - origin;
+        t[i] = direction.dot(corner);
+        h[i] = cross(direction, corner);
+        if (std::abs(h[i]) <= on_line) h[i] = 0;
+    }
+    for (Eigen::Index i = 0, j = n - 1; i < n; j = i++) {
+        const bool below = (h[j] >= 0) != (h[i] >= 0);
+        const bool above = (h[j] > 0) != (h[i] > 0);
+        if (!below && !above) continue;
+        const double at = h[i] == 0 ? t[i] : h[j] == 0 ? t[j] : t[j] + h[j] / (h[j] - h[i]) * (t[i] - t[j]);
+        crossings.push_back({at, below, above});
+    }
+    std::sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) { return a.t < b.t; });
+
+    std::vector<Interval> intervals;
+    bool below = false, above = false;
+    for (std::size_t k = 0; k + 1 < crossings.size(); ++k) {
+        below ^= crossings[k].below;
+        above ^= crossings[k].above;
+        const Interval stretch(crossings[k].t, crossings[k + 1].t);
+        if (!(below || above) || stretch.second <= stretch.first) continue;
+        if (!intervals.empty() && intervals.back().second == stretch.first)
+            intervals.back().second = stretch.second;
+        else
+            intervals.push_back(stretch);
+    }
+    return intervals;
+}
+
+std::vector<Interval> subtract(const std::vector<Interval>& a, const std::vector<Interval>& b, double least)
+{
+    std::vector<Interval> result;
+    const auto keep = [&result, least](double from, double to) {
+        if (to > from && to - from >= least) result.emplace_back(from, to);
+    };
+    for (const Interval& whole : a) {
+        double from = whole.first;
+        for (const Interval& hole : b) {
+            if (hole.second <= from) continue;
+            if (hole.first >= whole.second) break;
+            keep(from, hole.first);
+            from = hole.second;
+        }
+        keep(from, whole.second);
+    }
+    return result;
+}
+
+std::vector<Interval> intersect(const std::vector<Interval>& a, const std::vector<Interval>& b, double least)
+{
+    std::vector<Interval> result;
+    for (const Interval& p : a)
+        for (const Interval& q : b) {
+            const double from = std::max(p.first, q.first), to = std::min(p.second, q.second);
+            if (to > from && to - from >= least) result.emplace_back(from, to);
+        }
+    return result;
+}
+
+double distance_to_edge(const Polygon& polygon, const Eigen::Vector2d& point)
+{
+    double least = std::numeric_limits<double>::infinity();
+    const Eigen::Index n = polygon.cols();
+    for (Eigen::Index i = 0, j = n - 1; i < n; j = i++) {
+        const Eigen::Vector2d edge = polygon.col(i) - polygon.col(j);
+        const Eigen::Vector2d from = point - polygon.col(j);
+        const double length2 = edge.squaredNorm();
+        const double t = length2 > 0 ? std::clamp(from.dot(edge) / length2, 0.0, 1.0) : 0;
+        least = std::min(least, (from - t * edge).norm());
+    }
+    return least;
+}
+
+} // namespace fettle

@@ -1,0 +1,148 @@
+// Jobs: units, defaults, refusals, and the way back to JSON.
+#include "job/job.h"
+
+#include "core/error.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace fettle {
+namespace {
+
+Job parse(const std::string& text) { return parse_job(json::Reader::parse(text, "job.json")); }
+
+std::string problem(const std::string& text)
+{
+    try {
+        parse(text);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "accepted";
+}
+
+const std::string kSquares = R"("anomaly": [[1,1],[2,1],[2,2],[1,2]], "sampling": [[0,0],[3,0],[3,3],[0,3]])";
+
+std::string inches(const std::string& members)
+{
+    return R"({"kind": "job", "units": {"length": "in", "force": "lbf"}, "surface": {"type": "freeform"}, )" +
+           kSquares + members + "}";
+}
+
+TEST(Job, ConvertsEveryNumberToBaseUnits)
+{
+    const Job job = parse(R"({"kind": "job", "units": {"length": "in", "force": "lbf"},
+      "frame": {"theta_deg": 90}, "surface": {"type": "swept", "direction_deg": 45},
+      "anomaly": [[1,1,0.5],[2,1],[2,2],[1,2]], "sampling": [[0,0,0],[3,0,0],[3,3,0],[0,3,0]],
+      "probe": {"accuracy": 0.005, "tip_radius": 0.1}, "tolerance": 0.02, "safe_height": 2,
+      "wheel": {"radius": 3, "width": 0.5, "min_radius": 2},
+      "force": {"min": 20, "down": 40, "max": 60, "stiffness": 200, "preload": 1},
+      "feed": {"axis": "x", "rate": 2, "step_over": 0.25}, "removal": {"coefficient": 1e-3}})");
+    const double in = 25.4, lbf = 4.4482216152605;
+    EXPECT_DOUBLE_EQ(job.theta, std::numbers::pi / 2);
+    EXPECT_EQ(job.surface, SurfaceType::swept);
+    EXPECT_DOUBLE_EQ(job.direction, std::numbers::pi / 4);
+    EXPECT_DOUBLE_EQ(job.anomaly(2, 0), 0.5 * in);
+    EXPECT_TRUE(std::isnan(job.anomaly(2, 1)));
+    EXPECT_DOUBLE_EQ(job.sampling(0, 2), 3 * in);
+    EXPECT_DOUBLE_EQ(job.probe.accuracy, 0.005 * in);
+    EXPECT_DOUBLE_EQ(job.probe.tip_radius, 0.1 * in);
+    EXPECT_DOUBLE_EQ(job.tolerance, 0.02 * in);
+    EXPECT_DOUBLE_EQ(job.safe_height, 2 * in);
+    EXPECT_DOUBLE_EQ(job.wheel.min_radius, 2 * in);
+    EXPECT_DOUBLE_EQ(job.force.down, 40 * lbf);
+    EXPECT_DOUBLE_EQ(job.force.stiffness, 200 * lbf / in);
+    EXPECT_DOUBLE_EQ(job.feed.rate, 2 * in);
+    EXPECT_EQ(job.feed.axis, 'x');
+    EXPECT_DOUBLE_EQ(job.removal, 1e-3 * in * in * in / lbf);
+}
+
+TEST(Job, DefaultsAreTheSamePhysicalOnesInBothUnits)
+{
+    const Job in = parse(R"({"kind": "job", "units": {"length": "in"}, "surface": {"type": "plane"},
+      "anomaly": [[0,0],[1,0],[0,1]]})");
+    const Job mm = parse(R"({"kind": "job", "units": {"length": "mm"}, "surface": {"type": "plane"},
+      "anomaly": [[0,0],[1,0],[0,1]]})");
+    for (const Job& job : {in, mm}) {
+        EXPECT_EQ(job.force.down, Job().force.down);
+        EXPECT_EQ(job.wheel.min_radius, Job().wheel.min_radius);
+        EXPECT_DOUBLE_EQ(job.feed.step_over, Job().feed.step_over);
+        EXPECT_EQ(job.safe_height, Job().safe_height);
+        EXPECT_EQ(job.sampling.cols(), 0);
+    }
+    // 5/10/15 lbf on 200 lbf/in, 2e-3 in^3/(lbf s), to the digits that the header gives
+    EXPECT_NEAR(Job().force.max, 15 * 4.44822, 0.01);
+    EXPECT_NEAR(Job().force.stiffness, 200 * 4.44822 / 25.4, 0.03);
+    EXPECT_NEAR(Job().removal, 2e-3 * 16387.064 / 4.44822, 1e-3);
+}
+
+TEST(Job, DefaultsFollowWhatIsGiven)
+{
+    const Job job = parse(inches(R"(, "wheel": {"radius": 2, "width": 0.1}, "force": {"min": 20, "max": 60})"));
+    EXPECT_DOUBLE_EQ(job.wheel.min_radius, 25.4);
+    EXPECT_DOUBLE_EQ(job.feed.step_over, 0.08 * 25.4);
+    EXPECT_DOUBLE_EQ(job.force.down, 40 * 4.4482216152605);
+    const Job high = parse(R"({"kind": "job", "units": {"length": "mm"}, "surface": {"type": "plane"},
+      "anomaly": [[0,0,400],[1,0,401],[0,1]]})");
+    EXPECT_DOUBLE_EQ(high.safe_height, 451.8);
+}
+
+TEST(Job, ComesBackFromJsonUnchanged)
+{
+    const std::string text = to_json(parse(inches(R"(, "frame": {"theta_deg": 33.3}, "tolerance": 0.0231,
+      "force": {"min": 5.1, "down": 9.7, "max": 15.3, "stiffness": 201.7}, "removal": {"coefficient": 0.00217})")))
+                                 .text();
+    EXPECT_NE(text.find("\"tolerance\": 0.0231,"), std::string::npos) << text;
+    EXPECT_NE(text.find("33.3"), std::string::npos) << text;
+    EXPECT_EQ(to_json(parse(text)).text(), text);
+}
+
+TEST(Job, RefusesWithTheKey)
+{
+    const auto expect = [](const std::string& members, const std::string& message) {
+        EXPECT_EQ(problem(inches(members)), "job.json: " + message);
+    };
+    expect(R"(, "force": {"min": 20, "max": 10})", "force.max: must be above min, 20, got 10");
+    expect(R"(, "force": {"min": 5, "down": 16, "max": 15})",
+           "force.down: must lie between min and max, 5 and 15, got 16");
+    expect(R"(, "force": {"min": 5, "down": 4, "max": 15})",
+           "force.down: must lie between min and max, 5 and 15, got 4");
+    expect(R"(, "force": {"stiffness": 0})", "force.stiffness: must be positive, got 0");
+    expect(R"(, "feed": {"rate": -1})", "feed.rate: must be positive, got -1");
+    expect(R"(, "wheel": {"width": 0.25}, "feed": {"step_over": 0.5})",
+           "feed.step_over: wider than the wheel, 0.25: 0.5 leaves ridges");
+    expect(R"(, "wheel": {"radius": 1, "min_radius": 2})", "wheel.min_radius: must be at most the radius, 1, got 2");
+    expect(R"(, "tolerance": 0)", "tolerance: must be positive, got 0");
+    expect(R"(, "feed": {"axes": "x"})", "feed.axes: unknown key, did you mean \"axis\"?");
+    expect(R"(, "anomaly_": 1)", "anomaly_: unknown key, did you mean \"anomaly\"?");
+}
+
+TEST(Job, RefusesWrongShapesOfTheFile)
+{
+    EXPECT_EQ(problem(R"({"kind": "surface"})"), "job.json: kind: expected \"job\", got \"surface\"");
+    EXPECT_EQ(problem(R"({"kind": "job"})"), "job.json: units: missing, expected an object");
+    EXPECT_EQ(problem(R"({"kind": "job", "units": {"length": "cm"}})"),
+              "job.json: units.length: \"cm\" is none of mm, in; did you mean \"mm\"?");
+    // a force in no unit must not pass
+    EXPECT_EQ(problem(R"({"kind": "job", "units": {"length": "in"}, "force": {"min": 1}})"),
+              "job.json: units.force: missing, expected text");
+    EXPECT_EQ(problem(R"({"kind": "job", "units": {"length": "in"}, "surface": {"type": "freeform"},
+      "anomaly": [[0,0],[1,0],[0,1]]})"),
+              "job.json: sampling: missing, expected an array of rows");
+    EXPECT_EQ(problem(R"({"kind": "job", "units": {"length": "in"}, "surface": {"type": "plane"},
+      "anomaly": [[0,0],[1e300,0],[0,1]]})"),
+              "job.json: anomaly[1][0]: no casting reaches that far: 1e+300");
+}
+
+TEST(Job, WorkingFrameIsTurnedCounterClockwise)
+{
+    // X_w lies along Y_m when theta is 90 degrees: a point on Y_m has x_w = 1.
+    const Eigen::Vector2d w = rotation_working_machine(std::numbers::pi / 2) * Eigen::Vector2d(0, 1);
+    EXPECT_NEAR(w.x(), 1, 1e-15);
+    EXPECT_NEAR(w.y(), 0, 1e-15);
+}
+
+} // namespace
+} // namespace fettle
