@@ -18,7 +18,7 @@ TOOLS    := $(patsubst tools/%.cc,%,$(wildcard tools/fettle-*.cc))
 BINARIES := $(TOOLS:%=$(B)/bin/%)
 TESTS    := $(patsubst tests/lib/%.cc,$(B)/tests/%,$(wildcard tests/lib/*_test.cc))
 BENCHES  := $(patsubst tests/bench/%.cc,$(B)/bench/%,$(wildcard tests/bench/*_bench.cc))
-CASES    := $(sort $(wildcard tests/$(or $(TOOL),fettle-*)/*.sh))
+CASES    := $(sort $(wildcard tests/$(or $(TOOL),*)/*.sh))
 OBJECTS  := $(patsubst %.cc,$(B)/%.o,$(wildcard lib/*/*.cc))
 
 # -ffp-contract=off: the same digits on every processor. No -march: Debian's PCL is built without it, and Eigen's
