@@ -1,5 +1,6 @@
 #pragma once
 
+#include "cloud/cloud.h"
 #include "units/units.h"
 
 #include <string>
@@ -10,5 +11,8 @@ namespace fettle {
 /// are lengths; force is a force; feed is length per second; pressure is force per area. Any other name is a plain
 /// number.
 Dimension field_dimension(const std::string& name);
+
+/// Multiplies all elements of a field. One of whole numbers becomes F8: 1 in is no whole number of mm.
+void scale(Field& field, double factor);
 
 } // namespace fettle

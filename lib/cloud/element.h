@@ -1,0 +1,77 @@
+#pragma once
+
+#include "core/text.h"
+
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <type_traits>
+
+namespace fettle {
+
+/// Does PCD know elements of this type ('F', 'I', 'U') and size in bytes?
+constexpr bool is_element_type(char type, std::size_t size)
+{
+    if (type == 'F') return size == 4 || size == 8;
+    return (type == 'I' || type == 'U') && (size == 1 || size == 2 || size == 4 || size == 8);
+}
+
+/// Calls `use` with a value of the C++ type that a PCD type and size mean: visit_element('F', 4, [](auto zero) { … }).
+/// The type must be one that is_element_type() accepts.
+template <typename Use>
+decltype(auto) visit_element(char type, int size, Use&& use)
+{
+    if (type == 'F') return size == 4 ? use(float{}) : use(double{});
+    if (type == 'I') {
+        if (size == 1) return use(std::int8_t{});
+        if (size == 2) return use(std::int16_t{});
+        return size == 4 ? use(std::int32_t{}) : use(std::int64_t{});
+    }
+    if (size == 1) return use(std::uint8_t{});
+    if (size == 2) return use(std::uint16_t{});
+    return size == 4 ? use(std::uint32_t{}) : use(std::uint64_t{});
+}
+
+/// The element at `bytes`, which need not be aligned.
+template <typename T>
+T load(const void* bytes)
+{
+    T value;
+    std::memcpy(&value, bytes, sizeof value);
+    return value;
+}
+
+template <typename T>
+void store(void* bytes, T value)
+{
+    std::memcpy(bytes, &value, sizeof value);
+}
+
+/// A number from text into the bytes of an element. @return  is it one, and does it fit the type?
+template <typename T>
+bool parse_element(std::string_view word, void* to)
+{
+    if constexpr (std::is_floating_point_v<T>) {
+        const std::optional<double> value = parse_number(word);
+        if (!value) return false;
+        if (std::isfinite(*value) && std::abs(*value) > std::numeric_limits<T>::max()) return false;
+        store(to, static_cast<T>(*value));
+        return true;
+    } else {
+        T value{};
+        const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+        if (error != std::errc() || end != word.data() + word.size()) return false;
+        store(to, value);
+        return true;
+    }
+}
+
+/// "F4", "U1": how a type is called in messages.
+inline std::string element_name(char type, int size) { return type + std::to_string(size); }
+
+} // namespace fettle

@@ -1,0 +1,36 @@
+#include "cloud/fields.h"
+
+#include "cloud/element.h"
+
+#include <type_traits>
+
+namespace fettle {
+
+Dimension field_dimension(const std::string& name)
+{
+    for (const char* length : {"error", "sigma", "clearance", "radius", "displacement", "removed"})
+        if (name == length) return {1, 0};
+    if (name == "force") return {0, 1};
+    if (name == "feed") return {1, 0}; // per second, which is the unit of time everywhere
+    if (name == "pressure") return {-2, 1};
+    return {};
+}
+
+void scale(Field& field, double factor)
+{
+    const std::size_t elements = field.bytes.size() / static_cast<std::size_t>(field.size);
+    visit_element(field.type, field.size, [&](auto zero) {
+        using From = decltype(zero);
+        using To = std::conditional_t<std::is_floating_point_v<From>, From, double>;
+        std::vector<std::byte> scaled(elements * sizeof(To));
+        for (std::size_t i = 0; i < elements; ++i) {
+            const auto value = static_cast<double>(load<From>(field.bytes.data() + i * sizeof(From)));
+            store(scaled.data() + i * sizeof(To), static_cast<To>(value * factor));
+        }
+        field.bytes = std::move(scaled);
+        field.type = 'F';
+        field.size = sizeof(To);
+    });
+}
+
+} // namespace fettle

@@ -1,0 +1,310 @@
+#include "cloud/ply.h"
+
+#include "cloud/element.h"
+#include "cloud/ply_header.h"
+#include "core/error.h"
+#include "core/lines.h"
+
+#include <algorithm>
+#include <array>
+
+namespace fettle {
+
+namespace {
+
+using Property = PlyHeader::Property;
+using Element = PlyHeader::Element;
+
+// Reads the values of an ascii body: one item of an element a line.
+class AsciiBody {
+  public:
+    AsciiBody(std::string_view body, std::size_t lines_before, const std::string& source)
+        : lines_(body, lines_before), left_(body.size()), source_(source)
+    {
+    }
+
+    void check_room(const Element& element) const
+    {
+        const std::size_t shortest_line = 2 * element.properties.size(); // "0 0 0\n"
+        if (element.count > (left_ - lines_.offset() + 1) / shortest_line)
+            refuse("element " + element.name + " " + std::to_string(element.count) + ": only " +
+                   std::to_string(left_ - lines_.offset()) + " bytes left");
+    }
+
+    void begin_item(const std::string& element, std::size_t index)
+    {
+        do
+            if (!lines_.next()) refuse("element " + element + ": only " + std::to_string(index) + " lines");
+        while (lines_.line().find_first_not_of(" \t") == std::string_view::npos);
+        rest_ = lines_.line();
+    }
+
+    template <typename T>
+    T value(const Property& property)
+    {
+        const std::string_view word = next_word(rest_);
+        if (word.empty()) refuse("property " + property.name + " is missing");
+        T number{};
+        if (!parse_element<T>(word, &number))
+            refuse("property " + property.name + ": " + quoted(word) + " is no number of its type");
+        return number;
+    }
+
+    void check_list_room(std::size_t length) const
+    {
+        if (length > rest_.size()) refuse("a list of " + std::to_string(length) + " on a line too short for it");
+    }
+
+    void end_item()
+    {
+        const std::string_view word = next_word(rest_);
+        if (!word.empty()) refuse("more values than properties: " + quoted(word));
+    }
+
+    void end()
+    {
+        while (lines_.next())
+            if (lines_.line().find_first_not_of(" \t") != std::string_view::npos)
+                refuse("text after the last element: " + quoted(lines_.line()));
+    }
+
+    [[noreturn]] void refuse(const std::string& problem) const
+    {
+        throw InputError(source_, lines_.place() + ": " + problem);
+    }
+
+  private:
+    Lines lines_;
+    std::size_t left_;
+    std::string_view rest_;
+    const std::string& source_;
+};
+
+class BinaryBody {
+  public:
+    BinaryBody(std::string_view body, bool swap, const std::string& source) : body_(body), swap_(swap), source_(source)
+    {
+    }
+
+    void check_room(const Element& element)
+    {
+        std::size_t least = 0;
+        for (const Property& property : element.properties)
+            least += static_cast<std::size_t>(property.list ? property.count_size : property.size);
+        if (element.count > body_.size() / least)
+            throw InputError(source_, "element " + element.name + " " + std::to_string(element.count) + ": only " +
+                                          std::to_string(body_.size()) + " bytes left");
+    }
+
+    void begin_item(const std::string& element, std::size_t index)
+    {
+        element_ = &element;
+        index_ = index;
+    }
+
+    template <typename T>
+    T value(const Property& property)
+    {
+        if (body_.size() < sizeof(T)) refuse("property " + property.name + ": the file ends");
+        std::array<char, sizeof(T)> bytes;
+        std::copy_n(body_.begin(), sizeof(T), bytes.begin());
+        if (swap_) std::reverse(bytes.begin(), bytes.end());
+        body_.remove_prefix(sizeof(T));
+        return load<T>(bytes.data());
+    }
+
+    void check_list_room(std::size_t length) const
+    {
+        if (length > body_.size()) refuse("a list of " + std::to_string(length) + ", the file ends");
+    }
+
+    void end_item() {}
+
+    void end() const
+    {
+        if (body_.find_first_not_of(" \t\r\n") != std::string_view::npos)
+            throw InputError(source_, std::to_string(body_.size()) + " bytes after the last element");
+    }
+
+    [[noreturn]] void refuse(const std::string& problem) const
+    {
+        throw InputError(source_, *element_ + " " + std::to_string(index_) + ": " + problem);
+    }
+
+  private:
+    std::string_view body_;
+    bool swap_;
+    const std::string* element_ = nullptr;
+    std::size_t index_ = 0;
+    const std::string& source_;
+};
+
+template <typename Body>
+std::size_t list_length(Body& body, const Property& property)
+{
+    const char type = property.count_signed ? 'I' : 'U';
+    const std::size_t length = visit_element(type, property.count_size, [&](auto zero) {
+        const auto number = body.template value<decltype(zero)>(property);
+        if constexpr (std::is_signed_v<decltype(zero)>)
+            if (number < 0) body.refuse("property " + property.name + ": a list of " + std::to_string(number));
+        return static_cast<std::size_t>(number);
+    });
+    body.check_list_room(length);
+    return length;
+}
+
+template <typename Body>
+void skip(Body& body, const Property& property)
+{
+    const std::size_t length = property.list ? list_length(body, property) : 1;
+    for (std::size_t k = 0; k < length; ++k)
+        visit_element(property.type, property.size, [&](auto zero) { body.template value<decltype(zero)>(property); });
+}
+
+std::string field_name(const std::string& property)
+{
+    if (property == "nx" || property == "ny" || property == "nz") return "normal_" + property.substr(1);
+    constexpr std::string_view kScalar = "scalar_"; // CloudCompare's prefix of scalar fields
+    return property.starts_with(kScalar) && property.size() > kScalar.size() ? property.substr(kScalar.size())
+                                                                             : property;
+}
+
+int axis_of(const Property& property)
+{
+    return property.name == "x" ? 0 : property.name == "y" ? 1 : property.name == "z" ? 2 : -1;
+}
+
+template <typename Body>
+Cloud read_vertices(Body& body, const Element& element, const std::string& source)
+{
+    Cloud cloud;
+    cloud.xyz.resize(3, static_cast<Eigen::Index>(element.count));
+    int axes = 0;
+    for (const Property& property : element.properties) {
+        if (axis_of(property) >= 0 && !property.list) {
+            ++axes;
+        } else if (!property.list) {
+            if (has_field(cloud, field_name(property.name)))
+                throw InputError(source, "element vertex: field '" + field_name(property.name) + "' stands twice");
+            cloud.fields.push_back({field_name(property.name), property.type, property.size, 1, {}});
+            cloud.fields.back().bytes.resize(element.count * static_cast<std::size_t>(property.size));
+        }
+    }
+    if (axes != 3) throw InputError(source, "element vertex without x, y and z");
+    for (std::size_t i = 0; i < element.count; ++i) {
+        body.begin_item(element.name, i);
+        std::size_t f = 0;
+        for (const Property& property : element.properties) {
+            if (property.list) {
+                skip(body, property);
+                continue;
+            }
+            const int axis = axis_of(property);
+            visit_element(property.type, property.size, [&](auto zero) {
+                const auto number = body.template value<decltype(zero)>(property);
+                if (axis >= 0)
+                    cloud.xyz(axis, static_cast<Eigen::Index>(i)) = static_cast<double>(number);
+                else
+                    store(cloud.fields[f].bytes.data() + i * sizeof number, number);
+            });
+            if (axis < 0) ++f;
+        }
+        body.end_item();
+    }
+    return cloud;
+}
+
+bool holds_corners(const Property& property)
+{
+    return property.list && (property.name == "vertex_indices" || property.name == "vertex_index");
+}
+
+template <typename Body>
+void read_face(Body& body, const Property& property, std::size_t vertices, Ply& ply)
+{
+    constexpr std::size_t kFewest = 3;
+    const std::size_t length = list_length(body, property);
+    if (length < kFewest) body.refuse("a face of " + std::to_string(length) + " corners");
+    for (std::size_t k = 0; k < length; ++k) {
+        const auto corner = visit_element(property.type, property.size, [&](auto zero) {
+            return static_cast<std::int64_t>(body.template value<decltype(zero)>(property));
+        });
+        if (corner < 0 || corner >= static_cast<std::int64_t>(vertices))
+            body.refuse("vertex " + std::to_string(corner) + " of " + std::to_string(vertices));
+        ply.corners.push_back(static_cast<std::uint32_t>(corner));
+    }
+    ply.ends.push_back(static_cast<std::uint32_t>(ply.corners.size()));
+}
+
+template <typename Body>
+void read_faces(Body& body, const Element& element, std::size_t vertices, Ply& ply, const std::string& source)
+{
+    const auto corners = std::find_if(element.properties.begin(), element.properties.end(), holds_corners);
+    if (corners == element.properties.end()) throw InputError(source, "element face without the list vertex_indices");
+    if (corners->type == 'F') throw InputError(source, "element face: vertex_indices are no whole numbers");
+    for (std::size_t i = 0; i < element.count; ++i) {
+        body.begin_item(element.name, i);
+        for (const Property& property : element.properties)
+            if (&property == &*corners)
+                read_face(body, property, vertices, ply);
+            else
+                skip(body, property);
+        body.end_item();
+    }
+}
+
+template <typename Body>
+Ply read_body(Body body, const PlyHeader& header, const std::string& source)
+{
+    Ply ply;
+    std::size_t vertices = 0;
+    for (const Element& element : header.elements)
+        if (element.name == "vertex") vertices = element.count;
+    for (const Element& element : header.elements) {
+        if (element.count > 0 && element.properties.empty())
+            throw InputError(source, "element " + element.name + " without a property");
+        if (element.count > 0) body.check_room(element);
+        if (element.name == "vertex") {
+            ply.vertices = read_vertices(body, element, source);
+        } else if (element.name == "face") {
+            if (element.count > 0) read_faces(body, element, vertices, ply, source);
+        } else {
+            for (std::size_t i = 0; i < element.count; ++i) {
+                body.begin_item(element.name, i);
+                for (const Property& property : element.properties) skip(body, property);
+                body.end_item();
+            }
+        }
+    }
+    body.end();
+    return ply;
+}
+
+} // namespace
+
+Ply parse_ply(std::string_view bytes, const std::string& source)
+{
+    const PlyHeader header = parse_ply_header(bytes, source);
+    if (std::none_of(header.elements.begin(), header.elements.end(),
+                     [](const Element& element) { return element.name == "vertex"; }))
+        throw InputError(source, "PLY without element vertex");
+    const std::string_view body = bytes.substr(header.body);
+    if (header.encoding == PlyHeader::Encoding::ascii)
+        return read_body(AsciiBody(body, header.lines, source), header, source);
+    return read_body(BinaryBody(body, header.encoding == PlyHeader::Encoding::big_endian, source), header, source);
+}
+
+bool looks_like_ply(std::string_view bytes) { return bytes.starts_with("ply\n") || bytes.starts_with("ply\r\n"); }
+
+bool ply_has_faces(std::string_view bytes)
+{
+    if (!looks_like_ply(bytes)) return false;
+    try {
+        for (const Element& element : parse_ply_header(bytes, "").elements)
+            if (element.name == "face") return element.count > 0;
+    } catch (const InputError&) { // whoever reads it will say so
+    }
+    return false;
+}
+
+} // namespace fettle

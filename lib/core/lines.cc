@@ -1,0 +1,55 @@
+#include "core/lines.h"
+
+#include "core/error.h"
+
+#include <algorithm>
+
+namespace fettle {
+
+bool Lines::next()
+{
+    if (position_ >= text_.size()) return false;
+    const std::size_t end = std::min(text_.find('\n', position_), text_.size());
+    line_ = text_.substr(position_, end - position_);
+    if (!line_.empty() && line_.back() == '\r') line_.remove_suffix(1);
+    position_ = std::min(end + 1, text_.size());
+    ++number_;
+    return true;
+}
+
+std::string_view next_word(std::string_view& rest)
+{
+    constexpr std::string_view kBlanks = " \t";
+    const std::size_t first = rest.find_first_not_of(kBlanks);
+    if (first == std::string_view::npos) return rest = {};
+    const std::size_t end = std::min(rest.find_first_of(kBlanks, first), rest.size());
+    const std::string_view word = rest.substr(first, end - first);
+    rest.remove_prefix(end);
+    return word;
+}
+
+std::vector<std::string_view> words(std::string_view line)
+{
+    std::vector<std::string_view> found;
+    for (std::string_view word = next_word(line); !word.empty(); word = next_word(line)) found.push_back(word);
+    return found;
+}
+
+std::string quoted(std::string_view text)
+{
+    constexpr std::size_t kLongest = 40; // of a quotation, so that a message stays one readable line
+    std::string quotation = "'";
+    for (const char c : text.substr(0, kLongest)) quotation += c >= ' ' && c != '\x7f' ? c : '?';
+    if (text.size() > kLongest) quotation += "...";
+    return quotation + "'";
+}
+
+std::string_view without_mark(std::string_view bytes, const std::string& source)
+{
+    if (bytes.starts_with("\xff\xfe") || bytes.starts_with("\xfe\xff"))
+        throw InputError(source, "byte 1: text in UTF-16, expected ASCII or UTF-8");
+    if (bytes.starts_with("\xef\xbb\xbf")) bytes.remove_prefix(3);
+    return bytes;
+}
+
+} // namespace fettle
