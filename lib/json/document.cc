@@ -316,6 +316,40 @@ Eigen::MatrixXd Reader::ragged(const std::string& key, int least_columns, int mo
     return values;
 }
 
+std::vector<Eigen::MatrixXd> Reader::grid(const std::string& key, int size)
+{
+    const Json& json = member(key, "an array of rows");
+    if (!json.is_array() || json.empty()) refuse(key, "expected an array of rows, got " + type_of(json));
+    const std::size_t columns = json[0].size();
+    std::vector<Eigen::MatrixXd> layers(
+        static_cast<std::size_t>(size),
+        Eigen::MatrixXd(static_cast<Eigen::Index>(json.size()), static_cast<Eigen::Index>(columns)));
+    for (std::size_t i = 0; i < json.size(); ++i) {
+        const std::string row = key + "[" + std::to_string(i) + "]";
+        if (!json[i].is_array()) refuse(row, "expected an array, got " + type_of(json[i]));
+        if (json[i].size() != columns) refuse(key, "rows of different length");
+        for (std::size_t j = 0; j < columns; ++j) {
+            const Json& element = json[i][j];
+            const std::string place = row + "[" + std::to_string(j) + "]";
+            if (!element.is_array() || element.size() != static_cast<std::size_t>(size))
+                refuse(place, "expected " + std::to_string(size) + " numbers");
+            for (std::size_t k = 0; k < layers.size(); ++k) {
+                if (!element[k].is_number())
+                    refuse(place + "[" + std::to_string(k) + "]", "expected a number, got " + type_of(element[k]));
+                layers[k](static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = element[k].get<double>();
+            }
+        }
+    }
+    return layers;
+}
+
+bool Reader::is_null(const std::string& key)
+{
+    node_->asked.insert(key);
+    const auto found = node_->json->find(key);
+    return found == node_->json->end() || found->is_null();
+}
+
 Reader Reader::object(const std::string& key)
 {
     const Json& json = member(key, "an object");

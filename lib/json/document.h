@@ -77,6 +77,12 @@ class Reader {
     /// As matrix, but rows may have any length between the two; what is missing is NaN.
     Eigen::MatrixXd ragged(const std::string& key, int least_columns, int most_columns);
 
+    /// An array of equally long rows of equally long arrays of finite numbers: [k](i, j) is number k of element j of
+    /// row i. @param size  numbers in an element
+    std::vector<Eigen::MatrixXd> grid(const std::string& key, int size);
+    /// Is the member missing, or null?
+    bool is_null(const std::string& key);
+
     Reader object(const std::string& key);
     std::optional<Reader> object_or_none(const std::string& key);
     /// An array of objects.

@@ -1,0 +1,179 @@
+#include "surface/patches.h"
+
+#include "units/units.h"
+#include "json/document.h"
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace fettle {
+
+namespace {
+
+constexpr int kHighestDegree = 7;
+// Newton's method doubles the right digits in each step; a patch that needs more is folded.
+constexpr int kMostNewtonSteps = 50;
+// When the steps in u and v are at rounding, and how far outside the domain rounding may put them; relative to the
+// domain.
+constexpr double kRounding = 1e-12;
+
+/// The basis functions of one direction that do not vanish at t, from the last ones up, and their derivatives.
+struct Basis {
+    Eigen::Index first = 0; ///< control point that value(0) belongs to
+    Eigen::VectorXd value;  ///< degree + 1
+    Eigen::VectorXd derivative;
+};
+
+/// Cox and de Boor's recurrence: the functions of degree d on the span [t_s, t_s+1).
+Eigen::VectorXd basis_functions(const Eigen::VectorXd& knots, Eigen::Index span, int degree, double t)
+{
+    Eigen::VectorXd value = Eigen::VectorXd::Zero(degree + 1);
+    value[0] = 1;
+    for (int d = 1; d <= degree; ++d) {
+        double carried = 0;
+        for (int r = 0; r < d; ++r) {
+            const double right = knots[span + r + 1], left = knots[span + 1 - d + r];
+            const double share = value[r] / (right - left);
+            value[r] = carried + (right - t) * share;
+            carried = (t - left) * share;
+        }
+        value[d] = carried;
+    }
+    return value;
+}
+
+Basis basis(const Eigen::VectorXd& knots, int degree, double t)
+{
+    const auto* begin = knots.data() + degree;
+    const auto* end = knots.data() + knots.size() - degree - 1; // of the domain, belongs to the last span
+    const Eigen::Index last = std::lower_bound(begin, end, *end) - knots.data() - 1;
+    const Eigen::Index span = std::min<Eigen::Index>(std::upper_bound(begin, end, t) - knots.data() - 1, last);
+    Basis result{span - degree, basis_functions(knots, span, degree, t), Eigen::VectorXd::Zero(degree + 1)};
+    const Eigen::VectorXd lower = basis_functions(knots, span, degree - 1, t);
+    for (int r = 0; r < degree; ++r) {
+        const double slope = degree * lower[r] / (knots[span + r + 1] - knots[span + 1 - degree + r]);
+        result.derivative[r] -= slope;
+        result.derivative[r + 1] += slope;
+    }
+    return result;
+}
+
+/// Domain of u (row 0) and v (row 1): least, most.
+Eigen::Matrix2d domain(const Patch& patch)
+{
+    const auto most = [](const Eigen::VectorXd& knots, int degree) { return knots[knots.size() - degree - 1]; };
+    Eigen::Matrix2d result;
+    result << patch.knots_u[patch.degree_u], most(patch.knots_u, patch.degree_u), patch.knots_v[patch.degree_v],
+        most(patch.knots_v, patch.degree_v);
+    return result;
+}
+
+Eigen::VectorXd read_knots(json::Reader& reader, const std::string& key, int degree, Eigen::Index control)
+{
+    if (control <= degree)
+        reader.refuse("control", "degree " + std::to_string(degree) + " needs " + std::to_string(degree + 1) +
+                                     " control points or more, got " + std::to_string(control));
+    const Eigen::VectorXd knots = reader.vector(key);
+    if (knots.size() != control + degree + 1)
+        reader.refuse(key, "expected " + std::to_string(control + degree + 1) + " knots for " +
+                               std::to_string(control) + " control points of degree " + std::to_string(degree) +
+                               ", got " + std::to_string(knots.size()));
+    for (Eigen::Index i = 1; i < knots.size(); ++i)
+        if (knots[i] < knots[i - 1]) reader.refuse(key + "[" + std::to_string(i) + "]", "is less than the one before");
+    for (Eigen::Index i = degree + 1; i < knots.size() - 1; ++i)
+        if (knots[i] == knots[i - degree])
+            reader.refuse(key + "[" + std::to_string(i) + "]",
+                          "is repeated more than " + std::to_string(degree) + " times");
+    if (!(knots[degree] < knots[knots.size() - degree - 1])) reader.refuse(key, "has no length");
+    return knots;
+}
+
+Patch read_patch(json::Reader reader, double mm)
+{
+    Patch patch;
+    const Eigen::VectorXd degree = reader.vector("degree", 2);
+    for (const double d : degree)
+        if (d < 1 || d > kHighestDegree || d != std::floor(d))
+            reader.refuse("degree", "must be whole numbers from 1 to " + std::to_string(kHighestDegree));
+    patch.degree_u = static_cast<int>(degree[0]);
+    patch.degree_v = static_cast<int>(degree[1]);
+    const std::vector<Eigen::MatrixXd> control = reader.grid("control", 3);
+    for (std::size_t k = 0; k < 3; ++k) patch.control[k] = control[k] * mm;
+    patch.knots_u = read_knots(reader, "knots_u", patch.degree_u, control[0].rows());
+    patch.knots_v = read_knots(reader, "knots_v", patch.degree_v, control[0].cols());
+    if (!reader.is_null("weights")) {
+        patch.weights = reader.matrix("weights", static_cast<int>(control[0].cols()));
+        if (patch.weights.rows() != control[0].rows()) reader.refuse("weights", "one row for each row of control");
+        if (patch.weights.minCoeff() <= 0) reader.refuse("weights", "must be positive");
+    }
+    reader.done();
+    return patch;
+}
+
+} // namespace
+
+std::vector<Patch> read_patches(const std::string& path)
+{
+    json::Reader reader = json::Reader::open(path);
+    reader.expect_kind("patches");
+    json::Reader units = reader.object("units");
+    const double mm = mm_per(parse_length_unit(units.choice("length", {"mm", "in", "m"})));
+    units.done();
+    std::vector<Patch> patches;
+    for (const json::Reader& patch : reader.objects("patches")) patches.push_back(read_patch(patch, mm));
+    if (patches.empty()) reader.refuse("patches", "there is none");
+    reader.done();
+    return patches;
+}
+
+Eigen::Matrix3d point_and_tangents(const Patch& patch, const Eigen::Vector2d& uv)
+{
+    const Basis u = basis(patch.knots_u, patch.degree_u, uv.x());
+    const Basis v = basis(patch.knots_v, patch.degree_v, uv.y());
+    const auto part = [&](const Eigen::MatrixXd& net) {
+        return net.block(u.first, v.first, u.value.size(), v.value.size());
+    };
+    // Column 0: the sum, 1 and 2: its derivatives.
+    const auto sums = [&](const Eigen::MatrixXd& net) {
+        return Eigen::RowVector3d(u.value.dot(net * v.value), u.derivative.dot(net * v.value),
+                                  u.value.dot(net * v.derivative));
+    };
+    const Eigen::MatrixXd weights =
+        patch.weights.size() == 0 ? Eigen::MatrixXd::Ones(u.value.size(), v.value.size()) : part(patch.weights);
+    const Eigen::RowVector3d below = sums(weights);
+    Eigen::Matrix3d result;
+    for (int k = 0; k < 3; ++k) {
+        const Eigen::RowVector3d above = sums(part(patch.control[static_cast<std::size_t>(k)]).cwiseProduct(weights));
+        const double value = above[0] / below[0];
+        result.row(k) << value, (above[1] - value * below[1]) / below[0], (above[2] - value * below[2]) / below[0];
+    }
+    return result;
+}
+
+double height(const Patch& patch, const Eigen::Vector2d& xy)
+{
+    constexpr double outside = std::numeric_limits<double>::quiet_NaN();
+    if (!xy.allFinite()) return outside;
+    const Eigen::Matrix2d limits = domain(patch);
+    const Eigen::Vector2d size = limits.col(1) - limits.col(0);
+    Eigen::Vector2d uv = limits.rowwise().mean();
+    for (int step = 0; step < kMostNewtonSteps; ++step) {
+        // A point outside is approached along the edge; whether it is outside is seen at the end.
+        const Eigen::Vector2d at = uv.cwiseMax(limits.col(0)).cwiseMin(limits.col(1));
+        const Eigen::Matrix3d here = point_and_tangents(patch, at);
+        const Eigen::Matrix2d tangents = here.block<2, 2>(0, 1);
+        const Eigen::Vector2d next = at + tangents.fullPivLu().solve(xy - here.block<2, 1>(0, 0));
+        const Eigen::Vector2d beyond = (limits.col(0) - next).cwiseMax(next - limits.col(1)).cwiseQuotient(size);
+        const bool settled = (next - uv).cwiseQuotient(size).cwiseAbs().maxCoeff() < kRounding;
+        uv = next;
+        if (!settled) continue;
+        if (beyond.maxCoeff() > kRounding) return outside;
+        return point_and_tangents(patch, uv.cwiseMax(limits.col(0)).cwiseMin(limits.col(1)))(2, 0);
+    }
+    return outside;
+}
+
+} // namespace fettle
