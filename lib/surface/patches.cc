@@ -141,8 +141,8 @@ Eigen::Matrix3d point_and_tangents(const Patch& patch, const Eigen::Vector2d& uv
         return Eigen::RowVector3d(u.value.dot(net * v.value), u.derivative.dot(net * v.value),
                                   u.value.dot(net * v.derivative));
     };
-    const Eigen::MatrixXd weights =
-        patch.weights.size() == 0 ? Eigen::MatrixXd::Ones(u.value.size(), v.value.size()) : part(patch.weights);
+    Eigen::MatrixXd weights = Eigen::MatrixXd::Ones(u.value.size(), v.value.size());
+    if (patch.weights.size() > 0) weights = part(patch.weights);
     const Eigen::RowVector3d below = sums(weights);
     Eigen::Matrix3d result;
     for (int k = 0; k < 3; ++k) {
