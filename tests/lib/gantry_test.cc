@@ -1,0 +1,326 @@
+// The quasi-static gantry against closed forms and identities.
+
+#include "core/error.h"
+#include "gantry/quasi_static.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+using namespace fettle;
+
+namespace {
+
+constexpr double kTop = 10; // z of the flat stock
+
+Job small_job()
+{
+    Job job;
+    job.wheel = {.radius = 25.4, .width = 6.4, .min_radius = 12.7};
+    job.force = {.min = 20, .down = 40, .max = 60, .stiffness = 35, .preload = 0};
+    job.removal = 7.4;
+    job.safe_height = 30;
+    return job;
+}
+
+/// 16 mm along X_w, 140 mm along Y_w. @param height  over W
+HeightField stock(const std::function<double(double, double)>& height, double cell = 0.1, double theta = 0,
+                  const Eigen::Vector2d& shift = {0, 0})
+{
+    Eigen::Matrix2d box;
+    box << -8, 8, -70, 70;
+    HeightField field = empty_height_field(box.colwise() + shift, {0, 0}, theta, cell);
+    for (Eigen::Index j = 0; j < field.rows(); ++j)
+        for (Eigen::Index i = 0; i < field.columns(); ++i) {
+            const Eigen::Vector2d at = field.centre(i, j) - shift;
+            field.z(i, j) = height(at.x(), at.y());
+        }
+    return field;
+}
+
+HeightField flat(double cell = 0.1)
+{
+    return stock([](double, double) { return kTop; }, cell);
+}
+
+/// A ramp and a bump, smooth.
+double hills(double x, double y) { return 8 + 2 * std::exp(-(x * x + y * y) / 200) + 0.02 * y; }
+
+QuasiStaticOptions no_wear()
+{
+    QuasiStaticOptions options;
+    options.grinding_ratio = 1e15;
+    return options;
+}
+
+/// One pass along Y_w at mid-width; returns the status at the end.
+GantryStatus pass(QuasiStaticGantry& gantry, double z, double feed, double from = -40, double to = 40, double x = 0)
+{
+    gantry.travel({x, from, z});
+    for (double y = from + 0.5; y < to; y += 0.5) gantry.grind({x, y, z}, feed);
+    return gantry.grind({x, to, z}, feed);
+}
+
+double middle(const QuasiStaticGantry& gantry)
+{
+    return gantry.stock().z(gantry.stock().columns() / 2, gantry.stock().rows() / 2);
+}
+
+TEST(QuasiStatic, SteadyDepthIsTheBalance)
+{
+    // Depth t per pass: t v w = c F, F = preload + k (D − t), D the commanded depth. Sub-steps leave a ridge of
+    // (0.2 mm)² / 8R = 2e-4 mm.
+    for (const double preload : {0.0, 5.0})
+        for (const double depth : {0.4, 1.0}) {
+            Job job = small_job();
+            job.force.preload = preload;
+            job.force.max = 1e9;
+            QuasiStaticGantry gantry(flat(), job, no_wear());
+            const double v = 25.4, w = 6.4, c = job.removal, k = job.force.stiffness;
+            const GantryStatus end = pass(gantry, kTop - depth, v);
+            const double t = c * (preload + k * depth) / (v * w + c * k);
+            EXPECT_NEAR(kTop - middle(gantry), t, 3e-4);
+            EXPECT_NEAR(end.force, preload + k * (depth - t), 0.005 * end.force);
+            EXPECT_NEAR(end.deflection, depth - t, 0.005 * (depth - t) + 3e-4);
+        }
+}
+
+TEST(QuasiStatic, PositionLimitLeavesTheCommandedPlane)
+{
+    // At the stop the force is what the depth takes: F = t v w / c, in proportion to depth and feed, up to the preload.
+    Job job = small_job();
+    job.force.preload = 100;
+    job.force.max = 1e9;
+    for (const double depth : {0.1, 0.4})
+        for (const double feed : {10.0, 50.0}) {
+            QuasiStaticGantry gantry(flat(), job, no_wear());
+            const GantryStatus end = pass(gantry, kTop - depth, feed);
+            EXPECT_EQ(end.deflection, 0);
+            EXPECT_NEAR(end.force, depth * feed * 6.4 / job.removal, 0.01 * end.force); // rows come one by one
+            const auto ground = gantry.stock().z.block(60, 350, 40, 700);
+            EXPECT_GE(ground.minCoeff(), kTop - depth - 1e-12);
+            EXPECT_LE(ground.maxCoeff(), kTop - depth + 3e-4);
+        }
+}
+
+TEST(QuasiStatic, VolumeIsForceTimesTime)
+{
+    // Removed volume = Σ c F dt over every sub-step = integrated depth. Steps of one sub-step show each force.
+    Job job = small_job();
+    job.force.preload = 3;
+    const HeightField before = stock(hills);
+    QuasiStaticGantry gantry(before, job);
+    gantry.travel({0, -50, 10});
+    const double already = gantry.totals().removed_volume;
+    EXPECT_EQ(already, 0);
+    double impulse = 0;
+    for (double y = -49.8; y < 50; y += 0.2) {
+        const double t = gantry.status().time;
+        const GantryStatus status = gantry.grind({0, y, 8.3}, 25.4);
+        impulse += status.force * (status.time - t);
+    }
+    const double volume = gantry.totals().removed_volume;
+    EXPECT_GT(volume, 100);
+    EXPECT_NEAR(volume, job.removal * impulse, 1e-9 * volume);
+    EXPECT_NEAR(volume, volume_between(before, gantry.stock()), 1e-9 * volume);
+}
+
+TEST(QuasiStatic, NoContactNoForce)
+{
+    const HeightField before = flat();
+    QuasiStaticGantry gantry(before, small_job());
+    const GantryStatus end = pass(gantry, kTop + 0.001, 25.4);
+    EXPECT_EQ(end.force, 0);
+    EXPECT_EQ(end.deflection, 0);
+    EXPECT_EQ(gantry.totals().removed_volume, 0);
+    EXPECT_TRUE((gantry.stock().z == before.z).all());
+}
+
+TEST(QuasiStatic, GrindsOnlyUnderItsWheel)
+{
+    Job job = small_job();
+    job.force.max = 1e9;
+    QuasiStaticGantry gantry(flat(), job);
+    pass(gantry, kTop - 1, 25.4, -20, 20, 2);
+    const double reach = std::sqrt(2 * 25.4 * 1);
+    for (Eigen::Index j = 0; j < gantry.stock().rows(); ++j)
+        for (Eigen::Index i = 0; i < gantry.stock().columns(); ++i) {
+            const Eigen::Vector2d at = gantry.stock().centre(i, j);
+            if (std::abs(at.x() - 2) < 3.2 && std::abs(at.y()) < 20 + reach) continue;
+            ASSERT_EQ(gantry.stock().z(i, j), kTop) << at.transpose();
+        }
+}
+
+TEST(QuasiStatic, WallRaisesTheForceAtOnce)
+{
+    // A step of 3 mm across the path: within one strategy step against it the peak shows more than the end of the step.
+    const auto step = [](double, double y) { return y < 0 ? kTop - 3 : kTop; };
+    QuasiStaticGantry gantry(stock(step), small_job(), no_wear());
+    gantry.travel({0, -30, kTop - 2.9});
+    double highest = 0;
+    for (double y = -29.5; y < 5; y += 0.5) {
+        const GantryStatus status = gantry.grind({0, y, kTop - 2.9}, 25.4);
+        EXPECT_GE(status.peak_force, status.force);
+        if (y < -std::sqrt(2 * 25.4 * 2.9 - 2.9 * 2.9)) {
+            EXPECT_EQ(status.peak_force, 0) << y;
+        }
+        highest = std::max(highest, status.peak_force);
+    }
+    EXPECT_GT(highest, 30);
+}
+
+TEST(QuasiStatic, HalvingCellAndSubstepHalvesTheError)
+{
+    // First order: the force of a sub-step is that of its end. From 0.8 mm sub-steps of 0.4 mm cells downwards.
+    std::vector<double> peak, height;
+    for (const double cell : {0.4, 0.2, 0.1, 0.05}) {
+        QuasiStaticGantry gantry(stock(hills, cell), small_job(), no_wear());
+        gantry.travel({0, -40, 8.5});
+        double highest = 0;
+        for (int n = 1; n <= 100; ++n)
+            highest = std::max(highest, gantry.grind({0, -40 + 0.8 * n, 8.5}, 25.4).peak_force);
+        peak.push_back(highest);
+        height.push_back(middle(gantry));
+    }
+    for (const auto& value : {peak, height})
+        for (std::size_t n = 2; n < value.size(); ++n) {
+            const double ratio = (value[n] - value[n - 1]) / (value[n - 1] - value[n - 2]);
+            EXPECT_GT(ratio, 0.35);
+            EXPECT_LT(ratio, 0.65);
+        }
+    EXPECT_LT(std::abs(peak[3] - peak[2]), 2e-3 * peak[3]);
+}
+
+TEST(QuasiStatic, TranslationAndRotationChangeNothing)
+{
+    const auto run = [](double theta, const Eigen::Vector2d& shift, double lift) {
+        Job job = small_job();
+        job.theta = theta;
+        job.safe_height += lift;
+        const auto raised = [&](double x, double y) { return hills(x, y) + lift; };
+        QuasiStaticGantry gantry(stock(raised, 0.2, theta, shift), job);
+        const auto to_machine = [&](double x, double y, double z) {
+            const Eigen::Vector2d at = Eigen::Rotation2Dd(theta) * (Eigen::Vector2d(x, y) + shift);
+            return Eigen::Vector3d(at.x(), at.y(), z + lift);
+        };
+        for (const double x : {-2.0, 3.1}) { // 3.1: cell centres lie on the side faces of the wheel
+            gantry.travel(to_machine(x, -40, 8.3));
+            for (int n = 1; n <= 80; ++n) gantry.grind(to_machine(x, -40 + n, 8.3), 25.4);
+        }
+        return std::pair<Eigen::ArrayXXd, double>(gantry.stock().z - lift, gantry.status().time);
+    };
+    const auto [z, time] = run(0, {0, 0}, 0);
+    for (const double theta : {0.3, 2.0, -1.1}) {
+        const auto [turned, turned_time] = run(theta, {713.21, -88.37}, 123.4);
+        EXPECT_LT((turned - z).abs().maxCoeff(), 1e-9);
+        EXPECT_NEAR(turned_time, time, 1e-9);
+    }
+}
+
+TEST(QuasiStatic, FeedAlongTheAxisToo)
+{
+    // The wheel moved along its axis meets a wall of the same height: in steady state F v-proportional as along Y_w.
+    Job job = small_job();
+    job.force.preload = 100;
+    job.force.max = 1e9;
+    const auto half = [](double x, double) { return x < -4 ? kTop - 0.3 : kTop; };
+    QuasiStaticGantry gantry(stock(half), job, no_wear());
+    gantry.travel({-7.5, 0, kTop - 0.2});
+    const double y_reach = std::sqrt(2 * 25.4 * 0.2 - 0.04);
+    const double segment = 25.4 * 25.4 * std::acos(1 - 0.2 / 25.4) - (25.4 - 0.2) * y_reach;
+    GantryStatus status;
+    for (int n = 1; n <= 25; ++n) status = gantry.grind({-7.5 + 0.4 * n, 0, kTop - 0.2}, 20);
+    EXPECT_NEAR(status.force, segment * 20 / job.removal, 0.01 * status.force); // each sub-step takes two columns
+}
+
+TEST(QuasiStatic, WheelWearsByTheGrindingRatio)
+{
+    Job job = small_job();
+    job.force.max = 1e9;
+    QuasiStaticOptions options;
+    options.grinding_ratio = 5;
+    QuasiStaticGantry gantry(flat(), job, options);
+    pass(gantry, kTop - 1, 25.4);
+    const double lost = gantry.totals().removed_volume / 5;
+    const double r = gantry.true_radius();
+    // π w (R² − r²): the sub-steps are explicit, second order in a loss of 1e-5 mm each
+    EXPECT_NEAR(std::numbers::pi * 6.4 * (25.4 * 25.4 - r * r), lost, 1e-4 * lost);
+
+    const double measured = gantry.touch_off();
+    EXPECT_LE(std::abs(measured - r), options.touch_off_resolution / 2 + 1e-12);
+    EXPECT_EQ(gantry.totals().touch_offs, 1);
+    gantry.change_wheel();
+    EXPECT_EQ(gantry.true_radius(), 25.4);
+
+    options.grinding_ratio = 1e-3;
+    QuasiStaticGantry soft(flat(), job, options);
+    const auto grind_on = [&] {
+        for (int n = 0; n < 1000; ++n) {
+            soft.touch_off(); // else a wheel that has lost the depth touches no more
+            pass(soft, kTop - 1, 25.4, -2, 2);
+        }
+    };
+    EXPECT_THROW(grind_on(), InputError);
+}
+
+TEST(QuasiStatic, WornWheelGrindsTooHighUntilTouchOff)
+{
+    Job job = small_job();
+    job.force.preload = 1000; // position decides
+    job.force.max = 1e9;
+    QuasiStaticOptions options;
+    options.grinding_ratio = 2;
+    QuasiStaticGantry gantry(flat(), job, options);
+    pass(gantry, kTop - 0.5, 25.4);
+    const double loss = 25.4 - gantry.true_radius();
+    ASSERT_GT(loss, 0.05);
+    pass(gantry, kTop - 1, 25.4);
+    EXPECT_GT(middle(gantry), kTop - 1 + loss);
+    gantry.touch_off();
+    pass(gantry, kTop - 1, 25.4, -2, 2); // little to remove, little wear
+    EXPECT_NEAR(middle(gantry), kTop - 1, 0.03);
+}
+
+TEST(QuasiStatic, TimeIsTheSumOfItsParts)
+{
+    QuasiStaticOptions options;
+    QuasiStaticGantry gantry(flat(), small_job(), options);
+    EXPECT_NEAR((gantry.status().commanded - Eigen::Vector3d(0, 0, 30)).norm(), 0, 1e-12);
+    EXPECT_NEAR(gantry.travel({3, -4, 20}).time, 5 / 100. + 10 / 50., 1e-12);
+    EXPECT_NEAR(gantry.travel({3, 6, 20}).time, 5 / 100. + 10 / 50. + 2 * 10 / 50. + 10 / 100., 1e-12);
+    const double travelled = gantry.status().time;
+    EXPECT_NEAR(gantry.grind({3, 10, 20}, 8).time, travelled + 0.5, 1e-12);
+    EXPECT_NEAR(gantry.lift(25).time, travelled + 0.6, 1e-12);
+    gantry.touch_off();
+    gantry.change_wheel();
+    const GrindTotals& totals = gantry.totals();
+    EXPECT_NEAR(totals.service_time, options.touch_off_time + options.wheel_change_time, 1e-12);
+    EXPECT_NEAR(totals.grinding_time, 0.5, 1e-12);
+    EXPECT_NEAR(totals.grinding_length, 4, 1e-12);
+    EXPECT_NEAR(gantry.status().time, totals.grinding_time + totals.travel_time + totals.service_time, 1e-12);
+    EXPECT_EQ(gantry.status().commanded.z(), 30);
+    EXPECT_THROW(gantry.grind({0, 0, 20}, 0), InputError);
+    options.rapid = std::nan("");
+    EXPECT_THROW(QuasiStaticGantry(flat(), small_job(), options), InputError);
+}
+
+TEST(QuasiStatic, TheWayDownIsGuarded)
+{
+    // 5 mm into the stock would take 175 N; the drives stop at F_max = 60 N, a sub-step late at most.
+    QuasiStaticGantry gantry(flat(), small_job());
+    const GantryStatus status = gantry.travel({0, 0, kTop - 5});
+    EXPECT_GE(status.force, 60);
+    EXPECT_LE(status.force, 60 + 35 * 0.2);
+    EXPECT_GT(status.commanded.z(), kTop - 5);
+    EXPECT_NEAR(status.force, 35 * status.deflection, 1e-9);
+    const GantryStatus up = gantry.lift(kTop + 1);
+    EXPECT_EQ(up.force, 0);
+    EXPECT_EQ(up.deflection, 0);
+    EXPECT_GE(up.peak_force, 60);
+    EXPECT_EQ(up.commanded.z(), kTop + 1);
+    EXPECT_EQ(gantry.lift(kTop + 2).peak_force, 0);
+}
+
+} // namespace

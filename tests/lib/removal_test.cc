@@ -1,0 +1,235 @@
+// Height field, wheel and Preston's balance against closed forms.
+
+#include "core/error.h"
+#include "removal/height_field.h"
+#include "removal/preston.h"
+#include "removal/wheel.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+using namespace fettle;
+
+namespace {
+
+constexpr double kRadius = 25.4;
+constexpr double kWidth = 6.4; // 64 cells of 0.1 mm
+
+/// A flat stock at height z, 40 mm along X_w, 80 mm along Y_w.
+HeightField flat(double z, double cell, double theta = 0)
+{
+    Eigen::Matrix2d box;
+    box << -20, 20, -40, 40;
+    HeightField field = empty_height_field(box, {0, 0}, theta, cell);
+    field.z.setConstant(z);
+    return field;
+}
+
+/// Area of a disc's segment of height d.
+double segment(double radius, double d)
+{
+    return radius * radius * std::acos(1 - d / radius) - (radius - d) * std::sqrt(d * (2 * radius - d));
+}
+
+double segment_error(double cell, double depth)
+{
+    HeightField stock = flat(3, cell);
+    WheelInStock wheel(stock, kWidth);
+    wheel.place({0.017, 0.023}, kRadius, 3 - depth);
+    return std::abs(wheel.overlap(3 - depth).volume / (kWidth * segment(kRadius, depth)) - 1);
+}
+
+TEST(WheelInStock, OverlapWithFlatIsSegment)
+{
+    // The width is a whole number of cells; the midpoint rule along the rim is left, of order cell² with some scatter
+    // at its ends.
+    for (const double depth : {0.05, 0.5, 5.0}) {
+        EXPECT_LT(segment_error(0.1, depth), 2e-2 * 0.1 * 0.1 / depth) << depth;
+        EXPECT_LT(segment_error(0.025, depth), 2e-2 * 0.025 * 0.025 / depth) << depth;
+    }
+}
+
+TEST(WheelInStock, AreaIsTheSlopeOfTheVolume)
+{
+    HeightField stock = flat(3, 0.1);
+    WheelInStock wheel(stock, kWidth);
+    wheel.place({0, 0}, kRadius, 2);
+    constexpr double dz = 1e-9; // within one linear piece
+    const auto above = wheel.overlap(2.4), below = wheel.overlap(2.4 - dz);
+    EXPECT_EQ(above.area, below.area);
+    EXPECT_NEAR((below.volume - above.volume) / dz, above.area, 1e-5 * above.area);
+}
+
+TEST(WheelInStock, CutRemovesTheOverlapAndNothingElse)
+{
+    HeightField stock = flat(3, 0.1);
+    const HeightField before = stock;
+    WheelInStock wheel(stock, kWidth);
+    wheel.place({5, 10}, kRadius, 2);
+    const double volume = wheel.overlap(2).volume;
+    wheel.cut(2);
+    EXPECT_NEAR(volume_between(before, stock), volume, 1e-12 * volume);
+    EXPECT_EQ(wheel.overlap(2).volume, 0);
+    const double reach = std::sqrt(2 * kRadius - 1);
+    for (Eigen::Index j = 0; j < stock.rows(); ++j)
+        for (Eigen::Index i = 0; i < stock.columns(); ++i) {
+            const Eigen::Vector2d from = stock.centre(i, j) - Eigen::Vector2d(5, 10);
+            const bool under = std::abs(from.x()) < kWidth / 2 && std::abs(from.y()) < reach;
+            EXPECT_EQ(stock.z(i, j) < 3, under) << from.transpose();
+        }
+    // A second look, from a place that shares the columns, knows the lowered rows.
+    wheel.place({5, 10.3}, kRadius, 2);
+    EXPECT_LT(wheel.overlap(2).volume, 0.05 * volume);
+}
+
+TEST(WheelInStock, TouchIsWhereTheOverlapBegins)
+{
+    HeightField stock = flat(3, 0.1);
+    stock.z.block(190, 350, 20, 20) += 2; // a block 2 mm high before the wheel, 3 to 5 mm off
+    WheelInStock wheel(stock, kWidth);
+    wheel.place({0, 0}, kRadius, 0);
+    const double y = 3.05; // nearest row of the block
+    EXPECT_NEAR(wheel.touch(), 5 - (kRadius - std::sqrt(kRadius * kRadius - y * y)), 1e-12);
+    EXPECT_EQ(wheel.overlap(wheel.touch()).volume, 0);
+    EXPECT_GT(wheel.overlap(wheel.touch() - 1e-6).volume, 0);
+}
+
+TEST(WheelInStock, NoMaterialNoContact)
+{
+    HeightField stock = flat(std::numeric_limits<double>::quiet_NaN(), 0.1);
+    WheelInStock wheel(stock, kWidth);
+    wheel.place({0, 0}, kRadius, -100);
+    EXPECT_EQ(wheel.touch(), -std::numeric_limits<double>::infinity());
+
+    stock.z.leftCols(stock.rows() / 2).setConstant(1); // a hole over y > 0
+    WheelInStock half(stock, kWidth);
+    half.place({0, 0}, kRadius, 0);
+    EXPECT_NEAR(half.overlap(0).volume, kWidth * segment(kRadius, 1) / 2, 1e-3 * segment(kRadius, 1));
+    half.cut(0);
+    EXPECT_EQ(stock.z.isNaN().count(), stock.z.size() / 2);
+
+    half.place({500, 0}, kRadius, 0); // off the grid
+    EXPECT_EQ(half.overlap(0).volume, 0);
+}
+
+TEST(Press, BalancesVolumeAndForce)
+{
+    HeightField stock = flat(3, 0.1);
+    WheelInStock wheel(stock, kWidth);
+    for (const double preload : {0.0, 20.0})
+        for (const double stop : {2.9, 1.0, -5.0})
+            for (const double guess : {stop, stop + 0.3, 3.0, 50.0}) {
+                const Spring spring{preload, 35};
+                const double c_dt = 7.4 * 0.004;
+                wheel.place({0, 0}, kRadius, stop);
+                const Balance balance = press(wheel, spring, stop, c_dt, guess);
+                ASSERT_GT(balance.z_tip, stop);
+                EXPECT_NEAR(balance.force, preload + 35 * (balance.z_tip - stop), 1e-12);
+                EXPECT_NEAR(balance.volume, c_dt * balance.force, 1e-10 * balance.volume);
+                EXPECT_EQ(balance.volume, wheel.overlap(balance.z_tip).volume);
+            }
+}
+
+TEST(Press, RestsOnTheStopWithinThePreload)
+{
+    HeightField stock = flat(3, 0.1);
+    WheelInStock wheel(stock, kWidth);
+    wheel.place({0, 0}, kRadius, 2.99);
+    const double c_dt = 0.03;
+    const Balance balance = press(wheel, {50, 35}, 2.99, c_dt, 2.99);
+    EXPECT_EQ(balance.z_tip, 2.99);
+    EXPECT_EQ(balance.volume, wheel.overlap(2.99).volume);
+    EXPECT_DOUBLE_EQ(balance.force, balance.volume / c_dt);
+    EXPECT_LT(balance.force, 50);
+
+    wheel.place({0, 0}, kRadius, 3);
+    const Balance off = press(wheel, {50, 35}, 3, c_dt, 3);
+    EXPECT_EQ(off.force, 0);
+    EXPECT_EQ(off.volume, 0);
+}
+
+TEST(HeightField, GridMovesWithItsBox)
+{
+    Eigen::Matrix2d box;
+    box << 1.25, 52.05, -3, 47.8; // 50.8 by 50.8
+    const HeightField field = empty_height_field(box, {3.175, 25.4}, 0, 0.1);
+    EXPECT_EQ(field.columns(), 508 + 2 * 32);
+    EXPECT_EQ(field.rows(), 508 + 2 * 254);
+    EXPECT_NEAR(field.origin.x(), 1.25 - 3.2, 1e-12);
+    for (int n = 1; n < 50; ++n) {
+        const Eigen::Vector2d shift(0.31 * n, -17.77 * n);
+        const HeightField moved = empty_height_field(box.colwise() + shift, {3.175, 25.4}, 0, 0.1);
+        EXPECT_EQ(moved.columns(), field.columns());
+        EXPECT_EQ(moved.rows(), field.rows());
+        EXPECT_NEAR((moved.origin - shift - field.origin).norm(), 0, 1e-11);
+    }
+    EXPECT_THROW(empty_height_field(box, {1, 1}, 0, 0), InputError);
+    EXPECT_THROW(empty_height_field(box, {1, 1}, 0, -0.1), InputError);
+    EXPECT_THROW(empty_height_field(box, {1, 1}, 0, std::nan("")), InputError);
+    EXPECT_THROW(empty_height_field(box, {1, 1}, 0, 1e-5), InputError);
+    EXPECT_THROW(empty_height_field(box, {1, 1}, 0, 1e-300), InputError);
+}
+
+TEST(HeightField, CloudHasThePointsWithMaterialInM)
+{
+    const double theta = 0.4;
+    HeightField before = flat(3, 5, theta);
+    before.z(2, 3) = std::nan("");
+    HeightField after = before;
+    after.z(1, 0) = 2.5;
+    const Cloud cloud = to_cloud(before, after);
+    ASSERT_EQ(cloud.size(), 8 * 16 - 1);
+    const Eigen::Vector2d second = Eigen::Rotation2Dd(theta) * Eigen::Vector2d(-20 + 7.5, -40 + 2.5);
+    EXPECT_NEAR((cloud.xyz.col(1) - Eigen::Vector3d(second.x(), second.y(), 2.5)).norm(), 0, 1e-12);
+    const Eigen::VectorXd removed = field(cloud, "removed");
+    EXPECT_EQ(removed[1], 0.5);
+    EXPECT_EQ(removed.sum(), 0.5);
+    EXPECT_EQ(volume_between(before, after), 0.5 * 25);
+}
+
+/// Two triangles in the plane z = 2 + 0.1 x − 0.2 y over [−100, 100]².
+Mesh slope()
+{
+    Mesh mesh;
+    mesh.vertices.resize(3, 4);
+    mesh.triangles.resize(3, 2);
+    for (int n = 0; n < 4; ++n) {
+        const double x = n == 1 || n == 2 ? 100 : -100, y = n >= 2 ? 100 : -100;
+        mesh.vertices.col(n) << x, y, 2 + 0.1 * x - 0.2 * y;
+    }
+    mesh.triangles << 0, 0, 1, 2, 2, 3;
+    return mesh;
+}
+
+Job square_job(const Eigen::Vector2d& centre)
+{
+    Job job;
+    job.anomaly.resize(3, 4);
+    job.anomaly << -10, 10, 10, -10, -10, -10, 10, 10, 0, 0, 0, 0;
+    job.anomaly.topRows<2>().colwise() += centre;
+    return job;
+}
+
+TEST(HeightField, StandsOnTheScan)
+{
+    const Scan scan(slope());
+    Job job = square_job({20, 30});
+    job.theta = 0.3;
+    const HeightField stock = height_field(scan, job, 0.5);
+    for (Eigen::Index j = 0; j < stock.rows(); ++j)
+        for (Eigen::Index i = 0; i < stock.columns(); ++i) {
+            const Eigen::Vector2d at = Eigen::Rotation2Dd(job.theta) * stock.centre(i, j);
+            EXPECT_NEAR(stock.z(i, j), 2 + 0.1 * at.x() - 0.2 * at.y(), 1e-9);
+        }
+    // As far as the wheel reaches: its radius along Y_w, half its width along X_w.
+    const double side = 20 * (std::cos(0.3) + std::sin(0.3));
+    EXPECT_NEAR(stock.columns() * stock.cell, side + job.wheel.width, 4 * stock.cell);
+    EXPECT_NEAR(stock.rows() * stock.cell, side + 2 * job.wheel.radius, 4 * stock.cell);
+
+    EXPECT_THROW(height_field(scan, square_job({500, 0}), 0.5), InputError);
+    EXPECT_TRUE(height_field(scan, square_job({105, 0}), 0.5).z.isNaN().any()); // partly over the edge
+}
+
+} // namespace
