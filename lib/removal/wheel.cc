@@ -42,13 +42,25 @@ FETTLE_CLONES RowSums row_above(const double* z, Eigen::Index count, double limi
 
 FETTLE_CLONES void cut_row(double* z, Eigen::Index count, double limit)
 {
-    for (Eigen::Index i = 0; i < count; ++i) z[i] = z[i] > limit ? limit : z[i]; // NaN stays
+    const Double4 limits = Double4{} + limit;
+    Eigen::Index i = 0;
+    for (; i + 4 <= count; i += 4) {
+        Double4& four = *reinterpret_cast<Double4*>(z + i);
+        four = four > limits ? limits : four; // NaN stays
+    }
+    for (; i < count; ++i) z[i] = z[i] > limit ? limit : z[i];
 }
 
-double highest(const double* z, Eigen::Index count)
+FETTLE_CLONES double highest(const double* z, Eigen::Index count)
 {
-    double top = kNothing;
-    for (Eigen::Index i = 0; i < count; ++i) top = z[i] > top ? z[i] : top; // NaN is never greater
+    Double4 tops = Double4{} + kNothing;
+    Eigen::Index i = 0;
+    for (; i + 4 <= count; i += 4) {
+        const Double4 four = *reinterpret_cast<const Double4*>(z + i);
+        tops = four > tops ? four : tops; // NaN is never greater
+    }
+    double top = std::max(std::max(tops[0], tops[1]), std::max(tops[2], tops[3]));
+    for (; i < count; ++i) top = z[i] > top ? z[i] : top;
     return top;
 }
 
@@ -89,14 +101,16 @@ void WheelInStock::place(const Eigen::Vector2d& xy, double radius, double lowest
     const double rise = std::min(highest_ - lowest, radius); // the rim higher than this meets nothing
     if (columns_ == 0 || !(rise > 0)) return;
 
+    const double curvature = 1 / radius;
     const double reach = std::sqrt(rise * (2 * radius - rise)) / stock_.cell;
     const Eigen::Index row_end = bounded(std::floor(at.y() + reach - 0.5) + 1, stock_.rows());
     for (Eigen::Index j = bounded(std::ceil(at.y() - reach - 0.5), stock_.rows()); j < row_end; ++j) {
         const double y = (static_cast<double>(j) + 0.5 - at.y()) * stock_.cell;
+        const double row_top = top(j);
+        if (!(row_top - y * y * curvature / 2 > lowest)) continue; // the rim is above its parabola
         const double profile = y * y / (radius + std::sqrt(std::max(radius * radius - y * y, 0.0)));
-        const double row_touch = top(j) - profile;
-        if (!(row_touch > lowest)) continue;
-        touch_ = std::max(touch_, row_touch);
+        if (!(row_top - profile > lowest)) continue;
+        touch_ = std::max(touch_, row_top - profile);
         rows_.push_back({&stock_.z(first_column_, j), &tops_[static_cast<std::size_t>(j)], profile});
     }
 }

@@ -1,0 +1,59 @@
+// How fast the quasi-static gantry simulates: passes over a 3 x 3 in part, wheel of 1 in radius and 1/4 in width.
+
+#include "gantry/quasi_static.h"
+
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+
+using namespace fettle;
+
+namespace {
+
+constexpr double kInch = 25.4;
+
+/// A 2 x 2 in anomaly, 3/8 in high with a round edge, on a plane.
+HeightField anomaly(double cell)
+{
+    Eigen::Matrix2d box;
+    box << -kInch, kInch, -kInch, kInch;
+    HeightField field = empty_height_field(box, {kInch / 8, kInch}, 0, cell);
+    for (Eigen::Index j = 0; j < field.rows(); ++j)
+        for (Eigen::Index i = 0; i < field.columns(); ++i) {
+            const double r = field.centre(i, j).norm() / kInch;
+            field.z(i, j) = r < 1 ? 0.375 * kInch * std::sqrt(1 - r * r) : 0;
+        }
+    return field;
+}
+
+Job job()
+{
+    Job inch;
+    inch.removal = 2e-3 * kInch * kInch * kInch / 4.4482216152605;
+    return inch;
+}
+
+/// Zig-zag over B, layer by layer from the top, steps of 0.5 mm; counts strategy steps and simulated seconds.
+void grind(benchmark::State& state)
+{
+    const double cell = static_cast<double>(state.range(0)) / 1000;
+    const HeightField stock = anomaly(cell);
+    int64_t steps = 0;
+    double seconds = 0;
+    for (auto _ : state) {
+        QuasiStaticGantry gantry(stock, job());
+        double direction = 1;
+        for (double z = 0.375 * kInch; z > 0; z -= 0.6)
+            for (double x = -kInch; x <= kInch; x += 5.08, direction = -direction) {
+                gantry.travel({x, -direction * kInch, z});
+                for (double y = -kInch; y <= kInch; y += 0.5, ++steps) gantry.grind({x, direction * y, z}, kInch);
+            }
+        seconds += gantry.totals().grinding_time;
+        benchmark::DoNotOptimize(gantry.totals().removed_volume);
+    }
+    state.counters["steps/s"] = benchmark::Counter(static_cast<double>(steps), benchmark::Counter::kIsRate);
+    state.counters["simulated s/s"] = benchmark::Counter(seconds, benchmark::Counter::kIsRate);
+}
+BENCHMARK(grind)->ArgName("cell_um")->Arg(400)->Arg(200)->Arg(100)->Arg(50)->Unit(benchmark::kMillisecond);
+
+} // namespace
