@@ -3,9 +3,6 @@
 #include "core/error.h"
 #include "core/text.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <cmath>
 #include <limits>
 
@@ -19,17 +16,6 @@ constexpr double kWholeCell = 1e-6;
 constexpr double kMostCells = 2e8;
 
 double whole_cells(double length, double cell) { return std::ceil(length / cell - kWholeCell); }
-
-bool has_material(const HeightField& field, const Eigen::Matrix2d& box)
-{
-    for (Eigen::Index j = 0; j < field.rows(); ++j)
-        for (Eigen::Index i = 0; i < field.columns(); ++i) {
-            const Eigen::Vector2d at = field.centre(i, j);
-            const bool inside = (at.array() >= box.col(0).array()).all() && (at.array() <= box.col(1).array()).all();
-            if (inside && !std::isnan(field.z(i, j))) return true;
-        }
-    return false;
-}
 
 } // namespace
 
@@ -49,24 +35,6 @@ HeightField empty_height_field(const Eigen::Matrix2d& box, const Eigen::Vector2d
     field.origin = box.col(0).array() - cell * around;
     field.z = Eigen::ArrayXXd::Constant(static_cast<Eigen::Index>(count.x()), static_cast<Eigen::Index>(count.y()),
                                         std::numeric_limits<double>::quiet_NaN());
-    return field;
-}
-
-HeightField height_field(const Scan& scan, const Job& job, double cell)
-{
-    const Eigen::Matrix2d R_working_machine = rotation_working_machine(job.theta);
-    const Eigen::Matrix2d R_machine_working = R_working_machine.transpose();
-    const Eigen::Matrix2Xd corners = R_working_machine * job.anomaly.topRows<2>();
-    Eigen::Matrix2d box;
-    box << corners.rowwise().minCoeff(), corners.rowwise().maxCoeff();
-
-    HeightField field = empty_height_field(box, {job.wheel.width / 2, job.wheel.radius}, job.theta, cell);
-    tbb::parallel_for(tbb::blocked_range<Eigen::Index>(0, field.rows()), [&](const auto& range) {
-        for (Eigen::Index j = range.begin(); j < range.end(); ++j)
-            for (Eigen::Index i = 0; i < field.columns(); ++i)
-                if (const auto z = scan.height(R_machine_working * field.centre(i, j))) field.z(i, j) = *z;
-    });
-    if (!has_material(field, box)) throw InputError("the stock has no surface over the anomaly");
     return field;
 }
 

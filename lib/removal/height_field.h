@@ -6,6 +6,8 @@
 
 #include <Eigen/Core>
 
+#include <string>
+
 namespace fettle {
 
 /// Stock that faces up: a height at the centre of each square cell of a regular grid that lies along the working frame
@@ -32,8 +34,9 @@ HeightField empty_height_field(const Eigen::Matrix2d& box, const Eigen::Vector2d
 
 /// The stock over the anomaly B and as far around it as the wheel reaches: its radius along Y_w, half its width along
 /// X_w.
-/// @throws InputError as above, or if the scan has no surface inside the box of B
-HeightField height_field(const Scan& scan, const Job& job, double cell);
+/// @param source  the scan's name for messages
+/// @throws InputError as above, or if the scan has a hole inside B
+HeightField height_field(const Scan& scan, const Job& job, double cell, const std::string& source = "stock");
 
 /// ∫ (before − after), mm³. The grids must be the same.
 double volume_between(const HeightField& before, const HeightField& after);

@@ -206,6 +206,7 @@ Mesh slope()
 Job square_job(const Eigen::Vector2d& centre)
 {
     Job job;
+    job.surface = SurfaceType::plane; // needs no sampling boundary
     job.anomaly.resize(3, 4);
     job.anomaly << -10, 10, 10, -10, -10, -10, 10, 10, 0, 0, 0, 0;
     job.anomaly.topRows<2>().colwise() += centre;
@@ -229,7 +230,13 @@ TEST(HeightField, StandsOnTheScan)
     EXPECT_NEAR(stock.rows() * stock.cell, side + 2 * job.wheel.radius, 4 * stock.cell);
 
     EXPECT_THROW(height_field(scan, square_job({500, 0}), 0.5), InputError);
-    EXPECT_TRUE(height_field(scan, square_job({105, 0}), 0.5).z.isNaN().any()); // partly over the edge
+    EXPECT_TRUE(height_field(scan, square_job({88, 0}), 0.5).z.isNaN().any()); // around B only
+    try {
+        height_field(scan, square_job({95, 0}), 0.5, "part.stl");
+        FAIL() << "a quarter of B has no surface";
+    } catch (const InputError& error) {
+        EXPECT_STREQ(error.what(), "part.stl: no surface over 25 % of the anomaly, first at x 100.25, y -9.75");
+    }
 }
 
 } // namespace
