@@ -233,7 +233,7 @@ void read_face(Body& body, const Property& property, std::size_t vertices, Ply& 
             body.refuse("vertex " + std::to_string(corner) + " of " + std::to_string(vertices));
         ply.corners.push_back(static_cast<std::uint32_t>(corner));
     }
-    ply.ends.push_back(static_cast<std::uint32_t>(ply.corners.size()));
+    ply.ends.push_back(ply.corners.size());
 }
 
 template <typename Body>

@@ -13,7 +13,7 @@ namespace fettle {
 struct Ply {
     Cloud vertices; ///< property scalar_NAME (as CloudCompare writes it) is field NAME; nx ny nz are the normals
     std::vector<std::uint32_t> corners; ///< of all faces, one after the other; columns of `vertices`, in range
-    std::vector<std::uint32_t> ends;    ///< end of each face in `corners`
+    std::vector<std::size_t> ends;      ///< end of each face in `corners`
 };
 
 /// Reads ascii, binary_little_endian and binary_big_endian. Elements other than vertex and face are checked and

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "mesh/mesh.h"
+
+#include <string>
+#include <string_view>
+
+namespace fettle {
+
+/// Is the size that of a binary STL with as many triangles as bytes 80 to 83 say? Nothing else is looked at: the
+/// header of a binary file may well begin with "solid".
+bool is_binary_stl(std::string_view bytes);
+
+/// Does the text begin like an ASCII STL: "solid", in any case, and somewhere "facet" or "endsolid"?
+bool looks_like_ascii_stl(std::string_view bytes);
+
+/// Binary or ASCII STL, in the units of the file. Triangles with NaN or infinite corners are left out and counted;
+/// exactly equal vertices are made one.
+/// @throws InputError with the line, the triangle, or the sizes that disagree
+Mesh parse_stl(std::string_view bytes, const std::string& source, MeshRepair& repair);
+
+} // namespace fettle
