@@ -1,0 +1,90 @@
+#include "core/error.h"
+#include "core/text.h"
+#include "part/anomalies.h"
+#include "part/part.h"
+#include "part/surface.h"
+
+#include <filesystem>
+
+namespace fettle {
+namespace {
+
+// A spec in a file refers to its neighbours, one from stdin to the working folder.
+std::string folder_of(const std::string& path)
+{
+    const std::string folder = path == "-" ? "" : std::filesystem::path(path).parent_path().string();
+    return folder.empty() ? "." : folder;
+}
+
+Eigen::AlignedBox2d read_region(json::Reader reader, double mm)
+{
+    Eigen::AlignedBox2d region;
+    for (int axis = 0; axis < 2; ++axis) {
+        const std::string key = axis == 0 ? "x" : "y";
+        const Eigen::Vector2d ends = mm * reader.vector(key, 2);
+        if (!(ends[0] < ends[1])) reader.refuse(key, "the first must be less than the second");
+        region.min()[axis] = ends[0];
+        region.max()[axis] = ends[1];
+    }
+    reader.done();
+    return region;
+}
+
+ScannedSurface read_scanned(json::Reader reader, const std::string& folder)
+{
+    ScannedSurface scanned;
+    scanned.file = (std::filesystem::path(folder) / reader.text("file")).string();
+    scanned.unit = parse_length_unit(reader.choice("units", {"mm", "in", "m"}));
+    reader.done();
+    return scanned;
+}
+
+/// "normal:0.005"
+ScanNoise read_noise(json::Reader& reader, double mm)
+{
+    const std::string text = reader.text("noise");
+    const std::size_t colon = text.find(':');
+    const std::string kind = text.substr(0, colon);
+    // Without a colon the size is the empty text, which is no number.
+    const double size = parse_number(text.substr(std::min(colon, text.size() - 1) + 1)).value_or(-1);
+    if ((kind != "normal" && kind != "uniform") || !Range::at_least(0).contains(size))
+        reader.refuse("noise", "must be normal:SIZE or uniform:SIZE, got '" + text + "'");
+    return {kind == "normal" ? ScanNoise::Kind::normal : ScanNoise::Kind::uniform, mm * size};
+}
+
+// Triangles of a part, so that a slip in `step` does not fill the memory.
+constexpr double kMostTriangles = 2e7;
+
+} // namespace
+
+PartSpec read_part(const std::string& path)
+{
+    json::Reader reader = json::Reader::open(path);
+    reader.expect_kind("part");
+    json::Reader units = reader.object("units");
+    PartSpec spec;
+    spec.units.length = parse_length_unit(units.choice("length", {"mm", "in", "m"}));
+    units.done();
+    const double mm = spec.units.mm();
+
+    spec.step = mm * reader.number("step", Range::positive());
+    if (reader.has("scan")) {
+        if (reader.has("surface")) reader.refuse("scan", "stands beside a surface: one of them is enough");
+        ScannedSurface scanned = read_scanned(reader.object("scan"), folder_of(path));
+        if (reader.has("region")) scanned.region = read_region(reader.object("region"), mm);
+        spec.surface = scanned;
+    } else {
+        MadeSurface made;
+        made.region = read_region(reader.object("region"), mm);
+        made.z = read_part_surface(reader.object("surface"), mm, folder_of(path));
+        if (2 * made.region.volume() / (spec.step * spec.step) > kMostTriangles)
+            reader.refuse("step", "too fine: it makes more than 20 million triangles");
+        spec.surface = made;
+    }
+    for (const json::Reader& anomaly : reader.objects("anomalies")) spec.anomalies.push_back(read_anomaly(anomaly, mm));
+    if (reader.has("noise")) spec.noise = read_noise(reader, mm);
+    reader.done();
+    return spec;
+}
+
+} // namespace fettle
