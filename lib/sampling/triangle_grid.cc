@@ -1,0 +1,172 @@
+#include "sampling/triangle_grid.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+
+namespace fettle {
+
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+// An entry costs four bytes and a test: with two triangles a cell, queries and memory are both small.
+constexpr double kTrianglesPerCell = 2;
+// Long thin triangles lie in many cells: coarser cells until there are at most that many entries for each triangle.
+constexpr double kEntriesPerTriangle = 8;
+
+// Twice the area of a b p, seen from above; exactly the opposite for b a p, so that a point is never on the outer side
+// of an edge for both of its triangles.
+double side(const Mesh& mesh, int a, int b, const Vector2d& p)
+{
+    const bool swapped = a > b;
+    if (swapped) std::swap(a, b);
+    const Vector2d from = mesh.vertices.col(a).head<2>(), to = mesh.vertices.col(b).head<2>();
+    const double area = (to.x() - from.x()) * (p.y() - from.y()) - (to.y() - from.y()) * (p.x() - from.x());
+    return swapped ? -area : area;
+}
+
+std::optional<double> facet_height(const Mesh& mesh, const Eigen::Vector3i& t, const Vector2d& p)
+{
+    Vector3d w(side(mesh, t[1], t[2], p), side(mesh, t[2], t[0], p), side(mesh, t[0], t[1], p));
+    if (w.minCoeff() < 0 && w.maxCoeff() > 0) return std::nullopt;
+    const double sum = w.sum();
+    if (sum == 0) return std::nullopt; // upright: its upper edge belongs to a neighbour
+    return (w[0] * mesh.vertices(2, t[0]) + w[1] * mesh.vertices(2, t[1]) + w[2] * mesh.vertices(2, t[2])) / sum;
+}
+
+// The ball rests on the facet: its centre stands off by the radius along the upward normal, and the foot of that
+// perpendicular must lie in the triangle.
+std::optional<double> centre_on_facet(const Mesh& mesh, const Eigen::Vector3i& t, const Vector2d& xy, double radius)
+{
+    const Vector3d a = mesh.vertices.col(t[0]);
+    Vector3d normal = (mesh.vertices.col(t[1]) - a).cross(mesh.vertices.col(t[2]) - a);
+    const double area = normal.norm();
+    if (normal.z() == 0 || area == 0) return std::nullopt;
+    normal *= (normal.z() > 0 ? 1 : -1) / area;
+    const Vector2d foot = xy - radius * normal.head<2>();
+    const auto z = facet_height(mesh, t, foot);
+    if (!z) return std::nullopt;
+    return *z + radius * normal.z();
+}
+
+// The ball rests on the edge a b: the centre is at distance R from the line through it, with its foot between the ends.
+// With m = xy - a, d the unit direction of the edge, d_h its horizontal part, d_z its vertical one, h = z - a_z:
+//   |m|^2 + h^2 - (m · d_h + h d_z)^2 = R^2.
+std::optional<double> centre_on_edge(const Vector3d& a, const Vector3d& b, const Vector2d& xy, double radius)
+{
+    const double length = (b - a).norm();
+    const Vector3d d = (b - a) / length;
+    const double flat = d.head<2>().squaredNorm();     // 1 - d_z^2
+    if (length == 0 || flat == 0) return std::nullopt; // upright: the ball rests on its upper end
+    const Vector2d m = xy - a.head<2>();
+    const double along = m.dot(d.head<2>());
+    const double root = along * along * d.z() * d.z() - flat * (m.squaredNorm() - along * along - radius * radius);
+    if (root < 0) return std::nullopt;
+    const double h = (along * d.z() + std::sqrt(root)) / flat;
+    const double foot = along + h * d.z();
+    if (foot < 0 || foot > length) return std::nullopt;
+    return a.z() + h;
+}
+
+std::optional<double> centre_on_vertex(const Vector3d& vertex, const Vector2d& xy, double radius)
+{
+    const double root = radius * radius - (xy - vertex.head<2>()).squaredNorm();
+    if (root < 0) return std::nullopt;
+    return vertex.z() + std::sqrt(root);
+}
+
+void raise(std::optional<double>& highest, const std::optional<double>& z)
+{
+    if (z && (!highest || *z > *highest)) highest = z;
+}
+
+} // namespace
+
+TriangleGrid::TriangleGrid(Mesh mesh) : mesh_(std::move(mesh))
+{
+    const Eigen::Matrix<double, 3, 2> box = bounding_box(mesh_);
+    origin_ = box.col(0).head<2>();
+    const Vector2d extent = (box.col(1) - box.col(0)).head<2>();
+    const double triangles = static_cast<double>(mesh_.triangles.cols());
+    const double longest = std::max(extent.maxCoeff(), std::numeric_limits<double>::min());
+    // the narrow side may be nothing at all (an upright sheet): then as many cells as fit along the other
+    cell_ = std::max(std::sqrt(extent.prod() * kTrianglesPerCell / triangles), longest / triangles);
+
+    const auto range = [this](Eigen::Index t) {
+        Vector2d low = mesh_.vertices.col(mesh_.triangles(0, t)).head<2>(), high = low;
+        for (int k = 1; k < 3; ++k) {
+            low = low.cwiseMin(mesh_.vertices.col(mesh_.triangles(k, t)).head<2>());
+            high = high.cwiseMax(mesh_.vertices.col(mesh_.triangles(k, t)).head<2>());
+        }
+        return std::pair(cell_of(low), cell_of(high));
+    };
+    double entries = 0;
+    do {
+        if (entries > 0) cell_ *= 2;
+        size_ = (extent / cell_).array().floor().cast<int>() + 1;
+        entries = 0;
+        for (Eigen::Index t = 0; t < mesh_.triangles.cols(); ++t) {
+            const auto [low, high] = range(t);
+            entries += (high - low + Eigen::Vector2i::Ones()).cast<double>().prod();
+        }
+    } while (entries > kEntriesPerTriangle * triangles && size_.maxCoeff() > 1);
+
+    const auto for_cells = [&](Eigen::Index t, auto&& use) {
+        const auto [low, high] = range(t);
+        for (int y = low.y(); y <= high.y(); ++y)
+            for (int x = low.x(); x <= high.x(); ++x) use(static_cast<std::size_t>(y) * size_.x() + x);
+    };
+    start_.assign(static_cast<std::size_t>(size_.x()) * size_.y() + 1, 0);
+    for (Eigen::Index t = 0; t < mesh_.triangles.cols(); ++t) for_cells(t, [this](std::size_t c) { ++start_[c + 1]; });
+    for (std::size_t c = 1; c < start_.size(); ++c) start_[c] += start_[c - 1];
+    entries_.resize(start_.back());
+    std::vector<std::size_t> next(start_.begin(), start_.end() - 1);
+    for (Eigen::Index t = 0; t < mesh_.triangles.cols(); ++t)
+        for_cells(t, [&](std::size_t c) { entries_[next[c]++] = static_cast<int>(t); });
+}
+
+Eigen::Vector2i TriangleGrid::cell_of(const Vector2d& xy) const
+{
+    const Eigen::Array2d cell = ((xy - origin_) / cell_).array().floor();
+    return cell.max(0).min((size_.array() - 1).cast<double>()).cast<int>();
+}
+
+// A triangle that lies in several cells is visited several times.
+template <typename Visit>
+void TriangleGrid::visit(const Vector2d& low, const Vector2d& high, Visit&& visit) const
+{
+    const Eigen::Vector2i from = cell_of(low), to = cell_of(high);
+    for (int y = from.y(); y <= to.y(); ++y)
+        for (int x = from.x(); x <= to.x(); ++x) {
+            const std::size_t c = static_cast<std::size_t>(y) * size_.x() + x;
+            for (std::size_t e = start_[c]; e < start_[c + 1]; ++e)
+                visit(Eigen::Vector3i(mesh_.triangles.col(entries_[e])));
+        }
+}
+
+std::optional<double> TriangleGrid::highest(const Vector2d& xy) const
+{
+    std::optional<double> z;
+    visit(xy, xy, [&](const Eigen::Vector3i& t) { raise(z, facet_height(mesh_, t, xy)); });
+    return z;
+}
+
+std::optional<double> TriangleGrid::ball_centre(const Vector2d& xy, double radius) const
+{
+    std::optional<double> z;
+    const Vector2d reach = Vector2d::Constant(radius);
+    visit(xy - reach, xy + reach, [&](const Eigen::Vector3i& t) {
+        raise(z, centre_on_facet(mesh_, t, xy, radius));
+        for (int k = 0; k < 3; ++k) {
+            const Vector3d a = mesh_.vertices.col(t[k]), b = mesh_.vertices.col(t[(k + 1) % 3]);
+            raise(z, centre_on_edge(a, b, xy, radius));
+            raise(z, centre_on_vertex(a, xy, radius));
+        }
+    });
+    return z;
+}
+
+} // namespace fettle

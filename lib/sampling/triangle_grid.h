@@ -1,0 +1,39 @@
+#pragma once
+
+#include "mesh/mesh.h"
+
+#include <Eigen/Core>
+
+#include <optional>
+#include <vector>
+
+namespace fettle {
+
+/// The triangles of a mesh sorted into square columns of the x-y plane: what a point or a ball that comes down
+/// vertically can meet, exactly and without a ray tracer.
+class TriangleGrid {
+  public:
+    explicit TriangleGrid(Mesh mesh);
+
+    /// Highest z of the mesh over xy; edges belong to their triangles, so no ray slips between two.
+    std::optional<double> highest(const Eigen::Vector2d& xy) const;
+    /// z of the centre of a ball that comes down over xy, when it first touches a facet, an edge or a vertex.
+    std::optional<double> ball_centre(const Eigen::Vector2d& xy, double radius) const;
+
+    const Mesh& mesh() const { return mesh_; }
+
+  private:
+    template <typename Visit>
+    void visit(const Eigen::Vector2d& low, const Eigen::Vector2d& high, Visit&& visit) const;
+    Eigen::Vector2i cell_of(const Eigen::Vector2d& xy) const;
+
+    Mesh mesh_;
+    Eigen::Vector2d origin_;
+    double cell_ = 1;      ///< side, mm
+    Eigen::Vector2i size_; ///< cells in x and y
+    // The triangles of cell c are entries_[start_[c]] up to entries_[start_[c + 1]].
+    std::vector<std::size_t> start_;
+    std::vector<int> entries_;
+};
+
+} // namespace fettle
