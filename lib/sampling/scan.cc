@@ -33,9 +33,10 @@ Eigen::Matrix<double, 3, 2> finite_bounds(const Eigen::Matrix3Xd& points)
 
 } // namespace
 
-Scan::Scan(Mesh mesh) : state_(std::make_unique<State>(State{TriangleGrid(std::move(mesh)), {}}))
+Scan::Scan(Mesh mesh)
 {
-    state_->bounds = bounding_box(std::get<TriangleGrid>(state_->surface).mesh());
+    const Eigen::Matrix<double, 3, 2> bounds = bounding_box(mesh);
+    state_ = std::make_unique<State>(State{TriangleGrid(std::move(mesh)), bounds});
 }
 
 Scan::Scan(Cloud cloud) : state_(std::make_unique<State>(State{PointSurface(cloud.xyz), finite_bounds(cloud.xyz)})) {}
