@@ -1,0 +1,67 @@
+#include "fit/fit.h"
+
+#include "core/error.h"
+#include "surface/shapes.h"
+
+#include <boost/math/special_functions/gamma.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace fettle {
+
+double touch_sigma(const Probe& probe)
+{
+    constexpr double kTwoSided99 = 2.5758293035489; // quantile 0.995 of the normal distribution
+    return probe.accuracy / kTwoSided99;
+}
+
+double huber_weight(double residual, double width)
+{
+    const double size = std::abs(residual);
+    return size <= width ? 1 : width / size;
+}
+
+Surface begin_surface(const FitInput& input, const std::string& method, const std::vector<int>& wanted_roles, int least)
+{
+    std::vector<Eigen::Index> used;
+    for (Eigen::Index i = 0; i < input.xyz.cols(); ++i) {
+        const int role = input.roles[i];
+        const bool wanted = (role == 0 && input.use_boundary) ||
+                            std::find(wanted_roles.begin(), wanted_roles.end(), role) != wanted_roles.end();
+        if (wanted && input.xyz.col(i).allFinite()) used.push_back(i);
+    }
+    if (static_cast<int>(used.size()) < least)
+        throw InputError(input.source, "a " + method + " fit needs at least " + std::to_string(least) +
+                                           " touches, got " + std::to_string(used.size()) + " of " +
+                                           std::to_string(input.xyz.cols()) + " points that it may use");
+    Surface surface;
+    surface.units = input.job.units;
+    surface.method = method;
+    surface.touch_sigma = touch_sigma(input.job.probe);
+    surface.touches = input.xyz(Eigen::all, used);
+    surface.roles = input.roles(used);
+    surface.ignored = static_cast<int>(input.xyz.cols()) - static_cast<int>(used.size());
+    return surface;
+}
+
+Fit finish_fit(Surface surface, double freedom, bool converged, int iterations)
+{
+    // Fewer degrees of freedom than this are rounding of a trace: nothing is left to test.
+    constexpr double kLeastFreedom = 1e-3;
+    Fit fit;
+    fit.converged = converged;
+    fit.iterations = iterations;
+    fit.residuals = surface.touches.row(2).transpose() - heights(surface, surface.touches.topRows(2));
+    surface.rms = std::sqrt(fit.residuals.squaredNorm() / static_cast<double>(fit.residuals.size()));
+    surface.goodness = std::numeric_limits<double>::quiet_NaN();
+    if (freedom > kLeastFreedom && surface.touch_sigma > 0) {
+        const double chi2 = fit.residuals.squaredNorm() / (surface.touch_sigma * surface.touch_sigma);
+        if (std::isfinite(chi2)) surface.goodness = boost::math::gamma_q(freedom / 2, chi2 / 2);
+    }
+    fit.surface = std::move(surface);
+    return fit;
+}
+
+} // namespace fettle

@@ -1,0 +1,58 @@
+#pragma once
+
+#include "job/job.h"
+#include "surface/surface.h"
+
+#include <Eigen/Core>
+
+#include <string>
+#include <vector>
+
+namespace fettle {
+
+/// What a surface is fitted to.
+struct FitInput {
+    Eigen::Matrix3Xd xyz;  ///< 3xN, mm, M; columns with NaN are dropped
+    Eigen::VectorXi roles; ///< N; see docs/conventions.md
+    Job job;
+    bool use_boundary = false;      ///< take the anomaly boundary (role 0) as touches, too
+    std::string source = "touches"; ///< their name in messages
+};
+
+/// A fitted surface and how it came about.
+struct Fit {
+    Surface surface;
+    Eigen::VectorXd residuals; ///< touch - surface at the same (x, y), one for each of surface.touches, mm
+    bool converged = true;
+    int iterations = 0;
+};
+
+/// The methods by name, "auto" not among them.
+const std::vector<std::string>& fit_methods();
+
+/// Fits by a method's name; "auto": plane for plane jobs, swept for swept jobs, bspline for free-form ones.
+/// @throws InputError if the touches do not determine such a surface
+Fit fit_surface(const FitInput& input, const std::string& method);
+
+// --- shared by the fits ----------------------------------------------------------------------------------------------
+
+/// Standard deviation of a touch: 99 % of a normal error lie within the probe's accuracy, mm.
+double touch_sigma(const Probe& probe);
+
+/// A surface without shape and covariance: units, method, touch_sigma, and the touches that have a wanted role; the
+/// rest is counted in `ignored`. Role 0 counts as wanted with use_boundary.
+/// @throws InputError for fewer than `least` touches
+Surface begin_surface(const FitInput& input, const std::string& method, const std::vector<int>& wanted_roles,
+                      int least);
+
+/// Fills in residuals, rms and goodness. @param freedom  degrees of freedom of the residuals; 0: no goodness (NaN)
+Fit finish_fit(Surface surface, double freedom, bool converged, int iterations);
+
+/// Roles of touches on good metal that were not chosen as corners of B (INTERFACES, field names).
+inline const std::vector<int> kSampleRoles = {1, 2, 4, 5};
+
+/// Huber's weight of a residual (1964): 1 within `width`, width/|r| beyond, so that an outlier pulls no more than a
+/// touch at the edge of the probe's accuracy.
+double huber_weight(double residual, double width);
+
+} // namespace fettle

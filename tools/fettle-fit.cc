@@ -1,0 +1,76 @@
+#include "cli/tool.h"
+#include "cloud/pcd.h"
+#include "core/file.h"
+#include "core/text.h"
+#include "fit/fit.h"
+
+#include <ostream>
+
+using namespace fettle;
+
+namespace {
+
+std::vector<std::string> choices()
+{
+    std::vector<std::string> names = {"auto"};
+    names.insert(names.end(), fit_methods().begin(), fit_methods().end());
+    return names;
+}
+
+/// Points without roles are samples.
+Eigen::VectorXi roles(const Cloud& cloud)
+{
+    if (!has_field(cloud, "role")) return Eigen::VectorXi::Ones(cloud.size());
+    return field(cloud, "role").cast<int>();
+}
+
+void report(json::Value& out, const Fit& fit)
+{
+    const double mm = fit.surface.units.mm();
+    out.set("method", fit.surface.method)
+        .set("touches", static_cast<int>(fit.surface.touches.cols()))
+        .set("ignored", fit.surface.ignored)
+        .set("iterations", fit.iterations)
+        .set("rms", fit.surface.rms / mm)
+        .set("max_abs", fit.residuals.cwiseAbs().maxCoeff() / mm)
+        .set("touch_sigma", fit.surface.touch_sigma / mm)
+        .set("goodness", fit.surface.goodness);
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+    return tool_main(argc, argv, "Fit the desired surface beneath the anomaly to the touches.", [](Tool& t) {
+        const std::string& job = t.file("JOB", "job, JSON");
+        const std::string& points = t.input("POINTS", "touches (x y z, role), PCD");
+        const std::string& method =
+            t.choice("-m,--method", "auto", choices(), "Kind of surface; auto: by the job's surface type");
+        const bool& use_boundary =
+            t.flag("--use-boundary", "Take the anomaly boundary (role 0) as touches, too; planes always do");
+        t.example("fettle-sample jobs/flat.json --on parts/flat.stl | fettle-fit jobs/flat.json -o flat-surface.json",
+                  "the plane beneath the anomaly of Wang's first part");
+        t.reference("Wang (2007), 4.2 to 4.4");
+        t.parse();
+
+        FitInput input;
+        input.job = read_job(job);
+        input.source = display_name(points);
+        input.use_boundary = use_boundary;
+        const Cloud cloud = read_cloud(points, input.job.units).cloud;
+        input.xyz = cloud.xyz;
+        input.roles = roles(cloud);
+        const Fit fit = fit_surface(input, method);
+        report(t.report(), fit);
+        if (!fit.converged) {
+            t.warn("the " + fit.surface.method + " fit did not converge in " + std::to_string(fit.iterations) +
+                   " iterations");
+            return Verdict::no;
+        }
+        t.note(fit.surface.method + " fit of " + std::to_string(fit.surface.touches.cols()) + " touches, " +
+               std::to_string(fit.surface.ignored) + " points ignored, rms " +
+               to_text(fit.surface.rms / input.job.units.mm()) + " " + to_string(input.job.units.length));
+        t.output() << to_json(fit.surface);
+        return Verdict::yes;
+    });
+}
