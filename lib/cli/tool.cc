@@ -43,7 +43,8 @@ CLI::Option* add_parsed(CLI::App& app, const std::string& names, const std::stri
     CLI::Option* option = app.add_option_function<std::string>(
         names,
         [names, parse](const std::string& text) {
-            const std::string shown = names.substr(names.find("--"));
+            const std::size_t dashes = names.find("--");
+            const std::string shown = names.substr(dashes == std::string::npos ? 0 : dashes);
             try {
                 parse(text);
             } catch (const CLI::ValidationError& error) {
@@ -61,6 +62,14 @@ std::string list(const std::vector<std::string>& words, const std::string& separ
     std::string text;
     for (const std::string& word : words) text += (text.empty() ? "" : separator) + word;
     return text;
+}
+
+const std::string& one_of(const std::vector<std::string>& choices, const std::string& text)
+{
+    if (std::find(choices.begin(), choices.end(), text) != choices.end()) return text;
+    const std::string guess = nearest_word(text, choices);
+    throw CLI::ValidationError("'" + text + "' is none of " + list(choices, ", ") +
+                               (guess.empty() ? "" : "; did you mean '" + guess + "'?"));
 }
 
 } // namespace
@@ -181,18 +190,21 @@ const std::string& Tool::required_text(const std::string& names, const std::stri
     return value;
 }
 
+const std::string& Tool::word(const std::string& name, const std::vector<std::string>& choices, const std::string& help)
+{
+    std::string& value = state_->texts.emplace_back();
+    add_parsed(state_->app, name, help, [&value, choices](const std::string& text) { value = one_of(choices, text); })
+        ->required()
+        ->type_name(list(choices, "|"));
+    return value;
+}
+
 const std::string& Tool::choice(const std::string& names, const std::string& otherwise,
                                 const std::vector<std::string>& choices, const std::string& help)
 {
     std::string& value = state_->texts.emplace_back(otherwise);
-    CLI::Option* option = add_parsed(state_->app, names, help, [&value, choices](const std::string& text) {
-        if (std::find(choices.begin(), choices.end(), text) == choices.end()) {
-            const std::string guess = nearest_word(text, choices);
-            throw CLI::ValidationError("'" + text + "' is none of " + list(choices, ", ") +
-                                       (guess.empty() ? "" : "; did you mean '" + guess + "'?"));
-        }
-        value = text;
-    });
+    CLI::Option* option = add_parsed(state_->app, names, help,
+                                     [&value, choices](const std::string& text) { value = one_of(choices, text); });
     option->type_name(list(choices, "|"));
     if (!otherwise.empty()) option->default_str(otherwise);
     return value;

@@ -28,6 +28,8 @@ class Tool {
   public:
     /// A named file that must be given, in order of declaration: fettle-fit JOB
     const std::string& file(const std::string& name, const std::string& help);
+    /// A word out of `choices` that must be given, in order with the named files: fettle-form flatness
+    const std::string& word(const std::string& name, const std::vector<std::string>& choices, const std::string& help);
     /// The bulk input, after the named files; "-" or nothing is stdin.
     const std::string& input(const std::string& name, const std::string& help);
 
