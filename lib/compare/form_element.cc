@@ -1,0 +1,75 @@
+#include "compare/form_element.h"
+
+#include <Eigen/Geometry>
+
+namespace fettle {
+
+namespace {
+
+Eigen::Vector3d across(const Eigen::Vector3d& from_axis_point, const Eigen::Vector3d& axis)
+{
+    return from_axis_point - axis.dot(from_axis_point) * axis;
+}
+
+} // namespace
+
+double deviation(const FormElement& element, const Eigen::Vector3d& point)
+{
+    const Eigen::Vector3d q = point - element.point;
+    if (element.kind == FormKind::flatness) return element.direction.dot(q);
+    if (element.kind == FormKind::sphericity) return q.norm() - element.radius;
+    return across(q, element.direction).norm() - element.radius;
+}
+
+Eigen::VectorXd deviations(const FormElement& element, const Eigen::Matrix3Xd& points)
+{
+    Eigen::VectorXd d(points.cols());
+    for (Eigen::Index i = 0; i < d.size(); ++i) d[i] = deviation(element, points.col(i));
+    return d;
+}
+
+FormMotion::FormMotion(const FormElement& element, double scale) : element_(element), scale_(scale)
+{
+    u_ = element.direction.unitOrthogonal();
+    v_ = element.direction.cross(u_);
+}
+
+Eigen::Index FormMotion::parameters() const
+{
+    return element_.kind == FormKind::flatness ? 3 : element_.kind == FormKind::cylindricity ? 5 : 4;
+}
+
+FormVector FormMotion::gradient(const Eigen::Vector3d& point) const
+{
+    const Eigen::Vector3d q = point - element_.point;
+    FormVector g(parameters());
+    if (element_.kind == FormKind::flatness) {
+        g << u_.dot(q) / scale_, v_.dot(q) / scale_, -1;
+    } else if (element_.kind == FormKind::sphericity) {
+        g << -q.normalized(), -1;
+    } else {
+        const Eigen::Vector3d outward = across(q, element_.direction).normalized();
+        const double along = element_.direction.dot(q) / scale_;
+        g << -outward.dot(u_), -outward.dot(v_), -along * outward.dot(u_), -along * outward.dot(v_), -1;
+    }
+    return g;
+}
+
+FormElement FormMotion::moved(const FormVector& motion) const
+{
+    FormElement element = element_;
+    if (element.kind == FormKind::flatness) {
+        element.direction = (element.direction + (motion[0] * u_ + motion[1] * v_) / scale_).normalized();
+        element.point += motion[2] * element_.direction;
+    } else if (element.kind == FormKind::sphericity) {
+        element.point += motion.head<3>();
+        element.radius += motion[3];
+    } else {
+        element.point += motion[0] * u_ + motion[1] * v_;
+        element.direction = (element.direction + (motion[2] * u_ + motion[3] * v_) / scale_).normalized();
+        element.radius += motion[4];
+    }
+    return element;
+}
+
+} // namespace fettle

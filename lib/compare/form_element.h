@@ -1,0 +1,44 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <string>
+
+namespace fettle {
+
+enum class FormKind { flatness, cylindricity, sphericity };
+
+/// A perfect plane, cylinder or sphere.
+struct FormElement {
+    FormKind kind = FormKind::flatness;
+    Eigen::Vector3d point;     ///< on the plane; on the axis; the centre
+    Eigen::Vector3d direction; ///< unit: normal of the plane; axis; unused for a sphere
+    double radius = 0;         ///< mm; unused for a plane
+};
+
+/// Orthogonal distance, mm: + on the side of the normal, or outside.
+double deviation(const FormElement& element, const Eigen::Vector3d& point);
+Eigen::VectorXd deviations(const FormElement& element, const Eigen::Matrix3Xd& points);
+
+/// One number a motion; at most five, so that no memory is asked for.
+using FormVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 5, 1>;
+using FormMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 5, 5>;
+
+/// Small motions of an element, all measured in mm, so that they are of one size: shifts and tilts · scale and, where
+/// there is one, the radius. Plane: 3 (tilt, tilt, shift); cylinder: 5 (shift, shift, tilt, tilt, radius); sphere: 4.
+class FormMotion {
+  public:
+    /// @param scale  half the size of the part: a tilt moves a point at this distance by the same length as a shift
+    FormMotion(const FormElement& element, double scale);
+    Eigen::Index parameters() const;
+    /// ∂ deviation / ∂ motion at no motion.
+    FormVector gradient(const Eigen::Vector3d& point) const;
+    FormElement moved(const FormVector& motion) const;
+
+  private:
+    FormElement element_;
+    double scale_;
+    Eigen::Vector3d u_, v_; ///< unit, across the direction
+};
+
+} // namespace fettle
