@@ -1,0 +1,54 @@
+#pragma once
+
+#include "mesh/mesh.h"
+#include "mesh/raycast.h"
+
+#include <Eigen/Core>
+
+#include <cstdint>
+#include <vector>
+
+namespace fettle {
+
+/// Normals that give a point the right side of a mesh wherever its closest point lies: of the facet, the sum of two
+/// facets on an edge, weighted by angle on a vertex (Bærentzen & Aanæs, Signed distance computation using the angle
+/// weighted pseudonormal, 2005). Vertices that agree within the rounding of floats count as one, so cracks between
+/// facets are no borders; facets narrower than that have no direction of their own and are looked through. Thread-safe.
+class PseudoNormals {
+  public:
+    /// The mesh must outlive this.
+    explicit PseudoNormals(const Mesh& mesh);
+
+    /// Unit normal at a closest point; zero where the mesh has no direction.
+    Eigen::Vector3d normal(const MeshIndex::Closest& foot) const;
+
+    /// Unit normal of a facet; zero if it has none.
+    Eigen::Vector3d facet(Eigen::Index triangle) const { return normals_.col(triangle); }
+
+    /// How far `offset` (from the foot to the point) leads beyond an open border, measured in the plane of the facets
+    /// there, mm; 0 if the foot lies on no border. More than rounding(): the mesh says nothing about the point.
+    double beyond_border(const MeshIndex::Closest& foot, const Eigen::Vector3d& offset) const;
+
+    /// Lengths below this are the rounding of float coordinates, mm.
+    double rounding() const { return rounding_; }
+
+  private:
+    using Vertex = std::int32_t;
+    struct Feature;
+    Feature feature(const MeshIndex::Closest& foot) const;
+    std::vector<Eigen::Index> facets_at_edge(Vertex a, Vertex b) const;
+    void add_beyond_edge(Vertex a, Vertex b, const Eigen::Vector3d& point, double weight,
+                         std::vector<Eigen::Index>& seen, Eigen::Vector3d& sum) const;
+    Eigen::Vector3d vertex_normal(Vertex v) const;
+    Eigen::Vector3d position(Vertex v) const { return mesh_.vertices.col(v); }
+    bool on_edge(Vertex a, Vertex b, const Eigen::Vector3d& point) const;
+
+    const Mesh& mesh_;
+    double rounding_ = 0;
+    Eigen::Matrix3Xi facets_;             ///< welded vertices
+    Eigen::Matrix3Xd normals_;            ///< of the facets; zero without a direction
+    std::vector<Eigen::Index> first_;     ///< vertex -> its first entry in at_vertex_
+    std::vector<Eigen::Index> at_vertex_; ///< facets at the vertices, ascending
+};
+
+} // namespace fettle

@@ -1,0 +1,46 @@
+#pragma once
+
+#include "cloud/cloud.h"
+#include "core/progress.h"
+#include "mesh/mesh.h"
+
+#include <Eigen/Core>
+
+#include <limits>
+
+namespace fettle {
+
+/// Along what the error of a point is measured.
+enum class DistanceMode {
+    normal,    ///< to the closest point of the reference
+    direction, ///< along a line of given direction (z is one)
+};
+
+struct DistanceOptions {
+    DistanceMode mode = DistanceMode::normal;
+    Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();          ///< unit, out of the material
+    double max_distance = std::numeric_limits<double>::infinity(); ///< beyond it the error is undefined, mm
+};
+
+/// The signed distance of test points from a reference. Where the reference says nothing (beyond an open border or
+/// max_distance, in a gap of a cloud, NaN points) the error and its normal are NaN: never guessed.
+struct ErrorMap {
+    Eigen::VectorXd error;   ///< + material left, mm
+    Eigen::Matrix3Xd normal; ///< of the reference at the foot of each point, unit, outward
+    /// Standard deviation of the reference's own height at the foot, mm: of the fit to a cloud; empty for a mesh.
+    Eigen::VectorXd reference_sigma;
+};
+
+/// Exact distance from a mesh (vertices, edges, facets), signed by angle-weighted pseudo-normals. Along a direction:
+/// from the nearest crossing of the line with a facet that faces the direction; if the line meets none of these
+/// beside the point, from the nearest crossing.
+/// @param points  3xN, mm
+ErrorMap signed_distance(const Eigen::Matrix3Xd& points, const Mesh& reference, const DistanceOptions& options = {},
+                         const Progress& progress = {});
+
+/// Distance from a cloud: from a quadratic surface fitted to the neighbours of the foot (cloud_reference.h). The
+/// cloud's normals say which side is out; without them it is +Z (or the direction).
+ErrorMap signed_distance(const Eigen::Matrix3Xd& points, const Cloud& reference, const DistanceOptions& options = {},
+                         const Progress& progress = {});
+
+} // namespace fettle
