@@ -17,8 +17,8 @@ struct ProbingMachine {
     double settle = 0.5;     ///< at each touch, s: stop, read, turn back
 };
 
-/// A way through all touches, open at both ends: nearest neighbour from the best start, then 2-opt. Deterministic; a
-/// turn of M changes it only where lengths tie.
+/// A way through all touches, open at both ends: nearest neighbour from every start, each bettered by 2-opt.
+/// Deterministic; ways that are equally short are told apart by the touches' numbers.
 /// @param xy  2xN, mm
 /// @return indices in order of travel
 std::vector<Eigen::Index> short_way(const Eigen::Matrix2Xd& xy);
