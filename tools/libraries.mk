@@ -2,7 +2,7 @@
 KDTREE := -lpcl_kdtree -lpcl_search
 
 $(B)/bin/fettle-part:     LDLIBS = $(PCD) $(KDTREE) $(EMBREE)
-$(B)/bin/fettle-sample:   LDLIBS = $(PCD) $(KDTREE) $(EMBREE)
+$(B)/bin/fettle-sample:   LDLIBS = $(PCD)
 $(B)/bin/fettle-estimate: LDLIBS = $(PCD)
 $(B)/bin/fettle-fit:      LDLIBS = $(PCD) $(CERES)
 $(B)/bin/fettle-mesh:     LDLIBS = $(PCD)

@@ -1,0 +1,93 @@
+#include "cli/tool.h"
+#include "cloud/pcd.h"
+#include "core/file.h"
+#include "core/text.h"
+#include "sampling/order.h"
+#include "sampling/probe.h"
+
+#include <cmath>
+
+using namespace fettle;
+
+namespace {
+
+// Names the places that no touch reached; too long a list helps nobody.
+void refuse_missed(const std::string& scan, const Job& job, const Eigen::Matrix3Xd& touches, const TouchPlan& plan)
+{
+    constexpr int kNamed = 5;
+    int missed = 0;
+    std::string places;
+    for (Eigen::Index i = 0; i < touches.cols(); ++i)
+        if (std::isnan(touches(2, i)) && ++missed <= kNamed)
+            places += (places.empty() ? "" : ", ") + place(plan.xy.col(i), job.units);
+    if (missed == 0) return;
+    if (missed > kNamed) places += " and " + std::to_string(missed - kNamed) + " more";
+    throw InputError(scan, std::to_string(missed) + " of " + std::to_string(touches.cols()) +
+                               " touches find no surface, at " + places);
+}
+
+Cloud samples_in_order(const Eigen::Matrix3Xd& touches, const TouchPlan& plan, const std::vector<Eigen::Index>& order)
+{
+    Cloud samples;
+    samples.xyz = touches(Eigen::all, order);
+    set_field(samples, "curve", plan.curve(order).cast<double>());
+    set_field(samples, "role", plan.role(order).cast<double>());
+    return samples;
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+    return tool_main(argc, argv, "Choose the touch points of a job and probe them on a part.", [](Tool& t) {
+        const std::string& job_file = t.file("JOB", "the job, JSON");
+        const std::string& part =
+            t.text("--on", "", "SURFACE", "Part to touch: mesh (STL, PLY, OBJ, OFF) or cloud (PCD, PLY, XYZ)");
+        const auto& part_unit = t.length_unit("--on-units", "Unit of that file, if it is not the job's");
+        const std::string& noise_text =
+            t.text("--noise", "", "uniform:A|normal:A",
+                   "Touch error, in the job's unit: within ±A, or normal with 99 % within ±A");
+        const auto& tip = t.number_if_given("--tip", "LENGTH",
+                                            "Radius of the probe's ball, job's unit; 0: a point. Keep the boundary "
+                                            "points that far from the anomaly [the job's tip_radius]",
+                                            Range::at_least(0));
+        const bool& plan_only = t.flag("--plan-only", "Choose only: x and y, no z but where the job gives it");
+        const bool& ascii = t.flag("--ascii", "Text instead of binary");
+        t.example("fettle-sample concave.json --on concave.stl --noise normal:0.005 --seed 7 > samples.pcd",
+                  "touch the part where Wang's rules say, with the errors of a common probe");
+        t.reference("Wang 2007, 4.4.4 (touch points), eq. 4-5 (number of lines)");
+        t.parse();
+
+        Job job = read_job(job_file);
+        const double mm = job.units.mm();
+        if (tip) job.probe.tip_radius = *tip * mm;
+        const TouchNoise noise = parse_noise(noise_text, mm);
+
+        const TouchPlan plan = plan_touches(job);
+        Eigen::Matrix3Xd touches(3, plan.size());
+        touches << plan.xy, plan.z.transpose();
+        if (!part.empty() && !plan_only) {
+            const Scan scan = read_scan(part, job.units, part_unit);
+            touches = probe(scan, job, plan, noise, t.seed());
+            refuse_missed(display_name(part), job, touches, plan);
+        } else if (!plan_only && touches.row(2).hasNaN()) {
+            throw InputError(display_name(job_file), "touch points without z: name the part to touch, --on SURFACE");
+        }
+
+        const std::vector<Eigen::Index> order = short_way(touches.topRows<2>());
+        const double highest = touches.row(2).maxCoeff<Eigen::PropagateNumbers>();
+        if (highest > job.safe_height)
+            t.warn("safe_height " + to_short_text(job.safe_height / mm) + " is below a touch at z " +
+                   to_short_text(highest / mm));
+        t.report()
+            .set("touches", static_cast<std::size_t>(plan.size()))
+            .set("lines", plan.curve.maxCoeff() + 1)
+            .set("probing_time", probing_time(touches, order, job.safe_height))
+            .set("path_length", way_length(touches.topRows<2>(), order) / mm)
+            .set("tip_radius", job.probe.tip_radius / mm);
+        t.note(std::to_string(plan.size()) + " touches on " + std::to_string(plan.curve.maxCoeff() + 1) + " lines");
+        write_pcd(t.output(), samples_in_order(touches, plan, order), job.units,
+                  ascii ? PcdEncoding::ascii : PcdEncoding::binary);
+        return Verdict::yes;
+    });
+}
