@@ -1,4 +1,5 @@
 #include "core/error.h"
+#include "fit/bspline.h"
 #include "fit/fit.h"
 #include "fit/plane.h"
 #include "fit/swept.h"
@@ -12,6 +13,7 @@ namespace {
 const std::map<std::string, Fit (*)(const FitInput&)>& methods()
 {
     static const std::map<std::string, Fit (*)(const FitInput&)> table = {
+        {"bspline", fit_bspline},
         {"plane", fit_plane},
         {"swept", fit_swept},
     };

@@ -1,0 +1,177 @@
+#include "fit/bspline.h"
+
+#include "core/error.h"
+#include "fit/evidence.h"
+#include "fit/robust_linear.h"
+#include "fit/spline_prior.h"
+#include "surface/shapes.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+
+namespace fettle {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr int kLeastTouches = 6;
+// Touches in F4 are rounded by 6e-8 of their size; a spread across a line below that is not there.
+constexpr double kRounding = 1e-6;
+
+/// Cells are about square, two for each touch along the longer side: finer ones change the surface by less than the
+/// probe sees. One cell all around keeps the wheel's footprint on the grid.
+Bspline grid_over(const FitInput& input, const Eigen::Matrix3Xd& touches)
+{
+    Eigen::Matrix2Xd xy(2, touches.cols() + input.job.anomaly.cols());
+    xy << touches.topRows(2), input.job.anomaly.topRows(2);
+    xy = rotation_working_machine(input.job.theta) * xy;
+    const Eigen::Vector2d least = xy.rowwise().minCoeff();
+    const Eigen::Vector2d side = xy.rowwise().maxCoeff() - least;
+    const double touches_a_side = std::sqrt(static_cast<double>(touches.cols()));
+    const double cells = std::clamp(std::ceil(2 * touches_a_side), 6.0, 12.0);
+    const double cell = side.maxCoeff() / cells;
+    const Eigen::Vector2d counts = (side / cell).array().round().max(2);
+    Bspline grid;
+    grid.angle = input.job.theta;
+    grid.cell = side.cwiseQuotient(counts);
+    grid.origin = rotation_working_machine(input.job.theta).transpose() * (least - grid.cell);
+    constexpr Index kAround = 2 + 3; // a cell on both sides, and the cubic's three more functions than cells
+    grid.heights.setZero(static_cast<Index>(counts.x()) + kAround, static_cast<Index>(counts.y()) + kAround);
+    return grid;
+}
+
+/// The rms of f's second derivatives that is expected at most: slopes change by about 1 over the touched length.
+double expected_curvature(const Eigen::Matrix3Xd& touches)
+{
+    return 1 / (touches.topRows(2).rowwise().maxCoeff() - touches.topRows(2).rowwise().minCoeff()).norm();
+}
+
+void refuse_line(const FitInput& input, const Eigen::Matrix3Xd& touches)
+{
+    const Eigen::Matrix2Xd d = touches.topRows(2).colwise() - touches.topRows(2).rowwise().mean().eval();
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> spread(d * d.transpose());
+    const double least = std::sqrt(std::max(spread.eigenvalues()[0], 0.0) / static_cast<double>(d.cols()));
+    const double most = std::sqrt(spread.eigenvalues()[1] / static_cast<double>(d.cols()));
+    if (least <= std::max(input.job.probe.accuracy, kRounding * most))
+        throw InputError(input.source, "touches lie on one line in x and y");
+}
+
+/// Everything at the touches: f = H β + S γ with γ ~ N(0, τ²), β's prior β_q ~ N(0, 1 / precision_q²).
+struct Model {
+    SplinePrior prior;
+    MatrixXd A;                          ///< n x N, touches from control heights
+    MatrixXd GA;                         ///< K⁺ Aᵀ
+    MatrixXd H;                          ///< n x 6, quadratics at the touches
+    MatrixXd R;                          ///< A K⁺ Aᵀ
+    Eigen::VectorXd curvature_precision; ///< of β: (1 / standard deviation) of u², uv, v²; 0 for 1, u, v
+};
+
+Model model_of(const Bspline& grid, const Surface& surface)
+{
+    Model m;
+    m.prior = spline_prior(grid);
+    m.A = height_gradients(grid, surface.touches.topRows(2)).transpose();
+    m.GA.noalias() = m.prior.pseudo_inverse * m.A.transpose();
+    m.H.noalias() = m.A * m.prior.quadratics;
+    m.R.noalias() = m.A * m.GA;
+    // D² of u²: 2/half², of uv: 1/half², twice in the Frobenius norm.
+    const double unit = 1 / (m.prior.half * m.prior.half * expected_curvature(surface.touches));
+    m.curvature_precision.setZero(6);
+    m.curvature_precision.tail(3) << 2 * unit, std::sqrt(2.0) * unit, 2 * unit;
+    return m;
+}
+
+double amplitude(const Model& m, const VectorXd& z, double sigma)
+{
+    const VectorXd variance = m.curvature_precision.tail(3).cwiseAbs2().cwiseInverse();
+    const FieldModel field{m.H.leftCols(3), m.H.rightCols(3) * variance.asDiagonal() * m.H.rightCols(3).transpose(),
+                           m.R, sigma};
+    const Index spare = 6; // the three curvatures of a quadratic, and three touches more
+    const std::vector<Index> gross = gross_errors(field, z, spare);
+    std::vector<Index> kept;
+    for (Index i = 0; i < z.size(); ++i)
+        if (std::find(gross.begin(), gross.end(), i) == gross.end()) kept.push_back(i);
+    return most_probable_amplitude(part_of(field, kept), z(kept));
+}
+
+/// Posterior covariance of the control heights, and of the touched heights (for the degrees of freedom).
+struct Posterior {
+    MatrixXd covariance;
+    double freedom = 0;
+};
+
+/// Universal kriging (Cressie 1993, 3.4) with noise σ²/w_i: no matrix that is the worse for a small τ.
+Posterior posterior(const Model& m, double sigma, double tau, const VectorXd& weight)
+{
+    const double t2 = tau * tau;
+    MatrixXd M = t2 * m.R;
+    M.diagonal() += sigma * sigma * weight.cwiseInverse();
+    const Eigen::LLT<MatrixXd> noise(M);
+    const MatrixXd half_H = noise.matrixL().solve(m.H);
+    MatrixXd precision = half_H.transpose() * half_H;
+    precision.diagonal() += m.curvature_precision.cwiseAbs2();
+    const Eigen::LLT<MatrixXd> beta(precision);
+
+    const MatrixXd half_GA = noise.matrixL().solve(t2 * m.GA.transpose());       // n x N
+    const MatrixXd leverage = m.prior.quadratics - half_GA.transpose() * half_H; // N x 6
+    const MatrixXd half = beta.matrixL().solve(leverage.transpose());
+    Posterior result;
+    result.covariance = t2 * m.prior.pseudo_inverse;
+    result.covariance.noalias() -= half_GA.transpose() * half_GA;
+    result.covariance.noalias() += half.transpose() * half;
+
+    // Variance of the fitted height over that of the touch: the share of each touch that went into parameters.
+    const VectorXd fitted = (m.A * result.covariance).cwiseProduct(m.A).rowwise().sum();
+    result.freedom = static_cast<double>(m.A.rows()) - fitted.cwiseProduct(weight).sum() / (sigma * sigma);
+    return result;
+}
+
+} // namespace
+
+Fit fit_bspline(const FitInput& input)
+{
+    Surface surface = begin_surface(input, "bspline", kSampleRoles, kLeastTouches);
+    refuse_line(input, surface.touches);
+    Bspline spline = grid_over(input, surface.touches);
+    const Model m = model_of(spline, surface);
+    const double sigma = surface.touch_sigma;
+    const double level = surface.touches.row(2).mean();
+    const VectorXd z = surface.touches.row(2).transpose().array() - level;
+    const double tau = amplitude(m, z, sigma);
+
+    // R = S Sᵀ; touches on the same place make it singular: only what is above rounding.
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(m.R);
+    constexpr double kRank = 1e-12;
+    const VectorXd& d = eigen.eigenvalues();
+    const Index rank = (d.array() > kRank * d.maxCoeff()).count();
+    const VectorXd root = d.tail(rank).cwiseSqrt();
+    const MatrixXd V = eigen.eigenvectors().rightCols(rank);
+
+    // Unknown: β, and γ in units of its prior's τ.
+    RobustLinear problem;
+    problem.A.resize(z.size(), 6 + rank);
+    problem.A << m.H, V * (tau * root).asDiagonal();
+    problem.A /= sigma;
+    problem.b = z / sigma;
+    problem.width = input.job.probe.accuracy / sigma;
+    problem.prior.setOnes(6 + rank);
+    problem.prior.head(6) = m.curvature_precision;
+    const RobustLinearResult solved = solve(problem);
+
+    const VectorXd controls =
+        m.prior.quadratics * solved.x.head(6) + m.GA * (V * (tau * solved.x.tail(rank)).cwiseQuotient(root));
+    spline.heights = controls.reshaped(spline.heights.rows(), spline.heights.cols()).array() + level;
+    surface.shape = spline;
+    const Posterior belief = posterior(m, sigma, tau, solved.weight);
+    surface.covariance = belief.covariance;
+    return finish_fit(std::move(surface), belief.freedom, solved.converged, solved.iterations);
+}
+
+} // namespace fettle
