@@ -1,0 +1,88 @@
+#include "plan/gcode.h"
+
+#include "core/text.h"
+
+#include <cmath>
+#include <iomanip>
+#include <ostream>
+#include <sstream>
+
+namespace fettle {
+
+namespace {
+
+// Numbers in G-code have no exponent; 0.0001 mm is finer than any drive.
+std::string fixed(double value)
+{
+    std::ostringstream text;
+    text.imbue(std::locale::classic());
+    text << std::fixed << std::setprecision(5) << value;
+    std::string result = text.str();
+    result.erase(result.find_last_not_of('0') + 1);
+    if (result.back() == '.') result.pop_back();
+    return result == "-0" ? "0" : result;
+}
+
+std::string words(const Eigen::Vector3d& point, double mm)
+{
+    return "X" + fixed(point.x() / mm) + " Y" + fixed(point.y() / mm) + " Z" + fixed(point.z() / mm);
+}
+
+// How far the points between `from` and `to` are from the straight move.
+double deviation(const std::vector<Eigen::Vector3d>& points, int from, int to)
+{
+    const Eigen::Vector3d direction = (points[to] - points[from]).normalized();
+    double most = 0;
+    for (int i = from + 1; i < to; ++i) {
+        const Eigen::Vector3d d = points[i] - points[from];
+        most = std::max(most, (d - d.dot(direction) * direction).norm());
+    }
+    return most;
+}
+
+// Ends of the straight moves over points first … last.
+std::vector<int> thinned(const std::vector<Eigen::Vector3d>& points, int first, int last, double chord_error)
+{
+    std::vector<int> ends;
+    for (int from = first; from < last;) {
+        int to = from + 1;
+        while (to < last && deviation(points, from, to + 1) <= chord_error) ++to;
+        ends.push_back(to);
+        from = to;
+    }
+    return ends;
+}
+
+} // namespace
+
+void write_gcode(std::ostream& out, const Plan& plan, const ToolPath& path, double chord_error)
+{
+    const double mm = plan.job.units.mm();
+    const std::string safe = fixed(plan.job.safe_height / mm);
+    out << "(fettle-plan: layer 1, tool points: the wheel's lowest line at mid-width)\n"
+        << "(wheel radius " << fixed(plan.job.wheel.radius / mm) << ", width " << fixed(plan.job.wheel.width / mm)
+        << ", chord error " << fixed(chord_error / mm) << ")\n"
+        << (plan.job.units.length == Units::Length::in ? "G20\n" : "G21\n") << "G90\nG17\nG94\n"
+        << "F" << fixed(plan.job.feed.rate * 60 / mm) << "\n"
+        << "G0 Z" << safe << "\n";
+    bool forwards = true;
+    for (const ToolPass& pass : path.passes()) {
+        const int intervals = int(pass.starts.size());
+        for (int k = 0; k < intervals; ++k) {
+            const int i = forwards ? k : intervals - 1 - k;
+            const int first = pass.starts[i];
+            const int last = (i + 1 < intervals ? pass.starts[i + 1] : int(pass.points.size())) - 1;
+            std::vector<Eigen::Vector3d> points(pass.points.begin() + first, pass.points.begin() + last + 1);
+            if (!forwards) std::reverse(points.begin(), points.end());
+            out << "G0 X" << fixed(points[0].x() / mm) << " Y" << fixed(points[0].y() / mm) << "\n"
+                << "G1 Z" << fixed(points[0].z() / mm) << "\n";
+            for (const int end : thinned(points, 0, int(points.size()) - 1, chord_error))
+                out << "G1 " << words(points[end], mm) << "\n";
+            out << "G0 Z" << safe << "\n";
+        }
+        forwards = !forwards;
+    }
+    out << "M2\n";
+}
+
+} // namespace fettle
