@@ -11,9 +11,6 @@ namespace fettle {
 
 namespace {
 
-// Between the passes half of the tolerance may stand; the other half is for what the force does not tell.
-constexpr double kLeftoverPerTolerance = 0.5;
-
 // Job and passes of a file agree within the digits that are written, relative to the size of the coordinates.
 constexpr double kWrittenDigits = 1e-9;
 

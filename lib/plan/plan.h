@@ -22,6 +22,9 @@ struct Bounds {
     int steps = 5000000;     ///< force readings
 };
 
+/// Between the passes this share of the tolerance may stand; the rest is for what the strategy leaves under the wheel.
+inline constexpr double kLeftoverPerTolerance = 0.5;
+
 /// Everything that the strategy needs to grind one region ("kind": "plan"). mm, N; points in the frame M.
 struct Plan {
     Job job;

@@ -1,0 +1,182 @@
+#include "strategy/run.h"
+
+#include "core/error.h"
+#include "core/text.h"
+#include "plan/tool_path.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fettle {
+
+namespace {
+
+// Progress is told once in so many steps.
+constexpr int kStepsPerTell = 256;
+
+class Runner {
+  public:
+    Runner(const Plan& plan, Gantry& gantry, const RunOptions& options)
+        : plan_(plan), gantry_(gantry), options_(options), path_(plan.job, plan.surface, plan.passes, plan.step),
+          strategy_(path_.passes(), strategy_settings(plan))
+    {
+    }
+
+    GrindRun run(const Progress& progress)
+    {
+        Action action = strategy_.first();
+        while (action.kind != Action::Kind::finish && action.kind != Action::Kind::fail) {
+            measure_wheel_if_due(action);
+            const GantryStatus status = perform(action);
+            if (strategy_.counts().steps % kStepsPerTell == 0)
+                tell(progress, double(action.to.pass) / double(path_.passes().size()));
+            action = strategy_.next(
+                {status.force + plan_.job.force.stiffness * short_of_, status.deflection + short_of_, status.time});
+        }
+        record(action, gantry_.status(), 0);
+        result_.finished = action.kind == Action::Kind::finish;
+        result_.failure = strategy_.failure();
+        result_.counts = strategy_.counts();
+        return std::move(result_);
+    }
+
+  private:
+    double raised(int layer) const { return reference_offset(plan_.layers, layer); }
+    const Eigen::Vector3d& reference(const Place& place) const
+    {
+        return path_.passes()[place.pass].points[place.point];
+    }
+
+    GantryStatus perform(const Action& action)
+    {
+        GantryStatus status = gantry_.status();
+        const Place from = at_;
+        at_ = action.to;
+        switch (action.kind) {
+        case Action::Kind::travel:
+            status = travel(reference(action.to), action.layer);
+            break;
+        case Action::Kind::lift:
+            status = gantry_.lift(standing_.z() + raised(action.layer));
+            break;
+        case Action::Kind::grind:
+            if (from.pass != action.to.pass) return cross(action);
+            status = grind(reference(action.to), action.layer);
+            break;
+        default:
+            break;
+        }
+        noticed(status, action.layer);
+        record(action, status, action.kind == Action::Kind::grind ? plan_.job.feed.rate : 0);
+        return status;
+    }
+
+    GantryStatus travel(const Eigen::Vector3d& reference, int layer)
+    {
+        standing_ = reference;
+        return gantry_.travel(reference + raised(layer) * Eigen::Vector3d::UnitZ());
+    }
+
+    GantryStatus grind(const Eigen::Vector3d& reference, int layer)
+    {
+        standing_ = reference;
+        return gantry_.grind(reference + raised(layer) * Eigen::Vector3d::UnitZ(), plan_.job.feed.rate);
+    }
+
+    // To the next pass in pieces of a step, over the surface between the two. It ends early, above the place that was
+    // reached, if the wheel climbs on something that is too high: the strategy goes up a layer there and then on.
+    GantryStatus cross(const Action& action)
+    {
+        const Eigen::Vector3d a = standing_, b = reference(action.to);
+        const int pieces = std::max(1, int(std::ceil((b - a).head<2>().norm() / plan_.step)));
+        // The path between is a parabola through the tool point half-way: a straight line would cut into a crown.
+        double crown = 0;
+        if (pieces > 1) {
+            const Eigen::Vector3d middle = path_.tool_point(path_.across_along((a + b) / 2));
+            if (std::isfinite(middle.z())) crown = middle.z() - (a.z() + b.z()) / 2;
+        }
+        GantryStatus status;
+        for (int i = 1; i <= pieces; ++i) {
+            const double s = double(i) / pieces;
+            const Eigen::Vector3d point = a + s * (b - a) + 4 * s * (1 - s) * crown * Eigen::Vector3d::UnitZ();
+            status = grind(point, action.layer);
+            noticed(status, action.layer);
+            record(action, status, plan_.job.feed.rate);
+            if (status.force > plan_.job.force.max) break;
+        }
+        return status;
+    }
+
+    // A guarded way down may have stopped above the reference surface.
+    void noticed(const GantryStatus& status, int layer)
+    {
+        short_of_ = std::max(0.0, status.commanded.z() - standing_.z() - raised(layer));
+        result_.peak_force = std::max({result_.peak_force, status.force, status.peak_force});
+    }
+
+    void record(const Action& action, const GantryStatus& status, double feed)
+    {
+        result_.trace.push_back({status.time, status.commanded + status.deflection * Eigen::Vector3d::UnitZ(),
+                                 action.layer, action.to.pass + 1, action.event, status.force, feed});
+        grinding_time_ += feed > 0 ? status.time - last_time_ : 0;
+        last_time_ = status.time;
+    }
+
+    void measure_wheel_if_due(const Action& action)
+    {
+        const bool covering = action.event == Event::start || action.event == Event::covering_done;
+        const bool in_pass = action.kind == Action::Kind::grind && action.event == Event::none;
+        const bool due = grinding_time_ - measured_at_ >= options_.touch_off_period;
+        if (!covering && !(due && (in_pass || action.kind == Action::Kind::travel))) return;
+        measure_wheel(action);
+        if (in_pass) travel(reference(at_), action.layer); // back to where it was
+    }
+
+    void measure_wheel(Action action)
+    {
+        const double least = plan_.job.wheel.min_radius;
+        double radius = touch_off(action);
+        if (radius < least) {
+            gantry_.change_wheel();
+            ++result_.wheel_changes;
+            action.event = Event::wheel_change;
+            record(action, gantry_.status(), 0);
+            radius = touch_off(action);
+            if (radius < least)
+                throw InputError(plan_.job.source, "wheel.min_radius: a new wheel measures " +
+                                                       to_short_text(radius / plan_.job.units.mm()));
+        }
+        if (radius != result_.wheel_radius) path_.set_radius(radius);
+        result_.wheel_radius = radius;
+        measured_at_ = grinding_time_;
+    }
+
+    double touch_off(Action action)
+    {
+        const double radius = gantry_.touch_off();
+        ++result_.touch_offs;
+        action.event = Event::touch_off;
+        record(action, gantry_.status(), 0);
+        return radius;
+    }
+
+    const Plan& plan_;
+    Gantry& gantry_;
+    RunOptions options_;
+    ToolPath path_;
+    LayerSwitching strategy_;
+    GrindRun result_;
+    Place at_;
+    Eigen::Vector3d standing_ = Eigen::Vector3d::Zero(); ///< tool point in layer 1 where the tool stands
+    double short_of_ = 0;                                ///< how far above its reference, mm
+    double grinding_time_ = 0, measured_at_ = 0, last_time_ = 0;
+};
+
+} // namespace
+
+GrindRun run(const Plan& plan, Gantry& gantry, const RunOptions& options, const Progress& progress)
+{
+    return Runner(plan, gantry, options).run(progress);
+}
+
+} // namespace fettle

@@ -1,0 +1,47 @@
+#pragma once
+
+#include "core/progress.h"
+#include "gantry/gantry.h"
+#include "plan/plan.h"
+#include "strategy/layer_switching.h"
+
+#include <Eigen/Core>
+
+#include <string>
+#include <vector>
+
+namespace fettle {
+
+/// One line of a trace: what the machine did, and why. mm, N, s, frame M.
+struct TraceRow {
+    double time = 0;
+    Eigen::Vector3d tool; ///< the wheel's lowest line at mid-width, where the spring lets it stand
+    int layer = 1;
+    int pass = 1;
+    Event event = Event::none;
+    double force = 0;
+    double feed = 0; ///< 0: not grinding
+};
+
+struct RunOptions {
+    /// Grinding time between two measurements of the wheel at P0, s. It is measured at the start of each covering, too.
+    double touch_off_period = 120;
+};
+
+/// How a run ended.
+struct GrindRun {
+    bool finished = false;
+    std::string failure; ///< the bound that was reached, and the state
+    StrategyCounts counts;
+    double peak_force = 0;   ///< N
+    double wheel_radius = 0; ///< last measured, mm
+    int touch_offs = 0;
+    int wheel_changes = 0;
+    std::vector<TraceRow> trace;
+};
+
+/// Grinds: lets the strategy decide, compensates the wheel, moves the gantry, measures, until the strategy is done.
+/// @throws InputError if the surface is not defined under a pass, or a new wheel is smaller than the smallest radius
+GrindRun run(const Plan& plan, Gantry& gantry, const RunOptions& options = {}, const Progress& progress = {});
+
+} // namespace fettle

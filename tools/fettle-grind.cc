@@ -1,0 +1,94 @@
+#include "cli/tool.h"
+#include "cloud/pcd.h"
+#include "gantry/quasi_static.h"
+#include "plan/plan.h"
+#include "removal/height_field.h"
+#include "sampling/scan.h"
+#include "strategy/run.h"
+
+#include <chrono>
+#include <ostream>
+
+using namespace fettle;
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+Cloud to_cloud(const std::vector<TraceRow>& trace)
+{
+    const Eigen::Index n = Eigen::Index(trace.size());
+    Cloud cloud;
+    cloud.xyz.resize(3, n);
+    Eigen::MatrixXd rows(n, 6);
+    for (Eigen::Index i = 0; i < n; ++i) {
+        const TraceRow& row = trace[std::size_t(i)];
+        cloud.xyz.col(i) = row.tool;
+        rows.row(i) << row.time, row.layer, row.pass, int(row.event), row.force, row.feed;
+    }
+    set_field(cloud, "t", rows.col(0), 8); // a float resolves a day's run to 8 ms only
+    const char* names[] = {"layer", "pass", "event", "force", "feed"};
+    for (int k = 0; k < 5; ++k) set_field(cloud, names[k], rows.col(k + 1));
+    return cloud;
+}
+
+void report(json::Value& out, const GrindRun& run, const QuasiStaticGantry& gantry, const Units& units)
+{
+    const double mm = units.mm();
+    const GrindTotals& totals = gantry.totals();
+    out.set("finished", run.finished)
+        .set("removed_volume", totals.removed_volume / (mm * mm * mm))
+        .set("machine_time", gantry.status().time)
+        .set("grinding_time", totals.grinding_time)
+        .set("travel_time", totals.travel_time)
+        .set("service_time", totals.service_time)
+        .set("layers", run.counts.highest_layer)
+        .set("coverings", run.counts.coverings)
+        .set("re_cuts", run.counts.re_cuts)
+        .set("raises", run.counts.raises)
+        .set("passes", run.counts.passes)
+        .set("steps", run.counts.steps)
+        .set("peak_force", run.peak_force / units.newton())
+        .set("touch_offs", run.touch_offs)
+        .set("wheel_changes", run.wheel_changes)
+        .set("wheel_radius", run.wheel_radius / mm);
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+    return tool_main(argc, argv, "Grind a part to its desired surface, guided by the force.", [](Tool& t) {
+        const std::string& plan_file = t.input("PLAN", "what to do, JSON (fettle-plan)");
+        const std::string& stock_file = t.required_text("--stock", "PART", "the part as it is: STL, PLY, OBJ or PCD");
+        const auto& stock_units = t.length_unit("--stock-units", "of the stock's file; default: the job's");
+        t.choice("--gantry", "virtual", {"virtual"}, "the machine: a simulated gantry in equilibrium at every moment");
+        const auto& cell =
+            t.number_if_given("--cell", "length", "side of a cell of the stock; default: 0.1 mm", Range::positive());
+        const std::string& trace = t.text("--trace", "", "FILE", "what the machine did and why, PCD");
+        const bool& ascii = t.flag("--ascii", "write PCDs as text");
+        t.example("fettle-grind plan.json --stock parts/wang1.stl --trace trace.pcd > ground.pcd",
+                  "grind Wang's part 1");
+        t.reference("Wang 2007, 5.3.2 and figure 5-7: the layer-based path planning strategy");
+        t.parse();
+
+        const auto begun = Clock::now();
+        const Plan plan = read_plan(plan_file);
+        const Units& units = plan.job.units;
+        constexpr double kDefaultCell = 0.1; // a fortieth of the wheel's width, a tenth of its step
+        const HeightField stock =
+            height_field(read_scan(stock_file, units, stock_units), plan.job, cell ? *cell * units.mm() : kDefaultCell);
+        QuasiStaticGantry gantry(stock, plan.job);
+        const GrindRun run = fettle::run(plan, gantry, {}, t.progress("grinding"));
+
+        const PcdEncoding encoding = ascii ? PcdEncoding::ascii : PcdEncoding::binary;
+        write_pcd(t.output(), to_cloud(stock, gantry.stock()), units, encoding);
+        if (!trace.empty()) write_pcd(t.output_file(trace), to_cloud(run.trace), units, encoding);
+        report(t.report(), run, gantry, units);
+        const double computing = std::chrono::duration<double>(Clock::now() - begun).count();
+        t.note("machine time " + std::to_string(gantry.status().time) + " s, computing time " +
+               std::to_string(computing) + " s, ratio " + std::to_string(gantry.status().time / computing));
+        if (!run.finished) t.warn(plan_file + ": " + run.failure);
+        return run.finished ? Verdict::yes : Verdict::no;
+    });
+}
