@@ -16,6 +16,13 @@ Dimension field_dimension(const std::string& name)
     return {};
 }
 
+double element(const Field& field, char type, std::size_t index)
+{
+    return visit_element(type, field.size, [&](auto zero) {
+        return static_cast<double>(load<decltype(zero)>(field.bytes.data() + index * sizeof zero));
+    });
+}
+
 void scale(Field& field, double factor)
 {
     const std::size_t elements = field.bytes.size() / static_cast<std::size_t>(field.size);

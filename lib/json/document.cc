@@ -3,8 +3,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/text.h"
-
-#include <nlohmann/json.hpp>
+#include "json/parse.h"
 
 #include <cmath>
 #include <limits>
@@ -94,6 +93,16 @@ std::string plain_message(std::string message)
 
 } // namespace
 
+Json parse_strictly(std::string_view text, const std::string& source)
+{
+    if (text.find_first_not_of(" \t\r\n") == std::string_view::npos) throw InputError(source, "empty, expected JSON");
+    try {
+        return Json::parse(text, Strictness(source));
+    } catch (const Json::exception& error) {
+        throw InputError(source, plain_message(error.what()));
+    }
+}
+
 // --- writing ---
 
 Value::Value() : json_(std::make_unique<Json>(Json::object())) {}
@@ -165,13 +174,7 @@ Reader Reader::open(const std::string& path) { return parse(read_whole(path), di
 
 Reader Reader::parse(std::string_view text, const std::string& source)
 {
-    if (text.find_first_not_of(" \t\r\n") == std::string_view::npos) throw InputError(source, "empty, expected JSON");
-    std::shared_ptr<Json> document;
-    try {
-        document = std::make_shared<Json>(Json::parse(text, Strictness(source)));
-    } catch (const Json::exception& error) {
-        throw InputError(source, plain_message(error.what()));
-    }
+    const auto document = std::make_shared<const Json>(parse_strictly(text, source));
     if (!document->is_object()) throw InputError(source, "expected a JSON object, got " + type_of(*document));
     return {std::make_shared<Node>(Node{document, document.get(), {}}), source, ""};
 }

@@ -1,0 +1,194 @@
+#include "diff/diff.h"
+
+#include "cloud/fields.h"
+#include "cloud/pcd.h"
+#include "core/text.h"
+#include "mesh/mesh_file.h"
+#include "json/leaves.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+namespace fettle {
+
+namespace {
+
+/// Counts the values compared and remembers the largest difference.
+class Tally {
+  public:
+    explicit Tally(const Tolerance& tolerance) : tolerance_(tolerance) {}
+
+    template <typename Place>
+    void number(double a, double b, const Place& place)
+    {
+        ++found_.values;
+        if (a == b || (std::isnan(a) && std::isnan(b))) return;
+        const double by = std::isfinite(a) && std::isfinite(b) ? std::abs(a - b) : kInfinite;
+        const double allowed = tolerance_.absolute + tolerance_.relative * std::max(std::abs(a), std::abs(b));
+        const bool unequal = by == kInfinite || by > allowed;
+        note(by, unequal, [&] { return place() + ": " + to_text(a) + " against " + to_text(b); });
+    }
+
+    template <typename Text>
+    void other(bool equal, const Text& text)
+    {
+        ++found_.values;
+        if (!equal) note(kInfinite, true, text);
+    }
+
+    void structure(const std::string& line) { found_.structure.push_back(line); }
+    void same_structure(const std::string& what, const std::string& a, const std::string& b)
+    {
+        if (a != b) structure(what + ": " + a + " against " + b);
+    }
+    void equal_values(std::size_t count) { found_.values += count; }
+    Difference result() const { return found_; }
+
+  private:
+    template <typename Text>
+    void note(double by, bool unequal, const Text& text)
+    {
+        if (unequal) ++found_.unequal;
+        if (by <= found_.largest) return;
+        found_.largest = by;
+        found_.where = text();
+    }
+
+    static constexpr double kInfinite = std::numeric_limits<double>::infinity();
+    Tolerance tolerance_;
+    Difference found_;
+};
+
+void compare_json(std::string_view a, const std::string& name_a, std::string_view b, const std::string& name_b,
+                  Tally& tally)
+{
+    const std::vector<json::Leaf> leaves_a = json::leaves(a, name_a);
+    const std::vector<json::Leaf> leaves_b = json::leaves(b, name_b);
+    std::map<std::string, const json::Leaf*> others;
+    for (const json::Leaf& leaf : leaves_b) others[leaf.path] = &leaf;
+    for (const json::Leaf& leaf : leaves_a) {
+        const auto found = others.find(leaf.path);
+        if (found == others.end()) {
+            tally.structure(leaf.path + ": only in " + name_a);
+            continue;
+        }
+        const json::Leaf& other = *found->second;
+        const double* number_a = std::get_if<double>(&leaf.value);
+        const double* number_b = std::get_if<double>(&other.value);
+        if (number_a != nullptr && number_b != nullptr)
+            tally.number(*number_a, *number_b, [&] { return leaf.path; });
+        else
+            tally.other(leaf.value == other.value,
+                        [&] { return leaf.path + ": " + json::to_text(leaf) + " against " + json::to_text(other); });
+        others.erase(found);
+    }
+    for (const json::Leaf& leaf : leaves_b) // in the order of the file
+        if (others.contains(leaf.path)) tally.structure(leaf.path + ": only in " + name_b);
+}
+
+std::string field_list(const Cloud& cloud)
+{
+    std::string list = "x y z";
+    for (const Field& field : cloud.fields)
+        list += ' ' + field.name + (field.count == 1 ? "" : "[" + std::to_string(field.count) + "]");
+    return list;
+}
+
+std::string unit_list(const Units& units) { return to_string(units.length) + ' ' + to_string(units.force); }
+
+// Colours are four bytes, whatever the type says; as floats they would be tiny numbers or NaN.
+bool is_colour(const Field& field)
+{
+    return (field.name == "rgb" || field.name == "rgba") && field.size == 4 && field.count == 1;
+}
+
+void compare_field(const Field& a, const Field& b, double unit, Tally& tally)
+{
+    const auto elements = a.bytes.size() / static_cast<std::size_t>(a.size);
+    if (a.type == b.type && a.size == b.size && a.bytes == b.bytes) return tally.equal_values(elements);
+    const bool colours = is_colour(a) && is_colour(b);
+    for (std::size_t i = 0; i < elements; ++i) {
+        const double value_a = colours ? element(a, 'U', i) : element(a, a.type, i);
+        const double value_b = colours ? element(b, 'U', i) : element(b, b.type, i);
+        tally.number(value_a / unit, value_b / unit, [&] {
+            const std::size_t count = static_cast<std::size_t>(a.count);
+            return "point " + std::to_string(i / count) + ", " + a.name +
+                   (count == 1 ? "" : "[" + std::to_string(i % count) + "]");
+        });
+    }
+}
+
+void compare_viewpoint(const Cloud& a, const Cloud& b, double unit, Tally& tally)
+{
+    for (int axis = 0; axis < 3; ++axis)
+        tally.number(a.view_origin[axis] / unit, b.view_origin[axis] / unit, [] { return std::string("VIEWPOINT, origin"); });
+    for (int part = 0; part < 4; ++part)
+        tally.number(a.view_orientation.coeffs()[part], b.view_orientation.coeffs()[part],
+                     [] { return std::string("VIEWPOINT, orientation"); });
+}
+
+void compare_clouds(const CloudFile& file_a, const CloudFile& file_b, Tally& tally)
+{
+    const Cloud& a = file_a.cloud;
+    const Cloud& b = file_b.cloud;
+    tally.same_structure("units", unit_list(file_a.units), unit_list(file_b.units));
+    tally.same_structure("fields", field_list(a), field_list(b));
+    tally.same_structure("points", std::to_string(a.size()), std::to_string(b.size()));
+    tally.same_structure("width", std::to_string(a.width), std::to_string(b.width));
+    if (!tally.result().structure.empty()) return; // nothing to hold against each other
+    const double unit = file_a.units.mm();
+    compare_viewpoint(a, b, unit, tally);
+    for (Eigen::Index i = 0; i < a.size(); ++i)
+        for (int axis = 0; axis < 3; ++axis)
+            tally.number(a.xyz(axis, i) / unit, b.xyz(axis, i) / unit,
+                         [&] { return "point " + std::to_string(i) + ", " + "xyz"[axis]; });
+    for (std::size_t f = 0; f < a.fields.size(); ++f)
+        compare_field(a.fields[f], b.fields[f], to_base(file_a.units, field_dimension(a.fields[f].name)), tally);
+}
+
+void compare_meshes(const Mesh& a, const Mesh& b, Tally& tally)
+{
+    tally.same_structure("triangles", std::to_string(a.triangles.cols()), std::to_string(b.triangles.cols()));
+    if (!tally.result().structure.empty()) return;
+    for (Eigen::Index t = 0; t < a.triangles.cols(); ++t)
+        for (int k = 0; k < 3; ++k)
+            for (int axis = 0; axis < 3; ++axis)
+                tally.number(a.vertices(axis, a.triangles(k, t)), b.vertices(axis, b.triangles(k, t)), [&] {
+                    return "triangle " + std::to_string(t) + ", corner " + std::to_string(k) + ", " + "xyz"[axis];
+                });
+}
+
+enum class Kind { json, cloud, mesh };
+
+Kind kind_of(std::string_view bytes)
+{
+    const std::size_t first = bytes.find_first_not_of(" \t\r\n");
+    if (first != std::string_view::npos && (bytes[first] == '{' || bytes[first] == '[')) return Kind::json;
+    return looks_like_cloud(bytes) ? Kind::cloud : Kind::mesh;
+}
+
+std::string to_string(Kind kind) { return kind == Kind::json ? "JSON" : kind == Kind::cloud ? "points" : "a mesh"; }
+
+} // namespace
+
+Difference difference(std::string_view a, const std::string& name_a, std::string_view b, const std::string& name_b,
+                      const Tolerance& tolerance)
+{
+    Tally tally(tolerance);
+    const Kind kind = kind_of(a);
+    if (kind != kind_of(b)) {
+        tally.same_structure("kind", to_string(kind), to_string(kind_of(b)));
+        return tally.result();
+    }
+    if (kind == Kind::json)
+        compare_json(a, name_a, b, name_b, tally);
+    else if (kind == Kind::cloud)
+        compare_clouds(parse_cloud(a, name_a), parse_cloud(b, name_b), tally);
+    else
+        compare_meshes(parse_mesh(a, name_a), parse_mesh(b, name_b), tally);
+    return tally.result();
+}
+
+} // namespace fettle
