@@ -44,7 +44,7 @@ std::vector<std::int32_t> weld(const Eigen::Matrix3Xd& vertices, double toleranc
         for (std::size_t j = i + 1; j < order.size() && order[j].first - order[i].first <= tolerance; ++j) {
             const std::int32_t a = order[i].second, b = order[j].second;
             if ((vertices.col(a) - vertices.col(b)).norm() > tolerance) continue;
-            const auto [low, high] = std::minmax(root(a), root(b));
+            const auto [low, high] = std::minmax({root(a), root(b)});
             lowest[static_cast<std::size_t>(high)] = low;
         }
     for (std::size_t v = 0; v < lowest.size(); ++v) lowest[v] = root(static_cast<std::int32_t>(v));
@@ -128,6 +128,17 @@ void PseudoNormals::add_beyond_edge(Vertex a, Vertex b, const Eigen::Vector3d& p
     }
 }
 
+// The vertex at `point` amid an edge, of a facet without area that lies along the edge.
+std::optional<PseudoNormals::Vertex> PseudoNormals::vertex_amid(Vertex a, Vertex b, const Eigen::Vector3d& point) const
+{
+    for (const Eigen::Index t : facets_at_edge(a, b)) {
+        if (!normals_.col(t).isZero(0)) continue;
+        for (const Vertex v : facets_.col(t))
+            if (v != a && v != b && (position(v) - point).norm() <= rounding_) return v;
+    }
+    return std::nullopt;
+}
+
 Eigen::Vector3d PseudoNormals::vertex_normal(Vertex v) const
 {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -155,6 +166,9 @@ Eigen::Vector3d PseudoNormals::normal(const MeshIndex::Closest& foot) const
     const Feature on = feature(foot);
     if (on.kind == Feature::facet && !normals_.col(foot.triangle).isZero(0)) return normals_.col(foot.triangle);
     if (on.kind == Feature::vertex) return vertex_normal(on.a).normalized();
+    if (on.kind == Feature::edge)
+        if (const std::optional<Vertex> amid = vertex_amid(on.a, on.b, foot.point))
+            return vertex_normal(*amid).normalized();
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     std::vector<Eigen::Index> seen;
     if (on.kind == Feature::edge) add_beyond_edge(on.a, on.b, foot.point, 1, seen, sum);

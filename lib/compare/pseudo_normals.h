@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace fettle {
@@ -39,6 +40,7 @@ class PseudoNormals {
     std::vector<Eigen::Index> facets_at_edge(Vertex a, Vertex b) const;
     void add_beyond_edge(Vertex a, Vertex b, const Eigen::Vector3d& point, double weight,
                          std::vector<Eigen::Index>& seen, Eigen::Vector3d& sum) const;
+    std::optional<Vertex> vertex_amid(Vertex a, Vertex b, const Eigen::Vector3d& point) const;
     Eigen::Vector3d vertex_normal(Vertex v) const;
     Eigen::Vector3d position(Vertex v) const { return mesh_.vertices.col(v); }
     bool on_edge(Vertex a, Vertex b, const Eigen::Vector3d& point) const;
