@@ -41,7 +41,7 @@ TEST(Neighbours, BreaksTiesByColumn)
     points(1, 555) = std::numeric_limits<double>::quiet_NaN();
     const Neighbours neighbours(points);
     EXPECT_EQ(neighbours.size(), 999);
-    for (const Eigen::Vector3d query :
+    for (const Eigen::Vector3d& query :
          {Eigen::Vector3d(5, 5, 5), Eigen::Vector3d(4.5, 4.5, 0), Eigen::Vector3d(-3, 0, 0)})
         EXPECT_EQ(neighbours.nearest(query, 24), by_brute_force(points, query, 24));
 }

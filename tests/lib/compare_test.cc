@@ -1,0 +1,379 @@
+#include "compare/areas.h"
+#include "compare/colours.h"
+#include "compare/signed_distance.h"
+
+#include <Eigen/Dense>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+
+namespace fettle {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+Eigen::Matrix3Xd random_points(Eigen::Index count, double size, unsigned seed)
+{
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> place(-size, size);
+    return Eigen::Matrix3Xd::NullaryExpr(3, count, [&] { return place(random); });
+}
+
+// The cube [-1, 1]³ of twelve facets.
+Mesh cube()
+{
+    Mesh mesh;
+    mesh.vertices.resize(3, 8);
+    for (int i = 0; i < 8; ++i) mesh.vertices.col(i) << (i & 1 ? 1 : -1), (i & 2 ? 1 : -1), (i & 4 ? 1 : -1);
+    mesh.triangles.resize(3, 12);
+    mesh.triangles.transpose() << 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6,
+        2, 1, 3, 7, 1, 7, 5;
+    return mesh;
+}
+
+double cube_distance(const Eigen::Vector3d& p)
+{
+    const Eigen::Vector3d q = p.cwiseAbs().array() - 1;
+    return q.cwiseMax(0).norm() + std::min(q.maxCoeff(), 0.0);
+}
+
+// A square plate of two facets in z = 0, x and y from 0 to 10.
+Mesh plate()
+{
+    Mesh mesh;
+    mesh.vertices.resize(3, 4);
+    mesh.vertices << 0, 10, 10, 0, 0, 0, 10, 10, 0, 0, 0, 0;
+    mesh.triangles.resize(3, 2);
+    mesh.triangles << 0, 0, 1, 2, 2, 3;
+    return mesh;
+}
+
+// Exact: the distance of a cube in closed form; among the points those over edges, corners and facets' extensions.
+TEST(SignedDistance, CubeInClosedForm)
+{
+    Eigen::Matrix3Xd points = random_points(3000, 3, 1);
+    for (Eigen::Index i = 0; i < 1000; ++i) // a lattice that holds the extensions of every facet and edge
+        points.col(i) << -3 + i % 10 * 0.5, -3 + i / 10 % 10 * 0.5, -3 + i / 100 * 0.5;
+    const ErrorMap map = signed_distance(points, cube());
+    for (Eigen::Index i = 0; i < points.cols(); ++i) EXPECT_NEAR(map.error[i], cube_distance(points.col(i)), 1e-14);
+}
+
+// Independent: over single triangles the error is the height over the nearest one if the foot lies inside it, else
+// undefined, for all their edges are open.
+TEST(SignedDistance, TriangleSoupByBruteForce)
+{
+    constexpr Eigen::Index kTriangles = 60;
+    Mesh soup;
+    soup.vertices = random_points(3 * kTriangles, 5, 2);
+    soup.triangles = Eigen::VectorXi::LinSpaced(3 * kTriangles, 0, 3 * kTriangles - 1).reshaped(3, kTriangles);
+    const Eigen::Matrix3Xd points = random_points(2000, 6, 3);
+    const ErrorMap map = signed_distance(points, soup);
+    int defined = 0;
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+        const Eigen::Vector3d p = points.col(i);
+        double nearest = std::numeric_limits<double>::infinity(), expected = kNaN;
+        for (Eigen::Index t = 0; t < kTriangles; ++t) {
+            const Eigen::Matrix3d corners = soup.vertices.middleCols(3 * t, 3);
+            const Eigen::Vector3d normal =
+                (corners.col(1) - corners.col(0)).cross(corners.col(2) - corners.col(0)).normalized();
+            const double height = normal.dot(p - corners.col(0));
+            const Eigen::Vector3d weights = corners.fullPivLu().solve(p - height * normal);
+            if (weights.minCoeff() >= 0 && std::abs(height) < nearest) {
+                nearest = std::abs(height);
+                expected = height;
+            }
+            for (int k = 0; k < 3; ++k) {
+                const Eigen::Vector3d a = corners.col(k), edge = corners.col((k + 1) % 3) - a;
+                const double along = std::clamp(edge.dot(p - a) / edge.squaredNorm(), 0.0, 1.0);
+                if ((a + along * edge - p).norm() >= nearest - 1e-12) continue;
+                nearest = (a + along * edge - p).norm();
+                expected = kNaN;
+            }
+        }
+        EXPECT_EQ(std::isnan(map.error[i]), std::isnan(expected)) << i;
+        if (std::isnan(expected)) continue;
+        ++defined;
+        EXPECT_NEAR(map.error[i], expected, 1e-12);
+    }
+    EXPECT_GT(defined, 200);
+}
+
+// A hedgehog: a sphere of triangles with every other vertex pulled out. Star-shaped, so a point is inside exactly if it
+// lies before the surface as seen from the centre, which decides the sign without any normal.
+TEST(SignedDistance, SignOnSpikes)
+{
+    constexpr int kRings = 12, kSectors = 16;
+    Mesh mesh;
+    mesh.vertices.resize(3, kRings * kSectors + 2);
+    std::mt19937 random(4);
+    std::uniform_real_distribution<double> radius(0.5, 2);
+    for (int i = 0; i < kRings; ++i)
+        for (int j = 0; j < kSectors; ++j) {
+            const double polar = std::numbers::pi * (i + 1) / (kRings + 1), turn = 2 * std::numbers::pi * j / kSectors;
+            mesh.vertices.col(i * kSectors + j) =
+                radius(random) *
+                Eigen::Vector3d(std::sin(polar) * std::cos(turn), std::sin(polar) * std::sin(turn), std::cos(polar));
+        }
+    const int north = kRings * kSectors, south = north + 1;
+    mesh.vertices.col(north) << 0, 0, 1.5;
+    mesh.vertices.col(south) << 0, 0, -0.6;
+    std::vector<Eigen::Vector3i> facets;
+    for (int j = 0; j < kSectors; ++j) {
+        const int next = (j + 1) % kSectors, last = (kRings - 1) * kSectors;
+        facets.emplace_back(north, j, next);
+        facets.emplace_back(south, last + next, last + j);
+        for (int i = 0; i + 1 < kRings; ++i) {
+            const int a = i * kSectors + j, b = i * kSectors + next;
+            facets.emplace_back(a, a + kSectors, b + kSectors);
+            facets.emplace_back(a, b + kSectors, b);
+        }
+    }
+    mesh.triangles = Eigen::Map<Eigen::Matrix3Xi>(facets[0].data(), 3, static_cast<Eigen::Index>(facets.size()));
+
+    // Around the vertices and the middles of edges, where the sign is hard.
+    const Eigen::Matrix3Xd jitter = random_points(6000, 0.3, 5);
+    Eigen::Matrix3Xd points(3, jitter.cols());
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+        const Eigen::Vector3i f = facets[static_cast<std::size_t>(i * 7) % facets.size()];
+        points.col(i) = (mesh.vertices.col(f[0]) + mesh.vertices.col(f[i % 3])) / 2 + jitter.col(i);
+    }
+    const ErrorMap map = signed_distance(points, mesh);
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+        double reach = 0; // of the ray from the centre through the point, in units of the point's distance
+        for (const Eigen::Vector3i& f : facets) {
+            Eigen::Matrix3d corners;
+            corners << mesh.vertices.col(f[0]), mesh.vertices.col(f[1]), mesh.vertices.col(f[2]);
+            const Eigen::Vector3d weights = corners.fullPivLu().solve(points.col(i));
+            if (weights.minCoeff() >= -1e-12) reach = 1 / weights.sum();
+        }
+        if (std::abs(map.error[i]) <= 1e-9) continue;
+        EXPECT_EQ(map.error[i] > 0, reach < 1) << i;
+    }
+}
+
+TEST(SignedDistance, RigidMotionChangesNothing)
+{
+    const Mesh mesh = cube();
+    const Eigen::Matrix3Xd points = random_points(500, 2, 6);
+    const Eigen::Isometry3d motion =
+        Eigen::Translation3d(30, -20, 10) * Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized());
+    Mesh moved = mesh;
+    moved.vertices = motion * mesh.vertices;
+    const ErrorMap here = signed_distance(points, mesh);
+    const ErrorMap there = signed_distance(motion * points, moved);
+    EXPECT_LT((here.error - there.error).cwiseAbs().maxCoeff(), 1e-12);
+    EXPECT_LT((motion.linear() * here.normal - there.normal).cwiseAbs().maxCoeff(), 1e-6);
+}
+
+TEST(SignedDistance, NothingBeyondAnOpenBorder)
+{
+    Eigen::Matrix3Xd points(3, 8);
+    points.col(0) << 5, 5, 0.25;
+    points.col(1) << 5, 10, -0.25;   // under the border itself
+    points.col(2) << 10, 10, 2;      // over a corner
+    points.col(3) << 5, 10.01, 0.25; // beyond
+    points.col(4) << 10.01, 10.01, -1;
+    points.col(5) << -0.001, 0, 0;    // beyond, in the plane
+    points.col(6) << 10 + 1e-7, 5, 0; // on the border but for the rounding of floats
+    points.col(7) << kNaN, 0, 0;
+    const ErrorMap map = signed_distance(points, plate());
+    EXPECT_DOUBLE_EQ(map.error[0], 0.25);
+    EXPECT_DOUBLE_EQ(map.error[1], -0.25);
+    EXPECT_DOUBLE_EQ(map.error[2], 2);
+    for (const int i : {3, 4, 5, 7}) {
+        EXPECT_TRUE(std::isnan(map.error[i])) << i;
+        EXPECT_TRUE(map.normal.col(i).array().isNaN().all()) << i;
+    }
+    EXPECT_NEAR(map.error[6], 0, 1e-6);
+}
+
+TEST(SignedDistance, NothingBeyondMaxDistance)
+{
+    Eigen::Matrix3Xd points(3, 2);
+    points << 5, 5, 5, 5, 0.9, 1.1;
+    for (const DistanceMode mode : {DistanceMode::normal, DistanceMode::direction}) {
+        const ErrorMap map = signed_distance(points, plate(), {mode, Eigen::Vector3d::UnitZ(), 1});
+        EXPECT_DOUBLE_EQ(map.error[0], 0.9);
+        EXPECT_TRUE(std::isnan(map.error[1]));
+    }
+}
+
+// A crack as CAD programs leave it, vertices that differ in the last bits of a float, is no border.
+TEST(SignedDistance, CracksOfRoundingAreClosed)
+{
+    Mesh mesh = cube();
+    Mesh soup;
+    soup.vertices.resize(3, 36);
+    for (int i = 0; i < 36; ++i)
+        soup.vertices.col(i) = mesh.vertices.col(mesh.triangles(i % 3, i / 3)) * (1 + (i % 3 - 1) * 6e-8);
+    soup.triangles = Eigen::VectorXi::LinSpaced(36, 0, 35).reshaped(3, 12);
+    const Eigen::Matrix3Xd points = random_points(2000, 3, 7);
+    const ErrorMap map = signed_distance(points, soup);
+    for (Eigen::Index i = 0; i < points.cols(); ++i) EXPECT_NEAR(map.error[i], cube_distance(points.col(i)), 1e-6);
+}
+
+// A ridge whose two sides share no edge: on one side it is cut in two, and a facet without area fills the gap.
+TEST(SignedDistance, LooksThroughFacetsWithoutArea)
+{
+    Mesh ridge;
+    ridge.vertices.resize(3, 5);
+    ridge.vertices << 0, 2, 4, 2, 2, /* y */ 0, 0, 0, -3, 3, /* z */ 0, 0, 0, -6, -6;
+    ridge.triangles.resize(3, 4); // a, b, c along the crest; one facet before it, two behind, the needle between
+    ridge.triangles.transpose() << 3, 2, 0, 0, 2, 1, 0, 1, 4, 1, 2, 4;
+    Eigen::Matrix3Xd points(3, 3);
+    points << 1, 3, 2, 0.5, 0.5, -0.5, 0.3, 0.3, 0.3;
+    const ErrorMap map = signed_distance(points, ridge);
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(map.error[i], std::hypot(0.5, 0.3), 1e-12) << i;
+}
+
+TEST(SignedDistance, AlongADirection)
+{
+    // Inside a solid the line counts to the surface that faces the direction, however near the other side is.
+    Eigen::Matrix3Xd points(3, 5);
+    points.col(0) << 0.3, 0.2, -0.9;
+    points.col(1) << 0.3, 0.2, 1.25;
+    points.col(2) << 0.3, 0.2, 1; // on it
+    points.col(3) << 1.3, 0, 1;   // the line misses the cube
+    points.col(4) << 0, 0, 1;     // over the diagonal of the facets
+    const ErrorMap z = signed_distance(points, cube(), {DistanceMode::direction});
+    EXPECT_NEAR(z.error[0], -1.9, 1e-14);
+    EXPECT_NEAR(z.error[1], 0.25, 1e-14);
+    EXPECT_NEAR(z.error[2], 0, 1e-14);
+    EXPECT_TRUE(std::isnan(z.error[3]));
+    EXPECT_NEAR(z.error[4], 0, 1e-14);
+
+    const Eigen::Vector3d slanted = Eigen::Vector3d(3, 0, 4) / 5;
+    const ErrorMap along = signed_distance(points.col(1), cube(), {DistanceMode::direction, slanted});
+    EXPECT_NEAR(along.error[0], 0.25 / 0.8, 1e-14); // height over the cosine
+}
+
+// --- clouds as references
+// ---------------------------------------------------------------------------------------------
+
+constexpr double kRadius = 50;
+
+// The cap of a sphere over a square of side 20, centre (0, 0, -50).
+Cloud cap(double spacing)
+{
+    Cloud cloud;
+    const int n = static_cast<int>(std::lround(20 / spacing)) + 1;
+    cloud.xyz.resize(3, n * n);
+    for (int i = 0; i < n * n; ++i) {
+        const double x = -10 + i % n * spacing, y = -10 + i / n * spacing;
+        cloud.xyz.col(i) << x, y, std::sqrt(kRadius * kRadius - x * x - y * y) - kRadius;
+    }
+    return cloud;
+}
+
+double cap_error(double spacing, const DistanceOptions& options)
+{
+    Eigen::Matrix3Xd points = random_points(300, 8, 8);
+    points.row(2) =
+        points.row(2) / 8 - (points.row(0).array().square() + points.row(1).array().square()).matrix() / 100;
+    const ErrorMap map = signed_distance(points, cap(spacing), options);
+    double worst = 0;
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+        const Eigen::Vector3d p = points.col(i) + Eigen::Vector3d(0, 0, kRadius);
+        const double exact = options.mode == DistanceMode::normal
+                                 ? p.norm() - kRadius
+                                 : p.z() - std::sqrt(kRadius * kRadius - p.head<2>().squaredNorm());
+        worst = std::max(worst, std::abs(map.error[i] - exact)); // NaN would not pass the comparison below
+        if (std::isnan(map.error[i])) return kNaN;
+    }
+    return worst;
+}
+
+// A quadratic misses a sphere by its fourth order, h⁴/R³: halving the spacing makes the error sixteen times smaller.
+TEST(CloudReference, ConvergesOnASphere)
+{
+    for (const DistanceMode mode : {DistanceMode::normal, DistanceMode::direction}) {
+        const double coarse = cap_error(1, {mode}), fine = cap_error(0.5, {mode});
+        EXPECT_LT(coarse, std::pow(3.0, 4) / std::pow(kRadius, 3)); // the neighbourhood reaches three spacings
+        EXPECT_NEAR(std::log2(coarse / fine), 4, 0.7);
+    }
+}
+
+TEST(CloudReference, NothingInHolesOrBeyondTheBorder)
+{
+    const Cloud whole = cap(0.5);
+    std::vector<Eigen::Index> kept;
+    for (Eigen::Index i = 0; i < whole.size(); ++i)
+        if (whole.xyz.col(i).norm() > 4) kept.push_back(i);
+    Eigen::Matrix3Xd points(3, 4);
+    points << 0, 10.1, 8, 0, /* y */ 0, 0, 0, 11, /* z */ 0.1, -1, -0.6, -1;
+    const ErrorMap map = signed_distance(points, select(whole, kept));
+    EXPECT_TRUE(std::isnan(map.error[0]));
+    EXPECT_TRUE(std::isnan(map.error[1]));
+    EXPECT_FALSE(std::isnan(map.error[2]));
+    EXPECT_TRUE(std::isnan(map.error[3]));
+}
+
+TEST(CloudReference, NormalsSayWhichSideIsOut)
+{
+    Cloud cloud = cap(0.5);
+    Eigen::Matrix3Xd points(3, 1);
+    points << 1, 2, 0.3;
+    const double up = signed_distance(points, cloud).error[0];
+    EXPECT_GT(up, 0);
+    set_normals(cloud, -Eigen::Vector3d::UnitZ().replicate(1, cloud.size()));
+    EXPECT_DOUBLE_EQ(signed_distance(points, cloud).error[0], -up);
+}
+
+TEST(CloudReference, OutliersDoNotPull)
+{
+    Cloud cloud = cap(0.5);
+    for (Eigen::Index i = 7; i < cloud.size(); i += 29) cloud.xyz(2, i) += 3; // one of every 29 stands out
+    Eigen::Matrix3Xd points = random_points(200, 8, 9);
+    points.row(2) = (kRadius * kRadius - points.topRows<2>().colwise().squaredNorm().array()).sqrt() - kRadius;
+    const ErrorMap map = signed_distance(points, cloud, {DistanceMode::direction});
+    EXPECT_LT(map.error.cwiseAbs().maxCoeff(), 1e-3);
+}
+
+// --- areas and colours
+// -------------------------------------------------------------------------------------------------
+
+TEST(Areas, OfATurnedGridAreItsCells)
+{
+    const Eigen::Rotation2Dd turn(0.4);
+    Eigen::Matrix3Xd points(3, 300 * 200);
+    for (int i = 0; i < points.cols(); ++i) {
+        const Eigen::Vector2d xy = turn * Eigen::Vector2d(i % 300 * 0.1, i / 300 * 0.25);
+        points.col(i) << static_cast<float>(xy.x() + 100), static_cast<float>(xy.y() - 50), std::sin(i);
+    }
+    points(2, 17) = kNaN;
+    const Eigen::VectorXd areas = plan_areas(points);
+    EXPECT_EQ(areas[17], 0);
+    EXPECT_NEAR(areas[18], 0.1 * 0.25, 1e-7);
+    EXPECT_EQ(areas[18], areas[40000]);
+}
+
+// The sum over a scattered cloud is the area it covers, but for half a square of 16 points along the border: 1 %.
+TEST(Areas, OfAScatteredCloudSumUp)
+{
+    const Eigen::Matrix3Xd points = random_points(100000, 10, 10);
+    EXPECT_NEAR(plan_areas(points).sum(), 400, 8);
+}
+
+// Identity: an offset cube's vertices stand for its whole surface, and for its shadow along z twice.
+TEST(Areas, OfVertices)
+{
+    EXPECT_DOUBLE_EQ(vertex_areas(cube()).sum(), 24);
+    EXPECT_DOUBLE_EQ(vertex_areas(cube(), Eigen::Vector3d::UnitZ()).sum(), 8);
+}
+
+TEST(Colours, TellSidesApart)
+{
+    const ColourScale scale{0.5};
+    EXPECT_EQ(scale(kNaN), kUndefinedColour);
+    EXPECT_EQ(scale(0), (Rgb{247, 247, 247}));
+    EXPECT_EQ(scale(-9), (Rgb{103, 0, 31}));
+    EXPECT_EQ(scale(0.5), (Rgb{5, 48, 97}));
+    EXPECT_EQ(colour_scale(Eigen::Vector3d(1, kNaN, -3), 0.25).limit, 0.5);
+    EXPECT_EQ(colour_scale(Eigen::Vector3d(kNaN, kNaN, kNaN), 0).limit, 1);
+}
+
+} // namespace
+} // namespace fettle
