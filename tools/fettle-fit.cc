@@ -4,6 +4,8 @@
 #include "core/text.h"
 #include "fit/fit.h"
 
+#include <cmath>
+#include <optional>
 #include <ostream>
 
 using namespace fettle;
@@ -22,6 +24,15 @@ Eigen::VectorXi roles(const Cloud& cloud)
 {
     if (!has_field(cloud, "role")) return Eigen::VectorXi::Ones(cloud.size());
     return field(cloud, "role").cast<int>();
+}
+
+/// Number of each touch's line, -1 for an estimated point; empty without the field.
+Eigen::VectorXi curves(const Cloud& cloud)
+{
+    if (!has_field(cloud, "curve")) return {};
+    return field(cloud, "curve").unaryExpr([](double number) {
+        return std::isnan(number) ? -1 : static_cast<int>(number);
+    });
 }
 
 void report(json::Value& out, const Fit& fit)
@@ -48,6 +59,11 @@ int main(int argc, char** argv)
             t.choice("-m,--method", "auto", choices(), "Kind of surface; auto: by the job's surface type");
         const bool& use_boundary =
             t.flag("--use-boundary", "Take the anomaly boundary (role 0) as touches, too; planes always do");
+        const std::optional<double>& spacing =
+            t.number_if_given("--spacing", "LENGTH",
+                              "griddata: half the shortest wave to keep; 0: do not sample again; else half the "
+                              "mean distance of the points",
+                              Range::at_least(0));
         t.example("fettle-sample jobs/flat.json --on parts/flat.stl | fettle-fit jobs/flat.json -o flat-surface.json",
                   "the plane beneath the anomaly of Wang's first part");
         t.reference("Wang (2007), 4.2 to 4.4");
@@ -60,6 +76,8 @@ int main(int argc, char** argv)
         const Cloud cloud = read_cloud(points, input.job.units).cloud;
         input.xyz = cloud.xyz;
         input.roles = roles(cloud);
+        input.curves = curves(cloud);
+        if (spacing) input.spacing = *spacing * input.job.units.mm();
         const Fit fit = fit_surface(input, method);
         report(t.report(), fit);
         if (!fit.converged) {

@@ -23,7 +23,7 @@ double huber_weight(double residual, double width)
     return size <= width ? 1 : width / size;
 }
 
-Surface begin_surface(const FitInput& input, const std::string& method, const std::vector<int>& wanted_roles, int least)
+std::vector<Eigen::Index> usable_points(const FitInput& input, const std::vector<int>& wanted_roles)
 {
     std::vector<Eigen::Index> used;
     for (Eigen::Index i = 0; i < input.xyz.cols(); ++i) {
@@ -32,6 +32,12 @@ Surface begin_surface(const FitInput& input, const std::string& method, const st
                             std::find(wanted_roles.begin(), wanted_roles.end(), role) != wanted_roles.end();
         if (wanted && input.xyz.col(i).allFinite()) used.push_back(i);
     }
+    return used;
+}
+
+Surface begin_surface(const FitInput& input, const std::string& method, const std::vector<int>& wanted_roles, int least)
+{
+    const std::vector<Eigen::Index> used = usable_points(input, wanted_roles);
     if (static_cast<int>(used.size()) < least)
         throw InputError(input.source, "a " + method + " fit needs at least " + std::to_string(least) +
                                            " touches, got " + std::to_string(used.size()) + " of " +

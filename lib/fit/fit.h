@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,10 +13,12 @@ namespace fettle {
 
 /// What a surface is fitted to.
 struct FitInput {
-    Eigen::Matrix3Xd xyz;  ///< 3xN, mm, M; columns with NaN are dropped
-    Eigen::VectorXi roles; ///< N; see docs/conventions.md
+    Eigen::Matrix3Xd xyz;   ///< 3xN, mm, M; columns with NaN are dropped
+    Eigen::VectorXi roles;  ///< N; see docs/conventions.md
+    Eigen::VectorXi curves; ///< N, number of each touch's line; empty: unknown
     Job job;
     bool use_boundary = false;      ///< take the anomaly boundary (role 0) as touches, too
+    std::optional<double> spacing;  ///< griddata: of its uniform sampling, mm; nothing: by the points' density
     std::string source = "touches"; ///< their name in messages
 };
 
@@ -39,8 +42,11 @@ Fit fit_surface(const FitInput& input, const std::string& method);
 /// Standard deviation of a touch: 99 % of a normal error lie within the probe's accuracy, mm.
 double touch_sigma(const Probe& probe);
 
-/// A surface without shape and covariance: units, method, touch_sigma, and the touches that have a wanted role; the
-/// rest is counted in `ignored`. Role 0 counts as wanted with use_boundary.
+/// Columns of the input that are finite and have a wanted role. Role 0 counts as wanted with use_boundary.
+std::vector<Eigen::Index> usable_points(const FitInput& input, const std::vector<int>& wanted_roles);
+
+/// A surface without shape and covariance: units, method, touch_sigma, and the touches that are usable; the
+/// rest is counted in `ignored`.
 /// @throws InputError for fewer than `least` touches
 Surface begin_surface(const FitInput& input, const std::string& method, const std::vector<int>& wanted_roles,
                       int least);

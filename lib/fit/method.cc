@@ -1,6 +1,7 @@
 #include "core/error.h"
 #include "fit/bspline.h"
 #include "fit/fit.h"
+#include "fit/griddata.h"
 #include "fit/plane.h"
 #include "fit/swept.h"
 
@@ -14,6 +15,7 @@ const std::map<std::string, Fit (*)(const FitInput&)>& methods()
 {
     static const std::map<std::string, Fit (*)(const FitInput&)> table = {
         {"bspline", fit_bspline},
+        {"griddata", fit_griddata},
         {"plane", fit_plane},
         {"swept", fit_swept},
     };

@@ -2,12 +2,14 @@
 #include "job/boundary.h"
 #include "margin/round_fit.h"
 #include "margin/shift.h"
+#include "sampling/touch_plan.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace fettle {
 
@@ -35,7 +37,7 @@ constexpr SaddleCoefficients kSaddleShift = {.2410, .1289, .0109, .0040, -.0136,
 
 /// What the regressions take, inches.
 struct Situation {
-    Eigen::Matrix3Xd touches; ///< W
+    Eigen::Matrix3Xd touches; ///< W, without estimated points
     double area = 0;
     double farthest = 0;
 };
@@ -45,8 +47,11 @@ Situation situation(const Surface& surface, const Job& job)
     const Polygon anomaly = boundaries(job).anomaly;
     Situation result;
     result.area = area(anomaly) / (kMmPerInch * kMmPerInch);
-    result.touches = surface.touches;
-    result.touches.topRows<2>() = rotation_working_machine(job.theta) * surface.touches.topRows<2>();
+    std::vector<Eigen::Index> touched;
+    for (Eigen::Index i = 0; i < surface.touches.cols(); ++i)
+        if (surface.roles[i] != static_cast<int>(Role::estimated)) touched.push_back(i);
+    result.touches = surface.touches(Eigen::all, touched);
+    result.touches.topRows<2>() = (rotation_working_machine(job.theta) * result.touches.topRows<2>()).eval();
     for (Eigen::Index i = 0; i < result.touches.cols(); ++i) {
         const Eigen::Vector2d xy = result.touches.col(i).head<2>();
         result.farthest = std::max(result.farthest, distance_to_edge(anomaly, xy) / kMmPerInch);
