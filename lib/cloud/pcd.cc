@@ -2,6 +2,7 @@
 
 #include "cloud/element.h"
 #include "cloud/fields.h"
+#include "cloud/lzf.h"
 #include "cloud/pcd_header.h"
 #include "cloud/ply.h"
 #include "cloud/xyz.h"
@@ -9,8 +10,6 @@
 #include "core/file.h"
 #include "core/lines.h"
 #include "core/text.h"
-
-#include <pcl/io/lzf.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -101,8 +100,7 @@ Cloud read_compressed(const PcdHeader& header, std::string_view body, const std:
         throw InputError(source, "compressed body of " + std::to_string(packed) + " bytes cannot hold " +
                                      std::to_string(unpacked));
     const auto buffer = std::make_unique_for_overwrite<char[]>(unpacked);
-    if (unpacked > 0 && pcl::lzfDecompress(body.data(), static_cast<unsigned>(packed), buffer.get(),
-                                           static_cast<unsigned>(unpacked)) != unpacked)
+    if (!unpack_lzf(body.substr(0, packed), {buffer.get(), unpacked}))
         throw InputError(source, "the compressed body is corrupt");
     std::vector<Layout> layouts;
     const char* start = buffer.get();
