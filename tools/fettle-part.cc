@@ -1,4 +1,5 @@
 #include "cli/tool.h"
+#include "cloud/pcd.h"
 #include "mesh/mesh_file.h"
 #include "part/part.h"
 
@@ -10,6 +11,8 @@ int main(int argc, char** argv)
         argc, argv, "Make a part: a desired surface, anomalies on it, and the noise of a scan.", [](Tool& t) {
             const std::string& path = t.input("SPEC", "what to make, JSON of kind \"part\"");
             const bool& bare = t.flag("--without-anomaly", "The desired surface alone: no anomalies, no noise");
+            const bool& as_cloud =
+                t.flag("--cloud", "The corners of the triangles as points (PCD); a scanned cloud is always one");
             t.example("fettle-part parts/wang1.json -o stock.stl", "a plate with a sloped H on it, as a triangle mesh");
             t.reference("Wang 2007, 6.2 (test parts) and figure 5-8");
             t.parse();
@@ -19,8 +22,17 @@ int main(int argc, char** argv)
                 spec.anomalies.clear();
                 spec.noise = {};
             }
-            const Mesh part = make_part(spec, t.seed());
-            write_stl(t.output(), part, spec.units.length);
+            const std::variant<Mesh, Cloud> part = make_part(spec, t.seed());
+            const Units& units = spec.units;
+            if (const Cloud* scan = std::get_if<Cloud>(&part)) {
+                write_pcd(t.output(), *scan, units);
+            } else if (as_cloud) {
+                Cloud corners;
+                corners.xyz = std::get<Mesh>(part).vertices;
+                write_pcd(t.output(), corners, units);
+            } else {
+                write_stl(t.output(), std::get<Mesh>(part), units.length);
+            }
             return Verdict::yes;
         });
 }

@@ -1,11 +1,14 @@
 #include "part/part.h"
 
+#include "cloud/pcd.h"
 #include "core/error.h"
+#include "core/file.h"
 #include "core/text.h"
+#include "mesh/mesh_file.h"
 #include "part/refine.h"
+#include "sampling/scan.h"
 
 #include <cmath>
-#include <random>
 
 namespace fettle {
 namespace {
@@ -17,9 +20,6 @@ using Eigen::Vector2d;
 constexpr double kLeastEdge = 1.0 / 16;
 // An anomaly is ground away: its own shape need not be finer than this, mm.
 constexpr double kAnomalyChord = 0.02;
-// 99 % of a normal distribution lie within this many standard deviations.
-constexpr double kSigmasOf99Percent = 2.5758293035489004;
-
 /// Squares of at most `step`, each cut in two; the diagonals alternate, so that no direction is preferred. z = 0.
 Mesh grid(const Eigen::AlignedBox2d& region, double step)
 {
@@ -49,13 +49,19 @@ Mesh grid(const Eigen::AlignedBox2d& region, double step)
     return mesh;
 }
 
+InputError beside(std::size_t anomaly)
+{
+    return InputError("anomalies[" + std::to_string(anomaly) + "]", "lies beside the part");
+}
+
+/// The mesh with the triangles that the anomalies need; not lifted yet.
 Mesh lay(Mesh mesh, const std::vector<Anomaly>& anomalies, double step)
 {
     for (std::size_t i = 0; i < anomalies.size(); ++i) {
         bool touched = false;
         for (Index v = 0; v < mesh.vertices.cols() && !touched; ++v)
             touched = anomalies[i].footprint.contains(Vector2d(mesh.vertices.col(v).head<2>()));
-        if (!touched) throw InputError("anomalies[" + std::to_string(i) + "]", "lies beside the part");
+        if (!touched) throw beside(i);
     }
     return anomalies.empty()
                ? mesh
@@ -75,24 +81,113 @@ Mesh make(const MadeSurface& made, const PartSpec& spec)
     return mesh;
 }
 
-Mesh make(const ScannedSurface&, const PartSpec&) { throw InputError("scan", "is not supported yet"); }
-
-void add_noise(Mesh& mesh, const ScanNoise& noise, std::uint64_t seed)
+/// The triangles whose corners all lie in the region.
+Mesh crop(const Mesh& mesh, const Eigen::AlignedBox2d& region)
 {
-    std::mt19937_64 random(seed);
-    std::normal_distribution<double> normal(0, noise.size / kSigmasOf99Percent);
-    std::uniform_real_distribution<double> uniform(-noise.size, noise.size);
-    for (double& z : mesh.vertices.row(2))
-        z += noise.kind == ScanNoise::Kind::normal ? normal(random) : uniform(random);
+    std::vector<int> kept(static_cast<std::size_t>(mesh.vertices.cols()), -1);
+    std::vector<Eigen::Vector3i> triangles;
+    std::vector<Eigen::Vector3d> vertices;
+    const auto inside = [&](int v) { return region.contains(Vector2d(mesh.vertices.col(v).head<2>())); };
+    for (Eigen::Vector3i corners : mesh.triangles.colwise()) {
+        if (!inside(corners[0]) || !inside(corners[1]) || !inside(corners[2])) continue;
+        for (int& v : corners) {
+            int& index = kept[static_cast<std::size_t>(v)];
+            if (index < 0) {
+                index = static_cast<int>(vertices.size());
+                vertices.emplace_back(mesh.vertices.col(v));
+            }
+            v = index;
+        }
+        triangles.push_back(corners);
+    }
+    Mesh result;
+    result.vertices.resize(3, static_cast<Index>(vertices.size()));
+    for (Index v = 0; v < result.vertices.cols(); ++v) result.vertices.col(v) = vertices[static_cast<std::size_t>(v)];
+    result.triangles.resize(3, static_cast<Index>(triangles.size()));
+    for (Index t = 0; t < result.triangles.cols(); ++t)
+        result.triangles.col(t) = triangles[static_cast<std::size_t>(t)];
+    return result;
+}
+
+Mesh lay_on(Mesh mesh, const PartSpec& spec)
+{
+    if (spec.anomalies.empty()) return mesh;
+    const Scan bare(mesh);
+    mesh = lay(std::move(mesh), spec.anomalies, spec.step);
+    // A vertex on the upper side meets the highest surface over it, but for the rounding of its coordinates.
+    const double rounding = 1e-9 * mesh.vertices.cwiseAbs().maxCoeff();
+    for (Index v = 0; v < mesh.vertices.cols(); ++v) {
+        const Vector2d xy = mesh.vertices.col(v).head<2>();
+        const double h = height(spec.anomalies, xy);
+        if (h > 0 && mesh.vertices(2, v) >= bare.height(xy).value_or(mesh.vertices(2, v)) - rounding)
+            mesh.vertices(2, v) += h;
+    }
+    return mesh;
+}
+
+/// Points `step` apart under the anomaly, on the surface that touches of the cloud would find, and lifted.
+Eigen::Matrix3Xd points_of(const Anomaly& anomaly, const PartSpec& spec, const Scan& bare)
+{
+    std::vector<Eigen::Vector3d> points;
+    const Mesh lattice = grid(anomaly.footprint, spec.step);
+    for (const Eigen::Vector3d& node : lattice.vertices.colwise()) {
+        const Vector2d xy = node.head<2>();
+        const std::optional<double> z = anomaly.height(xy) > 0 ? bare.height(xy) : std::nullopt;
+        if (z) points.emplace_back(xy.x(), xy.y(), *z + height(spec.anomalies, xy));
+    }
+    if (points.empty()) return {};
+    return Eigen::Map<Eigen::Matrix3Xd>(points[0].data(), 3, static_cast<Index>(points.size()));
+}
+
+Cloud lay_on(const Cloud& scan, const PartSpec& spec)
+{
+    Cloud part; // its fields say nothing about the points that are added, so they go
+    part.xyz = scan.xyz;
+    if (spec.anomalies.empty()) return part;
+    const Scan bare(scan);
+    for (auto point : part.xyz.colwise()) point.z() += height(spec.anomalies, point.head<2>());
+    for (std::size_t i = 0; i < spec.anomalies.size(); ++i) {
+        const Eigen::Matrix3Xd points = points_of(spec.anomalies[i], spec, bare);
+        if (points.cols() == 0) throw beside(i);
+        const Index before = part.xyz.cols();
+        part.xyz.conservativeResize(3, before + points.cols());
+        part.xyz.rightCols(points.cols()) = points;
+    }
+    return part;
+}
+
+std::variant<Mesh, Cloud> make(const ScannedSurface& scanned, const PartSpec& spec)
+{
+    const std::string bytes = read_whole(scanned.file);
+    if (!looks_like_cloud(bytes)) {
+        const Mesh whole = parse_mesh(bytes, scanned.file, scanned.unit);
+        return lay_on(scanned.region ? crop(whole, *scanned.region) : whole, spec);
+    }
+    const Cloud whole = parse_cloud(bytes, scanned.file, Units{scanned.unit, Units::Force::N}).cloud;
+    std::vector<Index> kept;
+    for (Index i = 0; i < whole.size(); ++i) {
+        const bool inside = !scanned.region || scanned.region->contains(Vector2d(whole.xyz.col(i).head<2>()));
+        if (whole.xyz.col(i).allFinite() && inside) kept.push_back(i);
+    }
+    return lay_on(select(whole, kept), spec);
+}
+
+void add_noise(Eigen::Matrix3Xd& points, const TouchNoise& noise, std::uint64_t seed)
+{
+    points.row(2) += draw_noise(noise, points.cols(), seed).transpose();
 }
 
 } // namespace
 
-Mesh make_part(const PartSpec& spec, std::uint64_t seed)
+std::variant<Mesh, Cloud> make_part(const PartSpec& spec, std::uint64_t seed)
 {
-    Mesh mesh = std::visit([&](const auto& surface) { return make(surface, spec); }, spec.surface);
-    if (spec.noise.size > 0) add_noise(mesh, spec.noise, seed);
-    return mesh;
+    std::variant<Mesh, Cloud> part =
+        std::visit([&](const auto& surface) -> std::variant<Mesh, Cloud> { return make(surface, spec); }, spec.surface);
+    if (Mesh* mesh = std::get_if<Mesh>(&part))
+        add_noise(mesh->vertices, spec.noise, seed);
+    else
+        add_noise(std::get<Cloud>(part).xyz, spec.noise, seed);
+    return part;
 }
 
 } // namespace fettle

@@ -1,7 +1,9 @@
 #pragma once
 
+#include "cloud/cloud.h"
 #include "mesh/mesh.h"
 #include "part/profile.h"
+#include "sampling/noise.h"
 #include "units/units.h"
 
 #include <cstdint>
@@ -25,27 +27,22 @@ struct ScannedSurface {
     std::optional<Eigen::AlignedBox2d> region; ///< what is kept of it, mm; nothing: all
 };
 
-/// Scatter of a scan along z. Normal: 99 % of it within ± size; uniform: all.
-struct ScanNoise {
-    enum class Kind { normal, uniform } kind = Kind::normal;
-    double size = 0; ///< mm; 0: none
-};
-
 /// What a casting to be made looks like (docs/formats.md, kind "part").
 struct PartSpec {
     Units units;
     std::variant<MadeSurface, ScannedSurface> surface;
     double step = 1; ///< longest side of a triangle in x or y, mm
     std::vector<Anomaly> anomalies;
-    ScanNoise noise;
+    TouchNoise noise; ///< of the scan, along z
 };
 
 /// @throws InputError with the key's path
 PartSpec read_part(const std::string& path);
 
-/// The part as an open sheet, seen from above. Without anomalies and noise it is the truth that a ground part is
-/// compared with: away from the anomalies both are the same to the last bit.
+/// The part, seen from above: a mesh; a cloud if the scan is one. Without anomalies and noise it is the truth that a
+/// ground part is compared with: beside the anomalies both are the same surface. On a scan that has an underside only
+/// what is seen from above is lifted. On a cloud the anomaly gets points of its own, `step` apart.
 /// @throws InputError if the surface is not defined somewhere in its region, or an anomaly lies beside the part
-Mesh make_part(const PartSpec& spec, std::uint64_t seed);
+std::variant<Mesh, Cloud> make_part(const PartSpec& spec, std::uint64_t seed);
 
 } // namespace fettle

@@ -1,5 +1,4 @@
 #include "core/error.h"
-#include "core/text.h"
 #include "part/anomalies.h"
 #include "part/part.h"
 #include "part/surface.h"
@@ -39,19 +38,6 @@ ScannedSurface read_scanned(json::Reader reader, const std::string& folder)
     return scanned;
 }
 
-/// "normal:0.005"
-ScanNoise read_noise(json::Reader& reader, double mm)
-{
-    const std::string text = reader.text("noise");
-    const std::size_t colon = text.find(':');
-    const std::string kind = text.substr(0, colon);
-    // Without a colon the size is the empty text, which is no number.
-    const double size = parse_number(text.substr(std::min(colon, text.size() - 1) + 1)).value_or(-1);
-    if ((kind != "normal" && kind != "uniform") || !Range::at_least(0).contains(size))
-        reader.refuse("noise", "must be normal:SIZE or uniform:SIZE, got '" + text + "'");
-    return {kind == "normal" ? ScanNoise::Kind::normal : ScanNoise::Kind::uniform, mm * size};
-}
-
 // Triangles of a part, so that a slip in `step` does not fill the memory.
 constexpr double kMostTriangles = 2e7;
 
@@ -82,7 +68,11 @@ PartSpec read_part(const std::string& path)
         spec.surface = made;
     }
     for (const json::Reader& anomaly : reader.objects("anomalies")) spec.anomalies.push_back(read_anomaly(anomaly, mm));
-    if (reader.has("noise")) spec.noise = read_noise(reader, mm);
+    if (reader.has("noise")) try {
+            spec.noise = parse_noise(reader.text("noise"), mm);
+        } catch (const InputError& error) {
+            reader.refuse("noise", error.what());
+        }
     reader.done();
     return spec;
 }

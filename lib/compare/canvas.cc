@@ -1,0 +1,117 @@
+#include "compare/canvas.h"
+
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include <cmath>
+
+namespace fettle {
+namespace {
+
+// Hershey strokes are drawn this many times larger and averaged down: smooth at every size.
+constexpr int kOversampling = 4;
+// Capital letters of the font, at scale 1, pixels.
+constexpr double kCapital = 21;
+constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
+// Fractions of a pixel that OpenCV's fixed-point coordinates keep.
+constexpr int kShift = 4;
+
+cv::Scalar bgr(const Rgb& c) { return {double(c[2]), double(c[1]), double(c[0])}; }
+
+/// A stroke grows with the letter: a ninth of its height, bold a sixth.
+int stroke(double capital_height, bool bold)
+{
+    return std::max(1, static_cast<int>(std::lround(kOversampling * capital_height / (bold ? 6 : 9))));
+}
+
+cv::Size text_size(const std::string& words, double capital_height, bool bold)
+{
+    int below = 0;
+    const double scale = kOversampling * capital_height / kCapital;
+    return cv::getTextSize(words, kFont, scale, stroke(capital_height, bold), &below);
+}
+
+} // namespace
+
+struct Canvas::State {
+    cv::Mat3b sheet;
+};
+
+Canvas::Canvas(int width, int height)
+    : state_(std::make_unique<State>(State{cv::Mat3b(height, width, cv::Vec3b(255, 255, 255))}))
+{
+}
+Canvas::Canvas(Canvas&&) noexcept = default;
+Canvas::~Canvas() = default;
+
+int Canvas::width() const { return state_->sheet.cols; }
+int Canvas::height() const { return state_->sheet.rows; }
+
+double Canvas::text_width(const std::string& words, double capital_height, bool bold)
+{
+    return double(text_size(words, capital_height, bold).width) / kOversampling;
+}
+
+void Canvas::text(const std::string& words, const Eigen::Vector2d& at, double capital_height, const Rgb& colour,
+                  Align align, bool bold)
+{
+    if (words.empty()) return;
+    const double shift = align == Align::left ? 0 : align == Align::centre ? 0.5 : 1;
+    const double left = at.x() - shift * text_width(words, capital_height, bold);
+    const double base = at.y() + capital_height / 2;
+    // A mask around the text, with room for strokes, tails and the average; then the ink by how much of it there is.
+    const int room = static_cast<int>(std::ceil(capital_height));
+    const cv::Size letters = text_size(words, capital_height, bold) / kOversampling;
+    const cv::Rect place(static_cast<int>(std::floor(left)) - room, static_cast<int>(std::floor(base)) - 2 * room,
+                         letters.width + 2 * room + 2, 3 * room + 2);
+    cv::Mat1b mask(place.height * kOversampling, place.width * kOversampling, uchar(0));
+    const cv::Point pen(static_cast<int>(std::lround(kOversampling * (left - place.x))),
+                        static_cast<int>(std::lround(kOversampling * (base - place.y))));
+    cv::putText(mask, words, pen, kFont, kOversampling * capital_height / kCapital, 255, stroke(capital_height, bold),
+                cv::LINE_AA);
+    cv::resize(mask, mask, place.size(), 0, 0, cv::INTER_AREA);
+    const cv::Rect visible = place & cv::Rect(0, 0, width(), height());
+    for (int row = visible.y; row < visible.y + visible.height; ++row)
+        for (int column = visible.x; column < visible.x + visible.width; ++column) {
+            const double ink = mask(row - place.y, column - place.x) / 255.0;
+            cv::Vec3b& pixel = state_->sheet(row, column);
+            for (int i = 0; i < 3; ++i) // OpenCV keeps blue first
+                pixel[i] =
+                    static_cast<uchar>(std::lround(std::lerp(pixel[i], colour[2 - static_cast<std::size_t>(i)], ink)));
+        }
+}
+
+void Canvas::box(const Eigen::Vector2d& corner, const Eigen::Vector2d& size, const Rgb& colour)
+{
+    const cv::Rect rectangle(
+        cv::Point(static_cast<int>(std::lround(corner.x())), static_cast<int>(std::lround(corner.y()))),
+        cv::Point(static_cast<int>(std::lround(corner.x() + size.x())),
+                  static_cast<int>(std::lround(corner.y() + size.y()))));
+    if (!rectangle.empty()) cv::rectangle(state_->sheet, rectangle, bgr(colour), cv::FILLED);
+}
+
+void Canvas::line(const Eigen::Matrix2Xd& points, const Rgb& colour, double width, bool closed)
+{
+    std::vector<cv::Point> path;
+    for (const Eigen::Vector2d& p : points.colwise())
+        path.emplace_back(static_cast<int>(std::lround(p.x() * (1 << kShift))),
+                          static_cast<int>(std::lround(p.y() * (1 << kShift))));
+    cv::polylines(state_->sheet, path, closed, bgr(colour), std::max(1, static_cast<int>(std::lround(width))),
+                  cv::LINE_AA, kShift);
+}
+
+void Canvas::dot(int column, int row, const Rgb& colour)
+{
+    if (column < 0 || column >= width() || row < 0 || row >= height()) return;
+    state_->sheet(row, column) = cv::Vec3b(colour[2], colour[1], colour[0]);
+}
+
+std::string Canvas::png() const
+{
+    std::vector<uchar> bytes;
+    // Run-length filter and light compression: the largest sheet in a tenth of a second.
+    cv::imencode(".png", state_->sheet, bytes, {cv::IMWRITE_PNG_COMPRESSION, 3});
+    return {bytes.begin(), bytes.end()};
+}
+
+} // namespace fettle

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "cloud/cloud.h"
+#include "job/job.h"
+#include "mesh/mesh.h"
+#include "units/units.h"
+
+#include <optional>
+#include <string>
+#include <variant>
+
+namespace fettle {
+
+struct PictureOptions {
+    std::string title;
+    std::string field = "z";     ///< what is shown: z or a field of the cloud
+    std::optional<double> scale; ///< colours run from -scale to +scale (error), else from the least value over `scale`
+    int bands = 0;               ///< colours in so many equal steps; 0: continuous
+    Units units;                 ///< of the numbers in the picture
+    std::optional<Job> within;   ///< draw its B and S; the statistics and the colours are those of B
+};
+
+/// A part seen from above, x to the right and y upwards: values as colours, with legend, histogram, scale and
+/// statistics. `error` has the diverging colours of ColourScale, every other field a sequential map; z is shaded as
+/// hills are. What has no value is grey.
+/// @return the bytes of a PNG, the same for the same input
+/// @throws InputError if there is no such field, or no point with finite x and y
+std::string picture(const std::variant<Cloud, Mesh>& part, const PictureOptions& options);
+
+} // namespace fettle
