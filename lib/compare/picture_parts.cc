@@ -18,13 +18,8 @@ constexpr Rgb kInsideEdge = {20, 20, 20}, kSamplingEdge = {120, 60, 160};
 
 // YlGnBu of ColorBrewer (Cynthia Brewer, Apache-2.0) without its palest and its darkest two: evenly darker, plain to
 // every eye, and light enough for shades.
-constexpr std::array<Rgb, 7> kSequential = {{{255, 255, 217},
-                                             {237, 248, 177},
-                                             {199, 233, 180},
-                                             {127, 205, 187},
-                                             {65, 182, 196},
-                                             {29, 145, 192},
-                                             {34, 94, 168}}};
+constexpr std::array<Rgb, 6> kSequential = {
+    {{237, 248, 177}, {199, 233, 180}, {127, 205, 187}, {65, 182, 196}, {29, 145, 192}, {34, 94, 168}}};
 
 Rgb sequential(double share)
 {
