@@ -130,6 +130,7 @@ class LayerSwitching {
     Settings settings_;
     std::vector<Level> levels_; ///< of layers 1, 2, …; the last is the current one
     bool cut_ended_ = false;
+    bool fed_ = false;           ///< the last action was grinding
     double worst_remaining_ = 0; ///< in this covering
     StrategyCounts counts_;
     std::string failure_;

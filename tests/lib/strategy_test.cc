@@ -1,0 +1,478 @@
+#include "core/error.h"
+#include "strategy/layer_switching.h"
+#include "strategy/run.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace fettle {
+namespace {
+
+using Kind = Action::Kind;
+
+constexpr double kMin = 5, kDown = 10, kMax = 15;
+
+// `count` lines one apart, each with places 0, 1, … `points` - 1.
+std::vector<ToolPass> square(int count, int points, double spacing = 1)
+{
+    std::vector<ToolPass> passes(static_cast<std::size_t>(count));
+    for (int p = 0; p < count; ++p) {
+        ToolPass& pass = passes[static_cast<std::size_t>(p)];
+        pass.line = p * spacing;
+        pass.starts = {0};
+        for (int i = 0; i < points; ++i) pass.along.push_back(i);
+    }
+    return passes;
+}
+
+LayerSwitching::Settings settings()
+{
+    LayerSwitching::Settings s;
+    s.force_min = kMin, s.force_down = kDown, s.force_max = kMax;
+    s.step_over = 1;
+    s.remaining = 0.1;
+    s.bounds = {.layers = 5, .re_cuts = 3, .coverings = 3, .time = 1000, .steps = 1000};
+    return s;
+}
+
+// Forces in, what was decided out: "event layer pass.point".
+class Script {
+  public:
+    explicit Script(std::vector<ToolPass> passes, LayerSwitching::Settings s = settings())
+        : passes_(std::move(passes)), strategy_(passes_, s), action_(strategy_.first())
+    {
+    }
+
+    std::string force(double f, double remaining = 0)
+    {
+        action_ = strategy_.next({f, remaining, time_});
+        time_ += 1;
+        return said();
+    }
+    // The same force n times; the last decision.
+    std::string forces(double f, int n)
+    {
+        std::string last;
+        for (int i = 0; i < n; ++i) last = force(f);
+        return last;
+    }
+    std::string said() const
+    {
+        static const char* names[] = {"go",      "start",  "up",       "down", "step-over",
+                                      "cut-end", "re-cut", "covering", "done", "bound"};
+        return std::string(names[int(action_.event)]) + " " + std::to_string(action_.layer) + " " +
+               std::to_string(action_.to.pass) + "." + std::to_string(action_.to.point);
+    }
+    Kind kind() const { return action_.kind; }
+    const LayerSwitching& strategy() const { return strategy_; }
+
+  private:
+    std::vector<ToolPass> passes_;
+    LayerSwitching strategy_;
+    Action action_;
+    double time_ = 0;
+};
+
+TEST(LayerSwitching, CoversLayer1InZigZagWithoutForce)
+{
+    Script s(square(2, 3));
+    EXPECT_EQ(s.said(), "start 1 0.0");
+    EXPECT_EQ(s.kind(), Kind::travel);
+    EXPECT_EQ(s.force(0), "go 1 0.1");
+    EXPECT_EQ(s.kind(), Kind::grind);
+    EXPECT_EQ(s.force(0), "go 1 0.2");
+    EXPECT_EQ(s.force(0), "step-over 1 1.2");
+    EXPECT_EQ(s.force(0), "go 1 1.1");
+    EXPECT_EQ(s.force(0), "go 1 1.0");
+    EXPECT_EQ(s.force(0), "done 1 1.0");
+    EXPECT_EQ(s.kind(), Kind::finish);
+    EXPECT_EQ(s.strategy().counts().coverings, 1);
+}
+
+TEST(LayerSwitching, CoversLayer1AgainUntilWithinTolerance)
+{
+    Script s(square(1, 3));
+    s.force(14, 0.05);
+    s.force(14, 0.11); // the one place above the tolerance
+    EXPECT_EQ(s.force(14, 0.05), "covering 1 0.0");
+    EXPECT_EQ(s.kind(), Kind::travel);
+    s.force(4, 0.1);
+    s.force(4, 0.1);
+    EXPECT_EQ(s.force(4, 0.1), "done 1 0.2"); // the tolerance itself is within
+}
+
+TEST(LayerSwitching, TravelsOverAGapInLayer1)
+{
+    std::vector<ToolPass> passes = square(2, 4);
+    for (ToolPass& pass : passes) pass.starts = {0, 2};
+    Script s(passes);
+    s.force(0);
+    EXPECT_EQ(s.force(0), "go 1 0.2");
+    EXPECT_EQ(s.kind(), Kind::travel);
+    EXPECT_EQ(s.force(0), "go 1 0.3");
+    EXPECT_EQ(s.kind(), Kind::grind);
+    s.force(0); // 1.3
+    s.force(0); // 1.2
+    EXPECT_EQ(s.force(0), "go 1 1.1");
+    EXPECT_EQ(s.kind(), Kind::travel);
+}
+
+TEST(LayerSwitching, ExactlyTheLargestForceIsInRange)
+{
+    Script s(square(1, 3));
+    EXPECT_EQ(s.force(kMax), "go 1 0.1");
+    EXPECT_EQ(s.force(std::nextafter(kMax, 100)), "up 2 0.1");
+    EXPECT_EQ(s.kind(), Kind::lift);
+}
+
+// Wang 2007, fig. 5-6: up at A, passes until C, F_a below F_down: down to A' and on.
+TEST(LayerSwitching, GoesUpCutsAndComesDownWhereItLeft)
+{
+    Script s(square(4, 6));
+    s.force(0);
+    EXPECT_EQ(s.force(0), "go 1 0.2");
+    EXPECT_EQ(s.force(16), "up 2 0.2");
+    EXPECT_EQ(s.force(9), "go 2 0.3");
+    EXPECT_EQ(s.force(9), "go 2 0.4");
+    EXPECT_EQ(s.force(4), "step-over 2 1.4"); // the pass ends
+    EXPECT_EQ(s.force(8), "go 2 1.3");        // and turns
+    EXPECT_EQ(s.force(8), "go 2 1.2");
+    EXPECT_EQ(s.force(4.9), "step-over 2 2.2");
+    EXPECT_EQ(s.force(4), "go 2 2.3"); // the beginning of the pass, one step-over long, has no metal
+    EXPECT_EQ(s.force(4), "cut-end 2 2.3");
+    EXPECT_EQ(s.kind(), Kind::stay);
+    EXPECT_EQ(s.force(4), "down 1 0.2");
+    EXPECT_EQ(s.kind(), Kind::travel);
+    EXPECT_EQ(s.force(12), "go 1 0.3"); // on, in the direction it had
+    EXPECT_EQ(s.strategy().direction(), 1);
+}
+
+TEST(LayerSwitching, ComesDownInTheDirectionItHadOnAWayBack)
+{
+    Script s(square(3, 4));
+    s.forces(0, 5); // 0.1 0.2 0.3 1.3 1.2
+    EXPECT_EQ(s.force(16), "up 2 1.2");
+    EXPECT_EQ(s.force(4), "step-over 2 2.2");
+    s.force(4);
+    EXPECT_EQ(s.force(4), "cut-end 2 2.3");
+    EXPECT_EQ(s.force(4), "down 1 1.2");
+    EXPECT_EQ(s.force(0), "go 1 1.1");
+}
+
+TEST(LayerSwitching, FollowsMetalThatBeginsWithinTheStepOver)
+{
+    Script s(square(3, 6));
+    s.forces(0, 2);
+    s.force(16); // up at 0.2
+    s.force(9);  // 0.3
+    EXPECT_EQ(s.force(4), "step-over 2 1.3");
+    EXPECT_EQ(s.force(4), "go 2 1.2");        // still the beginning
+    EXPECT_EQ(s.force(6), "go 2 1.1");        // metal
+    EXPECT_EQ(s.force(4), "step-over 2 2.1"); // the end of a pass, not of the cut
+}
+
+TEST(LayerSwitching, CutsAgainFromWhereTheLayerWasEntered)
+{
+    Script s(square(3, 6));
+    s.forces(0, 2);
+    EXPECT_EQ(s.force(16), "up 2 0.2");
+    s.force(11); // F_a
+    EXPECT_EQ(s.force(4), "step-over 2 1.3");
+    s.force(4);
+    s.force(4); // cut end
+    EXPECT_EQ(s.force(4), "re-cut 2 0.2");
+    EXPECT_EQ(s.kind(), Kind::travel);
+    EXPECT_EQ(s.force(10), "go 2 0.3"); // F_a = F_down now: not above
+    EXPECT_EQ(s.force(4), "step-over 2 1.3");
+    s.force(4);
+    EXPECT_EQ(s.force(4), "cut-end 2 1.2");
+    EXPECT_EQ(s.force(4), "down 1 0.2");
+    EXPECT_EQ(s.strategy().counts().re_cuts, 1);
+}
+
+TEST(LayerSwitching, EndsTheCutAtTheLastLineOfB)
+{
+    Script s(square(2, 4));
+    s.forces(0, 4); // 0.1 0.2 0.3 1.3
+    EXPECT_EQ(s.force(16), "up 2 1.3");
+    s.force(9);
+    s.force(9);
+    s.force(9);                             // 1.0, the boundary
+    EXPECT_EQ(s.force(9), "cut-end 2 1.0"); // nothing beyond the last line
+}
+
+TEST(LayerSwitching, EndsAPassAtTheBoundaryAndClampsTheStepOverToB)
+{
+    std::vector<ToolPass> passes = square(3, 6);
+    passes[1].along = {0, 1, 2}; // B is narrower there
+    Script s(passes);
+    s.forces(0, 3);
+    EXPECT_EQ(s.force(16), "up 2 0.3");
+    s.force(9);
+    EXPECT_EQ(s.force(9), "go 2 0.5");
+    EXPECT_EQ(s.force(9), "step-over 2 1.2");
+}
+
+TEST(LayerSwitching, NestedRaisesComeDownOneByOne)
+{
+    Script s(square(4, 8));
+    s.forces(0, 2);
+    EXPECT_EQ(s.force(16), "up 2 0.2");
+    s.force(9);
+    EXPECT_EQ(s.force(9), "go 2 0.4");
+    EXPECT_EQ(s.force(17), "up 3 0.4");
+    EXPECT_EQ(s.force(16), "up 4 0.4"); // twice at the same place
+    EXPECT_EQ(s.force(8), "go 4 0.5");
+    EXPECT_EQ(s.force(4), "step-over 4 1.5");
+    EXPECT_EQ(s.force(16), "up 5 1.5"); // at the beginning of a pass
+    EXPECT_EQ(s.force(4), "step-over 5 2.5");
+    s.force(4);
+    EXPECT_EQ(s.force(4), "cut-end 5 2.6");
+    EXPECT_EQ(s.force(4), "down 4 1.5");
+    EXPECT_EQ(s.force(9), "go 4 1.4"); // backwards, as it was going
+    EXPECT_EQ(s.force(4), "step-over 4 2.4");
+    s.force(4);
+    s.force(4);
+    EXPECT_EQ(s.force(4), "re-cut 4 0.4"); // the 16 N belonged to this cut
+    s.force(4);
+    EXPECT_EQ(s.force(4), "cut-end 4 0.5");
+    EXPECT_EQ(s.force(4), "down 3 0.4");
+    s.force(9);
+    EXPECT_EQ(s.force(4), "step-over 3 1.5");
+    s.force(4);
+    s.force(4);
+    EXPECT_EQ(s.force(4), "re-cut 3 0.4");
+    s.force(4);
+    s.force(4);
+    EXPECT_EQ(s.force(4), "down 2 0.4");
+    EXPECT_EQ(s.force(9), "go 2 0.5");
+    EXPECT_EQ(s.strategy().counts().highest_layer, 5);
+    EXPECT_EQ(s.strategy().counts().raises, 4);
+}
+
+TEST(LayerSwitching, PassesOverCloseLinesAboveLayer1)
+{
+    LayerSwitching::Settings fine = settings();
+    fine.step_over = 2;
+    Script s(square(5, 4), fine);
+    s.force(16);
+    s.force(9);
+    s.force(9);
+    s.force(9);
+    EXPECT_EQ(s.force(9), "step-over 2 2.3");
+}
+
+TEST(LayerSwitching, StartsInsideTheStock)
+{
+    Script s(square(2, 3));
+    EXPECT_EQ(s.force(100), "up 2 0.0");
+    EXPECT_EQ(s.force(50), "up 3 0.0");
+    EXPECT_EQ(s.force(14), "go 3 0.1");
+}
+
+TEST(LayerSwitching, Bounds)
+{
+    Script layers(square(2, 3));
+    layers.forces(100, 4); // up to layer 5
+    EXPECT_EQ(layers.force(100), "bound 5 0.0");
+    EXPECT_EQ(layers.kind(), Kind::fail);
+    EXPECT_NE(layers.strategy().failure().find("layers 5; in layer 5, pass 1"), std::string::npos);
+
+    Script re_cuts(square(1, 2));
+    re_cuts.force(16);
+    for (int i = 0; i < 3; ++i) {
+        re_cuts.forces(14, 1 + (i > 0 ? 1 : 1)); // to the boundary, and the cut's end
+        EXPECT_EQ(re_cuts.force(14), "re-cut 2 0.0");
+    }
+    re_cuts.forces(14, 2);
+    EXPECT_EQ(re_cuts.force(14), "bound 2 0.1");
+    EXPECT_NE(re_cuts.strategy().failure().find("re-cuts 3"), std::string::npos);
+
+    Script coverings(square(1, 2));
+    coverings.force(1, 1);
+    EXPECT_EQ(coverings.force(1, 1), "covering 1 0.0");
+    coverings.force(1, 1);
+    EXPECT_EQ(coverings.force(1, 1), "covering 1 0.0");
+    coverings.force(1, 1);
+    EXPECT_EQ(coverings.force(1, 1), "bound 1 0.1");
+    EXPECT_NE(coverings.strategy().failure().find("coverings of layer 1 3"), std::string::npos);
+
+    LayerSwitching::Settings few = settings();
+    few.bounds.steps = 2;
+    Script steps(square(1, 9), few);
+    steps.forces(0, 2);
+    EXPECT_EQ(steps.force(0), "bound 1 0.2");
+
+    LayerSwitching::Settings quick = settings();
+    quick.bounds.time = 1;
+    Script time(square(1, 9), quick);
+    time.forces(0, 2);
+    EXPECT_EQ(time.force(0), "bound 1 0.2");
+    EXPECT_NE(time.strategy().failure().find("time 1 s"), std::string::npos);
+}
+
+// --- the runner on a simple machine: columns of stock, a thin wheel, a spring
+// -----------------------------------------
+
+// Each place has a height; the tool rests on it and takes off a share of what stands over the commanded height
+// where it begins to move and where it ends.
+class ColumnGantry final : public Gantry {
+  public:
+    using Heights = std::function<double(double x, double y)>;
+    ColumnGantry(const Heights& stock, double stiffness) : stiffness_(stiffness)
+    {
+        for (int i = 0; i < kColumns; ++i)
+            for (int j = 0; j < kColumns; ++j) z_[i][j] = stock(i * kSide, j * kSide);
+    }
+    GantryStatus travel(const Eigen::Vector3d& point) override { return move(point, 1); }
+    GantryStatus lift(double z) override { return move({at_.x(), at_.y(), z}, 0.1); }
+    GantryStatus grind(const Eigen::Vector3d& point, double feed) override
+    {
+        const double duration = (point - at_).norm() / feed;
+        for (int end = 0; end < 2; ++end, at_ = point) // where it comes from and where it goes to
+            if (column() > point.z()) column() -= kShare * (column() - point.z());
+        return move(point, duration);
+    }
+    double touch_off() override { return radius; }
+    void change_wheel() override { radius = new_radius; }
+    GantryStatus status() const override { return status_; }
+
+    double highest(const Heights& reference) const
+    {
+        double most = -1;
+        for (int i = 0; i < kColumns; ++i)
+            for (int j = 0; j < kColumns; ++j) most = std::max(most, z_[i][j] - reference(i * kSide, j * kSide));
+        return most;
+    }
+    double lowest() const
+    {
+        double least = 1e9;
+        for (const auto& row : z_)
+            for (const double z : row) least = std::min(least, z);
+        return least;
+    }
+    double radius = 25.4, new_radius = 25.4;
+
+  private:
+    static constexpr int kColumns = 41;
+    static constexpr double kSide = 1;
+    static constexpr double kShare = 0.2;
+    double& column()
+    {
+        const auto index = [](double c) { return std::clamp(int(std::lround(c / kSide)), 0, kColumns - 1); };
+        return z_[index(at_.x())][index(at_.y())];
+    }
+    GantryStatus move(const Eigen::Vector3d& point, double duration)
+    {
+        at_ = point;
+        status_.time += duration;
+        status_.commanded = point;
+        status_.deflection = std::max(0.0, column() - point.z());
+        status_.force = stiffness_ * status_.deflection;
+        status_.peak_force = status_.force;
+        return status_;
+    }
+    double z_[kColumns][kColumns];
+    double stiffness_;
+    Eigen::Vector3d at_ = Eigen::Vector3d(0, 0, 50);
+    GantryStatus status_;
+};
+
+// B: a square of 40 mm, the desired surface z = 0; lines and places on the columns.
+Plan square_plan()
+{
+    Plan plan;
+    plan.job.wheel = {25.4, 1, 12.7};
+    plan.job.force = {5, 10, 15, 10, 0};
+    plan.job.feed = {'y', 25, 1};
+    plan.job.tolerance = 0.1;
+    plan.surface.shape = Plane{{0, 0}, 0, {0, 0}};
+    plan.layers = layers_of(plan.job.force); // thickness 1, distance 0.5
+    plan.start = Eigen::Vector3d::Zero();
+    for (int p = 0; p <= 40; ++p) plan.passes.push_back({double(p), {{0, 40}}});
+    plan.bounds.layers = 40;
+    return plan;
+}
+
+const auto flat = [](double, double) { return 0.0; };
+
+class Figure58Test : public testing::TestWithParam<int> {};
+
+double dome(double x, double y, double cx, double cy, double radius, double height)
+{
+    const double r2 = ((x - cx) * (x - cx) + (y - cy) * (y - cy)) / (radius * radius);
+    return r2 < 1 ? height * (1 - r2) : 0;
+}
+
+// Wang 2007, fig. 5-8: a hill of three layers, two hills in one boundary, a moon.
+TEST_P(Figure58Test, IsGroundToTheDesiredSurface)
+{
+    const ColumnGantry::Heights stocks[] = {
+        [](double x, double y) { return dome(x, y, 20, 20, 12, 2.6); },
+        [](double x, double y) { return std::max(dome(x, y, 10, 12, 7, 3.2), dome(x, y, 28, 27, 9, 2.2)); },
+        [](double x, double y) { return dome(x, y, 16, 20, 8, 9) > 0 ? 0.0 : dome(x, y, 20, 20, 14, 4); },
+    };
+    const Plan plan = square_plan();
+    ColumnGantry gantry(stocks[GetParam()], plan.job.force.stiffness);
+    const GrindRun result = run(plan, gantry);
+    EXPECT_TRUE(result.finished) << result.failure;
+    EXPECT_LE(gantry.highest(flat), plan.job.tolerance);
+    EXPECT_GE(gantry.lowest(), 0);
+    EXPECT_GE(result.counts.highest_layer, 3);
+    // Every reading of the force in range is ground where it is; the layers end one below the other.
+    int layer = 1;
+    for (const TraceRow& row : result.trace) {
+        EXPECT_LE(std::abs(row.layer - layer), 1);
+        if (row.event == Event::up)
+            EXPECT_EQ(row.layer, layer + 1);
+        else if (row.event == Event::down)
+            EXPECT_EQ(row.layer, layer - 1);
+        else
+            EXPECT_EQ(row.layer, layer);
+        layer = row.layer;
+    }
+    EXPECT_EQ(result.trace.back().event, Event::finished);
+}
+
+INSTANTIATE_TEST_SUITE_P(Wang2007, Figure58Test, testing::Values(0, 1, 2));
+
+TEST(Run, StopsAtABoundAndSaysWhere)
+{
+    Plan plan = square_plan();
+    plan.bounds.layers = 3;
+    ColumnGantry gantry([](double x, double y) { return dome(x, y, 20, 20, 12, 9); }, plan.job.force.stiffness);
+    const GrindRun result = run(plan, gantry);
+    EXPECT_FALSE(result.finished);
+    EXPECT_NE(result.failure.find("layers 3"), std::string::npos) << result.failure;
+    EXPECT_EQ(result.trace.back().event, Event::bound);
+}
+
+TEST(Run, ChangesAWornWheelAndRefusesANewOneThatIsTooSmall)
+{
+    Plan plan = square_plan();
+    ColumnGantry gantry(flat, plan.job.force.stiffness);
+    gantry.radius = 12;
+    const GrindRun result = run(plan, gantry);
+    EXPECT_TRUE(result.finished);
+    EXPECT_EQ(result.wheel_changes, 1);
+    EXPECT_EQ(result.touch_offs, 2);
+    EXPECT_EQ(result.wheel_radius, 25.4);
+
+    gantry.radius = gantry.new_radius = 12;
+    EXPECT_THROW(run(plan, gantry), InputError);
+}
+
+TEST(Run, MeasuresTheWheelOnItsPeriod)
+{
+    Plan plan = square_plan(); // 41 · 40 mm and 40 step-overs at 25 mm/s: 67.2 s
+    ColumnGantry gantry(flat, plan.job.force.stiffness);
+    const GrindRun result = run(plan, gantry, {.touch_off_period = 20});
+    EXPECT_EQ(result.touch_offs, 1 + 3);
+}
+
+} // namespace
+} // namespace fettle
