@@ -23,7 +23,7 @@ double element(const Field& field, char type, std::size_t index)
     });
 }
 
-void scale(Field& field, double factor)
+void scale(Field& field, double times, double over)
 {
     const std::size_t elements = field.bytes.size() / static_cast<std::size_t>(field.size);
     visit_element(field.type, field.size, [&](auto zero) {
@@ -32,7 +32,7 @@ void scale(Field& field, double factor)
         std::vector<std::byte> scaled(elements * sizeof(To));
         for (std::size_t i = 0; i < elements; ++i) {
             const auto value = static_cast<double>(load<From>(field.bytes.data() + i * sizeof(From)));
-            store(scaled.data() + i * sizeof(To), static_cast<To>(value * factor));
+            store(scaled.data() + i * sizeof(To), static_cast<To>(value * times / over));
         }
         field.bytes = std::move(scaled);
         field.type = 'F';

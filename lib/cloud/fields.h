@@ -15,7 +15,8 @@ Dimension field_dimension(const std::string& name);
 /// Element `index` of all elements of all points, taken as a number of `type`, usually the field's own.
 double element(const Field& field, char type, std::size_t index);
 
-/// Multiplies all elements of a field. One of whole numbers becomes F8: 1 in is no whole number of mm.
-void scale(Field& field, double factor);
+/// Multiplies all elements of a field by `times` and divides them by `over`. One of whole numbers becomes F8: 1 in is
+/// no whole number of mm.
+void scale(Field& field, double times, double over = 1);
 
 } // namespace fettle

@@ -118,7 +118,7 @@ void write_pcd(std::ostream& out, const Cloud& cloud, const Units& units, PcdEnc
     std::vector<Field> fields = cloud.fields;
     std::size_t stride = 3 * sizeof(float);
     for (Field& field : fields) {
-        if (const double factor = to_base(units, field_dimension(field.name)); factor != 1) scale(field, 1 / factor);
+        if (const double factor = to_base(units, field_dimension(field.name)); factor != 1) scale(field, 1, factor);
         stride += static_cast<std::size_t>(field.size) * static_cast<std::size_t>(field.count);
     }
     out << header_text(cloud, fields, units, encoding);
