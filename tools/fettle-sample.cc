@@ -2,6 +2,7 @@
 #include "cloud/pcd.h"
 #include "core/file.h"
 #include "core/text.h"
+#include "sampling/freeform.h"
 #include "sampling/order.h"
 #include "sampling/probe.h"
 
@@ -10,6 +11,9 @@
 using namespace fettle;
 
 namespace {
+
+// Wang 2007, 4.4.3.1: fewer than 60 touches are wanted; a hundred lines each way is a slip.
+constexpr int kMostLinesEachWay = 100;
 
 // Names the places that no touch reached; too long a list helps nobody.
 void refuse_missed(const std::string& scan, const Job& job, const Eigen::Matrix3Xd& touches, const TouchPlan& plan)
@@ -51,6 +55,8 @@ int main(int argc, char** argv)
                                             "Radius of the probe's ball, job's unit; 0: a point. Keep the boundary "
                                             "points that far from the anomaly [the job's tip_radius]",
                                             Range::at_least(0));
+        const int& lines = t.count("--lines", 0, "Free-form jobs: so many lines each way; 0: as many as Wang's eq. 4-5",
+                                   0, kMostLinesEachWay);
         const bool& plan_only = t.flag("--plan-only", "Choose only: x and y, no z but where the job gives it");
         const bool& ascii = t.flag("--ascii", "Text instead of binary");
         t.example("fettle-sample concave.json --on concave.stl --noise normal:0.005 --seed 7 > samples.pcd",
@@ -63,7 +69,9 @@ int main(int argc, char** argv)
         if (tip) job.probe.tip_radius = *tip * mm;
         const TouchNoise noise = parse_noise(noise_text, mm);
 
-        const TouchPlan plan = plan_touches(job);
+        if (lines > 0 && job.surface != SurfaceType::freeform)
+            throw InputError(display_name(job_file), "--lines is for free-form jobs");
+        const TouchPlan plan = lines > 0 ? plan_freeform(job, LineCount{lines, lines}) : plan_touches(job);
         Eigen::Matrix3Xd touches(3, plan.size());
         touches << plan.xy, plan.z.transpose();
         if (!part.empty() && !plan_only) {

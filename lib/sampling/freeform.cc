@@ -29,12 +29,12 @@ LineCount line_count(double a, double b)
     return {n_a, up(n_a * b / a)};
 }
 
-TouchPlan plan_freeform(const Job& job)
+TouchPlan plan_freeform(const Job& job, const std::optional<LineCount>& lines)
 {
     const Boundaries both = boundaries(job);
     const Eigen::Vector2d least = both.anomaly.rowwise().minCoeff();
     const Eigen::Vector2d sides = both.anomaly.rowwise().maxCoeff() - least;
-    const LineCount count = line_count(sides.x(), sides.y());
+    const LineCount count = lines.value_or(line_count(sides.x(), sides.y()));
 
     TouchPlan plan;
     int curve = 0;

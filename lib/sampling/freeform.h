@@ -2,6 +2,8 @@
 
 #include "sampling/touch_plan.h"
 
+#include <optional>
+
 namespace fettle {
 
 /// Number of lines across each side of the anomaly's bounding rectangle, Wang 2007, eq. 4-5.
@@ -16,7 +18,8 @@ LineCount line_count(double a, double b);
 /// Free-form surface (Wang 2007, 4.4.4, 3): n_a lines along Y_w, then n_b along X_w, at the points that cut each side
 /// of the anomaly's bounding rectangle into n + 1 equal parts; four touches on each, exactly where it crosses S and B
 /// on either side of the anomaly. The boundary points lie on good metal, and so do the crossings.
+/// @param lines  instead of eq. 4-5 (Wang's Table 4-5 has rows with one line each way)
 /// @throws InputError if a line has no room on one side of the anomaly
-TouchPlan plan_freeform(const Job& job);
+TouchPlan plan_freeform(const Job& job, const std::optional<LineCount>& lines = {});
 
 } // namespace fettle
