@@ -38,9 +38,9 @@ TouchPlan plan_freeform(const Job& job, const std::optional<LineCount>& lines)
 
     TouchPlan plan;
     int curve = 0;
-    const auto add_lines = [&](int lines, const Eigen::Vector2d& along_side, const Eigen::Vector2d& direction) {
-        for (int i = 1; i <= lines; ++i) {
-            const Eigen::Vector2d start = least + along_side * i / (lines + 1.0);
+    const auto add_lines = [&](int across, const Eigen::Vector2d& along_side, const Eigen::Vector2d& direction) {
+        for (int i = 1; i <= across; ++i) {
+            const Eigen::Vector2d start = least + along_side * i / (across + 1.0);
             // nearer together than the probe is exact, two touches tell nothing of the slope
             const auto t = crossings_around(both, start, direction, job.probe.accuracy);
             if (!t)
