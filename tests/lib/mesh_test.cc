@@ -1,0 +1,331 @@
+#include "core/error.h"
+#include "core/file.h"
+#include "mesh/mesh_file.h"
+#include "mesh/polygons.h"
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <limits>
+#include <numbers>
+#include <sstream>
+
+namespace fettle {
+namespace {
+
+// tests/run names the folder of the samples; by hand the tests are run in the root.
+std::string data(const std::string& name)
+{
+    const char* samples = std::getenv("SAMPLES");
+    return (samples == nullptr ? "" : std::string(samples) + "/../") + "tests/data/" + name;
+}
+
+std::string message_of(const std::string& bytes)
+{
+    try {
+        parse_mesh(bytes, "file");
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "accepted";
+}
+
+void expect_refused(const std::string& bytes, const std::string& part, const std::string& because)
+{
+    const std::string message = message_of(bytes);
+    EXPECT_EQ(message.find("file: "), 0u) << because << "\n  " << message;
+    EXPECT_NE(message.find(part), std::string::npos) << because << "\n  " << message;
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to)
+{
+    const std::size_t at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    return text.replace(at, from.size(), to);
+}
+
+double area(const Mesh& mesh)
+{
+    double sum = 0;
+    for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
+        const Eigen::Vector3d a = mesh.vertices.col(mesh.triangles(0, t));
+        const Eigen::Vector3d b = mesh.vertices.col(mesh.triangles(1, t));
+        const Eigen::Vector3d c = mesh.vertices.col(mesh.triangles(2, t));
+        sum += 0.5 * (b - a).cross(c - a).norm();
+    }
+    return sum;
+}
+
+Mesh tetrahedron()
+{
+    Mesh mesh;
+    mesh.vertices.resize(3, 4);
+    mesh.vertices << 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1;
+    mesh.triangles.resize(3, 4);
+    mesh.triangles << 0, 0, 0, 1, 2, 1, 3, 2, 1, 3, 2, 3;
+    return mesh;
+}
+
+std::string binary_stl(const Mesh& mesh, Units::Length unit = Units::Length::mm)
+{
+    std::ostringstream out;
+    write_stl(out, mesh, unit);
+    return out.str();
+}
+
+const std::string kFacet =
+    "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
+const std::string kSolid = "solid part\n" + kFacet + "endsolid part\n";
+
+TEST(Stl, WritingAndReadingIsTheIdentity)
+{
+    const Mesh mesh = tetrahedron();
+    MeshRepair repair;
+    const Mesh back = parse_mesh(binary_stl(mesh), "file", Units::Length::mm, &repair);
+    EXPECT_EQ(back.vertices.cols(), 4);
+    EXPECT_EQ(repair.welded_vertices, 8);
+    EXPECT_EQ(repair.dropped_triangles, 0);
+    for (Eigen::Index t = 0; t < 4; ++t)
+        for (int k = 0; k < 3; ++k)
+            EXPECT_EQ(back.vertices.col(back.triangles(k, t)), mesh.vertices.col(mesh.triangles(k, t)));
+    EXPECT_EQ(binary_stl(back), binary_stl(mesh));
+    const Mesh inches = parse_mesh(binary_stl(back, Units::Length::in), "file", Units::Length::in);
+    EXPECT_LT((inches.vertices - back.vertices).cwiseAbs().maxCoeff(), 25.4 * 1e-7);
+    EXPECT_NE(binary_stl(mesh, Units::Length::in).find("units in"), std::string::npos);
+}
+
+TEST(Stl, BinaryIsToldBySizeNotByTheWordSolid)
+{
+    std::string bytes = binary_stl(tetrahedron());
+    std::memcpy(bytes.data(), "solid facet ", 12);
+    EXPECT_EQ(parse_mesh(bytes, "file").triangles.cols(), 4);
+    bytes[84 + 48] = '\x7f'; // the attribute, where some writers keep a colour
+    EXPECT_EQ(parse_mesh(bytes, "file").triangles.cols(), 4);
+}
+
+TEST(Stl, SizesThatDisagreeAreRefused)
+{
+    const std::string good = binary_stl(tetrahedron());
+    expect_refused("", "empty", "nothing");
+    expect_refused(good.substr(0, 83), "binary STL of 83 bytes", "shorter than a header");
+    expect_refused(good.substr(0, good.size() - 1), "4 triangles needs 284 bytes, there are 283", "short");
+    expect_refused(good + "x", "there are 285", "long");
+    std::string lying = good;
+    lying[80] = 3;
+    expect_refused(lying, "3 triangles needs 234 bytes, there are 284", "fewer than there are");
+    std::memset(lying.data() + 80, 0xff, 4);
+    expect_refused(lying, "4294967295 triangles", "as many as there can be");
+    std::string big = good;
+    std::swap(big[80], big[83]);
+    expect_refused(big, "big-endian", "the other order");
+    std::string none = good.substr(0, 84);
+    none[80] = 0;
+    expect_refused(none, "no triangles", "0 facets");
+}
+
+TEST(Stl, UndefinedCornersAreDroppedAndCounted)
+{
+    Mesh mesh = tetrahedron();
+    const double infinite = std::numeric_limits<double>::infinity();
+    for (const double bad : {std::nan(""), infinite, -infinite}) {
+        mesh.vertices(1, 3) = bad;
+        MeshRepair repair;
+        EXPECT_EQ(parse_mesh(binary_stl(mesh), "file", Units::Length::mm, &repair).triangles.cols(), 1);
+        EXPECT_EQ(repair.dropped_triangles, 3);
+    }
+    mesh.vertices.setConstant(infinite);
+    expect_refused(binary_stl(mesh), "no triangles but 4 with NaN", "nothing is left");
+}
+
+TEST(Stl, NegativeZeroIsZero)
+{
+    std::string text = replaced(kSolid, "endsolid part\n", kFacet) + "endsolid\n";
+    text = replaced(text, "vertex 0 0 0", "vertex -0 0.0 -0e5");
+    EXPECT_EQ(parse_mesh(text, "file").vertices.cols(), 3);
+}
+
+TEST(Stl, AsciiInManyHands)
+{
+    EXPECT_EQ(parse_mesh(kSolid, "file").triangles.cols(), 1);
+    std::string upper = kSolid;
+    for (char& c : upper) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+    EXPECT_EQ(parse_mesh(upper, "file").triangles.cols(), 1);
+    std::string dos, mac;
+    for (const char c : kSolid) {
+        dos += c == '\n' ? "\r\n" : std::string(1, c);
+        mac += c == '\n' ? '\r' : c;
+    }
+    EXPECT_EQ(parse_mesh(dos, "file").triangles.cols(), 1);
+    EXPECT_EQ(parse_mesh(mac, "file").triangles.cols(), 1);
+    EXPECT_EQ(parse_mesh(replaced(kSolid, "normal 0 0 1", "normal nan nan nan"), "file").triangles.cols(), 1);
+    EXPECT_EQ(parse_mesh(kSolid + "solid\nendsolid\n" + kSolid, "file").triangles.cols(), 2);
+    MeshRepair repair;
+    EXPECT_EQ(parse_mesh(replaced(kSolid, "endsolid", kFacet + "endsolid"), "file", Units::Length::mm, &repair)
+                  .triangles.cols(),
+              2)
+        << "the same face twice is the user's";
+    EXPECT_EQ(repair.welded_vertices, 3);
+}
+
+TEST(Stl, MalformedAsciiIsRefusedWithItsLine)
+{
+    expect_refused(replaced(kSolid, "endfacet\n", ""), "line 8: expected endfacet, got 'endsolid'", "missing endfacet");
+    expect_refused(replaced(kSolid, "endloop", "vertex 1 1 0\nendloop"), "line 7: expected endloop, got 'vertex'",
+                   "four corners");
+    expect_refused(replaced(kSolid, "vertex 1 0 0\n", ""), "line 6: expected vertex, got 'endloop'", "two corners");
+    expect_refused(replaced(kSolid, "1 0 0", "1,0 0 0"), "line 5: expected a number, got '1,0'", "decimal comma");
+    expect_refused(replaced(kSolid, "1 0 0", "1 0"), "line 6: expected a number, got 'vertex'", "a number missing");
+    expect_refused(replaced(kSolid, "1 0 0", "1e400 0 0"), "'1e400'", "beyond double");
+    expect_refused(kSolid.substr(0, kSolid.size() - 14), "the end of the file", "no endsolid");
+    expect_refused(kSolid + std::string(100, '\1'), "expected solid, got '?????", "a binary tail");
+    expect_refused("solid a\nendsolid a\n", "no triangles", "an empty solid");
+    expect_refused("hello", "neither STL, PLY, OBJ nor OFF", "no mesh");
+    expect_refused("1 2 3\n4 5 6\n", "points, expected a mesh", "a cloud");
+}
+
+TEST(Stl, FilesOfOthers)
+{
+    const Mesh boxes = read_mesh(data("two_objects_mixed_case_names.stl");
+    EXPECT_EQ(boxes.vertices.cols(), 16); // two closed boxes: 8 corners and 12 triangles each
+    EXPECT_EQ(boxes.triangles.cols(), 24);
+    EXPECT_EQ(read_mesh(data("soup.stl")).vertices.cols(), 300);
+    EXPECT_EQ(read_mesh(data("triangle_with_empty_solid.stl")).triangles.cols(), 1);
+    EXPECT_EQ(read_mesh(data("nancolor.obj")).triangles.cols(), 12);
+    EXPECT_THROW(read_mesh(data("malformed.obj")), InputError);
+    EXPECT_THROW(read_mesh(data("ply_empty_bin.ply")), InputError);
+}
+
+const std::string kObj = "# box\nv 0 0 0\nv 1 0 0 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nusemtl a\n";
+
+TEST(Obj, Faces)
+{
+    EXPECT_DOUBLE_EQ(area(parse_mesh(kObj + "f 1 2 3 4\n", "file")), 1);
+    EXPECT_DOUBLE_EQ(area(parse_mesh(kObj + "f 1/1 2/1 3/1\n", "file")), 0.5);
+    EXPECT_DOUBLE_EQ(area(parse_mesh(kObj + "f 1//1 2//1 3//1\nf -4/1/1 -2/1/1 -1/1/1", "file")), 1);
+    EXPECT_EQ(parse_mesh("f 1 2 3\n" + kObj, "file").triangles.cols(), 1) << "vertices may follow";
+    MeshRepair repair;
+    const Mesh dropped = parse_mesh(kObj + "v nan 0 0\nf 1 2 3\nf 1 2 5\n", "file", Units::Length::mm, &repair);
+    EXPECT_EQ(dropped.vertices.cols(), 4);
+    EXPECT_EQ(repair.dropped_triangles, 1);
+}
+
+TEST(Obj, MalformedIsRefusedWithItsLine)
+{
+    expect_refused(kObj + "f 0 1 2\n", "line 9: vertex 0", "index 0");
+    expect_refused(kObj + "f 1 2 5\n", "line 9: vertex 5 of 4", "past the end");
+    expect_refused(kObj + "f -5 1 2\n", "line 9: vertex -5 is before the first", "before the beginning");
+    expect_refused(kObj + "f 1// 2 3\n", "line 9: '1//'", "nothing after the slashes");
+    expect_refused(kObj + "f 1 2\n", "line 9: a face of 2 corners", "two corners");
+    expect_refused(kObj + "f 1 2 3.5\n", "'3.5'", "no whole number");
+    expect_refused(kObj + "f 99999999999999999999 1 2\n", "'99999999999999999999'", "beyond 64 bits");
+    expect_refused(kObj + "v 1 2\nf 1 2 3\n", "line 9: a vertex of 2 numbers", "two coordinates");
+    expect_refused(kObj + "f 1 2 3\nhello\n", "line 10: unknown statement 'hello'", "no statement");
+    expect_refused(kObj, "no triangles", "no faces");
+}
+
+const std::string kOff = "OFF # a square\n4 1 0\n0 0 0\n1 0 0\n\n1 1 0\n0 1 0\n4 0 1 2 3 255 0 0\n";
+
+TEST(Off, ReadAndRefused)
+{
+    EXPECT_DOUBLE_EQ(area(parse_mesh(kOff, "file")), 1);
+    EXPECT_DOUBLE_EQ(area(parse_mesh(replaced(kOff, "OFF # a square\n", "OFF "), "file")), 1);
+    expect_refused(replaced(kOff, "4 0 1 2 3", "4 0 1 2 4"), "vertex of a face: expected a number from 0 to 3",
+                   "index");
+    expect_refused(replaced(kOff, "4 0 1 2 3", "4 0 1 2 -1"), "'-1'", "negative");
+    expect_refused(replaced(kOff, "4 0 1 2 3 255 0 0", "2 0 1"), "a face of 2 corners", "two");
+    expect_refused(replaced(kOff, "4 1 0", "99999 1 0"), "bytes left", "more than there is");
+    expect_refused(replaced(kOff, "4 1 0", "4 2 0"), "the file ends", "a face missing");
+    expect_refused(kOff + "3 0 1 2\n", "text after the last face", "a face more");
+    expect_refused(replaced(kOff, "OFF", "4OFF"), "'4OFF'", "another variant");
+    expect_refused(replaced(kOff, "1 1 0\n0", "1 x 0\n0"), "'x' is no number", "no number");
+}
+
+std::string ply(const std::string& count, const std::string& faces)
+{
+    return "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement "
+           "face " +
+           count + "\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n" + faces;
+}
+
+TEST(Ply, Faces)
+{
+    EXPECT_DOUBLE_EQ(area(parse_mesh(ply("1", "4 0 1 2 3\n"), "file")), 1);
+    expect_refused(ply("1", "3 0 1 4\n"), "line 14: vertex 4 of 4", "index");
+    expect_refused(ply("1", "3 0 1 -1\n"), "vertex -1 of 4", "negative");
+    expect_refused(ply("1", "0\n"), "a face of 0 corners", "no corner");
+    expect_refused(ply("1", "255 0 1 2\n"), "a list of 255", "longer than the line");
+    expect_refused(ply("2", "3 0 1 2\n"), "element face", "a face missing");
+    expect_refused(ply("0", ""), "no triangles", "no face");
+    expect_refused(ply("99999999999", ""), "99999999999", "too many");
+    expect_refused(replaced(ply("1", "3 0 1 2\n"), "vertex_indices", "corners"), "without the list", "no indices");
+    expect_refused(replaced(ply("1", "3 0 1 2\n"), "uchar int", "uchar float"), "no whole numbers", "float indices");
+    EXPECT_TRUE(looks_like_cloud(ply("0", "")));
+    EXPECT_FALSE(looks_like_cloud(ply("1", "")));
+    EXPECT_FALSE(looks_like_cloud(kSolid));
+    EXPECT_FALSE(looks_like_cloud(kObj));
+    EXPECT_FALSE(looks_like_cloud(kOff));
+    EXPECT_FALSE(looks_like_cloud(binary_stl(tetrahedron())));
+    EXPECT_TRUE(looks_like_cloud("FIELDS x y z\n"));
+    EXPECT_TRUE(looks_like_cloud("1 2 3\n"));
+}
+
+// The triangles of a simple polygon, concave or not, in any plane: they cover its area once, facing the same way.
+TEST(Polygons, ConcaveOnesAreCutWithinTheirEdges)
+{
+    std::vector<Eigen::Vector2d> star, comb;
+    for (int k = 0; k < 14; ++k)
+        star.push_back((k % 2 == 0 ? 1.0 : 0.3) *
+                       Eigen::Vector2d(std::cos(k * std::numbers::pi / 7), std::sin(k * std::numbers::pi / 7)));
+    comb = {{0, 0}, {7, 0}, {7, 5}, {6, 5}, {6, 1}, {5, 1}, {5, 5}, {4, 5}, {4, 1}, {1, 1}, {1, 5}, {0, 5}};
+    for (const auto& outline : {star, comb}) {
+        double expected = 0; // the shoelace formula
+        for (std::size_t k = 0; k < outline.size(); ++k) {
+            const Eigen::Vector2d a = outline[k], b = outline[(k + 1) % outline.size()];
+            expected += 0.5 * (a.x() * b.y() - a.y() * b.x());
+        }
+        for (const Eigen::Vector3d& normal : {Eigen::Vector3d(0, 0, 1), Eigen::Vector3d(0, 0, -1),
+                                              Eigen::Vector3d(1, 0.1, 0), Eigen::Vector3d(-1, -2, 0.5)}) {
+            const auto turn = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), normal);
+            Eigen::Matrix3Xd vertices(3, static_cast<Eigen::Index>(outline.size()));
+            std::vector<std::uint32_t> corners;
+            for (std::size_t k = 0; k < outline.size(); ++k) {
+                vertices.col(static_cast<Eigen::Index>(k)) = turn * Eigen::Vector3d(outline[k].x(), outline[k].y(), 2);
+                corners.push_back(static_cast<std::uint32_t>(k));
+            }
+            double sum = 0;
+            for (const Eigen::Vector3i& t : cut_polygon(vertices, corners)) {
+                const Eigen::Vector3d cross =
+                    (vertices.col(t[1]) - vertices.col(t[0])).cross(vertices.col(t[2]) - vertices.col(t[0]));
+                const double facing = 0.5 * cross.dot(normal.normalized());
+                EXPECT_GT(facing, 0);
+                sum += facing;
+            }
+            EXPECT_NEAR(sum, expected, 1e-12 * expected);
+        }
+    }
+}
+
+TEST(Polygons, WithoutEarsTheyEndAllTheSame)
+{
+    const Eigen::Matrix3Xd line = Eigen::RowVectorXd::LinSpaced(6, 0, 5).replicate(3, 1);
+    const std::vector<std::uint32_t> corners = {0, 3, 1, 5, 2, 4};
+    EXPECT_EQ(cut_polygon(line, corners).size(), 4u);
+}
+
+TEST(Mesh, NormalsAndBox)
+{
+    Mesh mesh = tetrahedron();
+    const Eigen::Matrix3Xd normals = triangle_normals(mesh);
+    EXPECT_EQ(normals.col(0), Eigen::Vector3d(0, 0, -1));
+    EXPECT_NEAR((normals.col(3) - Eigen::Vector3d::Constant(1 / std::sqrt(3))).norm(), 0, 1e-15);
+    EXPECT_EQ(bounding_box(mesh).col(1), Eigen::Vector3d(1, 1, 1));
+    mesh.vertices.col(3) = mesh.vertices.col(0);
+    EXPECT_EQ(triangle_normals(mesh).col(1), Eigen::Vector3d(0, 0, 0));
+    EXPECT_TRUE(bounding_box({Eigen::Matrix3Xd(3, 0), Eigen::Matrix3Xi(3, 0)}).array().isNaN().all());
+}
+
+} // namespace
+} // namespace fettle
