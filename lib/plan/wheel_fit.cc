@@ -15,7 +15,7 @@ namespace {
 constexpr double kPlacesPerWheel = 4;
 constexpr int kMostPlacesAcross = 64;
 // Curvature is taken over this share of the wheel's dimension: shorter bumps, the wheel bridges.
-constexpr double kCurvatureSpan = 0.125;
+constexpr double kCurvatureSpan = 0.03125;
 // Surfaces are fitted to touches; a radius equal to the wheel's within rounding fits.
 constexpr double kRounding = 1e-9;
 
