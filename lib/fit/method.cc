@@ -1,8 +1,10 @@
 #include "core/error.h"
 #include "fit/bspline.h"
+#include "fit/cylinder.h"
 #include "fit/fit.h"
 #include "fit/griddata.h"
 #include "fit/plane.h"
+#include "fit/sphere.h"
 #include "fit/swept.h"
 
 #include <map>
@@ -14,10 +16,8 @@ namespace {
 const std::map<std::string, Fit (*)(const FitInput&)>& methods()
 {
     static const std::map<std::string, Fit (*)(const FitInput&)> table = {
-        {"bspline", fit_bspline},
-        {"griddata", fit_griddata},
-        {"plane", fit_plane},
-        {"swept", fit_swept},
+        {"bspline", fit_bspline}, {"cylinder", fit_cylinder}, {"griddata", fit_griddata},
+        {"plane", fit_plane},     {"sphere", fit_sphere},     {"swept", fit_swept},
     };
     return table;
 }

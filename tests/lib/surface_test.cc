@@ -1,0 +1,301 @@
+#include "surface/surface.h"
+
+#include "core/error.h"
+#include "surface/griddata.h"
+#include "surface/shapes.h"
+#include "surface/surface_grid.h"
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+namespace fettle {
+namespace {
+
+constexpr double kInch = 25.4;
+
+Bspline some_bspline()
+{
+    Bspline spline{0.4, {-30, -20}, {11, 9}, Eigen::MatrixXd(9, 8)};
+    for (Eigen::Index i = 0; i < spline.heights.size(); ++i)
+        spline.heights.data()[i] = 5 * std::sin(1.7 * static_cast<double>(i)) + 0.1 * static_cast<double>(i);
+    return spline;
+}
+
+Cylinder some_cylinder(double curvature)
+{
+    const Eigen::Vector3d normal = Eigen::Vector3d(0.2, -0.3, 1).normalized();
+    const Eigen::Vector3d axis = normal.cross(Eigen::Vector3d(0.5, 0.7, 0.1)).normalized();
+    return {{3, -2, 7}, normal, axis, curvature};
+}
+
+Sphere some_sphere(double curvature) { return {{3, -2, 7}, Eigen::Vector3d(-0.3, 0.25, 1).normalized(), curvature}; }
+
+std::vector<Shape> some_shapes()
+{
+    return {Plane{{2, -5}, 3, {0.4, -1.5}},
+            some_sphere(1 / 90.0),
+            some_sphere(-1 / 90.0),
+            some_cylinder(1 / 70.0),
+            some_cylinder(-1 / 70.0),
+            Swept{{1, 2}, Eigen::Vector2d(0.6, 0.8), 25, {1, -2, 3, 0.5}, 0.2, -25, 25},
+            some_bspline()};
+}
+
+/// Best agreement of a derivative with central differences over several steps: too large truncates, too small rounds.
+double difference_error(const std::function<double(double)>& f, double derivative)
+{
+    double best = std::numeric_limits<double>::infinity();
+    for (const double h : {1e-2, 1e-3, 1e-4, 1e-5})
+        best = std::min(best, std::abs((f(h) - f(-h)) / (2 * h) - derivative));
+    return best;
+}
+
+/// The shape with θ_j changed by `by`, in the parameters that surface.h states.
+Shape changed(const Shape& shape, Eigen::Index j, double by)
+{
+    if (const Plane* plane = std::get_if<Plane>(&shape)) {
+        Plane result = *plane;
+        (j == 0 ? result.z0 : result.slope[j - 1]) += by;
+        return result;
+    }
+    if (const Sphere* sphere = std::get_if<Sphere>(&shape)) {
+        Sphere result = *sphere;
+        if (j == 0) result.point += by * sphere->normal;
+        if (j == 1 || j == 2) result.normal += by * tangents(*sphere)[static_cast<std::size_t>(j - 1)];
+        result.normal.normalize();
+        if (j == 3) result.curvature += by;
+        return result;
+    }
+    if (const Cylinder* cylinder = std::get_if<Cylinder>(&shape)) {
+        Cylinder result = *cylinder;
+        const Eigen::Vector3d across = cylinder->axis.cross(cylinder->normal);
+        if (j == 0) result.point += by * cylinder->normal;
+        if (j == 1) result.normal = (cylinder->normal + by * across).normalized();
+        if (j == 2) {
+            result.normal = (cylinder->normal - by * cylinder->axis).normalized();
+            result.axis = (cylinder->axis + by * cylinder->normal).normalized();
+        }
+        if (j == 3) result.axis = (cylinder->axis + by * across).normalized();
+        if (j == 4) result.curvature += by;
+        return result;
+    }
+    if (const Swept* swept = std::get_if<Swept>(&shape)) {
+        Swept result = *swept;
+        (j < 4 ? result.section[j] : result.slope) += by;
+        return result;
+    }
+    Bspline result = std::get<Bspline>(shape);
+    result.heights.data()[j] += by;
+    return result;
+}
+
+const Eigen::Vector2d kPlaces[] = {{3, -2}, {10, 4}, {-7, 11}, {0, 0}};
+
+TEST(Surface, GradientsAgreeWithDifferences)
+{
+    for (const Shape& shape : some_shapes()) {
+        const Eigen::VectorXi powers = parameter_powers(shape);
+        for (const Eigen::Vector2d& xy : kPlaces) {
+            const Eigen::VectorXd gradient = height_gradients(shape, xy).col(0);
+            ASSERT_EQ(gradient.size(), powers.size());
+            for (Eigen::Index j = 0; j < gradient.size(); ++j) {
+                // Curvatures are of the order of 1/100: their step is smaller by as much.
+                const double unit = powers[j] < 0 ? 1e-3 : 1;
+                const auto along = [&](double h) {
+                    Surface surface;
+                    surface.shape = changed(shape, j, unit * h);
+                    return height(surface, xy);
+                };
+                EXPECT_LT(difference_error(along, unit * gradient[j]), 1e-8 * (1 + std::abs(unit * gradient[j])))
+                    << "shape " << shape.index() << ", parameter " << j;
+            }
+        }
+    }
+}
+
+TEST(Surface, NormalsAgreeWithDifferences)
+{
+    for (const Shape& shape : some_shapes()) {
+        Surface surface;
+        surface.shape = shape;
+        for (const Eigen::Vector2d& xy : kPlaces) {
+            const Eigen::Vector3d n = normal(surface, xy);
+            EXPECT_NEAR(n.norm(), 1, 1e-15);
+            for (int axis = 0; axis < 2; ++axis) {
+                const auto along = [&](double h) { return height(surface, xy + h * Eigen::Vector2d::Unit(axis)); };
+                EXPECT_LT(difference_error(along, -n[axis] / n.z()), 1e-8) << "shape " << shape.index();
+            }
+        }
+    }
+}
+
+TEST(Surface, SphereAndCylinderByCentreAndRadius)
+{
+    // z = cz ± √(R² - r²), exactly.
+    for (const bool convex : {true, false}) {
+        const double side = convex ? 1 : -1;
+        const Sphere sphere = sphere_about({1, 2, 3}, 50, convex);
+        EXPECT_NEAR(height(sphere, {31, 2}), 3 + side * 40, 1e-12);
+        EXPECT_TRUE(std::isnan(height(sphere, {52, 2})));
+        EXPECT_LT((centre(sphere) - Eigen::Vector3d(1, 2, 3)).norm(), 1e-12);
+        EXPECT_NEAR(radius(sphere), 50, 1e-12);
+
+        const Cylinder cylinder = cylinder_about({1, 2, 3}, {0, 3, 4}, 50, convex);
+        // Across the axis at its own height: the section is a circle.
+        EXPECT_NEAR(height(cylinder, {31, 2}), 3 + side * 40 / 0.6, 1e-12);
+        // Along the axis the height rises by 4/3.
+        EXPECT_NEAR(height(cylinder, {31, 5}) - height(cylinder, {31, 2}), 4, 1e-12);
+        EXPECT_TRUE(std::isnan(height(cylinder, {52, 2})));
+    }
+}
+
+TEST(Surface, FlatSphereIsAPlane)
+{
+    const Sphere flat = some_sphere(0);
+    const Plane plane{flat.point.head<2>(), flat.point.z(), -flat.normal.head<2>() / flat.normal.z()};
+    for (const Eigen::Vector2d& xy : kPlaces) {
+        EXPECT_NEAR(height(flat, xy), height(plane, xy), 1e-14);
+        EXPECT_NEAR(height(some_sphere(1e-12), xy), height(plane, xy), 1e-9); // sag r²/2R
+    }
+}
+
+TEST(Surface, BsplineOfLinearControlsIsLinear)
+{
+    Bspline spline = some_bspline();
+    for (Eigen::Index j = 0; j < spline.heights.cols(); ++j)
+        for (Eigen::Index i = 0; i < spline.heights.rows(); ++i)
+            spline.heights(i, j) = 2 + 3 * static_cast<double>(i - 1) - 4 * static_cast<double>(j - 1);
+    for (const Eigen::Vector2d& xy : kPlaces) {
+        const Eigen::Vector2d uv =
+            (Eigen::Rotation2Dd(-spline.angle) * (xy - spline.origin)).cwiseQuotient(spline.cell);
+        EXPECT_NEAR(height(spline, xy), 2 + 3 * uv.x() - 4 * uv.y(), 1e-12);
+    }
+    const Eigen::Vector2d far = Eigen::Rotation2Dd(spline.angle) * Eigen::Vector2d(6 * 11, 5 * 9) + spline.origin;
+    EXPECT_NEAR(height(spline, far), 2 + 18 - 20, 1e-12); // the last corner belongs to it
+    EXPECT_TRUE(std::isnan(height(spline, far + Eigen::Vector2d(1, 1))));
+}
+
+Surface with_everything(const Shape& shape, Units::Length unit)
+{
+    Surface surface;
+    surface.units.length = unit;
+    surface.shape = shape;
+    surface.shift = 0.123;
+    surface.method = "some";
+    const Eigen::Index n = parameter_powers(shape).size();
+    const Eigen::MatrixXd root = Eigen::MatrixXd::NullaryExpr(
+        n, n, [](Eigen::Index i, Eigen::Index j) { return std::cos(1.0 + static_cast<double>(3 * i + 7 * j)); });
+    surface.covariance = root * root.transpose();
+    surface.touch_sigma = 0.05;
+    surface.rms = 0.03;
+    surface.goodness = 0.7;
+    surface.touches.resize(3, 2);
+    surface.touches << 1, 2, 3, 4, 5, 6;
+    surface.roles = Eigen::Vector2i(1, 5);
+    surface.ignored = 3;
+    surface.prediction = Prediction{"posterior", 0.99, 0.4, 0.2, true};
+    return surface;
+}
+
+TEST(SurfaceJson, RoundTripInAnyUnit)
+{
+    for (const Shape& shape : some_shapes())
+        for (const Units::Length unit : {Units::Length::mm, Units::Length::in}) {
+            const Surface surface = with_everything(shape, unit);
+            const Surface back = parse_surface(json::Reader::parse(to_json(surface).text(), "test"));
+            EXPECT_EQ(back.shape.index(), shape.index());
+            for (const Eigen::Vector2d& xy : kPlaces) {
+                EXPECT_NEAR(height(back, xy), height(surface, xy), 1e-12);
+                EXPECT_NEAR(sigma(back, xy) / sigma(surface, xy), 1, 1e-12);
+            }
+            EXPECT_LT((back.touches - surface.touches).norm(), 1e-12);
+            EXPECT_EQ(back.roles, surface.roles);
+            EXPECT_NEAR(back.touch_sigma, 0.05, 1e-15);
+            EXPECT_NEAR(back.rms, 0.03, 1e-15);
+            EXPECT_EQ(back.goodness, 0.7);
+            EXPECT_EQ(back.ignored, 3);
+            EXPECT_EQ(back.method, "some");
+            ASSERT_TRUE(back.prediction.has_value());
+            EXPECT_NEAR(back.prediction->band, 0.4, 1e-15);
+            EXPECT_TRUE(back.prediction->clamped);
+        }
+}
+
+TEST(SurfaceJson, UnitsAreTheFiles)
+{
+    Surface surface;
+    surface.units.length = Units::Length::in;
+    surface.shape = sphere_about({0, 0, 0}, 4 * kInch, true);
+    json::Reader shape = json::Reader::parse(to_json(surface).text(), "test").object("shape");
+    EXPECT_NEAR(shape.number("curvature"), 0.25, 1e-15);
+    EXPECT_NEAR(shape.vector("point")[2], 4, 1e-15);
+}
+
+std::string refusal(const std::string& text)
+{
+    try {
+        parse_surface(json::Reader::parse(text, "s.json"));
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+std::string surface_text(const std::string& shape, const std::string& more = "")
+{
+    return R"({"kind": "surface", "units": {"length": "mm"}, "shape": )" + shape + more + "}";
+}
+
+TEST(SurfaceJson, RefusesWhatIsWrong)
+{
+    const std::string plane = R"({"type": "plane", "origin": [0, 0], "z0": 1, "slope": [0, 0]})";
+    EXPECT_EQ(refusal(surface_text(plane)), "");
+    EXPECT_EQ(refusal(surface_text(plane, R"(, "covariance": [1, 0, 1])")),
+              "s.json: covariance: expected 6 numbers, got 3");
+    EXPECT_EQ(refusal(surface_text(plane, R"(, "covariance": [-1, 0, 1, 0, 0, 1])")),
+              "s.json: covariance: has a negative variance");
+    EXPECT_EQ(refusal(surface_text(plane, R"(, "touches": [[1, 2, 3, 9]])")),
+              "s.json: touches[0][3]: is no role (0 to 5)");
+    EXPECT_EQ(refusal(surface_text(plane, R"(, "shiftt": 1)")), "s.json: shiftt: unknown key, did you mean \"shift\"?");
+    EXPECT_EQ(refusal(surface_text(R"({"type": "plan", "origin": [0, 0], "z0": 1, "slope": [0, 0]})")),
+              "s.json: shape.type: \"plan\" is none of plane, sphere, cylinder, swept, bspline, griddata; did you mean "
+              "\"plane\"?");
+    EXPECT_EQ(refusal(surface_text(R"({"type": "sphere", "point": [0, 0, 0], "normal": [0, 0, 2], "curvature": 0})")),
+              "s.json: shape.normal: must have length 1");
+    EXPECT_EQ(refusal(surface_text(R"({"type": "sphere", "point": [0, 0, 0], "normal": [0, 0, -1], "curvature": 0})")),
+              "s.json: shape.normal: must point up");
+    EXPECT_EQ(refusal(surface_text(R"({"type": "bspline", "angle_deg": 0, "origin": [0, 0], "cell": [1, 1],
+                                      "heights": [[1, 1, 1], [1, 1, 1], [1, 1, 1], [1, 1, 1]]})")),
+              "s.json: shape.heights: expected at least 4 rows of 4 (one cubic cell)");
+    EXPECT_EQ(refusal(surface_text(R"({"type": "bspline", "angle_deg": 0, "origin": [0, 0], "cell": [1, 0],
+                                      "heights": [[1, 1, 1, 1], [1, 1, 1, 1], [1, 1, 1, 1], [1, 1, 1, 1]]})")),
+              "s.json: shape.cell: must be positive");
+}
+
+TEST(SurfaceGrid, CoversTheOutlineOnce)
+{
+    Polygon square(2, 4);
+    square << 0, 10, 10, 0, 0, 0, 5, 5;
+    const SurfaceGrid grid = grid_over(square, 0.3, 2.5);
+    ASSERT_EQ(grid.xy.cols(), 5 * 3);
+    ASSERT_EQ(grid.triangles.cols(), 2 * 4 * 2);
+    Surface surface;
+    surface.shape = Plane{{0, 0}, 1, {0, 0}};
+    const Mesh mesh = mesh_of(surface, grid);
+    double total = 0;
+    for (Eigen::Index i = 0; i < mesh.triangles.cols(); ++i) {
+        const Eigen::Vector3d a = mesh.vertices.col(mesh.triangles(0, i));
+        total +=
+            (mesh.vertices.col(mesh.triangles(1, i)) - a).cross(mesh.vertices.col(mesh.triangles(2, i)) - a).z() / 2;
+    }
+    EXPECT_NEAR(total, 50, 1e-12);
+    // Aligned with the turned frame: the second point is one step along its x axis.
+    EXPECT_LT((grid.xy.col(1) - 2.5 * Eigen::Vector2d(std::cos(0.3), std::sin(0.3))).norm(), 1e-12);
+    EXPECT_THROW(grid_over(square, 0, 1e-4), InputError);
+}
+
+} // namespace
+} // namespace fettle
