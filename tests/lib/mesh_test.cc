@@ -188,7 +188,7 @@ TEST(Stl, MalformedAsciiIsRefusedWithItsLine)
 
 TEST(Stl, FilesOfOthers)
 {
-    const Mesh boxes = read_mesh(data("two_objects_mixed_case_names.stl");
+    const Mesh boxes = read_mesh(data("two_objects_mixed_case_names.stl"));
     EXPECT_EQ(boxes.vertices.cols(), 16); // two closed boxes: 8 corners and 12 triangles each
     EXPECT_EQ(boxes.triangles.cols(), 24);
     EXPECT_EQ(read_mesh(data("soup.stl")).vertices.cols(), 300);
