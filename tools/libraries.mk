@@ -1,7 +1,7 @@
 # Which heavy libraries a tool links. A tool that is not listed links none of them.
 KDTREE := -lpcl_kdtree -lpcl_search
 
-$(B)/bin/fettle-part:     LDLIBS = $(PCD) $(KDTREE) $(EMBREE)
+$(B)/bin/fettle-part:     LDLIBS = $(PCD)
 $(B)/bin/fettle-sample:   LDLIBS = $(PCD)
 $(B)/bin/fettle-estimate: LDLIBS = $(PCD)
 $(B)/bin/fettle-fit:      LDLIBS = $(PCD) $(CERES)
