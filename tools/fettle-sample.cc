@@ -2,6 +2,7 @@
 #include "cloud/pcd.h"
 #include "core/file.h"
 #include "core/text.h"
+#include "job/plausible.h"
 #include "sampling/freeform.h"
 #include "sampling/order.h"
 #include "sampling/probe.h"
@@ -15,8 +16,10 @@ namespace {
 // Wang 2007, 4.4.3.1: fewer than 60 touches are wanted; a hundred lines each way is a slip.
 constexpr int kMostLinesEachWay = 100;
 
-// Names the places that no touch reached; too long a list helps nobody.
-void refuse_missed(const std::string& scan, const Job& job, const Eigen::Matrix3Xd& touches, const TouchPlan& plan)
+// Names the places that no touch reached; too long a list helps nobody. It is bad input (a hole in the scan, the wrong
+// part or unit), not an answer.
+void refuse_missed(const std::string& scan, const Job& job, const Eigen::Matrix3Xd& touches, const TouchPlan& plan,
+                   const std::string& doubt)
 {
     constexpr int kNamed = 5;
     int missed = 0;
@@ -27,7 +30,7 @@ void refuse_missed(const std::string& scan, const Job& job, const Eigen::Matrix3
     if (missed == 0) return;
     if (missed > kNamed) places += " and " + std::to_string(missed - kNamed) + " more";
     throw InputError(scan, std::to_string(missed) + " of " + std::to_string(touches.cols()) +
-                               " touches find no surface, at " + places);
+                               " touches find no surface, at " + places + (doubt.empty() ? "" : "; " + doubt));
 }
 
 Cloud samples_in_order(const Eigen::Matrix3Xd& touches, const TouchPlan& plan, const std::vector<Eigen::Index>& order)
@@ -77,7 +80,9 @@ int main(int argc, char** argv)
         if (!part.empty() && !plan_only) {
             const Scan scan = read_scan(part, job.units, part_unit);
             touches = probe(scan, job, plan, noise, t.seed());
-            refuse_missed(display_name(part), job, touches, plan);
+            const std::string doubt = implausible_box(scan.bounds(), job);
+            refuse_missed(display_name(part), job, touches, plan, doubt);
+            if (!doubt.empty()) t.warn(display_name(part) + ": " + doubt);
         } else if (!plan_only && touches.row(2).hasNaN()) {
             throw InputError(display_name(job_file), "touch points without z: name the part to touch, --on SURFACE");
         }

@@ -2,6 +2,7 @@
 #include "job/job.h"
 
 #include "core/error.h"
+#include "job/plausible.h"
 
 #include <gtest/gtest.h>
 
@@ -134,6 +135,23 @@ TEST(Job, RefusesWrongShapesOfTheFile)
     EXPECT_EQ(problem(R"({"kind": "job", "units": {"length": "in"}, "surface": {"type": "plane"},
       "anomaly": [[0,0],[1e300,0],[0,1]]})"),
               "job.json: anomaly[1][0]: no casting reaches that far: 1e+300");
+}
+
+TEST(Plausible, BoxInAnotherUnitIsDoubted)
+{
+    const Job job = parse(inches(""));
+    const auto doubt = [&](double low, double high) {
+        Eigen::Matrix<double, 3, 2> box;
+        box << low, high, low, high, 0, 10;
+        return implausible_box(box, job);
+    };
+    EXPECT_EQ(doubt(-10, 100), "");
+    EXPECT_EQ(doubt(0, 76.2), ""); // the boundary itself
+    EXPECT_EQ(doubt(0, 3),
+              "the part, 0.11811 x 0.11811 x 0.393701 in, does not hold the job's boundary: is its unit right?");
+    EXPECT_EQ(
+        doubt(0, 25400),
+        "the part, 1000 x 1000 x 0.393701 in, is over 100 times as long as the job's boundary: is its unit right?");
 }
 
 TEST(Job, WorkingFrameIsTurnedCounterClockwise)
