@@ -13,8 +13,9 @@ int main(int argc, char** argv)
             const std::string& input = t.input("SAMPLES", "touches of fettle-sample, PCD");
             const auto& file_unit = t.length_unit("--file-units", "Unit of the samples, if it is not the job's");
             const bool& ascii = t.flag("--ascii", "Text instead of binary");
-            t.example("fettle-sample concave.json --on concave.stl | fettle-estimate concave.json > points.pcd",
-                      "touches and estimated points (role 3); those of a plane or a swept surface pass unchanged");
+            t.example(
+                "fettle-sample jobs/hammer.json --on scans/hammer.stl | fettle-estimate jobs/hammer.json > points.pcd",
+                "touches and estimated points (role 3); those of a plane or a swept surface pass unchanged");
             t.reference("Wang 2007, 4.3, fig. 4-5");
             t.parse();
 

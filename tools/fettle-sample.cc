@@ -33,6 +33,24 @@ void refuse_missed(const std::string& scan, const Job& job, const Eigen::Matrix3
                                " touches find no surface, at " + places + (doubt.empty() ? "" : "; " + doubt));
 }
 
+Eigen::Matrix3Xd untouched(const TouchPlan& plan)
+{
+    Eigen::Matrix3Xd places(3, plan.size());
+    places << plan.xy, plan.z.transpose();
+    return places;
+}
+
+Eigen::Matrix3Xd probe_part(const Tool& t, const std::string& part, std::optional<Units::Length> unit, const Job& job,
+                            const TouchPlan& plan, const TouchNoise& noise)
+{
+    const Scan scan = read_scan(part, job.units, unit);
+    const Eigen::Matrix3Xd touches = probe(scan, job, plan, noise, t.seed());
+    const std::string doubt = implausible_box(scan.bounds(), job);
+    refuse_missed(display_name(part), job, touches, plan, doubt);
+    if (!doubt.empty()) t.warn(display_name(part) + ": " + doubt);
+    return touches;
+}
+
 Cloud samples_in_order(const Eigen::Matrix3Xd& touches, const TouchPlan& plan, const std::vector<Eigen::Index>& order)
 {
     Cloud samples;
@@ -62,8 +80,8 @@ int main(int argc, char** argv)
                                    0, kMostLinesEachWay);
         const bool& plan_only = t.flag("--plan-only", "Choose only: x and y, no z but where the job gives it");
         const bool& ascii = t.flag("--ascii", "Text instead of binary");
-        t.example("fettle-sample concave.json --on concave.stl --noise normal:0.005 --seed 7 > samples.pcd",
-                  "touch the part where Wang's rules say, with the errors of a common probe");
+        t.example("fettle-sample jobs/hammer.json --on scans/hammer.stl --noise normal:0.1 --seed 7 > samples.pcd",
+                  "touch a scanned hammer where Wang's rules say, 99 % of the touches within 0.1 mm");
         t.reference("Wang 2007, 4.4.4 (touch points), eq. 4-5 (number of lines)");
         t.parse();
 
@@ -71,22 +89,15 @@ int main(int argc, char** argv)
         const double mm = job.units.mm();
         if (tip) job.probe.tip_radius = *tip * mm;
         const TouchNoise noise = parse_noise(noise_text, mm);
-
         if (lines > 0 && job.surface != SurfaceType::freeform)
             throw InputError(display_name(job_file), "--lines is for free-form jobs");
         const TouchPlan plan = lines > 0 ? plan_freeform(job, LineCount{lines, lines}) : plan_touches(job);
-        Eigen::Matrix3Xd touches(3, plan.size());
-        touches << plan.xy, plan.z.transpose();
+        Eigen::Matrix3Xd touches = untouched(plan);
         if (!part.empty() && !plan_only) {
-            const Scan scan = read_scan(part, job.units, part_unit);
-            touches = probe(scan, job, plan, noise, t.seed());
-            const std::string doubt = implausible_box(scan.bounds(), job);
-            refuse_missed(display_name(part), job, touches, plan, doubt);
-            if (!doubt.empty()) t.warn(display_name(part) + ": " + doubt);
+            touches = probe_part(t, part, part_unit, job, plan, noise);
         } else if (!plan_only && touches.row(2).hasNaN()) {
             throw InputError(display_name(job_file), "touch points without z: name the part to touch, --on SURFACE");
         }
-
         const std::vector<Eigen::Index> order = short_way(touches.topRows<2>());
         const double highest = touches.row(2).maxCoeff<Eigen::PropagateNumbers>();
         if (highest > job.safe_height)
