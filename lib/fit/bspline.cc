@@ -9,6 +9,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
+#include <Eigen/QR>
 
 #include <algorithm>
 #include <cmath>
@@ -47,12 +48,6 @@ Bspline grid_over(const FitInput& input, const Eigen::Matrix3Xd& touches)
     return grid;
 }
 
-/// The rms of f's second derivatives that is expected at most: slopes change by about 1 over the touched length.
-double expected_curvature(const Eigen::Matrix3Xd& touches)
-{
-    return 1 / (touches.topRows(2).rowwise().maxCoeff() - touches.topRows(2).rowwise().minCoeff()).norm();
-}
-
 void refuse_line(const FitInput& input, const Eigen::Matrix3Xd& touches)
 {
     const Eigen::Matrix2Xd d = touches.topRows(2).colwise() - touches.topRows(2).rowwise().mean().eval();
@@ -73,6 +68,23 @@ struct Model {
     Eigen::VectorXd curvature_precision; ///< of β: (1 / standard deviation) of u², uv, v²; 0 for 1, u, v
 };
 
+/// Size of the second derivatives of u², uv and v² (Frobenius norm of D²; uv's stands there twice), 1/mm.
+Eigen::Vector3d second_derivatives(double half) { return Eigen::Vector3d(2, std::sqrt(2.0), 2) / (half * half); }
+
+/// The size of D²f that is expected at most: what the least quadratic through the touches has, but no less than what
+/// changes the slope by 1 over the touched length.
+double expected_curvature(const Model& m, const Eigen::Matrix3Xd& touches)
+{
+    Eigen::CompleteOrthogonalDecomposition<MatrixXd> least_squares;
+    least_squares.setThreshold(kRounding); // a twist that is only rounding is left 0
+    least_squares.compute(m.H);
+    const VectorXd z = touches.row(2).transpose().array() - touches.row(2).mean();
+    const VectorXd beta = least_squares.solve(z);
+    const double touched = beta.tail(3).cwiseProduct(second_derivatives(m.prior.half)).norm();
+    const Eigen::Vector2d size = touches.topRows(2).rowwise().maxCoeff() - touches.topRows(2).rowwise().minCoeff();
+    return std::max(touched, 1 / size.norm());
+}
+
 Model model_of(const Bspline& grid, const Surface& surface)
 {
     Model m;
@@ -81,10 +93,8 @@ Model model_of(const Bspline& grid, const Surface& surface)
     m.GA.noalias() = m.prior.pseudo_inverse * m.A.transpose();
     m.H.noalias() = m.A * m.prior.quadratics;
     m.R.noalias() = m.A * m.GA;
-    // D² of u²: 2/half², of uv: 1/half², twice in the Frobenius norm.
-    const double unit = 1 / (m.prior.half * m.prior.half * expected_curvature(surface.touches));
     m.curvature_precision.setZero(6);
-    m.curvature_precision.tail(3) << 2 * unit, std::sqrt(2.0) * unit, 2 * unit;
+    m.curvature_precision.tail(3) = second_derivatives(m.prior.half) / expected_curvature(m, surface.touches);
     return m;
 }
 
