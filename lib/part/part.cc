@@ -55,17 +55,17 @@ InputError beside(std::size_t anomaly)
 }
 
 /// The mesh with the triangles that the anomalies need; not lifted yet.
-Mesh lay(Mesh mesh, const std::vector<Anomaly>& anomalies, double step)
+Mesh lay(const Mesh& mesh, const std::vector<Anomaly>& anomalies, double step)
 {
+    if (anomalies.empty()) return mesh;
+    Mesh refined = refine(mesh, anomalies, {.step = step, .chord = kAnomalyChord, .least = kLeastEdge * step});
     for (std::size_t i = 0; i < anomalies.size(); ++i) {
         bool touched = false;
-        for (Index v = 0; v < mesh.vertices.cols() && !touched; ++v)
-            touched = anomalies[i].footprint.contains(Vector2d(mesh.vertices.col(v).head<2>()));
+        for (Index v = 0; v < refined.vertices.cols() && !touched; ++v)
+            touched = anomalies[i].height(refined.vertices.col(v).head<2>()) > 0;
         if (!touched) throw beside(i);
     }
-    return anomalies.empty()
-               ? mesh
-               : refine(mesh, anomalies, {.step = step, .chord = kAnomalyChord, .least = kLeastEdge * step});
+    return refined;
 }
 
 Mesh make(const MadeSurface& made, const PartSpec& spec)
@@ -113,7 +113,7 @@ Mesh lay_on(Mesh mesh, const PartSpec& spec)
 {
     if (spec.anomalies.empty()) return mesh;
     const Scan bare(mesh);
-    mesh = lay(std::move(mesh), spec.anomalies, spec.step);
+    mesh = lay(mesh, spec.anomalies, spec.step);
     // A vertex on the upper side meets the highest surface over it, but for the rounding of its coordinates.
     const double rounding = 1e-9 * mesh.vertices.cwiseAbs().maxCoeff();
     for (Index v = 0; v < mesh.vertices.cols(); ++v) {
