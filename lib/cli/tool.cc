@@ -1,5 +1,6 @@
 #include "cli/tool.h"
 
+#include "cli/command_line.h"
 #include "core/file.h"
 #include "core/text.h"
 
@@ -8,6 +9,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <deque>
 #include <iostream>
 #include <thread>
@@ -242,7 +244,9 @@ void Tool::parse()
         ->default_str(std::to_string(kSeed));
     add_parsed(s.app, "--threads", "Threads; the result does not depend on them",
                [&s](const std::string& text) {
-                   s.threads = static_cast<int>(parse_in_range(text, Range::between(1, kMostThreads)));
+                   const double number = parse_in_range(text, Range::between(1, kMostThreads));
+                   if (number != std::floor(number)) throw CLI::ValidationError("must be whole, got " + text);
+                   s.threads = static_cast<int>(number);
                })
         ->type_name("N")
         ->default_str("all cores");
@@ -251,6 +255,7 @@ void Tool::parse()
     s.app.add_flag("-v,--verbose", s.verbose, "Say what is done")->multi_option_policy(CLI::MultiOptionPolicy::Throw);
     s.app.footer(s.example + (s.reference.empty() ? "" : "\n\n" + s.reference));
     s.app.get_formatter()->column_width(32);
+    check_options(s.app, s.argc, s.argv);
     s.app.parse(s.argc, s.argv);
     if (s.threads > 0)
         s.thread_limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
@@ -267,7 +272,11 @@ std::ostream& Tool::output()
     return state_->bulk->stream();
 }
 
-std::ostream& Tool::output_file(const std::string& path) { return state_->others.emplace_back(path).stream(); }
+std::ostream& Tool::output_file(const std::string& path)
+{
+    if (path != "-" && path == state_->output) throw InputError(path, "named for two outputs");
+    return state_->others.emplace_back(path).stream();
+}
 
 json::Value& Tool::report() { return state_->report; }
 
@@ -329,6 +338,8 @@ int tool_main(int argc, char** argv, const std::string& description, const std::
                 out.stream() << name << ' ' << FETTLE_VERSION << '\n';
             out.commit();
             return 0;
+        } catch (const CLI::ExtrasError&) {
+            message = "unexpected argument '" + tool.state_->app.remaining().front() + "' (see " + name + " --help)";
         } catch (const CLI::ParseError& error) {
             message = std::string(error.what()) + " (see " + name + " --help)";
         }

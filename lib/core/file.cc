@@ -22,7 +22,7 @@ namespace {
 
 } // namespace
 
-std::string display_name(const std::string& path) { return path == "-" ? "stdin" : path; }
+std::string display_name(const std::string& path) { return path == "-" ? "stdin" : path.empty() ? "''" : path; }
 
 std::string read_whole(const std::string& path)
 {
@@ -64,7 +64,7 @@ struct OutputFile::State {
 OutputFile::OutputFile(const std::string& path) : state_(std::make_unique<State>())
 {
     State& s = *state_;
-    s.path = path == "-" ? "stdout" : path;
+    s.path = path == "-" ? "stdout" : display_name(path);
     int file = -1;
     struct stat status = {};
     if (path == "-") {

@@ -2,6 +2,7 @@
 
 #include "cloud/fields.h"
 #include "cloud/pcd.h"
+#include "core/error.h"
 #include "core/text.h"
 #include "mesh/mesh_file.h"
 #include "json/leaves.h"
@@ -10,6 +11,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <variant>
 
 namespace fettle {
 
@@ -61,11 +63,11 @@ class Tally {
     Difference found_;
 };
 
-void compare_json(std::string_view a, const std::string& name_a, std::string_view b, const std::string& name_b,
+using Leaves = std::vector<json::Leaf>;
+
+void compare_json(const Leaves& leaves_a, const std::string& name_a, const Leaves& leaves_b, const std::string& name_b,
                   Tally& tally)
 {
-    const std::vector<json::Leaf> leaves_a = json::leaves(a, name_a);
-    const std::vector<json::Leaf> leaves_b = json::leaves(b, name_b);
     std::map<std::string, const json::Leaf*> others;
     for (const json::Leaf& leaf : leaves_b) others[leaf.path] = &leaf;
     for (const json::Leaf& leaf : leaves_a) {
@@ -123,7 +125,8 @@ void compare_field(const Field& a, const Field& b, double unit, Tally& tally)
 void compare_viewpoint(const Cloud& a, const Cloud& b, double unit, Tally& tally)
 {
     for (int axis = 0; axis < 3; ++axis)
-        tally.number(a.view_origin[axis] / unit, b.view_origin[axis] / unit, [] { return std::string("VIEWPOINT, origin"); });
+        tally.number(a.view_origin[axis] / unit, b.view_origin[axis] / unit,
+                     [] { return std::string("VIEWPOINT, origin"); });
     for (int part = 0; part < 4; ++part)
         tally.number(a.view_orientation.coeffs()[part], b.view_orientation.coeffs()[part],
                      [] { return std::string("VIEWPOINT, orientation"); });
@@ -160,16 +163,23 @@ void compare_meshes(const Mesh& a, const Mesh& b, Tally& tally)
                 });
 }
 
-enum class Kind { json, cloud, mesh };
+using Content = std::variant<Leaves, CloudFile, Mesh>;
 
-Kind kind_of(std::string_view bytes)
+Content read_content(std::string_view bytes, const std::string& name)
 {
     const std::size_t first = bytes.find_first_not_of(" \t\r\n");
-    if (first != std::string_view::npos && (bytes[first] == '{' || bytes[first] == '[')) return Kind::json;
-    return looks_like_cloud(bytes) ? Kind::cloud : Kind::mesh;
+    if (first == std::string_view::npos) throw InputError(name, "empty");
+    if (bytes[first] == '{' || bytes[first] == '[') return json::leaves(bytes, name);
+    if (looks_like_cloud(bytes)) return parse_cloud(bytes, name);
+    return parse_mesh(bytes, name);
 }
 
-std::string to_string(Kind kind) { return kind == Kind::json ? "JSON" : kind == Kind::cloud ? "points" : "a mesh"; }
+std::string kind_of(const Content& content)
+{
+    return std::holds_alternative<Leaves>(content)      ? "JSON"
+           : std::holds_alternative<CloudFile>(content) ? "points"
+                                                        : "a mesh";
+}
 
 } // namespace
 
@@ -177,17 +187,16 @@ Difference difference(std::string_view a, const std::string& name_a, std::string
                       const Tolerance& tolerance)
 {
     Tally tally(tolerance);
-    const Kind kind = kind_of(a);
-    if (kind != kind_of(b)) {
-        tally.same_structure("kind", to_string(kind), to_string(kind_of(b)));
-        return tally.result();
-    }
-    if (kind == Kind::json)
-        compare_json(a, name_a, b, name_b, tally);
-    else if (kind == Kind::cloud)
-        compare_clouds(parse_cloud(a, name_a), parse_cloud(b, name_b), tally);
+    const Content content_a = read_content(a, name_a);
+    const Content content_b = read_content(b, name_b);
+    tally.same_structure("kind", kind_of(content_a), kind_of(content_b));
+    if (content_a.index() != content_b.index()) return tally.result();
+    if (const auto* leaves = std::get_if<Leaves>(&content_a))
+        compare_json(*leaves, name_a, std::get<Leaves>(content_b), name_b, tally);
+    else if (const auto* cloud = std::get_if<CloudFile>(&content_a))
+        compare_clouds(*cloud, std::get<CloudFile>(content_b), tally);
     else
-        compare_meshes(parse_mesh(a, name_a), parse_mesh(b, name_b), tally);
+        compare_meshes(std::get<Mesh>(content_a), std::get<Mesh>(content_b), tally);
     return tally.result();
 }
 

@@ -1,0 +1,68 @@
+#include "cli/command_line.h"
+
+#include "core/error.h"
+#include "core/text.h"
+
+#include <CLI/CLI.hpp>
+
+#include <set>
+#include <string>
+#include <vector>
+
+namespace fettle {
+
+namespace {
+
+bool is_number(const std::string& word) { return parse_number(word).has_value(); }
+
+bool looks_like_option(const std::string& word)
+{
+    return word.size() > 1 && word[0] == '-' && !is_number(word) && !is_number(word.substr(0, word.find(',')));
+}
+
+// "-o", "--output" of "-oFILE", "--output=FILE".
+std::string option_name(const std::string& word)
+{
+    return word.starts_with("--") ? word.substr(0, word.find('=')) : word.substr(0, 2);
+}
+
+bool has_value_attached(const std::string& word)
+{
+    return word.starts_with("--") ? word.find('=') != std::string::npos : word.size() > 2;
+}
+
+[[noreturn]] void refuse_unknown(const CLI::App& app, const std::string& name)
+{
+    std::vector<std::string> known;
+    for (const CLI::Option* option : app.get_options())
+        for (const std::string& word : option->get_lnames()) known.push_back("--" + word);
+    std::string guess = nearest_word(name, known);
+    for (const std::string& word : known) // a whole word too much or too little is no slip of a letter
+        if (guess.empty() && name.size() > 3 && (word.starts_with(name) || name.starts_with(word))) guess = word;
+    throw InputError("unknown option '" + name + "'" + (guess.empty() ? "" : ", did you mean '" + guess + "'?"));
+}
+
+} // namespace
+
+void check_options(const CLI::App& app, int argc, char** argv)
+{
+    const std::vector<std::string> words(argv + 1, argv + argc);
+    std::set<const CLI::Option*> seen;
+    for (std::size_t i = 0; i < words.size() && words[i] != "--"; ++i) {
+        if (!looks_like_option(words[i])) continue;
+        const std::string name = option_name(words[i]);
+        const CLI::Option* option = app.get_option_no_throw(name);
+        if (option == nullptr) refuse_unknown(app, name);
+        if (option == app.get_help_ptr()) return;
+        if (!seen.insert(option).second) throw InputError("option " + name + " is given twice");
+        if (option->get_expected_max() == 0) continue;
+        if (has_value_attached(words[i]) && !words[i].ends_with('=')) continue;
+        const std::string next = has_value_attached(words[i]) || i + 1 == words.size() ? "" : words[i + 1];
+        const bool value = !next.empty() && next != "--" &&
+                           !(looks_like_option(next) && app.get_option_no_throw(option_name(next)) != nullptr);
+        if (!value) throw InputError("option " + name + ": value missing");
+        ++i;
+    }
+}
+
+} // namespace fettle

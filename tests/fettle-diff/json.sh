@@ -1,0 +1,8 @@
+# JSON is compared member by member, whatever their order; texts exactly, numbers within the tolerance. By hand.
+echo '{"kind": "x", "list": [1, 2.0, {"deep": null}], "empty": []}' > a.json
+echo '{"list": [1, 2.5, {"deep": null}], "kind": "x", "empty": {}, "more": true}' > b.json
+fettle-diff a.json a.json
+! fettle-diff --tol 0.5 a.json b.json
+sed 's/{}/[]/; s/, "more": true//' b.json > c.json
+! fettle-diff --tol 0.4 a.json c.json
+fettle-diff --tol 0.5 a.json c.json
