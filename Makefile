@@ -44,8 +44,8 @@ EMBREE := -lembree3
 OPENCV := -lopencv_imgcodecs -lopencv_imgproc -lopencv_core
 LDLIBS_ALL := -ltbb
 
-# The one file that sees OpenCV.
-$(B)/lib/compare/canvas.o: override CPPFLAGS += $(addprefix -isystem ,$(wildcard /usr/include/opencv4))
+# The one file that sees OpenCV, and its test.
+$(B)/lib/compare/canvas.o $(B)/tests/lib/picture_test.o: override CPPFLAGS += $(addprefix -isystem ,$(wildcard /usr/include/opencv4))
 
 include tools/libraries.mk
 

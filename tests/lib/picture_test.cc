@@ -1,0 +1,154 @@
+// Pictures read back: the colours at known places are those of the values there.
+#include "compare/picture.h"
+
+#include "compare/colours.h"
+#include "compare/raster.h"
+#include "core/error.h"
+
+#include <gtest/gtest.h>
+#include <opencv2/imgcodecs.hpp>
+
+#include <cmath>
+#include <numbers>
+
+namespace fettle {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+const ColourScale kUnit{1};
+
+/// 20 x 20 points, 2 mm apart; their error is that of `error` over the grid's own coordinates.
+template <typename Error>
+Cloud grid(const Error& error, double angle = 0)
+{
+    Cloud cloud;
+    cloud.xyz.resize(3, 400);
+    Eigen::VectorXd errors(400);
+    const Eigen::Matrix2d turn = Eigen::Rotation2Dd(angle).toRotationMatrix();
+    for (int i = 0; i < 400; ++i) {
+        const Eigen::Vector2d at(2 * (i % 20), 2 * (i / 20));
+        cloud.xyz.col(i) << turn * at, 1;
+        errors[i] = error(at);
+    }
+    set_field(cloud, "error", errors);
+    return cloud;
+}
+
+cv::Mat3b drawn(const std::variant<Cloud, Mesh>& part, const PictureOptions& options)
+{
+    const std::string bytes = picture(part, options);
+    return cv::imdecode(
+        cv::Mat1b(1, static_cast<int>(bytes.size()), reinterpret_cast<uchar*>(const_cast<char*>(bytes.data()))),
+        cv::IMREAD_COLOR);
+}
+
+Rgb at(const cv::Mat3b& picture, int column, int row)
+{
+    const cv::Vec3b bgr = picture(row, column);
+    return {bgr[2], bgr[1], bgr[0]};
+}
+
+PictureOptions errors_to(double limit)
+{
+    PictureOptions options;
+    options.field = "error";
+    options.scale = limit;
+    return options;
+}
+
+// A square map of 680 pixels stands in the middle of the frame of 900 x 680 whose corner is (84, 78).
+constexpr int kLeft = 84 + 110, kTop = 78, kSide = 680;
+
+TEST(Picture, EachPointIsItsCellWithTheColourOfItsValue)
+{
+    const Cloud cloud = grid([](const Eigen::Vector2d& p) {
+        return p.x() < 19 ? p.y() < 19 ? -1 : 0 : p.y() < 19 ? kNaN : 1;
+    });
+    const cv::Mat3b sheet = drawn(cloud, errors_to(1));
+    for (int column = 2; column < kSide - 2; ++column)
+        for (int row = 2; row < kSide - 2; ++row) {
+            if (std::abs(column - kSide / 2) < 2 || std::abs(row - kSide / 2) < 2) continue;
+            const bool left = column<kSide / 2, below = row> kSide / 2;
+            const double error = left ? below ? -1 : 0 : below ? kNaN : 1;
+            // No holes between the cells; y grows upwards.
+            ASSERT_EQ(at(sheet, kLeft + column, kTop + row), kUnit(error)) << column << ' ' << row;
+        }
+    // The legend: material left on top, over-cut at the bottom.
+    const double third_row = 1 - 2 * 2.5 / (kSide - 68); // of a bar that stands 34 pixels inside the frame
+    EXPECT_EQ(at(sheet, 84 + 900 + 40 + 10, kTop + 34 + 2), kUnit(third_row));
+    EXPECT_EQ(at(sheet, 84 + 900 + 40 + 10, kTop + kSide - 34 - 3), kUnit(-third_row));
+}
+
+TEST(Picture, TurnedGridsHaveNoHoles)
+{
+    const cv::Mat3b sheet = drawn(grid([](const Eigen::Vector2d&) { return 0.5; }, 0.4), errors_to(1));
+    // A disc about the middle of the frame, within the turned square.
+    for (int column = -200; column <= 200; ++column)
+        for (int row = -200; row <= 200; ++row) {
+            if (std::hypot(column, row) > 200) continue;
+            ASSERT_EQ(at(sheet, 84 + 450 + column, kTop + 340 + row), kUnit(0.5));
+        }
+}
+
+TEST(Picture, BandsAreStepsOfColour)
+{
+    PictureOptions options = errors_to(1);
+    options.bands = 4; // middles at ±0.25 and ±0.75
+    const cv::Mat3b sheet = drawn(grid([](const Eigen::Vector2d& p) { return p.x() < 19 ? 0.01 : 0.49; }), options);
+    EXPECT_EQ(at(sheet, kLeft + 100, kTop + 300), kUnit(0.25));
+    EXPECT_EQ(at(sheet, kLeft + 500, kTop + 300), kUnit(0.25));
+}
+
+TEST(Picture, IsTheSameEachTime)
+{
+    const Cloud cloud = grid([](const Eigen::Vector2d& p) { return std::sin(p.x()); });
+    EXPECT_EQ(picture(cloud, errors_to(1)), picture(cloud, errors_to(1)));
+}
+
+// A pyramid under light from the upper left.
+TEST(Picture, HeightsAreShaded)
+{
+    Mesh mesh;
+    mesh.vertices.resize(3, 5);
+    mesh.vertices << -10, 10, 10, -10, 0, -10, -10, 10, 10, 0, 0, 0, 0, 0, 5;
+    mesh.triangles.resize(3, 4);
+    mesh.triangles << 0, 1, 2, 3, 1, 2, 3, 0, 4, 4, 4, 4;
+    PictureOptions options;
+    options.scale = 1e6; // one colour: what differs is the light
+    const cv::Mat3b sheet = drawn(mesh, options);
+    const auto light = [&](int column, int row) { return at(sheet, kLeft + column, kTop + row)[1]; };
+    EXPECT_GT(light(340, 100), light(340, 580)); // north over south
+    EXPECT_GT(light(100, 340), light(580, 340)); // west over east
+}
+
+TEST(Picture, HasRoomForOnePoint)
+{
+    Cloud cloud;
+    cloud.xyz = Eigen::Vector3d(3, 4, 5);
+    const cv::Mat3b sheet = drawn(cloud, {});
+    EXPECT_NE(at(sheet, 84 + 450, kTop + 340), (Rgb{252, 252, 252})); // the disc in the middle
+    EXPECT_EQ(at(sheet, 84 + 450 + 100, kTop + 340), (Rgb{252, 252, 252}));
+}
+
+TEST(Picture, RefusesWhatItCannotDraw)
+{
+    Cloud cloud;
+    EXPECT_THROW(picture(cloud, {}), InputError);
+    cloud.xyz = Eigen::Matrix3Xd::Constant(3, 4, kNaN);
+    EXPECT_THROW(picture(cloud, {}), InputError);
+    cloud.xyz.setRandom();
+    EXPECT_THROW(picture(cloud, errors_to(1)), InputError); // no such field
+}
+
+TEST(Raster, SpacingOfAGridIsItsCell)
+{
+    for (const double angle : {0.0, 0.3, std::numbers::pi / 4})
+        EXPECT_NEAR(point_spacing(grid([](const Eigen::Vector2d&) { return 0; }, angle).xyz.topRows<2>()), 2, 1e-12);
+    EXPECT_EQ(point_spacing(Eigen::Matrix2Xd::Constant(2, 3, 7)), 0);
+    Eigen::Matrix2Xd line = Eigen::Matrix2Xd::Zero(2, 5);
+    line.row(0) << 0, 3, 6, 9, kNaN;
+    EXPECT_NEAR(point_spacing(line), 3, 1e-12);
+}
+
+} // namespace
+} // namespace fettle
