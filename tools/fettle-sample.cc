@@ -13,9 +13,6 @@ using namespace fettle;
 
 namespace {
 
-// Wang 2007, 4.4.3.1: fewer than 60 touches are wanted; a hundred lines each way is a slip.
-constexpr int kMostLinesEachWay = 100;
-
 // Names the places that no touch reached; too long a list helps nobody. It is bad input (a hole in the scan, the wrong
 // part or unit), not an answer.
 void refuse_missed(const std::string& scan, const Job& job, const Eigen::Matrix3Xd& touches, const TouchPlan& plan,
@@ -77,7 +74,7 @@ int main(int argc, char** argv)
                                             "points that far from the anomaly [the job's tip_radius]",
                                             Range::at_least(0));
         const int& lines = t.count("--lines", 0, "Free-form jobs: so many lines each way; 0: as many as Wang's eq. 4-5",
-                                   0, kMostLinesEachWay);
+                                   0, kMostLines);
         const bool& plan_only = t.flag("--plan-only", "Choose only: x and y, no z but where the job gives it");
         const bool& ascii = t.flag("--ascii", "Text instead of binary");
         t.example("fettle-sample jobs/hammer.json --on scans/hammer.stl --noise normal:0.1 --seed 7 > samples.pcd",

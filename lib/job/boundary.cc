@@ -105,13 +105,12 @@ Polygon checked_polygon(const Job& job, const Eigen::Matrix3Xd& points, const st
         throw InputError(job.source, name + ": only " + std::to_string(polygon.cols()) +
                                          " different boundary points, at least 3 are needed");
     const double diameter = (polygon.rowwise().maxCoeff() - polygon.rowwise().minCoeff()).norm();
-    bg::validity_failure_type failure = bg::no_failure;
     if (signed_area(polygon) < 0) polygon = Polygon(polygon.rowwise().reverse());
-    const bool valid = bg::is_valid(to_boost(polygon), failure);
-    if (!valid && (failure == bg::failure_self_intersections || failure == bg::failure_wrong_orientation))
+    const double least_area = kFlat * diameter * diameter;
+    if (area(convex_hull(polygon)) >= least_area && !bg::is_valid(to_boost(polygon)))
         throw InputError(job.source,
                          name + ": the boundary crosses itself at " + place(place_of_crossing(polygon), job.units));
-    if (!valid || area(polygon) < kFlat * diameter * diameter)
+    if (area(polygon) < least_area)
         throw InputError(job.source,
                          name + ": the boundary encloses no area, near " + place(polygon.col(0), job.units));
     return polygon;

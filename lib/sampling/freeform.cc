@@ -1,7 +1,9 @@
 #include "sampling/freeform.h"
 
 #include "core/error.h"
+#include "core/text.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace fettle {
@@ -14,16 +16,26 @@ constexpr double kPointsPerSquareMm = 0.22 / 645.16;
 // Taken off before rounding up: a change from inches to mm and back must not add a line.
 constexpr double kBeforeCeiling = 1e-9;
 
-// A hostile or mistaken rectangle (a needle, b a million times a) must not fill the memory. Wang's largest anomaly,
-// 10 x 10 in, has 5 + 5 lines.
-constexpr double kMostLines = 1000;
+// Keeps the number of lines across a needle within the range of int.
+constexpr double kCountless = 1e9;
+
+void check_count(const Job& job, const LineCount& count, const Eigen::Vector2d& sides)
+{
+    const int most = std::max(count.across_a, count.across_b);
+    if (most <= kMostLines) return;
+    const auto side = [&](double length) { return to_short_text(length / job.units.mm()); };
+    throw InputError(job.source, "anomaly: its rectangle in the working frame, " + side(sides.x()) + " x " +
+                                     side(sides.y()) + " " + to_string(job.units.length) + ", needs " +
+                                     std::to_string(most) + " lines across a side, at most " +
+                                     std::to_string(kMostLines) + " are probed: choose a smaller or a wider region");
+}
 
 } // namespace
 
 LineCount line_count(double a, double b)
 {
     const auto up = [](double number) {
-        return static_cast<int>(std::ceil(std::min(number, kMostLines) - kBeforeCeiling));
+        return static_cast<int>(std::ceil(std::min(number, kCountless) - kBeforeCeiling));
     };
     const int n_a = up(std::sqrt(kPointsPerSquareMm * a * a + a / b));
     return {n_a, up(n_a * b / a)};
@@ -35,6 +47,8 @@ TouchPlan plan_freeform(const Job& job, const std::optional<LineCount>& lines)
     const Eigen::Vector2d least = both.anomaly.rowwise().minCoeff();
     const Eigen::Vector2d sides = both.anomaly.rowwise().maxCoeff() - least;
     const LineCount count = lines.value_or(line_count(sides.x(), sides.y()));
+
+    check_count(job, count, sides);
 
     TouchPlan plan;
     int curve = 0;

@@ -175,6 +175,9 @@ TEST(Boundaries, RefusesBadPolygons)
               "job.json: anomaly: the boundary crosses itself at (1.5, 1.5) mm");
     EXPECT_EQ(problem(job_of(small, polygon({{0, 0}, {4, 0}, {4, 4}, {3, 4}, {3, 0}, {2, 4}, {0, 4}}))),
               "job.json: sampling: the boundary crosses itself at (3, 0) mm");
+    // there and back on the same line
+    EXPECT_EQ(problem(job_of(polygon({{1, 1}, {2, 1}, {3, 1}, {2, 1}, {2, 2}}), kSquare)),
+              "job.json: anomaly: the boundary crosses itself at (2, 1) mm");
     EXPECT_EQ(problem(job_of(polygon({{1, 1}, {2, 2}, {3, 3}}), kSquare)),
               "job.json: anomaly: the boundary encloses no area, near (1, 1) mm");
     EXPECT_EQ(problem(job_of(polygon({{1, 1}, {9, 1}, {2, 2}}), kSquare)),

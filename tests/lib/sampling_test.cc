@@ -250,6 +250,14 @@ TEST(Freeform, NoRoomOnOneSideIsRefusedWithThePlace)
     EXPECT_EQ(problem(job_of(SurfaceType::freeform, rectangle(0.006, 1, 1, 2), rectangle(0, 0, 3, 3))), "accepted");
 }
 
+TEST(Freeform, NeedleIsRefused)
+{
+    EXPECT_EQ(
+        problem(job_of(SurfaceType::freeform, rectangle(1, 1, 1.01, 3), rectangle(0, 0, 4, 4))),
+        "job.json: anomaly: its rectangle in the working frame, 0.01 x 2 in, needs 200 lines across a side, at most "
+        "100 are probed: choose a smaller or a wider region");
+}
+
 // --- swept; the rulings run along X_w unless said otherwise ---
 
 TEST(Swept, WholeWidthFree)
