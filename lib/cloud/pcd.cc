@@ -123,7 +123,7 @@ void parse_row(const PcdHeader& header, std::string_view line, const std::string
             const bool fits = visit_element(column.type, column.size,
                                             [&](auto zero) { return parse_element<decltype(zero)>(word, to); });
             if (!fits)
-                throw InputError(place + "field '" + column.name + "': " + quoted(word) + " is no number of type " +
+                throw InputError(place + "field '" + column.name + "': " + in_quotes(word) + " is no number of type " +
                                  element_name(column.type, column.size));
         }
     if (const std::size_t more = words(line).size(); more > 0)

@@ -85,9 +85,9 @@ std::size_t HeaderParser::number(std::string_view word, const std::string& entry
     std::size_t value = 0;
     const std::from_chars_result result = std::from_chars(word.data(), word.data() + word.size(), value);
     if (result.ec == std::errc::invalid_argument || result.ptr != word.data() + word.size())
-        refuse(entry + ": expected a whole number, got " + quoted(word));
+        refuse(entry + ": expected a whole number, got " + in_quotes(word));
     if (result.ec != std::errc() || value > most)
-        refuse(entry + ": at most " + std::to_string(most) + ", got " + quoted(word));
+        refuse(entry + ": at most " + std::to_string(most) + ", got " + in_quotes(word));
     return value;
 }
 
@@ -111,7 +111,7 @@ void HeaderParser::read_comment(std::string_view text)
     if (found.empty() || found[0] != "units") return;
     StatedUnits units;
     if (found.size() != 2 && found.size() != 3)
-        refuse("expected '# units LENGTH [FORCE]', got " + quoted(lines_.line()));
+        refuse("expected '# units LENGTH [FORCE]', got " + in_quotes(lines_.line()));
     try {
         units.length = parse_length_unit(std::string(found[1]));
         if (found.size() == 3) units.force = parse_force_unit(std::string(found[2]));
@@ -136,7 +136,7 @@ void HeaderParser::read_viewpoint(const Words& words)
     for (std::size_t i = 0; i < kNumbers; ++i) {
         const std::optional<double> value = parse_number(words[i + 1]);
         if (!value || !std::isfinite(*value))
-            refuse("VIEWPOINT: expected a finite number, got " + quoted(words[i + 1]));
+            refuse("VIEWPOINT: expected a finite number, got " + in_quotes(words[i + 1]));
         values[i] = *value;
     }
     header_.view_origin = {values[0], values[1], values[2]};
@@ -154,7 +154,7 @@ void HeaderParser::read_data(const Words& words)
     else if (words[1] == "binary_compressed")
         header_.data = PcdHeader::Data::compressed;
     else
-        refuse("DATA: " + quoted(words[1]) + " is none of ascii, binary, binary_compressed");
+        refuse("DATA: " + in_quotes(words[1]) + " is none of ascii, binary, binary_compressed");
 }
 
 void HeaderParser::read_entry(const Words& words)
@@ -168,9 +168,10 @@ void HeaderParser::read_entry(const Words& words)
         PcdColumn& column = header_.columns[i];
         if (entry == "SIZE") column.size = static_cast<int>(number(words[i + 1], entry, sizeof(double)));
         if (entry == "COUNT") column.count = static_cast<int>(number(words[i + 1], entry, kMostElements));
-        if (entry == "COUNT" && column.count == 0) refuse("COUNT: at least 1, got 0 for field " + quoted(column.name));
+        if (entry == "COUNT" && column.count == 0)
+            refuse("COUNT: at least 1, got 0 for field " + in_quotes(column.name));
         if (entry == "TYPE" && words[i + 1].size() != 1)
-            refuse("TYPE: expected F, I or U, got " + quoted(words[i + 1]));
+            refuse("TYPE: expected F, I or U, got " + in_quotes(words[i + 1]));
         if (entry == "TYPE") column.type = words[i + 1].front();
     }
     if (entry == "WIDTH") header_.width = only_number(words, kMostPoints);
@@ -193,7 +194,7 @@ void HeaderParser::check_position() const
     std::set<std::string> names;
     for (const PcdColumn& column : header_.columns)
         if (column.name != "_" && !names.insert(column.name).second) // "_" is padding and may repeat
-            throw InputError(source_, "field " + quoted(column.name) + " stands twice");
+            throw InputError(source_, "field " + in_quotes(column.name) + " stands twice");
 }
 
 void HeaderParser::finish()
@@ -204,8 +205,8 @@ void HeaderParser::finish()
         throw InputError(source_, "header without WIDTH or POINTS");
     for (const PcdColumn& column : header_.columns)
         if (!is_element_type(column.type, static_cast<std::size_t>(column.size)))
-            throw InputError(source_, "field " + quoted(column.name) + ": no type " +
-                                          quoted(element_name(column.type, column.size)) +
+            throw InputError(source_, "field " + in_quotes(column.name) + ": no type " +
+                                          in_quotes(element_name(column.type, column.size)) +
                                           " (F4, F8, I1, I2, I4, I8, U1, U2, U4, U8)");
     check_position();
     PcdHeader& h = header_;
@@ -229,7 +230,7 @@ PcdHeader HeaderParser::parse()
         }
         const Words found = words(line);
         if (found.empty()) continue;
-        if (!is_entry(found[0])) refuse("expected a PCD header entry, got " + quoted(found[0]));
+        if (!is_entry(found[0])) refuse("expected a PCD header entry, got " + in_quotes(found[0]));
         read_entry(found);
         if (found[0] == "DATA") {
             finish();

@@ -46,7 +46,7 @@ class AsciiBody {
         if (word.empty()) refuse("property " + property.name + " is missing");
         T number{};
         if (!parse_element<T>(word, &number))
-            refuse("property " + property.name + ": " + quoted(word) + " is no number of its type");
+            refuse("property " + property.name + ": " + in_quotes(word) + " is no number of its type");
         return number;
     }
 
@@ -58,14 +58,14 @@ class AsciiBody {
     void end_item()
     {
         const std::string_view word = next_word(rest_);
-        if (!word.empty()) refuse("more values than properties: " + quoted(word));
+        if (!word.empty()) refuse("more values than properties: " + in_quotes(word));
     }
 
     void end()
     {
         while (lines_.next())
             if (lines_.line().find_first_not_of(" \t") != std::string_view::npos)
-                refuse("text after the last element: " + quoted(lines_.line()));
+                refuse("text after the last element: " + in_quotes(lines_.line()));
     }
 
     [[noreturn]] void refuse(const std::string& problem) const

@@ -49,7 +49,7 @@ class HeaderParser {
             else if (found[0] == "end_header")
                 ended = true;
             else
-                refuse("expected a PLY header entry, got " + quoted(found[0]));
+                refuse("expected a PLY header entry, got " + in_quotes(found[0]));
         }
         if (!ended) throw InputError(source_, "the header ends without end_header");
         if (!encoded) throw InputError(source_, "header without format");
@@ -78,7 +78,7 @@ class HeaderParser {
     {
         if (again) refuse("format stands twice");
         if (found.size() != 3 || found[2] != "1.0")
-            refuse("expected 'format ENCODING 1.0', got " + quoted(lines_.line()));
+            refuse("expected 'format ENCODING 1.0', got " + in_quotes(lines_.line()));
         if (found[1] == "ascii")
             header_.encoding = PlyHeader::Encoding::ascii;
         else if (found[1] == "binary_little_endian")
@@ -86,19 +86,19 @@ class HeaderParser {
         else if (found[1] == "binary_big_endian")
             header_.encoding = PlyHeader::Encoding::big_endian;
         else
-            refuse("format: " + quoted(found[1]) + " is none of ascii, binary_little_endian, binary_big_endian");
+            refuse("format: " + in_quotes(found[1]) + " is none of ascii, binary_little_endian, binary_big_endian");
     }
 
     void read_element(const Words& found)
     {
-        if (found.size() != 3) refuse("expected 'element NAME COUNT', got " + quoted(lines_.line()));
+        if (found.size() != 3) refuse("expected 'element NAME COUNT', got " + in_quotes(lines_.line()));
         std::size_t count = 0;
         const auto [end, error] = std::from_chars(found[2].data(), found[2].data() + found[2].size(), count);
         if (error != std::errc() || end != found[2].data() + found[2].size() || count > kMostCount)
             refuse("element " + std::string(found[1]) + ": expected a number from 0 to " + std::to_string(kMostCount) +
-                   ", got " + quoted(found[2]));
+                   ", got " + in_quotes(found[2]));
         for (const PlyHeader::Element& element : header_.elements)
-            if (element.name == found[1]) refuse("element " + quoted(found[1]) + " stands twice");
+            if (element.name == found[1]) refuse("element " + in_quotes(found[1]) + " stands twice");
         header_.elements.push_back({std::string(found[1]), count, {}});
     }
 
@@ -106,24 +106,24 @@ class HeaderParser {
     {
         for (const TypeName& known : kTypes)
             if (known.name == name) return known;
-        refuse("property: unknown type " + quoted(name));
+        refuse("property: unknown type " + in_quotes(name));
     }
 
     void read_property(const Words& found)
     {
         if (header_.elements.empty()) refuse("property before the first element");
         const bool list = found.size() == 5 && found[1] == "list";
-        if (!list && found.size() != 3) refuse("expected 'property TYPE NAME', got " + quoted(lines_.line()));
+        if (!list && found.size() != 3) refuse("expected 'property TYPE NAME', got " + in_quotes(lines_.line()));
         const TypeName value = type(found[list ? 3 : 1]);
         Property property{std::string(found.back()), value.type, value.size, list, 1, false};
         if (list) {
             const TypeName count = type(found[2]);
-            if (count.type == 'F') refuse("property: a list's length of type " + quoted(found[2]));
+            if (count.type == 'F') refuse("property: a list's length of type " + in_quotes(found[2]));
             property.count_size = count.size;
             property.count_signed = count.type == 'I';
         }
         for (const Property& other : header_.elements.back().properties)
-            if (other.name == property.name) refuse("property " + quoted(property.name) + " stands twice");
+            if (other.name == property.name) refuse("property " + in_quotes(property.name) + " stands twice");
         header_.elements.back().properties.push_back(std::move(property));
     }
 

@@ -37,7 +37,7 @@ std::vector<double> parse_row(std::string_view line, std::size_t columns, const 
     std::vector<double> row;
     for (const std::string_view word : words(line)) {
         const std::optional<double> value = parse_number(word);
-        if (!value) throw InputError(place + quoted(word) + " is no number");
+        if (!value) throw InputError(place + in_quotes(word) + " is no number");
         row.push_back(*value);
     }
     if (columns == 0 && row.size() < 3)
@@ -73,7 +73,7 @@ Cloud parse_xyz(std::string_view bytes, const std::string& source)
     Cloud cloud;
     cloud.xyz = rows == 0 ? Eigen::Matrix3Xd(3, 0) : Eigen::Matrix3Xd(table.topRows(3));
     for (std::size_t c = 3; c < columns; ++c) {
-        if (has_field(cloud, names[c])) throw InputError(source, "column " + quoted(names[c]) + " stands twice");
+        if (has_field(cloud, names[c])) throw InputError(source, "column " + in_quotes(names[c]) + " stands twice");
         set_field(cloud, names[c],
                   rows == 0 ? Eigen::VectorXd(0) : Eigen::VectorXd(table.row(static_cast<Eigen::Index>(c))),
                   sizeof(double));

@@ -67,7 +67,9 @@ OutputFile::OutputFile(const std::string& path) : state_(std::make_unique<State>
     s.path = path == "-" ? "stdout" : display_name(path);
     int file = -1;
     struct stat status = {};
-    if (path == "-") {
+    if (path.empty()) {
+        errno = ENOENT;
+    } else if (path == "-") {
         file = dup(STDOUT_FILENO);
     } else if (stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode)) {
         file = open(path.c_str(), O_WRONLY | O_CLOEXEC);

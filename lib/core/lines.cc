@@ -35,7 +35,7 @@ std::vector<std::string_view> words(std::string_view line)
     return found;
 }
 
-std::string quoted(std::string_view text)
+std::string in_quotes(std::string_view text)
 {
     constexpr std::size_t kLongest = 40; // of a quotation, so that a message stays one readable line
     std::string quotation = "'";

@@ -31,7 +31,7 @@ std::string_view next_word(std::string_view& rest);
 std::vector<std::string_view> words(std::string_view line);
 
 /// Text from a file as a message may quote it: in quotes, shortened, unprintable bytes replaced.
-std::string quoted(std::string_view text);
+std::string in_quotes(std::string_view text);
 
 /// Refuses texts that are no ASCII or UTF-8: UTF-16 by its mark or its zero bytes. Removes a UTF-8 byte order mark.
 /// @throws InputError

@@ -48,8 +48,10 @@ std::string to_short_text(double value)
 
 std::optional<double> parse_number(std::string_view text)
 {
-    if (!text.empty() && text.front() == '+') text.remove_prefix(1);
-    if (text.empty() || text.front() == '+') return std::nullopt;
+    if (text.starts_with('+')) { // from_chars knows no plus
+        text.remove_prefix(1);
+        if (text.starts_with('-')) return std::nullopt;
+    }
     double value = 0;
     const std::from_chars_result result = std::from_chars(text.data(), text.data() + text.size(), value);
     if (result.ec != std::errc() || result.ptr != text.data() + text.size()) return std::nullopt;

@@ -38,7 +38,7 @@ class ObjParser {
             if (is_blank_or_comment(lines_.line())) continue;
             std::string_view rest = lines_.line();
             const std::string_view statement = next_word(rest);
-            if (!is_statement(statement)) refuse("unknown statement " + quoted(statement));
+            if (!is_statement(statement)) refuse("unknown statement " + in_quotes(statement));
             if (statement == "v") add_vertex(words(rest));
             if (statement == "f") add_face(words(rest));
         }
@@ -62,7 +62,7 @@ class ObjParser {
         if (numbers.size() < 3) refuse("a vertex of " + std::to_string(numbers.size()) + " numbers");
         for (std::size_t k = 0; k < 3; ++k) {
             const std::optional<double> value = parse_number(numbers[k]);
-            if (!value) refuse(quoted(numbers[k]) + " is no number");
+            if (!value) refuse(in_quotes(numbers[k]) + " is no number");
             vertices_.push_back(*value);
         }
     }
@@ -72,7 +72,7 @@ class ObjParser {
         std::int64_t value = 0;
         const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
         if (error != std::errc() || end != text.data() + text.size())
-            refuse(quoted(corner) + " is no corner of a face");
+            refuse(in_quotes(corner) + " is no corner of a face");
         return value;
     }
 

@@ -27,7 +27,7 @@ class OffParser {
             read_face(corners);
             ends.push_back(corners.size());
         }
-        if (next_line()) refuse("text after the last face: " + quoted(lines_.line()));
+        if (next_line()) refuse("text after the last face: " + in_quotes(lines_.line()));
         mesh.triangles = cut_polygons(mesh.vertices, corners, ends);
         return mesh;
     }
@@ -59,7 +59,7 @@ class OffParser {
         std::size_t value = 0;
         const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
         if (error != std::errc() || end != word.data() + word.size() || value > most)
-            refuse(what + ": expected a number from 0 to " + std::to_string(most) + ", got " + quoted(word));
+            refuse(what + ": expected a number from 0 to " + std::to_string(most) + ", got " + in_quotes(word));
         return value;
     }
 
@@ -70,7 +70,7 @@ class OffParser {
         constexpr std::size_t kShortestLine = 6; // "0 0 0\n"
         need_line("OFF");
         const std::string_view name = next_word(rest_);
-        if (name != "OFF" && name != "COFF") refuse("expected OFF or COFF, got " + quoted(name));
+        if (name != "OFF" && name != "COFF") refuse("expected OFF or COFF, got " + in_quotes(name));
         coloured_ = name == "COFF";
         if (rest_.find_first_not_of(" \t") == std::string_view::npos) need_line("the numbers of vertices and faces");
         vertices_ = whole("number of vertices", kMost);
@@ -91,11 +91,11 @@ class OffParser {
                 const std::optional<double> value = parse_number(word);
                 if (!value)
                     refuse(word.empty() ? "a vertex of " + std::to_string(k) + " numbers"
-                                        : quoted(word) + " is no number");
+                                        : in_quotes(word) + " is no number");
                 vertices(k, i) = *value;
             }
             if (const std::string_view word = next_word(rest_); !coloured_ && !word.empty())
-                refuse("a vertex of more than 3 numbers: " + quoted(word));
+                refuse("a vertex of more than 3 numbers: " + in_quotes(word));
         }
         return vertices;
     }

@@ -215,7 +215,7 @@ class AsciiStl {
         const auto before = text_.substr(0, position_);
         const auto line = 1 + std::count(before.begin(), before.end(), '\n');
         throw InputError(source_, "line " + std::to_string(line) + ": expected " + expected + ", got " +
-                                      (word.empty() ? "the end of the file" : quoted(word)));
+                                      (word.empty() ? "the end of the file" : in_quotes(word)));
     }
 
     static constexpr std::string_view kSpace = " \t\r\n\v\f";

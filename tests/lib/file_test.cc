@@ -1,0 +1,96 @@
+#include "core/error.h"
+#include "core/file.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sys/stat.h>
+#include <thread>
+#include <unistd.h>
+
+namespace fettle {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A folder of its own for each test, the current one while it runs.
+class Files : public testing::Test {
+  protected:
+    void SetUp() override
+    {
+        std::string name = fs::temp_directory_path() / "fettle_file_test.XXXXXX";
+        ASSERT_NE(mkdtemp(name.data()), nullptr);
+        folder_ = name;
+        before_ = fs::current_path();
+        fs::current_path(folder_);
+    }
+    void TearDown() override
+    {
+        fs::current_path(before_);
+        fs::remove_all(folder_);
+    }
+    static std::size_t files() { return static_cast<std::size_t>(std::distance(fs::directory_iterator("."), {})); }
+
+  private:
+    fs::path folder_, before_;
+};
+
+TEST_F(Files, AppearWholeOrNotAtAll)
+{
+    {
+        OutputFile file("a");
+        file.stream() << "half";
+        EXPECT_FALSE(fs::exists("a"));
+    }
+    EXPECT_EQ(files(), 0u);
+    std::ofstream("a") << "old";
+    {
+        OutputFile file("a");
+        file.stream() << std::string(100000, 'x');
+        EXPECT_EQ(read_whole("a"), "old");
+        file.commit();
+    }
+    EXPECT_EQ(read_whole("a"), std::string(100000, 'x'));
+    EXPECT_EQ(files(), 1u);
+}
+
+TEST_F(Files, KeepTheirPermissions)
+{
+    std::ofstream("a") << "old";
+    chmod("a", 0640);
+    OutputFile file("a");
+    file.commit();
+    struct stat status = {};
+    ASSERT_EQ(stat("a", &status), 0);
+    EXPECT_EQ(status.st_mode & 0777, 0640u);
+}
+
+TEST_F(Files, FailedWritesAreErrors)
+{
+    EXPECT_THROW(OutputFile("no/where"), InputError);
+    EXPECT_THROW(OutputFile("."), InputError);
+    EXPECT_THROW(OutputFile(""), InputError);
+    OutputFile full("/dev/full");
+    full.stream() << "x";
+    EXPECT_THROW(full.commit(), InputError);
+    OutputFile nothing("/dev/null");
+    nothing.stream() << "x";
+    nothing.commit();
+}
+
+TEST_F(Files, ReadFromWhatIsNoFile)
+{
+    EXPECT_THROW(read_whole("absent"), InputError);
+    EXPECT_THROW(read_whole("."), InputError);
+    EXPECT_THROW(read_whole(""), InputError);
+    EXPECT_EQ(read_whole("/dev/null"), "");
+    ASSERT_EQ(mkfifo("pipe", 0600), 0);
+    const std::string sent(3000000, 'y');
+    std::thread writer([&sent] { std::ofstream("pipe") << sent; });
+    EXPECT_EQ(read_whole("pipe"), sent);
+    writer.join();
+}
+
+} // namespace
+} // namespace fettle
