@@ -151,7 +151,8 @@ int main(int argc, char** argv)
         if (!tolerance) return Verdict::yes;
         const Judgement judgement = judge(judged, *tolerance, map_cloud.xyz);
         report.set("tolerance", *tolerance / units.mm()).set("judged", job ? "inside" : "all");
-        report.set("worst", judgement.worst / units.mm()).set("verdict", judgement.within);
+        report.set("worst", judgement.worst / units.mm())
+            .set("verdict", judgement.within ? "within" : "out of tolerance");
         if (judged.count == 0) t.warn("no point to judge has an error: out of tolerance");
         return judgement.within ? Verdict::yes : Verdict::no;
     });

@@ -81,8 +81,8 @@ ErrorMap measure(const Eigen::Matrix3Xd& points, const Reference& reference, boo
     for (Eigen::Index first = 0; first < points.cols(); first += share) {
         tbb::parallel_for(first, std::min(first + share, points.cols()), [&](Eigen::Index i) {
             const Measured m = points.col(i).allFinite() ? reference(points.col(i)) : Measured{};
-            map.error[i] = m.error;
-            map.normal.col(i) = m.normal;
+            map.error[i] = m.error + 0.0; // no negative zeros in files
+            map.normal.col(i) = m.normal.array() + 0.0;
             if (with_sigma) map.reference_sigma[i] = m.sigma;
         });
         tell(progress,

@@ -39,7 +39,7 @@ ErrorMap signed_distance(const Eigen::Matrix3Xd& points, const Mesh& reference, 
                          const Progress& progress = {});
 
 /// Distance from a cloud: from a quadratic surface fitted to the neighbours of the foot (cloud_reference.h). The
-/// cloud's normals say which side is out; without them it is +Z (or the direction).
+/// cloud's normals say which side is out, without them +Z; in mode direction, the direction does.
 ErrorMap signed_distance(const Eigen::Matrix3Xd& points, const Cloud& reference, const DistanceOptions& options = {},
                          const Progress& progress = {});
 
