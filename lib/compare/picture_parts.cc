@@ -137,7 +137,7 @@ void draw_outlines(Canvas& sheet, const Layout& layout, const Job& job)
 void draw_legend(Canvas& sheet, const Layout& layout, const Values& values, const Scale& scale)
 {
     const double x = layout.map_corner.x() + layout.map_size.x() + 40;
-    const double top = layout.map_corner.y() + 34, height = layout.map_size.y() - 68;
+    const double top = layout.map_corner.y() + 46, height = layout.map_size.y() - 92;
     constexpr double kBar = 22, kTicks = 70, kHistogram = 150;
     const auto row_of = [&](double value) { return top + height * (scale.high - value) / (scale.high - scale.low); };
     sheet.text(values.name + (values.unit.empty() ? "" : ", " + values.unit), {x, layout.map_corner.y() + 4}, kLabel,
@@ -153,8 +153,8 @@ void draw_legend(Canvas& sheet, const Layout& layout, const Values& values, cons
         sheet.text(sign + tick_text(k * step, step), {x + kBar + 10, at}, kSmall);
     }
     if (scale.diverging) {
-        sheet.text("material left", {x, top - 13}, kSmall, kGrey);
-        sheet.text("over-cut", {x, top + height + 14}, kSmall, kGrey);
+        sheet.text("material left", {x, top - 18}, kSmall, kGrey);
+        sheet.text("over-cut", {x, top + height + 18}, kSmall, kGrey);
     }
 
     constexpr int kBins = 60;

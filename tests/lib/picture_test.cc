@@ -74,9 +74,9 @@ TEST(Picture, EachPointIsItsCellWithTheColourOfItsValue)
             ASSERT_EQ(at(sheet, kLeft + column, kTop + row), kUnit(error)) << column << ' ' << row;
         }
     // The legend: material left on top, over-cut at the bottom.
-    const double third_row = 1 - 2 * 2.5 / (kSide - 68); // of a bar that stands 34 pixels inside the frame
-    EXPECT_EQ(at(sheet, 84 + 900 + 40 + 10, kTop + 34 + 2), kUnit(third_row));
-    EXPECT_EQ(at(sheet, 84 + 900 + 40 + 10, kTop + kSide - 34 - 3), kUnit(-third_row));
+    const double third_row = 1 - 2 * 2.5 / (kSide - 92); // of a bar that stands 46 pixels inside the frame
+    EXPECT_EQ(at(sheet, 84 + 900 + 40 + 10, kTop + 46 + 2), kUnit(third_row));
+    EXPECT_EQ(at(sheet, 84 + 900 + 40 + 10, kTop + kSide - 46 - 3), kUnit(-third_row));
 }
 
 TEST(Picture, TurnedGridsHaveNoHoles)
