@@ -1,0 +1,264 @@
+#include "core/error.h"
+#include "fit/griddata.h"
+#include "sampling/estimate.h"
+#include "surface/clough_tocher.h"
+#include "surface/griddata.h"
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <numbers>
+#include <random>
+#include <vector>
+
+namespace fettle {
+namespace {
+
+Eigen::MatrixXd table(const std::string& name, int columns)
+{
+    const char* samples = std::getenv("SAMPLES"); // set where the test runs in a folder of its own
+    std::ifstream in((samples == nullptr ? "" : std::string(samples) + "/../") + "tests/data/" + name);
+    std::vector<double> numbers;
+    for (std::string word; in >> word;) numbers.push_back(std::stod(word));
+    return Eigen::Map<Eigen::MatrixXd>(numbers.data(), columns, static_cast<Eigen::Index>(numbers.size()) / columns);
+}
+
+Eigen::Matrix3Xd scattered(int count, double extent)
+{
+    std::mt19937_64 random(4);
+    std::uniform_real_distribution<double> place(0, extent), height(-1, 1);
+    Eigen::Matrix3Xd points(3, count);
+    for (Eigen::Index i = 0; i < count; ++i) points.col(i) << place(random), place(random), height(random);
+    return points;
+}
+
+Eigen::Matrix3Xd square_grid(int side, double step)
+{
+    Eigen::Matrix3Xd points(3, side * side);
+    for (int i = 0; i < side * side; ++i) points.col(i) << step * (i % side), step * (i / side), std::sin(1.0 * i);
+    return points;
+}
+
+// SciPy's CloughTocher2DInterpolator over qhull's triangles (tests/data/griddata-reference.py).
+TEST(Griddata, agrees_with_scipy)
+{
+    const Eigen::Matrix3Xd points = table("griddata-points.txt", 3);
+    const Eigen::MatrixXd values = table("griddata-values.txt", 4);
+    ASSERT_EQ(points.cols(), 24);
+    ASSERT_EQ(values.cols(), 80);
+    const Griddata once = make_griddata(points, 0, 0), twice = make_griddata(points, 9, 0);
+    int inside = 0;
+    for (Eigen::Index i = 0; i < values.cols(); ++i) {
+        const Eigen::Vector2d xy = values.col(i).head<2>();
+        ASSERT_EQ(std::isnan(height(once, xy)), std::isnan(values(2, i))) << xy.transpose();
+        if (std::isnan(values(2, i))) continue;
+        ++inside;
+        EXPECT_NEAR(height(once, xy), values(2, i), 1e-11);
+        EXPECT_NEAR(height(twice, xy), values(3, i), 1e-4); // the reference's grid is sheared by 1e-7 of 100
+    }
+    EXPECT_GT(inside, 40);
+}
+
+TEST(Griddata, reproduces_planes)
+{
+    Eigen::Matrix3Xd points = scattered(30, 80);
+    points.row(2) = (0.3 * points.row(0) - 0.7 * points.row(1)).array() + 12;
+    for (const double spacing : {0.0, 7.0}) {
+        const Griddata surface = make_griddata(points, spacing, 0.4);
+        for (const Eigen::Vector2d& xy : {Eigen::Vector2d(40, 40), Eigen::Vector2d(23.5, 51), Eigen::Vector2d(61, 33)})
+            EXPECT_NEAR(height(surface, xy), 0.3 * xy.x() - 0.7 * xy.y() + 12, 1e-10);
+    }
+}
+
+TEST(Griddata, goes_through_the_points_when_interpolated_once)
+{
+    const Eigen::Matrix3Xd points = scattered(30, 80);
+    const Griddata surface = make_griddata(points, 0, 0);
+    for (Eigen::Index i = 0; i < points.cols(); ++i)
+        EXPECT_NEAR(height(surface, points.col(i).head<2>()), points(2, i), 1e-9);
+}
+
+TEST(Griddata, gradient_is_the_weight_of_each_point)
+{
+    const Eigen::Matrix3Xd points = scattered(20, 80);
+    for (const double spacing : {0.0, 9.0}) {
+        const Griddata surface = make_griddata(points, spacing, 0.2);
+        const Eigen::Vector2d xy(40, 37);
+        const Eigen::VectorXd weights = height_gradient(surface, xy);
+        EXPECT_NEAR(weights.dot(points.row(2)), height(surface, xy), 1e-12);
+        EXPECT_NEAR(weights.sum(), 1, 1e-12);
+        Eigen::Matrix3Xd moved = points;
+        moved(2, 7) += 1;
+        EXPECT_NEAR(height(make_griddata(moved, spacing, 0.2), xy) - height(surface, xy), weights[7], 1e-12);
+    }
+}
+
+// With exact values and gradients the macro-element reproduces quadratics; a cubic is beyond it (its derivative across
+// an edge is not linear there).
+TEST(CloughTocher, reproduces_quadratics_from_exact_gradients)
+{
+    const Eigen::Matrix3Xd points = scattered(25, 10);
+    const CloughTocher surface(delaunay(points.topRows<2>()));
+    const auto f = [](const Eigen::Vector2d& p) {
+        return Eigen::Vector3d(2 + p.x() - p.y() + 0.3 * p.x() * p.x() - 0.2 * p.x() * p.y() + 0.7 * p.y() * p.y(),
+                               1 + 0.6 * p.x() - 0.2 * p.y(), -1 - 0.2 * p.x() + 1.4 * p.y());
+    };
+    for (double x = 3; x < 7; x += 0.37)
+        for (double y = 3; y < 7; y += 0.41) {
+            const auto weights = surface.weights({x, y});
+            ASSERT_TRUE(weights);
+            double z = 0;
+            for (int k = 0; k < 3; ++k) z += f(points.col(weights->corners[k]).head<2>()).dot(weights->weights.col(k));
+            EXPECT_NEAR(z, f({x, y})[0], 1e-11);
+        }
+}
+
+// Along a line through many triangles the slope has no steps: its change over 2h shrinks with h.
+TEST(Griddata, has_continuous_slopes)
+{
+    const Griddata surface = make_griddata(scattered(30, 80), 0, 0);
+    const auto largest_step = [&](double h) {
+        double largest = 0;
+        for (double t = 0; t < 1; t += 0.001) {
+            const Eigen::Vector2d p(20 + 40 * t, 25 + 30 * t), d(0.6, -0.8);
+            const double slope_change =
+                (height(surface, p + h * d) - 2 * height(surface, p) + height(surface, p - h * d)) / h;
+            largest = std::max(largest, std::abs(slope_change));
+        }
+        return largest;
+    };
+    EXPECT_LT(largest_step(1e-4), 0.02 * largest_step(1e-2));
+}
+
+TEST(Griddata, is_not_defined_outside_the_hull)
+{
+    Eigen::Matrix3Xd points(3, 5);
+    points << 0, 10, 10, 0, 4, 0, 0, 10, 10, 5, 0, 1, 2, 3, 1;
+    for (const double spacing : {0.0, 2.0}) {
+        const Griddata surface = make_griddata(points, spacing, 0);
+        EXPECT_TRUE(std::isfinite(height(surface, {0.001, 9.999})));
+        EXPECT_TRUE(std::isfinite(height(surface, {10, 5})));
+        for (const Eigen::Vector2d& xy :
+             {Eigen::Vector2d(-0.001, 5), Eigen::Vector2d(5, 10.001), Eigen::Vector2d(99, 5)}) {
+            EXPECT_TRUE(std::isnan(height(surface, xy)));
+            EXPECT_TRUE(std::isnan(height_gradient(surface, xy)[0]));
+        }
+    }
+}
+
+TEST(Griddata, merges_points_over_the_same_place)
+{
+    Eigen::Matrix3Xd points = scattered(12, 50);
+    Eigen::Matrix3Xd twice(3, 13);
+    twice << points, points.col(3);
+    twice(2, 12) += 0.5;
+    points(2, 3) += 0.25;
+    EXPECT_NEAR(height(make_griddata(twice, 0, 0), {25, 25}), height(make_griddata(points, 0, 0), {25, 25}), 1e-12);
+}
+
+// All squares of a grid have their corners on circles: the diagonals must not depend on rounding.
+TEST(Delaunay, divides_a_regular_grid_alike_however_it_is_turned)
+{
+    const Eigen::Matrix3Xd points = square_grid(6, 0.1);
+    const Triangulation straight = delaunay(points.topRows<2>());
+    EXPECT_EQ(straight.triangles.cols(), 50);
+    for (const double angle : {0.3, 1.1, 2.9}) {
+        const Eigen::Matrix2Xd turned = Eigen::Rotation2Dd(angle).toRotationMatrix() * points.topRows<2>();
+        EXPECT_EQ(delaunay(turned).triangles, straight.triangles);
+    }
+    EXPECT_EQ(hull(straight).size(), 20u);
+}
+
+TEST(Delaunay, has_empty_circles)
+{
+    const Eigen::Matrix2Xd points = scattered(40, 1).topRows<2>();
+    const Triangulation mesh = delaunay(points);
+    EXPECT_EQ(mesh.triangles.cols(), 2 * 40 - 2 - static_cast<Eigen::Index>(hull(mesh).size())); // Euler
+    for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
+        const Eigen::Vector2d a = points.col(mesh.triangles(0, t));
+        Eigen::Matrix2d sides;
+        sides << points.col(mesh.triangles(1, t)) - a, points.col(mesh.triangles(2, t)) - a;
+        EXPECT_GT(sides.determinant(), 0);
+        const Eigen::Vector2d centre = sides.transpose().inverse() * sides.colwise().squaredNorm().transpose() / 2;
+        for (Eigen::Index i = 0; i < points.cols(); ++i)
+            EXPECT_GE((points.col(i) - a - centre).norm(), centre.norm() * (1 - 1e-9));
+    }
+}
+
+TEST(Griddata, refuses_what_makes_no_surface)
+{
+    Eigen::Matrix3Xd points = scattered(10, 50);
+    EXPECT_THROW(make_griddata(points.leftCols(2), 0, 0), InputError);
+    EXPECT_THROW(make_griddata(points, 1e-3, 0), InputError); // 50000 x 50000 nodes
+    Eigen::Matrix3Xd line = points;
+    line.row(1) = 2 * line.row(0);
+    EXPECT_THROW(make_griddata(line, 0, 0), InputError);
+    EXPECT_THROW(make_griddata(points.col(0).replicate<1, 5>(), 0, 0), InputError);
+    points(2, 4) = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_THROW(make_griddata(points, 0, 0), InputError);
+}
+
+/// Wang's layout about a square anomaly: n lines each way.
+FitInput lines_input(const std::function<double(const Eigen::Vector2d&)>& z)
+{
+    FitInput input;
+    input.job.anomaly.resize(3, 4);
+    input.job.anomaly << -10, 10, 10, -10, -10, -10, 10, 10, 0, 0, 0, 0;
+    input.xyz.resize(3, 16);
+    input.roles.resize(16);
+    input.curves.resize(16);
+    int i = 0;
+    for (int line = 0; line < 4; ++line)
+        for (const double along : {-25.0, -10.0, 10.0, 25.0}) {
+            const double across = line % 2 == 0 ? -10.0 / 3 : 10.0 / 3;
+            const Eigen::Vector2d xy = line < 2 ? Eigen::Vector2d(across, along) : Eigen::Vector2d(along, across);
+            input.xyz.col(i) << xy, z(xy);
+            input.roles[i] = std::abs(along) > 20 ? 2 : 1;
+            input.curves[i++] = line;
+        }
+    const Eigen::Matrix3Xd estimated = estimated_points(input.job, input.xyz, input.curves, input.roles);
+    input.xyz.conservativeResize(3, 16 + estimated.cols());
+    input.xyz.rightCols(estimated.cols()) = estimated;
+    input.roles.conservativeResize(input.xyz.cols());
+    input.curves.conservativeResize(input.xyz.cols());
+    input.roles.tail(estimated.cols()).setConstant(3);
+    input.curves.tail(estimated.cols()).setConstant(-1);
+    return input;
+}
+
+// The covariance against refits: move one touch, estimate again, fit again; the sum of the squared moves of the height
+// is its variance over σ².
+TEST(GriddataFit, covariance_is_that_of_the_touches)
+{
+    const auto flat = [](const Eigen::Vector2d&) { return 0.0; };
+    const Eigen::Vector2d xy(2, 1);
+    double variance = 0;
+    for (int touch = 0; touch < 16; ++touch) {
+        int next = 0;
+        const FitInput input = lines_input([&](const Eigen::Vector2d&) { return next++ == touch ? 1.0 : 0.0; });
+        const double moved = height(fit_griddata(input).surface, xy);
+        variance += moved * moved;
+    }
+    const Surface surface = fit_griddata(lines_input(flat)).surface;
+    EXPECT_EQ(surface.touches.cols(), 20);
+    EXPECT_NEAR(sigma(surface, xy), std::sqrt(variance) * surface.touch_sigma, 1e-6);
+}
+
+TEST(GriddataFit, names_the_source)
+{
+    FitInput input = lines_input([](const Eigen::Vector2d&) { return 1.0; });
+    input.source = "touches.pcd";
+    input.xyz.row(1) = input.xyz.row(0);
+    try {
+        fit_griddata(input);
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_EQ(std::string(error.what()).rfind("touches.pcd: ", 0), 0u) << error.what();
+    }
+}
+
+} // namespace
+} // namespace fettle
