@@ -1,5 +1,6 @@
 #include "cli/tool.h"
 #include "cloud/pcd.h"
+#include "core/file.h"
 #include "gantry/quasi_static.h"
 #include "plan/plan.h"
 #include "removal/height_field.h"
@@ -14,6 +15,17 @@ using namespace fettle;
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+constexpr double kDefaultCell = 0.1; // mm: a sixtieth of a small wheel's width, a fifth of the step of the strategy
+
+HeightField stock_on_grid(const Scan& scan, const Job& job, double cell, const std::string& file)
+{
+    try {
+        return height_field(scan, job, cell);
+    } catch (const InputError& error) {
+        throw InputError(display_name(file), error.what());
+    }
+}
 
 Cloud to_cloud(const std::vector<TraceRow>& trace)
 {
@@ -75,20 +87,20 @@ int main(int argc, char** argv)
         const auto begun = Clock::now();
         const Plan plan = read_plan(plan_file);
         const Units& units = plan.job.units;
-        constexpr double kDefaultCell = 0.1; // a fortieth of the wheel's width, a tenth of its step
-        const HeightField stock =
-            height_field(read_scan(stock_file, units, stock_units), plan.job, cell ? *cell * units.mm() : kDefaultCell);
+        const Scan scan = read_scan(stock_file, units, stock_units);
+        const HeightField stock = stock_on_grid(scan, plan.job, cell ? *cell * units.mm() : kDefaultCell, stock_file);
+        std::ostream* trace_out = trace.empty() ? nullptr : &t.output_file(trace); // a wrong name shows before the work
         QuasiStaticGantry gantry(stock, plan.job);
         const GrindRun run = fettle::run(plan, gantry, {}, t.progress("grinding"));
 
         const PcdEncoding encoding = ascii ? PcdEncoding::ascii : PcdEncoding::binary;
         write_pcd(t.output(), to_cloud(stock, gantry.stock()), units, encoding);
-        if (!trace.empty()) write_pcd(t.output_file(trace), to_cloud(run.trace), units, encoding);
+        if (trace_out != nullptr) write_pcd(*trace_out, to_cloud(run.trace), units, encoding);
         report(t.report(), run, gantry, units);
         const double computing = std::chrono::duration<double>(Clock::now() - begun).count();
         t.note("machine time " + std::to_string(gantry.status().time) + " s, computing time " +
                std::to_string(computing) + " s, ratio " + std::to_string(gantry.status().time / computing));
-        if (!run.finished) t.warn(plan_file + ": " + run.failure);
+        if (!run.finished) t.warn(display_name(plan_file) + ": " + run.failure);
         return run.finished ? Verdict::yes : Verdict::no;
     });
 }

@@ -40,9 +40,9 @@ int main(int argc, char** argv)
         t.parse();
 
         const Plan plan = make_plan(read_job(job_file), read_surface(surface_file));
-        t.output() << to_json(plan);
         if (!gcode.empty())
             write_gcode(t.output_file(gcode), plan, ToolPath(plan.job, plan.surface, plan.passes, plan.step));
+        t.output() << to_json(plan);
         report(t.report(), plan);
         return Verdict::yes;
     });

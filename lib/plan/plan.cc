@@ -46,7 +46,8 @@ int highest_layer(const Job& job, const Surface& surface, const Polygon& region,
                                          " is not above the surface, " + to_short_text(highest / job.units.mm()) +
                                          " at " + place(corners.col(top), job.units));
     constexpr double kMostLayers = 1e6; // a spring so stiff that the layers have no thickness
-    return 1 + int(std::min(kMostLayers, std::floor((job.safe_height - z.minCoeff()) / layers.distance)));
+    const double distances = (job.safe_height - z.minCoeff()) / layers.distance * (1 + kWrittenDigits);
+    return 1 + int(std::min(kMostLayers, std::floor(distances)));
 }
 
 json::Value passes_to_json(const Plan& plan)

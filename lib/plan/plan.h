@@ -32,7 +32,7 @@ struct Plan {
     Layers layers;
     Eigen::Vector3d start;    ///< initial point, on the boundary of B (Wang 2007, eq. 5-4 to 5-6)
     std::vector<Pass> passes; ///< in the pass frame (plan/wheel_section.h)
-    double step = 1;          ///< between two readings of the force, mm: 25 a second at 1 in/s
+    double step = 0.5;        ///< between two readings of the force, mm: 50 a second at 1 in/s
     Bounds bounds;
 };
 

@@ -19,6 +19,9 @@ constexpr int kPlacesOnCircle = 41;
 // The surface is sampled along the passes this often for each radius (or width) of the wheel.
 constexpr double kSamplesPerRadius = 24;
 
+// A length is a whole number of steps if it is within rounding: B turned, or in inches, gets the same points.
+constexpr double kSameLength = 1e-9;
+
 // Differences of height below the rounding of the interpolation do not make a better place, mm.
 constexpr double kLiesOn = 1e-6;
 
@@ -72,7 +75,8 @@ ToolPath::ToolPath(const Job& job, const Surface& surface, const std::vector<Pas
         pass.line = passes[p].line;
         for (const Interval& touched : passes[p].intervals) {
             const int first = int(pass.along.size());
-            const int count = std::max(2, int(std::ceil((touched.second - touched.first) / step)) + 1);
+            const int count =
+                std::max(2, int(std::ceil((touched.second - touched.first) / step * (1 - kSameLength))) + 1);
             pass.starts.push_back(first);
             for (int i = 0; i < count; ++i)
                 pass.along.push_back(touched.first + (touched.second - touched.first) * i / (count - 1));

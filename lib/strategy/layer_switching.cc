@@ -70,10 +70,11 @@ Action LayerSwitching::go_on_in_layer_1()
         const int next = level.at.pass + 1;
         return step_over_to(next, level.direction > 0 ? int(passes_[next].along.size()) - 1 : 0, true);
     }
-    ++counts_.coverings;
-    if (worst_remaining_ <= settings_.remaining) return act(Action::Kind::finish, Event::finished);
-    if (counts_.coverings >= settings_.bounds.coverings)
+    const bool within = worst_remaining_ <= settings_.remaining;
+    if (!within && counts_.coverings + 1 >= settings_.bounds.coverings)
         return fail("coverings of layer 1 " + std::to_string(settings_.bounds.coverings));
+    ++counts_.coverings;
+    if (within) return act(Action::Kind::finish, Event::finished);
     return start_covering(Event::covering_done);
 }
 

@@ -101,7 +101,9 @@ class Runner {
             const Eigen::Vector3d point = a + s * (b - a) + 4 * s * (1 - s) * crown * Eigen::Vector3d::UnitZ();
             status = grind(point, action.layer);
             noticed(status, action.layer);
-            record(action, status, plan_.job.feed.rate);
+            Action piece = action;
+            if (i > 1) piece.event = Event::none;
+            record(piece, status, plan_.job.feed.rate);
             if (status.force > plan_.job.force.max) break;
         }
         return status;

@@ -1,0 +1,38 @@
+# What is no plan, no stock, or no command line ends with status 2, one line that names the file and the value, and
+# nothing on stdout.
+# shellcheck source=tests/fettle-grind/stock.bash
+. "$HERE/stock.bash"
+make_job 0
+make_stock 1
+: > empty
+jq '.layers.distance = 0.7' plan.json > layers.json
+jq '.bounds.coverings = 0' plan.json > bounds.json
+jq '.passes[1].from[0] += 1' plan.json > slanted.json
+jq '.passes = []' plan.json > none.json
+jq '.units.length = "in"' plan.json > units.json
+jq '.pases = .passes' plan.json > misspelt.json
+jq '.region.x = [30, 60] | .anomalies = []' part.json | fettle-part > beside.stl
+refused() {
+    status=0
+    "$@" > out 2> message || status=$?
+    [ $status = 2 ] && [ ! -s out ] && [ "$(wc -l < message)" = 1 ] || { echo "$*: $status"; cat message; }
+    cat message
+}
+refused fettle-grind job.json --stock stock.stl
+refused fettle-grind empty --stock stock.stl
+refused fettle-grind layers.json --stock stock.stl
+refused fettle-grind bounds.json --stock stock.stl
+refused fettle-grind slanted.json --stock stock.stl
+refused fettle-grind none.json --stock stock.stl
+refused fettle-grind units.json --stock stock.stl
+refused fettle-grind misspelt.json --stock stock.stl
+refused fettle-grind plan.json --stock beside.stl
+refused fettle-grind plan.json --stock empty
+refused fettle-grind plan.json --stock plan.json
+refused fettle-grind plan.json --stock missing.stl
+refused fettle-grind plan.json
+refused fettle-grind plan.json --stock stock.stl --cell 0
+refused fettle-grind plan.json --stock stock.stl --cell 1e-9
+refused fettle-grind plan.json --stock stock.stl --gantry real
+refused fettle-grind plan.json --stock stock.stl --trace missing/trace.pcd
+refused fettle-grind plan.json --stock stock.stl --stock stock.stl

@@ -1,0 +1,12 @@
+# A bound is reached: status 1, a message with the state, and the ground part and the trace as far as they got.
+# shellcheck source=tests/fettle-grind/stock.bash
+. "$HERE/stock.bash"
+make_job 0
+make_stock 4
+for bound in layers coverings re_cuts steps time; do
+    status=0
+    jq ".bounds.$bound = if \"$bound\" == \"re_cuts\" then 0 else 1 end" plan.json |
+        fettle-grind --stock stock.stl --trace trace.pcd --ascii > ground.pcd 2> message || status=$?
+    cat message >&2
+    [ $status = 1 ] && [ "$(tail -n 1 trace.pcd | cut -d ' ' -f 7)" = 9 ] && [ "$(wc -l < ground.pcd)" -gt 10000 ]
+done
