@@ -98,17 +98,13 @@ Model model_of(const Bspline& grid, const Surface& surface)
     return m;
 }
 
-double amplitude(const Model& m, const VectorXd& z, double sigma)
+double amplitude_of(const Model& m, const VectorXd& z, double sigma)
 {
     const VectorXd variance = m.curvature_precision.tail(3).cwiseAbs2().cwiseInverse();
     const FieldModel field{m.H.leftCols(3), m.H.rightCols(3) * variance.asDiagonal() * m.H.rightCols(3).transpose(),
                            m.R, sigma};
     const Index spare = 6; // the three curvatures of a quadratic, and three touches more
-    const std::vector<Index> gross = gross_errors(field, z, spare);
-    std::vector<Index> kept;
-    for (Index i = 0; i < z.size(); ++i)
-        if (std::find(gross.begin(), gross.end(), i) == gross.end()) kept.push_back(i);
-    return most_probable_amplitude(part_of(field, kept), z(kept));
+    return amplitude(field, z, spare).rms;
 }
 
 /// Posterior covariance of the control heights, and of the touched heights (for the degrees of freedom).
@@ -154,7 +150,7 @@ Fit fit_bspline(const FitInput& input)
     const double sigma = surface.touch_sigma;
     const double level = surface.touches.row(2).mean();
     const VectorXd z = surface.touches.row(2).transpose().array() - level;
-    const double tau = amplitude(m, z, sigma);
+    const double tau = amplitude_of(m, z, sigma);
 
     // R = S Sᵀ; touches on the same place make it singular: only what is above rounding.
     const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(m.R);

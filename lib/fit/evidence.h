@@ -14,14 +14,16 @@ struct FieldModel {
     double sigma = 0;      ///< of one touch
 };
 
-/// Amplitude τ that makes the touches most probable, the free β integrated out (restricted maximum likelihood,
-/// Patterson and Thompson 1971). At least so large that g is not quite impossible, at most that noise is.
-double most_probable_amplitude(const FieldModel& model, const Eigen::VectorXd& z);
+/// What the touches say of τ.
+struct Amplitude {
+    double rms = 0;                         ///< √ of the expected τ²
+    std::vector<Eigen::Index> gross_errors; ///< touches that were left out: better explained as slips
+};
 
-/// Touches that are better explained as gross errors, one by one, while at least `spare` redundant touches remain.
-std::vector<Eigen::Index> gross_errors(const FieldModel& model, const Eigen::VectorXd& z, Eigen::Index spare);
-
-/// The model of some of the touches.
-FieldModel part_of(const FieldModel& model, const std::vector<Eigen::Index>& kept);
+/// The probability of each τ given the touches, the free β integrated out (restricted likelihood, Patterson and
+/// Thompson 1971), before which all orders of magnitude are equally probable. The expectation, not the most probable τ:
+/// few touches leave room for rougher surfaces, which a standard deviation has to cover. Touches that are better
+/// explained as gross errors are left out one by one, while more than `spare` redundant ones remain.
+Amplitude amplitude(const FieldModel& model, const Eigen::VectorXd& z, Eigen::Index spare);
 
 } // namespace fettle
