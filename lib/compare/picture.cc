@@ -17,7 +17,7 @@ using Eigen::Vector2d;
 // The sheet, in pixels: the map in its frame, the legend to the right, a line of numbers below.
 constexpr double kMapWidth = 900, kMapHeight = 680, kLeastMapHeight = 360;
 constexpr double kLeft = 84, kTop = 78, kBelowMap = 122, kLegendWidth = 310;
-constexpr Rgb kBackground = {252, 252, 252};
+constexpr Rgb kBackground = {228, 228, 232}; // darker than no error, lighter than undefined
 
 /// The next of 1, 1.5, 2, 3, 4, 5, 6, 8, 10 times a power of ten that is not below x.
 double round_up(double x)

@@ -170,7 +170,9 @@ void draw_legend(Canvas& sheet, const Layout& layout, const Values& values, cons
         const double above = std::round(row_of(value) - height / kBins / 2),
                      below = std::round(row_of(value) + height / kBins / 2);
         const double length = counts.maxCoeff() > 0 ? room * counts[bin] / counts.maxCoeff() : 0;
-        if (counts[bin] > 0) sheet.box({left, above}, {std::max(1.0, length), below - above - 2}, scale(value));
+        Rgb colour = scale(value);
+        for (std::uint8_t& c : colour) c = static_cast<std::uint8_t>(0.9 * c); // the palest is still seen on white
+        if (counts[bin] > 0) sheet.box({left, above}, {std::max(1.0, length), below - above - 2}, colour);
     }
     sheet.box({left - 1, top}, {0, height}, kFrame);
 }
@@ -178,25 +180,26 @@ void draw_legend(Canvas& sheet, const Layout& layout, const Values& values, cons
 void draw_numbers(Canvas& sheet, const Layout& layout, const Values& values, const std::string& place)
 {
     const Statistics s = statistics(values.numbers, Eigen::VectorXd::Zero(values.numbers.size()), std::nullopt);
-    std::vector<std::pair<std::string, std::string>> items = {{"mean", number_text(s.mean)}};
-    if (values.name == "error")
-        items.insert(items.end(), {{"mean |error|", number_text(s.mean_abs)}, {"rms", number_text(s.rms)}});
-    items.insert(items.end(), {{"min", number_text(s.min)}, {"max", number_text(s.max)}});
-    items.push_back({"points", std::to_string(s.count)});
-    items.push_back({"undefined", std::to_string(s.undefined)});
+    // What is rounding beside the largest number is shown as 0.
+    constexpr double kNothing = 1e-4;
+    const double largest = std::max(std::abs(s.min), std::abs(s.max));
+    const auto text = [&](double value) { return number_text(std::abs(value) < kNothing * largest ? 0 : value); };
+    std::vector<std::pair<std::string, std::string>> items = {{"mean", text(s.mean)}};
+    if (values.name == "error") items.insert(items.end(), {{"mean |error|", text(s.mean_abs)}, {"rms", text(s.rms)}});
+    items.insert(items.end(), {{"min", text(s.min)}, {"max", text(s.max)}});
+    items.insert(items.end(), {{"points", std::to_string(s.count)}, {"undefined", std::to_string(s.undefined)}});
     const double y = layout.map_corner.y() + layout.map_size.y() + 88;
     double x = layout.map_corner.x();
-    if (!place.empty()) {
-        sheet.text(place, {x, y}, kLabel, Canvas::kInk, Align::left, true);
-        x += Canvas::text_width(place, kLabel, true) + 28;
+    const std::string head = place + (place.empty() || values.unit.empty() ? "" : ", ") + values.unit;
+    if (!head.empty()) {
+        sheet.text(head, {x, y}, kLabel, Canvas::kInk, Align::left, true);
+        x += Canvas::text_width(head, kLabel, true) + 30;
     }
     for (const auto& [name, value] : items) {
-        const bool count = name == "points" || name == "undefined";
-        const std::string shown = value + (count || values.unit.empty() || value == "-" ? "" : " " + values.unit);
         sheet.text(name, {x, y}, kLabel, kGrey);
         x += Canvas::text_width(name, kLabel) + 8;
-        sheet.text(shown, {x, y}, kLabel);
-        x += Canvas::text_width(shown, kLabel) + 26;
+        sheet.text(value, {x, y}, kLabel);
+        x += Canvas::text_width(value, kLabel) + 26;
     }
 }
 

@@ -126,8 +126,8 @@ TEST(Picture, HasRoomForOnePoint)
     Cloud cloud;
     cloud.xyz = Eigen::Vector3d(3, 4, 5);
     const cv::Mat3b sheet = drawn(cloud, {});
-    EXPECT_NE(at(sheet, 84 + 450, kTop + 340), (Rgb{252, 252, 252})); // the disc in the middle
-    EXPECT_EQ(at(sheet, 84 + 450 + 100, kTop + 340), (Rgb{252, 252, 252}));
+    EXPECT_NE(at(sheet, 84 + 450, kTop + 340), (Rgb{228, 228, 232})); // the disc in the middle
+    EXPECT_EQ(at(sheet, 84 + 450 + 100, kTop + 340), (Rgb{228, 228, 232}));
 }
 
 TEST(Picture, RefusesWhatItCannotDraw)
