@@ -1,7 +1,7 @@
 #include "sampling/estimate.h"
 
 #include "core/error.h"
-#include "core/text.h"
+#include "core/range.h"
 #include "sampling/touch_plan.h"
 #include "sampling/trend.h"
 
@@ -69,10 +69,11 @@ std::vector<std::byte> no_value(const Field& field)
     return bytes;
 }
 
-// NaN (an estimated point's curve) becomes -1.
+// What is no number of a line or a role (the NaN of an estimated point's curve) becomes -1.
 Eigen::VectorXi whole_numbers(const Eigen::VectorXd& values)
 {
-    return values.unaryExpr([](double value) { return std::isnan(value) ? -1 : static_cast<int>(value); });
+    const Range possible = Range::between(0, std::numeric_limits<int>::max());
+    return values.unaryExpr([&](double value) { return possible.contains(value) ? static_cast<int>(value) : -1; });
 }
 
 } // namespace
