@@ -128,6 +128,12 @@ int main(int argc, char** argv)
         const Mesh* mesh = std::get_if<Mesh>(&test.shape);
         const Eigen::VectorXd areas = mesh ? volume_areas(*mesh, options) : volume_areas(map_cloud.xyz, map, options);
 
+        if (job)
+            for (const auto& [path, points] : {std::pair(test_path, map_cloud.xyz),
+                                               std::pair(reference_path, points_of(reference.shape).xyz)})
+                if (const std::string doubt = implausible_box(bounding_box(points), *job); !doubt.empty())
+                    t.warn(display_name(path) + ": " + doubt);
+
         json::Value& report = t.report();
         const Statistics all = statistics(map.error, areas, tolerance);
         report = to_json(all, units);
