@@ -100,7 +100,9 @@ void expect_same_map(const Result& a, const Result& b)
     EXPECT_NEAR(a.totals.removed_volume, b.totals.removed_volume, kRounding * a.totals.removed_volume);
     for (Eigen::Index i = 0; i < a.error.size(); ++i) {
         ASSERT_EQ(std::isnan(a.error[i]), std::isnan(b.error[i])) << i;
-        if (!std::isnan(a.error[i])) ASSERT_NEAR(a.error[i], b.error[i], kRounding) << i;
+        if (!std::isnan(a.error[i])) {
+            ASSERT_NEAR(a.error[i], b.error[i], kRounding) << i;
+        }
     }
 }
 
