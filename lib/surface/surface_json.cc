@@ -236,7 +236,6 @@ Value write_prediction(const Prediction& prediction, double mm)
     Value value;
     return value.set("method", prediction.method)
         .set("confidence", prediction.confidence)
-        .set("band", prediction.band / mm)
         .set("shift", prediction.shift / mm)
         .set("clamped", prediction.clamped);
 }
@@ -246,7 +245,6 @@ Prediction read_prediction(Reader reader, double mm)
     Prediction prediction;
     prediction.method = reader.choice("method", {"posterior", "wang"});
     prediction.confidence = reader.number("confidence", Range::between(0, 1));
-    prediction.band = reader.number("band", Range::at_least(0)) * mm;
     prediction.shift = reader.number("shift") * mm;
     prediction.clamped = reader.flag_or("clamped", false);
     reader.done();
@@ -264,7 +262,9 @@ json::Value to_json(const Surface& surface)
     value.set("kind", "surface").set("units", units);
     value.set("shape", std::visit([mm](const auto& shape) { return write(shape, mm); }, surface.shape));
     value.set("shift", surface.shift / mm);
-    if (surface.prediction) value.set("prediction", write_prediction(*surface.prediction, mm));
+    if (surface.prediction)
+        value.set("predicted_band", surface.prediction->band / mm)
+            .set("prediction", write_prediction(*surface.prediction, mm));
     value.set("fit", write_fit(surface, mm));
     if (surface.touches.cols() > 0) value.set("touches", write_touches(surface, mm));
     if (surface.covariance.size() > 0) value.set("covariance", write_covariance(surface, mm));
@@ -281,8 +281,10 @@ Surface parse_surface(json::Reader reader)
     const double mm = surface.units.mm();
     surface.shape = read_shape(reader.object("shape"), mm);
     surface.shift = reader.number_or("shift", 0) * mm;
-    if (std::optional<Reader> prediction = reader.object_or_none("prediction"))
+    if (std::optional<Reader> prediction = reader.object_or_none("prediction")) {
         surface.prediction = read_prediction(*prediction, mm);
+        surface.prediction->band = reader.number("predicted_band", Range::at_least(0)) * mm;
+    }
     if (std::optional<Reader> fit = reader.object_or_none("fit")) read_fit(*fit, surface, mm);
     read_touches(reader, surface, mm);
     surface.covariance = read_covariance(reader, surface.shape, mm);
