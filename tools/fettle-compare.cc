@@ -104,8 +104,9 @@ int main(int argc, char** argv)
         const auto& max_distance =
             t.number_if_given("--max-distance", "LENGTH", "No error beyond it", Range::positive());
         const bool& ascii = t.flag("--ascii", "Write text instead of binary");
-        t.example("fettle-compare parts/plane.stl --to parts/plane-truth.stl --report errors.json -o errors.pcd",
-                  "an error map to look at with pcl_viewer or fettle-render, and its statistics");
+        t.example(
+            "fettle-part parts/hammer.json | fettle-compare --to scans/hammer.stl --report errors.json -o errors.pcd",
+            "what the anomaly adds to the scan: an error map for pcl_viewer or fettle-render, and its statistics");
         t.reference("Wang 2007, 4.3.2 (eq. 4-1) and 6.2; Bærentzen & Aanæs 2005 (sign at edges and vertices)");
         t.parse();
 

@@ -20,7 +20,8 @@ int main(int argc, char** argv)
         const auto& unit = t.length_unit("--file-units", "Unit of POINTS, if not the job's");
         const std::string& job_path =
             t.text("--within", "", "JOB", "Only points inside its anomaly's boundary; its units");
-        t.example("fettle-form flatness scans/panel.pcd", "how flat a scanned panel is, in mm");
+        t.example("fettle-form flatness scans/panel.pcd",
+                  "how flat a scanned panel is, in the unit that the file states");
         t.reference("ISO 1101; Wang 2007, 6.2");
         t.parse();
 
