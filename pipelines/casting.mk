@@ -17,6 +17,17 @@ CLOUDS  := panel
 # 99 % of the touches within ±0.005 in; the scans' jobs are in mm.
 NOISE_in := normal:0.005
 NOISE_mm := normal:0.127
+# Cells of the stock: 0.1 mm on the parts in inches. Steps of the grid on which a fit meets the truth.
+CELL_in := 0.003937
+CELL_hammer := 0.1
+CELL_panel := 0.5
+STEP_in := 0.02
+STEP_hammer := 0.5
+STEP_panel := 1
+# Verdict: the ground surface lies within ± this of the truth; 0.4 mm, and for the rough panel 1 mm.
+LIMIT_in := 0.0157
+LIMIT_hammer := 0.4
+LIMIT_panel := 1
 
 .DELETE_ON_ERROR:
 .SECONDARY:
@@ -32,6 +43,10 @@ form   = $(if $(filter $(CLOUDS),$(call case,$1)),pcd,stl)
 part   = $(CHAIN)/parts/$(call case,$1).$(call form,$1)
 truth  = $(CHAIN)/parts/$(call case,$1)-truth.$(call form,$1)
 noise  = $(NOISE_$(if $(filter $(SCANS),$(call case,$1)),mm,in))
+cell   = $(CELL_$(if $(filter $(SCANS),$(call case,$1)),$(call case,$1),in))
+step   = $(STEP_$(if $(filter $(SCANS),$(call case,$1)),$(call case,$1),in))
+limit  = $(LIMIT_$(if $(filter $(SCANS),$(call case,$1)),$(call case,$1),in))
+units  = $(if $(filter $(SCANS),$(call case,$1)),mm,in)
 
 # --- the stages -------------------------------------------------------------------------------------------------------
 $(CHAIN)/parts/%.stl $(CHAIN)/parts/%.pcd: samples/parts/%.json $(B)/bin/fettle-part
@@ -72,7 +87,7 @@ $(CHAIN)/%/band.json: $(CHAIN)/%/fit.json $$(call truth,$$*) $(B)/bin/fettle-mes
 # --- pictures ---------------------------------------------------------------------------------------------------------
 $(CHAIN)/%/before.png: $$(call job,$$*) $$(call part,$$*) $(B)/bin/fettle-render
 	@mkdir -p $(@D)
-	fettle-render $(call part,$*) --within $< --title "$(call case,$*): before" -o $@
+	fettle-render $(call part,$*) --file-units $(call units,$*) --within $< --title "$(call case,$*): before" -o $@
 
 $(CHAIN)/%/after.png: $$(call job,$$*) $(CHAIN)/%/ground.pcd $(B)/bin/fettle-render
 	fettle-render $(@D)/ground.pcd --field z --within $< --title "$(call case,$*): after" -o $@

@@ -2,48 +2,24 @@
 #include "cloud/pcd.h"
 #include "compare/areas.h"
 #include "compare/colours.h"
+#include "compare/shape_file.h"
 #include "compare/signed_distance.h"
 #include "compare/statistics.h"
 #include "core/file.h"
 #include "core/text.h"
 #include "job/job.h"
-#include "mesh/mesh_file.h"
+#include "job/plausible.h"
 
 #include <cmath>
 #include <sstream>
-#include <variant>
 
 namespace {
 
 using namespace fettle;
 
-struct Part {
-    std::variant<Mesh, Cloud> shape;
-    Units units; ///< of the file
-};
-
-// `units` nothing: what the file says, else mm.
-Part read_part(const std::string& path, const std::optional<Units>& units)
-{
-    const std::string bytes = read_whole(path);
-    const std::string name = display_name(path);
-    if (looks_like_cloud(bytes)) {
-        CloudFile file = parse_cloud(bytes, name, units);
-        return {std::move(file.cloud), file.units};
-    }
-    const Units stated = units.value_or(Units{});
-    return {parse_mesh(bytes, name, stated.length), stated};
-}
-
-Units with_length(Units units, Units::Length length)
-{
-    units.length = length;
-    return units;
-}
-
 std::optional<Units> units_of(const std::optional<Units::Length>& stated, const std::optional<Job>& job)
 {
-    if (stated) return with_length(job ? job->units : Units{}, *stated);
+    if (stated) return Units{*stated, job ? job->units.force : Units::Force::N};
     return job ? std::optional(job->units) : std::nullopt;
 }
 
@@ -68,15 +44,6 @@ DistanceOptions distance_options(const std::string& mode, const std::string& dir
     if (!(options.direction.norm() > 0)) throw InputError("--direction", "has no length: '" + direction + "'");
     options.direction.normalize();
     return options;
-}
-
-// The cloud to write: the points of the test with all their fields.
-Cloud points_of(const std::variant<Mesh, Cloud>& test)
-{
-    if (const Cloud* cloud = std::get_if<Cloud>(&test)) return *cloud;
-    Cloud vertices;
-    vertices.xyz = std::get<Mesh>(test).vertices;
-    return vertices;
 }
 
 } // namespace
@@ -112,9 +79,9 @@ int main(int argc, char** argv)
 
         const std::optional<Job> job = job_path.empty() ? std::nullopt : std::optional(read_job(job_path));
         DistanceOptions options = distance_options(mode, direction);
-        const Part test = read_part(test_path, units_of(test_unit, job));
+        const ShapeFile test = read_shape(test_path, units_of(test_unit, job));
         const Units units = job ? job->units : test.units;
-        const Part reference = read_part(reference_path, units_of(reference_unit, job));
+        const ShapeFile reference = read_shape(reference_path, units_of(reference_unit, job));
         if (max_distance) options.max_distance = *max_distance * units.mm();
         std::optional<double> tolerance;
         if (tolerance_given)
@@ -128,6 +95,11 @@ int main(int argc, char** argv)
             reference.shape);
         const Mesh* mesh = std::get_if<Mesh>(&test.shape);
         const Eigen::VectorXd areas = mesh ? volume_areas(*mesh, options) : volume_areas(map_cloud.xyz, map, options);
+
+        if (job)
+            if (const std::string doubt = implausible_box(bounding_box(points_of(reference.shape).xyz), *job);
+                !doubt.empty())
+                t.warn(display_name(reference_path) + ": " + doubt);
 
         json::Value& report = t.report();
         const Statistics all = statistics(map.error, areas, tolerance);

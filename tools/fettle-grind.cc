@@ -18,15 +18,6 @@ using Clock = std::chrono::steady_clock;
 
 constexpr double kDefaultCell = 0.1; // mm: a sixtieth of a small wheel's width, a fifth of the step of the strategy
 
-HeightField stock_on_grid(const Scan& scan, const Job& job, double cell, const std::string& file)
-{
-    try {
-        return height_field(scan, job, cell);
-    } catch (const InputError& error) {
-        throw InputError(display_name(file), error.what());
-    }
-}
-
 Cloud to_cloud(const std::vector<TraceRow>& trace)
 {
     const Eigen::Index n = Eigen::Index(trace.size());
@@ -87,8 +78,8 @@ int main(int argc, char** argv)
         const auto begun = Clock::now();
         const Plan plan = read_plan(plan_file);
         const Units& units = plan.job.units;
-        const Scan scan = read_scan(stock_file, units, stock_units);
-        const HeightField stock = stock_on_grid(scan, plan.job, cell ? *cell * units.mm() : kDefaultCell, stock_file);
+        const HeightField stock = height_field(read_scan(stock_file, units, stock_units), plan.job,
+                                               cell ? *cell * units.mm() : kDefaultCell, display_name(stock_file));
         std::ostream* trace_out = trace.empty() ? nullptr : &t.output_file(trace); // a wrong name shows before the work
         QuasiStaticGantry gantry(stock, plan.job);
         const GrindRun run = fettle::run(plan, gantry, {}, t.progress("grinding"));

@@ -182,11 +182,12 @@ json::Value to_json(const FormZone& zone, const Eigen::Matrix3Xd& points, double
     return value;
 }
 
-// One sign for directions: up, or else along +y, +x.
+// One of the two signs of a direction, whatever the rounding: its largest component is positive.
 void orient(FormElement& element)
 {
-    const Eigen::Vector3d& d = element.direction;
-    if (d.z() < 0 || (d.z() == 0 && (d.y() < 0 || (d.y() == 0 && d.x() < 0)))) element.direction *= -1;
+    Eigen::Index largest = 0;
+    element.direction.cwiseAbs().maxCoeff(&largest);
+    if (element.direction[largest] < 0) element.direction *= -1;
 }
 
 } // namespace

@@ -5,7 +5,7 @@
 #include "margin/error_band.h"
 #include "margin/shift.h"
 
-#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
@@ -25,15 +25,13 @@ constexpr int kDraws = 4096;
 // The field is smooth, so a few factors carry it: those below this share of the largest variance are rounding.
 constexpr double kRounding = 1e-10;
 
-/// F with F Fᵀ = covariance, few columns.
+/// F with F Fᵀ = covariance, few columns. By eigenvalues: rounding makes the small pivots of a factorisation negative.
 Eigen::MatrixXd root(const Eigen::MatrixXd& covariance)
 {
-    const Eigen::LDLT<Eigen::MatrixXd> factor(covariance); // with pivots, the largest variance first
-    const Eigen::VectorXd& variance = factor.vectorD();
-    const Eigen::Index rank = (variance.array() > kRounding * covariance.diagonal().maxCoeff()).count();
-    Eigen::MatrixXd lower = Eigen::MatrixXd(factor.matrixL()).leftCols(rank);
-    lower *= variance.head(rank).cwiseSqrt().asDiagonal();
-    return factor.transpositionsP().transpose() * lower;
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(covariance); // ascending
+    const Eigen::VectorXd& variance = eigen.eigenvalues();
+    const Eigen::Index rank = (variance.array() > kRounding * variance.maxCoeff()).count();
+    return eigen.eigenvectors().rightCols(rank) * variance.tail(rank).cwiseSqrt().asDiagonal();
 }
 
 double quantile(std::vector<double> values, double share)

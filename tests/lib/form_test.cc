@@ -5,8 +5,8 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <random>
 
 namespace fettle {
@@ -29,6 +29,105 @@ TEST(Form, FlatnessOfFivePoints)
     EXPECT_NEAR(f.minimum_zone.width, 0.0672621, 5e-8);
     EXPECT_TRUE(f.minimum_zone.converged);
     EXPECT_EQ(f.minimum_zone.contacts.size(), 4U);
+}
+
+// Independent: the width of a body is least across a face or across two edges; so over all triples of points and all
+// pairs of pairs.
+TEST(Form, FlatnessByBruteForce)
+{
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> place(-1, 1);
+    for (int round = 0; round < 5; ++round) {
+        Eigen::Matrix3Xd p = Eigen::Matrix3Xd::NullaryExpr(3, 16, [&] { return place(random); });
+        p.row(2) *= 0.05;
+        double least = 1;
+        const auto look = [&](const Eigen::Vector3d& across) {
+            if (across.norm() < 1e-9) return; // parallel edges
+            const Eigen::RowVectorXd d = across.normalized().transpose() * p;
+            least = std::min(least, d.maxCoeff() - d.minCoeff());
+        };
+        for (int a = 0; a < 16; ++a)
+            for (int b = 0; b < a; ++b)
+                for (int c = 0; c < 16; ++c)
+                    for (int d = 0; d < c; ++d)
+                        look(Eigen::Vector3d(p.col(a) - p.col(b)).cross(Eigen::Vector3d(p.col(c) - p.col(d))));
+        const Form f = form(FormKind::flatness, p);
+        EXPECT_NEAR(f.minimum_zone.width, least, 1e-12);
+        EXPECT_GE(f.least_squares.width, f.minimum_zone.width);
+    }
+}
+
+Eigen::Matrix3Xd bumpy_cylinder()
+{
+    Eigen::Matrix3Xd p(3, 4000);
+    for (int i = 0; i < p.cols(); ++i) {
+        const double turn = i % 80 / 80.0 * 1.5, along = i / 80;
+        const double r = 30 + 0.02 * std::sin(5 * turn + along) + 0.01 * std::cos(0.3 * along);
+        p.col(i) << along, r * std::sin(turn), r * std::cos(turn);
+    }
+    return p;
+}
+
+// What a minimum zone is: all contacts touch, no point is outside, and no small motion makes it narrower.
+TEST(Form, MinimumZoneHolds)
+{
+    const Eigen::Matrix3Xd p = bumpy_cylinder();
+    for (const FormKind kind : {FormKind::cylindricity, FormKind::sphericity, FormKind::flatness}) {
+        const FormZone zone = form(kind, p).minimum_zone;
+        EXPECT_TRUE(zone.converged);
+        const Eigen::VectorXd d = deviations(zone.element, p);
+        EXPECT_NEAR(d.cwiseAbs().maxCoeff(), zone.width / 2, 1e-9);
+        for (const Eigen::Index i : zone.contacts) EXPECT_NEAR(std::abs(d[i]), zone.width / 2, 1e-9);
+        const FormMotion motion(zone.element, 30);
+        std::mt19937 random(2);
+        std::normal_distribution<double> step(0, 1e-3);
+        for (int i = 0; i < 300; ++i) {
+            const FormVector x = FormVector::NullaryExpr(motion.parameters(), [&] { return step(random); });
+            const Eigen::VectorXd moved = deviations(motion.moved(x), p);
+            EXPECT_GE(moved.maxCoeff() - moved.minCoeff(), zone.width - 1e-9);
+        }
+    }
+}
+
+TEST(Form, RigidMotionChangesNothing)
+{
+    const Eigen::Matrix3Xd p = bumpy_cylinder();
+    const Eigen::Isometry3d motion =
+        Eigen::Translation3d(300, -200, 10) * Eigen::AngleAxisd(1, Eigen::Vector3d(1, 2, 3).normalized());
+    const Form here = form(FormKind::cylindricity, p), there = form(FormKind::cylindricity, motion * p);
+    EXPECT_NEAR(here.least_squares.width, there.least_squares.width, 1e-9);
+    EXPECT_NEAR(here.minimum_zone.width, there.minimum_zone.width, 1e-9);
+    EXPECT_NEAR(
+        std::abs((motion.linear() * here.least_squares.element.direction).dot(there.least_squares.element.direction)),
+        1, 1e-12);
+}
+
+// The gradients against central differences.
+TEST(Form, Gradients)
+{
+    const Eigen::Vector3d point(11, -7, 5);
+    for (const FormKind kind : {FormKind::flatness, FormKind::cylindricity, FormKind::sphericity}) {
+        const FormElement element{kind, {1, 2, 3}, Eigen::Vector3d(1, -1, 2).normalized(), 10};
+        const FormMotion motion(element, 20);
+        const FormVector g = motion.gradient(point);
+        for (Eigen::Index k = 0; k < g.size(); ++k) {
+            constexpr double kStep = 1e-5; // rounding 1e-15 / 1e-5, truncation (1e-5)²
+            FormVector x = FormVector::Zero(g.size());
+            x[k] = kStep;
+            const double up = deviation(motion.moved(x), point), down = deviation(motion.moved(-x), point);
+            EXPECT_NEAR(g[k], (up - down) / (2 * kStep), 1e-8);
+        }
+    }
+}
+
+TEST(Form, RefusesWhatDoesNotDetermineIt)
+{
+    const Eigen::Matrix3Xd line = Eigen::Vector3d(1, 2, 3) * Eigen::RowVectorXd::LinSpaced(10, 0, 1);
+    for (const FormKind kind : {FormKind::flatness, FormKind::cylindricity, FormKind::sphericity}) {
+        EXPECT_THROW(form(kind, line), InputError);
+        EXPECT_THROW(form(kind, line.leftCols(1)), InputError);
+        EXPECT_THROW(form(kind, Eigen::Matrix3Xd(3, 0)), InputError);
+    }
 }
 
 } // namespace

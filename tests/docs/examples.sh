@@ -1,0 +1,12 @@
+# The example of each help text runs as pasted, in a copy of samples/; exit 1 (the answer is no) is an answer.
+cp -r "$SAMPLES" samples
+cd samples
+chmod -R u+w .
+for source in "$HERE"/../../tools/fettle-*.cc; do
+    tool=$(basename "$source" .cc)
+    example=$("$tool" --help | sed -n '/^Example/{n;s/^ *//;p}')
+    test -n "$example"
+    status=0
+    bash -o pipefail -c "$example" >stdout 2>stderr || status=$?
+    test $status -le 1 || { echo "$tool: $example"; cat stderr; false; }
+done
