@@ -35,7 +35,7 @@ int main(int argc, char** argv)
                                           "Allowed difference, relative to the greater number; "
                                           "added to --tol",
                                           Range::at_least(0));
-        t.example("fettle-diff --tol 1e-6 jobs/plane.json jobs/plane.json",
+        t.example("fettle-diff --tol 1e-6 jobs/wang1.json jobs/wang1.json",
                   "exits 0 if no two numbers differ by more than 1e-6, 1 if some do, 2 if a file cannot be read");
         t.parse();
 
