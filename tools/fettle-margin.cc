@@ -18,8 +18,9 @@ int main(int argc, char** argv)
                          Range::inside(0, 1));
             const std::string& job_file = t.file("JOB", "job, JSON");
             const std::string& surface_file = t.input("SURFACE", "fitted surface, JSON");
-            t.example("fettle-margin jobs/patch_saddle_2x2.json surface.json > desired.json",
-                      "the surface of fettle-fit, raised by its 99 % shift");
+            t.example("fettle-sample jobs/hammer.json --on scans/hammer.stl | fettle-fit jobs/hammer.json | "
+                      "fettle-margin jobs/hammer.json > desired.json",
+                      "touch a scanned hammer, fit it, and raise the fit by its 99 % shift");
             t.reference("Wang 2007, eq. 4-1 (error band), eq. 4-6 (shift distance) and 4.5 (regressions)");
             t.parse();
 
