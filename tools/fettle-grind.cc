@@ -16,7 +16,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kDefaultCell = 0.1; // mm: a sixtieth of a small wheel's width, a fifth of the step of the strategy
+constexpr double kCellsPerWidth = 64; // of the wheel: 0.1 mm for one of 1/4 in
 
 Cloud to_cloud(const std::vector<TraceRow>& trace)
 {
@@ -66,8 +66,8 @@ int main(int argc, char** argv)
         const std::string& stock_file = t.required_text("--stock", "PART", "the part as it is: STL, PLY, OBJ or PCD");
         const auto& stock_units = t.length_unit("--stock-units", "of the stock's file; default: the job's");
         t.choice("--gantry", "virtual", {"virtual"}, "the machine: a simulated gantry in equilibrium at every moment");
-        const auto& cell =
-            t.number_if_given("--cell", "length", "side of a cell of the stock; default: 0.1 mm", Range::positive());
+        const auto& cell = t.number_if_given(
+            "--cell", "length", "side of a cell of the stock; default: 1/64 of the wheel's width", Range::positive());
         const std::string& trace = t.text("--trace", "", "FILE", "what the machine did and why, PCD");
         const bool& ascii = t.flag("--ascii", "write PCDs as text");
         t.example("fettle-grind plan.json --stock parts/wang1.stl --trace trace.pcd > ground.pcd",
@@ -78,8 +78,9 @@ int main(int argc, char** argv)
         const auto begun = Clock::now();
         const Plan plan = read_plan(plan_file);
         const Units& units = plan.job.units;
-        const HeightField stock = height_field(read_scan(stock_file, units, stock_units), plan.job,
-                                               cell ? *cell * units.mm() : kDefaultCell, display_name(stock_file));
+        const HeightField stock =
+            height_field(read_scan(stock_file, units, stock_units), plan.job,
+                         cell ? *cell * units.mm() : plan.job.wheel.width / kCellsPerWidth, display_name(stock_file));
         std::ostream* trace_out = trace.empty() ? nullptr : &t.output_file(trace); // a wrong name shows before the work
         QuasiStaticGantry gantry(stock, plan.job);
         const GrindRun run = fettle::run(plan, gantry, {}, t.progress("grinding"));

@@ -26,7 +26,7 @@ refused fettle-grind slanted.json --stock stock.stl
 refused fettle-grind none.json --stock stock.stl
 refused fettle-grind units.json --stock stock.stl
 refused fettle-grind misspelt.json --stock stock.stl
-refused fettle-grind plan.json --stock beside.stl
+refused fettle-grind plan.json --stock beside.stl --cell 0.1
 refused fettle-grind plan.json --stock empty
 refused fettle-grind plan.json --stock plan.json
 refused fettle-grind plan.json --stock missing.stl

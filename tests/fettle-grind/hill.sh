@@ -5,7 +5,7 @@
 . "$HERE/stock.bash"
 make_job 0
 make_stock 4
-fettle-grind plan.json --stock stock.stl --trace trace.pcd --report report.json --ascii > ground.pcd
+fettle-grind plan.json --stock stock.stl --cell 0.1 --trace trace.pcd --report report.json --ascii > ground.pcd
 awk '/^DATA/ { body = 1; next }
      body && $1 > -6 && $1 < 6 && $2 > -6 && $2 < 6 { if ($3 > 5.1 || $3 < 5 - 0.005) bad++; n++ }
      body { volume += $4 * 0.1 * 0.1 }
