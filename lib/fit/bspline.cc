@@ -66,23 +66,37 @@ struct Model {
     MatrixXd H;                          ///< n x 6, quadratics at the touches
     MatrixXd R;                          ///< A K⁺ Aᵀ
     Eigen::VectorXd curvature_precision; ///< of β: (1 / standard deviation) of u², uv, v²; 0 for 1, u, v
+    double least_tau = 0;                ///< of a round surface
 };
 
 /// Size of the second derivatives of u², uv and v² (Frobenius norm of D²; uv's stands there twice), 1/mm.
 Eigen::Vector3d second_derivatives(double half) { return Eigen::Vector3d(2, std::sqrt(2.0), 2) / (half * half); }
 
-/// The size of D²f that is expected at most: what the least quadratic through the touches has, but no less than what
-/// changes the slope by 1 over the touched length.
-double expected_curvature(const Model& m, const Eigen::Matrix3Xd& touches)
+double touched_size(const Eigen::Matrix3Xd& touches)
+{
+    return (touches.topRows(2).rowwise().maxCoeff() - touches.topRows(2).rowwise().minCoeff()).norm();
+}
+
+/// The size of D² of the least quadratic through the touches.
+double touched_curvature(const Model& m, const Eigen::Matrix3Xd& touches)
 {
     Eigen::CompleteOrthogonalDecomposition<MatrixXd> least_squares;
     least_squares.setThreshold(kRounding); // a twist that is only rounding is left 0
     least_squares.compute(m.H);
     const VectorXd z = touches.row(2).transpose().array() - touches.row(2).mean();
     const VectorXd beta = least_squares.solve(z);
-    const double touched = beta.tail(3).cwiseProduct(second_derivatives(m.prior.half)).norm();
-    const Eigen::Vector2d size = touches.topRows(2).rowwise().maxCoeff() - touches.topRows(2).rowwise().minCoeff();
-    return std::max(touched, 1 / size.norm());
+    return beta.tail(3).cwiseProduct(second_derivatives(m.prior.half)).norm();
+}
+
+/// √E of a sphere with that curvature, the least that a curved surface is expected to differ from a quadratic. With
+/// z = … - κ³ r⁴/8 its energy density is 12 κ⁶ r². Steeper than a sphere may be (κ r = 1 at the outermost touch), the
+/// series says nothing.
+double round_amplitude(const SplinePrior& prior, double curvature, double size)
+{
+    const double kappa = std::min(curvature / std::sqrt(2.0), 2 / size); // |D²| of a sphere is √2 κ
+    const double mean_r2 = prior.middle.squaredNorm() / 3;               // over the rectangle
+    const double area = 4 * prior.middle.prod();
+    return std::sqrt(12 * mean_r2 * area) * kappa * kappa * kappa;
 }
 
 Model model_of(const Bspline& grid, const Surface& surface)
@@ -93,18 +107,23 @@ Model model_of(const Bspline& grid, const Surface& surface)
     m.GA.noalias() = m.prior.pseudo_inverse * m.A.transpose();
     m.H.noalias() = m.A * m.prior.quadratics;
     m.R.noalias() = m.A * m.GA;
+    // No less than what changes the slope by 1 over the touched length.
+    const double size = touched_size(surface.touches);
+    const double touched = touched_curvature(m, surface.touches);
+    const double kappa = std::max(touched, 1 / size);
     m.curvature_precision.setZero(6);
-    m.curvature_precision.tail(3) = second_derivatives(m.prior.half) / expected_curvature(m, surface.touches);
+    m.curvature_precision.tail(3) = second_derivatives(m.prior.half) / kappa;
+    m.least_tau = round_amplitude(m.prior, touched, size);
     return m;
 }
 
-double amplitude_of(const Model& m, const VectorXd& z, double sigma)
+Amplitude amplitude_of(const Model& m, const VectorXd& z, double sigma)
 {
     const VectorXd variance = m.curvature_precision.tail(3).cwiseAbs2().cwiseInverse();
     const FieldModel field{m.H.leftCols(3), m.H.rightCols(3) * variance.asDiagonal() * m.H.rightCols(3).transpose(),
-                           m.R, sigma};
+                           m.R, sigma, m.least_tau};
     const Index spare = 6; // the three curvatures of a quadratic, and three touches more
-    return amplitude(field, z, spare).rms;
+    return amplitude(field, z, spare);
 }
 
 /// Posterior covariance of the control heights, and of the touched heights (for the degrees of freedom).
@@ -150,7 +169,8 @@ Fit fit_bspline(const FitInput& input)
     const double sigma = surface.touch_sigma;
     const double level = surface.touches.row(2).mean();
     const VectorXd z = surface.touches.row(2).transpose().array() - level;
-    const double tau = amplitude_of(m, z, sigma);
+    const Amplitude believed = amplitude_of(m, z, sigma);
+    const double tau = believed.rms;
 
     // R = S Sᵀ; touches on the same place make it singular: only what is above rounding.
     const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(m.R);
@@ -166,10 +186,14 @@ Fit fit_bspline(const FitInput& input)
     problem.A << m.H, V * (tau * root).asDiagonal();
     problem.A /= sigma;
     problem.b = z / sigma;
+    problem.A(believed.gross_errors, Eigen::all).setZero();
+    problem.b(believed.gross_errors).setZero();
     problem.width = input.job.probe.accuracy / sigma;
     problem.prior.setOnes(6 + rank);
     problem.prior.head(6) = m.curvature_precision;
-    const RobustLinearResult solved = solve(problem);
+    RobustLinearResult solved = solve(problem);
+    constexpr double kNoWeight = 1e-9; // a slip's touch error is 30000 times a touch's, so it says nothing
+    solved.weight(believed.gross_errors).setConstant(kNoWeight);
 
     const VectorXd controls =
         m.prior.quadratics * solved.x.head(6) + m.GA * (V * (tau * solved.x.tail(rank)).cwiseQuotient(root));

@@ -28,7 +28,7 @@ struct Likelihood {
 
 FieldModel part_of(const FieldModel& model, const std::vector<Index>& kept)
 {
-    return {model.free(kept, Eigen::all), model.prior(kept, kept), model.R(kept, kept), model.sigma};
+    return {model.free(kept, Eigen::all), model.prior(kept, kept), model.R(kept, kept), model.sigma, model.least_tau};
 }
 
 // With C = σ² I + prior + τ² R, F the free columns and P = C⁻¹ - C⁻¹F (FᵀC⁻¹F)⁻¹ FᵀC⁻¹ (Harville 1977):
@@ -62,7 +62,12 @@ Likelihood likelihood(const FieldModel& model, const VectorXd& z)
     result.tau = noise * VectorXd::LinSpaced(kSteps, kLeast, kMost).array().exp();
     result.log_all.resize(kSteps);
     result.log_one.resize(z.size(), kSteps);
-    for (Index k = 0; k < kSteps; ++k) likelihood_at(model, z, k, result);
+    for (Index k = 0; k < kSteps; ++k) {
+        likelihood_at(model, z, k, result);
+        // e times smaller than expected counts as one standard deviation.
+        const double below = std::max(0.0, std::log(model.least_tau / result.tau[k]));
+        result.log_all[k] -= below * below / 2;
+    }
     return result;
 }
 

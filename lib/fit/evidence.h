@@ -12,6 +12,7 @@ struct FieldModel {
     Eigen::MatrixXd prior; ///< covariance of the other columns' share, n x n
     Eigen::MatrixXd R;     ///< n x n, of g for τ = 1
     double sigma = 0;      ///< of one touch
+    double least_tau = 0;  ///< what τ is expected to reach at least
 };
 
 /// What the touches say of τ.
@@ -21,7 +22,8 @@ struct Amplitude {
 };
 
 /// The probability of each τ given the touches, the free β integrated out (restricted likelihood, Patterson and
-/// Thompson 1971), before which all orders of magnitude are equally probable. The expectation, not the most probable τ:
+/// Thompson 1971). Before the touches all orders of magnitude above `least_tau` are equally probable, smaller ones ever
+/// less. The expectation, not the most probable τ:
 /// few touches leave room for rougher surfaces, which a standard deviation has to cover. Touches that are better
 /// explained as gross errors are left out one by one, while more than `spare` redundant ones remain.
 Amplitude amplitude(const FieldModel& model, const Eigen::VectorXd& z, Eigen::Index spare);

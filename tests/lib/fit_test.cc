@@ -5,12 +5,13 @@
 #include "fit/sphere.h"
 #include "fit/swept.h"
 #include "surface/shapes.h"
+#include "json/document.h"
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <cmath>
+#include <limits>
 #include <random>
 
 namespace fettle {
@@ -143,10 +144,10 @@ TEST(Bspline, ReproducesQuadraticsExactly)
 
 /// Standard deviation of the height over the middle and a corner of B, by fitting anew to touches with fresh noise.
 template <typename FitFunction, typename Height>
-void expect_calibrated(FitFunction fit_function, const Height& truth, double tolerance)
+void expect_calibrated(FitFunction fit_function, const Height& truth, int runs)
 {
     constexpr double kAccuracy = 0.127;
-    constexpr int kRuns = 1000;
+    const double tolerance = 3 / std::sqrt(2.0 * runs); // three standard errors of a standard deviation
     const FitInput exact = touched(wang_layout(), truth, job_with(kAccuracy));
     const Surface predicted = fit_function(exact).surface;
     std::mt19937 random(20);
@@ -154,7 +155,7 @@ void expect_calibrated(FitFunction fit_function, const Height& truth, double tol
     const Eigen::Vector2d places[] = {{0, 0}, {kInch, kInch}};
     Eigen::Vector2d squares = Eigen::Vector2d::Zero();
     double goodness = 0;
-    for (int run = 0; run < kRuns; ++run) {
+    for (int run = 0; run < runs; ++run) {
         FitInput noisy = exact;
         for (Eigen::Index i = 0; i < noisy.xyz.cols(); ++i) noisy.xyz(2, i) += noise(random);
         const Surface surface = fit_function(noisy).surface;
@@ -163,34 +164,224 @@ void expect_calibrated(FitFunction fit_function, const Height& truth, double tol
         goodness += surface.goodness;
     }
     for (int k = 0; k < 2; ++k)
-        EXPECT_NEAR(std::sqrt(squares[k] / kRuns) / sigma(predicted, places[k]), 1, tolerance) << k;
-    EXPECT_NEAR(goodness / kRuns, 0.5, 0.05); // a p-value is uniform
+        EXPECT_NEAR(std::sqrt(squares[k] / runs) / sigma(predicted, places[k]), 1, tolerance) << k;
+    EXPECT_NEAR(goodness / runs, 0.5, 3 * std::sqrt(1 / 12.0 / runs)); // a p-value is uniform
 }
 
-// The standard deviation of 1000 runs is known to 1/√2000 = 2.2 %; 7 % are three of it.
 TEST(Sigma, AgreesWithNoisyRefits)
 {
     const auto of = [](const Shape& shape) { return [shape](double x, double y) { return height_of(shape, x, y); }; };
-    expect_calibrated(fit_plane, of(Plane{{0, 0}, 3, {0.2, -0.4}}), 0.07);
-    expect_calibrated(fit_swept, of(Swept{{3, -4}, {1, 0}, 20, {1, 2, -3, 0.7}, 0.15, -50, 50}), 0.07);
-    expect_calibrated(fit_sphere, of(sphere_about({5, -3, 10}, 4 * kInch, true)), 0.07);
-    expect_calibrated(fit_cylinder, of(cylinder_about({3, 4, 5}, {1, 0.4, 0}, 4 * kInch, false)), 0.07);
+    expect_calibrated(fit_plane, of(Plane{{0, 0}, 3, {0.2, -0.4}}), 1000);
+    expect_calibrated(fit_swept, of(Swept{{3, -4}, {1, 0}, 20, {1, 2, -3, 0.7}, 0.15, -50, 50}), 1000);
+    expect_calibrated(fit_sphere, of(sphere_about({5, -3, 10}, 4 * kInch, true)), 1000);
+    expect_calibrated(fit_cylinder, of(cylinder_about({3, 4, 5}, {1, 0.4, 0}, 4 * kInch, false)), 300);
 }
 
-TEST(Bspline, Speed)
+double wavy(double x, double y) { return quadratic(x, y) + 1.5 * std::sin(x / 25) * std::cos(y / 30); }
+
+// Over surfaces drawn from the wavy family with random phases, amplitudes and touch errors, the errors inside B are of
+// the size that sigma says: it covers what lies between the touches, not only their noise.
+TEST(Bspline, SigmaCoversUnknownSurfaces)
 {
-    std::mt19937 random(1);
-    std::normal_distribution<double> noise(0, 0.05);
-    const FitInput exact = touched(wang_layout(), quadratic, job_with(0.127));
-    for (int k = 0; k < 20; ++k) {
+    constexpr int kRuns = 300;
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    std::normal_distribution<double> noise(0, touch_sigma(job_with(0.127).probe));
+    double squares = 0;
+    int beyond = 0;
+    for (int run = 0; run < kRuns; ++run) {
+        const double phase = 2 * M_PI * uniform(random);
+        const double size = 2 * uniform(random);
+        const auto truth = [&](double x, double y) {
+            return quadratic(x, y) + size * std::sin(x / 25 + phase) * std::cos(y / 30 - 2 * phase);
+        };
+        FitInput input = touched(wang_layout(), truth, job_with(0.127));
+        for (Eigen::Index i = 0; i < input.xyz.cols(); ++i) input.xyz(2, i) += noise(random);
+        const Surface surface = fit_bspline(input).surface;
+        const Eigen::Vector2d place = kInch * Eigen::Vector2d(2 * uniform(random) - 1, 2 * uniform(random) - 1);
+        const double z = (height(surface, place) - truth(place.x(), place.y())) / sigma(surface, place);
+        squares += z * z;
+        beyond += std::abs(z) > 2.576;
+    }
+    const double rms = std::sqrt(squares / kRuns);
+    EXPECT_LT(rms, 1.3);
+    EXPECT_GT(rms, 0.5); // nor is it needlessly large
+    EXPECT_LT(beyond, 0.03 * kRuns);
+}
+
+/// The same touches with one of them 1 mm off.
+template <typename FitFunction, typename Height>
+void expect_robust(FitFunction fit_function, const Height& truth)
+{
+    const FitInput exact = touched(wang_layout(), truth, job_with(0.127));
+    for (const Eigen::Index wrong : {0, 5, 10}) {
         FitInput input = exact;
-        for (Eigen::Index i = 0; i < 16; ++i) input.xyz(2, i) += noise(random);
-        const auto start = std::chrono::steady_clock::now();
-        const Fit fit = fit_bspline(input);
-        std::printf("%g ms, %d iterations, err %g sigma %g rms %g good %g N %d\n",
-                    std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count(),
-                    fit.iterations, largest_error(fit.surface, quadratic, kInch), sigma(fit.surface, {0, 0}),
-                    fit.surface.rms, fit.surface.goodness, int(fit.surface.covariance.rows()));
+        input.xyz(2, wrong) += 1;
+        const Fit fit = fit_function(input);
+        EXPECT_TRUE(fit.converged);
+        // The pull of a touch at the edge of the probe's accuracy.
+        EXPECT_LT(largest_error(fit.surface, truth, kInch), 0.127) << fit.surface.method << ", touch " << wrong;
+        EXPECT_LT(fit.surface.goodness, 1e-6); // and it is seen
+    }
+}
+
+TEST(Robust, OneMillimetreOffDoesNotWreckTheFit)
+{
+    const auto of = [](const Shape& shape) { return [shape](double x, double y) { return height_of(shape, x, y); }; };
+    expect_robust(fit_plane, of(Plane{{0, 0}, 3, {0.2, -0.4}}));
+    expect_robust(fit_swept, of(Swept{{3, -4}, {1, 0}, 20, {1, 2, -3, 0.7}, 0.15, -50, 50}));
+    expect_robust(fit_sphere, of(sphere_about({5, -3, 10}, 4 * kInch, true)));
+    expect_robust(fit_cylinder, of(cylinder_about({3, 4, 5}, {1, 0.4, 0}, 4 * kInch, false)));
+    expect_robust(fit_bspline, quadratic);
+}
+
+/// Noisy touches of a surface that none of the shapes is, for identities.
+FitInput some_touches()
+{
+    FitInput input = touched(wang_layout(), wavy, job_with(0.127));
+    std::mt19937 random(9);
+    std::normal_distribution<double> noise(0, 0.05);
+    for (Eigen::Index i = 0; i < input.xyz.cols(); ++i) input.xyz(2, i) += noise(random);
+    return input;
+}
+
+const Eigen::Vector2d kPlaces[] = {{0, 0}, {20, -15}, {-25, 25}};
+
+/// The fit moves along when touches and job are turned (with theta) and moved.
+TEST(Invariance, TurnedAndMoved)
+{
+    const FitInput input = some_touches();
+    const double angle = 0.7;
+    const Eigen::Rotation2Dd turn(angle);
+    const Eigen::Vector3d shift(400, -250, 30);
+    FitInput moved = input;
+    const auto move = [&](Eigen::Matrix3Xd& points) {
+        points.topRows(2) = turn.toRotationMatrix() * points.topRows(2);
+        points.colwise() += shift;
+    };
+    move(moved.xyz);
+    move(moved.job.anomaly);
+    moved.job.theta += angle;
+    for (const char* method : {"plane", "swept", "sphere", "cylinder", "bspline"}) {
+        const Surface a = fit_surface(input, method).surface;
+        const Surface b = fit_surface(moved, method).surface;
+        for (const Eigen::Vector2d& xy : kPlaces) {
+            const Eigen::Vector2d there = turn * xy + shift.head<2>();
+            EXPECT_NEAR(height(b, there) - shift.z(), height(a, xy), 1e-7) << method;
+            EXPECT_NEAR(sigma(b, there), sigma(a, xy), 1e-7) << method;
+        }
+        EXPECT_NEAR(a.goodness, b.goodness, 1e-6) << method;
+    }
+}
+
+/// The library computes in mm, so a job in inches is the same numbers; the file must be, too.
+TEST(Invariance, Inches)
+{
+    FitInput input = some_touches();
+    const Surface mm = fit_bspline(input).surface;
+    input.job.units.length = Units::Length::in;
+    const Surface inches = parse_surface(json::Reader::parse(to_json(fit_bspline(input).surface).text(), "test"));
+    for (const Eigen::Vector2d& xy : kPlaces) {
+        EXPECT_NEAR(height(inches, xy), height(mm, xy), 1e-12);
+        EXPECT_NEAR(sigma(inches, xy), sigma(mm, xy), 1e-12);
+    }
+}
+
+TEST(Invariance, OrderOfTheTouches)
+{
+    const FitInput input = some_touches();
+    FitInput reversed = input;
+    reversed.xyz = input.xyz.rowwise().reverse();
+    for (const char* method : {"plane", "swept", "sphere", "cylinder", "bspline"})
+        for (const Eigen::Vector2d& xy : kPlaces)
+            EXPECT_NEAR(height(fit_surface(reversed, method).surface, xy),
+                        height(fit_surface(input, method).surface, xy), 1e-7)
+                << method;
+}
+
+// Two crossing lines say nothing of the twist: the surface stays finite, and sigma tells.
+TEST(Bspline, TwoCrossingLinesLeaveTheTwistOpen)
+{
+    Eigen::Matrix2Xd xy(2, 8);
+    xy << -50, -25, 25, 50, 0, 0, 0, 0, 0, 0, 0, 0, -50, -25, 25, 50;
+    const auto truth = [](double x, double y) { return 0.005 * x * x - 0.004 * y * y; };
+    const Surface surface = fit_bspline(touched(xy, truth, job_with(0.127))).surface;
+    EXPECT_LT(largest_error(surface, truth, kInch), 0.5);
+    EXPECT_GT(sigma(surface, {25, 25}), 10 * sigma(surface, {25, 0}));
+    EXPECT_TRUE(std::isfinite(sigma(surface, {25, 25})));
+}
+
+TEST(Bspline, CoversTheAnomalyAndTheTouches)
+{
+    const FitInput input = some_touches();
+    const Surface surface = fit_bspline(input).surface;
+    for (Eigen::Index i = 0; i < input.xyz.cols(); ++i)
+        EXPECT_TRUE(std::isfinite(height(surface, input.xyz.col(i).head<2>())));
+    for (Eigen::Index i = 0; i < 4; ++i)
+        EXPECT_TRUE(std::isfinite(height(surface, input.job.anomaly.col(i).head<2>())));
+}
+
+TEST(Input, RolesAndNumbersThatAreNotUsedAreCounted)
+{
+    FitInput input = some_touches();
+    const int all = static_cast<int>(input.xyz.cols());
+    input.roles[0] = 0;
+    input.roles[1] = 3;
+    input.xyz(2, 2) = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_EQ(fit_sphere(input).surface.ignored, 3);
+    EXPECT_EQ(fit_sphere(input).surface.touches.cols(), all - 3);
+    EXPECT_EQ(fit_plane(input).surface.ignored, 2); // corners of B are on good metal
+    input.use_boundary = true;
+    EXPECT_EQ(fit_sphere(input).surface.ignored, 2);
+}
+
+std::string refusal(const std::string& method, const Eigen::Matrix3Xd& xyz)
+{
+    FitInput input;
+    input.job = job_with(0.127);
+    input.xyz = xyz;
+    input.roles = Eigen::VectorXi::Ones(xyz.cols());
+    try {
+        fit_surface(input, method);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+TEST(Input, RefusesTouchesThatDetermineNothing)
+{
+    Eigen::Matrix3Xd line(3, 8);
+    for (Eigen::Index i = 0; i < 8; ++i) line.col(i) << 3.0 * i, 5.0 * i, 2.0 * i + (i % 2) * 0.01;
+    const Eigen::Matrix3Xd same = Eigen::Vector3d(1, 2, 3).replicate(1, 8);
+    const Eigen::Matrix3Xd one = Eigen::Vector3d(1, 2, 3);
+    for (const char* method : {"plane", "swept", "sphere", "cylinder", "bspline"}) {
+        EXPECT_NE(refusal(method, line), "") << method;
+        EXPECT_NE(refusal(method, same), "") << method;
+        EXPECT_NE(refusal(method, one).find("needs at least"), std::string::npos) << method;
+        EXPECT_NE(refusal(method, Eigen::Matrix3Xd(3, 0)).find("needs at least"), std::string::npos) << method;
+    }
+    Eigen::Matrix3Xd circle(3, 8); // any sphere through it
+    for (Eigen::Index i = 0; i < 8; ++i) circle.col(i) << 20 * std::cos(i * M_PI / 4), 20 * std::sin(i * M_PI / 4), 1;
+    EXPECT_EQ(refusal("sphere", circle),
+              "touches: touches do not determine a sphere: another one goes through them as well");
+    Eigen::Matrix3Xd wall(3, 6);
+    wall << 0, 0, 0, 0, 0, 0, 0, 10, 20, 0, 10, 20, 0, 0, 0, 10, 12, 15;
+    EXPECT_NE(refusal("plane", wall).find("vertical plane"), std::string::npos);
+}
+
+TEST(Input, RepeatedTouchesAreTakenTwice)
+{
+    const FitInput input = some_touches();
+    FitInput twice = input;
+    twice.xyz.resize(3, 32);
+    twice.xyz << input.xyz, input.xyz;
+    twice.roles = Eigen::VectorXi::Ones(32);
+    for (const char* method : {"plane", "swept", "sphere", "cylinder", "bspline"}) {
+        const Surface once = fit_surface(input, method).surface;
+        const Surface both = fit_surface(twice, method).surface;
+        EXPECT_LT(std::abs(height(both, {5, 5}) - height(once, {5, 5})), 0.1) << method;
+        EXPECT_LT(sigma(both, {5, 5}), sigma(once, {5, 5})) << method;
     }
 }
 
