@@ -20,10 +20,16 @@ std::vector<std::string> choices()
 }
 
 /// Points without roles are samples.
-Eigen::VectorXi roles(const Cloud& cloud)
+Eigen::VectorXi roles(const Cloud& cloud, const std::string& source)
 {
     if (!has_field(cloud, "role")) return Eigen::VectorXi::Ones(cloud.size());
-    return field(cloud, "role").cast<int>();
+    constexpr int kMostRole = 5;
+    const Eigen::VectorXd numbers = field(cloud, "role");
+    for (Eigen::Index i = 0; i < numbers.size(); ++i)
+        if (!(numbers[i] >= 0 && numbers[i] <= kMostRole && numbers[i] == std::floor(numbers[i])))
+            throw InputError(source,
+                             "point " + std::to_string(i) + ": " + to_text(numbers[i]) + " is no role (0 to 5)");
+    return numbers.cast<int>();
 }
 
 /// Number of each touch's line, -1 for an estimated point; empty without the field.
@@ -59,13 +65,15 @@ int main(int argc, char** argv)
             t.choice("-m,--method", "auto", choices(), "Kind of surface; auto: by the job's surface type");
         const bool& use_boundary =
             t.flag("--use-boundary", "Take the anomaly boundary (role 0) as touches, too; planes always do");
+        const std::optional<Units::Length>& file_unit =
+            t.length_unit("--file-units", "Unit of POINTS, if it is not the job's");
         const std::optional<double>& spacing =
             t.number_if_given("--spacing", "LENGTH",
                               "griddata: half the shortest wave to keep; 0: do not sample again; else half the "
                               "mean distance of the points",
                               Range::at_least(0));
-        t.example("fettle-sample jobs/flat.json --on parts/flat.stl | fettle-fit jobs/flat.json -o flat-surface.json",
-                  "the plane beneath the anomaly of Wang's first part");
+        t.example("fettle-sample jobs/hammer.json --on scans/hammer.stl | fettle-fit jobs/hammer.json > surface.json",
+                  "touch a scanned hammer and fit a free-form surface");
         t.reference("Wang (2007), 4.2 to 4.4");
         t.parse();
 
@@ -73,9 +81,10 @@ int main(int argc, char** argv)
         input.job = read_job(job);
         input.source = display_name(points);
         input.use_boundary = use_boundary;
-        const Cloud cloud = read_cloud(points, input.job.units).cloud;
+        const Units units{file_unit.value_or(input.job.units.length), input.job.units.force};
+        const Cloud cloud = read_cloud(points, units).cloud;
         input.xyz = cloud.xyz;
-        input.roles = roles(cloud);
+        input.roles = roles(cloud, input.source);
         input.curves = curves(cloud);
         if (spacing) input.spacing = *spacing * input.job.units.mm();
         const Fit fit = fit_surface(input, method);

@@ -42,8 +42,9 @@ int main(int argc, char** argv)
                                            "touches' bounding box");
         const bool& with_sigma = t.flag("--sigma", "Add the height's standard deviation as field sigma");
         const bool& stl = t.flag("--stl", "Write the grid as triangles, STL");
-        t.example("fettle-mesh surface.json --step 0.1 --within jobs/wang1.json --sigma -o grid.pcd",
-                  "heights inside the anomaly, every 0.1 in");
+        t.example("fettle-sample jobs/hammer.json --on scans/hammer.stl | fettle-fit jobs/hammer.json | fettle-mesh "
+                  "--step 1 --within jobs/hammer.json --sigma > grid.pcd",
+                  "heights beneath the anomaly of a scanned hammer, every 1 mm");
         t.reference("standard deviation: of a linear function of the fit's parameters, gᵀ C g");
         t.parse();
 

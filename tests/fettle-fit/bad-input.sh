@@ -1,0 +1,42 @@
+# Points that determine no surface, or are none; jobs that are none; command lines.
+source "$HERE/points.bash"
+refuses=$HERE/../refuses
+job freeform >job.json
+job plane >plane.json
+heights 1 20 1 | pcd x y z >good.pcd
+: >empty
+"$refuses" 'empty' fettle-fit job.json empty
+"$refuses" 'stdin' fettle-fit job.json </dev/null
+"$refuses" 'job.json' fettle-fit job.json job.json
+"$refuses" 'good.pcd' fettle-fit good.pcd good.pcd
+"$refuses" 'nowhere.pcd' fettle-fit job.json nowhere.pcd
+"$refuses" '--method' fettle-fit job.json good.pcd --method spheer
+"$refuses" "did you mean 'sphere'?" fettle-fit job.json good.pcd --method spheer
+"$refuses" '/dev/full' fettle-fit job.json good.pcd -o /dev/full
+# too few
+heights 1 3 1 | pcd x y z >three.pcd
+"$refuses" 'three.pcd: a sphere fit needs at least 4 touches, got 3 of 3 points that it may use' \
+    fettle-fit job.json three.pcd --method sphere
+"$refuses" 'three.pcd: a cylinder fit needs at least 5 touches' fettle-fit job.json three.pcd --method cylinder
+"$refuses" 'three.pcd: a bspline fit needs at least 6 touches' fettle-fit job.json three.pcd
+echo '1 2 3' | pcd x y z >one.pcd
+"$refuses" 'one.pcd: a plane fit needs at least 3 touches, got 1 of 1' fettle-fit plane.json one.pcd
+for i in 1 2 3 4 5 6 7 8; do echo "$i nan $i"; done | pcd x y z >nan.pcd
+"$refuses" 'nan.pcd: a bspline fit needs at least 6 touches, got 0 of 8' fettle-fit job.json nan.pcd
+# on a line, all the same, on a circle
+for i in 1 2 3 4 5 6 7 8; do echo "$i $i $i"; done | pcd x y z >line.pcd
+for i in 1 2 3 4 5 6 7 8; do echo 1 2 3; done | pcd x y z >same.pcd
+for points in line same; do
+    "$refuses" "$points.pcd: touches lie on a line: across it they spread by only" fettle-fit plane.json $points.pcd
+    for method in bspline sphere cylinder; do
+        "$refuses" "$points.pcd: touches lie on one line in x and y" fettle-fit job.json $points.pcd --method $method
+    done
+    "$refuses" "$points.pcd: touches do not determine a swept surface" fettle-fit job.json $points.pcd --method swept
+done
+printf '1 0 0\n0 1 0\n-1 0 0\n0 -1 0\n0.6 0.8 0\n0.8 -0.6 0\n' | pcd x y z >circle.pcd
+"$refuses" 'circle.pcd: touches do not determine a sphere' fettle-fit job.json circle.pcd --method sphere
+# roles that are none, units that disagree
+heights 1 20 1 | sed 's/$/ 7/' | pcd x y z role >role.pcd
+"$refuses" 'role.pcd: point 0: 7 is no role (0 to 5)' fettle-fit job.json role.pcd
+sed 's,# units in,# units mm,' good.pcd >mm.pcd
+"$refuses" 'mm.pcd' fettle-fit job.json mm.pcd

@@ -1,0 +1,21 @@
+# Exact touches of each shape, in inches, scattered. Reference: the generating formula at other places. Touches and
+# heights are F4: 3e-6 in covers their rounding at 10 in. `auto` follows the job's surface type.
+source "$HERE/points.bash"
+check() { # METHOD GOT JOB FORMULA
+    heights "$4" 24 1 | pcd x y z >touches.pcd
+    fettle-fit --method "$1" "$3" touches.pcd --report report.json -o surface.json
+    jq -e --arg got "$2" '.method == $got and .touches == 24 and .ignored == 0 and .rms < 2e-6' report.json
+    heights "$4" 60 2 | pcd x y z >truth.pcd
+    fettle-mesh surface.json --at truth.pcd | fettle-diff --tol 3e-6 truth.pcd -
+}
+job plane >plane.json
+job swept ', "direction_deg": 30' >swept.json
+job freeform >freeform.json
+check auto plane plane.json '0.3 * x - 2 * y'
+check auto swept swept.json '0.2 * (0.8660254 * x + 0.5 * y) + 0.5 * (-0.5 * x + 0.8660254 * y) ^ 3 + 4'
+check auto bspline freeform.json '1 + 0.2 * x ^ 2 - 0.1 * x * y - 0.3 * y ^ 2'
+check sphere sphere freeform.json '7 + sqrt(16 - (x - 0.2) ^ 2 - (y + 0.1) ^ 2)'
+check sphere sphere freeform.json '7 - sqrt(16 - (x - 0.2) ^ 2 - (y + 0.1) ^ 2)'
+check sphere sphere freeform.json '7 + 0.2 * x' # flat: no radius without bounds
+check cylinder cylinder freeform.json '7 - sqrt(16 - (0.6 * x + 0.8 * y) ^ 2)'
+check cylinder cylinder freeform.json '7 + sqrt(16 - (0.6 * x + 0.8 * y) ^ 2)'
