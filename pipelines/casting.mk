@@ -84,6 +84,19 @@ $(CHAIN)/%/band.json: $(CHAIN)/%/fit.json $$(call truth,$$*) $(B)/bin/fettle-mes
 	fettle-mesh $< --within $(call job,$*) --step $(call step,$*) |                                                  \
 	    fettle-compare - --to $(call truth,$*) --within $(call job,$*) --mode z --report $@ -o /dev/null || test $$? -eq 1
 
+# --- form of the ground parts 1 and 2; part 2 also from a fit that takes the boundary's touches, too -------------------
+$(CHAIN)/%/flatness.json: $$(call job,$$*) $(CHAIN)/%/ground.pcd $(B)/bin/fettle-form
+	fettle-form flatness $(@D)/ground.pcd --within $< -o $@
+
+$(CHAIN)/%/cylindricity.json: $$(call job,$$*) $(CHAIN)/%/ground.pcd $(B)/bin/fettle-form
+	fettle-form cylindricity $(@D)/ground.pcd --within $< -o $@
+
+$(CHAIN)/%/boundary/cylindricity.json: $$(call job,$$*) $(CHAIN)/%/samples.pcd $$(call part,$$*) $(CHAIN)/%/ground.pcd
+	@mkdir -p $(@D)
+	fettle-fit $< $(CHAIN)/$*/samples.pcd --use-boundary | fettle-margin $< | fettle-plan $< -o $(@D)/plan.json
+	fettle-grind $(@D)/plan.json --stock $(call part,$*) --gantry virtual --cell $(call cell,$*) -o $(@D)/ground.pcd
+	fettle-form cylindricity $(@D)/ground.pcd --within $< -o $@
+
 # --- pictures ---------------------------------------------------------------------------------------------------------
 $(CHAIN)/%/before.png: $$(call job,$$*) $$(call part,$$*) $(B)/bin/fettle-render
 	@mkdir -p $(@D)
@@ -99,6 +112,16 @@ $(CHAIN)/%/errors.png: $$(call job,$$*) $(CHAIN)/%/errors.pcd $(B)/bin/fettle-re
 SHOWN    := $(SCANS) $(WANG)
 results   = $(foreach c,$2,$(addprefix $(CHAIN)/$1/$c/,errors.pcd band.json))
 pictures  = $(foreach c,$2,$(addprefix $(CHAIN)/$1/$c/,before.png after.png errors.png))
+
+W := $(CHAIN)/1
+figures: $(call results,1,$(WANG)) $W/wang1/flatness.json $W/wang2/cylindricity.json $W/wang2/boundary/cylindricity.json
+	@status=0; pipelines/chain-figures $(CHAIN) $(abspath $(B)/bin) || status=1;                                     \
+	    $(MAKE) --no-print-directory -f pipelines/bands.mk B=$(B) || status=1; exit $$status
+
+# One row a part and seed: how much of the figures is the luck of the draw.
+SEEDS ?= 20
+seeds: $(foreach s,$(shell seq $(SEEDS)),$(call results,$s,$(WANG)))
+	@pipelines/seeds-table $(CHAIN) $(SEEDS) $(WANG)
 
 demo: $(call results,1,$(SHOWN)) $(call pictures,1,$(SHOWN))
 	@pipelines/chain-table $(CHAIN)/1 $(SHOWN)

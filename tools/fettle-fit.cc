@@ -63,8 +63,9 @@ int main(int argc, char** argv)
         const std::string& points = t.input("POINTS", "touches (x y z, role), PCD");
         const std::string& method =
             t.choice("-m,--method", "auto", choices(), "Kind of surface; auto: by the job's surface type");
-        const bool& use_boundary =
-            t.flag("--use-boundary", "Take the anomaly boundary (role 0) as touches, too; planes always do");
+        const bool& use_boundary = t.flag(
+            "--use-boundary", "Take the anomaly's boundary points as touches, too: those of role 0, else the job's "
+                              "that have a z; planes always do");
         const std::optional<Units::Length>& file_unit =
             t.length_unit("--file-units", "Unit of POINTS, if it is not the job's");
         const std::optional<double>& spacing =
@@ -80,12 +81,12 @@ int main(int argc, char** argv)
         FitInput input;
         input.job = read_job(job);
         input.source = display_name(points);
-        input.use_boundary = use_boundary;
         const Units units{file_unit.value_or(input.job.units.length), input.job.units.force};
         const Cloud cloud = read_cloud(points, units).cloud;
         input.xyz = cloud.xyz;
         input.roles = roles(cloud, input.source);
         input.curves = curves(cloud);
+        if (use_boundary) take_boundary(input);
         if (spacing) input.spacing = *spacing * input.job.units.mm();
         const Fit fit = fit_surface(input, method);
         report(t.report(), fit);

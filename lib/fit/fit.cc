@@ -35,6 +35,24 @@ std::vector<Eigen::Index> usable_points(const FitInput& input, const std::vector
     return used;
 }
 
+void take_boundary(FitInput& input)
+{
+    input.use_boundary = true;
+    if ((input.roles.array() == 0).any()) return;
+    std::vector<Eigen::Index> known;
+    for (Eigen::Index i = 0; i < input.job.anomaly.cols(); ++i)
+        if (std::isfinite(input.job.anomaly(2, i))) known.push_back(i);
+    if (known.empty()) throw InputError(input.source, "no point of role 0, and no boundary point of the job has a z");
+    const Eigen::Index before = input.xyz.cols(), added = static_cast<Eigen::Index>(known.size());
+    input.xyz.conservativeResize(3, before + added);
+    input.xyz.rightCols(added) = input.job.anomaly(Eigen::all, known);
+    input.roles.conservativeResize(before + added);
+    input.roles.tail(added).setZero();
+    if (input.curves.size() == 0) return;
+    input.curves.conservativeResize(before + added);
+    input.curves.tail(added).setConstant(-1); // of no line
+}
+
 Surface begin_surface(const FitInput& input, const std::string& method, const std::vector<int>& wanted_roles, int least)
 {
     const std::vector<Eigen::Index> used = usable_points(input, wanted_roles);

@@ -17,7 +17,7 @@ struct FitInput {
     Eigen::VectorXi roles;  ///< N; see docs/conventions.md
     Eigen::VectorXi curves; ///< N, number of each touch's line; empty: unknown
     Job job;
-    bool use_boundary = false;      ///< take the anomaly boundary (role 0) as touches, too
+    bool use_boundary = false;      ///< fit points of role 0, too (take_boundary)
     std::optional<double> spacing;  ///< griddata: of its uniform sampling, mm; nothing: by the points' density
     std::string source = "touches"; ///< their name in messages
 };
@@ -32,6 +32,11 @@ struct Fit {
 
 /// The methods by name, "auto" not among them.
 const std::vector<std::string>& fit_methods();
+
+/// Appends the job's boundary points that have a z, as touches of role 0, and sets use_boundary: the operator touched
+/// good metal there with the same probe. Points of role 0 that are there already stay the only ones.
+/// @throws InputError if there are none at all
+void take_boundary(FitInput& input);
 
 /// Fits by a method's name; "auto": plane for plane jobs, swept for swept jobs, bspline for free-form ones.
 /// @throws InputError if the touches do not determine such a surface
