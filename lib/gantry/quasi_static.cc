@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace fettle {
 namespace {
@@ -18,9 +19,23 @@ void check(double value, const char* name)
 /// A length that is a whole number of steps but for rounding gets no step more.
 constexpr double kWholeStep = 1e-6;
 
-int count_steps(double length, double step)
+/// Fractions of a move, ascending, the last one 1.
+std::vector<double> equal_steps(double length, double step)
 {
-    return std::max(1, static_cast<int>(std::ceil(length / step - kWholeStep)));
+    const int count = std::max(1, static_cast<int>(std::ceil(length / step - kWholeStep)));
+    std::vector<double> ends;
+    for (int n = 1; n <= count; ++n) ends.push_back(static_cast<double>(n) / count);
+    return ends;
+}
+
+/// Fractions of a move from x0 to x1 where it crosses multiples of `step`.
+std::vector<double> aligned_steps(double x0, double x1, double step)
+{
+    const double direction = x1 > x0 ? 1 : -1, from = direction * x0 / step, to = direction * x1 / step;
+    std::vector<double> ends;
+    for (double m = std::floor(from + kWholeStep) + 1; m <= to + kWholeStep; ++m)
+        ends.push_back(std::min((m - from) / (to - from), 1.0));
+    return ends;
 }
 
 } // namespace
@@ -56,17 +71,32 @@ GantryStatus QuasiStaticGantry::grind(const Eigen::Vector3d& tool_point, double 
 {
     check(feed, "feed");
     begin_move();
-    const Eigen::Vector3d start = status_.commanded;
-    const double length = (tool_point - start).norm();
+    const Eigen::Vector3d start = status_.commanded, way = tool_point - start;
+    const double length = way.norm();
     if (length == 0) return status_;
-    const int steps = count_steps(length, options_.substep * stock_.cell);
-    for (int n = 1; n <= steps; ++n) {
-        const double done = static_cast<double>(n) / steps;
-        press_for(n == steps ? tool_point : start + done * (tool_point - start), length / feed / steps);
+    double last = 0;
+    for (const double end : sub_steps(start, tool_point)) {
+        press_for(start + end * way, (end - last) * length / feed);
+        last = end;
     }
+    pending_ += (1 - last) * length / feed;
+    status_.commanded = tool_point;
     spend(length / feed, totals_.grinding_time);
     totals_.grinding_length += length;
     return status_;
+}
+
+/// A wheel that moves along its axis meets column after column with its face: its sub-steps end where the face stands
+/// between columns, or the force would jump with the number of columns in a sub-step. Across its axis the rim meets the
+/// rows smoothly.
+std::vector<double> QuasiStaticGantry::sub_steps(const Eigen::Vector3d& start, const Eigen::Vector3d& end) const
+{
+    const double step = options_.substep * stock_.cell;
+    const Eigen::Vector2d way = R_working_machine_ * (end - start).head<2>();
+    if (std::abs(way.x()) <= std::abs(way.y())) return equal_steps((end - start).norm(), step);
+    const double face = std::copysign(width_ / 2, way.x()) - stock_.origin.x();
+    const double x = R_working_machine_.row(0) * start.head<2>() + face;
+    return aligned_steps(x, x + way.x(), std::ceil(options_.substep) * stock_.cell);
 }
 
 GantryStatus QuasiStaticGantry::lift(double commanded_z)
@@ -141,7 +171,8 @@ void QuasiStaticGantry::press_for(const Eigen::Vector3d& commanded, double durat
 {
     const double z_stop = commanded.z() + loss();
     wheel_.place(R_working_machine_ * commanded.head<2>(), radius_, z_stop);
-    const Balance balance = press(wheel_, spring_, z_stop, removal_ * duration, z_stop + status_.deflection);
+    const double c_dt = removal_ * (duration + std::exchange(pending_, 0));
+    const Balance balance = press(wheel_, spring_, z_stop, c_dt, z_stop + status_.deflection);
     if (balance.volume > 0) wheel_.cut(balance.z_tip);
     status_.commanded = commanded;
     status_.deflection = balance.z_tip - z_stop;

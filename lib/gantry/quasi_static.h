@@ -6,6 +6,8 @@
 #include "removal/preston.h"
 #include "removal/wheel.h"
 
+#include <vector>
+
 namespace fettle {
 
 /// What the job does not say about the machine. The speeds are those of a laboratory gantry with ball screws.
@@ -61,6 +63,7 @@ class QuasiStaticGantry final : public Gantry {
 
   private:
     void begin_move();
+    std::vector<double> sub_steps(const Eigen::Vector3d& start, const Eigen::Vector3d& end) const;
     void raise_to(double z);
     void lower_to(double z);
     void go_to_safe_height();
@@ -81,6 +84,7 @@ class QuasiStaticGantry final : public Gantry {
     double most_force_;   ///< F_max, guards the way down, N
     double radius_;       ///< now, mm
     double known_radius_; ///< at the last touch-off, mm
+    double pending_ = 0;  ///< time since the last sub-step that the next one has to grind for, s
     GantryStatus status_;
     GrindTotals totals_;
 };
