@@ -18,6 +18,9 @@ namespace fettle {
 
 namespace {
 
+// Levenberg's damping, times the diagonal: below the first a step is Newton's, above the second it is nothing.
+constexpr double kHardlyDamped = 1e-6;
+constexpr double kStuck = 1e6;
 constexpr Eigen::Index kGrain = 4096; // points a task; fixed, so that the sums come in one order
 
 // Gauss-Newton from a near start converges in a few steps; noise and short arcs cost some more.
@@ -78,12 +81,12 @@ FormZone least_squares(FormElement element, const Eigen::Matrix3Xd& points, doub
         zone.converged = motion.norm() <= kStill * scale;
         if (there.square <= normal.square) {
             const bool flat = normal.square - there.square <= std::numeric_limits<double>::epsilon() * normal.square;
-            zone.converged |= flat && damping < 1e-6;
+            zone.converged |= flat && damping < kHardlyDamped;
             element = next;
             normal = there;
             damping /= 10;
         } else {
-            zone.converged |= damping > 1e6; // only roundoff is left to gain
+            zone.converged |= damping > kStuck; // only roundoff is left to gain
             damping *= 10;
         }
         if (element.radius > kLargestRadius * scale) throw InputError("the points show no curvature to fit");

@@ -15,6 +15,8 @@ using Eigen::Index;
 using Eigen::Vector2d;
 
 // The sheet, in pixels: the map in its frame, the legend to the right, a line of numbers below.
+// Of the largest value: ticks nearer to each other would need more digits than a label shows.
+constexpr double kLabelled = 1e-9;
 constexpr double kMapWidth = 900, kMapHeight = 680, kLeastMapHeight = 360;
 constexpr double kLeft = 84, kTop = 78, kBelowMap = 122, kLegendWidth = 310;
 constexpr Rgb kBackground = {228, 228, 232}; // darker than no error, lighter than undefined
@@ -57,7 +59,7 @@ Scale scale_for(const Eigen::VectorXd& values, const PictureOptions& options)
     scale.low = std::isfinite(least) ? least : 0;
     const double span = options.scale ? *options.scale : most - least;
     // All alike (or nothing): a scale that can still be labelled.
-    scale.high = scale.low + (std::isfinite(span) && span > 1e-9 * std::max(1.0, std::abs(most)) ? span : 1);
+    scale.high = scale.low + (std::isfinite(span) && span > kLabelled * std::max(1.0, std::abs(most)) ? span : 1);
     return scale;
 }
 

@@ -7,7 +7,6 @@
 
 #include <cmath>
 #include <limits>
-#include <ostream>
 #include <set>
 
 namespace fettle::json {
@@ -15,41 +14,6 @@ namespace fettle::json {
 using Json = nlohmann::ordered_json;
 
 namespace {
-
-// Deeper than any of our schemas; a file of 10^5 brackets must not cost memory before it is refused.
-constexpr int kMaxDepth = 32;
-
-Json number_to_json(double number) { return std::isfinite(number) ? Json(number) : Json(nullptr); }
-
-bool is_flat(const Json& json)
-{
-    for (const Json& element : json)
-        if (element.is_structured()) return false;
-    return true;
-}
-
-void dump(const Json& json, const std::string& indent, std::string& text)
-{
-    if (!json.is_structured() || json.empty()) {
-        text += json.dump(-1, ' ', false, Json::error_handler_t::replace);
-        return;
-    }
-    const bool object = json.is_object();
-    const bool one_line =
-        is_flat(json) && (!object || indent.size() > 0) && json.size() <= 1000000 && (!object || json.size() <= 6);
-    const std::string inner = indent + "  ";
-    text += object ? '{' : '[';
-    bool first = true;
-    for (auto member = json.begin(); member != json.end(); ++member) {
-        if (!first) text += one_line ? ", " : ",";
-        if (!one_line) text += '\n' + inner;
-        if (object) text += Json(member.key()).dump() + ": ";
-        dump(*member, inner, text);
-        first = false;
-    }
-    if (!one_line) text += '\n' + indent;
-    text += object ? '}' : ']';
-}
 
 std::string type_of(const Json& json)
 {
@@ -61,103 +25,7 @@ std::string type_of(const Json& json)
                                : "an object";
 }
 
-// Parser callback: refuses repeated keys and deep nesting while the text is read.
-class Strictness {
-  public:
-    explicit Strictness(const std::string& source) : source_(source) {}
-
-    bool operator()(int depth, Json::parse_event_t event, Json& parsed)
-    {
-        using Event = Json::parse_event_t;
-        if (depth > kMaxDepth) throw InputError(source_, "nested deeper than " + std::to_string(kMaxDepth) + " levels");
-        if (event == Event::object_start) keys_.emplace_back();
-        if (event == Event::object_end) keys_.pop_back();
-        if (event == Event::key && !keys_.back().insert(parsed.get<std::string>()).second)
-            throw InputError(source_, "key '" + parsed.get<std::string>() + "' stands twice");
-        return true;
-    }
-
-  private:
-    const std::string& source_;
-    std::vector<std::set<std::string>> keys_;
-};
-
-// nlohmann's messages read "[json.exception.parse_error.101] parse error at line 1, column 2: ...".
-std::string plain_message(std::string message)
-{
-    if (const std::size_t end = message.find("] "); end != std::string::npos) message.erase(0, end + 2);
-    for (char& c : message)
-        if (c == '\n') c = ' ';
-    return message;
-}
-
 } // namespace
-
-Json parse_strictly(std::string_view text, const std::string& source)
-{
-    if (text.find_first_not_of(" \t\r\n") == std::string_view::npos) throw InputError(source, "empty, expected JSON");
-    try {
-        return Json::parse(text, Strictness(source));
-    } catch (const Json::exception& error) {
-        throw InputError(source, plain_message(error.what()));
-    }
-}
-
-// --- writing ---
-
-Value::Value() : json_(std::make_unique<Json>(Json::object())) {}
-Value::Value(double number) : json_(std::make_unique<Json>(number_to_json(number))) {}
-Value::Value(int number) : json_(std::make_unique<Json>(number)) {}
-Value::Value(std::size_t number) : json_(std::make_unique<Json>(number)) {}
-Value::Value(bool flag) : json_(std::make_unique<Json>(flag)) {}
-Value::Value(const char* text) : json_(std::make_unique<Json>(text)) {}
-Value::Value(const std::string& text) : json_(std::make_unique<Json>(text)) {}
-
-Value::Value(const Eigen::VectorXd& numbers) : json_(std::make_unique<Json>(Json::array()))
-{
-    for (const double number : numbers) json_->push_back(number_to_json(number));
-}
-
-Value::Value(const Eigen::MatrixXd& rows) : json_(std::make_unique<Json>(Json::array()))
-{
-    for (Eigen::Index i = 0; i < rows.rows(); ++i) {
-        Json row = Json::array();
-        for (Eigen::Index j = 0; j < rows.cols(); ++j) row.push_back(number_to_json(rows(i, j)));
-        json_->push_back(std::move(row));
-    }
-}
-
-Value::Value(const std::vector<Value>& elements) : json_(std::make_unique<Json>(Json::array()))
-{
-    for (const Value& element : elements) json_->push_back(*element.json_);
-}
-
-Value::Value(const Value& other) : json_(std::make_unique<Json>(*other.json_)) {}
-Value::Value(Value&&) noexcept = default;
-Value::~Value() = default;
-
-Value& Value::operator=(Value other)
-{
-    json_.swap(other.json_);
-    return *this;
-}
-
-Value& Value::set(const std::string& key, const Value& value)
-{
-    (*json_)[key] = *value.json_;
-    return *this;
-}
-
-std::string Value::text() const
-{
-    std::string text;
-    dump(*json_, "", text);
-    return text;
-}
-
-std::ostream& operator<<(std::ostream& out, const Value& value) { return out << value.text() << '\n'; }
-
-// --- reading ---
 
 struct Reader::Node {
     std::shared_ptr<const Json> document; ///< keeps the whole tree alive

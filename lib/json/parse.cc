@@ -1,0 +1,59 @@
+#include "json/parse.h"
+
+#include "core/error.h"
+
+#include <set>
+#include <vector>
+
+namespace fettle::json {
+
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+// Deeper than any of our schemas; a file of 10^5 brackets must not cost memory before it is refused.
+constexpr int kMaxDepth = 32;
+
+// Parser callback: refuses repeated keys and deep nesting while the text is read.
+class Strictness {
+  public:
+    explicit Strictness(const std::string& source) : source_(source) {}
+
+    bool operator()(int depth, Json::parse_event_t event, Json& parsed)
+    {
+        using Event = Json::parse_event_t;
+        if (depth > kMaxDepth) throw InputError(source_, "nested deeper than " + std::to_string(kMaxDepth) + " levels");
+        if (event == Event::object_start) keys_.emplace_back();
+        if (event == Event::object_end) keys_.pop_back();
+        if (event == Event::key && !keys_.back().insert(parsed.get<std::string>()).second)
+            throw InputError(source_, "key '" + parsed.get<std::string>() + "' stands twice");
+        return true;
+    }
+
+  private:
+    const std::string& source_;
+    std::vector<std::set<std::string>> keys_;
+};
+
+// nlohmann's messages read "[json.exception.parse_error.101] parse error at line 1, column 2: ...".
+std::string plain_message(std::string message)
+{
+    if (const std::size_t end = message.find("] "); end != std::string::npos) message.erase(0, end + 2);
+    for (char& c : message)
+        if (c == '\n') c = ' ';
+    return message;
+}
+
+} // namespace
+
+Json parse_strictly(std::string_view text, const std::string& source)
+{
+    if (text.find_first_not_of(" \t\r\n") == std::string_view::npos) throw InputError(source, "empty, expected JSON");
+    try {
+        return Json::parse(text, Strictness(source));
+    } catch (const Json::exception& error) {
+        throw InputError(source, plain_message(error.what()));
+    }
+}
+
+} // namespace fettle::json
