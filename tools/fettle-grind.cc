@@ -70,8 +70,9 @@ int main(int argc, char** argv)
             "--cell", "length", "side of a cell of the stock; default: 1/64 of the wheel's width", Range::positive());
         const std::string& trace = t.text("--trace", "", "FILE", "what the machine did and why, PCD");
         const bool& ascii = t.flag("--ascii", "write PCDs as text");
-        t.example("fettle-grind plan.json --stock parts/wang1.stl --trace trace.pcd > ground.pcd",
-                  "grind Wang's part 1");
+        t.example("fettle-sample jobs/wang1.json | fettle-fit jobs/wang1.json | fettle-plan jobs/wang1.json | "
+                  "fettle-grind --stock <(fettle-part parts/wang1.json) --trace trace.pcd > ground.pcd",
+                  "Wang's part 1 from the job to the ground part");
         t.reference("Wang 2007, 5.3.2 and figure 5-7: the layer-based path planning strategy");
         t.parse();
 

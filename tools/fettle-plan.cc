@@ -35,7 +35,9 @@ int main(int argc, char** argv)
         const std::string& job_file = t.file("JOB", "the operator's job, JSON");
         const std::string& surface_file = t.input("SURFACE", "the desired surface, JSON (fettle-margin)");
         const std::string& gcode = t.text("--gcode", "", "FILE", "write layer 1 as G-code, too");
-        t.example("fettle-plan jobs/wang1.json desired.json > plan.json", "plan Wang's first part");
+        t.example(
+            "fettle-sample jobs/wang1.json | fettle-fit jobs/wang1.json | fettle-plan jobs/wang1.json > plan.json",
+            "layers and passes for Wang's part 1, whose job holds the touches");
         t.reference("Wang 2007, 5.3: layers (eq. 5-1 to 5-3), start (5-4 to 5-6), staircase; 3.4: the wheel must fit");
         t.parse();
 
