@@ -42,7 +42,7 @@ PCD    := -lpcl_io -lpcl_common
 CERES  := -lceres -lglog
 EMBREE := -lembree3
 OPENCV := -lopencv_imgcodecs -lopencv_imgproc -lopencv_core
-LDLIBS_ALL := -ltbb
+LDLIBS_ALL := -llzf -ltbb
 
 # The one file that sees OpenCV, and its test.
 $(B)/lib/compare/canvas.o $(B)/tests/lib/picture_test.o: override CPPFLAGS += $(addprefix -isystem ,$(wildcard /usr/include/opencv4))
