@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "fit/evidence.h"
 #include "fit/robust_linear.h"
+#include "fit/round_part.h"
 #include "fit/spline_prior.h"
 #include "surface/shapes.h"
 
@@ -58,15 +59,29 @@ void refuse_line(const FitInput& input, const Eigen::Matrix3Xd& touches)
         throw InputError(input.source, "touches lie on one line in x and y");
 }
 
-/// Everything at the touches: f = H β + S γ with γ ~ N(0, τ²), β's prior β_q ~ N(0, 1 / precision_q²).
+constexpr Index kQuadratics = 6;         // 1, u, v, u², uv, v²
+constexpr Index kBeta = kQuadratics + 1; // and the round part's share
+
+// Castings are turned, swept and blended: a curved surface is expected to be round (share 1 of the round part, a
+// paraboloid has 0), and to differ from that by a third as much as a round surface differs from a quadratic, or more.
+// Both spreads are so that sigma is right over sheared spheres, waves, saddles and cylinders (Bspline.Sigma… in the
+// tests).
+constexpr double kRoundnessSpread = 0.3;
+constexpr double kRoughness = 0.3;
+
+/// Everything at the touches: z = level + the expected round part + H β + g. β's prior is N(0, 1 / precision²).
 struct Model {
     SplinePrior prior;
-    MatrixXd A;                          ///< n x N, touches from control heights
-    MatrixXd GA;                         ///< K⁺ Aᵀ
-    MatrixXd H;                          ///< n x 6, quadratics at the touches
-    MatrixXd R;                          ///< A K⁺ Aᵀ
-    Eigen::VectorXd curvature_precision; ///< of β: (1 / standard deviation) of u², uv, v²; 0 for 1, u, v
-    double least_tau = 0;                ///< of a round surface
+    MatrixXd basis;     ///< N x kBeta, control heights of β's columns
+    VectorXd expected;  ///< N, control heights of the round part
+    MatrixXd A;         ///< n x N, touches from control heights
+    MatrixXd GA;        ///< K⁺ Aᵀ
+    MatrixXd H;         ///< n x kBeta, the columns at the touches
+    MatrixXd R;         ///< A K⁺ Aᵀ
+    VectorXd precision; ///< of β: 1 / standard deviation; 0 for 1, u, v
+    VectorXd z;         ///< touches less the expected, mm
+    double level = 0;   ///< mm
+    double least_tau = 0;
 };
 
 /// Size of the second derivatives of u², uv and v² (Frobenius norm of D²; uv's stands there twice), 1/mm.
@@ -77,18 +92,32 @@ double touched_size(const Eigen::Matrix3Xd& touches)
     return (touches.topRows(2).rowwise().maxCoeff() - touches.topRows(2).rowwise().minCoeff()).norm();
 }
 
-/// The size of D² of the least quadratic through the touches.
-double touched_curvature(const Model& m, const Eigen::Matrix3Xd& touches)
+/// The quadratic that, with its round part, is nearest to the touches; first of all without it.
+struct Osculating {
+    Eigen::Matrix<double, 6, 1> quadratic;
+    VectorXd round; ///< control heights
+};
+
+Osculating osculating(const Model& m, const Bspline& grid, const VectorXd& z)
 {
+    constexpr int kIterations = 50; // the round part changes the curvature by a few percent: a digit each time
     Eigen::CompleteOrthogonalDecomposition<MatrixXd> least_squares;
     least_squares.setThreshold(kRounding); // a twist that is only rounding is left 0
-    least_squares.compute(m.H);
-    const VectorXd z = touches.row(2).transpose().array() - touches.row(2).mean();
-    const VectorXd beta = least_squares.solve(z);
-    return beta.tail(3).cwiseProduct(second_derivatives(m.prior.half)).norm();
+    const MatrixXd quadratics = m.A * m.prior.quadratics;
+    least_squares.compute(quadratics);
+    const Eigen::Matrix2Xd uv = quadratics.middleCols(1, 2).transpose();
+    Osculating result{least_squares.solve(z), VectorXd::Zero(m.A.cols())};
+    for (int i = 0; i < kIterations; ++i) {
+        result.round = round_part(grid, m.prior, result.quadratic, uv);
+        const Eigen::Matrix<double, 6, 1> next = least_squares.solve(z - m.A * result.round);
+        const bool settled = (next - result.quadratic).norm() <= kRounding * next.norm();
+        result.quadratic = next;
+        if (settled) break;
+    }
+    return result;
 }
 
-/// √E of a sphere with that curvature, the least that a curved surface is expected to differ from a quadratic. With
+/// √E of a sphere with that curvature. With
 /// z = … - κ³ r⁴/8 its energy density is 12 κ⁶ r². Steeper than a sphere may be (κ r = 1 at the outermost touch), the
 /// series says nothing.
 double round_amplitude(const SplinePrior& prior, double curvature, double size)
@@ -105,25 +134,35 @@ Model model_of(const Bspline& grid, const Surface& surface)
     m.prior = spline_prior(grid);
     m.A = height_gradients(grid, surface.touches.topRows(2)).transpose();
     m.GA.noalias() = m.prior.pseudo_inverse * m.A.transpose();
-    m.H.noalias() = m.A * m.prior.quadratics;
     m.R.noalias() = m.A * m.GA;
+    m.level = surface.touches.row(2).mean();
+    const VectorXd z = surface.touches.row(2).transpose().array() - m.level;
+    const Osculating shape = osculating(m, grid, z);
+    m.expected = shape.round;
+    m.z = z - m.A * m.expected;
+    m.basis.resize(m.A.cols(), kBeta);
+    m.basis << m.prior.quadratics, shape.round;
+    m.H.noalias() = m.A * m.basis;
+
     // No less than what changes the slope by 1 over the touched length.
     const double size = touched_size(surface.touches);
-    const double touched = touched_curvature(m, surface.touches);
-    const double kappa = std::max(touched, 1 / size);
-    m.curvature_precision.setZero(6);
-    m.curvature_precision.tail(3) = second_derivatives(m.prior.half) / kappa;
-    m.least_tau = round_amplitude(m.prior, touched, size);
+    const Eigen::Vector3d second = second_derivatives(m.prior.half);
+    const double touched = shape.quadratic.tail(3).cwiseProduct(second).norm();
+    m.precision.setZero(kBeta);
+    m.precision.segment(3, 3) = second / std::max(touched, 1 / size);
+    m.precision[kQuadratics] = 1 / kRoundnessSpread;
+    m.least_tau = kRoughness * round_amplitude(m.prior, touched, size);
     return m;
 }
 
-Amplitude amplitude_of(const Model& m, const VectorXd& z, double sigma)
+Amplitude amplitude_of(const Model& m, double sigma)
 {
-    const VectorXd variance = m.curvature_precision.tail(3).cwiseAbs2().cwiseInverse();
-    const FieldModel field{m.H.leftCols(3), m.H.rightCols(3) * variance.asDiagonal() * m.H.rightCols(3).transpose(),
-                           m.R, sigma, m.least_tau};
+    constexpr Index kFree = 3; // 1, u, v
+    const MatrixXd H = m.H.rightCols(kBeta - kFree);
+    const VectorXd variance = m.precision.tail(kBeta - kFree).cwiseAbs2().cwiseInverse();
+    const FieldModel field{m.H.leftCols(kFree), H * variance.asDiagonal() * H.transpose(), m.R, sigma, m.least_tau};
     const Index spare = 6; // the three curvatures of a quadratic, and three touches more
-    return amplitude(field, z, spare);
+    return amplitude(field, m.z, spare);
 }
 
 /// Posterior covariance of the control heights, and of the touched heights (for the degrees of freedom).
@@ -141,11 +180,11 @@ Posterior posterior(const Model& m, double sigma, double tau, const VectorXd& we
     const Eigen::LLT<MatrixXd> noise(M);
     const MatrixXd half_H = noise.matrixL().solve(m.H);
     MatrixXd precision = half_H.transpose() * half_H;
-    precision.diagonal() += m.curvature_precision.cwiseAbs2();
+    precision.diagonal() += m.precision.cwiseAbs2();
     const Eigen::LLT<MatrixXd> beta(precision);
 
-    const MatrixXd half_GA = noise.matrixL().solve(t2 * m.GA.transpose());       // n x N
-    const MatrixXd leverage = m.prior.quadratics - half_GA.transpose() * half_H; // N x 6
+    const MatrixXd half_GA = noise.matrixL().solve(t2 * m.GA.transpose()); // n x N
+    const MatrixXd leverage = m.basis - half_GA.transpose() * half_H;      // N x kBeta
     const MatrixXd half = beta.matrixL().solve(leverage.transpose());
     Posterior result;
     result.covariance = t2 * m.prior.pseudo_inverse;
@@ -167,9 +206,7 @@ Fit fit_bspline(const FitInput& input)
     Bspline spline = grid_over(input, surface.touches);
     const Model m = model_of(spline, surface);
     const double sigma = surface.touch_sigma;
-    const double level = surface.touches.row(2).mean();
-    const VectorXd z = surface.touches.row(2).transpose().array() - level;
-    const Amplitude believed = amplitude_of(m, z, sigma);
+    const Amplitude believed = amplitude_of(m, sigma);
     const double tau = believed.rms;
 
     // R = S Sᵀ; touches on the same place make it singular: only what is above rounding.
@@ -182,22 +219,22 @@ Fit fit_bspline(const FitInput& input)
 
     // Unknown: β, and γ in units of its prior's τ.
     RobustLinear problem;
-    problem.A.resize(z.size(), 6 + rank);
+    problem.A.resize(m.z.size(), kBeta + rank);
     problem.A << m.H, V * (tau * root).asDiagonal();
     problem.A /= sigma;
-    problem.b = z / sigma;
+    problem.b = m.z / sigma;
     problem.A(believed.gross_errors, Eigen::all).setZero();
     problem.b(believed.gross_errors).setZero();
     problem.width = input.job.probe.accuracy / sigma;
-    problem.prior.setOnes(6 + rank);
-    problem.prior.head(6) = m.curvature_precision;
+    problem.prior.setOnes(kBeta + rank);
+    problem.prior.head(kBeta) = m.precision;
     RobustLinearResult solved = solve(problem);
     constexpr double kNoWeight = 1e-9; // a slip's touch error is 30000 times a touch's, so it says nothing
     solved.weight(believed.gross_errors).setConstant(kNoWeight);
 
     const VectorXd controls =
-        m.prior.quadratics * solved.x.head(6) + m.GA * (V * (tau * solved.x.tail(rank)).cwiseQuotient(root));
-    spline.heights = controls.reshaped(spline.heights.rows(), spline.heights.cols()).array() + level;
+        m.expected + m.basis * solved.x.head(kBeta) + m.GA * (V * (tau * solved.x.tail(rank)).cwiseQuotient(root));
+    spline.heights = controls.reshaped(spline.heights.rows(), spline.heights.cols()).array() + m.level;
     surface.shape = spline;
     const Posterior belief = posterior(m, sigma, tau, solved.weight);
     surface.covariance = belief.covariance;

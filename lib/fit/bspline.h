@@ -6,13 +6,14 @@ namespace fettle {
 
 /// The default for free-form surfaces: a tensor-product cubic B-spline height field on a grid aligned with W that
 /// covers B and the touches. It minimises, with Ceres,
-///     Σ ρ((z_i - f(x_i, y_i)) / σ)  +  E(f) / τ²  +  |D²q|² / κ²
-/// σ is the touch's standard deviation, ρ Huber's loss with the width of the probe's accuracy, E the third-derivative
-/// energy (spline_prior.h), τ the amplitude that the touches leave to be expected (evidence.h), at about the least that
-/// of a round surface with the touched curvature. Touches that are better explained as slips are left out of the sum;
-/// the goodness still counts them. κ is the size of the touched curvature, or that of slopes that change by 1 over the
-/// touched length; it only speaks where the touches do not, such as for the twist between two crossing lines. The
-/// covariance is that of the control heights given the touches, (AᵀWA/σ² + K/τ² + …)⁻¹.
+///     Σ ρ((z_i - f(x_i, y_i)) / σ)  +  E(g) / τ²  +  |D²q|² / κ²  +  (c - 1)² / s²,    f = q + c p + g
+/// σ is the touch's standard deviation, ρ Huber's loss with the width of the probe's accuracy. q is a quadratic, p
+/// turns it into a round surface (round_part.h), g is the rest, E its third-derivative energy (spline_prior.h), τ the
+/// amplitude that the touches leave to be expected (evidence.h). Touches that are better explained as slips are left
+/// out of the sum; the goodness still counts them. κ is the size of the touched curvature, or that of slopes that
+/// change by 1 over the touched length; it only speaks where the touches do not, such as for the twist between two
+/// crossing lines. Quadratics, spheres and cylinders are reproduced when the touches are exact. The covariance is that
+/// of the control heights given the touches.
 /// @throws InputError for fewer than 6 touches, or touches on a line
 Fit fit_bspline(const FitInput& input);
 
