@@ -79,8 +79,8 @@ RoundSolution solve(const RoundFrame& frame, const Eigen::Matrix3Xd& touches, do
     options.max_num_iterations = 200;
     options.function_tolerance = 1e-14;  // relative, of the cost: rounding of its sum
     options.parameter_tolerance = 1e-12; // of angles and of lengths over the extent
-    options.gradient_tolerance = 1e-14; // residuals are in units of the touch error
-    options.num_threads = 1; // same digits whatever --threads
+    options.gradient_tolerance = 1e-14;  // residuals are in units of the touch error
+    options.num_threads = 1;             // same digits whatever --threads
     options.logging_type = ceres::SILENT;
     ceres::Solver::Summary summary;
     ceres::Solve(options, &problem, &summary);
