@@ -104,6 +104,7 @@ struct Tool::State {
     std::unique_ptr<tbb::global_control> thread_limit;
     std::unique_ptr<OutputFile> bulk;
     std::deque<OutputFile> others;
+    std::vector<std::string> warnings;
 };
 
 Tool::Tool(int argc, char** argv, const std::string& description)
@@ -280,10 +281,7 @@ std::ostream& Tool::output_file(const std::string& path)
 
 json::Value& Tool::report() { return state_->report; }
 
-void Tool::warn(const std::string& message) const
-{
-    if (!state_->quiet) std::cerr << state_->name << ": warning: " << one_line(message) << '\n';
-}
+void Tool::warn(const std::string& message) const { state_->warnings.push_back(one_line(message)); }
 
 void Tool::note(const std::string& message) const
 {
@@ -317,6 +315,8 @@ void Tool::finish()
     if (!s.report_path.empty()) output_file(s.report_path) << s.report;
     for (OutputFile& other : s.others) other.commit();
     if (s.bulk) s.bulk->commit();
+    if (s.quiet) return;
+    for (const std::string& warning : s.warnings) std::cerr << s.name << ": warning: " << warning << '\n';
 }
 
 int tool_main(int argc, char** argv, const std::string& description, const std::function<Verdict(Tool&)>& body)

@@ -68,7 +68,8 @@ class Tool {
     /// Numbers about the run, written where --report says.
     json::Value& report();
 
-    /// One line on stderr that matters although the work goes on; silent with -q.
+    /// One line on stderr that matters although the work goes on, said when it has ended: a refusal stays one line.
+    /// Silent with -q.
     void warn(const std::string& message) const;
     /// One line on stderr with -v.
     void note(const std::string& message) const;

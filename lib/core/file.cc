@@ -8,6 +8,8 @@
 #include <ext/stdio_filebuf.h>
 #include <fcntl.h>
 #include <iostream>
+#include <sstream>
+#include <string_view>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -59,6 +61,8 @@ struct OutputFile::State {
     std::string temporary; ///< what is written; empty if the target is written directly
     std::unique_ptr<__gnu_cxx::stdio_filebuf<char>> buffer;
     std::unique_ptr<std::ostream> stream;
+    std::ostringstream
+        held; // for stdout and what is written directly: nothing may go out before the work has succeeded
 };
 
 OutputFile::OutputFile(const std::string& path) : state_(std::make_unique<State>())
@@ -94,12 +98,18 @@ OutputFile::~OutputFile()
     if (!state_->temporary.empty()) unlink(state_->temporary.c_str());
 }
 
-std::ostream& OutputFile::stream() { return *state_->stream; }
+std::ostream& OutputFile::stream()
+{
+    if (state_->temporary.empty()) return state_->held;
+    return *state_->stream;
+}
 
 void OutputFile::commit()
 {
     State& s = *state_;
     errno = 0;
+    const std::string_view held = s.held.view();
+    s.stream->write(held.data(), static_cast<std::streamsize>(held.size()));
     s.stream->flush();
     const bool written = s.stream->good();
     if (!written && errno == 0) errno = EIO;

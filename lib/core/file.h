@@ -14,8 +14,8 @@ std::string read_whole(const std::string& path);
 std::string display_name(const std::string& path);
 
 /// A file that appears whole or not at all: it is written under another name in the same folder; commit() flushes,
-/// syncs and renames it. A target that exists and is no regular file (/dev/null, a FIFO) is written directly, "-" is
-/// stdout. Destroyed without commit(), nothing is left.
+/// syncs and renames it. A target that exists and is no regular file (/dev/null, a FIFO) is written directly at
+/// commit(), "-" is stdout. Destroyed without commit(), nothing is left.
 class OutputFile {
   public:
     /// @throws InputError if it cannot be created
