@@ -2,6 +2,7 @@
 #include "cloud/pcd.h"
 #include "core/file.h"
 #include "gantry/quasi_static.h"
+#include "job/plausible.h"
 #include "plan/plan.h"
 #include "removal/height_field.h"
 #include "sampling/scan.h"
@@ -79,9 +80,12 @@ int main(int argc, char** argv)
         const auto begun = Clock::now();
         const Plan plan = read_plan(plan_file);
         const Units& units = plan.job.units;
+        const Scan scan = read_scan(stock_file, units, stock_units);
+        if (const std::string doubt = implausible_box(scan.bounds(), plan.job); !doubt.empty())
+            t.warn(display_name(stock_file) + ": " + doubt);
         const HeightField stock =
-            height_field(read_scan(stock_file, units, stock_units), plan.job,
-                         cell ? *cell * units.mm() : plan.job.wheel.width / kCellsPerWidth, display_name(stock_file));
+            height_field(scan, plan.job, cell ? *cell * units.mm() : plan.job.wheel.width / kCellsPerWidth,
+                         display_name(stock_file));
         std::ostream* trace_out = trace.empty() ? nullptr : &t.output_file(trace); // a wrong name shows before the work
         QuasiStaticGantry gantry(stock, plan.job);
         const GrindRun run = fettle::run(plan, gantry, {}, t.progress("grinding"));

@@ -12,6 +12,7 @@ namespace fettle {
 /// Touches the part at the planned places. With a tip (job.probe.tip_radius > 0) the touches are points of contact, a
 /// little beside the planned places on a slope: see contact_points.
 /// @return 3xN, M, mm, in the order of the plan; z is NaN where no surface was found
+/// @throws InputError for a tip that is larger than the anomaly
 Eigen::Matrix3Xd probe(const Scan& scan, const Job& job, const TouchPlan& plan, const TouchNoise& noise,
                        std::uint64_t seed);
 
