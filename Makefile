@@ -38,7 +38,6 @@ all: deps
 build: $(BINARIES)
 
 # --- libraries, tool by tool: a heavy one is linked only where it is named ------------------------------------------
-PCD    := -lpcl_io -lpcl_common
 CERES  := -lceres -lglog
 EMBREE := -lembree3
 OPENCV := -lopencv_imgcodecs -lopencv_imgproc -lopencv_core
@@ -62,12 +61,13 @@ $(B)/bin/%: $(B)/tools/%.o $(B)/libfettle.a
 	@mkdir -p $(@D)
 	$(CXX) $(LDFLAGS) -o $@ $^ $(LDLIBS) $(LDLIBS_ALL)
 
-$(B)/tests/%: LDLIBS = $(CERES) $(EMBREE) $(OPENCV) $(PCD) -lpcl_kdtree -lpcl_search -lgtest_main -lgtest
+$(B)/tests/%: LDLIBS = $(CERES) $(EMBREE) $(OPENCV) -lgtest_main -lgtest
+$(B)/tests/cloud_test: LDLIBS += -lpcl_io -lpcl_common
 $(B)/tests/%: $(B)/tests/lib/%.o $(B)/libfettle.a
 	@mkdir -p $(@D)
 	$(CXX) $(LDFLAGS) -o $@ $^ $(LDLIBS) $(LDLIBS_ALL)
 
-$(B)/bench/%: LDLIBS = $(CERES) $(EMBREE) $(OPENCV) $(PCD) -lpcl_kdtree -lpcl_search -lbenchmark_main -lbenchmark
+$(B)/bench/%: LDLIBS = $(CERES) $(EMBREE) $(OPENCV) -lbenchmark_main -lbenchmark
 $(B)/bench/%: $(B)/tests/bench/%.o $(B)/libfettle.a
 	@mkdir -p $(@D)
 	$(CXX) $(LDFLAGS) -o $@ $^ $(LDLIBS) $(LDLIBS_ALL)
