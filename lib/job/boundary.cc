@@ -3,10 +3,18 @@
 #include "core/error.h"
 #include "core/text.h"
 
+// With optimisation, g++ 12 warns of values in Boost.Geometry's rescale policy that are set through references.
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#endif
 #define BOOST_ALLOW_DEPRECATED_HEADERS // Boost.Geometry includes one of Boost's own
 #include <boost/geometry.hpp>
 #include <boost/geometry/geometries/point_xy.hpp>
 #include <boost/geometry/geometries/polygon.hpp>
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic pop
+#endif
 
 #include <algorithm>
 #include <cmath>
