@@ -1,5 +1,6 @@
 #include "fit/robust_linear.h"
 
+#include "fit/ceres_options.h"
 #include "fit/fit.h"
 
 #include <ceres/ceres.h>
@@ -45,16 +46,13 @@ RobustLinearResult solve(const RobustLinear& problem)
     const Eigen::MatrixXd prior = problem.prior.asDiagonal();
     ceres_problem.AddResidualBlock(new LinearCost(prior, Eigen::VectorXd::Zero(prior.rows())), nullptr,
                                    result.x.data());
-    ceres::Solver::Options options;
-    options.linear_solver_type = ceres::DENSE_QR; // the prior of a nearly quadratic surface is stiff
+    ceres::Solver::Options options = quiet_dense_qr();
     options.max_num_iterations = 200;
     options.initial_trust_region_radius = 1e16; // linear between the loss's corners: Gauss-Newton steps are exact
     options.max_trust_region_radius = 1e20;
     options.function_tolerance = 1e-15;  // of the cost, which is of the order of the number of touches: rounding
     options.parameter_tolerance = 1e-13; // of x: rounding, enlarged by the condition of the problem
     options.gradient_tolerance = 1e-12;  // rows are in standard deviations: far below one
-    options.num_threads = 1;             // same digits whatever --threads
-    options.logging_type = ceres::SILENT;
     ceres::Solver::Summary summary;
     ceres::Solve(options, &ceres_problem, &summary);
     result.converged = summary.termination_type == ceres::CONVERGENCE;

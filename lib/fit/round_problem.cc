@@ -1,5 +1,7 @@
 #include "fit/round_problem.h"
 
+#include "fit/ceres_options.h"
+
 #include <ceres/ceres.h>
 
 #include <limits>
@@ -74,14 +76,11 @@ RoundSolution solve(const RoundFrame& frame, const Eigen::Matrix3Xd& touches, do
         problem.AddResidualBlock(new ceres::AutoDiffCostFunction<Distance, 1, kParameters>(
                                      new Distance{local.col(i) / extent, extent / width}),
                                  new ceres::HuberLoss(1), solution.parameters.data());
-    ceres::Solver::Options options;
-    options.linear_solver_type = ceres::DENSE_QR;
+    ceres::Solver::Options options = quiet_dense_qr();
     options.max_num_iterations = 200;
     options.function_tolerance = 1e-14;  // relative, of the cost: rounding of its sum
     options.parameter_tolerance = 1e-12; // of angles and of lengths over the extent
     options.gradient_tolerance = 1e-14;  // residuals are in units of the touch error
-    options.num_threads = 1;             // same digits whatever --threads
-    options.logging_type = ceres::SILENT;
     ceres::Solver::Summary summary;
     ceres::Solve(options, &problem, &summary);
     solution.cost = summary.IsSolutionUsable() ? summary.final_cost : std::numeric_limits<double>::infinity();
