@@ -1,7 +1,8 @@
 # The chain, from a part with an anomaly to an error map, for each case in samples/: one rule a stage.
 #
-#   make -f pipelines/casting.mk demo       real scans and Wang's parts: a table, and pictures in $(R)
+#   make -f pipelines/casting.mk demo       real scans and Wang's parts: a table, and pictures in $(CHAIN)
 #   make -f pipelines/casting.mk figures    the chain's figures beside what they must reach; exit 1 if one is missed
+#   make -f pipelines/casting.mk hills      the hills and the moon of Wang 2007, figure 5-8
 #   make -f pipelines/casting.mk seeds      how the figures of Wang's parts spread over 20 draws of the touch noise
 #
 # The case and the seed stand in the path, so make is the cache and -j the scheduler.
@@ -32,7 +33,7 @@ LIMIT_panel := 1
 .DELETE_ON_ERROR:
 .SECONDARY:
 .SECONDEXPANSION:
-.PHONY: demo figures seeds
+.PHONY: demo figures hills seeds
 
 # A path is $(CHAIN)/SEED/CASE/STAGE; % stands for SEED/CASE.
 case   = $(notdir $1)
@@ -126,3 +127,6 @@ seeds: $(foreach s,$(shell seq $(SEEDS)),$(call results,$s,$(WANG)))
 demo: $(call results,1,$(SHOWN)) $(call pictures,1,$(SHOWN))
 	@pipelines/chain-table $(CHAIN)/1 $(SHOWN)
 	@echo "pictures: $(CHAIN)/1/*/{before,after,errors}.png"
+
+hills: $(call results,1,$(HILLS)) $(call pictures,1,$(HILLS))
+	@pipelines/chain-table $(CHAIN)/1 $(HILLS)

@@ -58,7 +58,7 @@ int main(int argc, char** argv)
         "reference "
         "the error is NaN. Exit 1 if an error (with a job: one inside the anomaly's boundary) exceeds the tolerance.";
     return tool_main(argc, argv, description, [](Tool& t) {
-        const std::string& test_path = t.input("TEST", "the part");
+        const std::string& test_path = t.input("TEST", "The part");
         const std::string& reference_path = t.required_text("--to", "FILE", "The reference");
         const auto& reference_unit = t.length_unit("--to-units", "Unit of the reference, if not the job's");
         const auto& test_unit = t.length_unit("--file-units", "Unit of TEST, if not the job's");

@@ -29,7 +29,7 @@ int main(int argc, char** argv)
 {
     return tool_main(argc, argv, "Compare two files of numbers: points, meshes or JSON.", [](Tool& t) {
         const std::string& a = t.file("A", "PCD, PLY, XYZ, STL, OBJ, OFF or JSON; stdin if it is -");
-        const std::string& b = t.file("B", "of the same kind; stdin if it is -");
+        const std::string& b = t.file("B", "Of the same kind; stdin if it is -");
         const double& absolute = t.number("--tol", 0, "T", "Allowed difference of two numbers", Range::at_least(0));
         const double& relative = t.number("--rel", 0, "R",
                                           "Allowed difference, relative to the greater number; "

@@ -9,7 +9,7 @@ int main(int argc, char** argv)
 {
     return tool_main(
         argc, argv, "Add points under the anomaly, estimated from curves through the touches.", [](Tool& t) {
-            const std::string& job_file = t.file("JOB", "the job, JSON");
+            const std::string& job_file = t.file("JOB", "The job, JSON");
             const std::string& input = t.input("SAMPLES", "touches of fettle-sample, PCD");
             const auto& file_unit = t.length_unit("--file-units", "Unit of the samples, if it is not the job's");
             const bool& ascii = t.flag("--ascii", "Text instead of binary");

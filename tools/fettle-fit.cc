@@ -59,8 +59,8 @@ void report(json::Value& out, const Fit& fit)
 int main(int argc, char** argv)
 {
     return tool_main(argc, argv, "Fit the desired surface beneath the anomaly to the touches.", [](Tool& t) {
-        const std::string& job = t.file("JOB", "job, JSON");
-        const std::string& points = t.input("POINTS", "touches (x y z, role), PCD");
+        const std::string& job = t.file("JOB", "Job, JSON");
+        const std::string& points = t.input("POINTS", "Touches (x y z, role), PCD");
         const std::string& method =
             t.choice("-m,--method", "auto", choices(), "Kind of surface; auto: by the job's surface type");
         const bool& use_boundary = t.flag(
@@ -70,7 +70,7 @@ int main(int argc, char** argv)
             t.length_unit("--file-units", "Unit of POINTS, if it is not the job's");
         const std::optional<double>& spacing =
             t.number_if_given("--spacing", "LENGTH",
-                              "griddata: half the shortest wave to keep; 0: do not sample again; else half the "
+                              "Griddata: half the shortest wave to keep; 0: do not sample again; else half the "
                               "mean distance of the points",
                               Range::at_least(0));
         t.example("fettle-sample jobs/hammer.json --on scans/hammer.stl | fettle-fit jobs/hammer.json > surface.json",

@@ -63,14 +63,14 @@ void report(json::Value& out, const GrindRun& run, const QuasiStaticGantry& gant
 int main(int argc, char** argv)
 {
     return tool_main(argc, argv, "Grind a part to its desired surface, guided by the force.", [](Tool& t) {
-        const std::string& plan_file = t.input("PLAN", "what to do, JSON (fettle-plan)");
-        const std::string& stock_file = t.required_text("--stock", "PART", "the part as it is: STL, PLY, OBJ or PCD");
-        const auto& stock_units = t.length_unit("--stock-units", "of the stock's file; default: the job's");
-        t.choice("--gantry", "virtual", {"virtual"}, "the machine: a simulated gantry in equilibrium at every moment");
+        const std::string& plan_file = t.input("PLAN", "What to do, JSON (fettle-plan)");
+        const std::string& stock_file = t.required_text("--stock", "PART", "The part as it is: STL, PLY, OBJ or PCD");
+        const auto& stock_units = t.length_unit("--stock-units", "Unit of PART, if it is not the job's");
+        t.choice("--gantry", "virtual", {"virtual"}, "The machine: a simulated gantry in equilibrium at every moment");
         const auto& cell = t.number_if_given(
-            "--cell", "length", "side of a cell of the stock; default: 1/64 of the wheel's width", Range::positive());
-        const std::string& trace = t.text("--trace", "", "FILE", "what the machine did and why, PCD");
-        const bool& ascii = t.flag("--ascii", "write PCDs as text");
+            "--cell", "LENGTH", "Side of a cell of the stock; default: 1/64 of the wheel's width", Range::positive());
+        const std::string& trace = t.text("--trace", "", "FILE", "What the machine did and why, PCD");
+        const bool& ascii = t.flag("--ascii", "Write PCDs as text");
         t.example("fettle-sample jobs/wang1.json | fettle-fit jobs/wang1.json | fettle-plan jobs/wang1.json | "
                   "fettle-grind --stock <(fettle-part parts/wang1.json) --trace trace.pcd > ground.pcd",
                   "Wang's part 1 from the job to the ground part");

@@ -14,10 +14,10 @@ int main(int argc, char** argv)
             const std::string& method = t.choice("--method", "posterior", {"posterior", "wang"},
                                                  "the fit's own covariance, or Wang's regressions");
             const double& confidence =
-                t.number("--confidence", 0.99, "", "posterior: that all of the anomaly stays above the true surface",
-                         Range::inside(0, 1));
-            const std::string& job_file = t.file("JOB", "job, JSON");
-            const std::string& surface_file = t.input("SURFACE", "fitted surface, JSON");
+                t.number("--confidence", 0.99, "SHARE",
+                         "Posterior: that all of the anomaly stays above the true surface", Range::inside(0, 1));
+            const std::string& job_file = t.file("JOB", "Job, JSON");
+            const std::string& surface_file = t.input("SURFACE", "Fitted surface, JSON");
             t.example("fettle-sample jobs/hammer.json --on scans/hammer.stl | fettle-fit jobs/hammer.json | "
                       "fettle-margin jobs/hammer.json > desired.json",
                       "touch a scanned hammer, fit it, and raise the fit by its 99 % shift");

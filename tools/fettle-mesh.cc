@@ -30,7 +30,7 @@ Cloud evaluate(const Surface& surface, const Eigen::Matrix2Xd& xy, bool with_sig
 int main(int argc, char** argv)
 {
     return tool_main(argc, argv, "Evaluate a surface at given points or on a grid.", [](Tool& t) {
-        const std::string& surface_file = t.input("SURFACE", "fitted surface, JSON");
+        const std::string& surface_file = t.input("SURFACE", "Fitted surface, JSON");
         const std::string& at =
             t.text("--at", "", "FILE", "Points, PCD: their x y get the surface's z, in their order");
         const std::optional<Units::Length>& at_units =

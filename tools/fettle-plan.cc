@@ -32,9 +32,9 @@ void report(json::Value& out, const Plan& plan)
 int main(int argc, char** argv)
 {
     return tool_main(argc, argv, "Plan the layers, the start and the zig-zag passes over an anomaly.", [](Tool& t) {
-        const std::string& job_file = t.file("JOB", "the operator's job, JSON");
+        const std::string& job_file = t.file("JOB", "The operator's job, JSON");
         const std::string& surface_file = t.input("SURFACE", "the desired surface, JSON (fettle-margin)");
-        const std::string& gcode = t.text("--gcode", "", "FILE", "write layer 1 as G-code, too");
+        const std::string& gcode = t.text("--gcode", "", "FILE", "Write layer 1 as G-code, too");
         t.example(
             "fettle-sample jobs/wang1.json | fettle-fit jobs/wang1.json | fettle-plan jobs/wang1.json > plan.json",
             "layers and passes for Wang's part 1, whose job holds the touches");

@@ -12,7 +12,7 @@ int main(int argc, char** argv)
 {
     return tool_main(
         argc, argv, "Draw an error map or a height map, seen from above: PNG with legend and histogram.", [](Tool& t) {
-            const std::string& path = t.input("POINTS", "an error map or a part (PCD), or a mesh (STL, PLY, OBJ, OFF)");
+            const std::string& path = t.input("POINTS", "An error map or a part (PCD), or a mesh (STL, PLY, OBJ, OFF)");
             const std::string& shown =
                 t.text("--field", "", "NAME", "What to show: error, z, removed, … [error if there is one, else z]");
             const std::optional<double>& scale = t.number_if_given(

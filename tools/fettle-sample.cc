@@ -62,7 +62,7 @@ Cloud samples_in_order(const Eigen::Matrix3Xd& touches, const TouchPlan& plan, c
 int main(int argc, char** argv)
 {
     return tool_main(argc, argv, "Choose the touch points of a job and probe them on a part.", [](Tool& t) {
-        const std::string& job_file = t.file("JOB", "the job, JSON");
+        const std::string& job_file = t.file("JOB", "The job, JSON");
         const std::string& part =
             t.text("--on", "", "SURFACE", "Part to touch: mesh (STL, PLY, OBJ, OFF) or cloud (PCD, PLY, XYZ)");
         const auto& part_unit = t.length_unit("--on-units", "Unit of that file, if it is not the job's");

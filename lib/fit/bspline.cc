@@ -62,12 +62,12 @@ void refuse_line(const FitInput& input, const Eigen::Matrix3Xd& touches)
 constexpr Index kQuadratics = 6;         // 1, u, v, u², uv, v²
 constexpr Index kBeta = kQuadratics + 1; // and the round part's share
 
-// Castings are turned, swept and blended: a curved surface is expected to be round (share 1 of the round part, a
-// paraboloid has 0), and to differ from that by a third as much as a round surface differs from a quadratic, or more.
-// Both spreads are so that sigma is right over sheared spheres, waves, saddles and cylinders (Bspline.Sigma… in the
-// tests).
-constexpr double kRoundnessSpread = 0.3;
-constexpr double kRoughness = 0.3;
+// Castings are turned, swept and blended: a curved surface is expected to be round (share 1 of the round part; a
+// paraboloid, share 0, is no rarity), and to differ from that by about as much as a round surface differs from a
+// quadratic. Both spreads are so that sigma is right over sheared spheres, waves, tori, panels (Bspline.SigmaCovers… in
+// the tests) and the 95 % shift safe over paraboloids (Posterior.is_safe…): smaller ones over-grind one or the other.
+constexpr double kRoundnessSpread = 0.6;
+constexpr double kRoughness = 0.7;
 
 /// Everything at the touches: z = level + the expected round part + H β + g. β's prior is N(0, 1 / precision²).
 struct Model {
