@@ -17,6 +17,7 @@ JOBS     ?= $(shell nproc)
 TOOLS    := $(patsubst tools/%.cc,%,$(wildcard tools/fettle-*.cc))
 BINARIES := $(TOOLS:%=$(B)/bin/%)
 TESTS    := $(patsubst tests/lib/%.cc,$(B)/tests/%,$(wildcard tests/lib/*_test.cc))
+STUDIES  := $(patsubst pipelines/programs/%.cc,$(B)/study/%,$(wildcard pipelines/programs/*.cc))
 BENCHES  := $(patsubst tests/bench/%.cc,$(B)/bench/%,$(wildcard tests/bench/*_bench.cc))
 CASES    := $(sort $(wildcard tests/$(or $(TOOL),*)/*.sh))
 OBJECTS  := $(patsubst %.cc,$(B)/%.o,$(wildcard lib/*/*.cc))
@@ -35,7 +36,7 @@ override LDFLAGS  += -Wl,--as-needed
 all: deps
 	@$(MAKE) --no-print-directory -j$(JOBS) build
 
-build: $(BINARIES)
+build: $(BINARIES) $(STUDIES)
 
 # --- libraries, tool by tool: a heavy one is linked only where it is named ------------------------------------------
 CERES  := -lceres -lglog
@@ -58,6 +59,12 @@ $(B)/libfettle.a: $(OBJECTS)
 	$(AR) rcs $@ $^
 
 $(B)/bin/%: $(B)/tools/%.o $(B)/libfettle.a
+	@mkdir -p $(@D)
+	$(CXX) $(LDFLAGS) -o $@ $^ $(LDLIBS) $(LDLIBS_ALL)
+
+# Programs of the studies: what would be too slow as a chain of tools for each of thousands of cells.
+$(B)/study/%: LDLIBS = $(CERES) $(EMBREE) $(OPENCV)
+$(B)/study/%: $(B)/pipelines/programs/%.o $(B)/libfettle.a
 	@mkdir -p $(@D)
 	$(CXX) $(LDFLAGS) -o $@ $^ $(LDLIBS) $(LDLIBS_ALL)
 
