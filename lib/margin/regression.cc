@@ -1,3 +1,4 @@
+#include "margin/regression.h"
 #include "core/error.h"
 #include "job/boundary.h"
 #include "margin/round_fit.h"
@@ -9,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <vector>
 
 namespace fettle {
@@ -17,59 +19,36 @@ namespace {
 
 constexpr double kMmPerInch = 25.4;
 
-/// Wang 2007, 4.5: band and shift, inches, are linear in these.
-struct Coefficients {
-    double curvature, area, farthest, variance, constant;
-};
-struct Regression {
-    Coefficients band, shift;
-};
-constexpr Regression kSwept = {{.2578, .0001, -.0004, .0354, -.0004}, {.1027, .0001, -.0005, .0253, -.0002}};
-constexpr Regression kConcave = {{.3264, .0031, .0013, .0228, -.0131}, {.2324, .0020, .0007, .0141, -.0096}};
-constexpr Regression kConvex = {{.3340, .0028, .0013, .0225, -.0127}, {.2386, .0024, .0007, .0139, -.0098}};
-
-/// Saddles: cylinders along Y_w (curved in x) and along X_w; the area enters by its root.
-struct SaddleCoefficients {
-    double curvature_x, curvature_y, root_area, farthest, variance_x, variance_y, constant;
-};
-constexpr SaddleCoefficients kSaddleBand = {.7953, .1635, .0515, .0087, -.0417, -.0066, -.0689};
-constexpr SaddleCoefficients kSaddleShift = {.2410, .1289, .0109, .0040, -.0136, -.0047, -.0266};
-
-/// What the regressions take, inches.
-struct Situation {
-    Eigen::Matrix3Xd touches; ///< W, without estimated points
-    double area = 0;
-    double farthest = 0;
-};
-
-Situation situation(const Surface& surface, const Job& job)
+Regression regression(std::initializer_list<double> band, std::initializer_list<double> shift)
 {
-    const Polygon anomaly = boundaries(job).anomaly;
-    Situation result;
-    result.area = area(anomaly) / (kMmPerInch * kMmPerInch);
-    std::vector<Eigen::Index> touched;
+    const auto vector = [](std::initializer_list<double> numbers) {
+        return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(numbers.begin(), std::ssize(numbers)));
+    };
+    return {vector(band), vector(shift)};
+}
+
+/// The circle through the touches as seen along the rulings, which run across `direction`.
+RoundFit section_round(const Eigen::Matrix3Xd& touches, const Eigen::Vector2d& direction)
+{
+    Eigen::MatrixXd section(2, touches.cols());
+    section << direction.transpose() * touches.topRows<2>(), touches.row(2);
+    return fit_round(section);
+}
+
+/// Touches of a fitted surface, without estimated points; M, mm.
+Eigen::Matrix3Xd without_estimated(const Surface& surface)
+{
+    std::vector<Eigen::Index> used;
     for (Eigen::Index i = 0; i < surface.touches.cols(); ++i)
-        if (surface.roles[i] != static_cast<int>(Role::estimated)) touched.push_back(i);
-    result.touches = surface.touches(Eigen::all, touched);
-    result.touches.topRows<2>() = (rotation_working_machine(job.theta) * result.touches.topRows<2>()).eval();
-    for (Eigen::Index i = 0; i < result.touches.cols(); ++i) {
-        const Eigen::Vector2d xy = result.touches.col(i).head<2>();
-        result.farthest = std::max(result.farthest, distance_to_edge(anomaly, xy) / kMmPerInch);
-    }
-    result.touches /= kMmPerInch;
-    return result;
+        if (surface.roles[i] != static_cast<int>(Role::estimated)) used.push_back(i);
+    return surface.touches(Eigen::all, used);
 }
 
-double evaluate(const Coefficients& c, const Situation& s, const RoundFit& round)
+/// W, mm.
+Eigen::Matrix3Xd in_working_frame(Eigen::Matrix3Xd touches, const Job& job)
 {
-    return c.curvature * round.curvature + c.area * s.area + c.farthest * s.farthest + c.variance * round.variance +
-           c.constant;
-}
-
-double evaluate(const SaddleCoefficients& c, const Situation& s, const RoundFit& x, const RoundFit& y)
-{
-    return c.curvature_x * x.curvature + c.curvature_y * y.curvature + c.root_area * std::sqrt(s.area) +
-           c.farthest * s.farthest + c.variance_x * x.variance + c.variance_y * y.variance + c.constant;
+    touches.topRows<2>() = (rotation_working_machine(job.theta) * touches.topRows<2>()).eval();
+    return touches;
 }
 
 /// Bending of the touches along X_w and Y_w, by a quadratic through them: > 0 concave. The twist is left out, which a
@@ -98,39 +77,73 @@ Prediction worst_case_of_plane(const Surface& surface, const Job& job)
     return {"wang", 0, job.probe.accuracy * std::max(shift, band), job.probe.accuracy * shift, false};
 }
 
+RegressionKind kind_of(const Eigen::Matrix3Xd& touches, const Job& job)
+{
+    if (job.surface == SurfaceType::swept) return RegressionKind::swept;
+    const Eigen::Vector2d bends = bending(in_working_frame(touches, job));
+    if (bends.x() * bends.y() < 0) return RegressionKind::saddle;
+    return bends.sum() > 0 ? RegressionKind::concave : RegressionKind::convex;
+}
+
 } // namespace
+
+const std::vector<std::string>& regression_terms(RegressionKind kind)
+{
+    static const std::vector<std::string> round = {"curvature", "area", "farthest", "variance", "constant"};
+    static const std::vector<std::string> saddle = {"curvature x", "curvature y", "root area", "farthest",
+                                                    "variance x",  "variance y",  "constant"};
+    return kind == RegressionKind::saddle ? saddle : round;
+}
+
+const Regression& published_regression(RegressionKind kind)
+{
+    static const std::map<RegressionKind, Regression> published = {
+        {RegressionKind::swept,
+         regression({.2578, .0001, -.0004, .0354, -.0004}, {.1027, .0001, -.0005, .0253, -.0002})},
+        {RegressionKind::concave,
+         regression({.3264, .0031, .0013, .0228, -.0131}, {.2324, .0020, .0007, .0141, -.0096})},
+        {RegressionKind::convex,
+         regression({.3340, .0028, .0013, .0225, -.0127}, {.2386, .0024, .0007, .0139, -.0098})},
+        {RegressionKind::saddle, regression({.7953, .1635, .0515, .0087, -.0417, -.0066, -.0689},
+                                            {.2410, .1289, .0109, .0040, -.0136, -.0047, -.0266})},
+    };
+    return published.at(kind);
+}
+
+Eigen::VectorXd regression_values(RegressionKind kind, const Eigen::Matrix3Xd& touches, const Job& job)
+{
+    const Eigen::Matrix3Xd inches = in_working_frame(touches, job) / kMmPerInch;
+    const Polygon anomaly = boundaries(job).anomaly / kMmPerInch;
+    double farthest = 0;
+    for (Eigen::Index i = 0; i < inches.cols(); ++i)
+        farthest = std::max(farthest, distance_to_edge(anomaly, inches.col(i).head<2>()));
+
+    Eigen::VectorXd values(std::ssize(regression_terms(kind)));
+    if (kind == RegressionKind::saddle) {
+        const RoundFit x = section_round(inches, Eigen::Vector2d::UnitX());
+        const RoundFit y = section_round(inches, Eigen::Vector2d::UnitY());
+        values << x.curvature, y.curvature, std::sqrt(area(anomaly)), farthest, x.variance, y.variance, 1;
+        return values;
+    }
+    const Eigen::Vector2d across(-std::sin(job.direction), std::cos(job.direction));
+    const RoundFit round = kind == RegressionKind::swept ? section_round(inches, across) : fit_round(inches);
+    values << round.curvature, area(anomaly), farthest, round.variance, 1;
+    return values;
+}
 
 Prediction predict_by_regression(const Surface& surface, const Job& job, const std::string& source)
 {
     if (job.surface == SurfaceType::plane) return worst_case_of_plane(surface, job);
-    const Situation s = situation(surface, job);
-    if (s.touches.cols() < kLeastRoundPoints)
+    const Eigen::Matrix3Xd touches = without_estimated(surface);
+    if (touches.cols() < kLeastRoundPoints)
         throw InputError(source, "Wang's regressions need " + std::to_string(kLeastRoundPoints) +
-                                     " touches or more, the surface holds " + std::to_string(s.touches.cols()));
-    const auto across = [&](const Eigen::Vector2d& direction) {
-        Eigen::MatrixXd section(2, s.touches.cols());
-        section << direction.transpose() * s.touches.topRows<2>(), s.touches.row(2);
-        return fit_round(section);
-    };
-    double band, shift;
-    const Eigen::Vector2d bends = bending(s.touches);
-    if (job.surface == SurfaceType::swept) {
-        const RoundFit round = across({-std::sin(job.direction), std::cos(job.direction)});
-        band = evaluate(kSwept.band, s, round);
-        shift = evaluate(kSwept.shift, s, round);
-    } else if (bends.x() * bends.y() < 0) {
-        const RoundFit x = across(Eigen::Vector2d::UnitX()), y = across(Eigen::Vector2d::UnitY());
-        band = evaluate(kSaddleBand, s, x, y);
-        shift = evaluate(kSaddleShift, s, x, y);
-    } else {
-        const Regression& regression = bends.sum() > 0 ? kConcave : kConvex;
-        const RoundFit round = fit_round(s.touches);
-        band = evaluate(regression.band, s, round);
-        shift = evaluate(regression.shift, s, round);
-    }
+                                     " touches or more, the surface holds " + std::to_string(touches.cols()));
+    const RegressionKind kind = kind_of(touches, job);
+    const Eigen::VectorXd values = regression_values(kind, touches, job);
+    const double band = kMmPerInch * published_regression(kind).band.dot(values);
+    const double shift = kMmPerInch * published_regression(kind).shift.dot(values);
     const double least = job.probe.accuracy;
-    return {"wang", 0, std::max(band * kMmPerInch, least), std::max(shift * kMmPerInch, least),
-            std::min(band, shift) * kMmPerInch < least};
+    return {"wang", 0, std::max(band, least), std::max(shift, least), std::min(band, shift) < least};
 }
 
 } // namespace fettle
