@@ -1,6 +1,8 @@
 #include "cli/tool.h"
 
 #include "cli/command_line.h"
+#include "cli/option.h"
+#include "cli/progress_bar.h"
 #include "core/file.h"
 #include "core/text.h"
 
@@ -8,11 +10,8 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
-#include <chrono>
-#include <cmath>
 #include <deque>
 #include <iostream>
-#include <thread>
 #include <unistd.h>
 
 namespace fettle {
@@ -21,6 +20,7 @@ namespace {
 
 constexpr int kMostThreads = 1024;
 constexpr int kSeed = 1;
+constexpr double kMostSeed = 4294967295; // 32 bits
 
 std::string one_line(std::string message)
 {
@@ -28,50 +28,6 @@ std::string one_line(std::string message)
     std::replace(message.begin(), message.end(), '\r', ' ');
     while (!message.empty() && message.back() == ' ') message.pop_back();
     return message;
-}
-
-double parse_in_range(const std::string& text, const Range& range)
-{
-    const std::optional<double> value = parse_number(text);
-    if (!value) throw CLI::ValidationError("expected a number, got '" + text + "'");
-    if (!range.contains(*value)) throw CLI::ValidationError("must be " + range.text() + ", got " + text);
-    return *value;
-}
-
-// CLI11 repeats the option's names in its own way; ours is "--tolerance: must be positive, got -1".
-CLI::Option* add_parsed(CLI::App& app, const std::string& names, const std::string& help,
-                        const std::function<void(const std::string&)>& parse)
-{
-    CLI::Option* option = app.add_option_function<std::string>(
-        names,
-        [names, parse](const std::string& text) {
-            const std::size_t dashes = names.find("--");
-            const std::string shown = names.substr(dashes == std::string::npos ? 0 : dashes);
-            try {
-                parse(text);
-            } catch (const CLI::ValidationError& error) {
-                throw CLI::ValidationError(shown + ": " + error.what());
-            } catch (const InputError& error) {
-                throw CLI::ValidationError(shown + ": " + error.what());
-            }
-        },
-        help);
-    return option;
-}
-
-std::string list(const std::vector<std::string>& words, const std::string& separator)
-{
-    std::string text;
-    for (const std::string& word : words) text += (text.empty() ? "" : separator) + word;
-    return text;
-}
-
-const std::string& one_of(const std::vector<std::string>& choices, const std::string& text)
-{
-    if (std::find(choices.begin(), choices.end(), text) != choices.end()) return text;
-    const std::string guess = nearest_word(text, choices);
-    throw CLI::ValidationError("'" + text + "' is none of " + list(choices, ", ") +
-                               (guess.empty() ? "" : "; did you mean '" + guess + "'?"));
 }
 
 } // namespace
@@ -145,8 +101,7 @@ const double& Tool::number(const std::string& names, double otherwise, const std
                            const Range& range)
 {
     double& value = state_->numbers.emplace_back(otherwise);
-    add_parsed(state_->app, names, help,
-               [&value, range](const std::string& text) { value = parse_in_range(text, range); })
+    add_option(state_->app, names, help, [&value, range](const std::string& text) { value = number_in(text, range); })
         ->type_name(unit)
         ->default_str(to_text(otherwise));
     return value;
@@ -156,8 +111,8 @@ const std::optional<double>& Tool::number_if_given(const std::string& names, con
                                                    const std::string& help, const Range& range)
 {
     std::optional<double>& value = state_->optional_numbers.emplace_back();
-    add_parsed(state_->app, names, help, [&value, range](const std::string& text) {
-        value = parse_in_range(text, range);
+    add_option(state_->app, names, help, [&value, range](const std::string& text) {
+        value = number_in(text, range);
     })->type_name(unit);
     return value;
 }
@@ -165,11 +120,9 @@ const std::optional<double>& Tool::number_if_given(const std::string& names, con
 const int& Tool::count(const std::string& names, int otherwise, const std::string& help, int least, int most)
 {
     int& value = state_->counts.emplace_back(otherwise);
-    add_parsed(state_->app, names, help,
+    add_option(state_->app, names, help,
                [&value, least, most](const std::string& text) {
-                   const double number = parse_in_range(text, Range::between(least, most));
-                   if (number != static_cast<int>(number)) throw CLI::ValidationError("must be whole, got " + text);
-                   value = static_cast<int>(number);
+                   value = static_cast<int>(whole_number_in(text, least, most));
                })
         ->type_name("N")
         ->default_str(std::to_string(otherwise));
@@ -196,9 +149,9 @@ const std::string& Tool::required_text(const std::string& names, const std::stri
 const std::string& Tool::word(const std::string& name, const std::vector<std::string>& choices, const std::string& help)
 {
     std::string& value = state_->texts.emplace_back();
-    add_parsed(state_->app, name, help, [&value, choices](const std::string& text) { value = one_of(choices, text); })
+    add_option(state_->app, name, help, [&value, choices](const std::string& text) { value = one_of(choices, text); })
         ->required()
-        ->type_name(list(choices, "|"));
+        ->type_name(joined(choices, "|"));
     return value;
 }
 
@@ -206,9 +159,9 @@ const std::string& Tool::choice(const std::string& names, const std::string& oth
                                 const std::vector<std::string>& choices, const std::string& help)
 {
     std::string& value = state_->texts.emplace_back(otherwise);
-    CLI::Option* option = add_parsed(state_->app, names, help,
+    CLI::Option* option = add_option(state_->app, names, help,
                                      [&value, choices](const std::string& text) { value = one_of(choices, text); });
-    option->type_name(list(choices, "|"));
+    option->type_name(joined(choices, "|"));
     if (!otherwise.empty()) option->default_str(otherwise);
     return value;
 }
@@ -216,7 +169,7 @@ const std::string& Tool::choice(const std::string& names, const std::string& oth
 const std::optional<Units::Length>& Tool::length_unit(const std::string& names, const std::string& help)
 {
     std::optional<Units::Length>& value = state_->units.emplace_back();
-    add_parsed(state_->app, names, help, [&value](const std::string& text) {
+    add_option(state_->app, names, help, [&value](const std::string& text) {
         value = parse_length_unit(text);
     })->type_name("mm|in|m");
     return value;
@@ -236,19 +189,12 @@ void Tool::parse()
         ->type_name("FILE")
         ->default_str("stdout");
     s.app.add_option("--report", s.report_path, "Numbers about the run, JSON")->type_name("FILE");
-    add_parsed(s.app, "--seed", "Seed of everything random",
-               [&s](const std::string& text) {
-                   s.seed = parse_in_range(text, Range::between(0, 4294967295.0));
-                   if (s.seed != std::floor(s.seed)) throw CLI::ValidationError("must be whole, got " + text);
-               })
+    add_option(s.app, "--seed", "Seed of everything random",
+               [&s](const std::string& text) { s.seed = whole_number_in(text, 0, kMostSeed); })
         ->type_name("N")
         ->default_str(std::to_string(kSeed));
-    add_parsed(s.app, "--threads", "Threads; the result does not depend on them",
-               [&s](const std::string& text) {
-                   const double number = parse_in_range(text, Range::between(1, kMostThreads));
-                   if (number != std::floor(number)) throw CLI::ValidationError("must be whole, got " + text);
-                   s.threads = static_cast<int>(number);
-               })
+    add_option(s.app, "--threads", "Threads; the result does not depend on them",
+               [&s](const std::string& text) { s.threads = static_cast<int>(whole_number_in(text, 1, kMostThreads)); })
         ->type_name("N")
         ->default_str("all cores");
     s.app.add_flag("-q,--quiet", s.quiet, "No warnings, no progress")
@@ -291,21 +237,7 @@ void Tool::note(const std::string& message) const
 Progress Tool::progress(const std::string& label) const
 {
     if (state_->quiet || isatty(STDERR_FILENO) == 0) return {};
-    using Clock = std::chrono::steady_clock;
-    struct Bar {
-        Clock::time_point next = Clock::now() + std::chrono::seconds(1); // short work shows nothing
-        bool shown = false;
-    };
-    return [label, bar = std::make_shared<Bar>()](double fraction) {
-        if (Clock::now() < bar->next && !(bar->shown && fraction >= 1)) return;
-        if (fraction >= 1 && !bar->shown) return;
-        bar->shown = true;
-        bar->next = Clock::now() + std::chrono::milliseconds(100);
-        constexpr int kWidth = 40;
-        const int done = static_cast<int>(std::clamp(fraction, 0.0, 1.0) * kWidth);
-        std::cerr << '\r' << label << " [" << std::string(done, '#') << std::string(kWidth - done, ' ') << "] "
-                  << static_cast<int>(100 * fraction) << " %" << (fraction >= 1 ? "\n" : "") << std::flush;
-    };
+    return progress_bar(label);
 }
 
 // Named outputs first, stdout last: a reader of the pipe may rely on the files.
