@@ -1,12 +1,11 @@
 #include "cloud/ply.h"
 
 #include "cloud/element.h"
+#include "cloud/ply_body.h"
 #include "cloud/ply_header.h"
 #include "core/error.h"
-#include "core/lines.h"
 
 #include <algorithm>
-#include <array>
 
 namespace fettle {
 
@@ -14,130 +13,6 @@ namespace {
 
 using Property = PlyHeader::Property;
 using Element = PlyHeader::Element;
-
-// Reads the values of an ascii body: one item of an element a line.
-class AsciiBody {
-  public:
-    AsciiBody(std::string_view body, std::size_t lines_before, const std::string& source)
-        : lines_(body, lines_before), left_(body.size()), source_(source)
-    {
-    }
-
-    void check_room(const Element& element) const
-    {
-        const std::size_t shortest_line = 2 * element.properties.size(); // "0 0 0\n"
-        if (element.count > (left_ - lines_.offset() + 1) / shortest_line)
-            refuse("element " + element.name + " " + std::to_string(element.count) + ": only " +
-                   std::to_string(left_ - lines_.offset()) + " bytes left");
-    }
-
-    void begin_item(const std::string& element, std::size_t index)
-    {
-        do
-            if (!lines_.next()) refuse("element " + element + ": only " + std::to_string(index) + " lines");
-        while (lines_.line().find_first_not_of(" \t") == std::string_view::npos);
-        rest_ = lines_.line();
-    }
-
-    template <typename T>
-    T value(const Property& property)
-    {
-        const std::string_view word = next_word(rest_);
-        if (word.empty()) refuse("property " + property.name + " is missing");
-        T number{};
-        if (!parse_element<T>(word, &number))
-            refuse("property " + property.name + ": " + in_quotes(word) + " is no number of its type");
-        return number;
-    }
-
-    void check_list_room(std::size_t length) const
-    {
-        if (length > rest_.size()) refuse("a list of " + std::to_string(length) + " on a line too short for it");
-    }
-
-    void end_item()
-    {
-        const std::string_view word = next_word(rest_);
-        if (!word.empty()) refuse("more values than properties: " + in_quotes(word));
-    }
-
-    void end()
-    {
-        while (lines_.next())
-            if (lines_.line().find_first_not_of(" \t") != std::string_view::npos)
-                refuse("text after the last element: " + in_quotes(lines_.line()));
-    }
-
-    [[noreturn]] void refuse(const std::string& problem) const
-    {
-        throw InputError(source_, lines_.place() + ": " + problem);
-    }
-
-  private:
-    Lines lines_;
-    std::size_t left_;
-    std::string_view rest_;
-    const std::string& source_;
-};
-
-class BinaryBody {
-  public:
-    BinaryBody(std::string_view body, bool swap, const std::string& source) : body_(body), swap_(swap), source_(source)
-    {
-    }
-
-    void check_room(const Element& element)
-    {
-        std::size_t least = 0;
-        for (const Property& property : element.properties)
-            least += static_cast<std::size_t>(property.list ? property.count_size : property.size);
-        if (element.count > body_.size() / least)
-            throw InputError(source_, "element " + element.name + " " + std::to_string(element.count) + ": only " +
-                                          std::to_string(body_.size()) + " bytes left");
-    }
-
-    void begin_item(const std::string& element, std::size_t index)
-    {
-        element_ = &element;
-        index_ = index;
-    }
-
-    template <typename T>
-    T value(const Property& property)
-    {
-        if (body_.size() < sizeof(T)) refuse("property " + property.name + ": the file ends");
-        std::array<char, sizeof(T)> bytes;
-        std::copy_n(body_.begin(), sizeof(T), bytes.begin());
-        if (swap_) std::reverse(bytes.begin(), bytes.end());
-        body_.remove_prefix(sizeof(T));
-        return load<T>(bytes.data());
-    }
-
-    void check_list_room(std::size_t length) const
-    {
-        if (length > body_.size()) refuse("a list of " + std::to_string(length) + ", the file ends");
-    }
-
-    void end_item() {}
-
-    void end() const
-    {
-        if (body_.find_first_not_of(" \t\r\n") != std::string_view::npos)
-            throw InputError(source_, std::to_string(body_.size()) + " bytes after the last element");
-    }
-
-    [[noreturn]] void refuse(const std::string& problem) const
-    {
-        throw InputError(source_, *element_ + " " + std::to_string(index_) + ": " + problem);
-    }
-
-  private:
-    std::string_view body_;
-    bool swap_;
-    const std::string* element_ = nullptr;
-    std::size_t index_ = 0;
-    const std::string& source_;
-};
 
 template <typename Body>
 std::size_t list_length(Body& body, const Property& property)
@@ -290,8 +165,8 @@ Ply parse_ply(std::string_view bytes, const std::string& source)
         throw InputError(source, "PLY without element vertex");
     const std::string_view body = bytes.substr(header.body);
     if (header.encoding == PlyHeader::Encoding::ascii)
-        return read_body(AsciiBody(body, header.lines, source), header, source);
-    return read_body(BinaryBody(body, header.encoding == PlyHeader::Encoding::big_endian, source), header, source);
+        return read_body(AsciiPlyBody(body, header.lines, source), header, source);
+    return read_body(BinaryPlyBody(body, header.encoding == PlyHeader::Encoding::big_endian, source), header, source);
 }
 
 bool looks_like_ply(std::string_view bytes) { return bytes.starts_with("ply\n") || bytes.starts_with("ply\r\n"); }
