@@ -41,11 +41,12 @@ build: $(BINARIES) $(STUDIES)
 # --- libraries, tool by tool: a heavy one is linked only where it is named ------------------------------------------
 CERES  := -lceres -lglog
 EMBREE := -lembree3
-OPENCV := -lopencv_imgcodecs -lopencv_imgproc -lopencv_core
+OPENCV := -lopencv_imgproc -lopencv_core
+PNG    := -lpng
 LDLIBS_ALL := -llzf -ltbb
 
-# The one file that sees OpenCV, and its test.
-$(B)/lib/compare/canvas.o $(B)/tests/lib/picture_test.o: override CPPFLAGS += $(addprefix -isystem ,$(wildcard /usr/include/opencv4))
+# The one file that sees OpenCV.
+$(B)/lib/compare/canvas.o: override CPPFLAGS += $(addprefix -isystem ,$(wildcard /usr/include/opencv4))
 
 include tools/libraries.mk
 
@@ -63,18 +64,18 @@ $(B)/bin/%: $(B)/tools/%.o $(B)/libfettle.a
 	$(CXX) $(LDFLAGS) -o $@ $^ $(LDLIBS) $(LDLIBS_ALL)
 
 # Programs of the studies: what would be too slow as a chain of tools for each of thousands of cells.
-$(B)/study/%: LDLIBS = $(CERES) $(EMBREE) $(OPENCV)
+$(B)/study/%: LDLIBS = $(CERES) $(EMBREE) $(OPENCV) $(PNG)
 $(B)/study/%: $(B)/pipelines/programs/%.o $(B)/libfettle.a
 	@mkdir -p $(@D)
 	$(CXX) $(LDFLAGS) -o $@ $^ $(LDLIBS) $(LDLIBS_ALL)
 
-$(B)/tests/%: LDLIBS = $(CERES) $(EMBREE) $(OPENCV) -lgtest_main -lgtest
+$(B)/tests/%: LDLIBS = $(CERES) $(EMBREE) $(OPENCV) $(PNG) -lgtest_main -lgtest
 $(B)/tests/cloud_test: LDLIBS += -lpcl_io -lpcl_common
 $(B)/tests/%: $(B)/tests/lib/%.o $(B)/libfettle.a
 	@mkdir -p $(@D)
 	$(CXX) $(LDFLAGS) -o $@ $^ $(LDLIBS) $(LDLIBS_ALL)
 
-$(B)/bench/%: LDLIBS = $(CERES) $(EMBREE) $(OPENCV) -lbenchmark_main -lbenchmark
+$(B)/bench/%: LDLIBS = $(CERES) $(EMBREE) $(OPENCV) $(PNG) -lbenchmark_main -lbenchmark
 $(B)/bench/%: $(B)/tests/bench/%.o $(B)/libfettle.a
 	@mkdir -p $(@D)
 	$(CXX) $(LDFLAGS) -o $@ $^ $(LDLIBS) $(LDLIBS_ALL)

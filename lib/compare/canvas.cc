@@ -1,6 +1,7 @@
 #include "compare/canvas.h"
 
-#include <opencv2/imgcodecs.hpp>
+#include "compare/png.h"
+
 #include <opencv2/imgproc.hpp>
 
 #include <cmath>
@@ -16,7 +17,7 @@ constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
 // Fractions of a pixel that OpenCV's fixed-point coordinates keep.
 constexpr int kShift = 4;
 
-cv::Scalar bgr(const Rgb& c) { return {double(c[2]), double(c[1]), double(c[0])}; }
+cv::Scalar scalar(const Rgb& c) { return {double(c[0]), double(c[1]), double(c[2])}; }
 
 /// A stroke grows with the letter: a ninth of its height, bold a sixth.
 int stroke(double capital_height, bool bold)
@@ -34,7 +35,7 @@ cv::Size text_size(const std::string& words, double capital_height, bool bold)
 } // namespace
 
 struct Canvas::State {
-    cv::Mat3b sheet;
+    cv::Mat3b sheet; // red, green, blue
 };
 
 Canvas::Canvas(int width, int height)
@@ -75,9 +76,9 @@ void Canvas::text(const std::string& words, const Eigen::Vector2d& at, double ca
         for (int column = visible.x; column < visible.x + visible.width; ++column) {
             const double ink = mask(row - place.y, column - place.x) / 255.0;
             cv::Vec3b& pixel = state_->sheet(row, column);
-            for (int i = 0; i < 3; ++i) // OpenCV keeps blue first
+            for (int i = 0; i < 3; ++i)
                 pixel[i] =
-                    static_cast<uchar>(std::lround(std::lerp(pixel[i], colour[2 - static_cast<std::size_t>(i)], ink)));
+                    static_cast<uchar>(std::lround(std::lerp(pixel[i], colour[static_cast<std::size_t>(i)], ink)));
         }
 }
 
@@ -87,7 +88,7 @@ void Canvas::box(const Eigen::Vector2d& corner, const Eigen::Vector2d& size, con
         cv::Point(static_cast<int>(std::lround(corner.x())), static_cast<int>(std::lround(corner.y()))),
         cv::Point(static_cast<int>(std::lround(corner.x() + size.x())),
                   static_cast<int>(std::lround(corner.y() + size.y()))));
-    if (!rectangle.empty()) cv::rectangle(state_->sheet, rectangle, bgr(colour), cv::FILLED);
+    if (!rectangle.empty()) cv::rectangle(state_->sheet, rectangle, scalar(colour), cv::FILLED);
 }
 
 void Canvas::line(const Eigen::Matrix2Xd& points, const Rgb& colour, double width, bool closed)
@@ -96,22 +97,20 @@ void Canvas::line(const Eigen::Matrix2Xd& points, const Rgb& colour, double widt
     for (const Eigen::Vector2d& p : points.colwise())
         path.emplace_back(static_cast<int>(std::lround(p.x() * (1 << kShift))),
                           static_cast<int>(std::lround(p.y() * (1 << kShift))));
-    cv::polylines(state_->sheet, path, closed, bgr(colour), std::max(1, static_cast<int>(std::lround(width))),
+    cv::polylines(state_->sheet, path, closed, scalar(colour), std::max(1, static_cast<int>(std::lround(width))),
                   cv::LINE_AA, kShift);
 }
 
 void Canvas::dot(int column, int row, const Rgb& colour)
 {
     if (column < 0 || column >= width() || row < 0 || row >= height()) return;
-    state_->sheet(row, column) = cv::Vec3b(colour[2], colour[1], colour[0]);
+    state_->sheet(row, column) = cv::Vec3b(colour[0], colour[1], colour[2]);
 }
 
 std::string Canvas::png() const
 {
-    std::vector<uchar> bytes;
-    // Run-length filter and light compression: the largest sheet in a tenth of a second.
-    cv::imencode(".png", state_->sheet, bytes, {cv::IMWRITE_PNG_COMPRESSION, 3});
-    return {bytes.begin(), bytes.end()};
+    const cv::Mat3b& sheet = state_->sheet; // made whole: its rows follow each other without gaps
+    return encode_png({sheet.data, 3 * sheet.total()}, sheet.cols, sheet.rows);
 }
 
 } // namespace fettle

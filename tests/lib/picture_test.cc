@@ -2,14 +2,16 @@
 #include "compare/picture.h"
 
 #include "compare/colours.h"
+#include "compare/png.h"
 #include "compare/raster.h"
 #include "core/error.h"
 
 #include <gtest/gtest.h>
-#include <opencv2/imgcodecs.hpp>
+#include <png.h>
 
 #include <cmath>
 #include <numbers>
+#include <random>
 
 namespace fettle {
 namespace {
@@ -34,18 +36,34 @@ Cloud grid(const Error& error, double angle = 0)
     return cloud;
 }
 
-cv::Mat3b drawn(const std::variant<Cloud, Mesh>& part, const PictureOptions& options)
+struct Sheet {
+    int width = 0;
+    std::vector<std::uint8_t> rgb;
+};
+
+Sheet decoded(const std::string& bytes)
 {
-    const std::string bytes = picture(part, options);
-    return cv::imdecode(
-        cv::Mat1b(1, static_cast<int>(bytes.size()), reinterpret_cast<uchar*>(const_cast<char*>(bytes.data()))),
-        cv::IMREAD_COLOR);
+    png_image image{};
+    image.version = PNG_IMAGE_VERSION;
+    if (png_image_begin_read_from_memory(&image, bytes.data(), bytes.size()) == 0)
+        throw std::runtime_error(image.message);
+    EXPECT_EQ(image.format, PNG_FORMAT_RGB); // 8 bit, three channels, no palette
+    Sheet sheet{static_cast<int>(image.width), std::vector<std::uint8_t>(PNG_IMAGE_SIZE(image))};
+    if (png_image_finish_read(&image, nullptr, sheet.rgb.data(), 0, nullptr) == 0)
+        throw std::runtime_error(image.message);
+    return sheet;
 }
 
-Rgb at(const cv::Mat3b& picture, int column, int row)
+Sheet drawn(const std::variant<Cloud, Mesh>& part, const PictureOptions& options)
 {
-    const cv::Vec3b bgr = picture(row, column);
-    return {bgr[2], bgr[1], bgr[0]};
+    return decoded(picture(part, options));
+}
+
+Rgb at(const Sheet& sheet, int column, int row)
+{
+    const std::size_t red =
+        3 * (static_cast<std::size_t>(row) * static_cast<std::size_t>(sheet.width) + static_cast<std::size_t>(column));
+    return {sheet.rgb.at(red), sheet.rgb.at(red + 1), sheet.rgb.at(red + 2)};
 }
 
 PictureOptions errors_to(double limit)
@@ -64,7 +82,7 @@ TEST(Picture, EachPointIsItsCellWithTheColourOfItsValue)
     const Cloud cloud = grid([](const Eigen::Vector2d& p) {
         return p.x() < 19 ? p.y() < 19 ? -1 : 0 : p.y() < 19 ? kNaN : 1;
     });
-    const cv::Mat3b sheet = drawn(cloud, errors_to(1));
+    const Sheet sheet = drawn(cloud, errors_to(1));
     for (int column = 2; column < kSide - 2; ++column)
         for (int row = 2; row < kSide - 2; ++row) {
             if (std::abs(column - kSide / 2) < 2 || std::abs(row - kSide / 2) < 2) continue;
@@ -81,7 +99,7 @@ TEST(Picture, EachPointIsItsCellWithTheColourOfItsValue)
 
 TEST(Picture, TurnedGridsHaveNoHoles)
 {
-    const cv::Mat3b sheet = drawn(grid([](const Eigen::Vector2d&) { return 0.5; }, 0.4), errors_to(1));
+    const Sheet sheet = drawn(grid([](const Eigen::Vector2d&) { return 0.5; }, 0.4), errors_to(1));
     // A disc about the middle of the frame, within the turned square.
     for (int column = -200; column <= 200; ++column)
         for (int row = -200; row <= 200; ++row) {
@@ -94,7 +112,7 @@ TEST(Picture, BandsAreStepsOfColour)
 {
     PictureOptions options = errors_to(1);
     options.bands = 4; // middles at ±0.25 and ±0.75
-    const cv::Mat3b sheet = drawn(grid([](const Eigen::Vector2d& p) { return p.x() < 19 ? 0.01 : 0.49; }), options);
+    const Sheet sheet = drawn(grid([](const Eigen::Vector2d& p) { return p.x() < 19 ? 0.01 : 0.49; }), options);
     EXPECT_EQ(at(sheet, kLeft + 100, kTop + 300), kUnit(0.25));
     EXPECT_EQ(at(sheet, kLeft + 500, kTop + 300), kUnit(0.25));
 }
@@ -115,7 +133,7 @@ TEST(Picture, HeightsAreShaded)
     mesh.triangles << 0, 1, 2, 3, 1, 2, 3, 0, 4, 4, 4, 4;
     PictureOptions options;
     options.scale = 1e6; // one colour: what differs is the light
-    const cv::Mat3b sheet = drawn(mesh, options);
+    const Sheet sheet = drawn(mesh, options);
     const auto light = [&](int column, int row) { return at(sheet, kLeft + column, kTop + row)[1]; };
     EXPECT_GT(light(340, 100), light(340, 580)); // north over south
     EXPECT_GT(light(100, 340), light(580, 340)); // west over east
@@ -125,7 +143,7 @@ TEST(Picture, HasRoomForOnePoint)
 {
     Cloud cloud;
     cloud.xyz = Eigen::Vector3d(3, 4, 5);
-    const cv::Mat3b sheet = drawn(cloud, {});
+    const Sheet sheet = drawn(cloud, {});
     EXPECT_NE(at(sheet, 84 + 450, kTop + 340), (Rgb{228, 228, 232})); // the disc in the middle
     EXPECT_EQ(at(sheet, 84 + 450 + 100, kTop + 340), (Rgb{228, 228, 232}));
 }
@@ -138,6 +156,20 @@ TEST(Picture, RefusesWhatItCannotDraw)
     EXPECT_THROW(picture(cloud, {}), InputError);
     cloud.xyz.setRandom();
     EXPECT_THROW(picture(cloud, errors_to(1)), InputError); // no such field
+}
+
+// Noise cannot be packed: the file is larger than its pixels.
+TEST(Png, HoldsEveryPixel)
+{
+    std::mt19937 random(1);
+    for (const auto& [width, height] : {std::pair{1, 1}, {7, 3}, {1294, 880}}) {
+        std::vector<std::uint8_t> rgb(static_cast<std::size_t>(3 * width * height));
+        for (std::uint8_t& value : rgb) value = static_cast<std::uint8_t>(random());
+        const Sheet sheet = decoded(encode_png(rgb, width, height));
+        EXPECT_EQ(sheet.width, width);
+        EXPECT_EQ(sheet.rgb, rgb);
+    }
+    EXPECT_THROW(encode_png(std::vector<std::uint8_t>(3), 0, 1), std::runtime_error);
 }
 
 TEST(Raster, SpacingOfAGridIsItsCell)
