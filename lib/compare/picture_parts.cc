@@ -1,6 +1,7 @@
 #include "compare/picture_parts.h"
 
 #include "compare/statistics.h"
+#include "compare/ticks.h"
 #include "job/boundary.h"
 
 #include <algorithm>
@@ -30,25 +31,6 @@ Rgb sequential(double share)
         mixed[i] = static_cast<std::uint8_t>(
             std::lround(std::lerp(kSequential[below][i], kSequential[below + 1][i], place - double(below))));
     return mixed;
-}
-
-/// Spacing of about `count` ticks over a span: 1, 2 or 5 times a power of ten.
-double tick_step(double span, int count)
-{
-    const double raw = span / count;
-    const double power = std::pow(10, std::floor(std::log10(raw)));
-    for (const double digit : {1.0, 2.0, 5.0})
-        if (digit * power >= raw) return digit * power;
-    return 10 * power;
-}
-
-/// As many decimals as the step needs. A rounded zero has no sign.
-std::string tick_text(double value, double step)
-{
-    const int decimals = std::max(0, static_cast<int>(std::ceil(-std::log10(step) - 1e-9)));
-    char buffer[64];
-    std::snprintf(buffer, sizeof buffer, "%.*f", std::min(decimals, 9), std::abs(value) < step / 1e6 ? 0.0 : value);
-    return buffer;
 }
 
 /// Four digits that matter.
