@@ -1,5 +1,6 @@
 #include "core/error.h"
 #include "fit/bspline.h"
+#include "fit/bspline_wang.h"
 #include "fit/cylinder.h"
 #include "fit/fit.h"
 #include "fit/griddata.h"
@@ -16,8 +17,10 @@ namespace {
 const std::map<std::string, Fit (*)(const FitInput&)>& methods()
 {
     static const std::map<std::string, Fit (*)(const FitInput&)> table = {
-        {"bspline", fit_bspline}, {"cylinder", fit_cylinder}, {"griddata", fit_griddata},
-        {"plane", fit_plane},     {"sphere", fit_sphere},     {"swept", fit_swept},
+        {"bspline", fit_bspline},   {"bspline-wang", fit_bspline_wang},
+        {"cylinder", fit_cylinder}, {"griddata", fit_griddata},
+        {"plane", fit_plane},       {"sphere", fit_sphere},
+        {"swept", fit_swept},
     };
     return table;
 }

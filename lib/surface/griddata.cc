@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
 #include <vector>
 
@@ -66,6 +67,10 @@ Merged merge_same(const Eigen::Matrix2Xd& points)
         else
             group->push_back(i);
     }
+    // Points on one circle are divided by their order, which must not be that in which they were touched. No two nodes
+    // of a grid lie alike along this direction.
+    const Eigen::Vector2d along(1, std::numbers::sqrt2);
+    std::ranges::sort(groups, {}, [&](const auto& group) { return points.col(group.front()).dot(along); });
     const auto count = static_cast<Eigen::Index>(groups.size());
     Merged merged{Eigen::Matrix2Xd(2, count), Eigen::MatrixXd::Zero(count, points.cols())};
     for (Eigen::Index g = 0; g < count; ++g) {
@@ -124,6 +129,17 @@ Stage resample(const Stage& first, double spacing)
     return Stage(delaunay(nodes), std::move(values));
 }
 
+/// @param fields  points x C, what is interpolated
+Stage interpolate(const Eigen::Matrix2Xd& points, const Eigen::MatrixXd& fields, double spacing)
+{
+    if (points.cols() < 3)
+        throw InputError("griddata needs at least 3 points, there are " + std::to_string(points.cols()));
+    if (!points.allFinite() || !fields.allFinite()) throw InputError("a point is not finite");
+    const Merged merged = merge_same(points);
+    Stage once(delaunay(merged.xy), merged.mean * fields);
+    return spacing > 0 ? resample(once, spacing) : once;
+}
+
 } // namespace
 
 struct Griddata::Interpolant {
@@ -134,21 +150,26 @@ struct Griddata::Interpolant {
 
 Griddata make_griddata(const Eigen::Matrix3Xd& points, double spacing, double angle)
 {
-    if (!points.allFinite()) throw InputError("a point is not finite");
-    if (points.cols() < 3)
-        throw InputError("griddata needs at least 3 points, there are " + std::to_string(points.cols()));
     const Eigen::Matrix2d rotation = rotation_working_machine(angle);
-    Merged merged = merge_same(rotation * points.topRows<2>());
-    Stage stage(delaunay(merged.xy), std::move(merged.mean));
-    if (spacing > 0) stage = resample(stage, spacing);
-
     const Eigen::VectorXd z = points.row(2).transpose();
+    if (!z.allFinite()) throw InputError("a point is not finite");
+    Stage stage = interpolate(rotation * points.topRows<2>(), Eigen::MatrixXd::Identity(z.size(), z.size()), spacing);
     const Eigen::VectorXd gradients = stage.gradients * z;
     Eigen::MatrixXd data(stage.values.rows(), 3);
     data.col(0) = stage.values * z;
     data.rightCols<2>() = Eigen::Map<const Eigen::Matrix2Xd>(gradients.data(), 2, data.rows()).transpose();
     return {points, spacing, angle,
             std::make_shared<const Griddata::Interpolant>(rotation, std::move(stage), std::move(data))};
+}
+
+Eigen::VectorXd griddata_heights(const Eigen::Matrix3Xd& points, double spacing, double angle,
+                                 const Eigen::Matrix2Xd& xy)
+{
+    const Eigen::Matrix2d rotation = rotation_working_machine(angle);
+    const Stage stage = interpolate(rotation * points.topRows<2>(), points.row(2).transpose(), spacing);
+    Eigen::VectorXd z(xy.cols());
+    for (Eigen::Index i = 0; i < xy.cols(); ++i) z[i] = stage.weights(rotation * xy.col(i)).value();
+    return z;
 }
 
 double height(const Griddata& surface, const Eigen::Vector2d& xy)

@@ -15,6 +15,11 @@ namespace fettle {
 ///         many grid points; the message has no file name
 Griddata make_griddata(const Eigen::Matrix3Xd& points, double spacing, double angle);
 
+/// The heights of that surface alone, without the weight of each point: what a search over subsets of many points
+/// evaluates. @param xy  2xN, M, mm   @return N, NaN outside the convex hull
+Eigen::VectorXd griddata_heights(const Eigen::Matrix3Xd& points, double spacing, double angle,
+                                 const Eigen::Matrix2Xd& xy);
+
 /// NaN outside the convex hull.
 double height(const Griddata& surface, const Eigen::Vector2d& xy);
 /// Weight of each point's z in the height (the interpolant is linear in z); NaN outside the convex hull.

@@ -1,5 +1,6 @@
 #include "surface/patches.h"
 
+#include "surface/basis.h"
 #include "units/units.h"
 #include "json/document.h"
 
@@ -19,47 +20,6 @@ constexpr int kMostNewtonSteps = 50;
 // When the steps in u and v are at rounding, and how far outside the domain rounding may put them; relative to the
 // domain.
 constexpr double kRounding = 1e-12;
-
-/// The basis functions of one direction that do not vanish at t, from the last ones up, and their derivatives.
-struct Basis {
-    Eigen::Index first = 0; ///< control point that value(0) belongs to
-    Eigen::VectorXd value;  ///< degree + 1
-    Eigen::VectorXd derivative;
-};
-
-/// Cox and de Boor's recurrence: the functions of degree d on the span [t_s, t_s+1).
-Eigen::VectorXd basis_functions(const Eigen::VectorXd& knots, Eigen::Index span, int degree, double t)
-{
-    Eigen::VectorXd value = Eigen::VectorXd::Zero(degree + 1);
-    value[0] = 1;
-    for (int d = 1; d <= degree; ++d) {
-        double carried = 0;
-        for (int r = 0; r < d; ++r) {
-            const double right = knots[span + r + 1], left = knots[span + 1 - d + r];
-            const double share = value[r] / (right - left);
-            value[r] = carried + (right - t) * share;
-            carried = (t - left) * share;
-        }
-        value[d] = carried;
-    }
-    return value;
-}
-
-Basis basis(const Eigen::VectorXd& knots, int degree, double t)
-{
-    const auto* begin = knots.data() + degree;
-    const auto* end = knots.data() + knots.size() - degree - 1; // of the domain, belongs to the last span
-    const Eigen::Index last = std::lower_bound(begin, end, *end) - knots.data() - 1;
-    const Eigen::Index span = std::min<Eigen::Index>(std::upper_bound(begin, end, t) - knots.data() - 1, last);
-    Basis result{span - degree, basis_functions(knots, span, degree, t), Eigen::VectorXd::Zero(degree + 1)};
-    const Eigen::VectorXd lower = basis_functions(knots, span, degree - 1, t);
-    for (int r = 0; r < degree; ++r) {
-        const double slope = degree * lower[r] / (knots[span + r + 1] - knots[span + 1 - degree + r]);
-        result.derivative[r] -= slope;
-        result.derivative[r + 1] += slope;
-    }
-    return result;
-}
 
 /// Domain of u (row 0) and v (row 1): least, most.
 Eigen::Matrix2d domain(const Patch& patch)

@@ -6,7 +6,8 @@
 
 namespace fettle {
 
-// Each shape by itself (Griddata: surface/griddata.h). xy is in M, mm; NaN where the shape is not defined.
+// Each shape by itself (TensorBspline: surface/tensor_bspline.h; Griddata: surface/griddata.h). xy is in M, mm; NaN
+// where the shape is not defined.
 
 double height(const Plane& plane, const Eigen::Vector2d& xy);
 double height(const Sphere& sphere, const Eigen::Vector2d& xy);

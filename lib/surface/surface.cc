@@ -2,6 +2,7 @@
 
 #include "surface/griddata.h"
 #include "surface/shapes.h"
+#include "surface/tensor_bspline.h"
 
 #include <tbb/parallel_for.h>
 

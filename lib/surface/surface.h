@@ -65,6 +65,15 @@ struct Bspline {
     Eigen::MatrixXd heights; ///< control heights, (cells_u + 3) x (cells_v + 3), mm
 };
 
+/// Tensor-product B-spline height field with knots of its own, over the rectangle that they span. The knots are places
+/// along u and v, the axes of M turned by `angle`; the degrees follow from the numbers of knots and heights. Not
+/// defined outside the rectangle. θ = control heights, column-major.
+struct TensorBspline {
+    double angle = 0;                 ///< rad, from X_m to u
+    Eigen::VectorXd knots_u, knots_v; ///< ascending, each end degree + 1 times, mm
+    Eigen::MatrixXd heights;          ///< control heights, rows along u, mm
+};
+
 /// Wang's modified griddata (2007, fig. 4-6): C1 cubic interpolation over the Delaunay triangles of the points, sampled
 /// uniformly and interpolated again. Defined inside the convex hull of the points. θ = the points' z.
 struct Griddata {
@@ -75,7 +84,7 @@ struct Griddata {
     std::shared_ptr<const Interpolant> interpolant;
 };
 
-using Shape = std::variant<Plane, Sphere, Cylinder, Swept, Bspline, Griddata>;
+using Shape = std::variant<Plane, Sphere, Cylinder, Swept, Bspline, TensorBspline, Griddata>;
 
 /// What the margin foresees (fettle-margin), mm.
 struct Prediction {

@@ -1,6 +1,7 @@
 #include "core/error.h"
 #include "surface/griddata.h"
 #include "surface/shapes.h"
+#include "surface/tensor_bspline.h"
 
 #include <Eigen/Geometry>
 
@@ -72,6 +73,16 @@ Value write(const Bspline& bspline, double mm)
         .set("heights", Value(Eigen::MatrixXd(bspline.heights / mm)));
 }
 
+Value write(const TensorBspline& bspline, double mm)
+{
+    Value value;
+    return value.set("type", "tensor-bspline")
+        .set("angle_deg", bspline.angle / kDegree)
+        .set("knots_u", Value(Eigen::VectorXd(bspline.knots_u / mm)))
+        .set("knots_v", Value(Eigen::VectorXd(bspline.knots_v / mm)))
+        .set("heights", Value(Eigen::MatrixXd(bspline.heights / mm)));
+}
+
 Value write(const Griddata& griddata, double mm)
 {
     Value value;
@@ -130,6 +141,21 @@ Shape read_bspline(Reader& reader, double mm)
     return bspline;
 }
 
+Shape read_tensor_bspline(Reader& reader, double mm)
+{
+    TensorBspline bspline;
+    bspline.angle = reader.number("angle_deg") * kDegree;
+    bspline.heights = reader.matrix("heights") * mm;
+    const auto knots = [&](const std::string& key, Eigen::Index control) {
+        const Eigen::VectorXd read = reader.vector(key) * mm;
+        if (const std::string wrong = wrong_with_knots(read, control); !wrong.empty()) reader.refuse(key, wrong);
+        return read;
+    };
+    bspline.knots_u = knots("knots_u", bspline.heights.rows());
+    bspline.knots_v = knots("knots_v", bspline.heights.cols());
+    return bspline;
+}
+
 Shape read_griddata(Reader& reader, double mm)
 {
     const Eigen::Matrix3Xd points = reader.matrix("points", 3).transpose() * mm;
@@ -144,7 +170,8 @@ Shape read_griddata(Reader& reader, double mm)
 
 Shape read_shape(Reader reader, double mm)
 {
-    const std::string type = reader.choice("type", {"plane", "sphere", "cylinder", "swept", "bspline", "griddata"});
+    const std::string type =
+        reader.choice("type", {"plane", "sphere", "cylinder", "swept", "bspline", "tensor-bspline", "griddata"});
     Shape shape;
     if (type == "plane")
         shape = Plane{reader.vector("origin", 2) * mm, reader.number("z0") * mm, reader.vector("slope", 2)};
@@ -156,6 +183,8 @@ Shape read_shape(Reader reader, double mm)
         shape = read_swept(reader, mm);
     else if (type == "bspline")
         shape = read_bspline(reader, mm);
+    else if (type == "tensor-bspline")
+        shape = read_tensor_bspline(reader, mm);
     else
         shape = read_griddata(reader, mm);
     reader.done();

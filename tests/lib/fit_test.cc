@@ -348,7 +348,7 @@ TEST(Invariance, OrderOfTheTouches)
     const FitInput input = some_touches();
     FitInput reversed = input;
     reversed.xyz = input.xyz.rowwise().reverse();
-    for (const char* method : {"plane", "swept", "sphere", "cylinder", "bspline"})
+    for (const char* method : {"plane", "swept", "sphere", "cylinder", "bspline", "bspline-wang", "griddata"})
         for (const Eigen::Vector2d& xy : kPlaces)
             EXPECT_NEAR(height(fit_surface(reversed, method).surface, xy),
                         height(fit_surface(input, method).surface, xy), 1e-7)
