@@ -2,7 +2,9 @@
 #include "cloud/pcd.h"
 #include "core/file.h"
 #include "core/text.h"
+#include "job/boundary.h"
 #include "job/plausible.h"
+#include "margin/known_band.h"
 #include "sampling/freeform.h"
 #include "sampling/order.h"
 #include "sampling/probe.h"
@@ -12,6 +14,9 @@
 using namespace fettle;
 
 namespace {
+
+// More would take hours: each is a fit.
+constexpr int kMostTouches = 1000, kMostMutations = 1000000;
 
 // Names the places that no touch reached; too long a list helps nobody. It is bad input (a hole in the scan, the wrong
 // part or unit), not an answer.
@@ -37,15 +42,57 @@ Eigen::Matrix3Xd untouched(const TouchPlan& plan)
     return places;
 }
 
-Eigen::Matrix3Xd probe_part(const Tool& t, const std::string& part, std::optional<Units::Length> unit, const Job& job,
+Eigen::Matrix3Xd probe_part(const Tool& t, const std::string& part, const Scan& scan, const Job& job,
                             const TouchPlan& plan, const TouchNoise& noise)
 {
-    const Scan scan = read_scan(part, job.units, unit);
     const Eigen::Matrix3Xd touches = probe(scan, job, plan, noise, t.seed());
     const std::string doubt = implausible_box(scan.bounds(), job);
     refuse_missed(display_name(part), job, touches, plan, doubt);
     if (!doubt.empty()) t.warn(display_name(part) + ": " + doubt);
     return touches;
+}
+
+// What --strategy hillclimb goes by.
+struct ClimbOptions {
+    const int& touches;
+    const double& spacing;
+    const std::string& method;
+    const int& mutations;
+    const std::optional<double>& sharpness;
+};
+
+void check_climb(const std::string& source, const Job& job, int lines, bool surface_known)
+{
+    if (job.surface != SurfaceType::freeform) throw InputError(source, "--strategy hillclimb is for free-form jobs");
+    if (lines > 0) throw InputError("--lines is for --strategy wang");
+    if (!surface_known) throw InputError(source, "--strategy hillclimb needs the surface: --on SURFACE");
+}
+
+TouchPlan climb(Tool& t, const std::string& part, const Scan& surface, const Job& job, const ClimbOptions& options)
+{
+    const double mm = job.units.mm();
+    HillClimb settings;
+    settings.touches = options.touches > 0 ? options.touches : plan_freeform(job).size();
+    settings.mutations = options.mutations;
+    // a discard that costs the probe's accuracy is accepted once in a hundred times
+    settings.sharpness = options.sharpness ? *options.sharpness / mm : std::log(100) / job.probe.accuracy;
+    settings.seed = t.seed();
+    // as fit_griddata: half the mean distance of the touches
+    const double spacing = std::sqrt(area(boundaries(job).sampling) / static_cast<double>(settings.touches)) / 2;
+    try {
+        const KnownSurface known = touch_known_surface(surface, job, options.spacing * mm);
+        const SubsetError band =
+            options.method == "griddata" ? griddata_band(known, spacing) : tensor_bspline_band(known);
+        const HillClimbed found = hill_climb(known.candidates.cols(), band, settings);
+        t.report()
+            .set("candidates", static_cast<std::size_t>(known.candidates.cols()))
+            .set("evaluations", found.evaluations)
+            .set("start_band", found.start_error / mm)
+            .set("band", found.error / mm);
+        return plan_of(job, known.candidates(Eigen::all, found.chosen).topRows<2>());
+    } catch (const InputError& error) {
+        throw InputError(display_name(part), error.what());
+    }
 }
 
 Cloud samples_in_order(const Eigen::Matrix3Xd& touches, const TouchPlan& plan, const std::vector<Eigen::Index>& order)
@@ -75,11 +122,25 @@ int main(int argc, char** argv)
                                             Range::at_least(0));
         const int& lines = t.count("--lines", 0, "Free-form jobs: so many lines each way; 0: as many as Wang's eq. 4-5",
                                    0, kMostLines);
+        const std::string& strategy = t.choice("--strategy", "wang", {"wang", "hillclimb"},
+                                               "wang: by his rules; hillclimb: by his Appendix A the best of many "
+                                               "places, for a SURFACE that is known beneath the anomaly, too");
+        const ClimbOptions climbing = {
+            t.count("--touches", 0, "Hillclimb: how many; 0: as many as wang takes", 0, kMostTouches),
+            t.number("--candidates", 0, "LENGTH", "Hillclimb: spacing of the places; 0: about a thousand places",
+                     Range::at_least(0)),
+            t.choice("--fit", "griddata", {"griddata", "bspline-wang"},
+                     "Hillclimb: the method whose error band inside the anomaly is lowered"),
+            t.count("--mutations", 1000, "Hillclimb: random changes tried in each phase", 0, kMostMutations),
+            t.number_if_given("--sharpness", "K",
+                              "Hillclimb: a discard that widens the band by d is accepted with exp(-K d) "
+                              "[ln 100 / the probe's accuracy]",
+                              Range::at_least(0))};
         const bool& plan_only = t.flag("--plan-only", "Choose only: x and y, no z but where the job gives it");
         const bool& ascii = t.flag("--ascii", "Text instead of binary");
         t.example("fettle-sample jobs/hammer.json --on scans/hammer.stl --noise normal:0.1 --seed 7 > samples.pcd",
                   "touch a scanned hammer where Wang's rules say, 99 % of the touches within 0.1 mm");
-        t.reference("Wang 2007, 4.4.4 (touch points), eq. 4-5 (number of lines)");
+        t.reference("Wang 2007, 4.4.4 (touch points), eq. 4-5 (number of lines), Appendix A (hill climbing)");
         t.parse();
 
         Job job = read_job(job_file);
@@ -88,10 +149,20 @@ int main(int argc, char** argv)
         const TouchNoise noise = parse_noise(noise_text, mm);
         if (lines > 0 && job.surface != SurfaceType::freeform)
             throw InputError(display_name(job_file), "--lines is for free-form jobs");
-        const TouchPlan plan = lines > 0 ? plan_freeform(job, LineCount{lines, lines}) : plan_touches(job);
+        std::optional<Scan> scan;
+        if (!part.empty() && (!plan_only || strategy != "wang")) scan.emplace(read_scan(part, job.units, part_unit));
+        TouchPlan plan;
+        if (strategy == "hillclimb") {
+            check_climb(display_name(job_file), job, lines, scan.has_value());
+            plan = climb(t, part, *scan, job, climbing);
+        } else {
+            if (climbing.touches > 0 || climbing.spacing > 0 || climbing.sharpness)
+                throw InputError("--touches, --candidates, --sharpness: only for --strategy hillclimb");
+            plan = lines > 0 ? plan_freeform(job, LineCount{lines, lines}) : plan_touches(job);
+        }
         Eigen::Matrix3Xd touches = untouched(plan);
-        if (!part.empty() && !plan_only) {
-            touches = probe_part(t, part, part_unit, job, plan, noise);
+        if (scan && !plan_only) {
+            touches = probe_part(t, part, *scan, job, plan, noise);
         } else if (!plan_only && touches.row(2).hasNaN()) {
             throw InputError(display_name(job_file), "touch points without z: name the part to touch, --on SURFACE");
         }
