@@ -17,8 +17,7 @@ CASES   := $(foreach patch,$(PATCHES),$(SIZES:%=$(patch)_%))
 CHAINS  := $(foreach seed,$(shell seq $(SEEDS)),$(CASES:%=$(BANDS)/$(seed)/%))
 TOOLS   := $(addprefix $(B)/bin/fettle-,part sample estimate fit mesh compare)
 
-.DELETE_ON_ERROR:
-.SECONDARY:
+include pipelines/step.mk
 .SECONDEXPANSION:
 .PHONY: bands
 
@@ -33,19 +32,15 @@ truth = $(BANDS)/$(firstword $(subst _, ,$(call case,$1))).stl
 lines = $(if $(findstring 1x1,$1),1,2)
 
 $(BANDS)/%.stl: samples/parts/patch_%_2x2.json samples/parts/patch_%.json $(TOOLS)
-	@mkdir -p $(@D)
-	@fettle-part $< --without-anomaly -o $@
+	$(call step,fettle-part $< --without-anomaly -o $@.part)
 
 $(BANDS)/%/points.pcd: $$(call job,$$*) $$(call truth,$$*)
-	@mkdir -p $(@D)
-	@fettle-sample $< --on $(call truth,$*) --lines $(call lines,$*) --noise $(NOISE) --seed $(call seed,$*) | \
-	    fettle-estimate $< -o $@
+	$(call step,fettle-sample $< --on $(call truth,$*) --lines $(call lines,$*) --noise $(NOISE) --seed $(call seed,$*) | \
+	    fettle-estimate $< -o $@.part)
 
-# $1: the method
-define band
-@fettle-fit $< $(@D)/points.pcd --method $1 | fettle-mesh --step 0.05 --within $< | \
-    fettle-compare --to $(call truth,$*) --mode z --within $< --report $@ -o /dev/null || [ $$? -eq 1 ]
-endef
+# $1: the method. fettle-compare exits 1 out of tolerance, which is a result like another here.
+band = $(call step,fettle-fit $< $(@D)/points.pcd --method $1 | fettle-mesh --step 0.05 --within $< | \
+    (fettle-compare --to $(call truth,$*) --mode z --within $< --report $@.part -o /dev/null || [ $$? -eq 1 ]))
 
 $(BANDS)/%/griddata.json: $$(call job,$$*) $(BANDS)/%/points.pcd
 	$(call band,griddata)

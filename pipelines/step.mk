@@ -5,7 +5,7 @@
 #
 # $(call step,COMMAND) is the recipe of a step: COMMAND writes $@.part. Wherever it runs, it takes the name $@ only when it is
 # whole; and $@ is looked for afterwards, because srun reports success when it has lost the node that did the work.
-# COMMAND holds no single quote.
+# COMMAND holds neither a single quote nor a comma of its own.
 
 LAUNCH ?=
 
