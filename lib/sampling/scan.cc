@@ -7,14 +7,10 @@
 #include "sampling/point_surface.h"
 #include "sampling/triangle_grid.h"
 
-#include <variant>
+#include <limits>
+#include <mutex>
 
 namespace fettle {
-
-struct Scan::State {
-    std::variant<TriangleGrid, PointSurface> surface;
-    Eigen::Matrix<double, 3, 2> bounds;
-};
 
 namespace {
 
@@ -33,32 +29,44 @@ Eigen::Matrix<double, 3, 2> finite_bounds(const Eigen::Matrix3Xd& points)
 
 } // namespace
 
-Scan::Scan(Mesh mesh)
-{
-    const Eigen::Matrix<double, 3, 2> bounds = bounding_box(mesh);
-    state_ = std::make_unique<State>(State{TriangleGrid(std::move(mesh)), bounds});
-}
+/// Either of points or of triangles.
+struct Scan::State {
+    explicit State(Mesh triangles) : bounds(bounding_box(triangles)), mesh(std::move(triangles)) {}
+    explicit State(const Cloud& cloud) : bounds(finite_bounds(cloud.xyz)), points(std::in_place, cloud.xyz) {}
 
-Scan::Scan(Cloud cloud) : state_(std::make_unique<State>(State{PointSurface(cloud.xyz), finite_bounds(cloud.xyz)})) {}
+    const TriangleGrid& grid() const
+    {
+        std::call_once(grid_made, [this] { made_grid.emplace(mesh); });
+        return *made_grid;
+    }
 
+    Eigen::Matrix<double, 3, 2> bounds;
+    std::optional<PointSurface> points;
+    Mesh mesh;
+    // Made when the first touch asks for it: who grinds needs the triangles alone.
+    mutable std::once_flag grid_made;
+    mutable std::optional<TriangleGrid> made_grid;
+};
+
+Scan::Scan(Mesh mesh) : state_(std::make_unique<State>(std::move(mesh))) {}
+Scan::Scan(Cloud cloud) : state_(std::make_unique<State>(cloud)) {}
 Scan::Scan(Scan&&) noexcept = default;
 Scan::~Scan() = default;
 
 std::optional<double> Scan::height(const Eigen::Vector2d& xy) const
 {
-    if (const auto* mesh = std::get_if<TriangleGrid>(&state_->surface)) return mesh->highest(xy);
-    return std::get<PointSurface>(state_->surface).height(xy);
+    return state_->points ? state_->points->height(xy) : state_->grid().highest(xy);
 }
 
 std::optional<double> Scan::drop_ball(const Eigen::Vector2d& xy, double radius) const
 {
-    if (const auto* mesh = std::get_if<TriangleGrid>(&state_->surface)) {
-        const std::optional<double> centre = mesh->ball_centre(xy, radius);
-        if (!centre) return std::nullopt;
-        return *centre - radius;
-    }
-    return std::get<PointSurface>(state_->surface).drop_ball(xy, radius);
+    if (state_->points) return state_->points->drop_ball(xy, radius);
+    const std::optional<double> centre = state_->grid().ball_centre(xy, radius);
+    if (!centre) return std::nullopt;
+    return *centre - radius;
 }
+
+const Mesh* Scan::mesh() const { return state_->points ? nullptr : &state_->mesh; }
 
 Eigen::Matrix<double, 3, 2> Scan::bounds() const { return state_->bounds; }
 

@@ -1,5 +1,7 @@
 #include "sampling/triangle_grid.h"
 
+#include "mesh/facet_from_above.h"
+
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -18,43 +20,18 @@ constexpr double kTrianglesPerCell = 0.5;
 // Long thin triangles lie in many cells: coarser cells until there are at most that many entries for each triangle.
 constexpr double kEntriesPerTriangle = 16;
 
-// Twice the area of a b p, seen from above; exactly the opposite for b a p, so that a point is never on the outer side
-// of an edge for both of its triangles.
-inline double side(const Mesh& mesh, int a, int b, const Vector2d& p)
-{
-    const bool swapped = a > b;
-    if (swapped) std::swap(a, b);
-    const Vector2d from = mesh.vertices.col(a).head<2>(), to = mesh.vertices.col(b).head<2>();
-    const double area = (to.x() - from.x()) * (p.y() - from.y()) - (to.y() - from.y()) * (p.x() - from.x());
-    return swapped ? -area : area;
-}
-
-std::optional<double> facet_height(const Mesh& mesh, const Eigen::Vector3i& t, const Vector2d& p)
-{
-    // Most triangles of a cell are passed by: two sides tell.
-    const auto apart = [](double u, double v) { return (u < 0 && v > 0) || (u > 0 && v < 0); };
-    Vector3d w;
-    w[0] = side(mesh, t[1], t[2], p);
-    w[1] = side(mesh, t[2], t[0], p);
-    if (apart(w[0], w[1])) return std::nullopt;
-    w[2] = side(mesh, t[0], t[1], p);
-    if (apart(w[0], w[2]) || apart(w[1], w[2])) return std::nullopt;
-    const double sum = w.sum();
-    if (sum == 0) return std::nullopt; // upright: its upper edge belongs to a neighbour
-    return (w[0] * mesh.vertices(2, t[0]) + w[1] * mesh.vertices(2, t[1]) + w[2] * mesh.vertices(2, t[2])) / sum;
-}
-
 // The ball rests on the facet: its centre stands off by the radius along the upward normal, and the foot of that
 // perpendicular must lie in the triangle.
-std::optional<double> centre_on_facet(const Mesh& mesh, const Eigen::Vector3i& t, const Vector2d& xy, double radius)
+std::optional<double> centre_on_facet(const Mesh& mesh, Eigen::Index triangle, const Vector2d& xy, double radius)
 {
+    const Eigen::Vector3i t = mesh.triangles.col(triangle);
     const Vector3d a = mesh.vertices.col(t[0]);
     Vector3d normal = (mesh.vertices.col(t[1]) - a).cross(mesh.vertices.col(t[2]) - a);
     const double area = normal.norm();
     if (normal.z() == 0 || area == 0) return std::nullopt;
     normal *= (normal.z() > 0 ? 1 : -1) / area;
     const Vector2d foot = xy - radius * normal.head<2>();
-    const auto z = facet_height(mesh, t, foot);
+    const auto z = FacetFromAbove(mesh, triangle).height(foot);
     if (!z) return std::nullopt;
     return *z + radius * normal.z();
 }
@@ -92,7 +69,7 @@ void raise(std::optional<double>& highest, const std::optional<double>& z)
 
 } // namespace
 
-TriangleGrid::TriangleGrid(Mesh mesh) : mesh_(std::move(mesh))
+TriangleGrid::TriangleGrid(const Mesh& mesh) : mesh_(mesh)
 {
     const Eigen::Matrix<double, 3, 2> box = bounding_box(mesh_);
     origin_ = box.col(0).head<2>();
@@ -149,8 +126,7 @@ void TriangleGrid::visit(const Vector2d& low, const Vector2d& high, Visit&& visi
     for (int y = from.y(); y <= to.y(); ++y)
         for (int x = from.x(); x <= to.x(); ++x) {
             const std::size_t c = static_cast<std::size_t>(y) * size_.x() + x;
-            for (std::size_t e = start_[c]; e < start_[c + 1]; ++e)
-                visit(Eigen::Vector3i(mesh_.triangles.col(entries_[e])));
+            for (std::size_t e = start_[c]; e < start_[c + 1]; ++e) visit(entries_[e]);
         }
 }
 
@@ -159,8 +135,7 @@ std::optional<double> TriangleGrid::highest(const Vector2d& xy) const
     std::optional<double> z;
     const Eigen::Vector2i cell = cell_of(xy);
     const std::size_t c = static_cast<std::size_t>(cell.y()) * size_.x() + cell.x();
-    for (std::size_t e = start_[c]; e < start_[c + 1]; ++e)
-        raise(z, facet_height(mesh_, mesh_.triangles.col(entries_[e]), xy));
+    for (std::size_t e = start_[c]; e < start_[c + 1]; ++e) raise(z, FacetFromAbove(mesh_, entries_[e]).height(xy));
     return z;
 }
 
@@ -168,8 +143,9 @@ std::optional<double> TriangleGrid::ball_centre(const Vector2d& xy, double radiu
 {
     std::optional<double> z;
     const Vector2d reach = Vector2d::Constant(radius);
-    visit(xy - reach, xy + reach, [&](const Eigen::Vector3i& t) {
-        raise(z, centre_on_facet(mesh_, t, xy, radius));
+    visit(xy - reach, xy + reach, [&](Eigen::Index triangle) {
+        raise(z, centre_on_facet(mesh_, triangle, xy, radius));
+        const Eigen::Vector3i t = mesh_.triangles.col(triangle);
         for (int k = 0; k < 3; ++k) {
             const Vector3d a = mesh_.vertices.col(t[k]), b = mesh_.vertices.col(t[(k + 1) % 3]);
             raise(z, centre_on_edge(a, b, xy, radius));

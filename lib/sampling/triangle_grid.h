@@ -13,21 +13,21 @@ namespace fettle {
 /// vertically can meet, exactly and without a ray tracer.
 class TriangleGrid {
   public:
-    explicit TriangleGrid(Mesh mesh);
+    /// The mesh must outlive the grid.
+    explicit TriangleGrid(const Mesh& mesh);
+    explicit TriangleGrid(Mesh&&) = delete;
 
-    /// Highest z of the mesh over xy; edges belong to their triangles, so no ray slips between two.
+    /// Highest z of the mesh over xy.
     std::optional<double> highest(const Eigen::Vector2d& xy) const;
     /// z of the centre of a ball that comes down over xy, when it first touches a facet, an edge or a vertex.
     std::optional<double> ball_centre(const Eigen::Vector2d& xy, double radius) const;
-
-    const Mesh& mesh() const { return mesh_; }
 
   private:
     template <typename Visit>
     void visit(const Eigen::Vector2d& low, const Eigen::Vector2d& high, Visit&& visit) const;
     Eigen::Vector2i cell_of(const Eigen::Vector2d& xy) const;
 
-    Mesh mesh_;
+    const Mesh& mesh_;
     Eigen::Vector2d origin_;
     double cell_ = 1;      ///< side, mm
     Eigen::Vector2i size_; ///< cells in x and y
