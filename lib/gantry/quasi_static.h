@@ -85,6 +85,7 @@ class QuasiStaticGantry final : public Gantry {
     double radius_;       ///< now, mm
     double known_radius_; ///< at the last touch-off, mm
     double pending_ = 0;  ///< time since the last sub-step that the next one has to grind for, s
+    double bending_ = 0;  ///< change of the deflection in the last sub-step, mm
     GantryStatus status_;
     GrindTotals totals_;
 };

@@ -13,6 +13,13 @@ namespace fettle {
 /// under the disc belong to it, what stands above the rim is in its way, however high.
 class WheelInStock {
   public:
+    /// One row of cells under the wheel.
+    struct Row {
+        double* z;      ///< first cell under the wheel
+        double* top;    ///< highest of the cells
+        double profile; ///< rim over z_tip
+    };
+
     /// The stock must outlive the wheel, and nobody else may raise it.
     WheelInStock(HeightField& stock, double width);
 
@@ -35,23 +42,18 @@ class WheelInStock {
     void cut(double z_tip);
 
   private:
-    /// One row of cells under the wheel.
-    struct Row {
-        double* z;      ///< first cell under the wheel
-        double* top;    ///< highest of the cells, −∞ without material
-        double profile; ///< rim over z_tip
-    };
-    double top(Eigen::Index row);
+    /// Makes tops_ hold from row `first` up to `end`.
+    void know_tops(Eigen::Index first, Eigen::Index end);
 
     HeightField& stock_;
     double width_;
     double highest_;                ///< of the whole stock, at the beginning
     Eigen::Index first_column_ = 0; ///< under the wheel
     Eigen::Index columns_ = 0;
-    std::vector<double> tops_;        ///< of each row between these columns, as far as they are known
-    std::vector<Eigen::Index> known_; ///< the visit (range of columns) for which tops_ holds
-    Eigen::Index visit_ = 0;
-    std::vector<Row> rows_; ///< of this place
+    std::vector<double> tops_; ///< highest of each row between these columns, from known_first_ up to known_end_
+    Eigen::Index known_first_ = 0, known_end_ = 0;
+    std::vector<Eigen::Index> near_; ///< rows that may be met
+    std::vector<Row> rows_;          ///< of this place
     double touch_ = 0;
 };
 
