@@ -5,8 +5,8 @@
 
 #include <algorithm>
 #include <charconv>
-#include <memory>
 #include <ostream>
+#include <type_traits>
 
 namespace fettle {
 
@@ -55,27 +55,51 @@ std::string header_text(const Cloud& cloud, const std::vector<Field>& fields, co
            (encoding == PcdEncoding::ascii ? "ascii\n" : "binary\n");
 }
 
-// Whole points, one after the other: field by field, because each field lies together in memory.
-std::unique_ptr<char[]> packed(const Eigen::Matrix3Xd& xyz, const std::vector<Field>& fields, std::size_t stride)
+/// A field in the unit of the file, of `count` points from `first`.
+Field in_file_units(const Field& field, const Units& units, Eigen::Index first, Eigen::Index count)
 {
-    const auto points = static_cast<std::size_t>(xyz.cols());
-    auto buffer = std::make_unique_for_overwrite<char[]>(points * stride);
-    for (std::size_t i = 0; i < points; ++i)
-        for (int axis = 0; axis < 3; ++axis)
-            store(buffer.get() + i * stride + static_cast<std::size_t>(axis) * sizeof(float),
-                  static_cast<float>(xyz(axis, static_cast<Eigen::Index>(i))));
-    char* to = buffer.get() + 3 * sizeof(float);
-    for (const Field& field : fields) {
-        const std::size_t block = field.bytes.size() / std::max<std::size_t>(points, 1);
-        if (block == sizeof(float)) // nearly always; the constant size makes the copy one instruction
+    const std::size_t bytes = static_cast<std::size_t>(field.size) * static_cast<std::size_t>(field.count);
+    const auto from = field.bytes.begin() + first * static_cast<std::ptrdiff_t>(bytes);
+    Field part{field.name, field.type, field.size, field.count,
+               std::vector<std::byte>(from, from + count * static_cast<std::ptrdiff_t>(bytes))};
+    if (const double factor = to_base(units, field_dimension(field.name)); factor != 1) scale(part, 1, factor);
+    return part;
+}
+
+/// Points that are packed at once: what they take stays in the cache.
+constexpr Eigen::Index kBlock = 1 << 12;
+
+/// Whole points, one after the other, but field by field, because each field lies together in memory.
+void write_packed(std::ostream& out, const Cloud& cloud, const Units& units)
+{
+    std::vector<char> buffer;
+    for (Eigen::Index first = 0; first < cloud.size(); first += kBlock) {
+        const Eigen::Index count = std::min(kBlock, cloud.size() - first);
+        const auto points = static_cast<std::size_t>(count);
+        std::vector<Field> fields;
+        std::size_t stride = 3 * sizeof(float);
+        for (const Field& field : cloud.fields) {
+            fields.push_back(in_file_units(field, units, first, count));
+            stride += fields.back().bytes.size() / points;
+        }
+        buffer.resize(points * stride);
+        const auto pack = [&](std::size_t offset, const void* from, auto block) {
             for (std::size_t i = 0; i < points; ++i)
-                std::memcpy(to + i * stride, field.bytes.data() + i * sizeof(float), sizeof(float));
-        else
-            for (std::size_t i = 0; i < points; ++i)
-                std::memcpy(to + i * stride, field.bytes.data() + i * block, block);
-        to += block;
+                std::memcpy(buffer.data() + i * stride + offset, static_cast<const char*>(from) + i * block, block);
+        };
+        const Eigen::Matrix3Xf places = (cloud.xyz.middleCols(first, count) / units.mm()).cast<float>();
+        std::size_t offset = 3 * sizeof(float);
+        pack(0, places.data(), std::integral_constant<std::size_t, 3 * sizeof(float)>{});
+        for (const Field& field : fields) {
+            const std::size_t block = field.bytes.size() / points;
+            if (block == sizeof(float)) // nearly always; the constant makes the copy one instruction
+                pack(offset, field.bytes.data(), std::integral_constant<std::size_t, sizeof(float)>{});
+            else
+                pack(offset, field.bytes.data(), block);
+            offset += block;
+        }
+        out.write(buffer.data(), static_cast<std::streamsize>(buffer.size()));
     }
-    return buffer;
 }
 
 template <typename T>
@@ -114,18 +138,14 @@ std::string rows(const Eigen::Matrix3Xd& xyz, const std::vector<Field>& fields, 
 
 void write_pcd(std::ostream& out, const Cloud& cloud, const Units& units, PcdEncoding encoding)
 {
-    const Eigen::Matrix3Xd xyz = cloud.xyz / units.mm();
-    std::vector<Field> fields = cloud.fields;
-    std::size_t stride = 3 * sizeof(float);
-    for (Field& field : fields) {
-        if (const double factor = to_base(units, field_dimension(field.name)); factor != 1) scale(field, 1, factor);
-        stride += static_cast<std::size_t>(field.size) * static_cast<std::size_t>(field.count);
-    }
+    const bool ascii = encoding == PcdEncoding::ascii;
+    std::vector<Field> fields;
+    for (const Field& field : cloud.fields) fields.push_back(in_file_units(field, units, 0, ascii ? cloud.size() : 0));
     out << header_text(cloud, fields, units, encoding);
-    if (encoding == PcdEncoding::ascii)
-        out << rows(xyz, fields, encoding);
+    if (ascii)
+        out << rows(cloud.xyz / units.mm(), fields, encoding);
     else
-        out.write(packed(xyz, fields, stride).get(), static_cast<std::streamsize>(stride) * cloud.size());
+        write_packed(out, cloud, units);
 }
 
 } // namespace fettle

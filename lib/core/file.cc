@@ -17,6 +17,9 @@ namespace fettle {
 
 namespace {
 
+/// Of an output that is held back, bytes: up to there it is not copied while it grows. Untouched it costs nothing.
+constexpr std::size_t kRoom = 1 << 24;
+
 [[noreturn]] void fail(const std::string& path, const std::string& doing)
 {
     throw InputError(display_name(path), doing + ": " + std::strerror(errno));
@@ -62,7 +65,7 @@ struct OutputFile::State {
     std::unique_ptr<__gnu_cxx::stdio_filebuf<char>> buffer;
     std::unique_ptr<std::ostream> stream;
     std::ostringstream
-        held; // for stdout and what is written directly: nothing may go out before the work has succeeded
+        held; ///< for stdout and what is written directly: nothing goes out before the work has succeeded
 };
 
 OutputFile::OutputFile(const std::string& path) : state_(std::make_unique<State>())
@@ -87,6 +90,11 @@ OutputFile::OutputFile(const std::string& path) : state_(std::make_unique<State>
     }
     if (file < 0) fail(s.path, "cannot write");
     constexpr std::size_t kBuffer = 1 << 16;
+    if (s.temporary.empty()) {
+        std::string room;
+        room.reserve(kRoom);
+        s.held = std::ostringstream(std::move(room));
+    }
     s.buffer = std::make_unique<__gnu_cxx::stdio_filebuf<char>>(file, std::ios::out | std::ios::binary, kBuffer);
     s.stream = std::make_unique<std::ostream>(s.buffer.get());
 }

@@ -3,8 +3,11 @@
 #include "core/error.h"
 #include "core/text.h"
 
+#include <tbb/parallel_for.h>
+
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace fettle {
 namespace {
@@ -46,18 +49,20 @@ double volume_between(const HeightField& before, const HeightField& after)
 
 Cloud to_cloud(const HeightField& before, const HeightField& after)
 {
-    const Eigen::Index count = (!after.z.isNaN()).count();
+    std::vector<Eigen::Index> first = {0}; // point of each row
+    for (Eigen::Index j = 0; j < after.rows(); ++j) first.push_back(first.back() + (!after.z.col(j).isNaN()).count());
     const Eigen::Matrix2d R_machine_working = rotation_working_machine(after.theta).transpose();
     Cloud cloud;
-    cloud.xyz.resize(3, count);
-    Eigen::VectorXd removed(count);
-    Eigen::Index n = 0;
-    for (Eigen::Index j = 0; j < after.rows(); ++j)
+    cloud.xyz.resize(3, first.back());
+    Eigen::VectorXd removed(first.back());
+    tbb::parallel_for(Eigen::Index{0}, after.rows(), [&](Eigen::Index j) {
+        Eigen::Index n = first[static_cast<std::size_t>(j)];
         for (Eigen::Index i = 0; i < after.columns(); ++i) {
             if (std::isnan(after.z(i, j))) continue;
             cloud.xyz.col(n) << R_machine_working * after.centre(i, j), after.z(i, j);
             removed[n++] = before.z(i, j) - after.z(i, j);
         }
+    });
     set_field(cloud, "removed", removed);
     return cloud;
 }

@@ -122,8 +122,8 @@ void expect_same(const Cloud& a, const Cloud& b)
 
 TEST(Pcd, WritingAndReadingKeepsEveryByte)
 {
-    Cloud cloud = cloud_of_all_types(60);
-    for (const std::size_t width : {0, 12}) {
+    Cloud cloud = cloud_of_all_types(5000); // more than are packed at once
+    for (const std::size_t width : {0, 1000}) {
         cloud.width = width;
         for (const PcdEncoding encoding : {PcdEncoding::ascii, PcdEncoding::binary}) {
             const std::string bytes = written(cloud, encoding);
@@ -368,6 +368,22 @@ TEST(Units, FieldsWithUnitsAreWrittenInThem)
     for (const char* name : {"error", "feed", "force", "curve"}) EXPECT_NEAR(field(back.cloud, name)[0], 25.4, 1e-13);
     std::erase_if(cloud.fields, [](const Field& f) { return f.name == "force"; });
     EXPECT_NE(written(cloud, PcdEncoding::ascii, inches).find("# units in\n"), std::string::npos);
+}
+
+TEST(Units, BinaryAndAsciiHoldTheSameNumbers)
+{
+    const Units inches{Units::Length::in, Units::Force::lbf};
+    Cloud cloud = cloud_of_all_types(9000);
+    cloud.fields[1].name = "removed"; // whole numbers, which inches make broken ones
+    cloud.fields[3].name = "force";
+    const auto read = [&](PcdEncoding encoding) {
+        return parse_cloud(written(cloud, encoding, inches), "file", inches).cloud;
+    };
+    const Cloud binary = read(PcdEncoding::binary), ascii = read(PcdEncoding::ascii);
+    expect_same(binary, ascii);
+    for (const char* name : {"removed", "force"})
+        EXPECT_TRUE(field(binary, name).isApprox(field(cloud, name), 1e-14)) << name;
+    EXPECT_TRUE(binary.xyz.rightCols(8998).isApprox(cloud.xyz.rightCols(8998), 1e-7));
 }
 
 // A float colour with a full first byte is a NaN, whose bits ascii floats would lose; PCL writes it as a whole number.
