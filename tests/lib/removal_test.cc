@@ -9,6 +9,9 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
+#include <random>
+#include <vector>
 
 using namespace fettle;
 
@@ -94,6 +97,51 @@ TEST(WheelInStock, TouchIsWhereTheOverlapBegins)
     EXPECT_NEAR(wheel.touch(), 5 - (kRadius - std::sqrt(kRadius * kRadius - y * y)), 1e-12);
     EXPECT_EQ(wheel.overlap(wheel.touch()).volume, 0);
     EXPECT_GT(wheel.overlap(wheel.touch() - 1e-6).volume, 0);
+}
+
+/// The volume over the rim, cell by cell.
+double volume_over(const HeightField& stock, const Eigen::Vector2d& xy, double z_tip)
+{
+    double height = 0;
+    for (Eigen::Index j = 0; j < stock.rows(); ++j)
+        for (Eigen::Index i = 0; i < stock.columns(); ++i) {
+            const Eigen::Vector2d from = stock.centre(i, j) - xy;
+            if (std::abs(from.x()) > kWidth / 2 || std::abs(from.y()) > kRadius) continue;
+            const double rim = z_tip + kRadius - std::sqrt(kRadius * kRadius - from.y() * from.y());
+            if (stock.z(i, j) > rim) height += stock.z(i, j) - rim;
+        }
+    return height * stock.cell * stock.cell;
+}
+
+TEST(WheelInStock, KnowsTheStockWhereverItGoes)
+{
+    HeightField stock = flat(0, 0.25);
+    std::mt19937 random(1);
+    for (double& z : stock.z.reshaped()) z = std::uniform_real_distribution<double>(0, 3)(random);
+    stock.z.block(60, 100, 20, 30).setConstant(std::numeric_limits<double>::quiet_NaN());
+    stock.z.block(70, 200, 30, 10) += 4;
+    WheelInStock wheel(stock, kWidth);
+    // Along a pass, over rows that it has not seen to others and back, to the grid's ends, beside, across.
+    for (const Eigen::Vector2d& xy : {Eigen::Vector2d(0, -30),
+                                      {0, -29.5},
+                                      {0, 35},
+                                      {0, 2},
+                                      {0, -30},
+                                      {0.5, 2},
+                                      {0.5, 39.9},
+                                      {19, 5},
+                                      {-19.9, 5},
+                                      {-19.9, -39},
+                                      {0, 2},
+                                      {0, 12}})
+        for (const double z_tip : {2.5, 1.5}) {
+            wheel.place(xy, kRadius, z_tip);
+            const double volume = volume_over(stock, xy, z_tip);
+            EXPECT_NEAR(wheel.overlap(z_tip).volume, volume, 1e-12 * (volume + 1)) << xy.transpose();
+            wheel.cut(z_tip);
+            EXPECT_EQ(wheel.overlap(z_tip).volume, 0);
+            EXPECT_EQ(volume_over(stock, xy, z_tip + 1e-12), 0);
+        }
 }
 
 TEST(WheelInStock, NoMaterialNoContact)
@@ -237,6 +285,106 @@ TEST(HeightField, StandsOnTheScan)
     } catch (const InputError& error) {
         EXPECT_STREQ(error.what(), "part.stl: no surface over 25 % of the anomaly, first at x 100.25, y -9.75");
     }
+}
+
+/// A sheet of n x n squares of `step` from `corner` on, in two triangles each, at random heights; `keep` says which
+/// squares there are.
+template <typename Keep>
+Mesh rough_sheet(const Eigen::Vector2d& corner, double step, int n, const Keep& keep)
+{
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> height(-3, 3);
+    Mesh mesh;
+    mesh.vertices.resize(3, (n + 1) * (n + 1));
+    for (int j = 0; j <= n; ++j)
+        for (int i = 0; i <= n; ++i)
+            mesh.vertices.col(j * (n + 1) + i) << corner + step * Eigen::Vector2d(i, j), height(random);
+    std::vector<Eigen::Vector3i> triangles;
+    for (int j = 0; j < n; ++j)
+        for (int i = 0; i < n; ++i) {
+            const int a = j * (n + 1) + i, c = a + n + 1;
+            if (!keep(i, j)) continue;
+            triangles.emplace_back(a, a + 1, c + 1);
+            triangles.emplace_back(a, c + 1, c);
+        }
+    mesh.triangles = Eigen::Map<Eigen::Matrix3Xi>(triangles[0].data(), 3, static_cast<Eigen::Index>(triangles.size()));
+    return mesh;
+}
+
+/// Each cell holds what a touch at its centre finds, to the last digit. @return  cells without material
+Eigen::Index expect_as_touched(const Mesh& mesh, const Job& job, double cell)
+{
+    const Scan scan(mesh);
+    const HeightField field = height_field(scan, job, cell);
+    for (Eigen::Index j = 0; j < field.rows(); ++j)
+        for (Eigen::Index i = 0; i < field.columns(); ++i) {
+            const auto z = scan.height(rotation_working_machine(job.theta).transpose() * field.centre(i, j));
+            EXPECT_TRUE(z ? field.z(i, j) == *z : std::isnan(field.z(i, j))) << i << ' ' << j << ": " << field.z(i, j);
+        }
+    return field.z.isNaN().count();
+}
+
+bool everywhere(int, int) { return true; }
+
+TEST(HeightField, OfAMeshIsWhatTouchesFind)
+{
+    // Cells of 0.5 have their centres at odd quarters: with squares of 1.5 from a quarter on, vertices and edges of all
+    // three directions lie on centres.
+    const Job job = square_job({0, 0});
+    const Mesh on_centres = rough_sheet({-30.25, -45.25}, 1.5, 61, everywhere);
+    EXPECT_EQ(expect_as_touched(on_centres, job, 0.5), 0);
+    // Squares far smaller and far larger than cells.
+    EXPECT_EQ(expect_as_touched(rough_sheet({-47, -47}, 0.37, 254, everywhere), job, 1.1), 0);
+    EXPECT_EQ(expect_as_touched(rough_sheet({-180, -200}, 130, 3, everywhere), job, 0.5), 0);
+    // The mesh ends inside the field; a pinhole in B and a hole beside it.
+    const auto with_holes = [](int i, int j) {
+        return !(i == 20 && j == 30) && !(i >= 20 && i < 25 && j >= 3 && j < 9);
+    };
+    EXPECT_GT(expect_as_touched(rough_sheet({-30.25, -45.25}, 1.5, 40, with_holes), job, 0.5), 5 * 6 * 9);
+}
+
+TEST(HeightField, OfATurnedJobIsWhatTouchesFind)
+{
+    for (const double theta : {0.3, -1.2, std::numbers::pi / 2, 3.0}) {
+        Job job = square_job({20, 30});
+        job.theta = theta;
+        const Mesh sheet = rough_sheet({-40, -30}, 1.5, 80, everywhere);
+        EXPECT_EQ(expect_as_touched(sheet, job, 0.7), 0) << theta;
+        // The mesh turned with the job: its lines run along rows and columns but for rounding.
+        Mesh turned = rough_sheet({-30.25, -45.25}, 1.5, 61, everywhere);
+        const Eigen::Matrix2d R_machine_working = rotation_working_machine(theta).transpose();
+        turned.vertices.topRows<2>() = R_machine_working * turned.vertices.topRows<2>();
+        Job there = square_job({0, 0});
+        there.theta = theta;
+        there.anomaly.topRows<2>() = R_machine_working * there.anomaly.topRows<2>();
+        EXPECT_EQ(expect_as_touched(turned, there, 0.5), 0) << theta;
+    }
+}
+
+TEST(HeightField, TakesTheUpperSideOfABodyWithNeedlesAndWalls)
+{
+    // A fan of needles from one corner of the square, its mirror image below, and upright walls between the two.
+    constexpr int kNeedles = 400;
+    Mesh body;
+    body.vertices.resize(3, 2 * (kNeedles + 2));
+    body.triangles.resize(3, 4 * kNeedles);
+    for (int n = 0; n <= kNeedles + 1; ++n) {
+        const double angle = std::numbers::pi / 2 * (n - 1) / kNeedles;
+        const Eigen::Vector2d xy = n == 0
+                                       ? Eigen::Vector2d(-60.3, -70.2)
+                                       : Eigen::Vector2d(-60.3 + 180 * std::cos(angle), -70.2 + 180 * std::sin(angle));
+        body.vertices.col(2 * n) << xy, 5 + 0.01 * xy.x() + (n % 2);
+        body.vertices.col(2 * n + 1) << xy, -5;
+    }
+    for (int n = 0; n < kNeedles; ++n) {
+        const int a = 2 * (n + 1), b = a + 2;
+        body.triangles.middleCols<4>(4 * n) << 0, 1, a, a, a, b + 1, a + 1, b + 1, b, a + 1, b + 1, b;
+    }
+    Job job = square_job({0, 0});
+    EXPECT_EQ(expect_as_touched(body, job, 0.5), 0);
+    job.theta = 0.7;
+    EXPECT_EQ(expect_as_touched(body, job, 0.5), 0);
+    EXPECT_GT(height_field(Scan(body), job, 0.5).z.minCoeff(), 4);
 }
 
 } // namespace
