@@ -3,6 +3,7 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "fit/fit.h"
+#include "job/boundary.h"
 
 #include <cmath>
 #include <optional>
@@ -51,7 +52,25 @@ void report(json::Value& out, const Fit& fit)
         .set("rms", fit.surface.rms / mm)
         .set("max_abs", fit.residuals.cwiseAbs().maxCoeff() / mm)
         .set("touch_sigma", fit.surface.touch_sigma / mm)
-        .set("goodness", fit.surface.goodness);
+        .set("goodness", fit.surface.goodness)
+        .set("weight", fit.surface.weight)
+        .set("gross_errors", static_cast<int>(fit.surface.gross_errors.size()));
+    if (fit.surface.alternatives.empty()) return;
+    std::vector<json::Value> scores(1);
+    scores[0].set("method", fit.surface.method).set("score", fit.surface.score).set("weight", fit.surface.weight);
+    for (const Alternative& other : fit.surface.alternatives) {
+        scores.emplace_back();
+        scores.back().set("method", other.method).set("score", other.score).set("weight", other.weight);
+    }
+    out.set("scores", scores);
+}
+
+/// One warning for each touch that was left out: the operator looks there, or touches again.
+void name_gross_errors(Tool& t, const Fit& fit, const std::string& source, const Units& units)
+{
+    for (const Eigen::Index i : fit.surface.gross_errors)
+        t.warn(source + ": the touch at " + place(fit.surface.touches.col(i).head<2>(), units) + " is off by " +
+               to_short_text(fit.residuals[i] / units.mm()) + " " + to_string(units.length) + "; left out");
 }
 
 } // namespace
@@ -62,7 +81,9 @@ int main(int argc, char** argv)
         const std::string& job = t.file("JOB", "Job, JSON");
         const std::string& points = t.input("POINTS", "Touches (x y z, role), PCD");
         const std::string& method =
-            t.choice("-m,--method", "auto", choices(), "Kind of surface; auto: by the job's surface type");
+            t.choice("-m,--method", "auto", choices(),
+                     "Kind of surface; auto: what explains the touches best, weighed against the others. Plane jobs: a "
+                     "plane; swept ones: straight along their direction");
         const bool& use_boundary = t.flag(
             "--use-boundary", "Take the anomaly's boundary points as touches, too: those of role 0, else the job's "
                               "that have a z; planes always do");
@@ -75,7 +96,7 @@ int main(int argc, char** argv)
                               Range::at_least(0));
         t.example("fettle-sample jobs/hammer.json --on scans/hammer.stl | fettle-fit jobs/hammer.json > surface.json",
                   "touch a scanned hammer and fit a free-form surface");
-        t.reference("Wang (2007), 4.2 to 4.4");
+        t.reference("Wang (2007), 4.2 to 4.4; Hoeting et al. (1999), Bayesian model averaging: auto");
         t.parse();
 
         FitInput input;
@@ -90,6 +111,7 @@ int main(int argc, char** argv)
         if (spacing) input.spacing = *spacing * input.job.units.mm();
         const Fit fit = fit_surface(input, method);
         report(t.report(), fit);
+        name_gross_errors(t, fit, input.source, input.job.units);
         if (!fit.converged) {
             t.warn("the " + fit.surface.method + " fit did not converge in " + std::to_string(fit.iterations) +
                    " iterations");

@@ -27,28 +27,6 @@ constexpr int kLeastTouches = 6;
 // Touches in F4 are rounded by 6e-8 of their size; a spread across a line below that is not there.
 constexpr double kRounding = 1e-6;
 
-/// Cells are about square, two for each touch along the longer side: finer ones change the surface by less than the
-/// probe sees. One cell all around keeps the wheel's footprint on the grid.
-Bspline grid_over(const FitInput& input, const Eigen::Matrix3Xd& touches)
-{
-    Eigen::Matrix2Xd xy(2, touches.cols() + input.job.anomaly.cols());
-    xy << touches.topRows(2), input.job.anomaly.topRows(2);
-    xy = rotation_working_machine(input.job.theta) * xy;
-    const Eigen::Vector2d least = xy.rowwise().minCoeff();
-    const Eigen::Vector2d side = xy.rowwise().maxCoeff() - least;
-    const double touches_a_side = std::sqrt(static_cast<double>(touches.cols()));
-    const double cells = std::clamp(std::ceil(2 * touches_a_side), 6.0, 12.0);
-    const double cell = side.maxCoeff() / cells;
-    const Eigen::Vector2d counts = (side / cell).array().round().max(2);
-    Bspline grid;
-    grid.angle = input.job.theta;
-    grid.cell = side.cwiseQuotient(counts);
-    grid.origin = rotation_working_machine(input.job.theta).transpose() * (least - grid.cell);
-    constexpr Index kAround = 2 + 3; // a cell on both sides, and the cubic's three more functions than cells
-    grid.heights.setZero(static_cast<Index>(counts.x()) + kAround, static_cast<Index>(counts.y()) + kAround);
-    return grid;
-}
-
 void refuse_line(const FitInput& input, const Eigen::Matrix3Xd& touches)
 {
     const Eigen::Matrix2Xd d = touches.topRows(2).colwise() - touches.topRows(2).rowwise().mean().eval();
@@ -199,11 +177,33 @@ Posterior posterior(const Model& m, double sigma, double tau, const VectorXd& we
 
 } // namespace
 
+/// Cells are about square, two for each touch along the longer side: finer ones change the surface by less than the
+/// probe sees. One cell all around keeps the wheel's footprint on the grid.
+Bspline spline_grid(const FitInput& input, const Eigen::Matrix3Xd& touches)
+{
+    Eigen::Matrix2Xd xy(2, touches.cols() + input.job.anomaly.cols());
+    xy << touches.topRows(2), input.job.anomaly.topRows(2);
+    xy = rotation_working_machine(input.job.theta) * xy;
+    const Eigen::Vector2d least = xy.rowwise().minCoeff();
+    const Eigen::Vector2d side = xy.rowwise().maxCoeff() - least;
+    const double touches_a_side = std::sqrt(static_cast<double>(touches.cols()));
+    const double cells = std::clamp(std::ceil(2 * touches_a_side), 6.0, 12.0);
+    const double cell = side.maxCoeff() / cells;
+    const Eigen::Vector2d counts = (side / cell).array().round().max(2);
+    Bspline grid;
+    grid.angle = input.job.theta;
+    grid.cell = side.cwiseQuotient(counts);
+    grid.origin = rotation_working_machine(input.job.theta).transpose() * (least - grid.cell);
+    constexpr Index kAround = 2 + 3; // a cell on both sides, and the cubic's three more functions than cells
+    grid.heights.setZero(static_cast<Index>(counts.x()) + kAround, static_cast<Index>(counts.y()) + kAround);
+    return grid;
+}
+
 Fit fit_bspline(const FitInput& input)
 {
     Surface surface = begin_surface(input, "bspline", kSampleRoles, kLeastTouches);
     refuse_line(input, surface.touches);
-    Bspline spline = grid_over(input, surface.touches);
+    Bspline spline = spline_grid(input, surface.touches);
     const Model m = model_of(spline, surface);
     const double sigma = surface.touch_sigma;
     const Amplitude believed = amplitude_of(m, sigma);
@@ -236,6 +236,8 @@ Fit fit_bspline(const FitInput& input)
         m.expected + m.basis * solved.x.head(kBeta) + m.GA * (V * (tau * solved.x.tail(rank)).cwiseQuotient(root));
     spline.heights = controls.reshaped(spline.heights.rows(), spline.heights.cols()).array() + m.level;
     surface.shape = spline;
+    surface.gross_errors = believed.gross_errors;
+    std::sort(surface.gross_errors.begin(), surface.gross_errors.end());
     const Posterior belief = posterior(m, sigma, tau, solved.weight);
     surface.covariance = belief.covariance;
     return finish_fit(std::move(surface), belief.freedom, solved.converged, solved.iterations);

@@ -17,4 +17,7 @@ namespace fettle {
 /// @throws InputError for fewer than 6 touches, or touches on a line
 Fit fit_bspline(const FitInput& input);
 
+/// The grid: over B and the touches, with a cell around them; heights 0.
+Bspline spline_grid(const FitInput& input, const Eigen::Matrix3Xd& touches);
+
 } // namespace fettle

@@ -1,12 +1,11 @@
 #include "core/error.h"
 #include "fit/bspline.h"
 #include "fit/bspline_wang.h"
-#include "fit/cylinder.h"
+#include "fit/family.h"
 #include "fit/fit.h"
 #include "fit/griddata.h"
 #include "fit/plane.h"
-#include "fit/sphere.h"
-#include "fit/swept.h"
+#include "fit/selection.h"
 
 #include <map>
 
@@ -17,25 +16,12 @@ namespace {
 const std::map<std::string, Fit (*)(const FitInput&)>& methods()
 {
     static const std::map<std::string, Fit (*)(const FitInput&)> table = {
-        {"bspline", fit_bspline},   {"bspline-wang", fit_bspline_wang},
-        {"cylinder", fit_cylinder}, {"griddata", fit_griddata},
-        {"plane", fit_plane},       {"sphere", fit_sphere},
-        {"swept", fit_swept},
+        {"bspline", fit_bspline},
+        {"bspline-wang", fit_bspline_wang},
+        {"griddata", fit_griddata},
+        {"plane", fit_plane},
     };
     return table;
-}
-
-std::string automatic(SurfaceType type)
-{
-    switch (type) {
-    case SurfaceType::plane:
-        return "plane";
-    case SurfaceType::swept:
-        return "swept";
-    case SurfaceType::freeform:
-        return "bspline";
-    }
-    throw std::logic_error("surface type");
 }
 
 } // namespace
@@ -43,8 +29,9 @@ std::string automatic(SurfaceType type)
 const std::vector<std::string>& fit_methods()
 {
     static const std::vector<std::string> names = [] {
-        std::vector<std::string> all;
-        for (const auto& [name, fit] : methods()) all.push_back(name);
+        std::vector<std::string> all = family_names(); // plane among them
+        for (const auto& [name, fit] : methods())
+            if (name != "plane") all.push_back(name);
         return all;
     }();
     return names;
@@ -52,7 +39,9 @@ const std::vector<std::string>& fit_methods()
 
 Fit fit_surface(const FitInput& input, const std::string& method)
 {
-    return methods().at(method == "auto" ? automatic(input.job.surface) : method)(input);
+    if (method == "auto") return fit_auto(input);
+    const auto own = methods().find(method);
+    return own != methods().end() ? own->second(input) : fit_family_by_name(input, method);
 }
 
 } // namespace fettle

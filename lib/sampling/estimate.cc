@@ -114,7 +114,7 @@ Cloud with_estimated_points(const Job& job, const Cloud& samples)
     const Eigen::VectorXi curve = whole_numbers(field(samples, "curve")), role = whole_numbers(field(samples, "role"));
     if ((role.array() == static_cast<int>(Role::estimated)).any())
         throw InputError("holds estimated points already (role 3)");
-    if (job.surface != SurfaceType::freeform) return samples;
+    if (job.surface != SurfaceType::freeform || (curve.array() == kNoLine).all()) return samples;
 
     const Eigen::Matrix3Xd estimated = estimated_points(job, samples.xyz, curve, role);
     if (estimated.cols() == 0) throw InputError("no touches of role 1 and 2, which a free-form job has");

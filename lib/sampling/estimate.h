@@ -21,7 +21,7 @@ Eigen::Matrix3Xd estimated_points(const Job& job, const Eigen::Matrix3Xd& touche
                                   const Eigen::VectorXi& role);
 
 /// Samples with their estimated points appended: role 3, curve and every other field NaN (0 in fields of integers).
-/// Samples of a plane or a swept surface have none and come back as they are.
+/// Samples of a plane or a swept surface, and samples on no lines, have none and come back as they are.
 /// @throws InputError also if the fields curve and role are missing, or if there are estimated points already
 Cloud with_estimated_points(const Job& job, const Cloud& samples);
 

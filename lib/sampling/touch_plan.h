@@ -20,11 +20,14 @@ enum class Role {
     section_curve = 5
 };
 
+/// The `curve` of a touch that is on no line.
+constexpr int kNoLine = -1;
+
 /// Where to touch the part, in the order of the lines that the touches belong to.
 struct TouchPlan {
     Eigen::Matrix2Xd xy;   ///< M, mm
     Eigen::VectorXd z;     ///< where the operator has touched already, mm; NaN elsewhere
-    Eigen::VectorXi curve; ///< number of the line, from 0
+    Eigen::VectorXi curve; ///< number of the line, from 0, or kNoLine
     Eigen::VectorXi role;  ///< as Role
 
     Eigen::Index size() const { return xy.cols(); }

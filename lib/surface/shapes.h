@@ -12,6 +12,9 @@ namespace fettle {
 double height(const Plane& plane, const Eigen::Vector2d& xy);
 double height(const Sphere& sphere, const Eigen::Vector2d& xy);
 double height(const Cylinder& cylinder, const Eigen::Vector2d& xy);
+double height(const Cone& cone, const Eigen::Vector2d& xy);
+double height(const Torus& torus, const Eigen::Vector2d& xy);
+double height(const Polynomial& polynomial, const Eigen::Vector2d& xy);
 double height(const Swept& swept, const Eigen::Vector2d& xy);
 double height(const Bspline& bspline, const Eigen::Vector2d& xy);
 
@@ -19,6 +22,9 @@ double height(const Bspline& bspline, const Eigen::Vector2d& xy);
 Eigen::Vector2d slope(const Plane& plane, const Eigen::Vector2d& xy);
 Eigen::Vector2d slope(const Sphere& sphere, const Eigen::Vector2d& xy);
 Eigen::Vector2d slope(const Cylinder& cylinder, const Eigen::Vector2d& xy);
+Eigen::Vector2d slope(const Cone& cone, const Eigen::Vector2d& xy);
+Eigen::Vector2d slope(const Torus& torus, const Eigen::Vector2d& xy);
+Eigen::Vector2d slope(const Polynomial& polynomial, const Eigen::Vector2d& xy);
 Eigen::Vector2d slope(const Swept& swept, const Eigen::Vector2d& xy);
 Eigen::Vector2d slope(const Bspline& bspline, const Eigen::Vector2d& xy);
 
@@ -26,6 +32,9 @@ Eigen::Vector2d slope(const Bspline& bspline, const Eigen::Vector2d& xy);
 Eigen::VectorXd height_gradient(const Plane& plane, const Eigen::Vector2d& xy);
 Eigen::VectorXd height_gradient(const Sphere& sphere, const Eigen::Vector2d& xy);
 Eigen::VectorXd height_gradient(const Cylinder& cylinder, const Eigen::Vector2d& xy);
+Eigen::VectorXd height_gradient(const Cone& cone, const Eigen::Vector2d& xy);
+Eigen::VectorXd height_gradient(const Torus& torus, const Eigen::Vector2d& xy);
+Eigen::VectorXd height_gradient(const Polynomial& polynomial, const Eigen::Vector2d& xy);
 Eigen::VectorXd height_gradient(const Swept& swept, const Eigen::Vector2d& xy);
 Eigen::VectorXd height_gradient(const Bspline& bspline, const Eigen::Vector2d& xy);
 
@@ -33,6 +42,9 @@ Eigen::VectorXd height_gradient(const Bspline& bspline, const Eigen::Vector2d& x
 Eigen::VectorXi parameter_powers(const Plane& plane);
 Eigen::VectorXi parameter_powers(const Sphere& sphere);
 Eigen::VectorXi parameter_powers(const Cylinder& cylinder);
+Eigen::VectorXi parameter_powers(const Cone& cone);
+Eigen::VectorXi parameter_powers(const Torus& torus);
+Eigen::VectorXi parameter_powers(const Polynomial& polynomial);
 Eigen::VectorXi parameter_powers(const Swept& swept);
 Eigen::VectorXi parameter_powers(const Bspline& bspline);
 
@@ -40,6 +52,10 @@ Eigen::VectorXi parameter_powers(const Bspline& bspline);
 Sphere sphere_about(const Eigen::Vector3d& centre, double radius, bool convex);
 /// The cylinder with this axis (not vertical), about its highest or lowest point next to `on_axis`.
 Cylinder cylinder_about(const Eigen::Vector3d& on_axis, const Eigen::Vector3d& axis, double radius, bool convex);
+
+/// Coefficients of a polynomial in x and y of that total degree.
+Eigen::Index monomials(int degree);
+int degree(const Polynomial& polynomial);
 
 /// Infinite for a flat piece.
 template <typename Round>

@@ -33,16 +33,53 @@ Eigen::Vector2d slope(const Griddata& griddata, const Eigen::Vector2d& xy)
     return result;
 }
 
+double height_of(const Shape& shape, const Eigen::Vector2d& xy)
+{
+    return std::visit([&](const auto& s) { return height(s, xy); }, shape);
+}
+
+Eigen::Vector2d slope_of(const Shape& shape, const Eigen::Vector2d& xy)
+{
+    return std::visit([&](const auto& s) { return slope(s, xy); }, shape);
+}
+
 Eigen::VectorXd gradient_of(const Shape& shape, const Eigen::Vector2d& xy)
 {
     return std::visit([&](const auto& s) { return height_gradient(s, xy); }, shape);
 }
 
+/// gᵀ C g. Only few entries of a spline's gradient differ from 0.
+double variance(const Shape& shape, const Eigen::MatrixXd& covariance, const Eigen::Vector2d& xy)
+{
+    const Eigen::VectorXd g = gradient_of(shape, xy);
+    if (g.hasNaN()) return kNan;
+    std::vector<Eigen::Index> used;
+    for (Eigen::Index i = 0; i < g.size(); ++i)
+        if (g[i] != 0) used.push_back(i);
+    const Eigen::VectorXd few = g(used);
+    return few.dot(covariance(used, used) * few);
+}
+
 } // namespace
+
+std::vector<Member> members(const Surface& surface)
+{
+    std::vector<Member> all = {{surface.weight, surface.shape, surface.covariance}};
+    for (const Alternative& other : surface.alternatives)
+        if (other.weight > 0) all.push_back({other.weight, other.shape, other.covariance});
+    return all;
+}
 
 double height(const Surface& surface, const Eigen::Vector2d& xy)
 {
-    return std::visit([&](const auto& shape) { return height(shape, xy); }, surface.shape) + surface.shift;
+    const double likeliest = height_of(surface.shape, xy);
+    double z = likeliest;
+    for (const Alternative& other : surface.alternatives) {
+        if (!(other.weight > 0)) continue;
+        const double difference = height_of(other.shape, xy) - likeliest;
+        if (!std::isnan(difference)) z += other.weight * difference;
+    }
+    return z + surface.shift;
 }
 
 Eigen::VectorXd heights(const Surface& surface, const Eigen::Matrix2Xd& xy)
@@ -52,24 +89,37 @@ Eigen::VectorXd heights(const Surface& surface, const Eigen::Matrix2Xd& xy)
     return z;
 }
 
+Eigen::VectorXd heights(const Shape& shape, const Eigen::Matrix2Xd& xy)
+{
+    Eigen::VectorXd z(xy.cols());
+    tbb::parallel_for(Eigen::Index{0}, xy.cols(), [&](Eigen::Index i) { z[i] = height_of(shape, xy.col(i)); });
+    return z;
+}
+
 Eigen::Vector3d normal(const Surface& surface, const Eigen::Vector2d& xy)
 {
-    const Eigen::Vector2d z_xy = std::visit([&](const auto& shape) { return slope(shape, xy); }, surface.shape);
+    const Eigen::Vector2d likeliest = slope_of(surface.shape, xy);
+    Eigen::Vector2d z_xy = likeliest;
+    for (const Alternative& other : surface.alternatives) {
+        if (!(other.weight > 0)) continue;
+        const Eigen::Vector2d difference = slope_of(other.shape, xy) - likeliest;
+        if (difference.allFinite()) z_xy += other.weight * difference;
+    }
     return Eigen::Vector3d(-z_xy.x(), -z_xy.y(), 1).normalized();
 }
 
 double sigma(const Surface& surface, const Eigen::Vector2d& xy)
 {
     if (surface.covariance.size() == 0) return kNan;
-    const Eigen::VectorXd g = gradient_of(surface.shape, xy);
-    if (g.hasNaN()) return kNan;
-    // Only few entries of a spline's gradient differ from 0: σ² = Σ g_i C_ij g_j over those.
-    std::vector<Eigen::Index> used;
-    for (Eigen::Index i = 0; i < g.size(); ++i)
-        if (g[i] != 0) used.push_back(i);
-    const Eigen::VectorXd few = g(used);
-    const double variance = few.dot(surface.covariance(used, used) * few);
-    return std::sqrt(std::max(variance, 0.0));
+    const double mean = height(surface, xy) - surface.shift;
+    double sum = 0, spread = 0; // within the members, and of them about their mean
+    for (const Member& member : members(surface)) {
+        const double z = height_of(member.shape, xy);
+        if (std::isnan(z)) continue;
+        sum += member.weight * variance(member.shape, member.covariance, xy);
+        spread += member.weight * (z - mean) * (z - mean);
+    }
+    return std::isnan(mean) ? kNan : std::sqrt(std::max(sum + spread, 0.0));
 }
 
 Eigen::MatrixXd height_gradients(const Shape& shape, const Eigen::Matrix2Xd& xy)

@@ -44,6 +44,38 @@ struct Cylinder {
     double curvature = 0;   ///< 1/mm; > 0: convex, < 0: concave
 };
 
+/// A piece of a cone about a point of it. The axis of revolution w leans by `lean` out of the metal from the ruling
+/// `axis` there, and the point's distance from it is 1/around:
+///     w = sin(lean) normal + cos(lean) axis;   lean = 0 is the cylinder of curvature `around`.
+/// θ = (offset along n, tilt of n across the ruling (towards normal × axis), tilt of n and ruling along it, turn of the
+/// ruling about n, around, lean)
+struct Cone {
+    Eigen::Vector3d point;  ///< on the surface, M
+    Eigen::Vector3d normal; ///< unit, out of the metal: up
+    Eigen::Vector3d axis;   ///< unit, along the ruling, perpendicular to `normal`
+    double around = 0;      ///< 1/mm; > 0: the axis of revolution is on the metal's side
+    double lean = 0;        ///< rad
+};
+
+/// A piece of a torus, likewise: the profile that turns about the axis is a circle of curvature `along`. With lean = 0
+/// and equal curvatures it is a sphere.   θ = (those of the cone, along)
+struct Torus {
+    Eigen::Vector3d point;  ///< on the surface, M
+    Eigen::Vector3d normal; ///< unit, out of the metal: up
+    Eigen::Vector3d axis;   ///< unit, along the profile at the point, perpendicular to `normal`
+    double around = 0;      ///< 1/mm
+    double lean = 0;        ///< rad
+    double along = 0;       ///< 1/mm; > 0: convex
+};
+
+/// z = Σ c_ij u^i v^j with (u, v) = (xy - origin) / scale; by total degree, then with falling powers of u: 1, u, v, u²,
+/// uv, v², …   θ = the coefficients.
+struct Polynomial {
+    Eigen::Vector2d origin;
+    double scale = 1;             ///< mm
+    Eigen::VectorXd coefficients; ///< mm; as many as a complete degree has
+};
+
 /// Straight swept surface (Wang 2007, 4.4.2): a cubic section curve carried along a ruling line. With t the distance
 /// along the ruling and s across it, both in x-y from `origin`:  z = Σ c_k (s/scale)^k + slope · t.   θ = (c_0..c_3,
 /// slope)
@@ -84,7 +116,7 @@ struct Griddata {
     std::shared_ptr<const Interpolant> interpolant;
 };
 
-using Shape = std::variant<Plane, Sphere, Cylinder, Swept, Bspline, TensorBspline, Griddata>;
+using Shape = std::variant<Plane, Sphere, Cylinder, Cone, Torus, Polynomial, Swept, Bspline, TensorBspline, Griddata>;
 
 /// What the margin foresees (fettle-margin), mm.
 struct Prediction {
@@ -95,23 +127,37 @@ struct Prediction {
     bool clamped = false;  ///< the regression fell below the probe's accuracy, which was used instead
 };
 
-/// The desired surface beneath the anomaly, with how it came about.
-struct Surface {
-    Units units; ///< of its file
-    Shape shape;
-    double shift = 0;           ///< added to the shape's height, mm
+/// Another kind of surface that was fitted to the touches.
+struct Alternative {
     std::string method;         ///< that fitted it
-    Eigen::MatrixXd covariance; ///< of θ, from the touch error; empty if unknown
-    double touch_sigma = 0;     ///< standard deviation of one touch that the covariance rests on, mm
-    double rms = 0;             ///< of the residuals, vertical, mm
-    double goodness = 0;        ///< p-value of χ² of the residuals against touch_sigma
-    Eigen::Matrix3Xd touches;   ///< used, M, mm
-    Eigen::VectorXi roles;      ///< of the touches
-    int ignored = 0;            ///< touches given but not used (estimated points in a statistical fit, NaN)
+    double score = 0;           ///< information criterion (fit/family.h)
+    double weight = 0;          ///< its probability; 0: too small to count, no shape is kept
+    Shape shape;                ///< as below
+    Eigen::MatrixXd covariance; ///< as below
+};
+
+/// The desired surface beneath the anomaly, with how it came about. Where several kinds of surface explain the touches
+/// about as well, it is their mean by probability, and its standard deviation holds how they differ.
+struct Surface {
+    Units units;                            ///< of its file
+    Shape shape;                            ///< the most probable one
+    double shift = 0;                       ///< added to the height, mm
+    std::string method;                     ///< that fitted it
+    Eigen::MatrixXd covariance;             ///< of θ, from the touch error; empty if unknown
+    double score = 0;                       ///< information criterion, if there was a choice
+    double weight = 1;                      ///< probability of `shape`
+    std::vector<Alternative> alternatives;  ///< weights and `weight` sum up to 1
+    double touch_sigma = 0;                 ///< standard deviation of one touch that the covariance rests on, mm
+    double rms = 0;                         ///< of the residuals, vertical, mm
+    double goodness = 0;                    ///< p-value of χ² of the residuals against touch_sigma
+    Eigen::Matrix3Xd touches;               ///< used, M, mm
+    Eigen::VectorXi roles;                  ///< of the touches
+    std::vector<Eigen::Index> gross_errors; ///< columns of `touches` that were taken for slips and left out
+    int ignored = 0;                        ///< touches given but not used (estimated points in a statistical fit, NaN)
     std::optional<Prediction> prediction;
 };
 
-/// z of the (shifted) surface over xy, M; NaN where it is not defined.
+/// z of the (shifted) surface over xy, M; NaN where `shape` is not defined (an alternative that is not stands back).
 double height(const Surface& surface, const Eigen::Vector2d& xy);
 /// The same for many points, in parallel. @param xy  2xN
 Eigen::VectorXd heights(const Surface& surface, const Eigen::Matrix2Xd& xy);
@@ -119,8 +165,20 @@ Eigen::VectorXd heights(const Surface& surface, const Eigen::Matrix2Xd& xy);
 Eigen::Vector3d normal(const Surface& surface, const Eigen::Vector2d& xy);
 /// Standard deviation of the height; NaN if the covariance is unknown.
 double sigma(const Surface& surface, const Eigen::Vector2d& xy);
+
+/// One of the shapes that a surface is the mean of.
+struct Member {
+    double weight;
+    const Shape& shape;
+    const Eigen::MatrixXd& covariance;
+};
+/// `shape` first, then the alternatives that have a weight.
+std::vector<Member> members(const Surface& surface);
+
 /// ∂z/∂θ, one column a point: covariance of the heights is Gᵀ C G.
 Eigen::MatrixXd height_gradients(const Shape& shape, const Eigen::Matrix2Xd& xy);
+/// Heights of a shape by itself.
+Eigen::VectorXd heights(const Shape& shape, const Eigen::Matrix2Xd& xy);
 /// Dimension of each θ, as a power of length.
 Eigen::VectorXi parameter_powers(const Shape& shape);
 

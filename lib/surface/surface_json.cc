@@ -1,4 +1,5 @@
 #include "core/error.h"
+#include "core/text.h"
 #include "surface/griddata.h"
 #include "surface/shapes.h"
 #include "surface/tensor_bspline.h"
@@ -16,6 +17,7 @@ constexpr double kDegree = std::numbers::pi / 180;
 // Directions are read to full precision; a vector that is further from unit length was edited.
 constexpr double kUnitSlack = 1e-9;
 constexpr int kMostRoles = 5;
+constexpr double kMostTouches = 1e9;
 
 using json::Reader;
 using json::Value;
@@ -48,6 +50,38 @@ Value write(const Cylinder& cylinder, double mm)
         .set("normal", Value(Eigen::VectorXd(cylinder.normal)))
         .set("axis", Value(Eigen::VectorXd(cylinder.axis)))
         .set("curvature", cylinder.curvature * mm);
+}
+
+Value write(const Cone& cone, double mm)
+{
+    Value value;
+    return value.set("type", "cone")
+        .set("point", Value(Eigen::VectorXd(cone.point / mm)))
+        .set("normal", Value(Eigen::VectorXd(cone.normal)))
+        .set("axis", Value(Eigen::VectorXd(cone.axis)))
+        .set("around", cone.around * mm)
+        .set("lean_deg", cone.lean / kDegree);
+}
+
+Value write(const Torus& torus, double mm)
+{
+    Value value;
+    return value.set("type", "torus")
+        .set("point", Value(Eigen::VectorXd(torus.point / mm)))
+        .set("normal", Value(Eigen::VectorXd(torus.normal)))
+        .set("axis", Value(Eigen::VectorXd(torus.axis)))
+        .set("around", torus.around * mm)
+        .set("lean_deg", torus.lean / kDegree)
+        .set("along", torus.along * mm);
+}
+
+Value write(const Polynomial& polynomial, double mm)
+{
+    Value value;
+    return value.set("type", "polynomial")
+        .set("origin", Value(Eigen::VectorXd(polynomial.origin / mm)))
+        .set("scale", polynomial.scale / mm)
+        .set("coefficients", Value(Eigen::VectorXd(polynomial.coefficients / mm)));
 }
 
 Value write(const Swept& swept, double mm)
@@ -106,13 +140,43 @@ Eigen::Vector3d read_upward(Reader& reader)
     return normal;
 }
 
+Eigen::Vector3d read_axis(Reader& reader, const Eigen::Vector3d& normal)
+{
+    const Eigen::Vector3d axis = read_unit(reader, "axis", 3);
+    if (std::abs(axis.dot(normal)) > kUnitSlack) reader.refuse("axis", "must be perpendicular to normal");
+    return axis;
+}
+
 Shape read_cylinder(Reader& reader, double mm)
 {
-    const Cylinder cylinder{reader.vector("point", 3) * mm, read_upward(reader), read_unit(reader, "axis", 3),
-                            reader.number("curvature") / mm};
-    if (std::abs(cylinder.axis.dot(cylinder.normal)) > kUnitSlack)
-        reader.refuse("axis", "must be perpendicular to normal");
-    return cylinder;
+    const Eigen::Vector3d point = reader.vector("point", 3) * mm;
+    const Eigen::Vector3d normal = read_upward(reader);
+    return Cylinder{point, normal, read_axis(reader, normal), reader.number("curvature") / mm};
+}
+
+Cone read_cone(Reader& reader, double mm)
+{
+    const Eigen::Vector3d point = reader.vector("point", 3) * mm;
+    const Eigen::Vector3d normal = read_upward(reader);
+    return {point, normal, read_axis(reader, normal), reader.number("around") / mm,
+            reader.number("lean_deg") * kDegree};
+}
+
+Shape read_torus(Reader& reader, double mm)
+{
+    const Cone cone = read_cone(reader, mm);
+    return Torus{cone.point, cone.normal, cone.axis, cone.around, cone.lean, reader.number("along") / mm};
+}
+
+Shape read_polynomial(Reader& reader, double mm)
+{
+    Polynomial polynomial;
+    polynomial.origin = reader.vector("origin", 2) * mm;
+    polynomial.scale = reader.number("scale", Range::positive()) * mm;
+    polynomial.coefficients = reader.vector("coefficients") * mm;
+    if (polynomial.coefficients.size() != monomials(degree(polynomial)))
+        reader.refuse("coefficients", "expected 1, 3, 6, 10, … numbers: all of a total degree");
+    return polynomial;
 }
 
 Shape read_swept(Reader& reader, double mm)
@@ -170,8 +234,8 @@ Shape read_griddata(Reader& reader, double mm)
 
 Shape read_shape(Reader reader, double mm)
 {
-    const std::string type =
-        reader.choice("type", {"plane", "sphere", "cylinder", "swept", "bspline", "tensor-bspline", "griddata"});
+    const std::string type = reader.choice("type", {"plane", "sphere", "cylinder", "cone", "torus", "polynomial",
+                                                    "swept", "bspline", "tensor-bspline", "griddata"});
     Shape shape;
     if (type == "plane")
         shape = Plane{reader.vector("origin", 2) * mm, reader.number("z0") * mm, reader.vector("slope", 2)};
@@ -179,6 +243,12 @@ Shape read_shape(Reader reader, double mm)
         shape = Sphere{reader.vector("point", 3) * mm, read_upward(reader), reader.number("curvature") / mm};
     else if (type == "cylinder")
         shape = read_cylinder(reader, mm);
+    else if (type == "cone")
+        shape = read_cone(reader, mm);
+    else if (type == "torus")
+        shape = read_torus(reader, mm);
+    else if (type == "polynomial")
+        shape = read_polynomial(reader, mm);
     else if (type == "swept")
         shape = read_swept(reader, mm);
     else if (type == "bspline")
@@ -198,13 +268,13 @@ Eigen::VectorXd parameter_units(const Shape& shape, double mm)
     return parameter_powers(shape).unaryExpr([mm](int power) { return std::pow(mm, power); }).cast<double>();
 }
 
-Value write_covariance(const Surface& surface, double mm)
+Value write_covariance(const Eigen::MatrixXd& covariance, const Shape& shape, double mm)
 {
-    const Eigen::VectorXd unit = parameter_units(surface.shape, mm);
+    const Eigen::VectorXd unit = parameter_units(shape, mm);
     const Eigen::Index n = unit.size();
     Eigen::VectorXd packed(n * (n + 1) / 2);
     for (Eigen::Index i = 0, k = 0; i < n; ++i)
-        for (Eigen::Index j = 0; j <= i; ++j) packed[k++] = surface.covariance(i, j) / (unit[i] * unit[j]);
+        for (Eigen::Index j = 0; j <= i; ++j) packed[k++] = covariance(i, j) / (unit[i] * unit[j]);
     return packed;
 }
 
@@ -221,6 +291,48 @@ Eigen::MatrixXd read_covariance(Reader& reader, const Shape& shape, double mm)
     return covariance;
 }
 
+Value write_shape(const Shape& shape, double mm)
+{
+    return std::visit([mm](const auto& s) { return write(s, mm); }, shape);
+}
+
+// --- the alternatives ---
+
+Value write_alternatives(const Surface& surface, double mm)
+{
+    std::vector<Value> list;
+    for (const Alternative& other : surface.alternatives) {
+        Value value;
+        value.set("method", other.method).set("score", other.score).set("weight", other.weight);
+        if (other.weight > 0)
+            value.set("shape", write_shape(other.shape, mm))
+                .set("covariance", write_covariance(other.covariance, other.shape, mm));
+        list.push_back(value);
+    }
+    return list;
+}
+
+void read_alternatives(Reader& reader, Surface& surface, double mm)
+{
+    double sum = surface.weight;
+    for (Reader& one : reader.objects("alternatives")) {
+        Alternative other;
+        other.method = one.text("method");
+        other.score = one.number("score");
+        other.weight = one.number("weight", Range::between(0, 1));
+        if (other.weight > 0) {
+            other.shape = read_shape(one.object("shape"), mm);
+            other.covariance = read_covariance(one, other.shape, mm);
+            if (other.covariance.size() == 0) one.refuse("covariance", "is missing");
+        }
+        one.done();
+        sum += other.weight;
+        surface.alternatives.push_back(std::move(other));
+    }
+    constexpr double kRounding = 1e-9; // numbers are written to all their digits
+    if (std::abs(sum - 1) > kRounding) reader.refuse("alternatives", "weights do not sum up to 1 with that of the fit");
+}
+
 // --- the fit, the touches, the prediction ---
 
 Value write_fit(const Surface& surface, double mm)
@@ -228,6 +340,13 @@ Value write_fit(const Surface& surface, double mm)
     Value fit;
     fit.set("method", surface.method).set("touch_sigma", surface.touch_sigma / mm).set("rms", surface.rms / mm);
     if (std::isfinite(surface.goodness)) fit.set("goodness", surface.goodness);
+    if (!surface.alternatives.empty()) fit.set("score", surface.score).set("weight", surface.weight);
+    if (!surface.gross_errors.empty()) {
+        Eigen::VectorXd columns(static_cast<Eigen::Index>(surface.gross_errors.size()));
+        for (Eigen::Index i = 0; i < columns.size(); ++i)
+            columns[i] = static_cast<double>(surface.gross_errors[static_cast<std::size_t>(i)]);
+        fit.set("gross_errors", columns);
+    }
     return fit.set("ignored", surface.ignored);
 }
 
@@ -238,6 +357,14 @@ void read_fit(Reader reader, Surface& surface, double mm)
     surface.rms = reader.number("rms", Range::at_least(0)) * mm;
     surface.goodness = reader.number_or("goodness", std::numeric_limits<double>::quiet_NaN(), Range::between(0, 1));
     surface.ignored = reader.integer("ignored", 0, std::numeric_limits<int>::max());
+    surface.score = reader.number_or("score", 0);
+    surface.weight = reader.number_or("weight", 1, Range::between(0, 1));
+    if (reader.has("gross_errors"))
+        for (const double column : reader.vector("gross_errors")) {
+            if (!(column >= 0 && column < kMostTouches && column == std::floor(column)))
+                reader.refuse("gross_errors", to_text(column) + " is no number of a touch");
+            surface.gross_errors.push_back(static_cast<Eigen::Index>(column));
+        }
     reader.done();
 }
 
@@ -289,14 +416,15 @@ json::Value to_json(const Surface& surface)
     units.set("length", to_string(surface.units.length));
     Value value;
     value.set("kind", "surface").set("units", units);
-    value.set("shape", std::visit([mm](const auto& shape) { return write(shape, mm); }, surface.shape));
+    value.set("shape", write_shape(surface.shape, mm));
     value.set("shift", surface.shift / mm);
     if (surface.prediction)
         value.set("predicted_band", surface.prediction->band / mm)
             .set("prediction", write_prediction(*surface.prediction, mm));
     value.set("fit", write_fit(surface, mm));
     if (surface.touches.cols() > 0) value.set("touches", write_touches(surface, mm));
-    if (surface.covariance.size() > 0) value.set("covariance", write_covariance(surface, mm));
+    if (!surface.alternatives.empty()) value.set("alternatives", write_alternatives(surface, mm));
+    if (surface.covariance.size() > 0) value.set("covariance", write_covariance(surface.covariance, surface.shape, mm));
     return value;
 }
 
@@ -317,6 +445,9 @@ Surface parse_surface(json::Reader reader)
     if (std::optional<Reader> fit = reader.object_or_none("fit")) read_fit(*fit, surface, mm);
     read_touches(reader, surface, mm);
     surface.covariance = read_covariance(reader, surface.shape, mm);
+    if (reader.has("alternatives")) read_alternatives(reader, surface, mm);
+    for (const Eigen::Index column : surface.gross_errors)
+        if (column >= surface.touches.cols()) reader.refuse("fit.gross_errors", "there are fewer touches");
     reader.done();
     return surface;
 }

@@ -18,11 +18,11 @@ heights 1 3 1 | pcd x y z >three.pcd
 "$refuses" 'three.pcd: a sphere fit needs at least 4 touches, got 3 of 3 points that it may use' \
     fettle-fit job.json three.pcd --method sphere
 "$refuses" 'three.pcd: a cylinder fit needs at least 5 touches' fettle-fit job.json three.pcd --method cylinder
-"$refuses" 'three.pcd: a bspline fit needs at least 6 touches' fettle-fit job.json three.pcd
+"$refuses" 'three.pcd: a freeform fit needs at least 6 touches' fettle-fit job.json three.pcd
 echo '1 2 3' | pcd x y z >one.pcd
 "$refuses" 'one.pcd: a plane fit needs at least 3 touches, got 1 of 1' fettle-fit plane.json one.pcd
 for i in 1 2 3 4 5 6 7 8; do echo "$i nan $i"; done | pcd x y z >nan.pcd
-"$refuses" 'nan.pcd: a bspline fit needs at least 6 touches, got 0 of 8' fettle-fit job.json nan.pcd
+"$refuses" 'nan.pcd: a freeform fit needs at least 6 touches, got 0 of 8' fettle-fit job.json nan.pcd
 # on a line, all the same, on a circle
 for i in 1 2 3 4 5 6 7 8; do echo "$i $i $i"; done | pcd x y z >line.pcd
 for i in 1 2 3 4 5 6 7 8; do echo 1 2 3; done | pcd x y z >same.pcd

@@ -1,9 +1,7 @@
 #include "core/error.h"
 #include "fit/bspline.h"
-#include "fit/cylinder.h"
+#include "fit/family.h"
 #include "fit/plane.h"
-#include "fit/sphere.h"
-#include "fit/swept.h"
 #include "surface/shapes.h"
 #include "json/document.h"
 
@@ -16,6 +14,10 @@
 
 namespace fettle {
 namespace {
+
+Fit fit_cylinder(const FitInput& input) { return fit_family_by_name(input, "cylinder"); }
+Fit fit_sphere(const FitInput& input) { return fit_family_by_name(input, "sphere"); }
+Fit fit_swept(const FitInput& input) { return fit_family_by_name(input, "swept"); }
 
 constexpr double kInch = 25.4;
 
@@ -120,6 +122,113 @@ TEST(Cylinder, ReproducesCylindersWithAnyAxis)
                         cylinder_about({3, 4, 5}, {std::cos(angle), std::sin(angle), rise}, inches * kInch, convex),
                         1e-8);
                 }
+}
+
+Fit fit_named(const char* name, const FitInput& input) { return fit_family_by_name(input, name); }
+
+TEST(Family, ReproducesConesAndTori)
+{
+    const Eigen::Vector3d n = Eigen::Vector3d(0.1, -0.05, 1).normalized();
+    for (const double degrees : {10.0, 80.0, 125.0})
+        for (const double side : {1.0, -1.0}) {
+            const double angle = degrees * M_PI / 180;
+            const Eigen::Vector3d a =
+                n.cross(Eigen::Vector3d(std::sin(angle), -std::cos(angle), 0)).cross(n).normalized();
+            expect_reproduced([](const FitInput& i) { return fit_named("cone", i); },
+                              Cone{{3, 4, 5}, n, a, side / (5 * kInch), 0.3}, 1e-8);
+            expect_reproduced([](const FitInput& i) { return fit_named("torus", i); },
+                              Torus{{3, 4, 5}, n, a, side / (5 * kInch), 0.1, side / (12 * kInch)}, 1e-8);
+            expect_reproduced([](const FitInput& i) { return fit_named("torus", i); },
+                              Torus{{3, 4, 5}, n, a, side / (9 * kInch), 0, -side / (6 * kInch)}, 1e-8);
+        }
+}
+
+TEST(Family, ReproducesPolynomials)
+{
+    for (const auto& [name, count] : {std::pair{"quadratic", 6}, std::pair{"cubic", 10}})
+        expect_reproduced([name = name](const FitInput& i) { return fit_named(name, i); },
+                          Polynomial{{0, 0}, 50, Eigen::VectorXd::LinSpaced(count, 3, -2)}, 1e-9);
+}
+
+TEST(Family, JacobianOfTheDistanceAgreesWithDifferences)
+{
+    // The gradients at the solution are those of the shape, which are checked in surface_test; the covariance that
+    // follows is that of the least-squares problem: C = σ² (GᵀG)⁻¹.
+    const Torus torus{{3, 4, 5}, {0, 0, 1}, {1, 0, 0}, 1 / (5 * kInch), 0.1, 1 / (12 * kInch)};
+    const auto truth = [&](double x, double y) { return height_of(torus, x, y); };
+    const Surface surface = fit_named("torus", touched(wang_layout(), truth, job_with(kQuiet))).surface;
+    const Eigen::MatrixXd G = height_gradients(surface.shape, surface.touches.topRows(2));
+    const Eigen::MatrixXd product = surface.covariance * (G * G.transpose());
+    const double scale = surface.touch_sigma * surface.touch_sigma;
+    EXPECT_LT((product / scale - Eigen::MatrixXd::Identity(7, 7)).cwiseAbs().maxCoeff(), 1e-4);
+}
+
+TEST(Auto, TakesTheFamilyOfTheTouches)
+{
+    const Eigen::Vector3d up(0, 0, 1), x(1, 0, 0);
+    const std::pair<std::string, Shape> cases[] = {
+        {"plane", Plane{{0, 0}, 3, {0.2, -0.4}}},
+        {"sphere", sphere_about({5, -3, 10}, 4 * kInch, true)},
+        {"cylinder", cylinder_about({3, 4, 5}, {1, 0.4, 0}, 4 * kInch, false)},
+        {"cone", Cone{{3, 4, 5}, up, x, 1 / (5 * kInch), 0.5}},
+        {"torus", Torus{{3, 4, 5}, up, x, 1 / (4 * kInch), 0.1, 1 / (9 * kInch)}},
+        {"quadratic", Polynomial{{0, 0}, 50, (Eigen::VectorXd(6) << 1, 2, 3, 10, 4, -9).finished()}}};
+    for (const auto& [name, shape] : cases) {
+        const auto truth = [&shape = shape](double u, double v) { return height_of(shape, u, v); };
+        const Surface surface = fit_surface(touched(wang_layout(), truth, job_with(0.127)), "auto").surface;
+        EXPECT_EQ(surface.method, name);
+        EXPECT_LT(largest_error(surface, truth, kInch), 0.127 / 4) << name;
+        double sum = surface.weight;
+        for (const Alternative& other : surface.alternatives) {
+            sum += other.weight;
+            EXPECT_GE(other.score, surface.score);
+        }
+        EXPECT_NEAR(sum, 1, 1e-12);
+    }
+}
+
+TEST(Auto, TakesASmoothResidualWhereNoFamilyExplainsTheTouches)
+{
+    const auto truth = [](double x, double y) {
+        return height_of(sphere_about({5, -3, 10}, 10 * kInch, true), x, y) +
+               2 * std::sin(x / 14 + 1) * std::cos(y / 17);
+    };
+    const Surface surface = fit_surface(touched(wang_layout(), truth, job_with(0.127)), "auto").surface;
+    EXPECT_EQ(surface.method, "gp");
+    EXPECT_LT(largest_error(surface, truth, kInch), 4.0); // the wave is that from crest to trough
+    EXPECT_GT(sigma(surface, {0, 0}), 3 * surface.touch_sigma / 4);
+}
+
+// Up to a fifth of the touches wrong by 1 mm and more, on either side, wherever they are: found, and no other.
+TEST(Auto, FindsSlips)
+{
+    const Shape shapes[] = {sphere_about({5, -3, 10}, 6 * kInch, true), Plane{{0, 0}, 3, {0.2, -0.4}},
+                            cylinder_about({3, 4, 5}, {1, 0.4, 0}, 5 * kInch, false)};
+    constexpr int kRuns = 40;
+    std::mt19937 random(3);
+    int found = 0, runs = 0;
+    for (const Shape& shape : shapes)
+        for (int run = 0; run < kRuns; ++run) {
+            const Job job = job_with(0.127);
+            FitInput input = touched(
+                wang_layout(), [&](double x, double y) { return height_of(shape, x, y); }, job);
+            std::normal_distribution<double> noise(0, touch_sigma(job.probe));
+            for (Eigen::Index i = 0; i < input.xyz.cols(); ++i) input.xyz(2, i) += noise(random);
+            std::vector<Eigen::Index> slips;
+            while (slips.size() < 3) { // of 16
+                const auto i = static_cast<Eigen::Index>(random() % 16);
+                if (std::find(slips.begin(), slips.end(), i) != slips.end()) continue;
+                slips.push_back(i);
+                const double size = 1 + 4 * static_cast<double>(random() % 1000) / 1000;
+                input.xyz(2, i) += random() % 2 == 0 ? size : -size;
+            }
+            std::sort(slips.begin(), slips.end());
+            ++runs;
+            const Surface surface = fit_surface(input, "auto").surface;
+            found += surface.gross_errors == slips;
+        }
+    // Sixteen touches in a hash: three slips of a crossing's four may look like another surface.
+    EXPECT_GE(found, 0.9 * runs);
 }
 
 TEST(Swept, ReproducesSweptSurfaces)
@@ -318,7 +427,7 @@ TEST(Invariance, TurnedAndMoved)
     move(moved.xyz);
     move(moved.job.anomaly);
     moved.job.theta += angle;
-    for (const char* method : {"plane", "swept", "sphere", "cylinder", "bspline"}) {
+    for (const char* method : {"plane", "swept", "sphere", "cylinder", "bspline", "auto"}) {
         const Surface a = fit_surface(input, method).surface;
         const Surface b = fit_surface(moved, method).surface;
         for (const Eigen::Vector2d& xy : kPlaces) {

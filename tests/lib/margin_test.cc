@@ -1,7 +1,7 @@
 #include "core/error.h"
 #include "fit/bspline.h"
+#include "fit/family.h"
 #include "fit/plane.h"
-#include "fit/sphere.h"
 #include "margin/anomaly_grid.h"
 #include "margin/error_band.h"
 #include "margin/round_fit.h"
@@ -16,6 +16,8 @@
 
 namespace fettle {
 namespace {
+
+Fit fit_sphere(const FitInput& input) { return fit_family_by_name(input, "sphere"); }
 
 constexpr double kInch = 25.4;
 using HeightOver = std::function<double(const Eigen::Vector2d&)>;

@@ -33,6 +33,18 @@ Cylinder some_cylinder(double curvature)
 
 Sphere some_sphere(double curvature) { return {{3, -2, 7}, Eigen::Vector3d(-0.3, 0.25, 1).normalized(), curvature}; }
 
+Cone some_cone(double around, double lean)
+{
+    const Cylinder frame = some_cylinder(0);
+    return {frame.point, frame.normal, frame.axis, around, lean};
+}
+
+Torus some_torus(double around, double lean, double along)
+{
+    const Cylinder frame = some_cylinder(0);
+    return {frame.point, frame.normal, frame.axis, around, lean, along};
+}
+
 std::vector<Shape> some_shapes()
 {
     return {Plane{{2, -5}, 3, {0.4, -1.5}},
@@ -40,6 +52,12 @@ std::vector<Shape> some_shapes()
             some_sphere(-1 / 90.0),
             some_cylinder(1 / 70.0),
             some_cylinder(-1 / 70.0),
+            some_cone(1 / 70.0, 0.4),
+            some_cone(-1 / 70.0, -0.2),
+            some_torus(1 / 70.0, 0.3, 1 / 200.0),
+            some_torus(-1 / 150.0, -0.5, 1 / 60.0),
+            some_torus(0, 0.1, 0),
+            Polynomial{{3, -2}, 20, Eigen::VectorXd::LinSpaced(10, -3, 4)},
             Swept{{1, 2}, Eigen::Vector2d(0.6, 0.8), 25, {1, -2, 3, 0.5}, 0.2, -25, 25},
             some_bspline()};
 }
@@ -51,6 +69,24 @@ double difference_error(const std::function<double(double)>& f, double derivativ
     for (const double h : {1e-2, 1e-3, 1e-4, 1e-5})
         best = std::min(best, std::abs((f(h) - f(-h)) / (2 * h) - derivative));
     return best;
+}
+
+/// A cone or torus with parameter j changed.
+template <typename Revolution>
+Revolution changed_revolution(const Revolution& shape, Eigen::Index j, double by)
+{
+    Revolution result = shape;
+    const Eigen::Vector3d across = shape.normal.cross(shape.axis);
+    if (j == 0) result.point += by * shape.normal;
+    if (j == 1) result.normal = (shape.normal + by * across).normalized();
+    if (j == 2) {
+        result.normal = (shape.normal + by * shape.axis).normalized();
+        result.axis = (shape.axis - by * shape.normal).normalized();
+    }
+    if (j == 3) result.axis = (shape.axis + by * across).normalized();
+    if (j == 4) result.around += by;
+    if (j == 5) result.lean += by;
+    return result;
 }
 
 /// The shape with θ_j changed by `by`, in the parameters that surface.h states.
@@ -80,6 +116,17 @@ Shape changed(const Shape& shape, Eigen::Index j, double by)
         }
         if (j == 3) result.axis = (cylinder->axis + by * across).normalized();
         if (j == 4) result.curvature += by;
+        return result;
+    }
+    if (const Cone* cone = std::get_if<Cone>(&shape)) return changed_revolution(*cone, j, by);
+    if (const Torus* torus = std::get_if<Torus>(&shape)) {
+        Torus result = changed_revolution(*torus, j, by);
+        if (j == 6) result.along += by;
+        return result;
+    }
+    if (const Polynomial* polynomial = std::get_if<Polynomial>(&shape)) {
+        Polynomial result = *polynomial;
+        result.coefficients[j] += by;
         return result;
     }
     if (const Swept* swept = std::get_if<Swept>(&shape)) {
@@ -150,6 +197,63 @@ TEST(Surface, SphereAndCylinderByCentreAndRadius)
         EXPECT_NEAR(height(cylinder, {31, 5}) - height(cylinder, {31, 2}), 4, 1e-12);
         EXPECT_TRUE(std::isnan(height(cylinder, {52, 2})));
     }
+}
+
+// Against the implicit equations of a cone and a torus about an axis of revolution w through c.
+TEST(Surface, ConeAndTorusLieAboutTheirAxis)
+{
+    for (const double side : {1.0, -1.0})
+        for (const double lean : {0.3, -0.6}) {
+            const Cone cone = some_cone(side / 80, lean);
+            const Eigen::Vector3d w = std::sin(lean) * cone.normal + std::cos(lean) * cone.axis;
+            const Eigen::Vector3d m = std::cos(lean) * cone.normal - std::sin(lean) * cone.axis; // from the axis
+            const Eigen::Vector3d c = cone.point - m / cone.around;
+            const Torus torus = {cone.point, cone.normal, cone.axis, cone.around, lean, side / 30};
+            const Eigen::Vector3d ring = torus.point - torus.normal / torus.along; // a point of its ring
+            const double ring_radius = std::abs((ring - c).dot(m)), ring_height = (ring - c).dot(w);
+            for (const Eigen::Vector2d& xy : kPlaces) {
+                const Eigen::Vector3d p = Eigen::Vector3d(xy.x(), xy.y(), height(cone, xy)) - c;
+                const double from_axis = (p - p.dot(w) * w).norm();
+                EXPECT_NEAR(from_axis, 80 - side * std::tan(lean) * p.dot(w), 1e-11);
+                const Eigen::Vector3d q = Eigen::Vector3d(xy.x(), xy.y(), height(torus, xy)) - c;
+                EXPECT_NEAR(std::hypot((q - q.dot(w) * w).norm() - ring_radius, q.dot(w) - ring_height), 30, 1e-11);
+            }
+        }
+}
+
+TEST(Surface, ConesAndToriHoldCylindersAndSpheres)
+{
+    const Cylinder cylinder = some_cylinder(1 / 70.0);
+    const Sphere sphere = {cylinder.point, cylinder.normal, -1 / 70.0};
+    for (const Eigen::Vector2d& xy : kPlaces) {
+        EXPECT_NEAR(height(some_cone(1 / 70.0, 0), xy), height(cylinder, xy), 1e-12);
+        EXPECT_NEAR(height(some_torus(-1 / 70.0, 0, -1 / 70.0), xy), height(sphere, xy), 1e-12);
+    }
+}
+
+// The mean of a mixture, its variance within and between, and its slope.
+TEST(Surface, IsTheMeanOfItsAlternatives)
+{
+    Surface surface;
+    surface.shape = Plane{{0, 0}, 1, {0.1, 0}};
+    surface.covariance = Eigen::Vector3d(0.04, 0, 0).asDiagonal();
+    surface.weight = 0.75;
+    surface.alternatives = {{"other", 0, 0.25, Plane{{0, 0}, 3, {0.5, 0.2}}, Eigen::Vector3d(0.16, 0, 0).asDiagonal()},
+                            {"unlikely", 9, 0, {}, {}}};
+    EXPECT_NEAR(height(surface, {2, 0}), 0.75 * 1.2 + 0.25 * 4, 1e-15);
+    const double spread = 0.75 * std::pow(1.2 - 1.9, 2) + 0.25 * std::pow(4 - 1.9, 2);
+    EXPECT_NEAR(sigma(surface, {2, 0}), std::sqrt(0.75 * 0.04 + 0.25 * 0.16 + spread), 1e-15);
+    const Eigen::Vector3d n = normal(surface, {2, 0});
+    EXPECT_NEAR(-n.x() / n.z(), 0.2, 1e-15);
+    EXPECT_NEAR(-n.y() / n.z(), 0.05, 1e-15);
+    surface.touches = Eigen::Matrix3Xd::Zero(3, 4);
+    surface.roles = Eigen::VectorXi::Ones(4);
+    surface.gross_errors = {1, 3};
+    const Surface back = parse_surface(json::Reader::parse(to_json(surface).text(), "s.json"));
+    EXPECT_EQ(back.gross_errors, surface.gross_errors);
+    EXPECT_EQ(back.alternatives.size(), 2U);
+    EXPECT_EQ(height(back, {2, 0}), height(surface, {2, 0}));
+    EXPECT_EQ(sigma(back, {2, 0}), sigma(surface, {2, 0}));
 }
 
 TEST(Surface, FlatSphereIsAPlane)
@@ -260,9 +364,10 @@ TEST(SurfaceJson, RefusesWhatIsWrong)
     EXPECT_EQ(refusal(surface_text(plane, R"(, "touches": [[1, 2, 3, 9]])")),
               "s.json: touches[0][3]: is no role (0 to 5)");
     EXPECT_EQ(refusal(surface_text(plane, R"(, "shiftt": 1)")), "s.json: shiftt: unknown key, did you mean \"shift\"?");
-    EXPECT_EQ(refusal(surface_text(R"({"type": "plan", "origin": [0, 0], "z0": 1, "slope": [0, 0]})")),
-              "s.json: shape.type: \"plan\" is none of plane, sphere, cylinder, swept, bspline, griddata; did you mean "
-              "\"plane\"?");
+    EXPECT_EQ(
+        refusal(surface_text(R"({"type": "plan", "origin": [0, 0], "z0": 1, "slope": [0, 0]})")),
+        "s.json: shape.type: \"plan\" is none of plane, sphere, cylinder, cone, torus, polynomial, swept, bspline, "
+        "tensor-bspline, griddata; did you mean \"plane\"?");
     EXPECT_EQ(refusal(surface_text(R"({"type": "sphere", "point": [0, 0, 0], "normal": [0, 0, 2], "curvature": 0})")),
               "s.json: shape.normal: must have length 1");
     EXPECT_EQ(refusal(surface_text(R"({"type": "sphere", "point": [0, 0, 0], "normal": [0, 0, -1], "curvature": 0})")),

@@ -1,0 +1,282 @@
+#include "fit/family.h"
+
+#include "core/error.h"
+
+#include <boost/math/special_functions/gamma.hpp>
+#include <Eigen/QR>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <numeric>
+#include <random>
+
+namespace fettle {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+// Of columns of unit length: a combination of parameters that moves the touches by less is not determined.
+constexpr double kRankThreshold = 1e-6;
+
+/// A solution, seen from all touches.
+struct Judged {
+    VectorXd chi;      ///< r/σ
+    VectorXd leverage; ///< of the kept: share of a touch's error that its fitted height follows; others: σ(height)²/σ²
+    MatrixXd covariance; ///< of θ over σ²
+};
+
+std::optional<Judged> judge(const FamilySolution& solution, const Touched& touched, const Columns& kept)
+{
+    const MatrixXd& G = solution.gradients;
+    if (!G.allFinite()) return std::nullopt;
+    const MatrixXd J = G(Eigen::all, kept).transpose();
+    const VectorXd size = J.colwise().norm().cwiseMax(std::numeric_limits<double>::min());
+    Eigen::ColPivHouseholderQR<MatrixXd> qr(J * size.cwiseInverse().asDiagonal());
+    qr.setThreshold(kRankThreshold);
+    if (qr.rank() < J.cols()) return std::nullopt;
+    const Index p = J.cols();
+    const MatrixXd R_inverse =
+        qr.matrixR().topLeftCorner(p, p).triangularView<Eigen::Upper>().solve(MatrixXd::Identity(p, p));
+    const MatrixXd root = size.cwiseInverse().asDiagonal() * (qr.colsPermutation() * R_inverse);
+    Judged judged;
+    judged.covariance = root * root.transpose();
+    judged.leverage = (root.transpose() * G).colwise().squaredNorm();
+    judged.chi = (touched.xyz.row(2).transpose() - heights(solution.shape, touched.xyz.topRows(2))) / touched.sigma;
+    if (!judged.chi.allFinite()) return std::nullopt;
+    return judged;
+}
+
+/// The touch to leave out or to take back: the one that changes the score most. -1: none.
+Index to_change(const Judged& judged, const std::vector<char>& is_kept, bool may_leave_out, double price)
+{
+    constexpr double kNoFreedom = 1e-6; // such a touch is followed whatever it says
+    Index worst = -1;
+    double best_gain = 1e-9 * price; // more than rounding, or it goes back and forth
+    for (Index i = 0; i < judged.chi.size(); ++i) {
+        const double chi2 = judged.chi[i] * judged.chi[i];
+        double gain = 0;
+        if (is_kept[static_cast<std::size_t>(i)] != 0)
+            gain = may_leave_out && judged.leverage[i] < 1 - kNoFreedom ? chi2 / (1 - judged.leverage[i]) - price : 0;
+        else
+            gain = price - chi2 / (1 + judged.leverage[i]);
+        if (gain > best_gain) {
+            best_gain = gain;
+            worst = i;
+        }
+    }
+    return worst;
+}
+
+/// Least trimmed squares of a polynomial from random subsets, with concentration steps.
+class TrimmedSearch {
+  public:
+    TrimmedSearch(const MatrixXd& design, const VectorXd& z)
+        : design_(design), z_(z), kept_(static_cast<std::size_t>((3 * z.size() + 3) / 4))
+    {
+    }
+
+    Columns search()
+    {
+        constexpr int kSubsets = 300; // 8 good ones of 16 touches with 3 slips are found in every tenth
+        constexpr int kSteps = 3;     // a start that leads nowhere shows by then
+        std::mt19937_64 random(1);
+        Columns order(static_cast<std::size_t>(z_.size()));
+        std::iota(order.begin(), order.end(), Index{0});
+        Columns best;
+        double least = std::numeric_limits<double>::infinity();
+        for (int subset = 0; subset < kSubsets; ++subset) {
+            Columns drawn = order;
+            const auto count = static_cast<std::size_t>(design_.cols()) + 1;
+            for (std::size_t i = 0; i < count; ++i) std::swap(drawn[i], drawn[i + random() % (drawn.size() - i)]);
+            drawn.resize(count);
+            double sum = 0;
+            for (int step = 0; step < kSteps; ++step) sum = concentrate(drawn);
+            if (!(sum < least)) continue;
+            for (double before = std::numeric_limits<double>::infinity(); sum < before;) {
+                before = sum;
+                sum = concentrate(drawn);
+            }
+            least = sum;
+            best = drawn;
+        }
+        return best;
+    }
+
+  private:
+    /// Replaces the touches by those nearest to their fit. @return  the sum of those squares
+    double concentrate(Columns& touches) const
+    {
+        const VectorXd theta = design_(touches, Eigen::all).completeOrthogonalDecomposition().solve(z_(touches));
+        const VectorXd squares = (z_ - design_ * theta).cwiseAbs2();
+        Columns order(static_cast<std::size_t>(z_.size()));
+        std::iota(order.begin(), order.end(), Index{0});
+        std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return squares[a] < squares[b]; });
+        order.resize(kept_);
+        touches = order;
+        return squares(touches).sum();
+    }
+
+    const MatrixXd& design_;
+    const VectorXd& z_;
+    std::size_t kept_;
+};
+
+} // namespace
+
+Touched touched_of(const Surface& surface, const Job& job)
+{
+    return {surface.touches, surface.touch_sigma, job.theta + job.direction, job.surface == SurfaceType::swept};
+}
+
+Columns all_touches(const Touched& touched)
+{
+    Columns all(static_cast<std::size_t>(touched.xyz.cols()));
+    std::iota(all.begin(), all.end(), Index{0});
+    return all;
+}
+
+Columns trimmed_touches(const Touched& touched)
+{
+    constexpr int kQuadratic = 2;
+    const Columns all = all_touches(touched);
+    for (int degree = kQuadratic; degree >= 1; --degree) {
+        const std::optional<FamilySolution> design = solve_family(degree == 2 ? "quadratic" : "plane", touched, all);
+        if (!design || 2 * design->gradients.rows() > touched.xyz.cols()) continue;
+        const MatrixXd A = design->gradients.transpose();
+        const VectorXd z = touched.xyz.row(2).transpose();
+        Columns kept = TrimmedSearch(A, z).search();
+        std::sort(kept.begin(), kept.end());
+        return kept;
+    }
+    return all;
+}
+
+double price_of_a_slip(double sigma)
+{
+    // One touch in twenty, and then anywhere within an inch (chips, dust, the anomaly's foot).
+    constexpr double kShare = 0.05;
+    constexpr double kWidth = 25.4; // mm
+    return -2 * std::log(kShare / (1 - kShare) * sigma * std::sqrt(2 * std::numbers::pi) / kWidth);
+}
+
+double goodness(double chi2, double freedom)
+{
+    return freedom > 0 && std::isfinite(chi2) ? boost::math::gamma_q(freedom / 2, chi2 / 2) : 1;
+}
+
+namespace {
+
+Columns marked(const std::vector<char>& marks, char mark)
+{
+    Columns columns;
+    for (std::size_t i = 0; i < marks.size(); ++i)
+        if (marks[i] == mark) columns.push_back(static_cast<Index>(i));
+    return columns;
+}
+
+/// A family fitted to some of the touches.
+struct Fitted {
+    FamilySolution solution;
+    Judged judged;
+    std::vector<char> is_kept;
+    double chi2 = 0, freedom = 0;
+    int iterations = 0;
+};
+
+std::optional<Fitted> fitted(const std::string& name, const Touched& touched, std::vector<char> is_kept, int iterations)
+{
+    const Columns kept = marked(is_kept, 1);
+    std::optional<FamilySolution> solution = solve_family(name, touched, kept);
+    if (!solution) return std::nullopt;
+    std::optional<Judged> judged = judge(*solution, touched, kept);
+    if (!judged) return std::nullopt;
+    const double chi2 = judged->chi(kept).squaredNorm();
+    const double freedom = static_cast<double>(static_cast<Index>(kept.size()) - solution->gradients.rows());
+    iterations += solution->iterations;
+    return Fitted{std::move(*solution), std::move(*judged), std::move(is_kept), chi2, freedom, iterations};
+}
+
+/// Slips left out, others taken back, one by one. Slips are few, and the other touches fit; else it is the family that
+/// does not: nothing.
+std::optional<Fitted> without_slips(const std::string& name, const Touched& touched, Fitted now)
+{
+    constexpr double kMostSlips = 0.25;     // of the touches
+    constexpr double kLeastGoodness = 1e-3; // of the touches that are no slips
+    const auto n = static_cast<Index>(touched.xyz.cols());
+    const auto most = static_cast<std::ptrdiff_t>(kMostSlips * static_cast<double>(n));
+    const double price = price_of_a_slip(touched.sigma);
+    for (Index change = 0; change <= 2 * n; ++change) { // they might come and go in turns
+        const std::ptrdiff_t slips = std::count(now.is_kept.begin(), now.is_kept.end(), 0);
+        const Index i = to_change(now.judged, now.is_kept, now.freedom > 1, price);
+        if (i < 0) {
+            const bool explained = slips <= most && goodness(now.chi2, now.freedom) >= kLeastGoodness;
+            return slips == 0 || explained ? std::optional(std::move(now)) : std::nullopt;
+        }
+        if (slips > most && now.is_kept[static_cast<std::size_t>(i)] != 0) return std::nullopt;
+        now.is_kept[static_cast<std::size_t>(i)] ^= 1;
+        std::optional<Fitted> next = fitted(name, touched, std::move(now.is_kept), now.iterations);
+        if (!next) return std::nullopt;
+        now = std::move(*next);
+    }
+    return std::nullopt;
+}
+
+} // namespace
+
+std::optional<Candidate> fit_family(const std::string& name, const Touched& touched, const Columns& kept)
+{
+    const auto n = static_cast<std::size_t>(touched.xyz.cols());
+    std::vector<char> is_kept(n, 0);
+    for (const Index i : kept) is_kept[static_cast<std::size_t>(i)] = 1;
+    std::optional<Fitted> start = fitted(name, touched, is_kept, 0);
+    std::optional<Fitted> best = start ? without_slips(name, touched, *start) : std::nullopt;
+    if (!best && start && kept.size() == n) best = std::move(start);
+    if (!best && kept.size() < n) best = fitted(name, touched, std::vector<char>(n, 1), 0);
+    if (!best) return std::nullopt;
+    Candidate candidate;
+    candidate.method = name;
+    candidate.gross_errors = marked(best->is_kept, 0);
+    candidate.shape = std::move(best->solution.shape);
+    candidate.covariance = touched.sigma * touched.sigma * best->judged.covariance;
+    candidate.chi2 = best->chi2;
+    candidate.freedom = best->freedom;
+    candidate.converged = best->solution.converged;
+    candidate.iterations = best->iterations;
+    const auto p = static_cast<double>(candidate.covariance.rows());
+    candidate.score = candidate.chi2 + p * std::log(static_cast<double>(n)) +
+                      price_of_a_slip(touched.sigma) * static_cast<double>(candidate.gross_errors.size());
+    return candidate;
+}
+
+void refuse_undetermined(const Touched& touched, const std::string& name, const std::string& source)
+{
+    if (!solve_family("plane", touched, all_touches(touched)))
+        throw InputError(source, "touches lie on one line in x and y");
+    throw InputError(source, "touches do not determine a " + name + ": another one goes through them as well");
+}
+
+Fit fit_family_by_name(const FitInput& input, const std::string& name)
+{
+    static const std::map<std::string, int> least = {{"sphere", 4},    {"cylinder", 5}, {"cone", 6},     {"torus", 7},
+                                                     {"quadratic", 6}, {"cubic", 10},   {"quartic", 15}, {"swept", 5}};
+    Surface surface = begin_surface(input, name, kSampleRoles, least.at(name));
+    const Touched touched = touched_of(surface, input.job);
+    std::optional<Candidate> best = fit_family(name, touched, all_touches(touched));
+    if (best && !best->gross_errors.empty()) {
+        std::optional<Candidate> trimmed = fit_family(name, touched, trimmed_touches(touched));
+        if (trimmed && trimmed->score < best->score) best = std::move(trimmed);
+    }
+    if (!best) refuse_undetermined(touched, name, input.source);
+    surface.shape = std::move(best->shape);
+    surface.covariance = std::move(best->covariance);
+    surface.gross_errors = std::move(best->gross_errors);
+    const double all = best->freedom + static_cast<double>(surface.gross_errors.size());
+    return finish_fit(std::move(surface), all, best->converged, best->iterations);
+}
+
+} // namespace fettle

@@ -1,0 +1,173 @@
+#include "fit/round_family.h"
+
+#include "surface/revolution.h"
+
+#include <ceres/jet.h>
+#include <ceres/tiny_solver.h>
+#include <Eigen/QR>
+
+#include <limits>
+
+namespace fettle {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::Matrix3Xd;
+using Eigen::VectorXd;
+
+/// Free parameters of a family; a sphere has one curvature.
+std::vector<int> free_parameters(RoundFamily family, bool given_direction)
+{
+    std::vector<int> free = {kOffset, kTiltAcross, kTiltAlong};
+    if (family != RoundFamily::sphere && !given_direction) free.push_back(kTurn);
+    free.push_back(kAround);
+    if (family == RoundFamily::cone || family == RoundFamily::torus) free.push_back(kLean);
+    if (family == RoundFamily::torus) free.push_back(kAlong);
+    return free;
+}
+
+template <typename T>
+void close(RoundFamily family, RevolutionParameters<T>& theta)
+{
+    if (family == RoundFamily::sphere) theta[kAlong] = theta[kAround];
+}
+
+/// Residuals for ceres::TinySolver, in units of the touches' extent.
+template <int P>
+struct Distances {
+    using Scalar = double;
+    enum { NUM_RESIDUALS = Eigen::Dynamic, NUM_PARAMETERS = P };
+
+    RoundFamily family;
+    std::vector<int> free;
+    RevolutionParameters<double> fixed;
+    Matrix3Xd points; ///< in the frame
+    VectorXd weight;
+
+    int NumResiduals() const { return static_cast<int>(points.cols()); }
+
+    bool operator()(const double* x, double* residuals, double* jacobian) const
+    {
+        // Beyond the centre there is no distance: so bad that the step is taken back.
+        constexpr double kFar = 1e6;
+        if (jacobian == nullptr) {
+            RevolutionParameters<double> theta = fixed;
+            for (int k = 0; k < P; ++k) theta[free[static_cast<std::size_t>(k)]] = x[k];
+            close(family, theta);
+            for (Index i = 0; i < points.cols(); ++i)
+                residuals[i] = weight[i] * revolution_distance<double>(Eigen::Vector3d(points.col(i)), theta, kFar);
+            return true;
+        }
+        using Jet = ceres::Jet<double, P>;
+        RevolutionParameters<Jet> theta = fixed.template cast<Jet>();
+        for (int k = 0; k < P; ++k) theta[free[static_cast<std::size_t>(k)]] = Jet(x[k], k);
+        close(family, theta);
+        for (Index i = 0; i < points.cols(); ++i) {
+            const Eigen::Matrix<Jet, 3, 1> point = points.col(i).cast<Jet>();
+            const Jet d = revolution_distance<Jet>(point, theta, Jet(kFar));
+            residuals[i] = weight[i] * d.a;
+            for (int k = 0; k < P; ++k) jacobian[k * points.cols() + i] = weight[i] * d.v[k];
+        }
+        return true;
+    }
+};
+
+/// The solver compares costs, whose rounding hides changes of 1e-8: Gauss and Newton's steps go on from there.
+template <int P>
+void polish(const Distances<P>& function, Eigen::Matrix<double, P, 1>& x)
+{
+    constexpr int kSteps = 4;
+    double last = 1e-5; // larger steps are no polish; each must be smaller than the one before
+    VectorXd residuals(function.NumResiduals());
+    Eigen::Matrix<double, Eigen::Dynamic, P> jacobian(function.NumResiduals(), P);
+    for (int i = 0; i < kSteps; ++i) {
+        function(x.data(), residuals.data(), jacobian.data());
+        const Eigen::Matrix<double, P, 1> step = jacobian.colPivHouseholderQr().solve(residuals);
+        if (!(step.norm() < last)) return;
+        last = step.norm();
+        x -= step;
+    }
+}
+
+template <int P>
+RoundSolution solve_with(RoundFamily family, const RoundProblem& problem, double around, double along)
+{
+    Distances<P> function;
+    function.points = problem.frame.axes.transpose() * (problem.touches.colwise() - problem.frame.point);
+    const double extent = function.points.cwiseAbs().maxCoeff();
+    function.points /= extent;
+    function.weight = problem.weight * extent;
+    function.family = family;
+    function.free = free_parameters(family, problem.given_direction);
+    function.fixed = RevolutionParameters<double>::Zero();
+    RevolutionParameters<double> start = RevolutionParameters<double>::Zero();
+    start[kAround] = around * extent;
+    start[kAlong] = along * extent;
+
+    ceres::TinySolver<Distances<P>> solver;
+    solver.options.max_num_iterations = 100;
+    solver.options.function_tolerance = 1e-16; // of the sum of squares, far below its rounding: no change at all
+    solver.options.parameter_tolerance = 1e-12;
+    solver.options.gradient_tolerance = 1e-12;
+    solver.options.cost_threshold = 1e-24;
+    Eigen::Matrix<double, P, 1> x;
+    for (int k = 0; k < P; ++k) x[k] = start[function.free[static_cast<std::size_t>(k)]];
+    const auto& summary = solver.Solve(function, &x);
+    polish(function, x);
+
+    RevolutionParameters<double> end = RevolutionParameters<double>::Zero();
+    for (int k = 0; k < P; ++k) end[function.free[static_cast<std::size_t>(k)]] = x[k];
+    close(family, end);
+    RoundSolution solution;
+    end[kOffset] *= extent;
+    end[kAround] /= extent;
+    end[kAlong] /= extent;
+    solution.theta = end;
+    solution.cost = x.allFinite() ? summary.final_cost : std::numeric_limits<double>::infinity();
+    solution.converged = summary.status != ceres::TinySolver<Distances<P>>::HIT_MAX_ITERATIONS;
+    solution.iterations = summary.iterations;
+    return solution;
+}
+
+} // namespace
+
+int parameters(RoundFamily family, bool given_direction)
+{
+    return static_cast<int>(free_parameters(family, given_direction).size());
+}
+
+RoundSolution solve(RoundFamily family, const RoundProblem& problem, double around, double along)
+{
+    switch (parameters(family, problem.given_direction)) {
+    case 4:
+        return solve_with<4>(family, problem, around, along);
+    case 5:
+        return solve_with<5>(family, problem, around, along);
+    case 6:
+        return solve_with<6>(family, problem, around, along);
+    default:
+        return solve_with<7>(family, problem, around, along);
+    }
+}
+
+Shape round_shape(RoundFamily family, const RoundFrame& frame, const VectorXd& theta)
+{
+    const Eigen::Vector3d a = Eigen::Vector3d(1, theta[kTurn], -theta[kTiltAlong]).normalized();
+    const Eigen::Vector3d up(0, theta[kTiltAcross], 1);
+    const Eigen::Vector3d n = (up - up.dot(a) * a).normalized();
+    const Eigen::Vector3d point = frame.point + theta[kOffset] * frame.axes.col(2);
+    const Eigen::Vector3d normal = frame.axes * n, axis = frame.axes * a;
+    switch (family) {
+    case RoundFamily::sphere:
+        return Sphere{point, normal, theta[kAround]};
+    case RoundFamily::cylinder:
+        return Cylinder{point, normal, axis, theta[kAround]};
+    case RoundFamily::cone:
+        return Cone{point, normal, axis, theta[kAround], theta[kLean]};
+    default:
+        return Torus{point, normal, axis, theta[kAround], theta[kLean], theta[kAlong]};
+    }
+}
+
+} // namespace fettle

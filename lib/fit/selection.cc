@@ -1,0 +1,140 @@
+#include "fit/selection.h"
+
+#include "fit/bspline.h"
+#include "fit/family.h"
+#include "fit/plane.h"
+#include "fit/process.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace fettle {
+
+namespace {
+
+// A surface that is less probable moves the mean by less than the probe sees.
+constexpr double kLeastWeight = 1e-3;
+
+/// −2 ln of how rare a family is beforehand. Castings are mostly planes, cylinders, spheres and what bends like a
+/// quadratic; cones, tori and surfaces of changing curvature count as five times rarer. Without it, sixteen touches
+/// follow their own noise into one of those in one case of twenty.
+double rarity(const std::string& family)
+{
+    constexpr double kRarer = 5;
+    return family == "cone" || family == "torus" || family == "cubic" ? 2 * std::log(kRarer) : 0;
+}
+
+std::vector<std::string> names_for(SurfaceType type)
+{
+    if (type == SurfaceType::swept) return {"plane", "cylinder", "swept"};
+    return {"plane", "sphere", "cylinder", "cone", "torus", "quadratic", "cubic"};
+}
+
+const Candidate* best_of(const std::vector<Candidate>& candidates)
+{
+    const Candidate* best = nullptr;
+    for (const Candidate& candidate : candidates)
+        if (candidate.converged && (best == nullptr || candidate.score < best->score)) best = &candidate;
+    return best;
+}
+
+/// Do the touches leave nothing to explain?
+bool explains(const Candidate* best, Eigen::Index touches)
+{
+    // One set of touches in twenty of a surface of the family looks worse.
+    constexpr double kLeastGoodness = 0.05;
+    // A family with almost as many parameters as touches explains anything.
+    return best != nullptr && best->gross_errors.empty() && 2 * best->freedom >= static_cast<double>(touches) &&
+           goodness(best->chi2, best->freedom) >= kLeastGoodness;
+}
+
+void fit_families(const Touched& touched, const std::vector<std::string>& names, const Columns& kept,
+                  std::vector<Candidate>& candidates)
+{
+    for (const std::string& name : names) {
+        std::optional<Candidate> candidate = fit_family(name, touched, kept);
+        if (!candidate || !candidate->converged) continue;
+        candidate->score += rarity(name);
+        const auto same = std::find_if(candidates.begin(), candidates.end(),
+                                       [&](const Candidate& other) { return other.method == name; });
+        if (same == candidates.end())
+            candidates.push_back(std::move(*candidate));
+        else if (candidate->score < same->score)
+            *same = std::move(*candidate);
+    }
+}
+
+/// Trends of the smooth residual: the families that come nearest, and the quadratic, which bends either way.
+std::vector<Candidate> trends_of(const std::vector<Candidate>& candidates)
+{
+    constexpr std::size_t kTrends = 3;
+    std::vector<Candidate> trends = candidates;
+    std::stable_sort(trends.begin(), trends.end(),
+                     [](const Candidate& a, const Candidate& b) { return a.score < b.score; });
+    const auto quadratic = [](const Candidate& candidate) { return candidate.method == "quadratic"; };
+    if (trends.size() > kTrends && std::none_of(trends.begin(), trends.begin() + kTrends, quadratic)) {
+        const auto at = std::find_if(trends.begin(), trends.end(), quadratic);
+        if (at != trends.end()) std::iter_swap(trends.begin() + kTrends - 1, at);
+    }
+    if (trends.size() > kTrends) trends.resize(kTrends);
+    return trends;
+}
+
+/// Takes the candidates over as the surface and its alternatives.
+void weigh(std::vector<Candidate>& candidates, Surface& surface)
+{
+    std::stable_sort(candidates.begin(), candidates.end(),
+                     [](const Candidate& a, const Candidate& b) { return a.score < b.score; });
+    double sum = 0;
+    std::vector<double> weights;
+    for (const Candidate& candidate : candidates) {
+        const double weight = std::exp((candidates.front().score - candidate.score) / 2);
+        weights.push_back(weight < kLeastWeight ? 0 : weight);
+        sum += weights.back();
+    }
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+        Candidate& candidate = candidates[i];
+        if (i == 0) {
+            surface.method = candidate.method;
+            surface.shape = std::move(candidate.shape);
+            surface.covariance = std::move(candidate.covariance);
+            surface.gross_errors = candidate.gross_errors;
+            surface.score = candidate.score;
+            surface.weight = weights[0] / sum;
+        } else if (weights[i] > 0) {
+            surface.alternatives.push_back({candidate.method, candidate.score, weights[i] / sum,
+                                            std::move(candidate.shape), std::move(candidate.covariance)});
+        } else {
+            surface.alternatives.push_back({candidate.method, candidate.score, 0, {}, {}});
+        }
+    }
+}
+
+} // namespace
+
+Fit fit_auto(const FitInput& input)
+{
+    if (input.job.surface == SurfaceType::plane) return fit_plane(input);
+    // Fewer are explained by anything.
+    const int least = input.job.surface == SurfaceType::swept ? 5 : 6;
+    Surface surface = begin_surface(input, to_string(input.job.surface), kSampleRoles, least);
+    const Touched touched = touched_of(surface, input.job);
+    const std::vector<std::string> names = names_for(input.job.surface);
+    std::vector<Candidate> candidates;
+    fit_families(touched, names, all_touches(touched), candidates);
+    const Eigen::Index n = touched.xyz.cols();
+    if (!explains(best_of(candidates), n)) {
+        fit_families(touched, names, trimmed_touches(touched), candidates);
+        if (input.job.surface == SurfaceType::freeform && !explains(best_of(candidates), n))
+            if (std::optional<Candidate> smooth =
+                    fit_process(touched, trends_of(candidates), spline_grid(input, surface.touches)))
+                candidates.push_back(std::move(*smooth));
+    }
+    if (candidates.empty()) refuse_undetermined(touched, surface.method + " surface", input.source);
+    weigh(candidates, surface);
+    const Candidate& chosen = candidates.front();
+    return finish_fit(std::move(surface), chosen.freedom, true, chosen.iterations);
+}
+
+} // namespace fettle

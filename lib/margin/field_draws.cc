@@ -1,0 +1,67 @@
+#include "margin/field_draws.h"
+
+#include <Eigen/Eigenvalues>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace fettle {
+
+namespace {
+
+/// F with F Fᵀ = covariance. By eigenvalues: rounding makes the small pivots of a factorisation negative.
+Eigen::MatrixXd root(const Eigen::MatrixXd& covariance)
+{
+    // Few factors carry a smooth field: those below this share of the largest variance are rounding.
+    constexpr double kRounding = 1e-10;
+    // Parameters differ in unit (lengths, angles, curvatures): by their own size first.
+    const Eigen::VectorXd size = covariance.diagonal().cwiseMax(0).cwiseSqrt();
+    const Eigen::VectorXd inverse = size.unaryExpr([](double s) { return s > 0 ? 1 / s : 0; });
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(inverse.asDiagonal() * covariance *
+                                                               inverse.asDiagonal()); // ascending
+    const Eigen::VectorXd& variance = eigen.eigenvalues();
+    const Eigen::Index rank = (variance.array() > kRounding * variance.maxCoeff()).count();
+    return size.asDiagonal() * eigen.eigenvectors().rightCols(rank) * variance.tail(rank).cwiseSqrt().asDiagonal();
+}
+
+struct Possible {
+    double weight;
+    Eigen::VectorXd offset; ///< from the mean
+    Eigen::MatrixXd field;  ///< heights about it for independent unit normal numbers
+};
+
+} // namespace
+
+Eigen::MatrixXd draw_fields(const Surface& surface, const Eigen::Matrix2Xd& xy, int draws, std::uint64_t seed)
+{
+    const Eigen::VectorXd mean = heights(surface, xy).array() - surface.shift;
+    std::vector<Possible> all;
+    double sum = 0;
+    for (const Member& member : members(surface)) {
+        const Eigen::MatrixXd gradients = height_gradients(member.shape, xy);
+        const Eigen::VectorXd offset = heights(member.shape, xy) - mean;
+        if (!gradients.allFinite() || !offset.allFinite()) continue;
+        all.push_back({member.weight, offset, gradients.transpose() * root(member.covariance)});
+        sum += member.weight;
+    }
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> normal;
+    Eigen::MatrixXd fields = Eigen::MatrixXd::Zero(xy.cols(), draws);
+    double due = 0;
+    Eigen::Index column = 0;
+    for (const Possible& one : all) {
+        due += one.weight / sum * draws / 2;
+        const Eigen::Index count = std::lround(due) - column / 2;
+        Eigen::MatrixXd unit(one.field.cols(), count);
+        for (double& number : unit.reshaped()) number = normal(random);
+        const Eigen::MatrixXd about = one.field * unit;
+        for (Eigen::Index k = 0; k < count; ++k) {
+            fields.col(column++) = one.offset + about.col(k);
+            fields.col(column++) = one.offset - about.col(k);
+        }
+    }
+    return fields;
+}
+
+} // namespace fettle

@@ -1,0 +1,65 @@
+#include "surface/shapes.h"
+
+#include <cmath>
+
+namespace fettle {
+
+namespace {
+
+/// Calls use(k, i, j) for the k-th monomial u^i v^j: by total degree, then with falling powers of u.
+template <typename Use>
+void for_monomials(int degree, Use&& use)
+{
+    Eigen::Index k = 0;
+    for (int total = 0; total <= degree; ++total)
+        for (int j = 0; j <= total; ++j) use(k++, total - j, j);
+}
+
+Eigen::Vector2d scaled(const Polynomial& polynomial, const Eigen::Vector2d& xy)
+{
+    return (xy - polynomial.origin) / polynomial.scale;
+}
+
+} // namespace
+
+Eigen::Index monomials(int degree) { return static_cast<Eigen::Index>(degree + 1) * (degree + 2) / 2; }
+
+int degree(const Polynomial& polynomial)
+{
+    int d = 0;
+    while (monomials(d) < polynomial.coefficients.size()) ++d;
+    return d;
+}
+
+double height(const Polynomial& polynomial, const Eigen::Vector2d& xy)
+{
+    return polynomial.coefficients.dot(height_gradient(polynomial, xy));
+}
+
+Eigen::Vector2d slope(const Polynomial& polynomial, const Eigen::Vector2d& xy)
+{
+    const Eigen::Vector2d p = scaled(polynomial, xy);
+    Eigen::Vector2d result = Eigen::Vector2d::Zero();
+    for_monomials(degree(polynomial), [&](Eigen::Index k, int i, int j) {
+        const double c = polynomial.coefficients[k];
+        if (i > 0) result[0] += c * i * std::pow(p[0], i - 1) * std::pow(p[1], j);
+        if (j > 0) result[1] += c * j * std::pow(p[0], i) * std::pow(p[1], j - 1);
+    });
+    return result / polynomial.scale;
+}
+
+Eigen::VectorXd height_gradient(const Polynomial& polynomial, const Eigen::Vector2d& xy)
+{
+    const Eigen::Vector2d p = scaled(polynomial, xy);
+    Eigen::VectorXd gradient(polynomial.coefficients.size());
+    for_monomials(degree(polynomial),
+                  [&](Eigen::Index k, int i, int j) { gradient[k] = std::pow(p[0], i) * std::pow(p[1], j); });
+    return gradient;
+}
+
+Eigen::VectorXi parameter_powers(const Polynomial& polynomial)
+{
+    return Eigen::VectorXi::Ones(polynomial.coefficients.size());
+}
+
+} // namespace fettle
