@@ -31,7 +31,7 @@ for points in line same; do
     for method in bspline sphere cylinder; do
         "$refuses" "$points.pcd: touches lie on one line in x and y" fettle-fit job.json $points.pcd --method $method
     done
-    "$refuses" "$points.pcd: touches do not determine a swept surface" fettle-fit job.json $points.pcd --method swept
+    "$refuses" "$points.pcd: touches lie on one line in x and y" fettle-fit job.json $points.pcd --method swept
 done
 printf '1 0 0\n0 1 0\n-1 0 0\n0 -1 0\n0.6 0.8 0\n0.8 -0.6 0\n' | pcd x y z >circle.pcd
 "$refuses" 'circle.pcd: touches do not determine a sphere' fettle-fit job.json circle.pcd --method sphere
