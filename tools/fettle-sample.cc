@@ -131,7 +131,9 @@ int main(int argc, char** argv)
                      Range::at_least(0)),
             t.choice("--fit", "griddata", {"griddata", "bspline-wang"},
                      "Hillclimb: the method whose error band inside the anomaly is lowered"),
-            t.count("--mutations", 1000, "Hillclimb: random changes tried in each phase", 0, kMostMutations),
+            t.count("--mutations", 500,
+                    "Hillclimb: random changes tried before places are discarded; ten times as many after", 0,
+                    kMostMutations),
             t.number_if_given("--sharpness", "K",
                               "Hillclimb: a discard that widens the band by d is accepted with exp(-K d) "
                               "[ln 100 / the probe's accuracy]",

@@ -38,7 +38,7 @@ class Climber {
         if (options_.touches > 0) {
             chosen_best_ = inside_;
             best_ = current_;
-            for (int i = 0; i < options_.mutations; ++i) exchange();
+            for (int i = 0; i < kExchanges * options_.mutations; ++i) exchange();
             inside_ = chosen_best_;
             current_ = best_;
         }

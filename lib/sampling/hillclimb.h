@@ -25,9 +25,12 @@ Eigen::Matrix2Xd candidate_touches(const Job& job, double spacing);
 /// Infinite for a subset that makes no surface. It must not depend on anything else.
 using SubsetError = std::function<double(const std::vector<Eigen::Index>&)>;
 
+/// With few touches an evaluation costs so much less, and needs so many more.
+constexpr int kExchanges = 10;
+
 struct HillClimb {
     Eigen::Index touches = 0; ///< to be left; 0: as few as the discards leave
-    int mutations = 1000;     ///< in each phase of mutations
+    int mutations = 1000;     ///< before the discards; kExchanges times as many after them, if a number is wanted
     double sharpness = 0;     ///< k, 1/mm: a discard that costs d more than the best error is accepted with exp(-k d)
     std::uint64_t seed = 1;
 };

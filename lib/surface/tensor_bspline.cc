@@ -24,8 +24,8 @@ constexpr double kSamePlace = 1e-4;
 constexpr double kOnALine = 1e-6;
 // Of the energy against the equations, both scaled to the same trace, and how often the remainder is fitted again
 // (iterated regularisation): directions that the points determine better than the weight converge to least squares.
-constexpr double kEnergyWeight = 1e-6;
-constexpr int kIterations = 6;
+constexpr double kEnergyWeight = 1e-4;
+constexpr int kIterations = 10;
 constexpr double kEdge = 1e-9; // of the domain: rounding of a point on the rectangle's edge does not put it outside
 
 Eigen::Index degree_of(const Eigen::VectorXd& knots, Eigen::Index control) { return knots.size() - control - 1; }

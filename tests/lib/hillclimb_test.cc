@@ -58,7 +58,7 @@ HillClimb options(Eigen::Index touches, std::uint64_t seed = 1)
 {
     HillClimb result;
     result.touches = touches;
-    result.mutations = 200;
+    result.mutations = 30;
     result.sharpness = 50;
     result.seed = seed;
     return result;
@@ -168,7 +168,7 @@ TEST(HillClimb, FindsTheOptimumOfFewCandidates)
     ASSERT_TRUE(std::isfinite(least));
     for (const std::uint64_t seed : {1U, 2U, 3U, 4U, 5U}) {
         HillClimb settings = options(6, seed);
-        settings.mutations = 1000;
+        settings.mutations = 100;
         settings.sharpness = 3;
         const HillClimbed found = hill_climb(count, griddata_band(all, 20), settings);
         EXPECT_DOUBLE_EQ(found.error, least) << seed;
