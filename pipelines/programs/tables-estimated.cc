@@ -1,0 +1,203 @@
+// What the estimated points bring (Wang 2007, Table 4-3 and figure 4-8) and the simple strategy (right half of Table
+// 4-5).
+
+#include "cli/tool.h"
+#include "core/error.h"
+#include "fit/griddata.h"
+#include "job/boundary.h"
+#include "margin/anomaly_grid.h"
+#include "margin/error_band.h"
+#include "sampling/estimate.h"
+#include "sampling/freeform.h"
+#include "tables.h"
+
+#include <unsupported/Eigen/Splines>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <optional>
+#include <ostream>
+#include <sstream>
+#include <vector>
+
+using namespace fettle;
+using namespace fettle::study;
+
+namespace {
+
+/// Error band inside B of the modified griddata through touches and estimated points, in. Where their hull does not
+/// hold B, it is that of the part inside, since the paper's Matlab leaves NaN out of max and min.
+double griddata_band_of(const Job& job, const Height& truth, const Eigen::Matrix3Xd& touches,
+                        const Eigen::Matrix3Xd& estimated)
+{
+    FitInput input;
+    input.job = job;
+    input.xyz.resize(3, touches.cols() + estimated.cols());
+    input.xyz << touches, estimated;
+    input.roles = Eigen::VectorXi::Ones(input.xyz.cols());
+    const Surface surface = fit_griddata(input).surface;
+    const Eigen::Matrix2Xd inside = anomaly_grid(job, kPlacesAcross);
+    const Eigen::VectorXd errors = fettle::heights(surface, inside) - study::heights(truth, inside);
+    return error_band(errors.unaryExpr([](double error) { return std::isnan(error) ? 0 : error; })) / kInch;
+}
+
+/// The simple strategy with so many lines each way.
+double simple_band(const Job& job, const Height& truth, const LineCount& lines, std::uint64_t seed)
+{
+    const TouchPlan plan = plan_freeform(job, lines);
+    const Eigen::Matrix3Xd touches = touch(truth, plan.xy, seed);
+    return griddata_band_of(job, truth, touches, estimated_points(job, touches, plan.curve, plan.role));
+}
+
+// --- Table 4-3: any number of points on each curve, drawn on either side of the anomaly ---
+
+struct Curve {
+    Eigen::VectorXd along, z; ///< ascending
+};
+
+/// The interpolating cubic spline, at t.
+double spline_at(const Curve& curve, double t)
+{
+    using Spline = Eigen::Spline<double, 1>;
+    const double first = curve.along[0], length = curve.along[curve.along.size() - 1] - first;
+    const Eigen::RowVectorXd parameters = (curve.along.array() - first).transpose() / length;
+    return Eigen::SplineFitting<Spline>::Interpolate(curve.z.transpose(), 3, parameters)((t - first) / length)[0];
+}
+
+/// @param across  number of curves in each set   @param points  on each curve
+double drawn_band(const Job& job, const Height& truth, int across, int points, std::uint64_t seed)
+{
+    Random random(seed);
+    const Boundaries both = boundaries(job);
+    const Eigen::Vector2d least = both.anomaly.rowwise().minCoeff(), most = both.anomaly.rowwise().maxCoeff();
+    std::vector<Eigen::Vector3d> touches;
+    std::array<std::vector<Curve>, 2> sets; // set k: curves along axis k
+    const auto offset = [&](int axis, int i) { return std::lerp(least[axis], most[axis], (i + 1) / (across + 1.0)); };
+    for (int axis = 0; axis < 2; ++axis)
+        for (int i = 0; i < across; ++i) {
+            Eigen::Vector2d origin = Eigen::Vector2d::Zero();
+            origin[1 - axis] = offset(1 - axis, i);
+            const Crossings t = *crossings_around(both, origin, Eigen::Vector2d::Unit(axis), 0);
+            Curve curve{Eigen::VectorXd(points), Eigen::VectorXd(points)};
+            // One in each of equal parts of a side: two that lie next to each other make a wild cubic.
+            const int half = points / 2;
+            for (int k = 0; k < points; ++k) {
+                const double from = k < half ? t[0] : t[2], to = k < half ? t[1] : t[3];
+                curve.along[k] = from + (to - from) * (k % half + random.uniform(0, 1)) / half;
+            }
+            Eigen::Matrix2Xd xy = origin.replicate(1, points);
+            xy.row(axis) = curve.along.transpose();
+            const Eigen::Matrix3Xd touched = touch(truth, xy, seed_of(seed, touches.size() + 1));
+            curve.z = touched.row(2);
+            for (const Eigen::Vector3d& point : touched.colwise()) touches.push_back(point);
+            sets[static_cast<std::size_t>(axis)].push_back(std::move(curve));
+        }
+    Eigen::Matrix3Xd all(3, static_cast<Eigen::Index>(touches.size())), estimated(3, across * across);
+    for (std::size_t i = 0; i < touches.size(); ++i) all.col(static_cast<Eigen::Index>(i)) = touches[i];
+    Eigen::Index next = 0;
+    for (int i = 0; i < across; ++i)
+        for (int k = 0; k < across; ++k) {
+            const double x = offset(0, i), y = offset(1, k);
+            const double z = (spline_at(sets[1][static_cast<std::size_t>(i)], y) +
+                              spline_at(sets[0][static_cast<std::size_t>(k)], x)) /
+                             2;
+            estimated.col(next++) << x, y, z;
+        }
+    return griddata_band_of(job, truth, all, estimated);
+}
+
+// --- figure 4-8: the least number of estimated points within the tolerance ---
+
+constexpr double kTolerance = 0.1;                                 // in
+constexpr int kMostCurves = 15;                                    // 60 touches
+constexpr std::array<double, 5> kSides = {1, 3.25, 5.5, 7.75, 10}; // in
+
+/// Hollow along x, arched along y, with the same curvature at the middle, 1/in.
+Height saddle(double curvature)
+{
+    return [=](const Eigen::Vector2d& xy) { return curvature / kInch * (xy.x() * xy.x() - xy.y() * xy.y()) / 2; };
+}
+
+/// Wang 2007, eq. 4-4: the curves for n estimated points.
+LineCount lines_for(int n, double a, double b)
+{
+    constexpr double kBeforeCeiling = 1e-9;
+    const auto up = [](double x) { return static_cast<int>(std::ceil(x - kBeforeCeiling)); };
+    const int n_a = std::max(1, up(std::sqrt(n * a / b)));
+    return {n_a, std::max(1, up(n_a * b / a))};
+}
+
+/// Nothing if no number of curves that may be touched suffices.
+std::optional<int> least_number(double a, double b, double distance, const Height& surface, std::uint64_t seed)
+{
+    Job job;
+    const Eigen::Vector2d half = Eigen::Vector2d(a, b) * kInch / 2;
+    const Eigen::Vector2d outer = half.array() + distance * kInch;
+    job.anomaly = rectangle(-half, half);
+    job.sampling = rectangle(-outer, outer);
+    int tried = 0;
+    for (int n = 1; n <= kMostCurves * kMostCurves / 4; ++n) {
+        const LineCount lines = lines_for(n, a, b);
+        const int number = lines.across_a * lines.across_b;
+        if (number == tried) continue;
+        if (lines.across_a + lines.across_b > kMostCurves) continue;
+        tried = number;
+        if (simple_band(job, surface, lines, seed) <= kTolerance) return number;
+    }
+    return {};
+}
+
+/// One line of the figure: a radius of curvature, in.
+void figure_4_8(std::ostream& out, double radius, std::uint64_t seed)
+{
+    std::uint64_t trial = 0;
+    for (const double a : kSides)
+        for (const double b : kSides)
+            for (const double distance : kSides) {
+                const std::optional<int> number =
+                    least_number(a, b, distance, saddle(1 / radius), seed_of(seed, ++trial));
+                std::ostringstream name;
+                name << "4-8/" << radius << '/' << a * b;
+                if (!number) name << "/none";
+                write(out, name.str(), number.value_or(1));
+            }
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+    return tool_main(argc, argv, "What the estimated points bring.", [](Tool& t) {
+        const std::string& what = t.word("WHAT", {"4-3", "4-5", "4-8"}, "Table or figure");
+        const std::string& job_file = t.text("--job", "", "JOB", "Job, JSON");
+        const std::string& patch = t.text("--patch", "", "PATCH", "The surface, JSON");
+        const std::string& name = t.text("--name", "", "NAME", "Before each value of Table 4-5");
+        const int& lines = t.count("--lines", 2, "Each way, Table 4-5", 1, kMostLines);
+        const int& trials = t.count("--trials", 100, "Draws of touches and noise", 1, 1000000);
+        const double& radius =
+            t.number("--radius", 25, "LENGTH", "Figure 4-8: of the saddles' curvature, in", Range::positive());
+        t.parse();
+
+        std::ostream& out = t.output();
+        if (what == "4-8") {
+            figure_4_8(out, radius, t.seed());
+            return Verdict::yes;
+        }
+        const Job job = read_job(job_file);
+        const Height truth = patch_height(patch);
+        for (int trial = 1; trial <= trials; ++trial) {
+            const std::uint64_t seed = seed_of(t.seed(), static_cast<std::uint64_t>(trial));
+            if (what == "4-5") {
+                write(out, name, simple_band(job, truth, {lines, lines}, seed));
+                continue;
+            }
+            for (const int across : {3, 2})
+                for (const int points : {6, 4})
+                    write(out, "4-3/" + std::to_string(across) + "x" + std::to_string(points),
+                          drawn_band(job, truth, across, points, seed));
+        }
+        return Verdict::yes;
+    });
+}
