@@ -28,12 +28,13 @@ struct Judged {
     VectorXd chi;      ///< r/σ
     VectorXd leverage; ///< of the kept: share of a touch's error that its fitted height follows; others: σ(height)²/σ²
     MatrixXd covariance; ///< of θ over σ²
+    Index parameters = 0;
 };
 
 std::optional<Judged> judge(const FamilySolution& solution, const Touched& touched, const Columns& kept)
 {
-    const MatrixXd& G = solution.gradients;
-    if (!G.allFinite()) return std::nullopt;
+    if (!solution.gradients.allFinite()) return std::nullopt;
+    const MatrixXd G = solution.free.size() > 0 ? solution.free.transpose() * solution.gradients : solution.gradients;
     const MatrixXd J = G(Eigen::all, kept).transpose();
     const VectorXd size = J.colwise().norm().cwiseMax(std::numeric_limits<double>::min());
     Eigen::ColPivHouseholderQR<MatrixXd> qr(J * size.cwiseInverse().asDiagonal());
@@ -45,6 +46,8 @@ std::optional<Judged> judge(const FamilySolution& solution, const Touched& touch
     const MatrixXd root = size.cwiseInverse().asDiagonal() * (qr.colsPermutation() * R_inverse);
     Judged judged;
     judged.covariance = root * root.transpose();
+    judged.parameters = p;
+    if (solution.free.size() > 0) judged.covariance = solution.free * judged.covariance * solution.free.transpose();
     judged.leverage = (root.transpose() * G).colwise().squaredNorm();
     judged.chi = (touched.xyz.row(2).transpose() - heights(solution.shape, touched.xyz.topRows(2))) / touched.sigma;
     if (!judged.chi.allFinite()) return std::nullopt;
@@ -196,7 +199,7 @@ std::optional<Fitted> fitted(const std::string& name, const Touched& touched, st
     std::optional<Judged> judged = judge(*solution, touched, kept);
     if (!judged) return std::nullopt;
     const double chi2 = judged->chi(kept).squaredNorm();
-    const double freedom = static_cast<double>(static_cast<Index>(kept.size()) - solution->gradients.rows());
+    const double freedom = static_cast<double>(static_cast<Index>(kept.size()) - judged->parameters);
     iterations += solution->iterations;
     return Fitted{std::move(*solution), std::move(*judged), std::move(is_kept), chi2, freedom, iterations};
 }
@@ -247,7 +250,7 @@ std::optional<Candidate> fit_family(const std::string& name, const Touched& touc
     candidate.freedom = best->freedom;
     candidate.converged = best->solution.converged;
     candidate.iterations = best->iterations;
-    const auto p = static_cast<double>(candidate.covariance.rows());
+    const auto p = static_cast<double>(best->judged.parameters);
     candidate.score = candidate.chi2 + p * std::log(static_cast<double>(n)) +
                       price_of_a_slip(touched.sigma) * static_cast<double>(candidate.gross_errors.size());
     return candidate;

@@ -60,7 +60,7 @@ std::optional<FamilySolution> polynomial(const Touched& touched, const Columns& 
 {
     const std::optional<Polynomial> fitted = fit_polynomial(touched, kept, kDegree);
     if (!fitted) return std::nullopt;
-    return FamilySolution{*fitted, height_gradients(*fitted, touched.xyz.topRows(2)), true, 1};
+    return FamilySolution{*fitted, height_gradients(*fitted, touched.xyz.topRows(2)), {}, true, 1};
 }
 
 std::optional<FamilySolution> plane(const Touched& touched, const Columns& kept)
@@ -68,7 +68,7 @@ std::optional<FamilySolution> plane(const Touched& touched, const Columns& kept)
     const std::optional<Polynomial> fitted = fit_polynomial(touched, kept, 1);
     if (!fitted) return std::nullopt;
     const Plane plane{fitted->origin, fitted->coefficients[0], fitted->coefficients.tail<2>() / fitted->scale};
-    return FamilySolution{plane, height_gradients(plane, touched.xyz.topRows(2)), true, 1};
+    return FamilySolution{plane, height_gradients(plane, touched.xyz.topRows(2)), {}, true, 1};
 }
 
 // --- round families --------------------------------------------------------------------------------------------------
@@ -101,7 +101,9 @@ RoundStart round_start(const Touched& touched, const Columns& kept)
         return Eigen::Vector3d(along.x(), along.y(), slope.dot(along)).normalized();
     };
     axes.col(0) = tangent({std::cos(touched.direction), std::sin(touched.direction)});
-    axes.col(1) = n.cross(axes.col(0));
+    // Tilting such a frame along its first axis, across which it lies level, keeps that axis in its vertical plane.
+    if (touched.given_direction) axes.col(2) = (Eigen::Vector3d::UnitZ() - axes(2, 0) * axes.col(0)).normalized();
+    axes.col(1) = axes.col(2).cross(axes.col(0));
     start.problem.frame.point << frame.origin, c[0];
     start.problem.given_direction = touched.given_direction;
     start.problem.touches = xyz;
@@ -158,6 +160,17 @@ void attempt(RoundFamily family, RoundProblem problem, double angle, double arou
     best = Attempt{std::move(problem), std::move(solution)};
 }
 
+/// Changes of a cylinder's parameters that leave the direction of its axis in x-y: tilting it along turns it, too,
+/// unless its normal is level across.
+MatrixXd along_the_direction(const Cylinder& cylinder)
+{
+    const Eigen::Vector3d level = Eigen::Vector3d(-cylinder.axis.y(), cylinder.axis.x(), 0);
+    MatrixXd free = MatrixXd::Zero(5, 4);
+    free(0, 0) = free(1, 1) = free(2, 2) = free(4, 3) = 1;
+    free(3, 2) = -cylinder.normal.dot(level) / cylinder.axis.cross(cylinder.normal).dot(level);
+    return free;
+}
+
 template <RoundFamily kFamily>
 std::optional<FamilySolution> round(const Touched& touched, const Columns& kept)
 {
@@ -174,7 +187,7 @@ std::optional<FamilySolution> round(const Touched& touched, const Columns& kept)
         const double across = kFamily == RoundFamily::torus ? start.most : 0;
         attempt(kFamily, start.problem, 0, start.most, along, best, iterations);
         if (!touched.given_direction) attempt(kFamily, start.problem, kQuarter, start.least, across, best, iterations);
-        if (!start.known)
+        if (!start.known && !touched.given_direction)
             for (const double angle : {kQuarter / 2, 1.5 * kQuarter})
                 attempt(kFamily, start.problem, angle, start.most, along, best, iterations);
     }
@@ -189,6 +202,8 @@ std::optional<FamilySolution> round(const Touched& touched, const Columns& kept)
         result.shape);
     if (!up) return std::nullopt;
     result.gradients = height_gradients(result.shape, touched.xyz.topRows(2));
+    if (const Cylinder* cylinder = std::get_if<Cylinder>(&result.shape); cylinder != nullptr && touched.given_direction)
+        result.free = along_the_direction(*cylinder);
     result.converged = best->solution.converged;
     result.iterations = iterations;
     return result;
@@ -213,7 +228,7 @@ std::optional<FamilySolution> swept(const Touched& touched, const Columns& kept)
     if (!theta) return std::nullopt;
     swept.section = theta->head<4>();
     swept.slope = (*theta)[4];
-    return FamilySolution{swept, std::move(gradients), true, 1};
+    return FamilySolution{swept, std::move(gradients), {}, true, 1};
 }
 
 using Solver = std::optional<FamilySolution> (*)(const Touched&, const Columns& kept);

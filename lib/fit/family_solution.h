@@ -24,6 +24,7 @@ struct Touched {
 struct FamilySolution {
     Shape shape;
     Eigen::MatrixXd gradients; ///< ∂z/∂θ at all touches, columns
+    Eigen::MatrixXd free;      ///< directions in which θ may change, columns; empty: all
     bool converged = true;
     int iterations = 0;
 };

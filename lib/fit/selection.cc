@@ -17,12 +17,12 @@ namespace {
 constexpr double kLeastWeight = 1e-3;
 
 /// −2 ln of how rare a family is beforehand. Castings are mostly planes, cylinders, spheres and what bends like a
-/// quadratic; cones, tori and surfaces of changing curvature count as five times rarer. Without it, sixteen touches
-/// follow their own noise into one of those in one case of twenty.
+/// quadratic; cones, tori and surfaces (sections) of changing curvature count as five times rarer. Without it, sixteen
+/// touches follow their own noise into one of those in one case of twenty.
 double rarity(const std::string& family)
 {
     constexpr double kRarer = 5;
-    return family == "cone" || family == "torus" || family == "cubic" ? 2 * std::log(kRarer) : 0;
+    return family == "cone" || family == "torus" || family == "cubic" || family == "swept" ? 2 * std::log(kRarer) : 0;
 }
 
 std::vector<std::string> names_for(SurfaceType type)

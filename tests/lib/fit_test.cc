@@ -187,6 +187,35 @@ TEST(Auto, TakesTheFamilyOfTheTouches)
     }
 }
 
+// Swept jobs: a circular section is straight along the job's direction, and its sigma knows that.
+TEST(Auto, KeepsTheDirectionOfSweptJobs)
+{
+    Job job = job_with(0.127, 0.2);
+    job.surface = SurfaceType::swept;
+    job.direction = 0.3;
+    const Eigen::Vector3d along(std::cos(0.5), std::sin(0.5), 0.2);
+    const Cylinder cylinder = cylinder_about({3, 40, -60}, along, 4 * kInch, true); // touched on its flank
+    FitInput input = touched(
+        wang_layout(), [&](double x, double y) { return height_of(cylinder, x, y); }, job);
+    std::mt19937 random(4);
+    std::normal_distribution<double> noise(0, touch_sigma(job.probe));
+    const Surface exact = fit_surface(input, "cylinder").surface;
+    EXPECT_LT(largest_error(
+                  exact, [&](double x, double y) { return height_of(cylinder, x, y); }, kInch),
+              1e-6);
+    constexpr int kRuns = 300;
+    double squares = 0;
+    for (int run = 0; run < kRuns; ++run) {
+        FitInput noisy = input;
+        for (Eigen::Index i = 0; i < noisy.xyz.cols(); ++i) noisy.xyz(2, i) += noise(random);
+        const Surface surface = fit_surface(noisy, "cylinder").surface;
+        const Eigen::Vector3d axis = std::get<Cylinder>(surface.shape).axis;
+        EXPECT_NEAR(std::atan2(axis.y(), axis.x()), 0.5, 1e-12);
+        squares += std::pow(height(surface, {20, -20}) - height_of(cylinder, 20, -20), 2);
+    }
+    EXPECT_NEAR(std::sqrt(squares / kRuns) / sigma(exact, {20, -20}), 1, 3 / std::sqrt(2.0 * kRuns));
+}
+
 TEST(Auto, TakesASmoothResidualWhereNoFamilyExplainsTheTouches)
 {
     const auto truth = [](double x, double y) {
