@@ -80,4 +80,4 @@ $(TABLES)/figures.png: $(TABLES)/values.txt $(B)/study/tables-chart
 	@$(B)/study/tables-chart $< -o $@
 
 $(TABLES)/figure-4-4-%.png: $(TABLES)/waves.txt $(B)/bin/fettle-render
-	@$(B)/bin/fettle-render $(@D)/$*.pcd --scale 0.03 --within $(call job,concave_2x2) --title "errors of griddata, $* resampling" -o $@
+	@$(B)/bin/fettle-render $(@D)/$*.pcd --field z --within $(call job,concave_2x2) --title "griddata, $* resampling" -o $@

@@ -4,12 +4,14 @@
 #include "core/text.h"
 #include "job/boundary.h"
 #include "job/plausible.h"
+#include "margin/adaptive.h"
 #include "margin/known_band.h"
 #include "sampling/freeform.h"
 #include "sampling/order.h"
 #include "sampling/probe.h"
 
 #include <cmath>
+#include <numeric>
 
 using namespace fettle;
 
@@ -95,6 +97,25 @@ TouchPlan climb(Tool& t, const std::string& part, const Scan& surface, const Job
     }
 }
 
+// Touches where the fit learns most, and warns of places where nothing was found.
+AdaptiveTouches adapt(Tool& t, const std::string& part, const Scan& scan, const Job& job, const TouchNoise& noise,
+                      int most)
+{
+    AdaptiveLimits limits;
+    limits.most_touches = most;
+    limits.band = job.tolerance;
+    const auto touch = [&](const TouchPlan& plan) { return probe(scan, job, plan, noise, t.seed()); };
+    AdaptiveTouches found = touch_adaptively(job, limits, touch);
+    for (const Eigen::Vector2d& xy : found.unreachable)
+        t.warn(display_name(part) + ": no surface at " + place(xy, job.units) + "; touched elsewhere");
+    const double band = found.band[found.band.size() - 1] / job.units.mm();
+    t.report().set("predicted_band", band).set("within_tolerance", found.enough);
+    if (!found.enough)
+        t.warn(std::to_string(most) + " touches leave a predicted error band of " + to_short_text(band) +
+               ", more than the tolerance " + to_short_text(job.tolerance / job.units.mm()));
+    return found;
+}
+
 Cloud samples_in_order(const Eigen::Matrix3Xd& touches, const TouchPlan& plan, const std::vector<Eigen::Index>& order)
 {
     Cloud samples;
@@ -102,6 +123,13 @@ Cloud samples_in_order(const Eigen::Matrix3Xd& touches, const TouchPlan& plan, c
     set_field(samples, "curve", plan.curve(order).cast<double>());
     set_field(samples, "role", plan.role(order).cast<double>());
     return samples;
+}
+
+std::vector<Eigen::Index> as_planned(const Eigen::Matrix3Xd& touches)
+{
+    std::vector<Eigen::Index> order(static_cast<std::size_t>(touches.cols()));
+    std::iota(order.begin(), order.end(), Eigen::Index{0});
+    return order;
 }
 
 } // namespace
@@ -122,9 +150,13 @@ int main(int argc, char** argv)
                                             Range::at_least(0));
         const int& lines = t.count("--lines", 0, "Free-form jobs: so many lines each way; 0: as many as Wang's eq. 4-5",
                                    0, kMostLines);
-        const std::string& strategy = t.choice("--strategy", "wang", {"wang", "hillclimb"},
-                                               "wang: by his rules; hillclimb: by his Appendix A the best of many "
-                                               "places, for a SURFACE that is known beneath the anomaly, too");
+        const std::string& strategy =
+            t.choice("--strategy", "wang", {"wang", "adaptive", "hillclimb"},
+                     "wang: by his rules; adaptive: one after the other, each where it lowers "
+                     "the predicted error band most, until that meets the job's tolerance; "
+                     "hillclimb: by his Appendix A the best of many places, for a SURFACE that "
+                     "is known beneath the anomaly, too");
+        const int& most_touches = t.count("--max-touches", 60, "Adaptive: no more than so many", 6, kMostTouches);
         const ClimbOptions climbing = {
             t.count("--touches", 0, "Hillclimb: how many; 0: as many as wang takes", 0, kMostTouches),
             t.number("--candidates", 0, "LENGTH", "Hillclimb: spacing of the places; 0: about a thousand places",
@@ -154,7 +186,12 @@ int main(int argc, char** argv)
         std::optional<Scan> scan;
         if (!part.empty() && (!plan_only || strategy != "wang")) scan.emplace(read_scan(part, job.units, part_unit));
         TouchPlan plan;
-        if (strategy == "hillclimb") {
+        std::optional<AdaptiveTouches> adapted;
+        if (strategy == "adaptive") {
+            if (!scan || plan_only) throw InputError("--strategy adaptive needs a part to touch: --on SURFACE");
+            adapted = adapt(t, part, *scan, job, noise, most_touches);
+            plan = adapted->plan;
+        } else if (strategy == "hillclimb") {
             check_climb(display_name(job_file), job, lines, scan.has_value());
             plan = climb(t, part, *scan, job, climbing);
         } else {
@@ -163,12 +200,15 @@ int main(int argc, char** argv)
             plan = lines > 0 ? plan_freeform(job, LineCount{lines, lines}) : plan_touches(job);
         }
         Eigen::Matrix3Xd touches = untouched(plan);
-        if (scan && !plan_only) {
+        if (adapted) {
+            touches = adapted->touches;
+        } else if (scan && !plan_only) {
             touches = probe_part(t, part, *scan, job, plan, noise);
         } else if (!plan_only && touches.row(2).hasNaN()) {
             throw InputError(display_name(job_file), "touch points without z: name the part to touch, --on SURFACE");
         }
-        const std::vector<Eigen::Index> order = short_way(touches.topRows<2>());
+        // Adaptive touches have been made in their order already.
+        const std::vector<Eigen::Index> order = adapted ? as_planned(touches) : short_way(touches.topRows<2>());
         const double highest = touches.row(2).maxCoeff<Eigen::PropagateNumbers>();
         if (highest > job.safe_height)
             t.warn("safe_height " + to_short_text(job.safe_height / mm) + " is below a touch at z " +
@@ -179,7 +219,8 @@ int main(int argc, char** argv)
             .set("probing_time", probing_time(touches, order, job.safe_height))
             .set("path_length", way_length(touches.topRows<2>(), order) / mm)
             .set("tip_radius", job.probe.tip_radius / mm);
-        t.note(std::to_string(plan.size()) + " touches on " + std::to_string(plan.curve.maxCoeff() + 1) + " lines");
+        t.note(std::to_string(plan.size()) + " touches" +
+               (adapted ? "" : " on " + std::to_string(plan.curve.maxCoeff() + 1) + " lines"));
         write_pcd(t.output(), samples_in_order(touches, plan, order), job.units,
                   ascii ? PcdEncoding::ascii : PcdEncoding::binary);
         return Verdict::yes;

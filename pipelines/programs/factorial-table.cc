@@ -11,7 +11,6 @@
 #include <cstdio>
 #include <functional>
 #include <ostream>
-#include <tuple>
 
 using namespace fettle;
 using namespace factorial;
@@ -62,7 +61,7 @@ void print_methods(std::ostream& out, const Study& study)
            "anomaly over which there is one, which the band is about; limit: the band that the least squares fit of "
            "the\n"
            "true family has, the median over its noise\n\n"
-           "surface         method              none covered   median    90 %  / Wang's / limit    90 %   worst\n";
+           "surface         method              none covered   median    90 % / Wang's  / limit    90 %   worst\n";
     for (const auto& [surface, cells] : study.surfaces) {
         const std::string& own = kinds().at(surface).method;
         for (const std::string& method : study.methods) {
@@ -156,16 +155,13 @@ Pairs pairs(const Cells& cells, const std::function<bool(const Cell&, const Cell
     return found;
 }
 
-/// How a quantity changes from the first to the second cell of the pairs: the ratio of its medians. (A ratio for each
-/// pair would say nothing of shifts, which may be near 0.)
+/// How a quantity changes from the first to the second cell: the median ratio.
 double influence(const Pairs& pairs, const std::string& method, Quantity quantity)
 {
-    std::vector<double> first, second;
-    for (const auto& [less, more] : pairs) {
-        first.push_back(less->error(method, quantity));
-        second.push_back(more->error(method, quantity));
-    }
-    return median(second) / median(first);
+    std::vector<double> changes;
+    for (const auto& [less, more] : pairs)
+        changes.push_back(more->error(method, quantity) / less->error(method, quantity));
+    return median(changes);
 }
 
 void print_observations(std::ostream& out, const Study& study)
@@ -211,29 +207,6 @@ void print_observations(std::ostream& out, const Study& study)
                 out << number(influence(found, method, band), 20, 2) << number(influence(found, method, shift), 9, 2);
             out << "\n";
         }
-    }
-}
-
-/// The cells to look at first: `factorial SURFACE RADIUS` computes them, their number is in its output.
-void print_worst(std::ostream& out, const Study& study)
-{
-    constexpr std::size_t kShown = 5;
-    std::vector<std::tuple<double, std::string, const Cell*>> rows;
-    for (const auto& [surface, cells] : study.surfaces)
-        for (const Cell& cell : cells)
-            if (const double ratio = cell.error("auto", band) / cell.limit; !std::isnan(ratio))
-                rows.emplace_back(ratio, surface, &cell);
-    const std::size_t shown = std::min(kShown, rows.size());
-    std::partial_sort(rows.begin(), rows.begin() + static_cast<std::ptrdiff_t>(shown), rows.end(),
-                      [](const auto& a, const auto& b) { return std::get<0>(a) > std::get<0>(b); });
-    out << "\nauto: the widest bands beside the limit\n   cell   surface         radius  width  length  distance  "
-           "touches  band, mil  / limit\n";
-    for (std::size_t i = 0; i < shown; ++i) {
-        const auto& [ratio, surface, cell] = rows[i];
-        out << number(cell->number, 7, 0) << "   " << left(surface, 15) << number(cell->radius, 7, 0)
-            << number(cell->width, 7, 2) << number(cell->length, 8, 2) << number(cell->distance, 10, 2)
-            << number(cell->touches, 9, 0) << number(cell->error("auto", band) / kMil, 11, 2) << number(ratio, 9, 1)
-            << "\n";
     }
 }
 
@@ -301,7 +274,6 @@ int main(int argc, char** argv)
         print_methods(t.output(), study);
         print_regressions(t.output(), study);
         print_observations(t.output(), study);
-        print_worst(t.output(), study);
         return judge(t.output(), study) ? Verdict::yes : Verdict::no;
     });
 }

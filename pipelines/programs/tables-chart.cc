@@ -45,9 +45,9 @@ Chart strips(const Values& values)
     constexpr double kStrip = 0.25;
     for (const std::string& name : kCases) {
         std::vector<std::pair<double, double>> shares;
-        for (int i = 0; values.contains("best/" + name + "/strip" + std::to_string(i)); ++i)
+        for (int i = 0; values.contains("climb/" + name + "/strip" + std::to_string(i)); ++i)
             shares.emplace_back((i + 0.5) * kStrip,
-                                mean(measured(values, "best/" + name + "/strip" + std::to_string(i))));
+                                mean(measured(values, "climb/" + name + "/strip" + std::to_string(i))));
         add(chart, name, shares);
     }
     return chart;

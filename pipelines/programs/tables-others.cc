@@ -3,8 +3,8 @@
 // form.
 
 #include "cli/tool.h"
+#include "fit/family.h"
 #include "fit/griddata.h"
-#include "fit/swept.h"
 #include "margin/anomaly_grid.h"
 #include "margin/error_band.h"
 #include "margin/regression.h"
@@ -92,7 +92,7 @@ void compare(const Kind& kind, std::size_t which, std::uint64_t seed, std::ostre
         input.xyz.rightCols(estimated.cols()) = estimated;
         input.roles = Eigen::VectorXi::Constant(input.xyz.cols(), static_cast<int>(Role::near_anomaly));
     }
-    const Surface surface = swept ? fit_swept(input).surface : fit_griddata(input).surface;
+    const Surface surface = swept ? fit_family_by_name(input, "swept").surface : fit_griddata(input).surface;
     const Eigen::Matrix2Xd inside = anomaly_grid(input.job, kPlacesAcross);
     const Eigen::VectorXd errors = fettle::heights(surface, inside) - study::heights(truth, inside);
     const Eigen::VectorXd terms = regression_values(kind.regression, touches, input.job);

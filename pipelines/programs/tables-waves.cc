@@ -1,7 +1,6 @@
 // Waviness of griddata before and after it is sampled uniformly and interpolated again (Wang 2007, figure 4-4).
 
 #include "cli/tool.h"
-#include "cloud/fields.h"
 #include "cloud/pcd.h"
 #include "job/boundary.h"
 #include "margin/anomaly_grid.h"
@@ -69,13 +68,11 @@ double waviness(const Sheet& sheet, const Eigen::VectorXd& errors, const Polygon
     return std::sqrt(squares / count);
 }
 
-void draw_errors(std::ostream& out, const Sheet& sheet, const Eigen::VectorXd& z, const Eigen::VectorXd& errors,
-                 const Units& units)
+void draw_surface(std::ostream& out, const Sheet& sheet, const Eigen::VectorXd& z, const Units& units)
 {
     Cloud cloud;
     cloud.xyz.resize(3, sheet.xy.cols());
     cloud.xyz << sheet.xy, z.transpose();
-    set_field(cloud, "error", errors / units.mm());
     write_pcd(out, cloud, units, PcdEncoding::binary);
 }
 
@@ -89,8 +86,8 @@ int main(int argc, char** argv)
         const int& trials = t.count("--trials", 50, "Scatterings of the points", 1, 100000);
         const double& wavelength = t.number("--wavelength", 1, "LENGTH",
                                             "The shortest that is kept: twice the spacing, in", Range::positive());
-        const std::string& before_file = t.text("--before", "", "FILE", "Errors of the first surface as it was, PCD");
-        const std::string& after_file = t.text("--after", "", "FILE", "Errors of the first surface sampled again, PCD");
+        const std::string& before_file = t.text("--before", "", "FILE", "The first surface as it was, PCD");
+        const std::string& after_file = t.text("--after", "", "FILE", "The first surface sampled again, PCD");
         t.parse();
 
         const Job job = read_job(job_file);
@@ -117,8 +114,8 @@ int main(int argc, char** argv)
             write(t.output(), "4-4/after", after / kInch);
             write(t.output(), "4-4/ratio", after / before);
             if (trial > 1) continue;
-            if (!before_file.empty()) draw_errors(t.output_file(before_file), sheet, once, once - true_z, job.units);
-            if (!after_file.empty()) draw_errors(t.output_file(after_file), sheet, twice, twice - true_z, job.units);
+            if (!before_file.empty()) draw_surface(t.output_file(before_file), sheet, once, job.units);
+            if (!after_file.empty()) draw_surface(t.output_file(after_file), sheet, twice, job.units);
         }
         return Verdict::yes;
     });

@@ -1,0 +1,149 @@
+#include "margin/adaptive.h"
+
+#include "core/error.h"
+#include "fit/fit.h"
+#include "job/boundary.h"
+#include "margin/anomaly_grid.h"
+#include "margin/error_band.h"
+#include "margin/field_draws.h"
+#include "margin/shift.h"
+#include "sampling/freeform.h"
+#include "sampling/noise.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace fettle {
+namespace {
+
+using Truth = double (*)(double, double);
+
+double dome(double x, double y) { return std::sqrt(120.0 * 120 - x * x - y * y); }
+double ripples(double x, double y) { return 2 * std::sin(x / 17) * std::cos(y / 21 + 0.3) + 0.002 * x * x; }
+
+Job square_job()
+{
+    Job job;
+    job.anomaly.resize(3, 4);
+    job.anomaly << -20, 20, 20, -20, -20, -20, 20, 20, 0, 0, 0, 0;
+    job.sampling = 2 * job.anomaly;
+    return job;
+}
+
+/// Touches a surface with the error of touch i drawn for seed; nothing is there where x > hole.
+ProbePlan touching(Truth truth, const Job& job, std::uint64_t seed, double hole = 1e9)
+{
+    return [=](const TouchPlan& plan) {
+        Eigen::Matrix3Xd touches(3, plan.size());
+        const Eigen::VectorXd noise = draw_noise({TouchNoise::Kind::normal, job.probe.accuracy}, plan.size(), seed);
+        for (Eigen::Index i = 0; i < plan.size(); ++i) {
+            const double x = plan.xy(0, i), y = plan.xy(1, i);
+            touches.col(i) << x, y, x > hole ? std::numeric_limits<double>::quiet_NaN() : truth(x, y) + noise[i];
+        }
+        return touches;
+    };
+}
+
+double realised_band(const Job& job, const AdaptiveTouches& found, Truth truth)
+{
+    FitInput input;
+    input.job = job;
+    input.xyz = found.touches;
+    input.roles = found.plan.role;
+    const Surface surface = fit_surface(input, "auto").surface;
+    const Eigen::Matrix2Xd grid = anomaly_grid(job, 12);
+    Eigen::VectorXd errors = heights(surface, grid);
+    for (Eigen::Index i = 0; i < errors.size(); ++i) errors[i] -= truth(grid(0, i), grid(1, i));
+    return error_band(errors);
+}
+
+TEST(Adaptive, TouchesBesideTheAnomalyAndKeepsItsDistance)
+{
+    const Job job = square_job();
+    const Boundaries polygons = boundaries(job);
+    AdaptiveLimits limits;
+    limits.most_touches = 20;
+    limits.distance = 6;
+    const AdaptiveTouches found = touch_adaptively(job, limits, touching(dome, job, 1));
+    ASSERT_EQ(found.plan.size(), 20);
+    for (Eigen::Index i = 0; i < found.plan.size(); ++i) {
+        EXPECT_TRUE(contains(polygons.sampling, found.plan.xy.col(i)));
+        EXPECT_FALSE(contains(polygons.anomaly, found.plan.xy.col(i)));
+        for (Eigen::Index j = 0; j < i; ++j) EXPECT_GT((found.plan.xy.col(i) - found.plan.xy.col(j)).norm(), 6);
+    }
+}
+
+TEST(Adaptive, GoesAroundPlacesWhereNothingIsFound)
+{
+    const Job job = square_job();
+    AdaptiveLimits limits;
+    limits.most_touches = 12;
+    const AdaptiveTouches found = touch_adaptively(job, limits, touching(dome, job, 1, 30));
+    EXPECT_EQ(found.plan.size(), 12);
+    EXPECT_FALSE(found.unreachable.empty());
+    for (const Eigen::Vector2d& place : found.unreachable) EXPECT_GT(place.x(), 30);
+    EXPECT_LE(found.touches.row(0).maxCoeff(), 30);
+    EXPECT_THROW(touch_adaptively(job, limits, touching(dome, job, 1, -50)), InputError); // nothing anywhere
+}
+
+// It stops when the predicted band is small enough, and then the band is: over draws of the touch error.
+TEST(Adaptive, StopsWhenTheBandIsReachedAndItIs)
+{
+    const Job job = square_job();
+    AdaptiveLimits limits;
+    limits.most_touches = 60;
+    limits.band = 0.15;
+    const auto covered = [&](Truth truth, std::uint64_t runs) {
+        int count = 0;
+        for (std::uint64_t seed = 1; seed <= runs; ++seed) {
+            const AdaptiveTouches found = touch_adaptively(job, limits, touching(truth, job, seed));
+            const double predicted = found.band[found.band.size() - 1];
+            EXPECT_EQ(found.enough, predicted <= limits.band);
+            count += realised_band(job, found, truth) <= predicted;
+        }
+        return count;
+    };
+    // 95 %, less three standard errors of 60 runs; stopping prefers lucky draws a little.
+    EXPECT_GE(covered(dome, 60), 51);
+    EXPECT_EQ(covered(ripples, 1), 1); // no family: a process on the way, which takes its time
+}
+
+// The same number of touches is worth more than Wang's layout.
+TEST(Adaptive, BeatsWangsLayout)
+{
+    const Job job = square_job();
+    const TouchPlan wang = plan_freeform(job);
+    AdaptiveLimits limits;
+    limits.most_touches = static_cast<int>(wang.size());
+    std::vector<double> ratio;
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+        const ProbePlan touch = touching(dome, job, seed);
+        AdaptiveTouches layout;
+        layout.plan = wang;
+        layout.touches = touch(wang);
+        ratio.push_back(realised_band(job, touch_adaptively(job, limits, touch), dome) /
+                        realised_band(job, layout, dome));
+    }
+    std::nth_element(ratio.begin(), ratio.begin() + 10, ratio.end());
+    EXPECT_LT(ratio[10], 1.0);
+}
+
+// Fields drawn from a mixture have its mean, 0, and its covariance, within and between.
+TEST(FieldDraws, HaveTheSurfacesVariance)
+{
+    Surface surface;
+    surface.shape = Plane{{0, 0}, 1, {0, 0}};
+    surface.covariance = Eigen::Vector3d(0.04, 0.0001, 0).asDiagonal();
+    surface.weight = 0.75;
+    surface.alternatives = {{"other", 0, 0.25, Plane{{0, 0}, 2, {0, 0}}, Eigen::Vector3d(0.01, 0, 0).asDiagonal()}};
+    const Eigen::Vector2d xy(10, 3);
+    const Eigen::MatrixXd draws = draw_fields(surface, xy, 40000, 1);
+    EXPECT_NEAR(draws.mean(), 0, 1e-3);
+    EXPECT_NEAR(std::sqrt(draws.squaredNorm() / 40000) / sigma(surface, xy), 1, 0.02);
+}
+
+} // namespace
+} // namespace fettle
