@@ -8,6 +8,22 @@
 
 namespace fettle {
 
+namespace {
+
+// In steps of the grid: corners of a finely drawn outline that are nearer together are one place.
+constexpr double kNear = 1.0 / 8;
+
+Polygon thinned(const Polygon& polygon, double least)
+{
+    Polygon kept(2, polygon.cols());
+    Eigen::Index count = 0;
+    for (const Eigen::Vector2d& corner : polygon.colwise())
+        if (count == 0 || (corner - kept.col(count - 1)).norm() >= least) kept.col(count++) = corner;
+    return kept.leftCols(count);
+}
+
+} // namespace
+
 Eigen::Matrix2Xd anomaly_grid(const Job& job, int across)
 {
     const Polygon anomaly = boundaries(job).anomaly;
@@ -15,12 +31,13 @@ Eigen::Matrix2Xd anomaly_grid(const Job& job, int across)
     const Eigen::Vector2d size = anomaly.rowwise().maxCoeff() - least;
     const double step = size.maxCoeff() / across;
 
+    const Polygon corners = thinned(anomaly, kNear * step);
     std::vector<Eigen::Vector2d> points;
-    for (Eigen::Index k = 0; k < anomaly.cols(); ++k) points.push_back(anomaly.col(k));
-    for (Eigen::Index k = 0; k < anomaly.cols(); ++k) {
-        const Eigen::Vector2d side = anomaly.col((k + 1) % anomaly.cols()) - anomaly.col(k);
+    for (Eigen::Index k = 0; k < corners.cols(); ++k) points.push_back(corners.col(k));
+    for (Eigen::Index k = 0; k < corners.cols(); ++k) {
+        const Eigen::Vector2d side = corners.col((k + 1) % corners.cols()) - corners.col(k);
         const double parts = std::ceil(side.norm() / step);
-        for (double i = 1; i < parts; ++i) points.push_back(anomaly.col(k) + i / parts * side);
+        for (double i = 1; i < parts; ++i) points.push_back(corners.col(k) + i / parts * side);
     }
     const Eigen::Vector2d parts = (size / step).array().ceil();
     for (double row = 0.5; row < parts.y(); ++row)

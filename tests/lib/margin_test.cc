@@ -91,6 +91,24 @@ TEST(AnomalyGrid, covers_the_anomaly_and_its_corners)
     EXPECT_LE(grid.cwiseAbs().maxCoeff(), kInch * (1 + 1e-12));
 }
 
+// An outline of very many corners makes no finer grid: as of a square whose sides are cut a thousand times.
+TEST(AnomalyGrid, thins_a_fine_outline)
+{
+    Job job = square_job(SurfaceType::freeform);
+    const Eigen::Matrix2Xd coarse = anomaly_grid(job, 10);
+    const Eigen::Matrix3Xd square = job.anomaly;
+    job.anomaly.resize(3, 4000);
+    for (int k = 0; k < 4; ++k)
+        for (int i = 0; i < 1000; ++i)
+            job.anomaly.col(1000 * k + i) = square.col(k) + i / 1000.0 * (square.col((k + 1) % 4) - square.col(k));
+    const Eigen::Matrix2Xd grid = anomaly_grid(job, 10);
+    EXPECT_LT(grid.cols(), 4 * coarse.cols());
+    double farthest = 0; // of a place on the coarse grid from one on the fine grid
+    for (const Eigen::Vector2d& place : coarse.colwise())
+        farthest = std::max(farthest, (grid.colwise() - place).colwise().norm().minCoeff());
+    EXPECT_LT(farthest, 2 * kInch / 10 / 8);
+}
+
 // Sphere of 25 in, exact touches: the variance is 0, so the regression can be done by hand. The outer touches are 1.5
 // in off the anomaly.
 TEST(Regression, is_wangs_for_spheres)
