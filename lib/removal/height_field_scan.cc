@@ -144,15 +144,21 @@ void require_material(const HeightField& field, const Polygon& B, const Units& u
                                  " % of the anomaly, first at x " + number(place.x()) + ", y " + number(place.y()));
 }
 
+HeightField field_around(const Polygon& B, const Job& job, double cell)
+try {
+    Eigen::Matrix2d box;
+    box << B.rowwise().minCoeff(), B.rowwise().maxCoeff();
+    return empty_height_field(box, {job.wheel.width / 2, job.wheel.radius}, job.theta, cell);
+} catch (const InputError& error) {
+    throw InputError(job.source, error.what());
+}
+
 } // namespace
 
 HeightField height_field(const Scan& scan, const Job& job, double cell, const std::string& source)
 {
     const Polygon B = boundaries(job).anomaly;
-    Eigen::Matrix2d box;
-    box << B.rowwise().minCoeff(), B.rowwise().maxCoeff();
-
-    HeightField field = empty_height_field(box, {job.wheel.width / 2, job.wheel.radius}, job.theta, cell);
+    HeightField field = field_around(B, job, cell);
     if (const Mesh* mesh = scan.mesh())
         lay(field, *mesh);
     else
