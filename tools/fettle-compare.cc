@@ -9,6 +9,7 @@
 #include "core/text.h"
 #include "job/job.h"
 #include "job/plausible.h"
+#include "mesh/mesh.h"
 
 #include <cmath>
 #include <sstream>

@@ -1,57 +1,16 @@
 #include "compare/pseudo_normals.h"
 
+#include "compare/weld.h"
+
 #include <Eigen/Geometry>
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <numeric>
 
 namespace fettle {
-
-namespace {
-
-// Vertices of neighbouring facets that a program rounded to float on its own may differ in their last bits: this many
-// units in the last place of the largest coordinate.
-constexpr double kLastBits = 8;
-
-double float_rounding(const Mesh& mesh)
-{
-    const double largest = mesh.vertices.cwiseAbs().maxCoeff();
-    return kLastBits * static_cast<double>(std::numeric_limits<float>::epsilon()) * largest;
-}
-
-// For each vertex the one with the lowest index among those within `tolerance` of it (and of those, and so on). Sorted
-// along a direction in which no usual grid has ties, near vertices are neighbours in the list.
-std::vector<std::int32_t> weld(const Eigen::Matrix3Xd& vertices, double tolerance)
-{
-    const Eigen::Vector3d odd = Eigen::Vector3d(1, std::numbers::phi, std::numbers::pi).normalized();
-    std::vector<std::pair<double, std::int32_t>> order(static_cast<std::size_t>(vertices.cols()));
-    tbb::parallel_for(std::size_t{0}, order.size(), [&](std::size_t i) {
-        order[i] = {odd.dot(vertices.col(static_cast<Eigen::Index>(i))), static_cast<std::int32_t>(i)};
-    });
-    tbb::parallel_sort(order);
-    std::vector<std::int32_t> lowest(order.size());
-    std::iota(lowest.begin(), lowest.end(), 0);
-    const auto root = [&](std::int32_t v) {
-        while (lowest[static_cast<std::size_t>(v)] != v) v = lowest[static_cast<std::size_t>(v)];
-        return v;
-    };
-    for (std::size_t i = 0; i < order.size(); ++i)
-        for (std::size_t j = i + 1; j < order.size() && order[j].first - order[i].first <= tolerance; ++j) {
-            const std::int32_t a = order[i].second, b = order[j].second;
-            if ((vertices.col(a) - vertices.col(b)).norm() > tolerance) continue;
-            const auto [low, high] = std::minmax({root(a), root(b)});
-            lowest[static_cast<std::size_t>(high)] = low;
-        }
-    for (std::size_t v = 0; v < lowest.size(); ++v) lowest[v] = root(static_cast<std::int32_t>(v));
-    return lowest;
-}
-
-} // namespace
 
 /// What the foot lies on, by its zero barycentric coordinates.
 struct PseudoNormals::Feature {
@@ -59,9 +18,9 @@ struct PseudoNormals::Feature {
     Vertex a = 0, b = 0; ///< of the edge, in the order of the facet; a of the vertex
 };
 
-PseudoNormals::PseudoNormals(const Mesh& mesh) : mesh_(mesh), rounding_(float_rounding(mesh))
+PseudoNormals::PseudoNormals(const Mesh& mesh) : mesh_(mesh), size_(typical_coordinate(mesh.vertices))
 {
-    const std::vector<Vertex> welded = weld(mesh.vertices, rounding_);
+    const std::vector<Vertex> welded = weld(mesh.vertices, [this](const Eigen::Vector3d& v) { return rounding(v); });
     facets_ = mesh.triangles.unaryExpr([&](int v) { return welded[static_cast<std::size_t>(v)]; });
     normals_.resize(3, facets_.cols());
     tbb::parallel_for(Eigen::Index{0}, facets_.cols(), [&](Eigen::Index t) {
@@ -69,7 +28,7 @@ PseudoNormals::PseudoNormals(const Mesh& mesh) : mesh_(mesh), rounding_(float_ro
         const Eigen::Vector3d twice_area = (q - p).cross(r - p);
         const double longest = std::max({(q - p).norm(), (r - q).norm(), (p - r).norm()});
         normals_.col(t).setZero();
-        if (twice_area.norm() > rounding_ * longest) normals_.col(t) = twice_area.normalized();
+        if (twice_area.norm() > rounding(p) * longest) normals_.col(t) = twice_area.normalized();
     });
 
     first_.assign(static_cast<std::size_t>(mesh.vertices.cols()) + 1, 0);
@@ -80,6 +39,11 @@ PseudoNormals::PseudoNormals(const Mesh& mesh) : mesh_(mesh), rounding_(float_ro
     for (Eigen::Index t = 0; t < facets_.cols(); ++t)
         for (int corner = 0; corner < 3; ++corner)
             at_vertex_[static_cast<std::size_t>(next[static_cast<std::size_t>(facets_(corner, t))]++)] = t;
+}
+
+double PseudoNormals::rounding(const Eigen::Vector3d& place) const
+{
+    return float_rounding(std::max(size_, place.cwiseAbs().maxCoeff()));
 }
 
 PseudoNormals::Feature PseudoNormals::feature(const MeshIndex::Closest& foot) const
@@ -109,7 +73,7 @@ bool PseudoNormals::on_edge(Vertex a, Vertex b, const Eigen::Vector3d& point) co
 {
     const Eigen::Vector3d edge = position(b) - position(a);
     const double along = std::clamp(edge.dot(point - position(a)) / edge.squaredNorm(), 0.0, 1.0);
-    return (position(a) + along * edge - point).norm() <= rounding_;
+    return (position(a) + along * edge - point).norm() <= rounding(point);
 }
 
 // Adds the normals of the facets at an edge; of one without a direction, those beyond its other edges at the point.
@@ -134,7 +98,7 @@ std::optional<PseudoNormals::Vertex> PseudoNormals::vertex_amid(Vertex a, Vertex
     for (const Eigen::Index t : facets_at_edge(a, b)) {
         if (!normals_.col(t).isZero(0)) continue;
         for (const Vertex v : facets_.col(t))
-            if (v != a && v != b && (position(v) - point).norm() <= rounding_) return v;
+            if (v != a && v != b && (position(v) - point).norm() <= rounding(point)) return v;
     }
     return std::nullopt;
 }

@@ -27,11 +27,11 @@ class PseudoNormals {
     Eigen::Vector3d facet(Eigen::Index triangle) const { return normals_.col(triangle); }
 
     /// How far `offset` (from the foot to the point) leads beyond an open border, measured in the plane of the facets
-    /// there, mm; 0 if the foot lies on no border. More than rounding(): the mesh says nothing about the point.
+    /// there, mm; 0 if the foot lies on no border. More than rounding() there: the mesh says nothing about the point.
     double beyond_border(const MeshIndex::Closest& foot, const Eigen::Vector3d& offset) const;
 
-    /// Lengths below this are the rounding of float coordinates, mm.
-    double rounding() const { return rounding_; }
+    /// Lengths below this, at a place, are the rounding of float coordinates, mm.
+    double rounding(const Eigen::Vector3d& place) const;
 
   private:
     using Vertex = std::int32_t;
@@ -46,7 +46,7 @@ class PseudoNormals {
     bool on_edge(Vertex a, Vertex b, const Eigen::Vector3d& point) const;
 
     const Mesh& mesh_;
-    double rounding_ = 0;
+    double size_ = 0;                     ///< how far from the origin the mesh lies: the median of its vertices, mm
     Eigen::Matrix3Xi facets_;             ///< welded vertices
     Eigen::Matrix3Xd normals_;            ///< of the facets; zero without a direction
     std::vector<Eigen::Index> first_;     ///< vertex -> its first entry in at_vertex_

@@ -122,7 +122,8 @@ Raster rasterise(const View& view, const Eigen::Matrix2Xd& xy, const Eigen::Vect
 Raster rasterise(const View& view, const Mesh& mesh)
 {
     Raster raster = empty_raster(view);
-    for (const Eigen::Vector3i& corners : mesh.triangles.colwise()) {
+    const Eigen::Matrix3Xi triangles = distinct(mesh.triangles);
+    for (const Eigen::Vector3i& corners : triangles.colwise()) {
         Eigen::Matrix<double, 2, 3> p;
         Eigen::Vector3d z;
         for (int k = 0; k < 3; ++k) {

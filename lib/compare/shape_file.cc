@@ -4,8 +4,6 @@
 #include "core/file.h"
 #include "mesh/mesh_file.h"
 
-#include <limits>
-
 namespace fettle {
 
 ShapeFile read_shape(const std::string& path, const std::optional<Units>& units)
@@ -26,16 +24,6 @@ Cloud points_of(const MeshOrCloud& shape)
     Cloud vertices;
     vertices.xyz = std::get<Mesh>(shape).vertices;
     return vertices;
-}
-
-Eigen::Matrix<double, 3, 2> bounding_box(const Eigen::Matrix3Xd& points)
-{
-    Eigen::Matrix<double, 3, 2> box;
-    box.setConstant(std::numeric_limits<double>::quiet_NaN());
-    for (int k = 0; k < 3 && points.cols() > 0; ++k)
-        box.row(k) << points.row(k).minCoeff<Eigen::PropagateNumbers>(),
-            points.row(k).maxCoeff<Eigen::PropagateNumbers>();
-    return box;
 }
 
 } // namespace fettle

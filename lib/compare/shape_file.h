@@ -4,8 +4,6 @@
 #include "mesh/mesh.h"
 #include "units/units.h"
 
-#include <Eigen/Core>
-
 #include <optional>
 #include <string>
 #include <variant>
@@ -26,9 +24,5 @@ ShapeFile read_shape(const std::string& path, const std::optional<Units>& units)
 
 /// A mesh's vertices, or the cloud with all its fields.
 Cloud points_of(const MeshOrCloud& shape);
-
-/// Smallest box: column 0 is the least corner, column 1 the greatest; NaN points do not count, without points it is
-/// NaN.
-Eigen::Matrix<double, 3, 2> bounding_box(const Eigen::Matrix3Xd& points);
 
 } // namespace fettle

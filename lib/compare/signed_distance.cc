@@ -26,7 +26,10 @@ struct Measured {
 /// What a mesh says about one point.
 class MeshReference {
   public:
-    MeshReference(const Mesh& mesh, const DistanceOptions& options) : options_(options), index_(mesh), normals_(mesh) {}
+    MeshReference(const Mesh& mesh, const DistanceOptions& options)
+        : options_(options), mesh_{mesh.vertices, distinct(mesh.triangles)}, index_(mesh_), normals_(mesh_)
+    {
+    }
 
     Measured operator()(const Eigen::Vector3d& point) const
     {
@@ -39,7 +42,7 @@ class MeshReference {
         const std::optional<MeshIndex::Closest> foot = index_.closest(point, options_.max_distance);
         if (!foot) return {};
         const Eigen::Vector3d offset = point - foot->point;
-        if (normals_.beyond_border(*foot, offset) > normals_.rounding()) return {};
+        if (normals_.beyond_border(*foot, offset) > normals_.rounding(foot->point)) return {};
         const Eigen::Vector3d normal = normals_.normal(*foot);
         if (normal.isZero(0)) return {};
         return {std::copysign(offset.norm(), offset.dot(normal)), normal};
@@ -49,7 +52,7 @@ class MeshReference {
     {
         // Either ray starts a little on the other side of the point, lest one that lies on the surface be missed.
         const Eigen::Vector3d& up = options_.direction;
-        const double start = normals_.rounding();
+        const double start = normals_.rounding(point);
         Measured nearest;
         bool nearest_faces = false;
         for (const double way : {1.0, -1.0}) {
@@ -67,6 +70,7 @@ class MeshReference {
     }
 
     DistanceOptions options_;
+    Mesh mesh_; ///< what stands twice has a border all the same
     MeshIndex index_;
     PseudoNormals normals_;
 };

@@ -19,7 +19,12 @@ struct MeshRepair {
 /// Area-weighted unit normals of the triangles; zero for a triangle without area. 3xT
 Eigen::Matrix3Xd triangle_normals(const Mesh& mesh);
 
-/// Smallest box: column 0 is the least corner, column 1 the greatest. An empty mesh: NaN.
-Eigen::Matrix<double, 3, 2> bounding_box(const Mesh& mesh);
+/// Smallest box: column 0 is the least corner, column 1 the greatest. NaN and infinite points do not count; without
+/// points it is NaN. @param points  3xN
+Eigen::Matrix<double, 3, 2> bounding_box(const Eigen::Matrix3Xd& points);
+
+/// The triangles without those that have the corners of an earlier one and face the same way: thousands of them would
+/// each be looked at for every point. @param triangles  3xT
+Eigen::Matrix3Xi distinct(const Eigen::Matrix3Xi& triangles);
 
 } // namespace fettle

@@ -7,32 +7,15 @@
 #include "sampling/point_surface.h"
 #include "sampling/triangle_grid.h"
 
-#include <limits>
 #include <mutex>
+#include <optional>
 
 namespace fettle {
 
-namespace {
-
-Eigen::Matrix<double, 3, 2> finite_bounds(const Eigen::Matrix3Xd& points)
-{
-    Eigen::Matrix<double, 3, 2> box;
-    box.col(0).setConstant(std::numeric_limits<double>::infinity());
-    box.col(1) = -box.col(0);
-    for (Eigen::Index i = 0; i < points.cols(); ++i)
-        if (points.col(i).allFinite()) {
-            box.col(0) = box.col(0).cwiseMin(points.col(i));
-            box.col(1) = box.col(1).cwiseMax(points.col(i));
-        }
-    return box;
-}
-
-} // namespace
-
 /// Either of points or of triangles.
 struct Scan::State {
-    explicit State(Mesh triangles) : bounds(bounding_box(triangles)), mesh(std::move(triangles)) {}
-    explicit State(const Cloud& cloud) : bounds(finite_bounds(cloud.xyz)), points(std::in_place, cloud.xyz) {}
+    explicit State(Mesh triangles) : bounds(bounding_box(triangles.vertices)), mesh(std::move(triangles)) {}
+    explicit State(const Cloud& cloud) : bounds(bounding_box(cloud.xyz)), points(std::in_place, cloud.xyz) {}
 
     const TriangleGrid& grid() const
     {
@@ -77,7 +60,7 @@ Scan read_scan(const std::string& path, const Units& units, std::optional<Units:
     const Units::Length unit = stated.value_or(units.length);
     if (!looks_like_cloud(bytes)) return Scan(parse_mesh(bytes, source, unit));
     Cloud cloud = parse_cloud(bytes, source, Units{unit, units.force}).cloud;
-    if (!finite_bounds(cloud.xyz).allFinite()) throw InputError(source, "no points");
+    if (!bounding_box(cloud.xyz).allFinite()) throw InputError(source, "no points");
     return Scan(std::move(cloud));
 }
 

@@ -71,7 +71,7 @@ void raise(std::optional<double>& highest, const std::optional<double>& z)
 
 TriangleGrid::TriangleGrid(const Mesh& mesh) : mesh_(mesh)
 {
-    const Eigen::Matrix<double, 3, 2> box = bounding_box(mesh_);
+    const Eigen::Matrix<double, 3, 2> box = bounding_box(mesh_.vertices);
     origin_ = box.col(0).head<2>();
     const Vector2d extent = (box.col(1) - box.col(0)).head<2>();
     const double triangles = static_cast<double>(mesh_.triangles.cols());

@@ -215,6 +215,31 @@ TEST(SignedDistance, CracksOfRoundingAreClosed)
     for (Eigen::Index i = 0; i < points.cols(); ++i) EXPECT_NEAR(map.error[i], cube_distance(points.col(i)), 1e-6);
 }
 
+// A stray facet far away does not make one vertex of the cube's.
+TEST(SignedDistance, StrayFacetsDoNotWeld)
+{
+    Mesh mesh = cube();
+    mesh.vertices.conservativeResize(3, 11);
+    mesh.vertices.rightCols(3) << 1e9, 2e9, 1e9, 1e9, 1e9, 2e9, 1e9, 1e9, 1e9;
+    mesh.triangles.conservativeResize(3, 13);
+    mesh.triangles.col(12) << 8, 9, 10;
+    const Eigen::Matrix3Xd points = random_points(2000, 3, 8);
+    const ErrorMap map = signed_distance(points, mesh);
+    for (Eigen::Index i = 0; i < points.cols(); ++i) EXPECT_NEAR(map.error[i], cube_distance(points.col(i)), 1e-12);
+}
+
+// A facet that stands twice has open borders all the same.
+TEST(SignedDistance, NothingBeyondTheBorderOfARepeatedFacet)
+{
+    Mesh mesh = plate();
+    mesh.triangles = mesh.triangles.replicate(1, 2).eval();
+    Eigen::Matrix3Xd points(3, 2);
+    points << 5, 12, 3, 3, 1, 1;
+    const ErrorMap map = signed_distance(points, mesh);
+    EXPECT_EQ(map.error[0], 1);
+    EXPECT_TRUE(std::isnan(map.error[1]));
+}
+
 // A ridge whose two sides share no edge: on one side it is cut in two, and a facet without area fills the gap.
 TEST(SignedDistance, LooksThroughFacetsWithoutArea)
 {

@@ -321,10 +321,31 @@ TEST(Mesh, NormalsAndBox)
     const Eigen::Matrix3Xd normals = triangle_normals(mesh);
     EXPECT_EQ(normals.col(0), Eigen::Vector3d(0, 0, -1));
     EXPECT_NEAR((normals.col(3) - Eigen::Vector3d::Constant(1 / std::sqrt(3))).norm(), 0, 1e-15);
-    EXPECT_EQ(bounding_box(mesh).col(1), Eigen::Vector3d(1, 1, 1));
+    EXPECT_EQ(bounding_box(mesh.vertices).col(1), Eigen::Vector3d(1, 1, 1));
     mesh.vertices.col(3) = mesh.vertices.col(0);
     EXPECT_EQ(triangle_normals(mesh).col(1), Eigen::Vector3d(0, 0, 0));
-    EXPECT_TRUE(bounding_box({Eigen::Matrix3Xd(3, 0), Eigen::Matrix3Xi(3, 0)}).array().isNaN().all());
+}
+
+// A triangle is the same begun at whichever corner; its back is another.
+TEST(Mesh, DistinctTriangles)
+{
+    Eigen::Matrix3Xi triangles(3, 6), once(3, 3);
+    triangles.transpose() << 4, 2, 3, 0, 2, 3, 2, 3, 4, 3, 2, 4, 4, 2, 3, 3, 4, 2;
+    once.transpose() << 4, 2, 3, 0, 2, 3, 3, 2, 4;
+    EXPECT_EQ(distinct(triangles), once);
+    EXPECT_EQ(distinct(Eigen::Matrix3Xi(3, 0)).cols(), 0);
+}
+
+TEST(Mesh, BoxHoldsFinitePoints)
+{
+    constexpr double kNaN = std::numeric_limits<double>::quiet_NaN(), kFar = std::numeric_limits<double>::infinity();
+    Eigen::Matrix3Xd points(3, 4);
+    points << 1, kNaN, 3, 0, //
+        2, 9, 1, -kFar,      //
+        3, 9, 5, 0;
+    EXPECT_EQ(bounding_box(points), (Eigen::Matrix<double, 3, 2>() << 1, 3, 1, 2, 3, 5).finished());
+    EXPECT_TRUE(bounding_box(points.col(3)).array().isNaN().all());
+    EXPECT_TRUE(bounding_box(Eigen::Matrix3Xd(3, 0)).array().isNaN().all());
 }
 
 } // namespace
