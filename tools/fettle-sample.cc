@@ -111,7 +111,7 @@ AdaptiveTouches adapt(Tool& t, const std::string& part, const Scan& scan, const 
     const double band = found.band[found.band.size() - 1] / job.units.mm();
     t.report().set("predicted_band", band).set("within_tolerance", found.enough);
     if (!found.enough)
-        t.warn(std::to_string(most) + " touches leave a predicted error band of " + to_short_text(band) +
+        t.warn(std::to_string(found.plan.size()) + " touches leave a predicted error band of " + to_short_text(band) +
                ", more than the tolerance " + to_short_text(job.tolerance / job.units.mm()));
     return found;
 }

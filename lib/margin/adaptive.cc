@@ -28,6 +28,9 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 // Enough to tell a sphere from a plane; the fit is asked from then on.
 constexpr int kFirst = 8;
+// Touches that must leave the band as small as wanted. Few touches are soon explained by the wrong surface; each of
+// these tests it where it would tell most.
+constexpr int kConfirmations = 4;
 // Places to choose from across the longer side of S; finer ones change a touch's worth by less than its error.
 constexpr int kAcross = 30;
 // Over B: the surface bends between touches that are several of its cells apart.
@@ -146,6 +149,7 @@ AdaptiveTouches touch_adaptively(const Job& job, const AdaptiveLimits& limits, c
     result.plan.xy.resize(2, 0);
     std::vector<double> bands;
     Surface surface;
+    int confirmed = 0;
     while (!places.empty() && result.plan.size() < limits.most_touches && !result.enough) {
         const Index n = result.plan.size();
         const Index chosen = n < kFirst ? farthest(places, result.plan.xy) : most_telling(surface, grid, places);
@@ -164,7 +168,8 @@ AdaptiveTouches touch_adaptively(const Job& job, const AdaptiveLimits& limits, c
         if (result.plan.size() < kFirst) continue;
         surface = fit_touches(job, result.plan, result.touches);
         bands.back() = predict_by_posterior(surface, job, limits.confidence, 1).band;
-        result.enough = bands.back() <= limits.band;
+        confirmed = bands.back() <= limits.band ? confirmed + 1 : 0;
+        result.enough = confirmed > kConfirmations;
     }
     if (result.plan.size() < std::min(kFirst, limits.most_touches))
         throw InputError(job.source, "only " + std::to_string(result.plan.size()) + " places could be touched");

@@ -14,7 +14,7 @@ namespace fettle {
 /// When to stop touching.
 struct AdaptiveLimits {
     int most_touches = 60;    ///< no more than that
-    double band = 0;          ///< enough when the predicted error band is at most that, mm; 0: never
+    double band = 0;          ///< enough when the predicted error band stays at most that, mm; 0: never
     double confidence = 0.95; ///< of the predicted band
     double distance = 0;      ///< between any two touches at least, mm; 0: a fiftieth of the sampling boundary's size
 };

@@ -95,20 +95,21 @@ TEST(Adaptive, StopsWhenTheBandIsReachedAndItIs)
     const Job job = square_job();
     AdaptiveLimits limits;
     limits.most_touches = 60;
-    limits.band = 0.15;
-    const auto covered = [&](Truth truth, std::uint64_t runs) {
+    const auto covered = [&](Truth truth, std::uint64_t runs, double band) {
+        limits.band = band;
         int count = 0;
         for (std::uint64_t seed = 1; seed <= runs; ++seed) {
             const AdaptiveTouches found = touch_adaptively(job, limits, touching(truth, job, seed));
             const double predicted = found.band[found.band.size() - 1];
-            EXPECT_EQ(found.enough, predicted <= limits.band);
+            EXPECT_TRUE(found.enough);
+            EXPECT_LE(predicted, limits.band);
             count += realised_band(job, found, truth) <= predicted;
         }
         return count;
     };
     // 95 %, less three standard errors of 60 runs; stopping prefers lucky draws a little.
-    EXPECT_GE(covered(dome, 60), 51);
-    EXPECT_EQ(covered(ripples, 1), 1); // no family: a process on the way, which takes its time
+    EXPECT_GE(covered(dome, 60, 0.15), 51);
+    EXPECT_EQ(covered(ripples, 1, 0.4), 1); // no family: a process on the way, which takes its time
 }
 
 // The same number of touches is worth more than Wang's layout.
