@@ -25,6 +25,20 @@ Eigen::MatrixXd root(const Eigen::MatrixXd& covariance)
     return size.asDiagonal() * eigen.eigenvectors().rightCols(rank) * variance.tail(rank).cwiseSqrt().asDiagonal();
 }
 
+/// Over few places by the heights' own covariance, so that a job that is turned has the same draws; over many that
+/// would take seconds.
+Eigen::MatrixXd field_root(const Eigen::MatrixXd& gradients, const Eigen::MatrixXd& covariance)
+{
+    constexpr Eigen::Index kFewPlaces = 400;
+    if (gradients.cols() <= kFewPlaces) {
+        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(gradients.transpose() * covariance * gradients);
+        const Eigen::VectorXd& variance = eigen.eigenvalues();                              // ascending
+        const Eigen::Index rank = (variance.array() > 1e-10 * variance.maxCoeff()).count(); // the rest is rounding
+        return eigen.eigenvectors().rightCols(rank) * variance.tail(rank).cwiseSqrt().asDiagonal();
+    }
+    return gradients.transpose() * root(covariance);
+}
+
 struct Possible {
     double weight;
     Eigen::VectorXd offset; ///< from the mean
@@ -42,7 +56,7 @@ Eigen::MatrixXd draw_fields(const Surface& surface, const Eigen::Matrix2Xd& xy, 
         const Eigen::MatrixXd gradients = height_gradients(member.shape, xy);
         const Eigen::VectorXd offset = heights(member.shape, xy) - mean;
         if (!gradients.allFinite() || !offset.allFinite()) continue;
-        all.push_back({member.weight, offset, gradients.transpose() * root(member.covariance)});
+        all.push_back({member.weight, offset, field_root(gradients, member.covariance)});
         sum += member.weight;
     }
     std::mt19937_64 random(seed);
