@@ -1,7 +1,8 @@
 #include "cli/tool.h"
-#include "cloud/pcd.h"
+#include "cloud/point_source.h"
 #include "core/file.h"
 #include "core/text.h"
+#include "fit/dense.h"
 #include "fit/fit.h"
 #include "job/boundary.h"
 
@@ -73,13 +74,52 @@ void name_gross_errors(Tool& t, const Fit& fit, const std::string& source, const
                to_short_text(fit.residuals[i] / units.mm()) + " " + to_string(units.length) + "; left out");
 }
 
+/// More points than the exact fit takes: they are streamed.
+bool is_dense(const CloudStream& stream, const Job& job, const std::string& method)
+{
+    return stream.points().points > kMostExactTouches &&
+           (method == "bspline" || (method == "auto" && job.surface == SurfaceType::freeform));
+}
+
+void report(json::Value& out, const DenseFit& dense)
+{
+    const Surface& surface = dense.fit.surface;
+    const double mm = surface.units.mm();
+    out.set("method", surface.method)
+        .set("touches", dense.counts.used)
+        .set("ignored", dense.counts.ignored())
+        .set("undefined", dense.counts.undefined)
+        .set("other_role", dense.counts.other_role)
+        .set("inside_anomaly", dense.counts.anomaly)
+        .set("outside_sampling", dense.counts.outside)
+        .set("outliers", dense.outliers)
+        .set("iterations", dense.fit.iterations)
+        .set("rms", surface.rms / mm)
+        .set("touch_sigma", surface.touch_sigma / mm)
+        .set("goodness", surface.goodness);
+}
+
+Verdict finish(Tool& t, const Fit& fit, std::size_t touches, std::size_t ignored)
+{
+    const Surface& surface = fit.surface;
+    if (!fit.converged) {
+        t.warn("the " + surface.method + " fit did not converge in " + std::to_string(fit.iterations) + " iterations");
+        return Verdict::no;
+    }
+    t.note(surface.method + " fit of " + std::to_string(touches) + " touches, " + std::to_string(ignored) +
+           " points ignored, rms " + to_text(surface.rms / surface.units.mm()) + " " + to_string(surface.units.length));
+    t.output() << to_json(surface);
+    return Verdict::yes;
+}
+
 } // namespace
 
 int main(int argc, char** argv)
 {
     return tool_main(argc, argv, "Fit the desired surface beneath the anomaly to the touches.", [](Tool& t) {
         const std::string& job = t.file("JOB", "Job, JSON");
-        const std::string& points = t.input("POINTS", "Touches (x y z, role), PCD");
+        const std::string& points = t.input(
+            "POINTS", "Touches (x y z, role) or, without roles, a scan, PCD; more than 300 are streamed if binary");
         const std::string& method =
             t.choice("-m,--method", "auto", choices(),
                      "Kind of surface; auto: what explains the touches best, weighed against the others. Plane jobs: a "
@@ -103,24 +143,24 @@ int main(int argc, char** argv)
         input.job = read_job(job);
         input.source = display_name(points);
         const Units units{file_unit.value_or(input.job.units.length), input.job.units.force};
-        const Cloud cloud = read_cloud(points, units).cloud;
-        input.xyz = cloud.xyz;
-        input.roles = roles(cloud, input.source);
-        input.curves = curves(cloud);
+        const CloudStream stream(points, units);
+        if (is_dense(stream, input.job, method)) {
+            if (use_boundary && !stream.points().has_roles)
+                t.warn("--use-boundary: a scan shows the metal at the boundary itself, the job's points are not added");
+            const DenseFit dense = fit_dense(stream.points(), input.job, use_boundary, input.source);
+            report(t.report(), dense);
+            return finish(t, dense.fit, dense.counts.used, dense.counts.ignored());
+        }
+        const std::shared_ptr<const Cloud> cloud = stream.cloud();
+        input.xyz = cloud->xyz;
+        input.roles = roles(*cloud, input.source);
+        input.curves = curves(*cloud);
         if (use_boundary) take_boundary(input);
         if (spacing) input.spacing = *spacing * input.job.units.mm();
         const Fit fit = fit_surface(input, method);
         report(t.report(), fit);
         name_gross_errors(t, fit, input.source, input.job.units);
-        if (!fit.converged) {
-            t.warn("the " + fit.surface.method + " fit did not converge in " + std::to_string(fit.iterations) +
-                   " iterations");
-            return Verdict::no;
-        }
-        t.note(fit.surface.method + " fit of " + std::to_string(fit.surface.touches.cols()) + " touches, " +
-               std::to_string(fit.surface.ignored) + " points ignored, rms " +
-               to_text(fit.surface.rms / input.job.units.mm()) + " " + to_string(input.job.units.length));
-        t.output() << to_json(fit.surface);
-        return Verdict::yes;
+        return finish(t, fit, static_cast<std::size_t>(fit.surface.touches.cols()),
+                      static_cast<std::size_t>(fit.surface.ignored));
     });
 }

@@ -4,8 +4,6 @@
 #include "mesh/mesh_file.h"
 #include "surface/surface_grid.h"
 
-#include <tbb/parallel_for.h>
-
 #include <ostream>
 
 using namespace fettle;
@@ -19,9 +17,7 @@ Cloud evaluate(const Surface& surface, const Eigen::Matrix2Xd& xy, bool with_sig
     cloud.xyz.resize(3, xy.cols());
     cloud.xyz << xy, heights(surface, xy).transpose();
     if (!with_sigma) return cloud;
-    Eigen::VectorXd deviation(xy.cols());
-    tbb::parallel_for(Eigen::Index{0}, xy.cols(), [&](Eigen::Index i) { deviation[i] = sigma(surface, xy.col(i)); });
-    set_field(cloud, "sigma", deviation);
+    set_field(cloud, "sigma", sigmas(surface, xy));
     return cloud;
 }
 
@@ -53,7 +49,7 @@ int main(int argc, char** argv)
         if (at == "-" && surface_file == "-") throw InputError("only one of SURFACE and --at can be stdin");
         if (stl && with_sigma) throw InputError("--sigma: an STL has no place for it");
         const Surface surface = read_surface(surface_file);
-        if (with_sigma && surface.covariance.size() == 0)
+        if (with_sigma && !knows_sigma(surface))
             throw InputError(display_name(surface_file), "has no covariance, so --sigma is not known");
 
         Units units = surface.units;

@@ -57,13 +57,7 @@ Cloud gather(const PcdHeader& header, const std::vector<Layout>& layouts)
 
 Cloud read_binary(const PcdHeader& header, std::string_view body, const std::string& source)
 {
-    const std::size_t needed = header.points * header.stride();
-    if (body.size() != needed) {
-        const bool second = body.size() > needed && looks_like_pcd(body.substr(needed));
-        throw InputError(source, "POINTS " + std::to_string(header.points) + " need " + std::to_string(needed) +
-                                     " bytes, there are " + std::to_string(body.size()) +
-                                     (second ? ": another PCD follows" : ""));
-    }
+    check_binary_size(header, body.size(), body.substr(std::min(header.points * header.stride(), body.size())), source);
     std::vector<Layout> layouts;
     const char* start = body.data();
     for (const PcdColumn& column : header.columns) {
@@ -162,22 +156,6 @@ Cloud read_ascii(const PcdHeader& header, std::string_view body, const std::stri
         start += column.bytes();
     }
     return gather(header, layouts);
-}
-
-Units agreed_units(const std::optional<StatedUnits>& stated, const std::optional<Units>& wanted,
-                   const std::string& source)
-{
-    Units units = wanted.value_or(Units{});
-    if (!stated) return units;
-    if (wanted && stated->length != wanted->length)
-        throw InputError(source, "units: the file says " + to_string(stated->length) + ", expected " +
-                                     to_string(wanted->length));
-    if (wanted && stated->force && *stated->force != wanted->force)
-        throw InputError(source, "units: the file says " + to_string(*stated->force) + ", expected " +
-                                     to_string(wanted->force));
-    units.length = stated->length;
-    units.force = stated->force.value_or(units.force);
-    return units;
 }
 
 void convert_to_base(Cloud& cloud, const Units& units)

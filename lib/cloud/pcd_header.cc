@@ -261,6 +261,31 @@ PcdHeader parse_pcd_header(std::string_view bytes, const std::string& source)
     return HeaderParser(bytes, source).parse();
 }
 
+void check_binary_size(const PcdHeader& header, std::size_t size, std::string_view next, const std::string& source)
+{
+    const std::size_t needed = header.points * header.stride();
+    if (size == needed) return;
+    throw InputError(source, "POINTS " + std::to_string(header.points) + " need " + std::to_string(needed) +
+                                 " bytes, there are " + std::to_string(size) +
+                                 (size > needed && looks_like_pcd(next) ? ": another PCD follows" : ""));
+}
+
+Units agreed_units(const std::optional<StatedUnits>& stated, const std::optional<Units>& wanted,
+                   const std::string& source)
+{
+    Units units = wanted.value_or(Units{});
+    if (!stated) return units;
+    if (wanted && stated->length != wanted->length)
+        throw InputError(source, "units: the file says " + to_string(stated->length) + ", expected " +
+                                     to_string(wanted->length));
+    if (wanted && stated->force && *stated->force != wanted->force)
+        throw InputError(source, "units: the file says " + to_string(*stated->force) + ", expected " +
+                                     to_string(wanted->force));
+    units.length = stated->length;
+    units.force = stated->force.value_or(units.force);
+    return units;
+}
+
 bool looks_like_pcd(std::string_view bytes)
 {
     if (bytes.starts_with("# .PCD")) return true;

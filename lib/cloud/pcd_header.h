@@ -52,6 +52,15 @@ struct PcdHeader {
 /// @throws InputError with the line and what it says
 PcdHeader parse_pcd_header(std::string_view bytes, const std::string& source);
 
+/// Refuses a binary body that is not as long as POINTS say. @param size  of the body in bytes  @param next  what
+/// follows the last point
+void check_binary_size(const PcdHeader& header, std::size_t size, std::string_view next, const std::string& source);
+
+/// The units of a file: what it states, else what is wanted, else mm and N.
+/// @throws InputError if the two disagree
+Units agreed_units(const std::optional<StatedUnits>& stated, const std::optional<Units>& wanted,
+                   const std::string& source);
+
 /// Could these bytes be a PCD file: does the first line that is no comment begin with one of its words?
 bool looks_like_pcd(std::string_view bytes);
 

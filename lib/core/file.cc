@@ -59,6 +59,86 @@ std::string read_whole(const std::string& path)
     return bytes;
 }
 
+InputFile::InputFile(const std::string& path)
+    : path_(path), file_(path == "-" ? dup(STDIN_FILENO) : open(path.c_str(), O_RDONLY | O_CLOEXEC))
+{
+    if (file_ < 0) fail(path_, "cannot open");
+    try {
+        struct stat status = {};
+        const off_t start = lseek(file_, 0, SEEK_CUR);
+        // The files of /proc say that they are regular and empty.
+        if (fstat(file_, &status) == 0 && S_ISREG(status.st_mode) && start >= 0 && status.st_size > start) {
+            start_ = static_cast<std::size_t>(start);
+            size_ = static_cast<std::size_t>(status.st_size - start);
+        } else {
+            keep_stream();
+        }
+    } catch (...) {
+        close(file_);
+        throw;
+    }
+}
+
+InputFile::~InputFile() { close(file_); }
+
+void InputFile::keep_stream()
+{
+    constexpr std::size_t kSmall = 1 << 20; // held in memory
+    constexpr std::size_t kChunk = 1 << 18;
+    const char* folder = std::getenv("TMPDIR");
+    std::string name = std::string(folder != nullptr && *folder != '\0' ? folder : "/tmp") + "/fettle.XXXXXX";
+    int copy = -1;
+    std::string chunk(kChunk, '\0');
+    for (;;) {
+        const ssize_t got = ::read(file_, chunk.data(), chunk.size());
+        if (got < 0 && errno == EINTR) continue;
+        if (got < 0) {
+            const int reason = errno;
+            if (copy >= 0) close(copy);
+            errno = reason;
+            fail(path_, "cannot read");
+        }
+        if (got == 0) break;
+        size_ += static_cast<std::size_t>(got);
+        held_.append(chunk.data(), static_cast<std::size_t>(got));
+        if (copy < 0 && held_.size() < kSmall) continue;
+        if (copy < 0) {
+            copy = mkostemp(name.data(), O_CLOEXEC);
+            if (copy < 0) fail(path_, "cannot copy to " + name);
+            unlink(name.c_str());
+        }
+        for (std::size_t done = 0; done < held_.size();) {
+            const ssize_t put = write(copy, held_.data() + done, held_.size() - done);
+            if (put < 0 && errno != EINTR) {
+                const int reason = errno;
+                close(copy);
+                errno = reason;
+                fail(path_, "cannot copy to " + name);
+            }
+            done += static_cast<std::size_t>(std::max<ssize_t>(put, 0));
+        }
+        held_.clear();
+    }
+    if (copy < 0) return;
+    close(file_);
+    file_ = copy;
+}
+
+void InputFile::read(std::size_t offset, char* to, std::size_t count) const
+{
+    if (!held_.empty()) {
+        std::memcpy(to, held_.data() + offset, count);
+        return;
+    }
+    for (std::size_t done = 0; done < count;) {
+        const ssize_t got = pread(file_, to + done, count - done, static_cast<off_t>(start_ + offset + done));
+        if (got < 0 && errno == EINTR) continue;
+        if (got < 0) fail(path_, "cannot read");
+        if (got == 0) throw InputError(display_name(path_), "has become shorter while it was read");
+        done += static_cast<std::size_t>(got);
+    }
+}
+
 struct OutputFile::State {
     std::string path;      ///< as the user gave it
     std::string temporary; ///< what is written; empty if the target is written directly

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <iosfwd>
 #include <memory>
 #include <string>
@@ -9,6 +10,30 @@ namespace fettle {
 /// All bytes of a file, a FIFO or stdin ("-").
 /// @throws InputError if it cannot be opened or read (the reason is named), or is a directory
 std::string read_whole(const std::string& path);
+
+/// A file, a FIFO or stdin ("-") that can be read anywhere, by several threads at once. What cannot be sought is copied
+/// to an unnamed file in $TMPDIR (else /tmp) unless it is small.
+class InputFile {
+  public:
+    /// @throws InputError as read_whole()
+    explicit InputFile(const std::string& path);
+    ~InputFile();
+    InputFile(const InputFile&) = delete;
+    InputFile& operator=(const InputFile&) = delete;
+
+    std::size_t size() const { return size_; }
+    /// @throws InputError if it cannot be read or has become shorter
+    void read(std::size_t offset, char* to, std::size_t count) const;
+
+  private:
+    void keep_stream();
+
+    std::string path_;
+    int file_ = -1;
+    std::size_t start_ = 0; ///< stdin may be a file of which some was read
+    std::size_t size_ = 0;
+    std::string held_; ///< all of a small stream
+};
 
 /// How a path is called in messages: "stdin" for "-".
 std::string display_name(const std::string& path);

@@ -1,6 +1,7 @@
 #include "fit/bspline.h"
 
 #include "core/error.h"
+#include "fit/dense.h"
 #include "fit/evidence.h"
 #include "fit/robust_linear.h"
 #include "fit/round_part.h"
@@ -35,6 +36,14 @@ void refuse_line(const FitInput& input, const Eigen::Matrix3Xd& touches)
     const double most = std::sqrt(spread.eigenvalues()[1] / static_cast<double>(d.cols()));
     if (least <= std::max(input.job.probe.accuracy, kRounding * most))
         throw InputError(input.source, "touches lie on one line in x and y");
+}
+
+std::shared_ptr<const Cloud> cloud_of(const FitInput& input)
+{
+    auto cloud = std::make_shared<Cloud>();
+    cloud->xyz = input.xyz;
+    set_field(*cloud, "role", input.roles.cast<double>());
+    return cloud;
 }
 
 constexpr Index kQuadratics = 6;         // 1, u, v, u², uv, v²
@@ -133,15 +142,16 @@ Model model_of(const Bspline& grid, const Surface& surface)
     return m;
 }
 
-Amplitude amplitude_of(const Model& m, double sigma)
+Amplitude amplitude_of(const Model& m, double sigma, Index spare)
 {
     constexpr Index kFree = 3; // 1, u, v
     const MatrixXd H = m.H.rightCols(kBeta - kFree);
     const VectorXd variance = m.precision.tail(kBeta - kFree).cwiseAbs2().cwiseInverse();
     const FieldModel field{m.H.leftCols(kFree), H * variance.asDiagonal() * H.transpose(), m.R, sigma, m.least_tau};
-    const Index spare = 6; // the three curvatures of a quadratic, and three touches more
     return amplitude(field, m.z, spare);
 }
+
+constexpr Index kSpare = 6; // the three curvatures of a quadratic, and three touches more
 
 /// Posterior covariance of the control heights, and of the touched heights (for the degrees of freedom).
 struct Posterior {
@@ -199,14 +209,22 @@ Bspline spline_grid(const FitInput& input, const Eigen::Matrix3Xd& touches)
     return grid;
 }
 
+double field_amplitude(const FitInput& input, double sigma)
+{
+    const Surface surface = begin_surface(input, "bspline", kSampleRoles, kLeastTouches);
+    return amplitude_of(model_of(spline_grid(input, surface.touches), surface), sigma, surface.touches.cols()).rms;
+}
+
 Fit fit_bspline(const FitInput& input)
 {
+    if (input.xyz.cols() > static_cast<Index>(kMostExactTouches))
+        return fit_dense(point_source(cloud_of(input)), input.job, input.use_boundary, input.source).fit;
     Surface surface = begin_surface(input, "bspline", kSampleRoles, kLeastTouches);
     refuse_line(input, surface.touches);
     Bspline spline = spline_grid(input, surface.touches);
     const Model m = model_of(spline, surface);
     const double sigma = surface.touch_sigma;
-    const Amplitude believed = amplitude_of(m, sigma);
+    const Amplitude believed = amplitude_of(m, sigma, kSpare);
     const double tau = believed.rms;
 
     // R = S Sᵀ; touches on the same place make it singular: only what is above rounding.

@@ -15,9 +15,13 @@ namespace fettle {
 /// crossing lines. Quadratics, spheres and cylinders are reproduced when the touches are exact. The covariance is that
 /// of the control heights given the touches.
 /// @throws InputError for fewer than 6 touches, or touches on a line
+/// More than kMostExactTouches are fitted by fit_dense().
 Fit fit_bspline(const FitInput& input);
 
 /// The grid: over B and the touches, with a cell around them; heights 0.
 Bspline spline_grid(const FitInput& input, const Eigen::Matrix3Xd& touches);
+
+/// τ above for touches none of which slipped. @param sigma  of a touch, mm
+double field_amplitude(const FitInput& input, double sigma);
 
 } // namespace fettle

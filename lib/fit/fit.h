@@ -25,7 +25,8 @@ struct FitInput {
 /// A fitted surface and how it came about.
 struct Fit {
     Surface surface;
-    Eigen::VectorXd residuals; ///< touch - surface at the same (x, y), one for each of surface.touches, mm
+    Eigen::VectorXd residuals; ///< touch - surface at the same (x, y), one for each of surface.touches, mm;
+                               ///< empty for a fit to more points than it keeps (dense.h)
     bool converged = true;
     int iterations = 0;
 };

@@ -1,5 +1,7 @@
 #include "margin/field_draws.h"
 
+#include "surface/precision.h"
+
 #include <Eigen/Eigenvalues>
 
 #include <cmath>
@@ -52,7 +54,13 @@ Eigen::MatrixXd draw_fields(const Surface& surface, const Eigen::Matrix2Xd& xy, 
     const Eigen::VectorXd mean = heights(surface, xy).array() - surface.shift;
     std::vector<Possible> all;
     double sum = 0;
+    if (surface.precision) {
+        const Eigen::MatrixXd covariance = height_covariance(std::get<Bspline>(surface.shape), *surface.precision, xy);
+        all.push_back({1, Eigen::VectorXd::Zero(xy.cols()), root(covariance)});
+        sum = 1;
+    }
     for (const Member& member : members(surface)) {
+        if (member.covariance.size() == 0) continue;
         const Eigen::MatrixXd gradients = height_gradients(member.shape, xy);
         const Eigen::VectorXd offset = heights(member.shape, xy) - mean;
         if (!gradients.allFinite() || !offset.allFinite()) continue;

@@ -42,7 +42,7 @@ void refuse_gaps(const Surface& surface, const Eigen::Matrix2Xd& grid, const Uni
 Prediction predict_by_posterior(const Surface& surface, const Job& job, double confidence, std::uint64_t seed,
                                 const std::string& source)
 {
-    if (surface.covariance.size() == 0)
+    if (!knows_sigma(surface))
         throw InputError(source, "the surface has no covariance, so its error cannot be foreseen; use the method wang");
     const Eigen::Matrix2Xd grid = anomaly_grid(job, kAcross);
     refuse_gaps(surface, grid, job.units, source);

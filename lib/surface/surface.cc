@@ -1,6 +1,7 @@
 #include "surface/surface.h"
 
 #include "surface/griddata.h"
+#include "surface/precision.h"
 #include "surface/shapes.h"
 #include "surface/tensor_bspline.h"
 
@@ -108,8 +109,11 @@ Eigen::Vector3d normal(const Surface& surface, const Eigen::Vector2d& xy)
     return Eigen::Vector3d(-z_xy.x(), -z_xy.y(), 1).normalized();
 }
 
+bool knows_sigma(const Surface& surface) { return surface.covariance.size() > 0 || surface.precision; }
+
 double sigma(const Surface& surface, const Eigen::Vector2d& xy)
 {
+    if (surface.precision) return sigmas(surface, xy)[0];
     if (surface.covariance.size() == 0) return kNan;
     const double mean = height(surface, xy) - surface.shift;
     double sum = 0, spread = 0; // within the members, and of them about their mean
@@ -120,6 +124,14 @@ double sigma(const Surface& surface, const Eigen::Vector2d& xy)
         spread += member.weight * (z - mean) * (z - mean);
     }
     return std::isnan(mean) ? kNan : std::sqrt(std::max(sum + spread, 0.0));
+}
+
+Eigen::VectorXd sigmas(const Surface& surface, const Eigen::Matrix2Xd& xy)
+{
+    if (surface.precision) return sigmas(std::get<Bspline>(surface.shape), *surface.precision, xy);
+    Eigen::VectorXd result(xy.cols());
+    tbb::parallel_for(Eigen::Index{0}, xy.cols(), [&](Eigen::Index i) { result[i] = sigma(surface, xy.col(i)); });
+    return result;
 }
 
 Eigen::MatrixXd height_gradients(const Shape& shape, const Eigen::Matrix2Xd& xy)

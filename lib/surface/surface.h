@@ -118,6 +118,12 @@ struct Griddata {
 
 using Shape = std::variant<Plane, Sphere, Cylinder, Cone, Torus, Polynomial, Swept, Bspline, TensorBspline, Griddata>;
 
+/// What is known of a spline's height where its control heights are too many for a covariance (surface/precision.h).
+struct SplinePrecision {
+    Eigen::MatrixXd weights; ///< of the points in each cell, Σ 1/σ², cells_u x cells_v, 1/mm²
+    double amplitude = 0;    ///< τ of the random field that the surface is where there are no points, 1/mm
+};
+
 /// What the margin foresees (fettle-margin), mm.
 struct Prediction {
     std::string method;    ///< "posterior" or "wang"
@@ -139,21 +145,22 @@ struct Alternative {
 /// The desired surface beneath the anomaly, with how it came about. Where several kinds of surface explain the touches
 /// about as well, it is their mean by probability, and its standard deviation holds how they differ.
 struct Surface {
-    Units units;                            ///< of its file
-    Shape shape;                            ///< the most probable one
-    double shift = 0;                       ///< added to the height, mm
-    std::string method;                     ///< that fitted it
-    Eigen::MatrixXd covariance;             ///< of θ, from the touch error; empty if unknown
-    double score = 0;                       ///< information criterion, if there was a choice
-    double weight = 1;                      ///< probability of `shape`
-    std::vector<Alternative> alternatives;  ///< weights and `weight` sum up to 1
-    double touch_sigma = 0;                 ///< standard deviation of one touch that the covariance rests on, mm
-    double rms = 0;                         ///< of the residuals, vertical, mm
-    double goodness = 0;                    ///< p-value of χ² of the residuals against touch_sigma
-    Eigen::Matrix3Xd touches;               ///< used, M, mm
-    Eigen::VectorXi roles;                  ///< of the touches
-    std::vector<Eigen::Index> gross_errors; ///< columns of `touches` that were taken for slips and left out
-    int ignored = 0;                        ///< touches given but not used (estimated points in a statistical fit, NaN)
+    Units units;                              ///< of its file
+    Shape shape;                              ///< the most probable one
+    double shift = 0;                         ///< added to the height, mm
+    std::string method;                       ///< that fitted it
+    Eigen::MatrixXd covariance;               ///< of θ, from the touch error; empty if unknown
+    std::optional<SplinePrecision> precision; ///< of a spline without covariance: its inverse
+    double score = 0;                         ///< information criterion, if there was a choice
+    double weight = 1;                        ///< probability of `shape`
+    std::vector<Alternative> alternatives;    ///< weights and `weight` sum up to 1
+    double touch_sigma = 0;                   ///< standard deviation of one touch that the covariance rests on, mm
+    double rms = 0;                           ///< of the residuals, vertical, mm
+    double goodness = 0;                      ///< p-value of χ² of the residuals against touch_sigma
+    Eigen::Matrix3Xd touches;                 ///< used, M, mm
+    Eigen::VectorXi roles;                    ///< of the touches
+    std::vector<Eigen::Index> gross_errors;   ///< columns of `touches` that were taken for slips and left out
+    int ignored = 0; ///< touches given but not used (estimated points in a statistical fit, NaN)
     std::optional<Prediction> prediction;
 };
 
@@ -163,8 +170,12 @@ double height(const Surface& surface, const Eigen::Vector2d& xy);
 Eigen::VectorXd heights(const Surface& surface, const Eigen::Matrix2Xd& xy);
 /// Upward unit normal.
 Eigen::Vector3d normal(const Surface& surface, const Eigen::Vector2d& xy);
-/// Standard deviation of the height; NaN if the covariance is unknown.
+/// Does it know its covariance or precision?
+bool knows_sigma(const Surface& surface);
+/// Standard deviation of the height; NaN if it is unknown or the surface not defined.
 double sigma(const Surface& surface, const Eigen::Vector2d& xy);
+/// The same for many points, in parallel. @param xy  2xN
+Eigen::VectorXd sigmas(const Surface& surface, const Eigen::Matrix2Xd& xy);
 
 /// One of the shapes that a surface is the mean of.
 struct Member {

@@ -333,6 +333,39 @@ void read_alternatives(Reader& reader, Surface& surface, double mm)
     if (std::abs(sum - 1) > kRounding) reader.refuse("alternatives", "weights do not sum up to 1 with that of the fit");
 }
 
+// --- precision: weights to four digits, which is 1e-4 of a sigma ---
+
+Value write_precision(const SplinePrecision& precision, double mm)
+{
+    const auto rounded = [](double value) {
+        if (value == 0) return 0.0;
+        const double unit = std::pow(10, std::floor(std::log10(value)) - 3);
+        return unit < 1 ? std::round(value / unit) / std::round(1 / unit) : std::round(value / unit) * unit;
+    };
+    Value value;
+    return value.set("amplitude", precision.amplitude * mm)
+        .set("weights", Value(Eigen::MatrixXd((precision.weights * (mm * mm)).unaryExpr(rounded))));
+}
+
+std::optional<SplinePrecision> read_precision(Reader& reader, const Surface& surface, double mm)
+{
+    std::optional<Reader> object = reader.object_or_none("precision");
+    if (!object) return std::nullopt;
+    const Bspline* spline = std::get_if<Bspline>(&surface.shape);
+    if (spline == nullptr) object->refuse("", "belongs to a shape of type bspline");
+    if (surface.covariance.size() > 0) object->refuse("", "stands beside covariance: one of the two");
+    SplinePrecision precision;
+    precision.amplitude = object->number("amplitude", Range::positive()) / mm;
+    precision.weights = object->matrix("weights") / (mm * mm);
+    if (precision.weights.rows() != spline->heights.rows() - 3 ||
+        precision.weights.cols() != spline->heights.cols() - 3)
+        object->refuse("weights", "expected " + std::to_string(spline->heights.rows() - 3) + " rows of " +
+                                      std::to_string(spline->heights.cols() - 3) + ", one for each cell");
+    if (precision.weights.minCoeff() < 0) object->refuse("weights", "has a negative weight");
+    object->done();
+    return precision;
+}
+
 // --- the fit, the touches, the prediction ---
 
 Value write_fit(const Surface& surface, double mm)
@@ -425,6 +458,7 @@ json::Value to_json(const Surface& surface)
     if (surface.touches.cols() > 0) value.set("touches", write_touches(surface, mm));
     if (!surface.alternatives.empty()) value.set("alternatives", write_alternatives(surface, mm));
     if (surface.covariance.size() > 0) value.set("covariance", write_covariance(surface.covariance, surface.shape, mm));
+    if (surface.precision) value.set("precision", write_precision(*surface.precision, mm));
     return value;
 }
 
@@ -445,6 +479,7 @@ Surface parse_surface(json::Reader reader)
     if (std::optional<Reader> fit = reader.object_or_none("fit")) read_fit(*fit, surface, mm);
     read_touches(reader, surface, mm);
     surface.covariance = read_covariance(reader, surface.shape, mm);
+    surface.precision = read_precision(reader, surface, mm);
     if (reader.has("alternatives")) read_alternatives(reader, surface, mm);
     for (const Eigen::Index column : surface.gross_errors)
         if (column >= surface.touches.cols()) reader.refuse("fit.gross_errors", "there are fewer touches");

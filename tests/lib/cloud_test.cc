@@ -2,6 +2,7 @@
 #include "cloud/element.h"
 #include "cloud/fields.h"
 #include "cloud/pcd.h"
+#include "cloud/point_source.h"
 #include "core/error.h"
 
 #include <gtest/gtest.h>
@@ -497,6 +498,76 @@ TEST(Xyz, NamesCommentsAndColumns)
     expect_refused("1 2 3\n1 2 3 4\n", "line 2: expected 3 numbers, got 4", "uneven");
     expect_refused("1 2 3\n1,5 2 3\n", "line 2: '1,5'", "decimal comma");
     expect_refused("x y z a a\n1 2 3 4 5\n", "'a' stands twice", "two names");
+}
+
+/// The points of a file as a stream gives them, in blocks.
+Cloud streamed(const std::string& bytes, const std::optional<Units>& units = std::nullopt)
+{
+    const std::filesystem::path path = std::filesystem::temp_directory_path() / "cloud_test.pcd";
+    std::ofstream(path, std::ios::binary) << bytes;
+    const CloudStream stream(path, units);
+    const PointSource& source = stream.points();
+    Cloud cloud;
+    cloud.xyz.resize(3, static_cast<Eigen::Index>(source.points));
+    Eigen::VectorXd roles(source.has_roles ? cloud.xyz.cols() : 0);
+    PointBlock block;
+    for (std::size_t first = 0; first < source.points; first += source.block) {
+        const std::size_t count = std::min(source.block, source.points - first);
+        source.read(first, count, block);
+        const auto at = static_cast<Eigen::Index>(first), size = static_cast<Eigen::Index>(count);
+        cloud.xyz.middleCols(at, size) = block.xyz;
+        if (source.has_roles) roles.segment(at, size) = block.roles;
+    }
+    if (source.has_roles) set_field(cloud, "role", roles);
+    EXPECT_EQ(stream.cloud()->xyz.cwiseAbs().maxCoeff(), cloud.xyz.cwiseAbs().maxCoeff());
+    std::filesystem::remove(path);
+    return cloud;
+}
+
+// Reference: the same bytes read whole. More than a megabyte, else it is not streamed.
+TEST(CloudStream, ReadsWhatReadCloudReads)
+{
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> number(-100, 100);
+    Cloud cloud;
+    cloud.xyz.resize(3, 100000);
+    for (double& x : cloud.xyz.reshaped()) x = number(random);
+    set_field(cloud, "role", Eigen::VectorXd::LinSpaced(100000, 0, 5).array().round());
+    set_field(cloud, "t", Eigen::VectorXd::LinSpaced(100000, 0, 1), 8);
+    for (const PcdEncoding encoding : {PcdEncoding::binary, PcdEncoding::ascii}) {
+        std::ostringstream out;
+        write_pcd(out, cloud, Units{Units::Length::in, Units::Force::N}, encoding);
+        const Cloud whole = parse_cloud(out.str(), "file").cloud, pieces = streamed(out.str());
+        EXPECT_EQ(whole.xyz, pieces.xyz);
+        EXPECT_EQ(field(whole, "role"), field(pieces, "role"));
+    }
+}
+
+TEST(CloudStream, RefusesWhatReadCloudRefuses)
+{
+    Cloud cloud;
+    cloud.xyz.setOnes(3, 100000);
+    std::ostringstream out;
+    write_pcd(out, cloud, Units{});
+    const std::string good = out.str();
+    const auto refusal = [](const std::string& bytes) -> std::string {
+        try {
+            streamed(bytes);
+        } catch (const InputError& error) {
+            const std::string message = error.what();
+            return "file" + message.substr(message.find(": "));
+        }
+        return "accepted";
+    };
+    EXPECT_EQ(refusal(good), "accepted");
+    for (const std::string& bytes :
+         {good.substr(0, good.size() - 1), good + "x", good + good, replaced(good, "WIDTH 100000", "WIDTH 99999"),
+          replaced(good, "FIELDS x y z", "FIELDS x y y"), replaced(good, "SIZE 4 4 4", "SIZE 4 4 3"),
+          replaced(good, "# units mm", "# units ft"), replaced(good, "DATA binary", "DATA binray")}) {
+        EXPECT_NE(refusal(bytes), "accepted");
+        EXPECT_EQ(refusal(bytes), message_of(bytes));
+    }
+    EXPECT_THROW(streamed(good, Units{Units::Length::in, Units::Force::N}), InputError);
 }
 
 } // namespace

@@ -92,5 +92,36 @@ TEST_F(Files, ReadFromWhatIsNoFile)
     writer.join();
 }
 
+std::string part(const InputFile& file, std::size_t offset, std::size_t count)
+{
+    std::string bytes(count, '\0');
+    file.read(offset, bytes.data(), count);
+    return bytes;
+}
+
+TEST_F(Files, AreReadAnywhere)
+{
+    std::string sent;
+    for (int i = 0; sent.size() < 3000000; ++i) sent += std::to_string(i) + " ";
+    std::ofstream("whole") << sent;
+    ASSERT_EQ(mkfifo("pipe", 0600), 0);
+    for (const std::size_t size : {std::size_t{0}, std::size_t{100}, sent.size()}) { // nothing, held, copied
+        std::thread writer([&] { std::ofstream("pipe") << sent.substr(0, size); });
+        const InputFile pipe("pipe");
+        writer.join();
+        EXPECT_EQ(pipe.size(), size);
+        EXPECT_EQ(part(pipe, 0, size), sent.substr(0, size));
+        if (size == 0) continue;
+        EXPECT_EQ(part(pipe, size - 50, 50), sent.substr(size - 50, 50));
+    }
+    const InputFile whole("whole");
+    EXPECT_EQ(whole.size(), sent.size());
+    EXPECT_EQ(part(whole, 2000000, 1000), sent.substr(2000000, 1000));
+    std::filesystem::resize_file("whole", 1000);
+    EXPECT_THROW(part(whole, 2000000, 1000), InputError);
+    EXPECT_THROW(InputFile("absent"), InputError);
+    EXPECT_THROW(InputFile("."), InputError);
+}
+
 } // namespace
 } // namespace fettle

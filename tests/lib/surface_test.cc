@@ -2,10 +2,12 @@
 
 #include "core/error.h"
 #include "surface/griddata.h"
+#include "surface/precision.h"
 #include "surface/shapes.h"
 #include "surface/surface_grid.h"
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -400,6 +402,71 @@ TEST(SurfaceGrid, CoversTheOutlineOnce)
     // Aligned with the turned frame: the second point is one step along its x axis.
     EXPECT_LT((grid.xy.col(1) - 2.5 * Eigen::Vector2d(std::cos(0.3), std::sin(0.3))).norm(), 1e-12);
     EXPECT_THROW(grid_over(square, 0, 1e-4), InputError);
+}
+
+Surface precise_surface()
+{
+    Surface surface;
+    surface.shape = some_bspline();
+    Eigen::MatrixXd weights = Eigen::MatrixXd::Constant(6, 5, 30);
+    weights.block(2, 1, 2, 3).setZero(); // a hole
+    surface.precision = SplinePrecision{weights, 1e-3};
+    return surface;
+}
+
+// Reference: the inverse of the precision by Eigen.
+TEST(Precision, GivesSigmaAndCovariance)
+{
+    const Surface surface = precise_surface();
+    const BandMatrix band = precision_matrix(std::get<Bspline>(surface.shape), *surface.precision);
+    Eigen::MatrixXd H(band.size(), band.size());
+    H.setZero();
+    for (Eigen::Index i = 0; i < band.size(); ++i)
+        for (Eigen::Index j = std::max<Eigen::Index>(0, i - band.half()); j <= i; ++j) H(i, j) = H(j, i) = band(i, j);
+    const Eigen::Matrix2d turn = Eigen::Rotation2Dd(0.4).toRotationMatrix();
+    Eigen::Matrix2Xd xy = turn * (66 * Eigen::Matrix2Xd::Random(2, 30).cwiseAbs());
+    xy.row(1) *= 0.6;
+    xy.colwise() += Eigen::Vector2d(-30, -20);
+    Eigen::Index inside = 0;
+    for (Eigen::Index i = 0; i < xy.cols(); ++i)
+        if (std::isfinite(height(surface, xy.col(i)))) xy.col(inside++) = xy.col(i).eval();
+    ASSERT_GT(inside, 10);
+    xy.conservativeResize(2, inside);
+    const Eigen::MatrixXd G = height_gradients(surface.shape, xy);
+    const Eigen::MatrixXd expected = G.transpose() * H.inverse() * G;
+    EXPECT_LT(
+        (height_covariance(std::get<Bspline>(surface.shape), *surface.precision, xy) - expected).cwiseAbs().maxCoeff(),
+        1e-9 * expected.maxCoeff());
+    EXPECT_LT((sigmas(surface, xy).cwiseAbs2() - expected.diagonal()).cwiseAbs().maxCoeff(),
+              1e-9 * expected.maxCoeff());
+    EXPECT_NEAR(sigma(surface, xy.col(3)), std::sqrt(expected(3, 3)), 1e-9);
+    EXPECT_TRUE(std::isnan(sigma(surface, {1000, 0})));
+    EXPECT_TRUE(knows_sigma(surface));
+}
+
+TEST(Precision, IsWrittenAndRead)
+{
+    Surface surface = precise_surface();
+    surface.precision->weights(0, 0) = 1234.5678;
+    for (const Units::Length unit : {Units::Length::mm, Units::Length::in}) {
+        surface.units.length = unit;
+        const Surface back = parse_surface(json::Reader::parse(to_json(surface).text(), "test"));
+        ASSERT_TRUE(back.precision);
+        EXPECT_NEAR(back.precision->amplitude, 1e-3, 1e-12);
+        // four digits
+        EXPECT_LT(((back.precision->weights - surface.precision->weights).array().abs() -
+                   6e-4 * surface.precision->weights.array())
+                      .maxCoeff(),
+                  1e-12);
+    }
+    const std::string text = to_json(surface).text();
+    const auto refused = [&](const std::string& from, const std::string& to) {
+        std::string changed = text;
+        changed.replace(changed.find(from), from.size(), to);
+        EXPECT_THROW(parse_surface(json::Reader::parse(changed, "test")), InputError) << to;
+    };
+    refused("\"amplitude\"", "\"amplitud\"");
+    refused("\"weights\": [\n", "\"weights\": [[1],\n");
 }
 
 } // namespace
