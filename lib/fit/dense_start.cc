@@ -139,6 +139,7 @@ DenseStart dense_start(const DensePoints& points, const std::string& name)
     constexpr double kPointsPerCell = 8;
     // Each step divides the pull of outliers by about the odds against them.
     constexpr int kSteps = 3;
+    constexpr int kFinestSteps = 2;  // begun near the end
     constexpr double kLinear = 0.25; // of sigma: smaller residuals weigh alike
 
     DenseStart start;
@@ -157,15 +158,15 @@ DenseStart dense_start(const DensePoints& points, const std::string& name)
         const Bspline zero = start.spline;
         const VectorXd nothing = zero.heights.reshaped();
         const Energy energy = energy_over(zero);
-        for (int step = 0; step < kSteps; ++step) {
+        for (int step = 0; step < (cells < finest ? kSteps : kFinestSteps); ++step) {
             CellMoments moments(zero);
             residuals(here, cell_polynomials(zero), r.data());
             moments.add(here, r.data(), w.data());
             const MatrixXd s = density_factors(moments.weights());
             const NormalEquations equations{moments.matrix(zero, s), moments.right(s), moments.square(s),
                                             moments.weights().cwiseProduct(s).sum(), rounding_variance(points)};
-            // The finest grid's λ is that of the grid before: τ and σ are the same.
-            const Smoothed fit = cells < finest || start.lambda == 0
+            // The finest grid is what takes time: its λ is looked for once.
+            const Smoothed fit = cells < finest || step == 0
                                      ? smoothed_by_likelihood(equations, nothing, energy, start.lambda)
                                      : smoothed(equations, nothing, energy, start.lambda);
             start.spline.heights = fit.heights.reshaped(zero.heights.rows(), zero.heights.cols());
