@@ -1,265 +1,20 @@
 #include "core/error.h"
 #include "core/text.h"
-#include "surface/griddata.h"
-#include "surface/shapes.h"
-#include "surface/tensor_bspline.h"
-
-#include <Eigen/Geometry>
+#include "surface/shape_json.h"
+#include "surface/surface.h"
 
 #include <cmath>
-#include <numbers>
+#include <limits>
 
 namespace fettle {
 
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
-// Directions are read to full precision; a vector that is further from unit length was edited.
-constexpr double kUnitSlack = 1e-9;
 constexpr int kMostRoles = 5;
 constexpr double kMostTouches = 1e9;
 
 using json::Reader;
 using json::Value;
-
-// --- shapes: lengths are divided by `mm` when written, multiplied by it when read ---
-
-Value write(const Plane& plane, double mm)
-{
-    Value value;
-    return value.set("type", "plane")
-        .set("origin", Value(Eigen::VectorXd(plane.origin / mm)))
-        .set("z0", plane.z0 / mm)
-        .set("slope", Value(Eigen::VectorXd(plane.slope)));
-}
-
-Value write(const Sphere& sphere, double mm)
-{
-    Value value;
-    return value.set("type", "sphere")
-        .set("point", Value(Eigen::VectorXd(sphere.point / mm)))
-        .set("normal", Value(Eigen::VectorXd(sphere.normal)))
-        .set("curvature", sphere.curvature * mm);
-}
-
-Value write(const Cylinder& cylinder, double mm)
-{
-    Value value;
-    return value.set("type", "cylinder")
-        .set("point", Value(Eigen::VectorXd(cylinder.point / mm)))
-        .set("normal", Value(Eigen::VectorXd(cylinder.normal)))
-        .set("axis", Value(Eigen::VectorXd(cylinder.axis)))
-        .set("curvature", cylinder.curvature * mm);
-}
-
-Value write(const Cone& cone, double mm)
-{
-    Value value;
-    return value.set("type", "cone")
-        .set("point", Value(Eigen::VectorXd(cone.point / mm)))
-        .set("normal", Value(Eigen::VectorXd(cone.normal)))
-        .set("axis", Value(Eigen::VectorXd(cone.axis)))
-        .set("around", cone.around * mm)
-        .set("lean_deg", cone.lean / kDegree);
-}
-
-Value write(const Torus& torus, double mm)
-{
-    Value value;
-    return value.set("type", "torus")
-        .set("point", Value(Eigen::VectorXd(torus.point / mm)))
-        .set("normal", Value(Eigen::VectorXd(torus.normal)))
-        .set("axis", Value(Eigen::VectorXd(torus.axis)))
-        .set("around", torus.around * mm)
-        .set("lean_deg", torus.lean / kDegree)
-        .set("along", torus.along * mm);
-}
-
-Value write(const Polynomial& polynomial, double mm)
-{
-    Value value;
-    return value.set("type", "polynomial")
-        .set("origin", Value(Eigen::VectorXd(polynomial.origin / mm)))
-        .set("scale", polynomial.scale / mm)
-        .set("coefficients", Value(Eigen::VectorXd(polynomial.coefficients / mm)));
-}
-
-Value write(const Swept& swept, double mm)
-{
-    Value value;
-    return value.set("type", "swept")
-        .set("origin", Value(Eigen::VectorXd(swept.origin / mm)))
-        .set("ruling", Value(Eigen::VectorXd(swept.ruling)))
-        .set("scale", swept.scale / mm)
-        .set("section", Value(Eigen::VectorXd(swept.section / mm)))
-        .set("slope", swept.slope)
-        .set("section_least", swept.section_least / mm)
-        .set("section_most", swept.section_most / mm);
-}
-
-Value write(const Bspline& bspline, double mm)
-{
-    Value value;
-    return value.set("type", "bspline")
-        .set("angle_deg", bspline.angle / kDegree)
-        .set("origin", Value(Eigen::VectorXd(bspline.origin / mm)))
-        .set("cell", Value(Eigen::VectorXd(bspline.cell / mm)))
-        .set("heights", Value(Eigen::MatrixXd(bspline.heights / mm)));
-}
-
-Value write(const TensorBspline& bspline, double mm)
-{
-    Value value;
-    return value.set("type", "tensor-bspline")
-        .set("angle_deg", bspline.angle / kDegree)
-        .set("knots_u", Value(Eigen::VectorXd(bspline.knots_u / mm)))
-        .set("knots_v", Value(Eigen::VectorXd(bspline.knots_v / mm)))
-        .set("heights", Value(Eigen::MatrixXd(bspline.heights / mm)));
-}
-
-Value write(const Griddata& griddata, double mm)
-{
-    Value value;
-    return value.set("type", "griddata")
-        .set("points", Value(Eigen::MatrixXd(griddata.points.transpose() / mm)))
-        .set("spacing", griddata.spacing / mm)
-        .set("angle_deg", griddata.angle / kDegree);
-}
-
-Eigen::VectorXd read_unit(Reader& reader, const std::string& key, int size)
-{
-    const Eigen::VectorXd direction = reader.vector(key, size);
-    if (std::abs(direction.norm() - 1) > kUnitSlack) reader.refuse(key, "must have length 1");
-    return direction;
-}
-
-Eigen::Vector3d read_upward(Reader& reader)
-{
-    const Eigen::Vector3d normal = read_unit(reader, "normal", 3);
-    if (normal.z() <= 0) reader.refuse("normal", "must point up");
-    return normal;
-}
-
-Eigen::Vector3d read_axis(Reader& reader, const Eigen::Vector3d& normal)
-{
-    const Eigen::Vector3d axis = read_unit(reader, "axis", 3);
-    if (std::abs(axis.dot(normal)) > kUnitSlack) reader.refuse("axis", "must be perpendicular to normal");
-    return axis;
-}
-
-Shape read_cylinder(Reader& reader, double mm)
-{
-    const Eigen::Vector3d point = reader.vector("point", 3) * mm;
-    const Eigen::Vector3d normal = read_upward(reader);
-    return Cylinder{point, normal, read_axis(reader, normal), reader.number("curvature") / mm};
-}
-
-Cone read_cone(Reader& reader, double mm)
-{
-    const Eigen::Vector3d point = reader.vector("point", 3) * mm;
-    const Eigen::Vector3d normal = read_upward(reader);
-    return {point, normal, read_axis(reader, normal), reader.number("around") / mm,
-            reader.number("lean_deg") * kDegree};
-}
-
-Shape read_torus(Reader& reader, double mm)
-{
-    const Cone cone = read_cone(reader, mm);
-    return Torus{cone.point, cone.normal, cone.axis, cone.around, cone.lean, reader.number("along") / mm};
-}
-
-Shape read_polynomial(Reader& reader, double mm)
-{
-    Polynomial polynomial;
-    polynomial.origin = reader.vector("origin", 2) * mm;
-    polynomial.scale = reader.number("scale", Range::positive()) * mm;
-    polynomial.coefficients = reader.vector("coefficients") * mm;
-    if (polynomial.coefficients.size() != monomials(degree(polynomial)))
-        reader.refuse("coefficients", "expected 1, 3, 6, 10, … numbers: all of a total degree");
-    return polynomial;
-}
-
-Shape read_swept(Reader& reader, double mm)
-{
-    Swept swept;
-    swept.origin = reader.vector("origin", 2) * mm;
-    swept.ruling = read_unit(reader, "ruling", 2);
-    swept.scale = reader.number("scale", Range::positive()) * mm;
-    swept.section = reader.vector("section", 4) * mm;
-    swept.slope = reader.number("slope");
-    swept.section_least = reader.number("section_least") * mm;
-    swept.section_most = reader.number("section_most", Range::at_least(swept.section_least / mm)) * mm;
-    return swept;
-}
-
-Shape read_bspline(Reader& reader, double mm)
-{
-    Bspline bspline;
-    bspline.angle = reader.number("angle_deg") * kDegree;
-    bspline.origin = reader.vector("origin", 2) * mm;
-    bspline.cell = reader.vector("cell", 2) * mm;
-    if (bspline.cell.minCoeff() <= 0) reader.refuse("cell", "must be positive");
-    bspline.heights = reader.matrix("heights") * mm;
-    if (bspline.heights.rows() < 4 || bspline.heights.cols() < 4)
-        reader.refuse("heights", "expected at least 4 rows of 4 (one cubic cell)");
-    return bspline;
-}
-
-Shape read_tensor_bspline(Reader& reader, double mm)
-{
-    TensorBspline bspline;
-    bspline.angle = reader.number("angle_deg") * kDegree;
-    bspline.heights = reader.matrix("heights") * mm;
-    const auto knots = [&](const std::string& key, Eigen::Index control) {
-        const Eigen::VectorXd read = reader.vector(key) * mm;
-        if (const std::string wrong = wrong_with_knots(read, control); !wrong.empty()) reader.refuse(key, wrong);
-        return read;
-    };
-    bspline.knots_u = knots("knots_u", bspline.heights.rows());
-    bspline.knots_v = knots("knots_v", bspline.heights.cols());
-    return bspline;
-}
-
-Shape read_griddata(Reader& reader, double mm)
-{
-    const Eigen::Matrix3Xd points = reader.matrix("points", 3).transpose() * mm;
-    const double spacing = reader.number("spacing", Range::at_least(0)) * mm;
-    const double angle = reader.number("angle_deg") * kDegree;
-    try {
-        return make_griddata(points, spacing, angle);
-    } catch (const InputError& error) {
-        reader.refuse("points", error.what());
-    }
-}
-
-Shape read_shape(Reader reader, double mm)
-{
-    const std::string type = reader.choice("type", {"plane", "sphere", "cylinder", "cone", "torus", "polynomial",
-                                                    "swept", "bspline", "tensor-bspline", "griddata"});
-    Shape shape;
-    if (type == "plane")
-        shape = Plane{reader.vector("origin", 2) * mm, reader.number("z0") * mm, reader.vector("slope", 2)};
-    else if (type == "sphere")
-        shape = Sphere{reader.vector("point", 3) * mm, read_upward(reader), reader.number("curvature") / mm};
-    else if (type == "cylinder")
-        shape = read_cylinder(reader, mm);
-    else if (type == "cone")
-        shape = read_cone(reader, mm);
-    else if (type == "torus")
-        shape = read_torus(reader, mm);
-    else if (type == "polynomial")
-        shape = read_polynomial(reader, mm);
-    else if (type == "swept")
-        shape = read_swept(reader, mm);
-    else if (type == "bspline")
-        shape = read_bspline(reader, mm);
-    else if (type == "tensor-bspline")
-        shape = read_tensor_bspline(reader, mm);
-    else
-        shape = read_griddata(reader, mm);
-    reader.done();
-    return shape;
-}
 
 // --- covariance: the lower triangle, row by row; C_ij has the dimension of θ_i θ_j ---
 
@@ -291,11 +46,6 @@ Eigen::MatrixXd read_covariance(Reader& reader, const Shape& shape, double mm)
     return covariance;
 }
 
-Value write_shape(const Shape& shape, double mm)
-{
-    return std::visit([mm](const auto& s) { return write(s, mm); }, shape);
-}
-
 // --- the alternatives ---
 
 Value write_alternatives(const Surface& surface, double mm)
@@ -305,7 +55,7 @@ Value write_alternatives(const Surface& surface, double mm)
         Value value;
         value.set("method", other.method).set("score", other.score).set("weight", other.weight);
         if (other.weight > 0)
-            value.set("shape", write_shape(other.shape, mm))
+            value.set("shape", shape_to_json(other.shape, mm))
                 .set("covariance", write_covariance(other.covariance, other.shape, mm));
         list.push_back(value);
     }
@@ -321,7 +71,7 @@ void read_alternatives(Reader& reader, Surface& surface, double mm)
         other.score = one.number("score");
         other.weight = one.number("weight", Range::between(0, 1));
         if (other.weight > 0) {
-            other.shape = read_shape(one.object("shape"), mm);
+            other.shape = parse_shape(one.object("shape"), mm);
             other.covariance = read_covariance(one, other.shape, mm);
             if (other.covariance.size() == 0) one.refuse("covariance", "is missing");
         }
@@ -449,7 +199,7 @@ json::Value to_json(const Surface& surface)
     units.set("length", to_string(surface.units.length));
     Value value;
     value.set("kind", "surface").set("units", units);
-    value.set("shape", write_shape(surface.shape, mm));
+    value.set("shape", shape_to_json(surface.shape, mm));
     value.set("shift", surface.shift / mm);
     if (surface.prediction)
         value.set("predicted_band", surface.prediction->band / mm)
@@ -470,7 +220,7 @@ Surface parse_surface(json::Reader reader)
     surface.units.length = parse_length_unit(units.choice("length", {"mm", "in", "m"}));
     units.done();
     const double mm = surface.units.mm();
-    surface.shape = read_shape(reader.object("shape"), mm);
+    surface.shape = parse_shape(reader.object("shape"), mm);
     surface.shift = reader.number_or("shift", 0) * mm;
     if (std::optional<Reader> prediction = reader.object_or_none("prediction")) {
         surface.prediction = read_prediction(*prediction, mm);
