@@ -4,6 +4,7 @@
 #include "cloud/pcd.h"
 #include "cloud/point_source.h"
 #include "core/error.h"
+#include "own_folder.h"
 
 #include <gtest/gtest.h>
 #include <pcl/io/lzf.h>
@@ -12,7 +13,6 @@
 
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <random>
@@ -142,7 +142,8 @@ TEST(Pcd, AgreesWithPcl)
     std::erase_if(cloud.fields, [](const Field& field) { // PCL has no 8 byte integers in 1.13's ascii; it drops padding
         return field.name == "_" || (field.type != 'F' && field.size == 8);
     });
-    const std::string path = std::filesystem::temp_directory_path() / "fettle_cloud_test.pcd";
+    const OwnFolder folder;
+    const std::string path = "cloud.pcd";
     for (const PcdEncoding encoding : {PcdEncoding::ascii, PcdEncoding::binary}) {
         std::ofstream(path, std::ios::binary) << written(cloud, encoding);
         pcl::PCLPointCloud2 theirs;
@@ -174,7 +175,6 @@ TEST(Pcd, AgreesWithPcl)
         compressed << std::ifstream(path, std::ios::binary).rdbuf();
         expect_same(cloud, parse_cloud(compressed.str(), "compressed").cloud);
     }
-    std::filesystem::remove(path);
 }
 
 TEST(Pcd, PositionsOfAnyType)
@@ -503,7 +503,8 @@ TEST(Xyz, NamesCommentsAndColumns)
 /// The points of a file as a stream gives them, in blocks.
 Cloud streamed(const std::string& bytes, const std::optional<Units>& units = std::nullopt)
 {
-    const std::filesystem::path path = std::filesystem::temp_directory_path() / "cloud_test.pcd";
+    const OwnFolder folder;
+    const std::string path = "cloud.pcd";
     std::ofstream(path, std::ios::binary) << bytes;
     const CloudStream stream(path, units);
     const PointSource& source = stream.points();
@@ -520,7 +521,6 @@ Cloud streamed(const std::string& bytes, const std::optional<Units>& units = std
     }
     if (source.has_roles) set_field(cloud, "role", roles);
     EXPECT_EQ(stream.cloud()->xyz.cwiseAbs().maxCoeff(), cloud.xyz.cwiseAbs().maxCoeff());
-    std::filesystem::remove(path);
     return cloud;
 }
 

@@ -1,5 +1,6 @@
 #include "core/error.h"
 #include "core/file.h"
+#include "own_folder.h"
 
 #include <gtest/gtest.h>
 
@@ -7,33 +8,18 @@
 #include <fstream>
 #include <sys/stat.h>
 #include <thread>
-#include <unistd.h>
 
 namespace fettle {
 namespace {
 
 namespace fs = std::filesystem;
 
-// A folder of its own for each test, the current one while it runs.
 class Files : public testing::Test {
   protected:
-    void SetUp() override
-    {
-        std::string name = fs::temp_directory_path() / "fettle_file_test.XXXXXX";
-        ASSERT_NE(mkdtemp(name.data()), nullptr);
-        folder_ = name;
-        before_ = fs::current_path();
-        fs::current_path(folder_);
-    }
-    void TearDown() override
-    {
-        fs::current_path(before_);
-        fs::remove_all(folder_);
-    }
     static std::size_t files() { return static_cast<std::size_t>(std::distance(fs::directory_iterator("."), {})); }
 
   private:
-    fs::path folder_, before_;
+    OwnFolder folder_;
 };
 
 TEST_F(Files, AppearWholeOrNotAtAll)
@@ -117,7 +103,7 @@ TEST_F(Files, AreReadAnywhere)
     const InputFile whole("whole");
     EXPECT_EQ(whole.size(), sent.size());
     EXPECT_EQ(part(whole, 2000000, 1000), sent.substr(2000000, 1000));
-    std::filesystem::resize_file("whole", 1000);
+    fs::resize_file("whole", 1000);
     EXPECT_THROW(part(whole, 2000000, 1000), InputError);
     EXPECT_THROW(InputFile("absent"), InputError);
     EXPECT_THROW(InputFile("."), InputError);

@@ -1,6 +1,7 @@
 // Parts against closed forms: volumes of anomalies (solids of revolution, frustums), surfaces that are exact, meshes
 // without cracks.
 
+#include "own_folder.h"
 #include "part/anomalies.h"
 #include "part/part.h"
 #include "part/refine.h"
@@ -216,6 +217,7 @@ TEST(Surface, SweptReproducesACubicSection)
 // A closed box: the anomaly is laid on its top; bottom and sides stay.
 TEST(Scan, OnlyWhatIsSeenFromAboveIsLifted)
 {
+    const OwnFolder folder;
     std::ofstream("box.off") << "OFF\n8 6 0\n-9 -9 0\n9 -9 0\n9 9 0\n-9 9 0\n-9 -9 8\n9 -9 8\n9 9 8\n-9 9 8\n"
                                 "4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n";
     PartSpec spec;
@@ -237,6 +239,7 @@ TEST(Scan, OnlyWhatIsSeenFromAboveIsLifted)
 
 TEST(Scan, CloudIsLiftedAndDensified)
 {
+    const OwnFolder folder;
     std::ofstream file("plate.xyz");
     for (int i = -20; i <= 20; ++i)
         for (int j = -20; j <= 20; ++j) file << i << ' ' << j << ' ' << 0.1 * i << '\n';

@@ -1,4 +1,5 @@
 #include "core/error.h"
+#include "own_folder.h"
 #include "surface/patches.h"
 
 #include <gtest/gtest.h>
@@ -108,7 +109,8 @@ std::string refusal(const std::string& piece, const std::string& replacement)
         "knots_u": [0, 0, 1, 1], "knots_v": [0, 0, 1, 1],
         "control": [[[0, 0, 1], [0, 1, 1]], [[1, 0, 1], [1, 1, 1]]], "weights": null}]})";
     if (!piece.empty()) text.replace(text.find(piece), piece.size(), replacement);
-    const std::string path = testing::TempDir() + "patch.json";
+    const OwnFolder folder;
+    const std::string path = "patch.json";
     std::ofstream(path) << text;
     try {
         read_patches(path);

@@ -1,4 +1,5 @@
 #include "core/error.h"
+#include "own_folder.h"
 #include "plan/gcode.h"
 #include "plan/layers.h"
 #include "plan/plan.h"
@@ -356,7 +357,8 @@ TEST(Plan, ComesBackFromItsFile)
     surface.units = job.units;
     surface.shape = Plane{{0, 0}, 1, {0.01, 0.02}};
     const Plan plan = make_plan(job, surface);
-    const std::string path = testing::TempDir() + "plan.json";
+    const OwnFolder folder;
+    const std::string path = "plan.json";
     std::ofstream(path) << to_json(plan);
     const Plan read = read_plan(path);
     EXPECT_EQ(to_json(read).text(), to_json(read_plan(path)).text());
