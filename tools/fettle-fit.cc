@@ -1,4 +1,5 @@
 #include "cli/tool.h"
+#include "cloud/fields.h"
 #include "cloud/point_source.h"
 #include "core/file.h"
 #include "core/text.h"
@@ -6,7 +7,6 @@
 #include "fit/fit.h"
 #include "job/boundary.h"
 
-#include <cmath>
 #include <optional>
 #include <ostream>
 
@@ -26,21 +26,12 @@ Eigen::VectorXi roles(const Cloud& cloud, const std::string& source)
 {
     if (!has_field(cloud, "role")) return Eigen::VectorXi::Ones(cloud.size());
     constexpr int kMostRole = 5;
-    const Eigen::VectorXd numbers = field(cloud, "role");
+    const Eigen::VectorXi numbers = whole_numbers(cloud, "role");
     for (Eigen::Index i = 0; i < numbers.size(); ++i)
-        if (!(numbers[i] >= 0 && numbers[i] <= kMostRole && numbers[i] == std::floor(numbers[i])))
-            throw InputError(source,
-                             "point " + std::to_string(i) + ": " + to_text(numbers[i]) + " is no role (0 to 5)");
-    return numbers.cast<int>();
-}
-
-/// Number of each touch's line, -1 for an estimated point; empty without the field.
-Eigen::VectorXi curves(const Cloud& cloud)
-{
-    if (!has_field(cloud, "curve")) return {};
-    return field(cloud, "curve").unaryExpr([](double number) {
-        return std::isnan(number) ? -1 : static_cast<int>(number);
-    });
+        if (numbers[i] < 0 || numbers[i] > kMostRole)
+            throw InputError(source, "point " + std::to_string(i) + ": " + to_text(field(cloud, "role")[i]) +
+                                         " is no role (0 to 5)");
+    return numbers;
 }
 
 void report(json::Value& out, const Fit& fit)
@@ -154,7 +145,7 @@ int main(int argc, char** argv)
         const std::shared_ptr<const Cloud> cloud = stream.cloud();
         input.xyz = cloud->xyz;
         input.roles = roles(*cloud, input.source);
-        input.curves = curves(*cloud);
+        if (has_field(*cloud, "curve")) input.curves = whole_numbers(*cloud, "curve");
         if (use_boundary) take_boundary(input);
         if (spacing) input.spacing = *spacing * input.job.units.mm();
         const Fit fit = fit_surface(input, method);

@@ -69,7 +69,12 @@ int main(int argc, char** argv)
             angle = job.theta;
             outline = boundaries(job).anomaly;
         }
-        const SurfaceGrid grid = grid_over(outline, angle, *step * units.mm());
+        SurfaceGrid grid;
+        try {
+            grid = grid_over(outline, angle, *step * units.mm());
+        } catch (const InputError& error) {
+            throw InputError("--step", error.what());
+        }
         t.report().set("points", static_cast<int>(grid.xy.cols()));
         if (stl)
             write_stl(t.output(), mesh_of(surface, grid), units.length);

@@ -24,8 +24,8 @@ constexpr double kMostSeed = 4294967295; // 32 bits
 
 std::string one_line(std::string message)
 {
-    std::replace(message.begin(), message.end(), '\n', ' ');
-    std::replace(message.begin(), message.end(), '\r', ' ');
+    const auto is_control = [](char c) { return (c >= 0 && c < ' ') || c == '\x7f'; }; // of the terminal, too
+    std::replace_if(message.begin(), message.end(), is_control, ' ');
     while (!message.empty() && message.back() == ' ') message.pop_back();
     return message;
 }
@@ -60,6 +60,7 @@ struct Tool::State {
     std::unique_ptr<tbb::global_control> thread_limit;
     std::unique_ptr<OutputFile> bulk;
     std::deque<OutputFile> others;
+    std::vector<std::string> output_names; ///< of all outputs so far
     std::vector<std::string> warnings;
 };
 
@@ -204,6 +205,7 @@ void Tool::parse()
     s.app.get_formatter()->column_width(32);
     check_options(s.app, s.argc, s.argv);
     s.app.parse(s.argc, s.argv);
+    s.output_names = {s.output};
     if (s.threads > 0)
         s.thread_limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
                                                                static_cast<std::size_t>(s.threads));
@@ -221,7 +223,9 @@ std::ostream& Tool::output()
 
 std::ostream& Tool::output_file(const std::string& path)
 {
-    if (path != "-" && path == state_->output) throw InputError(path, "named for two outputs");
+    for (const std::string& other : state_->output_names)
+        if (same_file(path, other)) throw InputError(path == "-" ? "stdout" : path, "named for two outputs");
+    state_->output_names.push_back(path);
     return state_->others.emplace_back(path).stream();
 }
 

@@ -1,7 +1,10 @@
 #include "cloud/fields.h"
 
 #include "cloud/element.h"
+#include "core/range.h"
 
+#include <cmath>
+#include <limits>
 #include <type_traits>
 
 namespace fettle {
@@ -14,6 +17,14 @@ Dimension field_dimension(const std::string& name)
     if (name == "feed") return {1, 0}; // per second, which is the unit of time everywhere
     if (name == "pressure") return {-2, 1};
     return {};
+}
+
+Eigen::VectorXi whole_numbers(const Cloud& cloud, const std::string& name)
+{
+    const Range possible = Range::between(0, std::numeric_limits<int>::max());
+    return field(cloud, name).unaryExpr([&possible](double value) {
+        return possible.contains(value) && value == std::floor(value) ? static_cast<int>(value) : -1;
+    });
 }
 
 double element(const Field& field, char type, std::size_t index)

@@ -12,6 +12,10 @@ namespace fettle {
 /// number.
 Dimension field_dimension(const std::string& name);
 
+/// A scalar field of whole numbers from 0 (curve, role); -1 for what is none of them (NaN).
+/// @throws InputError as field()
+Eigen::VectorXi whole_numbers(const Cloud& cloud, const std::string& name);
+
 /// Element `index` of all elements of all points, taken as a number of `type`, usually the field's own.
 double element(const Field& field, char type, std::size_t index);
 

@@ -4,6 +4,7 @@
 #include "cloud/fields.h"
 #include "cloud/pcd_header.h"
 #include "cloud/ply.h"
+#include "cloud/reach.h"
 #include "cloud/xyz.h"
 #include "core/error.h"
 #include "core/file.h"
@@ -197,6 +198,7 @@ CloudFile parse_cloud(std::string_view bytes, const std::string& source, std::op
     else
         file = parse_pcd(bytes, source, units);
     convert_to_base(file.cloud, file.units);
+    check_reach(file.cloud.xyz, source);
     return file;
 }
 

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <set>
 
 namespace fettle {
@@ -22,6 +23,10 @@ constexpr std::size_t kMostPoints = 4294967295; // PCL keeps widths and heights 
 
 constexpr std::string_view kEntries[] = {"VERSION", "FIELDS", "COLUMNS",   "SIZE",   "TYPE", "COUNT",
                                          "WIDTH",   "HEIGHT", "VIEWPOINT", "POINTS", "DATA"};
+
+// What fettle itself reads is one number a point; others may have more (a descriptor).
+constexpr std::string_view kScalars[] = {"x",   "y",     "z",     "normal_x", "normal_y", "normal_z",
+                                         "rgb", "error", "sigma", "curve",    "role"};
 
 bool is_entry(std::string_view word)
 {
@@ -56,7 +61,7 @@ class HeaderParser {
     std::size_t number(std::string_view word, const std::string& entry, std::size_t most) const;
     std::size_t only_number(const Words& words, std::size_t most) const;
     void check_count(const Words& words) const;
-    void check_position() const;
+    void check_columns() const;
     void finish();
 
     std::string_view bytes_;
@@ -181,16 +186,17 @@ void HeaderParser::read_entry(const Words& words)
     if (entry == "DATA") read_data(words);
 }
 
-void HeaderParser::check_position() const
+void HeaderParser::check_columns() const
 {
     for (const std::string_view axis : {"x", "y", "z"}) {
         const auto is_axis = [axis](const PcdColumn& column) { return column.name == axis; };
         const auto found = std::find_if(header_.columns.begin(), header_.columns.end(), is_axis);
         if (found == header_.columns.end()) throw InputError(source_, "no field '" + std::string(axis) + "'");
-        if (found->count != 1)
-            throw InputError(source_, "field '" + std::string(axis) + "': COUNT " + std::to_string(found->count) +
-                                          ", expected 1");
     }
+    for (const PcdColumn& column : header_.columns)
+        if (column.count != 1 && std::find(std::begin(kScalars), std::end(kScalars), column.name) != std::end(kScalars))
+            throw InputError(source_,
+                             "field '" + column.name + "': COUNT " + std::to_string(column.count) + ", expected 1");
     std::set<std::string> names;
     for (const PcdColumn& column : header_.columns)
         if (column.name != "_" && !names.insert(column.name).second) // "_" is padding and may repeat
@@ -208,7 +214,7 @@ void HeaderParser::finish()
             throw InputError(source_, "field " + in_quotes(column.name) + ": no type " +
                                           in_quotes(element_name(column.type, column.size)) +
                                           " (F4, F8, I1, I2, I4, I8, U1, U2, U4, U8)");
-    check_position();
+    check_columns();
     PcdHeader& h = header_;
     if (!seen_.contains("WIDTH")) h.width = h.points;
     const std::size_t product = h.width * h.height; // both fit 32 bits
@@ -216,6 +222,9 @@ void HeaderParser::finish()
     if (product != h.points)
         throw InputError(source_, "WIDTH " + std::to_string(h.width) + " times HEIGHT " + std::to_string(h.height) +
                                       " is not POINTS " + std::to_string(h.points));
+    if (h.points > 0 && h.stride() > std::numeric_limits<std::size_t>::max() / h.points)
+        throw InputError(source_, "POINTS " + std::to_string(h.points) + " of " + std::to_string(h.stride()) +
+                                      " bytes are more than any file holds");
     h.body = lines_.offset();
     h.lines = lines_.number();
 }

@@ -11,6 +11,8 @@ namespace fettle {
 
 namespace {
 
+constexpr std::size_t kMostColumns = 1000; // scanners write a dozen; the columns are told apart by name, all by all
+
 bool is_skipped(std::string_view line)
 {
     const std::size_t first = line.find_first_not_of(" \t");
@@ -66,6 +68,8 @@ Cloud parse_xyz(std::string_view bytes, const std::string& source)
         columns = row.size();
         values.insert(values.end(), row.begin(), row.end());
     }
+    if (columns > kMostColumns)
+        throw InputError(source, std::to_string(columns) + " columns, at most " + std::to_string(kMostColumns));
     for (std::size_t c = names.size(); c < columns; ++c)
         names.push_back(c < 3 ? std::string(1, "xyz"[c]) : "column" + std::to_string(c + 1));
     const auto rows = static_cast<Eigen::Index>(columns == 0 ? 0 : values.size() / columns);
@@ -73,7 +77,9 @@ Cloud parse_xyz(std::string_view bytes, const std::string& source)
     Cloud cloud;
     cloud.xyz = rows == 0 ? Eigen::Matrix3Xd(3, 0) : Eigen::Matrix3Xd(table.topRows(3));
     for (std::size_t c = 3; c < columns; ++c) {
-        if (has_field(cloud, names[c])) throw InputError(source, "column " + in_quotes(names[c]) + " stands twice");
+        if (std::find(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(c), names[c]) - names.begin() !=
+            static_cast<std::ptrdiff_t>(c))
+            throw InputError(source, "column " + in_quotes(names[c]) + " stands twice");
         set_field(cloud, names[c],
                   rows == 0 ? Eigen::VectorXd(0) : Eigen::VectorXd(table.row(static_cast<Eigen::Index>(c))),
                   sizeof(double));

@@ -5,24 +5,25 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
-#include <ext/stdio_filebuf.h>
 #include <fcntl.h>
-#include <iostream>
+#include <filesystem>
 #include <sstream>
 #include <string_view>
 #include <sys/stat.h>
+#include <system_error>
 #include <unistd.h>
+#include <utility>
 
 namespace fettle {
 
 namespace {
 
-/// Of an output that is held back, bytes: up to there it is not copied while it grows. Untouched it costs nothing.
+/// Of an output, bytes: up to there it is not copied while it grows. Untouched it costs nothing.
 constexpr std::size_t kRoom = 1 << 24;
 
-[[noreturn]] void fail(const std::string& path, const std::string& doing)
+[[noreturn]] void fail(const std::string& path, const std::string& doing, int reason = errno)
 {
-    throw InputError(display_name(path), doing + ": " + std::strerror(errno));
+    throw InputError(display_name(path), doing + ": " + std::strerror(reason));
 }
 
 } // namespace
@@ -46,8 +47,7 @@ std::string read_whole(const std::string& path)
         if (got < 0) {
             const int reason = errno;
             close(file);
-            errno = reason;
-            fail(path, "cannot read");
+            fail(path, "cannot read", reason);
         }
         size += static_cast<std::size_t>(got);
         if (got == 0) {
@@ -140,73 +140,105 @@ void InputFile::read(std::size_t offset, char* to, std::size_t count) const
 }
 
 struct OutputFile::State {
-    std::string path;      ///< as the user gave it
-    std::string temporary; ///< what is written; empty if the target is written directly
-    std::unique_ptr<__gnu_cxx::stdio_filebuf<char>> buffer;
-    std::unique_ptr<std::ostream> stream;
-    std::ostringstream
-        held; ///< for stdout and what is written directly: nothing goes out before the work has succeeded
+    std::string path;        ///< for messages
+    std::string target;      ///< what is replaced, links followed; empty if `file` is written directly
+    int file = -1;           ///< stdout, or a target that is no regular file
+    std::ostringstream held; ///< nothing may go out before the work has succeeded
 };
 
+namespace {
+
+// An empty file beside `target`, whose name it is to get. @return its descriptor, -1 if it cannot be made
+int make_temporary(const std::string& target, std::string& name)
+{
+    name = target + ".XXXXXX";
+    const int file = mkostemp(name.data(), O_CLOEXEC);
+    if (file < 0) return file;
+    struct stat status = {};
+    const mode_t mask = umask(0);
+    umask(mask);
+    fchmod(file, stat(target.c_str(), &status) == 0 ? status.st_mode & 07777 : 0666 & ~mask);
+    return file;
+}
+
+// @return  false, and errno, if something could not be written
+bool write_all(int file, std::string_view bytes)
+{
+    while (!bytes.empty()) {
+        const ssize_t written = write(file, bytes.data(), bytes.size());
+        if (written < 0 && errno != EINTR) return false;
+        if (written > 0) bytes.remove_prefix(static_cast<std::size_t>(written));
+    }
+    return true;
+}
+
+bool replace(const std::string& target, std::string_view bytes)
+{
+    std::string temporary;
+    const int file = make_temporary(target, temporary);
+    if (file < 0) return false;
+    int reason = write_all(file, bytes) && fsync(file) == 0 ? 0 : errno;
+    if (close(file) != 0 && reason == 0) reason = errno;
+    if (reason == 0 && rename(temporary.c_str(), target.c_str()) != 0) reason = errno;
+    if (reason == 0) return true;
+    unlink(temporary.c_str());
+    errno = reason;
+    return false;
+}
+
+} // namespace
+
+// Made and removed at once: a wrong name shows before the work, and a run that is stopped leaves nothing.
 OutputFile::OutputFile(const std::string& path) : state_(std::make_unique<State>())
 {
     State& s = *state_;
     s.path = path == "-" ? "stdout" : display_name(path);
-    int file = -1;
+    std::string room;
+    room.reserve(kRoom);
+    s.held = std::ostringstream(std::move(room));
     struct stat status = {};
-    if (path.empty()) {
-        errno = ENOENT;
-    } else if (path == "-") {
-        file = dup(STDOUT_FILENO);
-    } else if (stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode)) {
-        file = open(path.c_str(), O_WRONLY | O_CLOEXEC);
-    } else {
-        s.temporary = path + ".XXXXXX";
-        file = mkostemp(s.temporary.data(), O_CLOEXEC);
-        if (file < 0) s.temporary.clear();
-        const mode_t mask = umask(0);
-        umask(mask);
-        if (file >= 0) fchmod(file, status.st_mode != 0 ? status.st_mode & 07777 : 0666 & ~mask);
+    std::error_code unresolved;
+    if (path.empty()) fail(s.path, "cannot write", ENOENT);
+    const bool exists = path != "-" && stat(path.c_str(), &status) == 0;
+    if (path == "-" || (exists && !S_ISREG(status.st_mode))) {
+        s.file = path == "-" ? dup(STDOUT_FILENO) : open(path.c_str(), O_WRONLY | O_CLOEXEC);
+        if (s.file < 0) fail(s.path, "cannot write");
+        return;
     }
-    if (file < 0) fail(s.path, "cannot write");
-    constexpr std::size_t kBuffer = 1 << 16;
-    if (s.temporary.empty()) {
-        std::string room;
-        room.reserve(kRoom);
-        s.held = std::ostringstream(std::move(room));
-    }
-    s.buffer = std::make_unique<__gnu_cxx::stdio_filebuf<char>>(file, std::ios::out | std::ios::binary, kBuffer);
-    s.stream = std::make_unique<std::ostream>(s.buffer.get());
+    s.target = exists ? std::filesystem::canonical(path, unresolved).string() : path;
+    if (unresolved) fail(s.path, "cannot write", unresolved.value());
+    std::string temporary;
+    const int tried = make_temporary(s.target, temporary);
+    if (tried < 0) fail(s.path, "cannot write");
+    close(tried);
+    unlink(temporary.c_str());
 }
 
 OutputFile::~OutputFile()
 {
-    if (!state_) return;
-    state_->buffer.reset();
-    if (!state_->temporary.empty()) unlink(state_->temporary.c_str());
+    if (state_ && state_->file >= 0) close(state_->file);
 }
 
-std::ostream& OutputFile::stream()
-{
-    if (state_->temporary.empty()) return state_->held;
-    return *state_->stream;
-}
+std::ostream& OutputFile::stream() { return state_->held; }
 
 void OutputFile::commit()
 {
     State& s = *state_;
-    errno = 0;
-    const std::string_view held = s.held.view();
-    s.stream->write(held.data(), static_cast<std::streamsize>(held.size()));
-    s.stream->flush();
-    const bool written = s.stream->good();
-    if (!written && errno == 0) errno = EIO;
+    const std::string_view bytes = s.held.view();
+    const bool written =
+        s.target.empty() ? write_all(s.file, bytes) && close(std::exchange(s.file, -1)) == 0 : replace(s.target, bytes);
     if (!written) fail(s.path, "cannot write");
-    if (!s.temporary.empty() && fsync(s.buffer->fd()) != 0) fail(s.path, "cannot write");
-    if (!s.buffer->close()) fail(s.path, "cannot write");
-    if (s.temporary.empty()) return;
-    if (rename(s.temporary.c_str(), s.path.c_str()) != 0) fail(s.path, "cannot write");
-    s.temporary.clear();
+}
+
+bool same_file(const std::string& a, const std::string& b)
+{
+    if (a == "-" || b == "-") return a == b;
+    std::error_code failed; // of a folder that may not be searched: then the names alone tell
+    const auto whole = [&failed](const std::string& path) {
+        return std::filesystem::weakly_canonical(std::filesystem::absolute(path, failed), failed);
+    };
+    const auto first = whole(a), second = whole(b);
+    return failed ? a == b : first == second;
 }
 
 } // namespace fettle

@@ -38,12 +38,16 @@ class InputFile {
 /// How a path is called in messages: "stdin" for "-".
 std::string display_name(const std::string& path);
 
-/// A file that appears whole or not at all: it is written under another name in the same folder; commit() flushes,
-/// syncs and renames it. A target that exists and is no regular file (/dev/null, a FIFO) is written directly at
-/// commit(), "-" is stdout. Destroyed without commit(), nothing is left.
+/// Do two names mean the same file, which need not exist? "-" is itself alone.
+bool same_file(const std::string& a, const std::string& b);
+
+/// A file that appears whole or not at all: what is written is held until commit(), which writes it under another name
+/// in the same folder, syncs and renames it. A link stays one: the file it names is replaced. A target that exists and
+/// is no regular file (/dev/null, a FIFO) is written directly, "-" is stdout. Without commit(), nothing is left, even
+/// if the program is stopped by a signal.
 class OutputFile {
   public:
-    /// @throws InputError if it cannot be created
+    /// @throws InputError if it could not be written
     explicit OutputFile(const std::string& path);
     OutputFile(const OutputFile&) = delete;
     OutputFile& operator=(const OutputFile&) = delete;

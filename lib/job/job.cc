@@ -21,6 +21,9 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 // A kilometre: no table is larger, and squares of it stay far from overflow.
 constexpr double kLargestCoordinate = 1e6;
 
+// What is divided by less overflows.
+constexpr double kLeastQuantity = 1e-100;
+
 // Defaults that follow from another member.
 constexpr double kStepOverPerWidth = 0.8;        // neighbouring passes overlap by a fifth
 constexpr double kLeastRadiusPerRadius = 0.5;    // a wheel is used up at half its radius
@@ -31,7 +34,8 @@ double quantity(Reader& reader, const std::string& key, double otherwise, double
 {
     const double number = reader.number_or(key, kNaN, range);
     const double value = std::isnan(number) ? otherwise : number * unit;
-    if (!std::isfinite(value)) reader.refuse(key, "too large: " + to_text(number));
+    if (std::abs(number) > 0 && std::abs(value) < kLeastQuantity) // NaN: not given
+        reader.refuse(key, "too small: " + to_text(number));
     return value;
 }
 

@@ -38,6 +38,31 @@ Reader::Reader(std::shared_ptr<Node> node, std::string source, std::string path)
 {
 }
 
+namespace {
+
+// So that a message stays one readable line.
+std::string shortened(const std::string& text)
+{
+    constexpr std::size_t kLongest = 100;
+    return text.size() > kLongest ? text.substr(0, kLongest) + "..." : text;
+}
+
+double any_number(const Reader& reader, const Json& json, const std::string& place)
+{
+    if (!json.is_number()) reader.refuse(place, "expected a number, got " + type_of(json));
+    return json.get<double>();
+}
+
+double number_of(const Reader& reader, const Json& json, const std::string& place)
+{
+    constexpr double kLargest = 1e100; // stands for nothing, and its square or a change of unit would overflow
+    const double value = any_number(reader, json, place);
+    if (std::abs(value) > kLargest) reader.refuse(place, "no number may be as large as " + to_text(value));
+    return value;
+}
+
+} // namespace
+
 Reader Reader::open(const std::string& path) { return parse(read_whole(path), display_name(path)); }
 
 Reader Reader::parse(std::string_view text, const std::string& source)
@@ -54,7 +79,7 @@ std::string Reader::path_of(const std::string& key) const
 
 void Reader::refuse(const std::string& key, const std::string& problem) const
 {
-    const std::string path = path_of(key);
+    const std::string path = shortened(path_of(key));
     throw InputError(source_, path.empty() ? problem : path + ": " + problem);
 }
 
@@ -71,14 +96,12 @@ const Json& Reader::member(const std::string& key, const char* wanted)
 void Reader::expect_kind(const std::string& kind)
 {
     const std::string got = text("kind");
-    if (got != kind) refuse("kind", "expected \"" + kind + "\", got \"" + got + "\"");
+    if (got != kind) refuse("kind", "expected \"" + kind + "\", got \"" + shortened(got) + "\"");
 }
 
 double Reader::number(const std::string& key, const Range& range)
 {
-    const Json& json = member(key, "a number");
-    if (!json.is_number()) refuse(key, "expected a number, got " + type_of(json));
-    const double value = json.get<double>();
+    const double value = number_of(*this, member(key, "a number"), key);
     if (!range.contains(value)) refuse(key, "must be " + range.text() + ", got " + to_text(value));
     return value;
 }
@@ -127,7 +150,8 @@ std::string Reader::choice(const std::string& key, const std::vector<std::string
         list += (list.empty() ? "" : ", ") + candidate;
     }
     const std::string guess = nearest_word(word, choices);
-    refuse(key, "\"" + word + "\" is none of " + list + (guess.empty() ? "" : "; did you mean \"" + guess + "\"?"));
+    refuse(key, "\"" + shortened(word) + "\" is none of " + list +
+                    (guess.empty() ? "" : "; did you mean \"" + guess + "\"?"));
 }
 
 std::string Reader::choice_or(const std::string& key, const std::string& otherwise,
@@ -144,11 +168,9 @@ Eigen::VectorXd Reader::vector(const std::string& key, int size)
     if (size >= 0 && json.size() != static_cast<std::size_t>(size))
         refuse(key, "expected " + std::to_string(size) + " numbers, got " + std::to_string(json.size()));
     Eigen::VectorXd values(static_cast<Eigen::Index>(json.size()));
-    for (std::size_t i = 0; i < json.size(); ++i) {
-        if (!json[i].is_number())
-            refuse(key + "[" + std::to_string(i) + "]", "expected a number, got " + type_of(json[i]));
-        values[static_cast<Eigen::Index>(i)] = json[i].get<double>();
-    }
+    const auto read = size < 0 ? any_number : number_of; // a list of any length is what a program wrote
+    for (std::size_t i = 0; i < json.size(); ++i)
+        values[static_cast<Eigen::Index>(i)] = read(*this, json[i], key + "[" + std::to_string(i) + "]");
     return values;
 }
 
@@ -164,7 +186,7 @@ Eigen::MatrixXd Reader::ragged(const std::string& key, int least_columns, int mo
 {
     const Json& json = member(key, "an array of rows");
     if (!json.is_array()) refuse(key, "expected an array of rows, got " + type_of(json));
-    std::size_t columns = 0;
+    auto columns = static_cast<std::size_t>(least_columns);
     for (const Json& row : json)
         if (row.is_array()) columns = std::max(columns, row.size());
     const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -179,9 +201,8 @@ Eigen::MatrixXd Reader::ragged(const std::string& key, int least_columns, int mo
                               (least_columns == most_columns ? "" : " to " + std::to_string(most_columns)) +
                               " numbers, got " + std::to_string(size));
         for (std::size_t j = 0; j < size; ++j) {
-            if (!json[i][j].is_number())
-                refuse(place + "[" + std::to_string(j) + "]", "expected a number, got " + type_of(json[i][j]));
-            values(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = json[i][j].get<double>();
+            values(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
+                number_of(*this, json[i][j], place + "[" + std::to_string(j) + "]");
         }
     }
     return values;
@@ -200,15 +221,13 @@ std::vector<Eigen::MatrixXd> Reader::grid(const std::string& key, int size)
         if (!json[i].is_array()) refuse(row, "expected an array, got " + type_of(json[i]));
         if (json[i].size() != columns) refuse(key, "rows of different length");
         for (std::size_t j = 0; j < columns; ++j) {
-            const Json& element = json[i][j];
+            const Json& point = json[i][j];
             const std::string place = row + "[" + std::to_string(j) + "]";
-            if (!element.is_array() || element.size() != static_cast<std::size_t>(size))
+            if (!point.is_array() || point.size() != static_cast<std::size_t>(size))
                 refuse(place, "expected " + std::to_string(size) + " numbers");
-            for (std::size_t k = 0; k < layers.size(); ++k) {
-                if (!element[k].is_number())
-                    refuse(place + "[" + std::to_string(k) + "]", "expected a number, got " + type_of(element[k]));
-                layers[k](static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = element[k].get<double>();
-            }
+            for (std::size_t k = 0; k < layers.size(); ++k)
+                layers[k](static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
+                    number_of(*this, point[k], place + "[" + std::to_string(k) + "]");
         }
     }
     return layers;

@@ -1,6 +1,7 @@
 #include "json/parse.h"
 
 #include "core/error.h"
+#include "core/lines.h"
 
 #include <set>
 #include <vector>
@@ -26,7 +27,7 @@ class Strictness {
         if (event == Event::object_start) keys_.emplace_back();
         if (event == Event::object_end) keys_.pop_back();
         if (event == Event::key && !keys_.back().insert(parsed.get<std::string>()).second)
-            throw InputError(source_, "key '" + parsed.get<std::string>() + "' stands twice");
+            throw InputError(source_, "key " + in_quotes(parsed.get<std::string>()) + " stands twice");
         return true;
     }
 

@@ -2,6 +2,7 @@
 
 #include "cloud/pcd_header.h"
 #include "cloud/ply.h"
+#include "cloud/reach.h"
 #include "cloud/xyz.h"
 #include "core/error.h"
 #include "core/file.h"
@@ -62,6 +63,7 @@ Mesh parse_mesh(std::string_view bytes, const std::string& source, Units::Length
                                      : "no triangles but " + std::to_string(done.dropped_triangles) +
                                            " with NaN or infinite corners");
     mesh.vertices *= mm_per(unit);
+    check_reach(mesh.vertices, source);
     if (repair != nullptr) *repair = done;
     return mesh;
 }

@@ -1,7 +1,7 @@
 #include "sampling/estimate.h"
 
+#include "cloud/fields.h"
 #include "core/error.h"
-#include "core/range.h"
 #include "sampling/touch_plan.h"
 #include "sampling/trend.h"
 
@@ -69,13 +69,6 @@ std::vector<std::byte> no_value(const Field& field)
     return bytes;
 }
 
-// What is no number of a line or a role (the NaN of an estimated point's curve) becomes -1.
-Eigen::VectorXi whole_numbers(const Eigen::VectorXd& values)
-{
-    const Range possible = Range::between(0, std::numeric_limits<int>::max());
-    return values.unaryExpr([&](double value) { return possible.contains(value) ? static_cast<int>(value) : -1; });
-}
-
 } // namespace
 
 Eigen::Matrix3Xd estimated_points(const Job& job, const Eigen::Matrix3Xd& touches, const Eigen::VectorXi& curve,
@@ -111,7 +104,7 @@ Eigen::Matrix3Xd estimated_points(const Job& job, const Eigen::Matrix3Xd& touche
 
 Cloud with_estimated_points(const Job& job, const Cloud& samples)
 {
-    const Eigen::VectorXi curve = whole_numbers(field(samples, "curve")), role = whole_numbers(field(samples, "role"));
+    const Eigen::VectorXi curve = whole_numbers(samples, "curve"), role = whole_numbers(samples, "role");
     if ((role.array() == static_cast<int>(Role::estimated)).any())
         throw InputError("holds estimated points already (role 3)");
     if (job.surface != SurfaceType::freeform || (curve.array() == kNoLine).all()) return samples;

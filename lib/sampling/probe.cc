@@ -17,8 +17,9 @@ Eigen::Matrix3Xd probe(const Scan& scan, const Job& job, const TouchPlan& plan, 
     const double radius = job.probe.tip_radius;
     const Eigen::Matrix2Xd b = job.anomaly.topRows<2>();
     if (const double across = (b.rowwise().maxCoeff() - b.rowwise().minCoeff()).maxCoeff(); radius > across)
-        throw InputError("a probe's tip of radius " + to_short_text(radius / job.units.mm()) +
-                         " is larger than the anomaly, " + to_short_text(across / job.units.mm()) + " across");
+        throw InputError(job.source, "a probe's tip of radius " + to_short_text(radius / job.units.mm()) +
+                                         " is larger than the anomaly, " + to_short_text(across / job.units.mm()) +
+                                         " across");
     Eigen::Matrix3Xd touches(3, plan.size());
     touches.topRows<2>() = plan.xy;
     tbb::parallel_for(Eigen::Index{0}, plan.size(), [&](Eigen::Index i) {

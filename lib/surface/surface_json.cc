@@ -164,10 +164,10 @@ void read_touches(Reader& reader, Surface& surface, double mm)
     const Eigen::MatrixXd rows = reader.matrix("touches", 4);
     if (rows.rows() == 0) reader.refuse("touches", "is empty");
     surface.touches = rows.leftCols(3).transpose() * mm;
-    surface.roles = rows.col(3).cast<int>();
     for (Eigen::Index i = 0; i < rows.rows(); ++i)
-        if (surface.roles[i] != rows(i, 3) || surface.roles[i] < 0 || surface.roles[i] > kMostRoles)
+        if (!(rows(i, 3) >= 0 && rows(i, 3) <= kMostRoles && rows(i, 3) == std::floor(rows(i, 3))))
             reader.refuse("touches[" + std::to_string(i) + "][3]", "is no role (0 to 5)");
+    surface.roles = rows.col(3).cast<int>();
 }
 
 Value write_prediction(const Prediction& prediction, double mm)

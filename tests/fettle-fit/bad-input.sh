@@ -37,5 +37,10 @@ printf '1 0 0\n0 1 0\n-1 0 0\n0 -1 0\n0.6 0.8 0\n0.8 -0.6 0\n' | pcd x y z >circ
 # roles that are none, units that disagree
 heights 1 20 1 | sed 's/$/ 7/' | pcd x y z role >role.pcd
 "$refuses" 'role.pcd: point 0: 7 is no role (0 to 5)' fettle-fit job.json role.pcd
+sed '/^COUNT/s/1$/3/' role.pcd >roles.pcd
+"$refuses" "roles.pcd: field 'role': COUNT 3, expected 1" fettle-fit job.json roles.pcd
+# a curve's number beyond all integers is none
+for curve in nan 1e30; do heights 1 20 1 | sed "s/\$/ $curve/" | pcd x y z curve >$curve.pcd; done
+fettle-diff <(fettle-fit job.json nan.pcd) <(fettle-fit job.json 1e30.pcd)
 sed 's,# units in,# units mm,' good.pcd >mm.pcd
 "$refuses" 'mm.pcd' fettle-fit job.json mm.pcd

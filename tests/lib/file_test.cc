@@ -52,6 +52,41 @@ TEST_F(Files, KeepTheirPermissions)
     EXPECT_EQ(status.st_mode & 0777, 0640u);
 }
 
+TEST_F(Files, LinksStayAndWhatTheyNameIsReplaced)
+{
+    fs::create_directory("there");
+    std::ofstream("there/b") << "old";
+    fs::create_symlink("there/b", "a");
+    OutputFile file("a");
+    file.stream() << "new";
+    file.commit();
+    EXPECT_TRUE(fs::is_symlink("a"));
+    EXPECT_EQ(read_whole("there/b"), "new");
+    EXPECT_EQ(files(), 2u);
+}
+
+TEST_F(Files, AreNotThereBeforeTheyAreWhole)
+{
+    OutputFile file("a");
+    file.stream() << std::string(1000000, 'x');
+    EXPECT_EQ(files(), 0u); // not under another name either: the program may be stopped
+    file.commit();
+    EXPECT_EQ(files(), 1u);
+}
+
+TEST_F(Files, AreTheSameByWhateverName)
+{
+    std::ofstream("a") << "x";
+    fs::create_symlink("a", "b");
+    EXPECT_TRUE(same_file("a", "./a"));
+    EXPECT_TRUE(same_file("a", "b"));
+    EXPECT_TRUE(same_file("absent", "./absent"));
+    EXPECT_TRUE(same_file("absent", fs::absolute("absent")));
+    EXPECT_TRUE(same_file("-", "-"));
+    EXPECT_FALSE(same_file("a", "absent"));
+    EXPECT_FALSE(same_file("-", "./-"));
+}
+
 TEST_F(Files, FailedWritesAreErrors)
 {
     EXPECT_THROW(OutputFile("no/where"), InputError);

@@ -133,8 +133,8 @@ TEST(Job, RefusesWrongShapesOfTheFile)
       "anomaly": [[0,0],[1,0],[0,1]]})"),
               "job.json: sampling: missing, expected an array of rows");
     EXPECT_EQ(problem(R"({"kind": "job", "units": {"length": "in"}, "surface": {"type": "plane"},
-      "anomaly": [[0,0],[1e300,0],[0,1]]})"),
-              "job.json: anomaly[1][0]: no casting reaches that far: 1e+300");
+      "anomaly": [[0,0],[1e30,0],[0,1]]})"),
+              "job.json: anomaly[1][0]: no casting reaches that far: 1e+30");
 }
 
 TEST(Plausible, BoxInAnotherUnitIsDoubted)
