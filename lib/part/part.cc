@@ -3,7 +3,7 @@
 #include "cloud/pcd.h"
 #include "core/error.h"
 #include "core/file.h"
-#include "core/text.h"
+#include "job/boundary.h"
 #include "mesh/mesh_file.h"
 #include "part/refine.h"
 #include "sampling/scan.h"
@@ -20,14 +20,16 @@ using Eigen::Vector2d;
 constexpr double kLeastEdge = 1.0 / 16;
 // An anomaly is ground away: its own shape need not be finer than this, mm.
 constexpr double kAnomalyChord = 0.02;
+
 /// Squares of at most `step`, each cut in two; the diagonals alternate, so that no direction is preferred. z = 0.
+/// @throws InputError as check_size()
 Mesh grid(const Eigen::AlignedBox2d& region, double step)
 {
-    const Vector2d sides = region.sizes();
     // Relative rounding of a side that is a whole number of steps in other units.
     constexpr double kWhole = 1e-9;
-    const Index nx = std::max<Index>(1, static_cast<Index>(std::ceil(sides.x() / step - kWhole)));
-    const Index ny = std::max<Index>(1, static_cast<Index>(std::ceil(sides.y() / step - kWhole)));
+    const Eigen::Array2d squares = (region.sizes().array() / step - kWhole).ceil().max(1);
+    check_size(2 * squares.prod());
+    const auto nx = static_cast<Index>(squares.x()), ny = static_cast<Index>(squares.y());
     Mesh mesh;
     mesh.vertices.setZero(3, (nx + 1) * (ny + 1));
     mesh.triangles.resize(3, 2 * nx * ny);
@@ -49,33 +51,48 @@ Mesh grid(const Eigen::AlignedBox2d& region, double step)
     return mesh;
 }
 
-InputError beside(std::size_t anomaly)
+/// Work that fails if the step is too fine for it.
+template <typename Work>
+Mesh by_step(const PartSpec& spec, const Work& work)
+try {
+    return work(spec.step);
+} catch (const InputError& error) {
+    throw InputError(spec.source, std::string("step: ") + error.what());
+}
+
+Mesh grid(const Eigen::AlignedBox2d& region, const PartSpec& spec)
 {
-    return InputError("anomalies[" + std::to_string(anomaly) + "]", "lies beside the part");
+    return by_step(spec, [&](double step) { return grid(region, step); });
+}
+
+InputError beside(const PartSpec& spec, std::size_t anomaly)
+{
+    return InputError(spec.source, "anomalies[" + std::to_string(anomaly) + "]: lies beside the part");
 }
 
 /// The mesh with the triangles that the anomalies need; not lifted yet.
-Mesh lay(const Mesh& mesh, const std::vector<Anomaly>& anomalies, double step)
+Mesh lay(const Mesh& mesh, const PartSpec& spec)
 {
-    if (anomalies.empty()) return mesh;
-    Mesh refined = refine(mesh, anomalies, {.step = step, .chord = kAnomalyChord, .least = kLeastEdge * step});
-    for (std::size_t i = 0; i < anomalies.size(); ++i) {
+    if (spec.anomalies.empty()) return mesh;
+    Mesh refined = by_step(spec, [&](double step) {
+        return refine(mesh, spec.anomalies, {.step = step, .chord = kAnomalyChord, .least = kLeastEdge * step});
+    });
+    for (std::size_t i = 0; i < spec.anomalies.size(); ++i) {
         bool touched = false;
         for (Index v = 0; v < refined.vertices.cols() && !touched; ++v)
-            touched = anomalies[i].height(refined.vertices.col(v).head<2>()) > 0;
-        if (!touched) throw beside(i);
+            touched = spec.anomalies[i].height(refined.vertices.col(v).head<2>()) > 0;
+        if (!touched) throw beside(spec, i);
     }
     return refined;
 }
 
 Mesh make(const MadeSurface& made, const PartSpec& spec)
 {
-    Mesh mesh = lay(grid(made.region, spec.step), spec.anomalies, spec.step);
+    Mesh mesh = lay(grid(made.region, spec), spec);
     for (Index v = 0; v < mesh.vertices.cols(); ++v) {
         const Vector2d xy = mesh.vertices.col(v).head<2>();
         const double z = made.z(xy);
-        if (!std::isfinite(z))
-            throw InputError("surface", "is not defined over (" + to_text(xy.x()) + ", " + to_text(xy.y()) + ") mm");
+        if (!std::isfinite(z)) throw InputError(spec.source, "surface: is not defined over " + place(xy, spec.units));
         mesh.vertices(2, v) = z + height(spec.anomalies, xy);
     }
     return mesh;
@@ -113,7 +130,7 @@ Mesh lay_on(Mesh mesh, const PartSpec& spec)
 {
     if (spec.anomalies.empty()) return mesh;
     const Scan bare(mesh);
-    mesh = lay(mesh, spec.anomalies, spec.step);
+    mesh = lay(mesh, spec);
     // A vertex on the upper side meets the highest surface over it, but for the rounding of its coordinates.
     const double rounding = 1e-9 * mesh.vertices.cwiseAbs().maxCoeff();
     for (Index v = 0; v < mesh.vertices.cols(); ++v) {
@@ -129,7 +146,7 @@ Mesh lay_on(Mesh mesh, const PartSpec& spec)
 Eigen::Matrix3Xd points_of(const Anomaly& anomaly, const PartSpec& spec, const Scan& bare)
 {
     std::vector<Eigen::Vector3d> points;
-    const Mesh lattice = grid(anomaly.footprint, spec.step);
+    const Mesh lattice = grid(anomaly.footprint, spec);
     for (const Eigen::Vector3d& node : lattice.vertices.colwise()) {
         const Vector2d xy = node.head<2>();
         const std::optional<double> z = anomaly.height(xy) > 0 ? bare.height(xy) : std::nullopt;
@@ -148,7 +165,7 @@ Cloud lay_on(const Cloud& scan, const PartSpec& spec)
     for (auto point : part.xyz.colwise()) point.z() += height(spec.anomalies, point.head<2>());
     for (std::size_t i = 0; i < spec.anomalies.size(); ++i) {
         const Eigen::Matrix3Xd points = points_of(spec.anomalies[i], spec, bare);
-        if (points.cols() == 0) throw beside(i);
+        if (points.cols() == 0) throw beside(spec, i);
         const Index before = part.xyz.cols();
         part.xyz.conservativeResize(3, before + points.cols());
         part.xyz.rightCols(points.cols()) = points;

@@ -29,6 +29,7 @@ struct ScannedSurface {
 
 /// What a casting to be made looks like (docs/formats.md, kind "part").
 struct PartSpec {
+    std::string source = "part"; ///< its name in messages
     Units units;
     std::variant<MadeSurface, ScannedSurface> surface;
     double step = 1; ///< longest side of a triangle in x or y, mm
@@ -42,7 +43,8 @@ PartSpec read_part(const std::string& path);
 /// The part, seen from above: a mesh; a cloud if the scan is one. Without anomalies and noise it is the truth that a
 /// ground part is compared with: beside the anomalies both are the same surface. On a scan that has an underside only
 /// what is seen from above is lifted. On a cloud the anomaly gets points of its own, `step` apart.
-/// @throws InputError if the surface is not defined somewhere in its region, or an anomaly lies beside the part
+/// @throws InputError if the surface is not defined somewhere in its region, an anomaly lies beside the part, or the
+///         step is too fine
 std::variant<Mesh, Cloud> make_part(const PartSpec& spec, std::uint64_t seed);
 
 } // namespace fettle

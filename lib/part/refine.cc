@@ -1,5 +1,7 @@
 #include "part/refine.h"
 
+#include "core/error.h"
+
 #include <cmath>
 #include <functional>
 #include <optional>
@@ -25,7 +27,10 @@ class EdgeSplitter {
     /// Cuts each edge at most once. @return whether any was cut
     bool split(const Cut& cut, Mesh& result)
     {
-        for (Index t = 0; t < mesh_.triangles.cols(); ++t) divide(mesh_.triangles.col(t), cut);
+        for (Index t = 0; t < mesh_.triangles.cols(); ++t) {
+            divide(mesh_.triangles.col(t), cut);
+            check_size(static_cast<double>(triangles_.size()));
+        }
         const bool any = vertices_.size() > static_cast<std::size_t>(mesh_.vertices.cols());
         if (any) {
             result.vertices =
@@ -150,24 +155,49 @@ void cut_along(Mesh& mesh, const Anomaly& anomaly, const OverPlane& crease, doub
     });
 }
 
+/// Halves edges that leave the profile by more than a chord may. @return whether there were any
+bool follow_profile(Mesh& mesh, const std::vector<Anomaly>& anomalies, const Refinement& refinement)
+{
+    Eigen::VectorXd heights(mesh.vertices.cols());
+    for (Index v = 0; v < heights.size(); ++v) heights[v] = height(anomalies, mesh.vertices.col(v).head<2>());
+    return split(mesh, [&](int a, int b) -> std::optional<double> {
+        const Vector2d from = flat(mesh, a), to = flat(mesh, b);
+        if ((to - from).norm() < 2 * refinement.least) return std::nullopt;
+        const double error = std::abs(height(anomalies, (from + to) / 2) - (heights[a] + heights[b]) / 2);
+        return error > refinement.chord ? std::optional(0.5) : std::nullopt;
+    });
+}
+
+/// Before the work: what edges of one step make of the plane under each anomaly.
+void check_footprints(const Mesh& mesh, const std::vector<Anomaly>& anomalies, double step)
+{
+    const Eigen::Matrix<double, 3, 2> box = bounding_box(mesh.vertices);
+    const Eigen::AlignedBox2d part(Vector2d(box.col(0).head<2>()), Vector2d(box.col(1).head<2>()));
+    for (const Anomaly& anomaly : anomalies) {
+        const Eigen::AlignedBox2d under = part.intersection(anomaly.footprint);
+        if (!under.isEmpty()) check_size(2 * (under.sizes() / step).prod());
+    }
+}
+
 } // namespace
+
+void check_size(double triangles)
+{
+    constexpr double kMost = 2e7;
+    if (triangles > kMost) throw InputError("too fine: it makes more than 20 million triangles");
+}
 
 Mesh refine(const Mesh& mesh, const std::vector<Anomaly>& anomalies, const Refinement& refinement)
 {
+    check_footprints(mesh, anomalies, refinement.step);
     Mesh refined = mesh;
     halve_long_edges(refined, anomalies, refinement.step);
     for (const Anomaly& anomaly : anomalies)
         for (const OverPlane& crease : anomaly.creases) cut_along(refined, anomaly, crease, refinement.step);
 
-    const Cut follow_profile = [&](int a, int b) -> std::optional<double> {
-        const Vector2d from = flat(refined, a), to = flat(refined, b);
-        if ((to - from).norm() < 2 * refinement.least) return std::nullopt;
-        const double chord = (height(anomalies, from) + height(anomalies, to)) / 2;
-        const double error = std::abs(height(anomalies, (from + to) / 2) - chord);
-        return error > refinement.chord ? std::optional(0.5) : std::nullopt;
-    };
     // Halving from step to least takes so many rounds; more would only cut the needles at a crease again and again.
-    for (double edge = refinement.step; edge > refinement.least && split(refined, follow_profile);) edge /= 2;
+    for (double edge = refinement.step; edge > refinement.least; edge /= 2)
+        if (!follow_profile(refined, anomalies, refinement)) break;
     return refined;
 }
 

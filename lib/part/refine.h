@@ -7,6 +7,9 @@
 
 namespace fettle {
 
+/// @throws InputError for more triangles than a part may have: they would fill the memory
+void check_size(double triangles);
+
 /// How finely the triangles under anomalies are to follow the profile.
 struct Refinement {
     double step = 1;     ///< longest edge under an anomaly, mm
@@ -17,6 +20,7 @@ struct Refinement {
 /// Splits triangles, in x-y, so that the profile is represented once the vertices are lifted by it: sharp edges become
 /// mesh edges, elsewhere edges are halved until the chord error is met. New vertices lie on the old triangles: the
 /// surface itself does not change. Neighbours stay matched; a triangle far from every footprint stays as it is.
+/// @throws InputError as check_size()
 Mesh refine(const Mesh& mesh, const std::vector<Anomaly>& anomalies, const Refinement& refinement);
 
 } // namespace fettle

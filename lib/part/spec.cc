@@ -1,4 +1,5 @@
 #include "core/error.h"
+#include "core/file.h"
 #include "part/anomalies.h"
 #include "part/part.h"
 #include "part/surface.h"
@@ -38,9 +39,6 @@ ScannedSurface read_scanned(json::Reader reader, const std::string& folder)
     return scanned;
 }
 
-// Triangles of a part, so that a slip in `step` does not fill the memory.
-constexpr double kMostTriangles = 2e7;
-
 } // namespace
 
 PartSpec read_part(const std::string& path)
@@ -49,6 +47,7 @@ PartSpec read_part(const std::string& path)
     reader.expect_kind("part");
     json::Reader units = reader.object("units");
     PartSpec spec;
+    spec.source = display_name(path);
     spec.units.length = parse_length_unit(units.choice("length", {"mm", "in", "m"}));
     units.done();
     const double mm = spec.units.mm();
@@ -63,8 +62,6 @@ PartSpec read_part(const std::string& path)
         MadeSurface made;
         made.region = read_region(reader.object("region"), mm);
         made.z = read_part_surface(reader.object("surface"), mm, folder_of(path));
-        if (2 * made.region.volume() / (spec.step * spec.step) > kMostTriangles)
-            reader.refuse("step", "too fine: it makes more than 20 million triangles");
         spec.surface = made;
     }
     for (const json::Reader& anomaly : reader.objects("anomalies")) spec.anomalies.push_back(read_anomaly(anomaly, mm));
