@@ -73,7 +73,7 @@ struct Distances {
     }
 };
 
-/// The solver compares costs, whose rounding hides changes of 1e-8: Gauss and Newton's steps go on from there.
+/// The solver compares costs, whose rounding hides small changes: Gauss and Newton's steps go on from there.
 template <int P>
 void polish(const Distances<P>& function, Eigen::Matrix<double, P, 1>& x)
 {
@@ -106,11 +106,15 @@ RoundSolution solve_with(RoundFamily family, const RoundProblem& problem, double
     start[kAlong] = along * extent;
 
     ceres::TinySolver<Distances<P>> solver;
-    solver.options.max_num_iterations = 100;
-    solver.options.function_tolerance = 1e-16; // of the sum of squares, far below its rounding: no change at all
-    solver.options.parameter_tolerance = 1e-12;
-    solver.options.gradient_tolerance = 1e-12;
-    solver.options.cost_threshold = 1e-24;
+    // Down to rounding: lengths are in units of the extent, residuals in units of the touch error.
+    constexpr double kNoChange = 1e-16; // of the sum of squares
+    constexpr double kRounding = 1e-12; // of the parameters, and of the gradient
+    constexpr int kIterations = 100;    // ten are common
+    solver.options.max_num_iterations = kIterations;
+    solver.options.function_tolerance = kNoChange;
+    solver.options.parameter_tolerance = kRounding;
+    solver.options.gradient_tolerance = kRounding;
+    solver.options.cost_threshold = kRounding * kRounding;
     Eigen::Matrix<double, P, 1> x;
     for (int k = 0; k < P; ++k) x[k] = start[function.free[static_cast<std::size_t>(k)]];
     const auto& summary = solver.Solve(function, &x);

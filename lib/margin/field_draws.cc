@@ -32,13 +32,8 @@ Eigen::MatrixXd root(const Eigen::MatrixXd& covariance)
 Eigen::MatrixXd field_root(const Eigen::MatrixXd& gradients, const Eigen::MatrixXd& covariance)
 {
     constexpr Eigen::Index kFewPlaces = 400;
-    if (gradients.cols() <= kFewPlaces) {
-        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(gradients.transpose() * covariance * gradients);
-        const Eigen::VectorXd& variance = eigen.eigenvalues();                              // ascending
-        const Eigen::Index rank = (variance.array() > 1e-10 * variance.maxCoeff()).count(); // the rest is rounding
-        return eigen.eigenvectors().rightCols(rank) * variance.tail(rank).cwiseSqrt().asDiagonal();
-    }
-    return gradients.transpose() * root(covariance);
+    return gradients.cols() <= kFewPlaces ? root(gradients.transpose() * covariance * gradients)
+                                          : Eigen::MatrixXd(gradients.transpose() * root(covariance));
 }
 
 struct Possible {
