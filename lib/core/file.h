@@ -1,5 +1,7 @@
 #pragma once
 
+#include "core/descriptor.h"
+
 #include <cstddef>
 #include <iosfwd>
 #include <memory>
@@ -17,9 +19,6 @@ class InputFile {
   public:
     /// @throws InputError as read_whole()
     explicit InputFile(const std::string& path);
-    ~InputFile();
-    InputFile(const InputFile&) = delete;
-    InputFile& operator=(const InputFile&) = delete;
 
     std::size_t size() const { return size_; }
     /// @throws InputError if it cannot be read or has become shorter
@@ -29,7 +28,7 @@ class InputFile {
     void keep_stream();
 
     std::string path_;
-    int file_ = -1;
+    Descriptor file_;
     std::size_t start_ = 0; ///< stdin may be a file of which some was read
     std::size_t size_ = 0;
     std::string held_; ///< all of a small stream
@@ -41,10 +40,10 @@ std::string display_name(const std::string& path);
 /// Do two names mean the same file, which need not exist? "-" is itself alone.
 bool same_file(const std::string& a, const std::string& b);
 
-/// A file that appears whole or not at all: what is written is held until commit(), which writes it under another name
-/// in the same folder, syncs and renames it. A link stays one: the file it names is replaced. A target that exists and
-/// is no regular file (/dev/null, a FIFO) is written directly, "-" is stdout. Without commit(), nothing is left, even
-/// if the program is stopped by a signal.
+/// A file that appears whole or not at all: what is written goes to an unnamed file in the same folder, which commit()
+/// syncs and gives the name. A link stays one: the file it names is replaced. A target that exists and is no regular
+/// file (/dev/null, a FIFO) and stdout ("-") get nothing before commit(). Without commit(), nothing is left, even if
+/// the program is killed.
 class OutputFile {
   public:
     /// @throws InputError if it could not be written
@@ -53,8 +52,9 @@ class OutputFile {
     OutputFile& operator=(const OutputFile&) = delete;
     ~OutputFile();
 
+    /// Throws InputError itself if something cannot be written (disk full).
     std::ostream& stream();
-    /// @throws InputError if a write failed (disk full)
+    /// @throws InputError if something cannot be written
     void commit();
 
   private:

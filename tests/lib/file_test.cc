@@ -68,10 +68,25 @@ TEST_F(Files, LinksStayAndWhatTheyNameIsReplaced)
 TEST_F(Files, AreNotThereBeforeTheyAreWhole)
 {
     OutputFile file("a");
-    file.stream() << std::string(1000000, 'x');
+    file.stream() << std::string(3000000, 'x');
     EXPECT_EQ(files(), 0u); // not under another name either: the program may be stopped
     file.commit();
     EXPECT_EQ(files(), 1u);
+}
+
+TEST_F(Files, PipesGetAllAtTheEnd)
+{
+    ASSERT_EQ(mkfifo("pipe", 0600), 0);
+    const std::string sent(3000000, 'y');
+    std::string got;
+    std::thread reader([&got] { got = read_whole("pipe"); });
+    {
+        OutputFile pipe("pipe");
+        pipe.stream() << sent;
+        pipe.commit();
+    }
+    reader.join();
+    EXPECT_EQ(got, sent);
 }
 
 TEST_F(Files, AreTheSameByWhateverName)
