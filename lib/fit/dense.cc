@@ -187,6 +187,12 @@ void believe(Surface& surface, const DensePoints& points, const Pass& pass, cons
 
 } // namespace
 
+bool is_dense(const PointSource& source, const Job& job, const std::string& method)
+{
+    return source.points > kMostExactTouches &&
+           (method == "bspline" || (method == "auto" && job.surface == SurfaceType::freeform));
+}
+
 DenseFit fit_dense(const PointSource& source, const Job& job, bool use_boundary, const std::string& name)
 {
     const DensePoints points = dense_points(source, job, use_boundary, name);

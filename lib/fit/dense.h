@@ -9,6 +9,9 @@ namespace fettle {
 /// takes a quarter of a second for 300, ten seconds for 1200.
 constexpr std::size_t kMostExactTouches = 300;
 
+/// Are they streamed? More touches than the exact fit takes, for a method that does without it.
+bool is_dense(const PointSource& source, const Job& job, const std::string& method);
+
 /// A fit to very many points.
 struct DenseFit {
     Fit fit; ///< its touches are condensed: heights of the fit, not points; it has no residuals
