@@ -5,12 +5,11 @@
 #include "job/boundary.h"
 #include "job/plausible.h"
 #include "margin/adaptive.h"
-#include "margin/known_band.h"
+#include "margin/best_touches.h"
 #include "sampling/freeform.h"
 #include "sampling/order.h"
 #include "sampling/probe.h"
 
-#include <cmath>
 #include <numeric>
 
 using namespace fettle;
@@ -19,23 +18,6 @@ namespace {
 
 // More would take hours: each is a fit.
 constexpr int kMostTouches = 1000, kMostMutations = 1000000;
-
-// Names the places that no touch reached; too long a list helps nobody. It is bad input (a hole in the scan, the wrong
-// part or unit), not an answer.
-void refuse_missed(const std::string& scan, const Job& job, const Eigen::Matrix3Xd& touches, const TouchPlan& plan,
-                   const std::string& doubt)
-{
-    constexpr int kNamed = 5;
-    int missed = 0;
-    std::string places;
-    for (Eigen::Index i = 0; i < touches.cols(); ++i)
-        if (std::isnan(touches(2, i)) && ++missed <= kNamed)
-            places += (places.empty() ? "" : ", ") + place(plan.xy.col(i), job.units);
-    if (missed == 0) return;
-    if (missed > kNamed) places += " and " + std::to_string(missed - kNamed) + " more";
-    throw InputError(scan, std::to_string(missed) + " of " + std::to_string(touches.cols()) +
-                               " touches find no surface, at " + places + (doubt.empty() ? "" : "; " + doubt));
-}
 
 Eigen::Matrix3Xd untouched(const TouchPlan& plan)
 {
@@ -49,7 +31,7 @@ Eigen::Matrix3Xd probe_part(const Tool& t, const std::string& part, const Scan& 
 {
     const Eigen::Matrix3Xd touches = probe(scan, job, plan, noise, t.seed());
     const std::string doubt = implausible_box(scan.bounds(), job);
-    refuse_missed(display_name(part), job, touches, plan, doubt);
+    check_touched(touches, job, plan, display_name(part), doubt);
     if (!doubt.empty()) t.warn(display_name(part) + ": " + doubt);
     return touches;
 }
@@ -73,25 +55,16 @@ void check_climb(const std::string& source, const Job& job, int lines, bool surf
 TouchPlan climb(Tool& t, const std::string& part, const Scan& surface, const Job& job, const ClimbOptions& options)
 {
     const double mm = job.units.mm();
-    HillClimb settings;
-    settings.touches = options.touches > 0 ? options.touches : plan_freeform(job).size();
-    settings.mutations = options.mutations;
-    // a discard that costs the probe's accuracy is accepted once in a hundred times
-    settings.sharpness = options.sharpness ? *options.sharpness / mm : std::log(100) / job.probe.accuracy;
-    settings.seed = t.seed();
-    // as fit_griddata: half the mean distance of the touches
-    const double spacing = std::sqrt(area(boundaries(job).sampling) / static_cast<double>(settings.touches)) / 2;
+    TouchSearch search = {options.touches, options.spacing * mm, options.method, options.mutations, {}, t.seed()};
+    if (options.sharpness) search.sharpness = *options.sharpness / mm;
     try {
-        const KnownSurface known = touch_known_surface(surface, job, options.spacing * mm);
-        const SubsetError band =
-            options.method == "griddata" ? griddata_band(known, spacing) : tensor_bspline_band(known);
-        const HillClimbed found = hill_climb(known.candidates.cols(), band, settings);
+        BestTouches best = best_touches(surface, job, search);
         t.report()
-            .set("candidates", static_cast<std::size_t>(known.candidates.cols()))
-            .set("evaluations", found.evaluations)
-            .set("start_band", found.start_error / mm)
-            .set("band", found.error / mm);
-        return plan_of(job, known.candidates(Eigen::all, found.chosen).topRows<2>());
+            .set("candidates", static_cast<std::size_t>(best.candidates))
+            .set("evaluations", best.found.evaluations)
+            .set("start_band", best.found.start_error / mm)
+            .set("band", best.found.error / mm);
+        return std::move(best.plan);
     } catch (const InputError& error) {
         throw InputError(display_name(part), error.what());
     }
@@ -114,15 +87,6 @@ AdaptiveTouches adapt(Tool& t, const std::string& part, const Scan& scan, const 
         t.warn(std::to_string(found.plan.size()) + " touches leave a predicted error band of " + to_short_text(band) +
                ", more than the tolerance " + to_short_text(job.tolerance / job.units.mm()));
     return found;
-}
-
-Cloud samples_in_order(const Eigen::Matrix3Xd& touches, const TouchPlan& plan, const std::vector<Eigen::Index>& order)
-{
-    Cloud samples;
-    samples.xyz = touches(Eigen::all, order);
-    set_field(samples, "curve", plan.curve(order).cast<double>());
-    set_field(samples, "role", plan.role(order).cast<double>());
-    return samples;
 }
 
 std::vector<Eigen::Index> as_planned(const Eigen::Matrix3Xd& touches)
@@ -221,7 +185,7 @@ int main(int argc, char** argv)
             .set("tip_radius", job.probe.tip_radius / mm);
         t.note(std::to_string(plan.size()) + " touches" +
                (adapted ? "" : " on " + std::to_string(plan.curve.maxCoeff() + 1) + " lines"));
-        write_pcd(t.output(), samples_in_order(touches, plan, order), job.units,
+        write_pcd(t.output(), sample_cloud(touches, plan, order), job.units,
                   ascii ? PcdEncoding::ascii : PcdEncoding::binary);
         return Verdict::yes;
     });

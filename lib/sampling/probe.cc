@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "core/text.h"
+#include "job/boundary.h"
 #include "sampling/trend.h"
 
 #include <tbb/parallel_for.h>
@@ -31,6 +32,30 @@ Eigen::Matrix3Xd probe(const Scan& scan, const Job& job, const TouchPlan& plan, 
     if (radius == 0) return touches;
     touches.row(2).array() += radius;
     return contact_points(job, touches, radius);
+}
+
+void check_touched(const Eigen::Matrix3Xd& touches, const Job& job, const TouchPlan& plan, const std::string& source,
+                   const std::string& doubt)
+{
+    constexpr int kNamed = 5; // too long a list helps nobody
+    int missed = 0;
+    std::string places;
+    for (Eigen::Index i = 0; i < touches.cols(); ++i)
+        if (std::isnan(touches(2, i)) && ++missed <= kNamed)
+            places += (places.empty() ? "" : ", ") + place(plan.xy.col(i), job.units);
+    if (missed == 0) return;
+    if (missed > kNamed) places += " and " + std::to_string(missed - kNamed) + " more";
+    throw InputError(source, std::to_string(missed) + " of " + std::to_string(touches.cols()) +
+                                 " touches find no surface, at " + places + (doubt.empty() ? "" : "; " + doubt));
+}
+
+Cloud sample_cloud(const Eigen::Matrix3Xd& touches, const TouchPlan& plan, const std::vector<Eigen::Index>& order)
+{
+    Cloud samples;
+    samples.xyz = touches(Eigen::all, order);
+    set_field(samples, "curve", plan.curve(order).cast<double>());
+    set_field(samples, "role", plan.role(order).cast<double>());
+    return samples;
 }
 
 Eigen::Matrix3Xd contact_points(const Job& job, const Eigen::Matrix3Xd& centres, double radius)
