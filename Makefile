@@ -64,12 +64,12 @@ $(B)/bin/%: $(B)/tools/%.o $(B)/libfettle.a
 	$(CXX) $(LDFLAGS) -o $@ $^ $(LDLIBS) $(LDLIBS_ALL)
 
 # Programs of the studies: what would be too slow as a chain of tools for each of thousands of cells.
-$(B)/study/%: LDLIBS = $(CERES) $(EMBREE) $(OPENCV) $(PNG)
+$(B)/study/%: LDLIBS = $(CERES) $(OPENCV) $(PNG)
 $(B)/study/%: $(B)/pipelines/programs/%.o $(B)/libfettle.a
 	@mkdir -p $(@D)
 	$(CXX) $(LDFLAGS) -o $@ $^ $(LDLIBS) $(LDLIBS_ALL)
 
-$(B)/tests/%: LDLIBS = $(CERES) $(EMBREE) $(OPENCV) $(PNG) -lgtest_main -lgtest
+$(B)/tests/%: LDLIBS = $(CERES) $(OPENCV) $(PNG) -lgtest_main -lgtest
 $(B)/tests/cloud_test: LDLIBS += -lpcl_io -lpcl_common
 $(B)/tests/%: $(B)/tests/lib/%.o $(B)/libfettle.a
 	@mkdir -p $(@D)

@@ -92,8 +92,7 @@ int main(int argc, char** argv)
 
         Cloud map_cloud = points_of(test.shape);
         const ErrorMap map = std::visit(
-            [&](const auto& shape) { return signed_distance(map_cloud.xyz, shape, options, t.progress("compare")); },
-            reference.shape);
+            [&](const auto& shape) { return signed_distance(map_cloud.xyz, shape, options); }, reference.shape);
         const Mesh* mesh = std::get_if<Mesh>(&test.shape);
         const Eigen::VectorXd areas = mesh ? volume_areas(*mesh, options) : volume_areas(map_cloud.xyz, map, options);
 

@@ -1,5 +1,4 @@
 # Which heavy libraries a tool links. A tool that is not listed links none of them.
 $(B)/bin/fettle-fit:     LDLIBS = $(CERES)
 $(B)/bin/fettle-sample:  LDLIBS = $(CERES)
-$(B)/bin/fettle-compare: LDLIBS = $(EMBREE)
 $(B)/bin/fettle-render:  LDLIBS = $(OPENCV) $(PNG)

@@ -227,12 +227,13 @@ std::optional<CloudReference::Foot> CloudReference::State::find(const Eigen::Vec
         surface->R_patch_machine.transpose() * Eigen::Vector3d(-slope.x(), -slope.y(), 1).normalized();
     const Quadratic here = terms(xy.x(), xy.y());
     const double sigma = surface->radius * std::sqrt(here.dot(surface->covariance * here));
-    const Eigen::Vector3d offset = point - surface->at(xy);
-    if (direction) return Foot{direction->dot(offset), normal, sigma};
-    return Foot{std::copysign(offset.norm(), offset.dot(normal)), normal, sigma};
+    const Eigen::Vector3d at = surface->at(xy), offset = point - at;
+    if (direction) return Foot{direction->dot(offset), normal, at, sigma};
+    return Foot{std::copysign(offset.norm(), offset.dot(normal)), normal, at, sigma};
 }
 
 CloudReference::CloudReference(const Cloud& cloud) : state_(std::make_unique<State>(cloud)) {}
+CloudReference::CloudReference(CloudReference&&) noexcept = default;
 CloudReference::~CloudReference() = default;
 
 std::optional<CloudReference::Foot> CloudReference::closest(const Eigen::Vector3d& point) const

@@ -14,11 +14,13 @@ namespace fettle {
 class CloudReference {
   public:
     explicit CloudReference(const Cloud& cloud);
+    CloudReference(CloudReference&&) noexcept;
     ~CloudReference();
 
     struct Foot {
         double error;           ///< of the point from the surface, + outward, mm
         Eigen::Vector3d normal; ///< of the surface, unit, outward
+        Eigen::Vector3d point;  ///< of the surface
         double sigma;           ///< standard deviation of the fitted surface at the foot, mm
     };
     /// The point of the surface closest to `point`; nothing where the cloud does not surround it.

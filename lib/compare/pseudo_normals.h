@@ -1,37 +1,35 @@
 #pragma once
 
-#include "mesh/mesh.h"
-#include "mesh/raycast.h"
+#include "compare/reference_mesh.h"
+#include "mesh/mesh_index.h"
 
 #include <Eigen/Core>
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace fettle {
 
 /// Normals that give a point the right side of a mesh wherever its closest point lies: of the facet, the sum of two
 /// facets on an edge, weighted by angle on a vertex (Bærentzen & Aanæs, Signed distance computation using the angle
-/// weighted pseudonormal, 2005). Vertices that agree within the rounding of floats count as one, so cracks between
-/// facets are no borders; facets narrower than that have no direction of their own and are looked through. Thread-safe.
+/// weighted pseudonormal, 2005). Facets narrower than the rounding of floats have no direction of their own and are
+/// looked through. Thread-safe.
 class PseudoNormals {
   public:
     /// The mesh must outlive this.
-    explicit PseudoNormals(const Mesh& mesh);
+    explicit PseudoNormals(const ReferenceMesh& mesh);
 
     /// Unit normal at a closest point; zero where the mesh has no direction.
     Eigen::Vector3d normal(const MeshIndex::Closest& foot) const;
 
     /// Unit normal of a facet; zero if it has none.
-    Eigen::Vector3d facet(Eigen::Index triangle) const { return normals_.col(triangle); }
+    Eigen::Vector3d facet(Eigen::Index triangle) const;
 
     /// How far `offset` (from the foot to the point) leads beyond an open border, measured in the plane of the facets
-    /// there, mm; 0 if the foot lies on no border. More than rounding() there: the mesh says nothing about the point.
+    /// there, mm; 0 if the foot lies on no border. More than the rounding there: the mesh says nothing about the point.
     double beyond_border(const MeshIndex::Closest& foot, const Eigen::Vector3d& offset) const;
-
-    /// Lengths below this, at a place, are the rounding of float coordinates, mm.
-    double rounding(const Eigen::Vector3d& place) const;
 
   private:
     using Vertex = std::int32_t;
@@ -42,15 +40,16 @@ class PseudoNormals {
                          std::vector<Eigen::Index>& seen, Eigen::Vector3d& sum) const;
     std::optional<Vertex> vertex_amid(Vertex a, Vertex b, const Eigen::Vector3d& point) const;
     Eigen::Vector3d vertex_normal(Vertex v) const;
-    Eigen::Vector3d position(Vertex v) const { return mesh_.vertices.col(v); }
+    Eigen::Vector3d position(Vertex v) const { return reference_.mesh.vertices.col(v); }
+    double rounding(const Eigen::Vector3d& place) const { return reference_.rounding(place); }
     bool on_edge(Vertex a, Vertex b, const Eigen::Vector3d& point) const;
+    /// Facets at a vertex, ascending.
+    std::span<const std::uint32_t> facets_at(Vertex v) const;
 
-    const Mesh& mesh_;
-    double size_ = 0;                     ///< how far from the origin the mesh lies: the median of its vertices, mm
-    Eigen::Matrix3Xi facets_;             ///< welded vertices
-    Eigen::Matrix3Xd normals_;            ///< of the facets; zero without a direction
-    std::vector<Eigen::Index> first_;     ///< vertex -> its first entry in at_vertex_
-    std::vector<Eigen::Index> at_vertex_; ///< facets at the vertices, ascending
+    const ReferenceMesh& reference_;
+    const Eigen::Matrix3Xi& facets_;
+    std::vector<std::uint32_t> first_;     ///< vertex -> its first entry in at_vertex_
+    std::vector<std::uint32_t> at_vertex_; ///< facets at the vertices
 };
 
 } // namespace fettle

@@ -26,14 +26,15 @@ struct Place {
 };
 
 // Sorted along a direction in which no usual grid has ties, near vertices are neighbours in the list, equal ones
-// follow each other, the lowest index first.
-std::vector<Place> sorted(const Eigen::Matrix3Xd& vertices)
+// follow each other, the lowest index first. The index is that of the candidate.
+std::vector<Place> sorted(const Eigen::Matrix3Xd& vertices, const std::vector<std::int32_t>& candidates)
 {
     const Eigen::Vector3d odd = Eigen::Vector3d(1, std::numbers::phi, std::numbers::pi).normalized();
     std::vector<Place> places;
-    for (Eigen::Index i = 0; i < vertices.cols(); ++i) {
-        const Eigen::Vector3d v = vertices.col(i);
-        if (v.allFinite()) places.push_back({odd.dot(v), {v.x(), v.y(), v.z()}, static_cast<std::int32_t>(i)});
+    places.reserve(candidates.size());
+    for (const std::int32_t candidate : candidates) {
+        const Eigen::Vector3d v = vertices.col(candidate);
+        places.push_back({odd.dot(v), {v.x(), v.y(), v.z()}, static_cast<std::int32_t>(places.size())});
     }
     tbb::parallel_sort(places);
     return places;
@@ -57,31 +58,32 @@ double typical_coordinate(const Eigen::Matrix3Xd& vertices)
     return *middle;
 }
 
-std::vector<std::int32_t> weld(const Eigen::Matrix3Xd& vertices,
+std::vector<std::int32_t> weld(const Eigen::Matrix3Xd& vertices, const std::vector<std::int32_t>& candidates,
                                const std::function<double(const Eigen::Vector3d&)>& tolerance)
 {
-    std::vector<std::int32_t> lowest(static_cast<std::size_t>(vertices.cols()));
+    std::vector<std::int32_t> lowest(candidates.size());
     std::iota(lowest.begin(), lowest.end(), 0);
-    const auto root = [&](std::int32_t v) {
-        while (lowest[static_cast<std::size_t>(v)] != v) v = lowest[static_cast<std::size_t>(v)];
-        return v;
+    const auto root = [&](std::int32_t c) {
+        while (lowest[static_cast<std::size_t>(c)] != c) c = lowest[static_cast<std::size_t>(c)];
+        return c;
     };
     std::vector<Place> places; // one for equal vertices, which may be many
-    for (const Place& place : sorted(vertices))
+    for (const Place& place : sorted(vertices, candidates))
         if (places.empty() || places.back().xyz != place.xyz)
             places.push_back(place);
         else
             lowest[static_cast<std::size_t>(place.index)] = places.back().index;
     for (std::size_t i = 0; i < places.size(); ++i) {
-        const Eigen::Vector3d here = vertices.col(places[i].index);
+        const Eigen::Vector3d here = Eigen::Vector3d::Map(places[i].xyz.data());
         const double near = tolerance(here);
         for (std::size_t j = i + 1; j < places.size() && places[j].along - places[i].along <= near; ++j) {
-            if ((vertices.col(places[j].index) - here).norm() > near) continue;
+            if ((Eigen::Vector3d::Map(places[j].xyz.data()) - here).norm() > near) continue;
             const auto [low, high] = std::minmax({root(places[i].index), root(places[j].index)});
             lowest[static_cast<std::size_t>(high)] = low;
         }
     }
-    for (std::size_t v = 0; v < lowest.size(); ++v) lowest[v] = root(static_cast<std::int32_t>(v));
+    for (std::size_t c = 0; c < lowest.size(); ++c)
+        lowest[c] = candidates[static_cast<std::size_t>(root(static_cast<std::int32_t>(c)))];
     return lowest;
 }
 

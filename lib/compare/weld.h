@@ -15,10 +15,10 @@ double float_rounding(double coordinate);
 /// vertices far away say nothing about the others. 0 without a finite vertex. @param vertices  3xV, mm
 double typical_coordinate(const Eigen::Matrix3Xd& vertices);
 
-/// For each vertex the one with the lowest index among those within `tolerance(vertex)` of it (and of those, and so
-/// on). Vertices that are not finite stay alone.
-/// @param vertices  3xV, mm   @param tolerance  mm, nearly the same for neighbours
-std::vector<std::int32_t> weld(const Eigen::Matrix3Xd& vertices,
+/// For each candidate the lowest of those within `tolerance(candidate)` of it (and of those, and so on).
+/// @param vertices    3xV, mm   @param candidates  columns of `vertices`, ascending, finite
+/// @param tolerance   mm, nearly the same for neighbours
+std::vector<std::int32_t> weld(const Eigen::Matrix3Xd& vertices, const std::vector<std::int32_t>& candidates,
                                const std::function<double(const Eigen::Vector3d&)>& tolerance);
 
 } // namespace fettle

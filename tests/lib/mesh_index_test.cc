@@ -1,4 +1,4 @@
-#include "mesh/raycast.h"
+#include "mesh/mesh_index.h"
 #include "mesh/triangle.h"
 
 #include <Eigen/Geometry>

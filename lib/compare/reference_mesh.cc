@@ -1,0 +1,123 @@
+#include "compare/reference_mesh.h"
+
+#include "compare/weld.h"
+#include "compare/winding.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace fettle {
+
+namespace {
+
+// Spreads the bits of a vertex's number (the finalizer of SplitMix64, Steele, Lea & Flood 2014).
+std::uint64_t mixed(int vertex)
+{
+    std::uint64_t z = (static_cast<std::uint64_t>(vertex) + 1) * 0x9e3779b97f4a7c15;
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111eb;
+    return z ^ (z >> 31);
+}
+
+/// Of each vertex: is there an edge at it that not as many facets run along one way as the other? Ways out of the
+/// vertex add the other end's mixed number to its sum, ways into it take it off: what is left over is no zero, but
+/// for one chance in 2^64.
+std::vector<bool> open_vertices(const Eigen::Matrix3Xi& facets, Eigen::Index vertices)
+{
+    std::vector<std::uint64_t> sum(static_cast<std::size_t>(vertices), 0);
+    for (const auto& facet : facets.colwise()) {
+        const std::uint64_t a = mixed(facet[0]), b = mixed(facet[1]), c = mixed(facet[2]);
+        sum[static_cast<std::size_t>(facet[0])] += b - c;
+        sum[static_cast<std::size_t>(facet[1])] += c - a;
+        sum[static_cast<std::size_t>(facet[2])] += a - b;
+    }
+    std::vector<bool> open(sum.size());
+    for (std::size_t v = 0; v < sum.size(); ++v) open[v] = sum[v] != 0;
+    return open;
+}
+
+/// The same from the numbers of open facets only: those with an open corner.
+std::vector<std::uint32_t> open_facets(const Eigen::Matrix3Xi& facets, const std::vector<bool>& open, int corners)
+{
+    std::vector<std::uint32_t> found;
+    for (Eigen::Index t = 0; t < facets.cols(); ++t) {
+        int count = 0;
+        for (const int v : facets.col(t)) count += open[static_cast<std::size_t>(v)];
+        if (count >= corners) found.push_back(static_cast<std::uint32_t>(t));
+    }
+    return found;
+}
+
+void weld_open(ReferenceMesh& reference, const std::vector<bool>& open)
+{
+    std::vector<std::int32_t> candidates;
+    for (std::size_t v = 0; v < open.size(); ++v)
+        if (open[v] && reference.mesh.vertices.col(static_cast<Eigen::Index>(v)).allFinite())
+            candidates.push_back(static_cast<std::int32_t>(v));
+    const std::vector<std::int32_t> lowest =
+        weld(reference.mesh.vertices, candidates, [&](const Eigen::Vector3d& v) { return reference.rounding(v); });
+    for (std::size_t c = 0; c < lowest.size(); ++c) reference.repair.welded_vertices += lowest[c] != candidates[c];
+    if (reference.repair.welded_vertices == 0) return;
+    std::vector<std::int32_t> to(open.size());
+    for (std::size_t v = 0; v < to.size(); ++v) to[v] = static_cast<std::int32_t>(v);
+    for (std::size_t c = 0; c < lowest.size(); ++c) to[static_cast<std::size_t>(candidates[c])] = lowest[c];
+    reference.welded = reference.mesh.triangles.unaryExpr([&](int v) { return to[static_cast<std::size_t>(v)]; });
+}
+
+/// Leaves out facets that have the corners of an earlier one and face the same way: thousands of them would each be
+/// looked at for every point. All corners of such a facet are open.
+void drop_repeated(ReferenceMesh& reference, const std::vector<bool>& open)
+{
+    using Corners = std::array<int, 3>;
+    std::vector<std::pair<Corners, std::uint32_t>> order;
+    for (const std::uint32_t t : open_facets(reference.facets(), open, 3)) {
+        const Eigen::Vector3i f = reference.facets().col(t); // begun at any corner it is the same
+        order.emplace_back(std::min({Corners{f[0], f[1], f[2]}, Corners{f[1], f[2], f[0]}, Corners{f[2], f[0], f[1]}}),
+                           t);
+    }
+    std::sort(order.begin(), order.end());
+    std::vector<bool> repeated(static_cast<std::size_t>(reference.mesh.triangles.cols()), false);
+    for (std::size_t i = 1; i < order.size(); ++i)
+        if (order[i].first == order[i - 1].first) {
+            repeated[order[i].second] = true;
+            ++reference.repair.repeated_facets;
+        }
+    if (reference.repair.repeated_facets == 0) return;
+    std::vector<std::uint32_t>& from = reference.from;
+    for (std::size_t t = 0; t < repeated.size(); ++t)
+        if (!repeated[t]) from.push_back(static_cast<std::uint32_t>(t));
+    reference.mesh.triangles = reference.mesh.triangles(Eigen::all, from).eval();
+    if (reference.welded.cols() > 0) reference.welded = reference.welded(Eigen::all, from).eval();
+}
+
+} // namespace
+
+double ReferenceMesh::rounding(const Eigen::Vector3d& place) const
+{
+    return float_rounding(std::max(size, place.cwiseAbs().maxCoeff()));
+}
+
+ReferenceMesh reference_mesh(Mesh mesh, bool mend_winding)
+{
+    ReferenceMesh reference;
+    reference.mesh = std::move(mesh);
+    reference.size = typical_coordinate(reference.mesh.vertices);
+    reference.repair.weld_tolerance = float_rounding(reference.size);
+    const auto open = [&] { return open_vertices(reference.facets(), reference.mesh.vertices.cols()); };
+    std::vector<bool> gaps = open();
+    weld_open(reference, gaps);
+    if (reference.repair.welded_vertices > 0) gaps = open();
+    drop_repeated(reference, gaps);
+    if (reference.repair.repeated_facets > 0) gaps = open();
+    if (!mend_winding) return reference;
+    const std::vector<std::uint32_t> turned = wrongly_wound(reference.mesh.vertices, reference.facets(), gaps);
+    for (const std::uint32_t t : turned) {
+        std::swap(reference.mesh.triangles(1, t), reference.mesh.triangles(2, t));
+        if (reference.welded.cols() > 0) std::swap(reference.welded(1, t), reference.welded(2, t));
+    }
+    reference.repair.flipped_facets = static_cast<Eigen::Index>(turned.size());
+    return reference;
+}
+
+} // namespace fettle
