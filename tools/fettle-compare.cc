@@ -1,10 +1,7 @@
 #include "cli/tool.h"
-#include "cloud/pcd.h"
-#include "compare/areas.h"
-#include "compare/colours.h"
+#include "cloud/cloud_writer.h"
+#include "compare/comparison.h"
 #include "compare/shape_file.h"
-#include "compare/signed_distance.h"
-#include "compare/statistics.h"
 #include "core/file.h"
 #include "core/text.h"
 #include "job/job.h"
@@ -22,6 +19,34 @@ std::optional<Units> units_of(const std::optional<Units::Length>& stated, const 
 {
     if (stated) return Units{*stated, job ? job->units.force : Units::Force::N};
     return job ? std::optional(job->units) : std::nullopt;
+}
+
+CloudFormat format_of(const std::string& name, bool ascii)
+{
+    if (ascii && name != "pcd") throw InputError("--ascii", "goes with --format pcd, not with " + name);
+    if (name == "ply") return CloudFormat::ply;
+    if (name == "csv") return CloudFormat::csv;
+    if (name == "vtk") return CloudFormat::vtk;
+    return ascii ? CloudFormat::pcd_ascii : CloudFormat::pcd;
+}
+
+void set_fields(ComparisonOptions& options, const std::string& list)
+{
+    std::istringstream names(list);
+    for (std::string name; std::getline(names, name, ',');) {
+        if (name == "foot")
+            options.foot = true;
+        else if (name == "facet")
+            options.facet = true;
+        else if (name == "sigma")
+            options.sigma = true;
+        else if (name == "region" && options.job)
+            options.region = true;
+        else
+            throw InputError("--fields", name == "region"
+                                             ? "region needs --within"
+                                             : "expected foot, facet, region or sigma, got '" + name + "'");
+    }
 }
 
 DistanceOptions distance_options(const std::string& mode, const std::string& direction)
@@ -47,6 +72,75 @@ DistanceOptions distance_options(const std::string& mode, const std::string& dir
     return options;
 }
 
+json::Value to_json(const Comparison& comparison, const Units& units)
+{
+    json::Value report = to_json(comparison.all, units);
+    json::Value regions;
+    for (const auto& [name, statistics] : comparison.regions) regions.set(name, to_json(statistics, units));
+    if (!comparison.regions.empty()) report.set("regions", regions);
+    report.set("histogram", to_json(comparison.histogram, units));
+    if (!std::isnan(comparison.reference_sigma)) report.set("reference_sigma", comparison.reference_sigma / units.mm());
+    return report;
+}
+
+json::Value to_json(const ReferenceRepair& repair, const MeshRepair& reading, const Units& units)
+{
+    json::Value report;
+    report.set("dropped_facets", static_cast<std::size_t>(reading.dropped_triangles));
+    report.set("weld_tolerance", repair.weld_tolerance / units.mm());
+    report.set("welded_vertices", static_cast<std::size_t>(repair.welded_vertices));
+    report.set("repeated_facets", static_cast<std::size_t>(repair.repeated_facets));
+    return report.set("flipped_facets", static_cast<std::size_t>(repair.flipped_facets));
+}
+
+Reference make_reference(MeshOrCloud shape, const DistanceOptions& options)
+{
+    if (Mesh* mesh = std::get_if<Mesh>(&shape)) return Reference(std::move(*mesh), options);
+    return Reference(std::get<Cloud>(shape), options);
+}
+
+void write_histogram(std::ostream& out, const Histogram& histogram, const Units& units)
+{
+    const double limit = histogram.limit / units.mm(), width = 2 * limit / static_cast<double>(histogram.counts.size());
+    out << "from,to,count\n-inf," << to_text(-limit) << ',' << histogram.below << '\n';
+    for (std::size_t i = 0; i < histogram.counts.size(); ++i)
+        out << to_text(-limit + width * static_cast<double>(i)) << ','
+            << to_text(-limit + width * static_cast<double>(i + 1)) << ',' << histogram.counts[i] << '\n';
+    out << to_text(limit) << ",inf," << histogram.above << '\n';
+}
+
+std::vector<std::pair<std::string, Statistics>> rows_of(const std::vector<Comparison>& comparisons)
+{
+    std::vector<std::pair<std::string, Statistics>> rows;
+    for (const Comparison& comparison : comparisons) {
+        const std::string way = rows.empty() ? "" : "reverse ";
+        rows.emplace_back(way + "all", comparison.all);
+        for (const auto& [name, statistics] : comparison.regions) rows.emplace_back(way + name, statistics);
+    }
+    return rows;
+}
+
+/// What is judged: inside the anomaly's boundary, if there is a job.
+const Statistics& judged(const Comparison& comparison)
+{
+    return comparison.regions.empty() ? comparison.all : comparison.regions.front().second;
+}
+
+/// Adds the verdict to the report.
+Verdict give_verdict(Tool& t, const std::vector<Comparison>& comparisons, double tolerance, const Units& units)
+{
+    Judgement both{true, 0};
+    for (const Comparison& comparison : comparisons) {
+        const Judgement one = judge(judged(comparison), tolerance, comparison.largest);
+        both = {both.within && one.within, std::max(one.worst, both.worst)};
+        if (judged(comparison).count == 0) t.warn("no point to judge has an error: out of tolerance");
+    }
+    t.report().set("tolerance", tolerance / units.mm());
+    t.report().set("judged", comparisons.front().regions.empty() ? "all" : "inside");
+    t.report().set("worst", both.worst / units.mm()).set("verdict", both.within ? "within" : "out of tolerance");
+    return both.within ? Verdict::yes : Verdict::no;
+}
+
 } // namespace
 
 int main(int argc, char** argv)
@@ -56,77 +150,89 @@ int main(int argc, char** argv)
         "Either is a mesh (STL, PLY, OBJ, OFF) or a cloud (PCD, PLY, XYZ). Out: the points of the test (vertices, if "
         "it "
         "is a mesh) with all their fields, the reference's normal, error and rgb. Beyond an open border of the "
-        "reference "
-        "the error is NaN. Exit 1 if an error (with a job: one inside the anomaly's boundary) exceeds the tolerance.";
+        "reference the error is NaN. Exit 1 if an error (with a job: one inside the anomaly's boundary) exceeds the "
+        "tolerance. A binary PCD is streamed; other files are held in memory.";
     return tool_main(argc, argv, description, [](Tool& t) {
         const std::string& test_path = t.input("TEST", "The part");
         const std::string& reference_path = t.required_text("--to", "FILE", "The reference");
         const auto& reference_unit = t.length_unit("--to-units", "Unit of the reference, if not the job's");
         const auto& test_unit = t.length_unit("--file-units", "Unit of TEST, if not the job's");
         const std::string& job_path = t.text("--within", "", "JOB", "Judge inside its anomaly's boundary; its units");
-        const auto& tolerance_given =
-            t.number_if_given("--tolerance", "LENGTH", "Instead of the job's", Range::at_least(0));
+        const auto& tolerance = t.number_if_given("--tolerance", "LENGTH", "Instead of the job's", Range::at_least(0));
         const std::string& mode = t.choice("--mode", "normal", {"normal", "z", "direction"},
                                            "Distance to the closest point, or along z or a direction");
         const std::string& direction = t.text("--direction", "", "X,Y,Z", "Of --mode direction, out of the material");
         const auto& max_distance =
             t.number_if_given("--max-distance", "LENGTH", "No error beyond it", Range::positive());
-        const bool& ascii = t.flag("--ascii", "Write text instead of binary");
+        const std::string& winding = t.choice("--winding", "mend", {"mend", "keep"},
+                                              "Turn facets of a mesh that disagree with most, and closed meshes that "
+                                              "are inside out");
+        const std::string& reverse = t.text("--reverse", "", "FILE",
+                                            "Also the error map of the reference's points against TEST; + is "
+                                            "material left, too");
+        const std::string& fields = t.text("--fields", "", "LIST",
+                                           "More fields, of foot,facet,region,sigma: the nearest point, its facet "
+                                           "(from 0), 0 inside 1 around 2 outside, of a cloud as reference");
+        const std::string& format = t.choice("--format", "pcd", {"pcd", "ply", "csv", "vtk"}, "Of the error map");
+        const bool& ascii = t.flag("--ascii", "Write a PCD as text instead of binary");
+        const std::string& csv = t.text("--csv", "", "FILE", "Statistics, a row for all points and for each region");
+        const std::string& histogram = t.text("--histogram", "", "FILE", "Histogram, CSV: a row for each bin");
+        const int& bins = t.count("--bins", 50, "Bins of the histogram", 1, 1000000);
+        const int& memory =
+            t.count("--max-memory", 1024, "MiB of points and errors to hold; more goes to $TMPDIR", 256, 1 << 24);
         t.example(
             "fettle-part parts/hammer.json | fettle-compare --to scans/hammer.stl --report errors.json -o errors.pcd",
             "what the anomaly adds to the scan: an error map for pcl_viewer or fettle-render, and its statistics");
         t.reference("Wang 2007, 4.3.2 (eq. 4-1) and 6.2; Bærentzen & Aanæs 2005 (sign at edges and vertices)");
         t.parse();
 
-        const std::optional<Job> job = job_path.empty() ? std::nullopt : std::optional(read_job(job_path));
-        DistanceOptions options = distance_options(mode, direction);
-        const ShapeFile test = read_shape(test_path, units_of(test_unit, job));
-        const Units units = job ? job->units : test.units;
-        const ShapeFile reference = read_shape(reference_path, units_of(reference_unit, job));
-        if (max_distance) options.max_distance = *max_distance * units.mm();
-        std::optional<double> tolerance;
-        if (tolerance_given)
-            tolerance = *tolerance_given * units.mm();
-        else if (job)
-            tolerance = job->tolerance;
-
-        Cloud map_cloud = points_of(test.shape);
-        const ErrorMap map = std::visit(
-            [&](const auto& shape) { return signed_distance(map_cloud.xyz, shape, options); }, reference.shape);
-        const Mesh* mesh = std::get_if<Mesh>(&test.shape);
-        const Eigen::VectorXd areas = mesh ? volume_areas(*mesh, options) : volume_areas(map_cloud.xyz, map, options);
-
-        if (job)
-            if (const std::string doubt = implausible_box(bounding_box(points_of(reference.shape).xyz), *job);
+        ComparisonOptions options;
+        if (!job_path.empty()) options.job = read_job(job_path);
+        set_fields(options, fields);
+        options.distance = distance_options(mode, direction);
+        options.distance.mend_winding = winding == "mend";
+        options.bins = bins;
+        options.memory = static_cast<std::size_t>(memory) << 20;
+        const CloudFormat written = format_of(format, ascii);
+        std::optional<ShapeFile> whole_test; // a reference itself
+        if (!reverse.empty()) whole_test = read_shape(test_path, units_of(test_unit, options.job));
+        const TestPoints test = whole_test ? test_points(whole_test->shape, whole_test->units)
+                                           : open_test_points(test_path, units_of(test_unit, options.job));
+        const Units units = options.job ? options.job->units : test.units;
+        ShapeFile shape = read_shape(reference_path, units_of(reference_unit, options.job));
+        if (max_distance) options.distance.max_distance = *max_distance * units.mm();
+        if (tolerance || options.job) options.tolerance = tolerance ? *tolerance * units.mm() : options.job->tolerance;
+        if (options.job)
+            if (const std::string doubt = implausible_box(bounding_box(places_of(shape.shape)), *options.job);
                 !doubt.empty())
                 t.warn(display_name(reference_path) + ": " + doubt);
 
-        json::Value& report = t.report();
-        const Statistics all = statistics(map.error, areas, tolerance);
-        report = to_json(all, units);
-        Statistics judged = all;
-        if (job) {
-            const std::vector<Region> region = regions(*job, map_cloud.xyz);
-            judged = statistics(map.error, areas, tolerance, region, Region::inside);
-            json::Value by_region;
-            by_region.set("inside", to_json(judged, units));
-            by_region.set("around", to_json(statistics(map.error, areas, tolerance, region, Region::around), units));
-            by_region.set("outside", to_json(statistics(map.error, areas, tolerance, region, Region::outside), units));
-            report.set("regions", by_region);
+        const auto run = [&](const TestPoints& points, const Reference& reference, std::ostream& out) {
+            CloudWriter writer(out, written, units, points.points.points);
+            const auto write = [&](const Cloud& part) { writer.write(part); };
+            Comparison result = compare(points, reference, options, write, t.progress("compare"));
+            writer.finish();
+            return result;
+        };
+        std::ostream* back_out = reverse.empty() ? nullptr : &t.output_file(reverse);
+        const std::optional<TestPoints> back =
+            back_out ? std::optional(test_points(shape.shape, shape.units)) : std::nullopt;
+        const bool of_mesh = std::holds_alternative<Mesh>(shape.shape);
+        const Reference reference = make_reference(std::move(shape.shape), options.distance);
+        std::vector<Comparison> comparisons = {run(test, reference, t.output())};
+        t.report() = to_json(comparisons.front(), units);
+        if (of_mesh) t.report().set("reference", to_json(reference.repair(), shape.repair, units));
+        if (back) {
+            options.reversed = true;
+            comparisons.push_back(run(*back, make_reference(whole_test->shape, options.distance), *back_out));
+            t.report().set("reverse", to_json(comparisons.back(), units));
         }
-        if (map.reference_sigma.size() > 0) report.set("reference_sigma", median(map.reference_sigma) / units.mm());
-
-        set_normals(map_cloud, map.normal);
-        set_field(map_cloud, "error", map.error);
-        set_colours(map_cloud, colours(colour_scale(map.error, tolerance.value_or(0)), map.error));
-        write_pcd(t.output(), map_cloud, units, ascii ? PcdEncoding::ascii : PcdEncoding::binary);
-
-        if (!tolerance) return Verdict::yes;
-        const Judgement judgement = judge(judged, *tolerance, map_cloud.xyz);
-        report.set("tolerance", *tolerance / units.mm()).set("judged", job ? "inside" : "all");
-        report.set("worst", judgement.worst / units.mm())
-            .set("verdict", judgement.within ? "within" : "out of tolerance");
-        if (judged.count == 0) t.warn("no point to judge has an error: out of tolerance");
-        return judgement.within ? Verdict::yes : Verdict::no;
+        if (!csv.empty()) write_csv(t.output_file(csv), rows_of(comparisons), units);
+        if (!histogram.empty()) write_histogram(t.output_file(histogram), comparisons.front().histogram, units);
+        if (reference.repair().flipped_facets > 0)
+            t.warn(display_name(reference_path) + ": " + std::to_string(reference.repair().flipped_facets) +
+                   " facets are turned over (--winding)");
+        if (!options.tolerance) return Verdict::yes;
+        return give_verdict(t, comparisons, *options.tolerance, units);
     });
 }

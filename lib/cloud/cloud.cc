@@ -92,6 +92,22 @@ void set_colours(Cloud& cloud, const Eigen::Matrix<std::uint8_t, 3, Eigen::Dynam
     }
 }
 
+Cloud part(const Cloud& cloud, Eigen::Index first, Eigen::Index count)
+{
+    Cloud some;
+    some.view_origin = cloud.view_origin;
+    some.view_orientation = cloud.view_orientation;
+    some.comment = cloud.comment;
+    some.width = cloud.width;
+    some.xyz = cloud.xyz.middleCols(first, count);
+    for (const Field& from : cloud.fields) {
+        const std::ptrdiff_t stride = std::ptrdiff_t{from.size} * from.count;
+        const auto begin = from.bytes.begin() + first * stride;
+        some.fields.push_back({from.name, from.type, from.size, from.count, {begin, begin + count * stride}});
+    }
+    return some;
+}
+
 Cloud select(const Cloud& cloud, const std::vector<Eigen::Index>& indices)
 {
     Cloud chosen;

@@ -47,6 +47,9 @@ void set_normals(Cloud& cloud, const Eigen::Matrix3Xd& unit_normals);
 /// Field rgb, packed as PCL packs it: pcl_viewer and CloudCompare show it without a click. @param rgb  3xN, 0 to 255
 void set_colours(Cloud& cloud, const Eigen::Matrix<std::uint8_t, 3, Eigen::Dynamic>& rgb);
 
+/// Consecutive points with all their fields; they keep the width of the whole.
+Cloud part(const Cloud& cloud, Eigen::Index first, Eigen::Index count);
+
 /// The chosen points with all their fields, in the order of `indices`; no longer organised.
 Cloud select(const Cloud& cloud, const std::vector<Eigen::Index>& indices);
 

@@ -7,9 +7,9 @@
 
 namespace fettle {
 
-/// The dimension of a field by its name (docs/conventions.md): error, sigma, clearance, radius, displacement, removed
-/// are lengths; force is a force; feed is length per second; pressure is force per area. Any other name is a plain
-/// number.
+/// The dimension of a field by its name (docs/conventions.md): error, sigma, clearance, radius, displacement,
+/// removed, foot_x, foot_y and foot_z are lengths; force is a force; feed is length per second; pressure is force per
+/// area. Any other name is a plain number.
 Dimension field_dimension(const std::string& name);
 
 /// A scalar field of whole numbers from 0 (curve, role); -1 for what is none of them (NaN).

@@ -56,9 +56,8 @@ Cloud gather(const PcdHeader& header, const std::vector<Layout>& layouts)
     return cloud;
 }
 
-Cloud read_binary(const PcdHeader& header, std::string_view body, const std::string& source)
+Cloud gather_binary(const PcdHeader& header, std::string_view body)
 {
-    check_binary_size(header, body.size(), body.substr(std::min(header.points * header.stride(), body.size())), source);
     std::vector<Layout> layouts;
     const char* start = body.data();
     for (const PcdColumn& column : header.columns) {
@@ -66,6 +65,12 @@ Cloud read_binary(const PcdHeader& header, std::string_view body, const std::str
         start += column.bytes();
     }
     return gather(header, layouts);
+}
+
+Cloud read_binary(const PcdHeader& header, std::string_view body, const std::string& source)
+{
+    check_binary_size(header, body.size(), body.substr(std::min(header.points * header.stride(), body.size())), source);
+    return gather_binary(header, body);
 }
 
 // Two 32-bit sizes, compressed and not; then the fields one after the other, all points of one together, in LZF.
@@ -168,6 +173,13 @@ void convert_to_base(Cloud& cloud, const Units& units)
         if (const double factor = to_base(units, field_dimension(field.name)); factor != 1) scale(field, factor);
 }
 
+void set_layout(Cloud& cloud, const PcdHeader& header)
+{
+    cloud.width = header.height > 1 ? header.width : 0;
+    cloud.view_origin = header.view_origin;
+    cloud.view_orientation = header.view_orientation;
+}
+
 // Not by pcl_io: it loads sixty other libraries, which costs more than the 20 ms that a tool may take to start. It also
 // allocates what POINTS says before it looks at the size of the file.
 CloudFile parse_pcd(std::string_view bytes, const std::string& source, const std::optional<Units>& wanted)
@@ -178,13 +190,21 @@ CloudFile parse_pcd(std::string_view bytes, const std::string& source, const std
     Cloud cloud = header.data == PcdHeader::Data::ascii    ? read_ascii(header, body, source)
                   : header.data == PcdHeader::Data::binary ? read_binary(header, body, source)
                                                            : read_compressed(header, body, source);
-    cloud.width = header.height > 1 ? header.width : 0;
-    cloud.view_origin = header.view_origin;
-    cloud.view_orientation = header.view_orientation;
+    set_layout(cloud, header);
     return {std::move(cloud), units};
 }
 
 } // namespace
+
+Cloud parse_pcd_records(const PcdHeader& header, std::string_view records, const Units& units)
+{
+    PcdHeader of_part = header;
+    of_part.points = records.size() / header.stride();
+    Cloud cloud = gather_binary(of_part, records);
+    set_layout(cloud, header);
+    convert_to_base(cloud, units);
+    return cloud;
+}
 
 CloudFile parse_cloud(std::string_view bytes, const std::string& source, std::optional<Units> units)
 {

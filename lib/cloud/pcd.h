@@ -29,8 +29,19 @@ CloudFile read_cloud(const std::string& path, std::optional<Units> units = std::
 /// The same from bytes. @param source  the name for messages
 CloudFile parse_cloud(std::string_view bytes, const std::string& source, std::optional<Units> units = std::nullopt);
 
+struct PcdHeader;
+
+/// Points of a binary PCD. @param records  a whole number of points as they stand in the file  @param units  of the
+/// file
+Cloud parse_pcd_records(const PcdHeader& header, std::string_view records, const Units& units);
+
 /// Writes x y z as F4, then the fields in their order, with a `# units` comment.
 /// @param units  of the numbers written
 void write_pcd(std::ostream& out, const Cloud& cloud, const Units& units, PcdEncoding encoding = PcdEncoding::binary);
+
+/// The same by parts: the header for so many points like those of `some`, then the points, part by part.
+void write_pcd_header(std::ostream& out, const Cloud& some, std::size_t points, const Units& units,
+                      PcdEncoding encoding);
+void write_pcd_points(std::ostream& out, const Cloud& part, const Units& units, PcdEncoding encoding);
 
 } // namespace fettle

@@ -28,7 +28,8 @@ bool any_force(const Cloud& cloud)
                        [](const Field& field) { return field_dimension(field.name).force_power != 0; });
 }
 
-std::string header_text(const Cloud& cloud, const std::vector<Field>& fields, const Units& units, PcdEncoding encoding)
+std::string header_text(const Cloud& cloud, std::size_t points, const std::vector<Field>& fields, const Units& units,
+                        PcdEncoding encoding)
 {
     std::string names = "FIELDS", sizes = "SIZE", types = "TYPE", counts = "COUNT";
     const auto add = [&](std::string_view name, char type, int size, int count) {
@@ -40,7 +41,6 @@ std::string header_text(const Cloud& cloud, const std::vector<Field>& fields, co
     for (const std::string_view axis : kAxes) add(axis, 'F', sizeof(float), 1);
     for (const Field& field : fields) add(field.name, written_type(field, encoding), field.size, field.count);
 
-    const auto points = static_cast<std::size_t>(cloud.size());
     const bool organised = cloud.width > 0 && points % cloud.width == 0 && points > 0;
     const std::size_t width = organised ? cloud.width : points;
     std::string text = "# .PCD v0.7 - Point Cloud Data file format\n# units " + to_string(units.length) +
@@ -136,16 +136,29 @@ std::string rows(const Eigen::Matrix3Xd& xyz, const std::vector<Field>& fields, 
 
 } // namespace
 
+void write_pcd_header(std::ostream& out, const Cloud& some, std::size_t points, const Units& units,
+                      PcdEncoding encoding)
+{
+    std::vector<Field> fields; // empty, but of the types that are written
+    for (const Field& field : some.fields) fields.push_back(in_file_units(field, units, 0, 0));
+    out << header_text(some, points, fields, units, encoding);
+}
+
+void write_pcd_points(std::ostream& out, const Cloud& part, const Units& units, PcdEncoding encoding)
+{
+    if (encoding == PcdEncoding::binary) {
+        write_packed(out, part, units);
+        return;
+    }
+    std::vector<Field> fields;
+    for (const Field& field : part.fields) fields.push_back(in_file_units(field, units, 0, part.size()));
+    out << rows(part.xyz / units.mm(), fields, encoding);
+}
+
 void write_pcd(std::ostream& out, const Cloud& cloud, const Units& units, PcdEncoding encoding)
 {
-    const bool ascii = encoding == PcdEncoding::ascii;
-    std::vector<Field> fields;
-    for (const Field& field : cloud.fields) fields.push_back(in_file_units(field, units, 0, ascii ? cloud.size() : 0));
-    out << header_text(cloud, fields, units, encoding);
-    if (ascii)
-        out << rows(cloud.xyz / units.mm(), fields, encoding);
-    else
-        write_packed(out, cloud, units);
+    write_pcd_header(out, cloud, static_cast<std::size_t>(cloud.size()), units, encoding);
+    write_pcd_points(out, cloud, units, encoding);
 }
 
 } // namespace fettle

@@ -87,13 +87,16 @@ PointSource point_source(std::shared_ptr<const Cloud> cloud)
 }
 
 CloudStream::CloudStream(const std::string& path, std::optional<Units> units)
+    : CloudStream(std::make_shared<const InputFile>(path), display_name(path), units)
 {
-    const std::string name = display_name(path);
-    const auto file = std::make_shared<const InputFile>(path);
+}
+
+CloudStream::CloudStream(std::shared_ptr<const InputFile> file, const std::string& name, std::optional<Units> units)
+{
     const auto all = [file, name, units] {
         std::string bytes(file->size(), '\0');
         file->read(0, bytes.data(), bytes.size());
-        return std::make_shared<const Cloud>(parse_cloud(bytes, name, units).cloud);
+        return parse_cloud(bytes, name, units);
     };
     constexpr std::size_t kHead = 1 << 20; // longer than any real header; a file that fits is read whole
     std::string head(std::min(file->size(), kHead), '\0');
@@ -104,8 +107,13 @@ CloudStream::CloudStream(const std::string& path, std::optional<Units> units)
         text.find("\nDATA ") != std::string_view::npos)
         header = parse_pcd_header(text, name);
     if (!header || header->data != PcdHeader::Data::binary) {
-        const std::shared_ptr<const Cloud> cloud = all();
+        CloudFile read = all();
+        const auto cloud = std::make_shared<const Cloud>(std::move(read.cloud));
+        units_ = read.units;
         whole_ = [cloud] { return cloud; };
+        part_ = [cloud](std::size_t first, std::size_t count) {
+            return fettle::part(*cloud, static_cast<Eigen::Index>(first), static_cast<Eigen::Index>(count));
+        };
         points_ = point_source(cloud);
         return;
     }
@@ -115,8 +123,14 @@ CloudStream::CloudStream(const std::string& path, std::optional<Units> units)
     std::string next(there > needed ? std::min(there - needed, kHead) : 0, '\0');
     file->read(body + needed, next.data(), next.size());
     check_binary_size(*header, there, next, name);
-    whole_ = all;
-    points_ = binary_source(*header, file, body, agreed_units(header->units, units, name).mm());
+    units_ = agreed_units(header->units, units, name);
+    whole_ = [all] { return std::make_shared<const Cloud>(all().cloud); };
+    part_ = [file, body, h = *header, in = units_](std::size_t first, std::size_t count) {
+        std::string records(count * h.stride(), '\0');
+        file->read(body + first * h.stride(), records.data(), records.size());
+        return parse_pcd_records(h, records, in);
+    };
+    points_ = binary_source(*header, file, body, units_.mm());
 }
 
 std::shared_ptr<const Cloud> CloudStream::cloud() const { return whole_(); }

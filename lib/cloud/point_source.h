@@ -1,6 +1,7 @@
 #pragma once
 
 #include "cloud/pcd.h"
+#include "core/file.h"
 
 #include <Eigen/Core>
 
@@ -37,14 +38,22 @@ class CloudStream {
     /// The checks and messages of read_cloud(). @param path  a file, or "-" for stdin
     /// @throws InputError
     explicit CloudStream(const std::string& path, std::optional<Units> units = std::nullopt);
+    /// @param name  of the file, for messages
+    CloudStream(std::shared_ptr<const InputFile> file, const std::string& name, std::optional<Units> units);
 
     const PointSource& points() const { return points_; }
+    /// Some of the points, with all fields.
+    Cloud part(std::size_t first, std::size_t count) const { return part_(first, count); }
+    /// Of the file.
+    const Units& units() const { return units_; }
     /// All of it in memory, with all fields.
     std::shared_ptr<const Cloud> cloud() const;
 
   private:
     std::function<std::shared_ptr<const Cloud>()> whole_;
+    std::function<Cloud(std::size_t first, std::size_t count)> part_;
     PointSource points_;
+    Units units_;
 };
 
 } // namespace fettle

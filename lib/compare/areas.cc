@@ -1,10 +1,11 @@
 #include "compare/areas.h"
 
 #include <Eigen/Dense>
+#include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <optional>
 #include <vector>
 
@@ -27,62 +28,109 @@ struct Lattice {
     Eigen::Matrix2d cell() const { return (Eigen::Matrix2d() << a, b).finished(); }
 };
 
-Eigen::Matrix2Xd finite_plan(const Eigen::Matrix3Xd& xyz)
+/// What the finite points of each block tell, in the order of the blocks.
+template <typename Told, typename Tell>
+std::vector<Told> of_blocks(const PointSource& points, const Tell& tell)
 {
-    std::vector<Eigen::Index> finite;
-    for (Eigen::Index i = 0; i < xyz.cols(); ++i)
-        if (xyz.col(i).allFinite()) finite.push_back(i);
-    return xyz.topRows<2>()(Eigen::all, finite);
+    std::vector<Told> told((points.points + points.block - 1) / points.block);
+    tbb::parallel_for(std::size_t{0}, told.size(), [&](std::size_t b) {
+        PointBlock block;
+        const std::size_t first = b * points.block;
+        points.read(first, std::min(points.block, points.points - first), block);
+        for (const auto& point : block.xyz.colwise())
+            if (point.allFinite()) tell(told[b], Eigen::Vector2d(point.head<2>()));
+    });
+    return told;
+}
+
+struct Extent {
+    Eigen::AlignedBox2d box;
+    std::size_t finite = 0;
+    Eigen::Vector2d first = {0, 0};
+
+    void add(const Eigen::Vector2d& p)
+    {
+        if (finite++ == 0) first = p;
+        box.extend(p);
+    }
+    void add(const Extent& other)
+    {
+        if (finite == 0) first = other.first;
+        finite += other.finite;
+        box.extend(other.box);
+    }
+};
+
+Extent extent_of(const PointSource& points)
+{
+    Extent all;
+    for (const Extent& part : of_blocks<Extent>(points, [](Extent&e, const Eigen::Vector2d&p) { e.add(p); }))
+        all.add(part);
+    return all;
+}
+
+/// The shortest step from `from` to another point that `allowed` lets pass; none: zero.
+template <typename Allowed>
+Eigen::Vector2d shortest_step(const PointSource& points, const Eigen::Vector2d& from, const Allowed& allowed)
+{
+    const auto shorter = [](Eigen::Vector2d& best, const Eigen::Vector2d& step) {
+        if (best.isZero(0) || step.squaredNorm() < best.squaredNorm()) best = step;
+    };
+    struct Step {
+        Eigen::Vector2d step = {0, 0};
+    };
+    Eigen::Vector2d best = {0, 0};
+    for (const Step& part : of_blocks<Step>(points, [&](Step&s, const Eigen::Vector2d&p) {
+             const Eigen::Vector2d step = p - from;
+             if (!step.isZero(0) && allowed(step)) shorter(s.step, step);
+         }))
+        if (!part.step.isZero(0)) shorter(best, part.step);
+    return best;
 }
 
 // The shortest step from the first point to another, and the shortest one across it.
-std::optional<Lattice> guess(const Eigen::Matrix2Xd& plan)
+std::optional<Lattice> guess(const PointSource& points, const Eigen::Vector2d& first)
 {
-    const Eigen::Matrix2Xd steps = plan.colwise() - plan.col(0).eval();
-    const auto shortest = [&](const auto& allowed) -> std::optional<Eigen::Vector2d> {
-        std::optional<Eigen::Vector2d> best;
-        for (const Eigen::Vector2d step : steps.colwise())
-            if (step.squaredNorm() > 0 && allowed(step) && (!best || step.squaredNorm() < best->squaredNorm()))
-                best = step;
-        return best;
-    };
-    const auto a = shortest([](const Eigen::Vector2d&) { return true; });
-    if (!a) return std::nullopt;
-    const auto b = shortest(
-        [&](const Eigen::Vector2d& step) { return std::abs(step.dot(*a)) < kOffLattice * a->norm() * step.norm(); });
-    if (!b) return std::nullopt;
-    return Lattice{plan.col(0), *a, *b};
+    const Eigen::Vector2d a = shortest_step(points, first, [](const Eigen::Vector2d&) { return true; });
+    if (a.isZero(0)) return std::nullopt;
+    const Eigen::Vector2d b = shortest_step(points, first, [&](const Eigen::Vector2d& step) {
+        return std::abs(step.dot(a)) < kOffLattice * a.norm() * step.norm();
+    });
+    if (b.isZero(0)) return std::nullopt;
+    return Lattice{first, a, b};
 }
 
-// Least squares of the points within `reach` cells; nothing if one of them is off its place.
-std::optional<Lattice> refine(const Eigen::Matrix2Xd& plan, const Lattice& lattice, double reach)
-{
-    const Eigen::Matrix2d to_cells = lattice.cell().inverse();
+/// Normal equations of a lattice, of the points that lie on it.
+struct LatticeSums {
     Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
     Eigen::Matrix<double, 3, 2> B = Eigen::Matrix<double, 3, 2>::Zero();
-    for (const Eigen::Vector2d p : plan.colwise()) {
-        const Eigen::Vector2d cells = to_cells * (p - lattice.origin);
-        if (cells.cwiseAbs().maxCoeff() > reach) continue;
-        const Eigen::Vector2d place = cells.array().round();
-        if ((cells - place).cwiseAbs().maxCoeff() > kOffLattice) return std::nullopt;
-        const Eigen::Vector3d row(1, place.x(), place.y());
-        A += row * row.transpose();
-        B += row * (p - lattice.origin).transpose();
-    }
-    const Eigen::FullPivLU<Eigen::Matrix3d> solver(A);
-    if (!solver.isInvertible()) return std::nullopt;
-    const Eigen::Matrix<double, 3, 2> fit = solver.solve(B);
-    return Lattice{lattice.origin + fit.row(0).transpose(), fit.row(1).transpose(), fit.row(2).transpose()};
-}
+    bool off = false; ///< is one of the points off its place?
+};
 
-std::optional<double> lattice_cell(const Eigen::Matrix2Xd& plan)
+// Least squares of the points within `reach` cells; nothing if one of them is off its place.
+std::optional<Lattice> refine(const PointSource& points, const Lattice& lattice, double reach)
 {
-    if (plan.cols() < 4) return std::nullopt;
-    std::optional<Lattice> lattice = guess(plan);
-    for (const double reach : {kFirstReach, std::numeric_limits<double>::infinity()})
-        if (lattice) lattice = refine(plan, *lattice, reach);
-    if (!lattice) return std::nullopt;
-    return std::abs(lattice->cell().determinant());
+    const Eigen::Matrix2d to_cells = lattice.cell().inverse();
+    const auto parts = of_blocks<LatticeSums>(points, [&](LatticeSums& sums, const Eigen::Vector2d& p) {
+        if (sums.off) return;
+        const Eigen::Vector2d cells = to_cells * (p - lattice.origin);
+        if (cells.cwiseAbs().maxCoeff() > reach) return;
+        const Eigen::Vector2d place = cells.array().round();
+        sums.off = (cells - place).cwiseAbs().maxCoeff() > kOffLattice;
+        const Eigen::Vector3d row(1, place.x(), place.y());
+        sums.A += row * row.transpose();
+        sums.B += row * (p - lattice.origin).transpose();
+    });
+    LatticeSums all;
+    for (const LatticeSums& part : parts) {
+        if (part.off) return std::nullopt;
+        all.A += part.A;
+        all.B += part.B;
+    }
+    const Eigen::FullPivLU<Eigen::Matrix3d> solver(all.A);
+    if (!solver.isInvertible()) return std::nullopt;
+    const Eigen::Matrix<double, 3, 2> fit = solver.solve(all.B);
+    return Lattice{lattice.origin + fit.row(0).transpose(), fit.row(1).transpose(), fit.row(2).transpose()};
 }
 
 } // namespace
@@ -102,31 +150,56 @@ Eigen::VectorXd vertex_areas(const Mesh& mesh, const Eigen::Vector3d& direction)
 
 Eigen::VectorXd vertex_areas(const Mesh& mesh) { return vertex_areas(mesh, Eigen::Vector3d::Zero()); }
 
-Eigen::VectorXd plan_areas(const Eigen::Matrix3Xd& xyz)
+PlanAreas::PlanAreas(const PointSource& points)
+{
+    const Extent extent = extent_of(points);
+    if (extent.finite < 2) return;
+    std::optional<Lattice> lattice = extent.finite < 4 ? std::nullopt : guess(points, extent.first);
+    for (const double reach : {kFirstReach, std::numeric_limits<double>::infinity()})
+        if (lattice) lattice = refine(points, *lattice, reach);
+    if (lattice) {
+        cell_ = std::abs(lattice->cell().determinant());
+        return;
+    }
+    const Eigen::Array2d sizes = extent.box.sizes();
+    const auto count = static_cast<double>(extent.finite);
+    // Of a strip narrower than its squares no more than its width; no axis is cut finer than there are points.
+    const double square = std::max(std::sqrt(kPointsPerSquare * sizes.prod() / count), sizes.maxCoeff() / count);
+    least_ = extent.box.min();
+    side_ = sizes.min(square);
+    if (!(side_.minCoeff() > 0)) return; // all on one line: no area
+    bins_ = (sizes / side_).cast<Eigen::Index>() + 1;
+    counts_.assign(static_cast<std::size_t>(bins_.prod()), 0);
+    PointBlock block;
+    for (std::size_t first = 0; first < points.points; first += points.block) {
+        points.read(first, std::min(points.block, points.points - first), block);
+        for (const auto& point : block.xyz.colwise())
+            if (point.allFinite()) ++counts_[static_cast<std::size_t>(bin(point.head<2>()))];
+    }
+}
+
+Eigen::Index PlanAreas::bin(const Eigen::Vector2d& xy) const
+{
+    const Eigen::Array<Eigen::Index, 2, 1> place = ((xy.array() - least_) / side_).cast<Eigen::Index>();
+    return place.y() * bins_.x() + place.x();
+}
+
+Eigen::VectorXd PlanAreas::operator()(const Eigen::Matrix3Xd& xyz) const
 {
     Eigen::VectorXd areas = Eigen::VectorXd::Zero(xyz.cols());
-    const Eigen::Matrix2Xd plan = finite_plan(xyz);
-    if (plan.cols() == 0) return areas;
-    const std::optional<double> cell = lattice_cell(plan);
-    const Eigen::Vector2d least = plan.rowwise().minCoeff();
-    const Eigen::Vector2d extent = plan.rowwise().maxCoeff() - least;
-    const double square = kPointsPerSquare * extent.prod() / static_cast<double>(plan.cols());
-    if (!cell && !(square > 0)) return areas; // all on one line: no area
-    const auto bin = [&](Eigen::Index i) {
-        const Eigen::Vector2d place = (xyz.col(i).head<2>() - least) / std::sqrt(square);
-        return std::pair(static_cast<long>(place.x()), static_cast<long>(place.y()));
-    };
-    std::map<std::pair<long, long>, double> points_in;
-    for (Eigen::Index i = 0; i < xyz.cols() && !cell; ++i)
-        if (xyz.col(i).allFinite()) ++points_in[bin(i)];
-    for (Eigen::Index i = 0; i < xyz.cols(); ++i)
-        if (xyz.col(i).allFinite()) areas[i] = cell ? *cell : square / points_in.at(bin(i));
+    for (Eigen::Index i = 0; i < areas.size(); ++i) {
+        if (!xyz.col(i).allFinite()) continue;
+        if (cell_ > 0)
+            areas[i] = cell_;
+        else if (!counts_.empty())
+            areas[i] = side_.prod() / counts_[static_cast<std::size_t>(bin(xyz.col(i).head<2>()))];
+    }
     return areas;
 }
 
-Eigen::VectorXd volume_areas(const Eigen::Matrix3Xd& xyz, const ErrorMap& map, const DistanceOptions& options)
+Eigen::VectorXd volume_areas(const Eigen::VectorXd& plan_areas, const ErrorMap& map, const DistanceOptions& options)
 {
-    Eigen::VectorXd areas = plan_areas(xyz);
+    Eigen::VectorXd areas = plan_areas;
     for (Eigen::Index i = 0; i < areas.size(); ++i) {
         const double steepness = std::abs(map.normal(2, i));
         const double seen =

@@ -1,29 +1,79 @@
 #include "compare/shape_file.h"
 
 #include "cloud/pcd.h"
+#include "cloud/pcd_header.h"
 #include "core/file.h"
 #include "mesh/mesh_file.h"
+#include "mesh/stl.h"
+
+#include <algorithm>
+#include <memory>
 
 namespace fettle {
 
-ShapeFile read_shape(const std::string& path, const std::optional<Units>& units)
+namespace {
+
+ShapeFile parse_shape(std::string_view bytes, const std::string& name, const std::optional<Units>& units)
 {
-    const std::string bytes = read_whole(path);
-    const std::string name = display_name(path);
     if (looks_like_cloud(bytes)) {
         CloudFile file = parse_cloud(bytes, name, units);
-        return {std::move(file.cloud), file.units};
+        return {std::move(file.cloud), file.units, {}};
     }
     const Units stated = units.value_or(Units{});
-    return {parse_mesh(bytes, name, stated.length), stated};
+    ShapeFile file{Mesh(), stated, {}};
+    file.shape = parse_mesh(bytes, name, stated.length, &file.repair);
+    return file;
 }
 
-Cloud points_of(const MeshOrCloud& shape)
+} // namespace
+
+ShapeFile read_shape(const std::string& path, const std::optional<Units>& units)
 {
-    if (const Cloud* cloud = std::get_if<Cloud>(&shape)) return *cloud;
-    Cloud vertices;
-    vertices.xyz = std::get<Mesh>(shape).vertices;
-    return vertices;
+    return parse_shape(read_whole(path), display_name(path), units);
+}
+
+const Eigen::Matrix3Xd& places_of(const MeshOrCloud& shape)
+{
+    if (const Mesh* mesh = std::get_if<Mesh>(&shape)) return mesh->vertices;
+    return std::get<Cloud>(shape).xyz;
+}
+
+TestPoints test_points(const MeshOrCloud& shape, const Units& units)
+{
+    TestPoints test;
+    test.units = units;
+    auto cloud = std::make_shared<Cloud>();
+    if (const Mesh* mesh = std::get_if<Mesh>(&shape)) {
+        test.mesh = *mesh;
+        cloud->xyz = mesh->vertices;
+    } else {
+        *cloud = std::get<Cloud>(shape);
+    }
+    test.points = point_source(cloud);
+    test.part = [cloud](std::size_t first, std::size_t count) {
+        return part(*cloud, static_cast<Eigen::Index>(first), static_cast<Eigen::Index>(count));
+    };
+    return test;
+}
+
+TestPoints open_test_points(const std::string& path, const std::optional<Units>& units)
+{
+    const auto file = std::make_shared<const InputFile>(path);
+    constexpr std::size_t kHead = 1 << 12; // enough to tell a PCD
+    std::string head(std::min(file->size(), kHead), '\0');
+    file->read(0, head.data(), head.size());
+    if (looks_like_pcd(head) && !is_binary_stl(head, file->size())) {
+        const auto stream = std::make_shared<const CloudStream>(file, display_name(path), units);
+        TestPoints test;
+        test.points = stream->points();
+        test.part = [stream](std::size_t first, std::size_t count) { return stream->part(first, count); };
+        test.units = stream->units();
+        return test;
+    }
+    std::string bytes(file->size(), '\0');
+    file->read(0, bytes.data(), bytes.size());
+    const ShapeFile shape = parse_shape(bytes, display_name(path), units);
+    return test_points(shape.shape, shape.units);
 }
 
 } // namespace fettle

@@ -1,12 +1,16 @@
 #include "compare/statistics.h"
 
+#include "compare/order_statistics.h"
+#include "core/text.h"
 #include "job/boundary.h"
 
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
+#include <ostream>
+#include <span>
 
 namespace fettle {
 
@@ -14,78 +18,172 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-double percentile(const std::vector<double>& ascending, double p)
+constexpr std::size_t kBlock = 1 << 15; // errors that are taken out of a spool at once
+
+/// The errors in a spool, again and again.
+Numbers numbers_in(const Spool& spool)
 {
-    const double place = static_cast<double>(ascending.size() - 1) * p;
-    const auto below = static_cast<std::size_t>(place);
-    const std::size_t above = std::min(below + 1, ascending.size() - 1);
-    return ascending[below] + (place - static_cast<double>(below)) * (ascending[above] - ascending[below]);
+    return [&spool](const std::function<void(std::span<const double>)>& use) {
+        std::vector<double> block(std::min(kBlock, spool.size() / sizeof(double)));
+        for (std::size_t at = 0; at < spool.size(); at += block.size() * sizeof(double)) {
+            block.resize(std::min(kBlock, (spool.size() - at) / sizeof(double)));
+            spool.read(at, reinterpret_cast<char*>(block.data()), block.size() * sizeof(double));
+            use(block);
+        }
+    };
 }
 
-void set_moments(Statistics& s, const std::vector<double>& ascending)
+void set_percentiles(Statistics& s, const Numbers& numbers)
 {
-    const auto n = static_cast<double>(ascending.size());
-    double sum = 0, sum_abs = 0, sum_square = 0, sum_deviation = 0;
-    for (const double error : ascending) {
-        sum += error;
-        sum_abs += std::abs(error);
-        sum_square += error * error;
+    const std::array shares = {0.01, 0.05, 0.50, 0.95, 0.99};
+    const std::array to = {&s.p01, &s.p05, &s.p50, &s.p95, &s.p99};
+    const auto last = static_cast<std::size_t>(s.count) - 1;
+    std::vector<std::size_t> ranks;
+    for (const double share : shares) {
+        ranks.push_back(static_cast<std::size_t>(static_cast<double>(last) * share));
+        ranks.push_back(std::min(ranks.back() + 1, last));
     }
-    s.mean = sum / n;
-    for (const double error : ascending) sum_deviation += (error - s.mean) * (error - s.mean);
-    s.mean_abs = sum_abs / n;
-    s.rms = std::sqrt(sum_square / n);
-    s.sd = std::sqrt(sum_deviation / n);
+    const std::vector<double> at = order_statistics(numbers, ranks);
+    for (std::size_t i = 0; i < shares.size(); ++i) {
+        const double beyond = static_cast<double>(last) * shares[i] - static_cast<double>(ranks[2 * i]);
+        *to[i] = at[2 * i] + beyond * (at[2 * i + 1] - at[2 * i]);
+    }
 }
 
-void set_order(Statistics& s, const std::vector<double>& ascending)
-{
-    s.min = ascending.front();
-    s.max = ascending.back();
-    s.band = s.min < 0 && s.max > 0 ? s.max - s.min : std::max(std::abs(s.min), std::abs(s.max));
-    s.p01 = percentile(ascending, 0.01);
-    s.p05 = percentile(ascending, 0.05);
-    s.p50 = percentile(ascending, 0.50);
-    s.p95 = percentile(ascending, 0.95);
-    s.p99 = percentile(ascending, 0.99);
-}
+/// A name and a number in the unit of a report; volumes have power 3.
+struct Member {
+    const char* name;
+    double Statistics::*value;
+    int power;
+};
+constexpr Member kMembers[] = {{"mean", &Statistics::mean, 1},
+                               {"mean_abs", &Statistics::mean_abs, 1},
+                               {"rms", &Statistics::rms, 1},
+                               {"sd", &Statistics::sd, 1},
+                               {"min", &Statistics::min, 1},
+                               {"max", &Statistics::max, 1},
+                               {"band", &Statistics::band, 1},
+                               {"p01", &Statistics::p01, 1},
+                               {"p05", &Statistics::p05, 1},
+                               {"p50", &Statistics::p50, 1},
+                               {"p95", &Statistics::p95, 1},
+                               {"p99", &Statistics::p99, 1},
+                               {"within", &Statistics::within, 0},
+                               {"over_cut_area", &Statistics::over_cut_area, 2},
+                               {"under_cut_area", &Statistics::under_cut_area, 2},
+                               {"over_cut_volume", &Statistics::over_cut_volume, 3},
+                               {"under_cut_volume", &Statistics::under_cut_volume, 3}};
 
-// Sorted, the sums come in one order whatever the order of the points: a region turned or shuffled tells the same.
-std::vector<double> defined_ascending(const Eigen::VectorXd& errors)
+struct Place {
+    const char* name;
+    Eigen::Vector3d Statistics::*value;
+};
+constexpr Place kPlaces[] = {{"min_at", &Statistics::min_at}, {"max_at", &Statistics::max_at}};
+
+double in_units(const Statistics& s, const Member& member, const Units& units)
 {
-    std::vector<double> values;
-    values.reserve(static_cast<std::size_t>(errors.size()));
-    for (const double error : errors)
-        if (!std::isnan(error)) values.push_back(error);
-    std::sort(values.begin(), values.end());
-    return values;
+    return s.*member.value / std::pow(units.mm(), member.power);
 }
 
 } // namespace
 
+Tally::Tally(std::optional<double> tolerance, std::size_t memory) : tolerance_(tolerance), errors_(memory)
+{
+    so_far_.min = so_far_.max = kNaN;
+    so_far_.min_at.setConstant(kNaN);
+    so_far_.max_at.setConstant(kNaN);
+}
+
+void Tally::add(const Eigen::VectorXd& errors, const Eigen::VectorXd& areas, const Eigen::Matrix3Xd& xyz)
+{
+    constexpr Eigen::Index kShare = 1024; // summed plainly: their roundings stay far below those of the errors
+    const double tolerance = tolerance_.value_or(0);
+    std::vector<double> defined;
+    for (Eigen::Index first = 0; first < errors.size(); first += kShare) {
+        double sum = 0, sum_abs = 0, sum_squares = 0, over_area = 0, under_area = 0, over_volume = 0, under_volume = 0;
+        defined.clear();
+        for (Eigen::Index i = first; i < std::min(first + kShare, errors.size()); ++i) {
+            const double error = errors[i];
+            if (std::isnan(error)) continue;
+            defined.push_back(error);
+            sum += error;
+            sum_abs += std::abs(error);
+            sum_squares += error * error;
+            within_ += tolerance_ && std::abs(error) <= *tolerance_;
+            const double area = areas[i] > 0 ? areas[i] : 0; // NaN: none
+            if (std::abs(error) > tolerance) (error < 0 ? over_area : under_area) += area;
+            (error < 0 ? over_volume : under_volume) += std::abs(error) * area;
+            if (!(error >= so_far_.min)) so_far_.min = error, so_far_.min_at = xyz.col(i);
+            if (!(error <= so_far_.max)) so_far_.max = error, so_far_.max_at = xyz.col(i);
+        }
+        undefined_ += std::min(kShare, errors.size() - first) - static_cast<Eigen::Index>(defined.size());
+        sum_.add(sum);
+        sum_abs_.add(sum_abs);
+        sum_squares_.add(sum_squares);
+        over_cut_area_.add(over_area);
+        under_cut_area_.add(under_area);
+        over_cut_volume_.add(over_volume);
+        under_cut_volume_.add(under_volume);
+        errors_.append({reinterpret_cast<const char*>(defined.data()), defined.size() * sizeof(double)});
+    }
+}
+
+Statistics Tally::statistics() const
+{
+    Statistics s = so_far_;
+    s.count = static_cast<Eigen::Index>(errors_.size() / sizeof(double));
+    s.undefined = undefined_;
+    s.mean = s.mean_abs = s.rms = s.sd = s.band = kNaN;
+    s.p01 = s.p05 = s.p50 = s.p95 = s.p99 = s.within = kNaN;
+    s.over_cut_area = over_cut_area_.value();
+    s.under_cut_area = under_cut_area_.value();
+    s.over_cut_volume = over_cut_volume_.value();
+    s.under_cut_volume = under_cut_volume_.value();
+    if (s.count == 0) return s;
+    const auto n = static_cast<double>(s.count);
+    s.mean = sum_.value() / n;
+    s.mean_abs = sum_abs_.value() / n;
+    s.rms = std::sqrt(sum_squares_.value() / n);
+    s.band = s.min < 0 && s.max > 0 ? s.max - s.min : std::max(std::abs(s.min), std::abs(s.max));
+    if (tolerance_) s.within = static_cast<double>(within_) / n;
+    const Numbers numbers = numbers_in(errors_);
+    Sum deviation;
+    numbers([&](std::span<const double> some) {
+        double sum = 0;
+        for (const double error : some) sum += (error - s.mean) * (error - s.mean);
+        deviation.add(sum);
+    });
+    s.sd = std::sqrt(deviation.value() / n);
+    set_percentiles(s, numbers);
+    return s;
+}
+
+double median(const Spool& numbers)
+{
+    const std::size_t last = numbers.size() / sizeof(double) - 1;
+    const std::vector<double> middle = order_statistics(numbers_in(numbers), {last / 2, last - last / 2});
+    return (middle[0] + middle[1]) / 2;
+}
+
 Statistics statistics(const Eigen::VectorXd& errors, const Eigen::VectorXd& areas, std::optional<double> tolerance)
 {
-    Statistics s;
-    const std::vector<double> ascending = defined_ascending(errors);
-    s.count = static_cast<Eigen::Index>(ascending.size());
-    s.undefined = errors.size() - s.count;
-    s.mean = s.mean_abs = s.rms = s.sd = s.min = s.max = s.band = kNaN;
-    s.p01 = s.p05 = s.p50 = s.p95 = s.p99 = s.within = kNaN;
-    s.over_cut_volume = s.under_cut_volume = 0;
-    if (ascending.empty()) return s;
-    set_moments(s, ascending);
-    set_order(s, ascending);
-    if (tolerance) {
-        const auto first = std::lower_bound(ascending.begin(), ascending.end(), -*tolerance);
-        const auto last = std::upper_bound(ascending.begin(), ascending.end(), *tolerance);
-        s.within = static_cast<double>(last - first) / static_cast<double>(ascending.size());
+    Tally tally(tolerance);
+    tally.add(errors, areas, Eigen::Matrix3Xd::Constant(3, errors.size(), kNaN));
+    return tally.statistics();
+}
+
+void Histogram::add(const Eigen::VectorXd& errors)
+{
+    const auto bins = static_cast<double>(counts.size());
+    for (const double error : errors) {
+        if (std::isnan(error)) continue;
+        if (error < -limit)
+            ++below;
+        else if (error > limit)
+            ++above;
+        else
+            ++counts[static_cast<std::size_t>(std::min((error / limit + 1) / 2 * bins, bins - 1))];
     }
-    for (Eigen::Index i = 0; i < errors.size(); ++i) {
-        const double volume = errors[i] * areas[i];
-        if (volume < 0) s.over_cut_volume -= volume;
-        if (volume > 0) s.under_cut_volume += volume;
-    }
-    return s;
 }
 
 std::vector<Region> regions(const Job& job, const Eigen::Matrix3Xd& xyz)
@@ -105,42 +203,45 @@ std::vector<Region> regions(const Job& job, const Eigen::Matrix3Xd& xyz)
     return regions;
 }
 
-Statistics statistics(const Eigen::VectorXd& errors, const Eigen::VectorXd& areas, std::optional<double> tolerance,
-                      const std::vector<Region>& regions, Region which)
-{
-    std::vector<Eigen::Index> chosen;
-    for (std::size_t i = 0; i < regions.size(); ++i)
-        if (regions[i] == which) chosen.push_back(static_cast<Eigen::Index>(i));
-    return statistics(errors(chosen), areas(chosen), tolerance);
-}
-
-Judgement judge(const Statistics& judged, double tolerance, const Eigen::Matrix3Xd& xyz)
+Judgement judge(const Statistics& judged, double tolerance, double largest)
 {
     if (judged.count == 0) return {false, kNaN};
-    const double largest = (xyz.array().isFinite()).select(xyz.array().abs(), 0).maxCoeff();
     const double rounding = static_cast<double>(std::numeric_limits<float>::epsilon()) * largest; // half of it a file
     const double worst = std::max(std::abs(judged.min), std::abs(judged.max));
     return {worst <= tolerance + rounding, worst};
 }
 
-double median(const Eigen::VectorXd& values)
-{
-    const std::vector<double> ascending = defined_ascending(values);
-    return ascending.empty() ? kNaN : percentile(ascending, 0.5);
-}
-
 json::Value to_json(const Statistics& s, const Units& units)
 {
-    const double mm = units.mm();
-    const double mm3 = mm * mm * mm;
     json::Value value;
     value.set("count", static_cast<std::size_t>(s.count)).set("undefined", static_cast<std::size_t>(s.undefined));
-    value.set("mean", s.mean / mm).set("mean_abs", s.mean_abs / mm).set("rms", s.rms / mm).set("sd", s.sd / mm);
-    value.set("min", s.min / mm).set("max", s.max / mm).set("band", s.band / mm);
-    value.set("p01", s.p01 / mm).set("p05", s.p05 / mm).set("p50", s.p50 / mm);
-    value.set("p95", s.p95 / mm).set("p99", s.p99 / mm).set("within", s.within);
-    value.set("over_cut_volume", s.over_cut_volume / mm3).set("under_cut_volume", s.under_cut_volume / mm3);
+    for (const Member& member : kMembers) value.set(member.name, in_units(s, member, units));
+    for (const Place& place : kPlaces) value.set(place.name, Eigen::VectorXd(s.*place.value / units.mm()));
     return value;
+}
+
+json::Value to_json(const Histogram& histogram, const Units& units)
+{
+    json::Value value;
+    value.set("limit", histogram.limit / units.mm()).set("below", histogram.below).set("above", histogram.above);
+    value.set("counts", std::vector<json::Value>(histogram.counts.begin(), histogram.counts.end()));
+    return value;
+}
+
+void write_csv(std::ostream& out, const std::vector<std::pair<std::string, Statistics>>& rows, const Units& units)
+{
+    out << "points,count,undefined";
+    for (const Member& member : kMembers) out << ',' << member.name;
+    for (const Place& place : kPlaces)
+        for (const char* axis : {"_x", "_y", "_z"}) out << ',' << place.name << axis;
+    out << '\n';
+    for (const auto& [name, s] : rows) {
+        out << name << ',' << s.count << ',' << s.undefined;
+        for (const Member& member : kMembers) out << ',' << to_text(in_units(s, member, units));
+        for (const Place& place : kPlaces)
+            for (const double coordinate : s.*place.value) out << ',' << to_text(coordinate / units.mm());
+        out << '\n';
+    }
 }
 
 } // namespace fettle

@@ -239,9 +239,11 @@ std::string size_problem(std::string_view bytes)
 
 } // namespace
 
-bool is_binary_stl(std::string_view bytes)
+bool is_binary_stl(std::string_view bytes) { return is_binary_stl(bytes, bytes.size()); }
+
+bool is_binary_stl(std::string_view head, std::size_t size)
 {
-    return bytes.size() >= kPrelude && bytes.size() == kPrelude + std::uint64_t{kFacet} * stated_triangles(bytes);
+    return head.size() >= kPrelude && size == kPrelude + std::uint64_t{kFacet} * stated_triangles(head);
 }
 
 bool looks_like_ascii_stl(std::string_view bytes)

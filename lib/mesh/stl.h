@@ -2,6 +2,7 @@
 
 #include "mesh/mesh.h"
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -10,6 +11,8 @@ namespace fettle {
 /// Is the size that of a binary STL with as many triangles as bytes 80 to 83 say? Nothing else is looked at: the
 /// header of a binary file may well begin with "solid".
 bool is_binary_stl(std::string_view bytes);
+/// The same from the beginning of a file of `size` bytes.
+bool is_binary_stl(std::string_view head, std::size_t size);
 
 /// Does the text begin like an ASCII STL: "solid", in any case, and somewhere "facet" or "endsolid"?
 bool looks_like_ascii_stl(std::string_view bytes);

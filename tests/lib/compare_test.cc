@@ -361,6 +361,13 @@ TEST(CloudReference, OutliersDoNotPull)
 // --- areas and colours
 // -------------------------------------------------------------------------------------------------
 
+Eigen::VectorXd areas_of(const Eigen::Matrix3Xd& points)
+{
+    const auto cloud = std::make_shared<Cloud>();
+    cloud->xyz = points;
+    return PlanAreas(point_source(cloud))(points);
+}
+
 TEST(Areas, OfATurnedGridAreItsCells)
 {
     const Eigen::Rotation2Dd turn(0.4);
@@ -370,7 +377,7 @@ TEST(Areas, OfATurnedGridAreItsCells)
         points.col(i) << static_cast<float>(xy.x() + 100), static_cast<float>(xy.y() - 50), std::sin(i);
     }
     points(2, 17) = kNaN;
-    const Eigen::VectorXd areas = plan_areas(points);
+    const Eigen::VectorXd areas = areas_of(points);
     EXPECT_EQ(areas[17], 0);
     EXPECT_NEAR(areas[18], 0.1 * 0.25, 1e-7);
     EXPECT_EQ(areas[18], areas[40000]);
@@ -380,7 +387,7 @@ TEST(Areas, OfATurnedGridAreItsCells)
 TEST(Areas, OfAScatteredCloudSumUp)
 {
     const Eigen::Matrix3Xd points = random_points(100000, 10, 10);
-    EXPECT_NEAR(plan_areas(points).sum(), 400, 8);
+    EXPECT_NEAR(areas_of(points).sum(), 400, 8);
 }
 
 // Identity: an offset cube's vertices stand for its whole surface, and for its shadow along z twice.

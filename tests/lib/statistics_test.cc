@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <random>
+#include <vector>
 
 namespace fettle {
 namespace {
@@ -50,15 +53,77 @@ TEST(Statistics, OfNothing)
     EXPECT_EQ(s.undefined, 2);
     EXPECT_TRUE(std::isnan(s.mean));
     EXPECT_EQ(s.over_cut_volume, 0);
-    EXPECT_FALSE(judge(s, 1, Eigen::Matrix3Xd::Zero(3, 2)).within);
+    EXPECT_FALSE(judge(s, 1, 0).within);
+}
+
+// The same numbers whether the errors are in memory or in a file, in one block or many; independent: a sorted list.
+TEST(Statistics, OfManyBlocks)
+{
+    std::mt19937 random(1);
+    std::normal_distribution<double> normal(0.1, 2);
+    const Eigen::Index count = 100000;
+    Eigen::VectorXd errors = Eigen::VectorXd::NullaryExpr(count, [&] { return normal(random); });
+    for (Eigen::Index i = 0; i < count; i += 7) errors[i] = std::round(errors[i]); // ties
+    errors[11] = 0;
+    errors[12] = kNaN;
+    Eigen::Matrix3Xd xyz(3, count);
+    xyz.setRandom();
+    Tally whole(1.0), parts(1.0, 12345);
+    whole.add(errors, Eigen::VectorXd::Ones(count), xyz);
+    for (Eigen::Index first = 0; first < count; first += 1024 * 9) {
+        const Eigen::Index some = std::min<Eigen::Index>(1024 * 9, count - first);
+        parts.add(errors.segment(first, some), Eigen::VectorXd::Ones(some), xyz.middleCols(first, some));
+    }
+    const Statistics s = whole.statistics(), t = parts.statistics();
+    std::vector<double> sorted;
+    for (const double error : errors)
+        if (!std::isnan(error)) sorted.push_back(error);
+    std::sort(sorted.begin(), sorted.end());
+    const auto at = [&](double share) {
+        const double place = share * static_cast<double>(sorted.size() - 1);
+        const auto below = static_cast<std::size_t>(place);
+        return sorted[below] + (place - static_cast<double>(below)) * (sorted[below + 1] - sorted[below]);
+    };
+    for (const Statistics& told : {s, t}) {
+        EXPECT_EQ(told.count, count - 1);
+        EXPECT_EQ(told.undefined, 1);
+        EXPECT_EQ(told.min, sorted.front());
+        EXPECT_EQ(told.max, sorted.back());
+        EXPECT_DOUBLE_EQ(told.p01, at(0.01));
+        EXPECT_DOUBLE_EQ(told.p05, at(0.05));
+        EXPECT_DOUBLE_EQ(told.p50, at(0.5));
+        EXPECT_DOUBLE_EQ(told.p95, at(0.95));
+        EXPECT_DOUBLE_EQ(told.p99, at(0.99));
+        EXPECT_NEAR(told.rms * told.rms, told.mean * told.mean + told.sd * told.sd, 1e-13);
+        EXPECT_NEAR(told.under_cut_volume - told.over_cut_volume, told.mean * static_cast<double>(count - 1), 1e-9);
+        EXPECT_DOUBLE_EQ(told.over_cut_area + told.under_cut_area + told.within * static_cast<double>(told.count),
+                         static_cast<double>(told.count));
+        Eigen::Index least = 0, most = 0;
+        errors.array().isNaN().select(0, errors).minCoeff(&least);
+        errors.array().isNaN().select(0, errors).maxCoeff(&most);
+        EXPECT_EQ(told.min_at, xyz.col(least));
+        EXPECT_EQ(told.max_at, xyz.col(most));
+    }
+    EXPECT_EQ(s.mean, t.mean);
+    EXPECT_EQ(s.sd, t.sd);
+}
+
+TEST(Statistics, Histogram)
+{
+    Histogram histogram(1, 4);
+    Eigen::VectorXd errors(9);
+    errors << -1.5, -1, -0.5, -0.25, 0, 0.75, 1, 1.25, kNaN;
+    histogram.add(errors);
+    EXPECT_EQ(histogram.below, 1u);
+    EXPECT_EQ(histogram.above, 1u);
+    EXPECT_EQ(histogram.counts, (std::vector<std::size_t>{1, 2, 1, 2}));
 }
 
 // An error that is over by no more than float coordinates of that size resolve still passes.
 TEST(Statistics, JudgesToTheRoundingOfFloats)
 {
-    const Eigen::Matrix3Xd far = Eigen::Matrix3Xd::Constant(3, 1, 1000);
     const auto judged = [&](double error) {
-        return judge(statistics(Eigen::VectorXd::Constant(1, error), Eigen::VectorXd::Ones(1), 0.5), 0.5, far);
+        return judge(statistics(Eigen::VectorXd::Constant(1, error), Eigen::VectorXd::Ones(1), 0.5), 0.5, 1000);
     };
     EXPECT_TRUE(judged(-0.5001).within);
     EXPECT_FALSE(judged(-0.501).within);
@@ -77,11 +142,6 @@ TEST(Statistics, Regions)
     points << 0.5, 2, 4, kNaN, 0.5, 0, 0, 0, 0, 0, 0, 0;
     const std::vector<Region> found = regions(job, points);
     EXPECT_EQ(found, (std::vector<Region>{Region::inside, Region::around, Region::outside, Region::outside}));
-    const Eigen::Vector4d errors(1, 2, 3, kNaN);
-    const Statistics outside = statistics(errors, Eigen::Vector4d::Ones(), std::nullopt, found, Region::outside);
-    EXPECT_EQ(outside.count, 1);
-    EXPECT_EQ(outside.undefined, 1);
-    EXPECT_EQ(outside.mean, 3);
 }
 
 } // namespace

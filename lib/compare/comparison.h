@@ -1,0 +1,49 @@
+#pragma once
+
+#include "compare/colours.h"
+#include "compare/shape_file.h"
+#include "compare/signed_distance.h"
+#include "compare/statistics.h"
+#include "core/progress.h"
+#include "job/job.h"
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace fettle {
+
+struct ComparisonOptions {
+    DistanceOptions distance;        ///< that the reference was made with
+    std::optional<double> tolerance; ///< mm
+    std::optional<Job> job;          ///< whose regions are told apart
+    int bins = 50;                   ///< of the histogram
+    bool reversed = false;           ///< is the reference's part compared to the test? Then + and - change places
+    bool foot = false;               ///< fields foot_x foot_y foot_z
+    bool facet = false;              ///< field facet: number in the reference's file, -1: none
+    bool region = false;             ///< field region: as Region; needs a job
+    bool sigma = false;              ///< field sigma: of the reference, if it is a cloud
+    std::size_t memory = std::size_t{1} << 30; ///< bytes of points and errors that may be held
+};
+
+/// An error map in numbers.
+struct Comparison {
+    Statistics all;
+    std::vector<std::pair<std::string, Statistics>> regions; ///< inside, around, outside; empty without a job
+    Histogram histogram;
+    double reference_sigma; ///< median, mm; NaN for a mesh
+    double largest = 0;     ///< coordinate of the points, mm
+};
+
+/// Compares points to a reference, block by block: neither points nor map are held.
+/// @param use  gets the blocks in their order: the test's fields, the reference's normal, error, what else is wanted,
+/// rgb
+Comparison compare(const TestPoints& test, const Reference& reference, const ComparisonOptions& options,
+                   const std::function<void(const Cloud&)>& use, const Progress& progress = {});
+
+} // namespace fettle

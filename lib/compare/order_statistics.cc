@@ -1,0 +1,69 @@
+#include "compare/order_statistics.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+
+namespace fettle {
+
+namespace {
+
+constexpr int kDigitBits = 16;
+constexpr std::size_t kDigits = std::size_t{1} << kDigitBits;
+
+// Bits that are ordered as the numbers are.
+std::uint64_t key_of(double number)
+{
+    const auto bits = std::bit_cast<std::uint64_t>(number);
+    return bits >> 63 ? ~bits : bits | std::uint64_t{1} << 63;
+}
+
+double number_of(std::uint64_t key)
+{
+    return std::bit_cast<double>(key >> 63 ? key & ~(std::uint64_t{1} << 63) : ~key);
+}
+
+/// Numbers that begin with the same known bits, some ranks among them.
+struct Prefix {
+    std::uint64_t bits = 0;
+    std::vector<std::size_t> counts = std::vector<std::size_t>(kDigits, 0); ///< by the next digit
+};
+
+} // namespace
+
+std::vector<double> order_statistics(const Numbers& numbers, const std::vector<std::size_t>& ranks)
+{
+    struct Wanted {
+        std::uint64_t bits;
+        std::size_t rank; ///< among the numbers that begin with these bits
+    };
+    std::vector<Wanted> wanted;
+    for (const std::size_t rank : ranks) wanted.push_back({0, rank});
+    for (int known = 0; known < 64; known += kDigitBits) {
+        std::vector<Prefix> prefixes;
+        for (const Wanted& w : wanted) {
+            const auto same = [&](const Prefix& prefix) { return prefix.bits == w.bits; };
+            if (std::none_of(prefixes.begin(), prefixes.end(), same)) prefixes.push_back({w.bits});
+        }
+        numbers([&](std::span<const double> some) {
+            for (const double number : some) {
+                const std::uint64_t key = key_of(number);
+                const std::uint64_t begin = known == 0 ? 0 : key >> (64 - known);
+                for (Prefix& prefix : prefixes)
+                    if (prefix.bits == begin) ++prefix.counts[(key >> (64 - kDigitBits - known)) % kDigits];
+            }
+        });
+        for (Wanted& w : wanted) {
+            const auto at = std::find_if(prefixes.begin(), prefixes.end(),
+                                         [&](const Prefix& prefix) { return prefix.bits == w.bits; });
+            std::size_t digit = 0;
+            for (; w.rank >= at->counts[digit]; ++digit) w.rank -= at->counts[digit];
+            w.bits = w.bits << kDigitBits | digit;
+        }
+    }
+    std::vector<double> found;
+    for (const Wanted& w : wanted) found.push_back(number_of(w.bits));
+    return found;
+}
+
+} // namespace fettle
