@@ -27,13 +27,19 @@ Eigen::MatrixXd root(const Eigen::MatrixXd& covariance)
     return size.asDiagonal() * eigen.eigenvectors().rightCols(rank) * variance.tail(rank).cwiseSqrt().asDiagonal();
 }
 
-/// Over few places by the heights' own covariance, so that a job that is turned has the same draws; over many that
-/// would take seconds.
+/// The same of the heights Gᵀ θ, by the principal axes of the heights themselves, so that a job that is turned has the
+/// same draws. With B a root, Bᵀ B is small, and B times its eigenvectors is the root whose columns are perpendicular.
 Eigen::MatrixXd field_root(const Eigen::MatrixXd& gradients, const Eigen::MatrixXd& covariance)
 {
-    constexpr Eigen::Index kFewPlaces = 400;
-    return gradients.cols() <= kFewPlaces ? root(gradients.transpose() * covariance * gradients)
-                                          : Eigen::MatrixXd(gradients.transpose() * root(covariance));
+    const Eigen::MatrixXd B = gradients.transpose() * root(covariance);
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(B.transpose() * B);
+    Eigen::MatrixXd field = B * axes.eigenvectors();
+    // Axes have no sign of their own. Weights without symmetry, or those of symmetric places cancel.
+    const Eigen::VectorXd weights =
+        Eigen::VectorXd::LinSpaced(field.rows(), 1, static_cast<double>(field.rows())).array().sin();
+    for (Eigen::Index k = 0; k < field.cols(); ++k)
+        if (field.col(k).dot(weights) < 0) field.col(k) *= -1;
+    return field;
 }
 
 struct Possible {

@@ -48,9 +48,9 @@ Prediction predict_by_posterior(const Surface& surface, const Job& job, double c
     refuse_gaps(surface, grid, job.units, source);
     const Eigen::MatrixXd fields = draw_fields(surface, grid, kDraws, seed);
     std::vector<double> below, bands;
-    for (const auto& field : fields.colwise()) { // what the surface may be less the mean: the mean's error is opposite
-        below.push_back(shift_distance(-field));
-        bands.push_back(error_band(-field));
+    for (const auto& field : fields.colwise()) {
+        below.push_back(field.maxCoeff()); // the shift distance of its opposite: the mean's error against it
+        bands.push_back(error_band(field));
     }
     return {"posterior", confidence, quantile(bands, confidence), quantile(below, confidence), false};
 }
