@@ -171,23 +171,23 @@ MatrixXd along_the_direction(const Cylinder& cylinder)
     return free;
 }
 
-/// Does the distance from the axis of revolution stay of one size over the touches? Cones whose apex lies among them,
-/// and tori as narrow, go through a few noisy touches with ease and are no castings.
-bool even(const Shape& shape, const Eigen::Matrix3Xd& touches)
+/// Do all touches lie on one side of the axis of revolution, at a distance of one size? Cones whose apex lies among
+/// them, and tori as narrow or with a pole there, go through a few touches with ease and are no castings.
+bool beside_the_axis(const Shape& shape, const Eigen::Matrix3Xd& touches)
 {
     constexpr double kMostChange = 3; // times as far or as near as the frame's point
-    const auto is_even = [&](const auto& round) {
+    const auto beside = [&](const auto& round) {
         const Eigen::Vector3d w = std::sin(round.lean) * round.normal + std::cos(round.lean) * round.axis;
         const Eigen::Vector3d away = std::cos(round.lean) * round.normal - std::sin(round.lean) * round.axis;
         for (const Eigen::Vector3d& touch : touches.colwise()) {
             const Eigen::Vector3d from_axis = round.around * (touch - round.point) + away;
             const double ratio = (from_axis - from_axis.dot(w) * w).norm();
-            if (!(ratio > 1 / kMostChange && ratio < kMostChange)) return false;
+            if (!(from_axis.dot(away) > 1 / kMostChange && ratio < kMostChange)) return false;
         }
         return true;
     };
-    if (const Cone* cone = std::get_if<Cone>(&shape)) return is_even(*cone);
-    if (const Torus* torus = std::get_if<Torus>(&shape)) return is_even(*torus);
+    if (const Cone* cone = std::get_if<Cone>(&shape)) return beside(*cone);
+    if (const Torus* torus = std::get_if<Torus>(&shape)) return beside(*torus);
     return true;
 }
 
@@ -220,7 +220,7 @@ std::optional<FamilySolution> round(const Touched& touched, const Columns& kept)
             return true;
         },
         result.shape);
-    if (!up || !even(result.shape, touched.xyz)) return std::nullopt;
+    if (!up || !beside_the_axis(result.shape, touched.xyz)) return std::nullopt;
     result.gradients = height_gradients(result.shape, touched.xyz.topRows(2));
     if (const Cylinder* cylinder = std::get_if<Cylinder>(&result.shape); cylinder != nullptr && touched.given_direction)
         result.free = along_the_direction(*cylinder);

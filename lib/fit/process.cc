@@ -20,23 +20,22 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 // ℓ over half the touched size: shorter waves than the first are beyond the spacing of any touches, longer ones than
-// the last are a trend.
-constexpr std::array<double, 7> kLengths = {0.25, 0.35, 0.5, 0.7, 1, 1.4, 2};
-// τ over σ: from what the touches cannot see to a thousand times what they resolve, half a unit of ln apart.
+// the last are polynomials to the probe.
+constexpr std::array<double, 9> kLengths = {0.25, 0.35, 0.5, 0.7, 1, 1.4, 2, 2.8, 4};
+// τ over σ: from what the touches cannot see to what bends as much as they do over the longest of them, half a unit of
+// ln apart.
 constexpr double kLeastRatio = 0.3;
-constexpr int kRatios = 21;
+constexpr int kRatios = 25;
 constexpr double kRatioStep = 1.6487212707001282;
 
-/// One trend and length, as independent numbers: y_i ~ N(0, σ² + τ² λ_i).
+/// One length, as independent numbers: y_i ~ N(0, σ² + τ² λ_i).
 struct Spectrum {
-    std::size_t trend = 0;
     double length = 0;  ///< mm
     VectorXd lambda, y; ///< y over σ
 };
 
 /// A hypothesis that has weight.
 struct Hypothesis {
-    std::size_t trend = 0;
     double length = 0; ///< mm
     double tau = 0;    ///< mm
     double score = 0;
@@ -56,52 +55,42 @@ double half_size(const Matrix2Xd& xy)
     return (xy.colwise() - xy.rowwise().mean().eval()).colwise().norm().maxCoeff();
 }
 
-/// Touches, and what is known of each trend there.
+/// Touches z = F β + g + e.
 struct Problem {
     Matrix2Xd xy;
+    VectorXd z;
     double sigma = 0;
-    std::vector<const Candidate*> trends;
-    std::vector<MatrixXd> F;        ///< n x p, orthonormal columns that span the trend's changes
-    std::vector<VectorXd> residual; ///< touch - trend, mm
+    MatrixXd F; ///< n x p, of the trend
 };
 
 Problem part_of(const Problem& all, const Columns& kept)
 {
-    Problem part{all.xy(Eigen::all, kept), all.sigma, all.trends, {}, {}};
-    for (std::size_t k = 0; k < all.trends.size(); ++k) {
-        part.F.push_back(all.F[k](kept, Eigen::all));
-        part.residual.push_back(all.residual[k](kept));
-    }
-    return part;
+    return {all.xy(Eigen::all, kept), all.z(kept), all.sigma, all.F(kept, Eigen::all)};
 }
 
-Spectrum spectrum(const Problem& problem, std::size_t trend, double length, const MatrixXd& rest)
+Spectrum spectrum(const Problem& problem, double length, const MatrixXd& rest)
 {
     const MatrixXd K = rest.transpose() * correlation(problem.xy, problem.xy, length) * rest;
     const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(K);
-    return {trend, length, eigen.eigenvalues().cwiseMax(0),
-            eigen.eigenvectors().transpose() * (rest.transpose() * problem.residual[trend]) / problem.sigma};
+    return {length, eigen.eigenvalues().cwiseMax(0),
+            eigen.eigenvectors().transpose() * (rest.transpose() * problem.z) / problem.sigma};
 }
 
-/// All trends, lengths and amplitudes. Scores as the families': -2 ln restricted likelihood + p ln n, from that of σ.
+/// All lengths and amplitudes. Scores as the families': -2 ln restricted likelihood + p ln n, from that of σ.
 std::vector<Hypothesis> hypotheses(const Problem& problem)
 {
     std::vector<Hypothesis> all;
     const double half = half_size(problem.xy);
-    const auto n = problem.xy.cols();
-    for (std::size_t k = 0; k < problem.trends.size(); ++k) {
-        const Index p = problem.F[k].cols();
-        const MatrixXd Q = Eigen::HouseholderQR<MatrixXd>(problem.F[k]).householderQ() * MatrixXd::Identity(n, n);
-        const MatrixXd rest = Q.rightCols(n - p);
-        for (const double length : kLengths) {
-            const Spectrum s = spectrum(problem, k, length * half, rest);
-            double ratio = kLeastRatio;
-            for (int i = 0; i < kRatios; ++i, ratio *= kRatioStep) {
-                const Eigen::ArrayXd variance = 1 + ratio * ratio * s.lambda.array();
-                const double score = variance.log().sum() + (s.y.array().square() / variance).sum() +
-                                     static_cast<double>(p) * std::log(static_cast<double>(n));
-                all.push_back({k, s.length, ratio * problem.sigma, score});
-            }
+    const Index n = problem.F.rows(), p = problem.F.cols();
+    const double price = static_cast<double>(p) * std::log(static_cast<double>(n));
+    const MatrixXd Q = Eigen::HouseholderQR<MatrixXd>(problem.F).householderQ() * MatrixXd::Identity(n, n);
+    for (const double length : kLengths) {
+        const Spectrum s = spectrum(problem, length * half, Q.rightCols(n - p));
+        double ratio = kLeastRatio;
+        for (int i = 0; i < kRatios; ++i, ratio *= kRatioStep) {
+            const Eigen::ArrayXd variance = 1 + ratio * ratio * s.lambda.array();
+            const double score = variance.log().sum() + (s.y.array().square() / variance).sum() + price;
+            all.push_back({s.length, ratio * problem.sigma, score});
         }
     }
     return all;
@@ -118,8 +107,8 @@ struct Given {
     Eigen::LLT<MatrixXd> C;
     MatrixXd CF;              ///< C⁻¹ F
     Eigen::LLT<MatrixXd> FCF; ///< Fᵀ C⁻¹ F
-    VectorXd beta;            ///< of the trend's changes
-    VectorXd alpha;           ///< C⁻¹ (r - F β)
+    VectorXd beta;            ///< of the trend
+    VectorXd alpha;           ///< C⁻¹ (z - F β)
 };
 
 Given given(const Problem& problem, const Hypothesis& h)
@@ -128,10 +117,10 @@ Given given(const Problem& problem, const Hypothesis& h)
     MatrixXd C = h.tau * h.tau * correlation(problem.xy, problem.xy, h.length);
     C.diagonal().array() += problem.sigma * problem.sigma;
     g.C.compute(C);
-    g.CF = g.C.solve(problem.F[h.trend]);
-    g.FCF.compute(problem.F[h.trend].transpose() * g.CF);
-    g.beta = g.FCF.solve(g.CF.transpose() * problem.residual[h.trend]);
-    g.alpha = g.C.solve(problem.residual[h.trend] - problem.F[h.trend] * g.beta);
+    g.CF = g.C.solve(problem.F);
+    g.FCF.compute(problem.F.transpose() * g.CF);
+    g.beta = g.FCF.solve(g.CF.transpose() * problem.z);
+    g.alpha = g.C.solve(problem.z - problem.F * g.beta);
     return g;
 }
 
@@ -187,14 +176,13 @@ struct Field {
     MatrixXd covariance;
 };
 
-Field field_of(const Problem& problem, const Hypothesis& h, const Matrix2Xd& nodes, const VectorXd& trend,
-               const MatrixXd& F_nodes)
+Field field_of(const Problem& problem, const Hypothesis& h, const Matrix2Xd& nodes, const MatrixXd& F_nodes)
 {
     const Given g = given(problem, h);
     const double t2 = h.tau * h.tau;
     const MatrixXd K = t2 * correlation(nodes, problem.xy, h.length); // N x n
     Field field;
-    field.mean = trend + F_nodes * g.beta + K * g.alpha;
+    field.mean = F_nodes * g.beta + K * g.alpha;
     const MatrixXd half = g.C.matrixL().solve(K.transpose());
     const MatrixXd D = F_nodes - K * g.CF;
     const MatrixXd half_D = g.FCF.matrixL().solve(D.transpose());
@@ -206,36 +194,21 @@ Field field_of(const Problem& problem, const Hypothesis& h, const Matrix2Xd& nod
 
 } // namespace
 
-std::optional<Candidate> fit_process(const Touched& touched, const std::vector<Candidate>& trends, const Bspline& grid)
+std::optional<Candidate> fit_process(const Touched& touched, const Bspline& grid)
 {
+    std::optional<FamilySolution> trend = solve_family("quadratic", touched, all_touches(touched));
+    if (!trend) trend = solve_family("plane", touched, all_touches(touched));
+    constexpr Index kRest = 2; // touches that nothing has taken up yet
+    if (!trend || touched.xyz.cols() < trend->gradients.rows() + kRest) return std::nullopt;
+    const Problem all{touched.xyz.topRows(2), touched.xyz.row(2).transpose(), touched.sigma,
+                      trend->gradients.transpose()};
     const Matrix2Xd nodes = nodes_of(grid);
-    Problem all{touched.xyz.topRows(2), touched.sigma, {}, {}, {}};
-    std::vector<VectorXd> trend_nodes;
-    std::vector<MatrixXd> F_nodes;
-    for (const Candidate& trend : trends) {
-        if (trend.covariance.rows() >= touched.xyz.cols()) continue;
-        const VectorXd z = heights(trend.shape, nodes);
-        const MatrixXd G = height_gradients(trend.shape, nodes), touches = height_gradients(trend.shape, all.xy);
-        if (!z.allFinite() || !G.allFinite() || !touches.allFinite()) continue;
-        // Orthonormal columns: Gᵀ = F R.
-        const Eigen::HouseholderQR<MatrixXd> qr(touches.transpose());
-        const Index p = touches.rows();
-        all.trends.push_back(&trend);
-        all.F.push_back(qr.householderQ() * MatrixXd::Identity(touches.cols(), p));
-        all.residual.push_back(touched.xyz.row(2).transpose() - heights(trend.shape, all.xy));
-        trend_nodes.push_back(z);
-        const MatrixXd R = qr.matrixQR().topRows(p).triangularView<Eigen::Upper>();
-        F_nodes.push_back(R.transpose().triangularView<Eigen::Lower>().solve(G).transpose());
-    }
-    if (all.trends.empty()) return std::nullopt;
+    const MatrixXd F_nodes = height_gradients(trend->shape, nodes).transpose();
 
     Columns kept = all_touches(touched);
     Problem problem = all;
-    Index parameters = 0;
-    for (const MatrixXd& F : all.F) parameters = std::max(parameters, F.cols());
-    constexpr Index kRest = 2; // touches that nothing has taken up yet
     const auto most_slips =
-        static_cast<std::size_t>(std::clamp(touched.xyz.cols() - parameters - kRest, Index{0}, touched.xyz.cols() / 4));
+        static_cast<std::size_t>(std::min(touched.xyz.cols() - all.F.cols() - kRest, touched.xyz.cols() / 4));
     Candidate candidate;
     candidate.method = "gp";
     while (candidate.gross_errors.size() < most_slips) {
@@ -258,7 +231,7 @@ std::optional<Candidate> fit_process(const Touched& touched, const std::vector<C
         const double weight = std::exp((best - h.score) / 2);
         sum += weight;
         if (weight < kLeastWeight) continue;
-        fields.emplace_back(weight, field_of(problem, h, nodes, trend_nodes[h.trend], F_nodes[h.trend]));
+        fields.emplace_back(weight, field_of(problem, h, nodes, F_nodes));
         mean += weight * fields.back().second.mean;
         used += weight;
     }
@@ -280,7 +253,7 @@ std::optional<Candidate> fit_process(const Touched& touched, const std::vector<C
     candidate.shape = std::move(spline);
     candidate.score = best - 2 * std::log(sum / static_cast<double>(believed.size())) +
                       price_of_a_slip(touched.sigma) * static_cast<double>(candidate.gross_errors.size());
-    candidate.freedom = static_cast<double>(kept.size()) - static_cast<double>(all.F.front().cols());
+    candidate.freedom = static_cast<double>(kept.size()) - static_cast<double>(all.F.cols());
     return candidate;
 }
 

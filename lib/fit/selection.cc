@@ -65,20 +65,30 @@ void fit_families(const Touched& touched, const std::vector<std::string>& names,
     }
 }
 
-/// Trends of the smooth residual: the families that come nearest, and the quadratic, which bends either way.
-std::vector<Candidate> trends_of(const std::vector<Candidate>& candidates)
+/// Schwarz's price of a parameter, ln n, stands for the prior that one touch of n would make of it: heights of the size
+/// of the touch error. What a rare family adds to the nearest common one is larger than that if it explains more; its
+/// prior is given the width g (in units of that of all touches) that makes the touches most probable, but at least n
+/// (Liang et al. 2008, "Mixtures of g priors", 2.4). Else a cubic, say, would cost less than the process, whose price
+/// grows with its amplitude.
+void charge_rare_families(std::vector<Candidate>& candidates, Eigen::Index touches)
 {
-    constexpr std::size_t kTrends = 3;
-    std::vector<Candidate> trends = candidates;
-    std::stable_sort(trends.begin(), trends.end(),
-                     [](const Candidate& a, const Candidate& b) { return a.score < b.score; });
-    const auto quadratic = [](const Candidate& candidate) { return candidate.method == "quadratic"; };
-    if (trends.size() > kTrends && std::none_of(trends.begin(), trends.begin() + kTrends, quadratic)) {
-        const auto at = std::find_if(trends.begin(), trends.end(), quadratic);
-        if (at != trends.end()) std::iter_swap(trends.begin() + kTrends - 1, at);
+    const auto n = static_cast<double>(touches);
+    const auto parameters = [&](const Candidate& c) {
+        return n - static_cast<double>(c.gross_errors.size()) - c.freedom;
+    };
+    for (Candidate& rare : candidates) {
+        if (rarity(rare.method) == 0) continue;
+        const double schwarz = rare.score;
+        double least = std::numeric_limits<double>::infinity();
+        for (const Candidate& common : candidates) {
+            const double more = parameters(rare) - parameters(common);
+            if (rarity(common.method) > 0 || more <= 0) continue;
+            const double explained = std::max(0.0, common.score - (schwarz - rarity(rare.method)) + more * std::log(n));
+            const double g = std::max(n, explained / more - 1);
+            least = std::min(least, schwarz - more * std::log(n) + more * std::log(1 + g) + explained / (1 + g));
+        }
+        if (std::isfinite(least)) rare.score = least;
     }
-    if (trends.size() > kTrends) trends.resize(kTrends);
-    return trends;
 }
 
 /// Takes the candidates over as the surface and its alternatives.
@@ -124,13 +134,13 @@ Fit fit_auto(const FitInput& input)
     std::vector<Candidate> candidates;
     fit_families(touched, names, all_touches(touched), candidates);
     const Eigen::Index n = touched.xyz.cols();
-    if (!explains(best_of(candidates), n)) {
-        fit_families(touched, names, trimmed_touches(touched), candidates);
-        if (input.job.surface == SurfaceType::freeform && !explains(best_of(candidates), n))
-            if (std::optional<Candidate> smooth =
-                    fit_process(touched, trends_of(candidates), spline_grid(input, surface.touches)))
-                candidates.push_back(std::move(*smooth));
-    }
+    if (!explains(best_of(candidates), n)) fit_families(touched, names, trimmed_touches(touched), candidates);
+    charge_rare_families(candidates, n);
+    // A rare family also explains some touches of surfaces that are of no family.
+    const Candidate* best = best_of(candidates);
+    if (input.job.surface == SurfaceType::freeform && (!explains(best, n) || rarity(best->method) > 0))
+        if (std::optional<Candidate> smooth = fit_process(touched, spline_grid(input, surface.touches)))
+            candidates.push_back(std::move(*smooth));
     if (candidates.empty()) refuse_undetermined(touched, surface.method + " surface", input.source);
     weigh(candidates, surface);
     const Candidate& chosen = candidates.front();

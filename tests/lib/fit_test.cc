@@ -228,6 +228,27 @@ TEST(Auto, TakesASmoothResidualWhereNoFamilyExplainsTheTouches)
     EXPECT_GT(sigma(surface, {0, 0}), 3 * surface.touch_sigma / 4);
 }
 
+// A swelling of a sphere beside the middle. Tori that turn about an axis next to it, and cubics, come near such touches
+// or go through most of them, and are wrong beneath the anomaly by many of their sigmas.
+TEST(Auto, TakesASwellingForNoRareFamily)
+{
+    const auto truth = [](double x, double y) {
+        const double u = x / (2 * kInch) - 0.5, v = y / (2 * kInch) - 0.3;
+        return height_of(sphere_about({0, 0, 10}, 95 * kInch, true), x, y) + 2.5 * std::exp(-2 * (u * u + v * v));
+    };
+    const Job job = job_with(0.127);
+    std::mt19937 random(6);
+    std::normal_distribution<double> noise(0, touch_sigma(job.probe));
+    for (int run = 0; run < 20; ++run) {
+        FitInput input = touched(wang_layout(), truth, job);
+        for (Eigen::Index i = 0; i < input.xyz.cols(); ++i) input.xyz(2, i) += noise(random);
+        const Surface surface = fit_surface(input, "auto").surface;
+        EXPECT_EQ(surface.method, "gp");
+        for (const Eigen::Vector2d& place : {Eigen::Vector2d(0, 0), Eigen::Vector2d(kInch, 0.6 * kInch)})
+            EXPECT_LT(std::abs(height(surface, place) - truth(place.x(), place.y())), 4 * sigma(surface, place));
+    }
+}
+
 // Up to a fifth of the touches wrong by 1 mm and more, on either side, wherever they are: found, and no other.
 TEST(Auto, FindsSlips)
 {
@@ -305,11 +326,10 @@ TEST(Bspline, ReproducesRoundSurfaces)
 
 /// Standard deviation of the height over the middle and a corner of B, by fitting anew to touches with fresh noise.
 template <typename FitFunction, typename Height>
-void expect_calibrated(FitFunction fit_function, const Height& truth, int runs)
+void expect_calibrated(FitFunction fit_function, const Height& truth, int runs, double accuracy = 0.127)
 {
-    constexpr double kAccuracy = 0.127;
     const double tolerance = 3 / std::sqrt(2.0 * runs); // three standard errors of a standard deviation
-    const FitInput exact = touched(wang_layout(), truth, job_with(kAccuracy));
+    const FitInput exact = touched(wang_layout(), truth, job_with(accuracy));
     const Surface predicted = fit_function(exact).surface;
     std::mt19937 random(20);
     std::normal_distribution<double> noise(0, touch_sigma(exact.job.probe));
@@ -325,7 +345,8 @@ void expect_calibrated(FitFunction fit_function, const Height& truth, int runs)
         goodness += surface.goodness;
     }
     for (int k = 0; k < 2; ++k)
-        EXPECT_NEAR(std::sqrt(squares[k] / runs) / sigma(predicted, places[k]), 1, tolerance) << k;
+        EXPECT_NEAR(std::sqrt(squares[k] / runs) / sigma(predicted, places[k]), 1, tolerance)
+            << predicted.method << ", place " << k;
     EXPECT_NEAR(goodness / runs, 0.5, 3 * std::sqrt(1 / 12.0 / runs)); // a p-value is uniform
 }
 
@@ -335,7 +356,19 @@ TEST(Sigma, AgreesWithNoisyRefits)
     expect_calibrated(fit_plane, of(Plane{{0, 0}, 3, {0.2, -0.4}}), 1000);
     expect_calibrated(fit_swept, of(Swept{{3, -4}, {1, 0}, 20, {1, 2, -3, 0.7}, 0.15, -50, 50}), 1000);
     expect_calibrated(fit_sphere, of(sphere_about({5, -3, 10}, 4 * kInch, true)), 1000);
-    expect_calibrated(fit_cylinder, of(cylinder_about({3, 4, 5}, {1, 0.4, 0}, 4 * kInch, false)), 300);
+    expect_calibrated(fit_cylinder, of(cylinder_about({3, 4, 5}, {1, 0.4, 0}, 4 * kInch, false)), 1000);
+    const auto family = [](const std::string& name) {
+        return [name](const FitInput& input) { return fit_family_by_name(input, name); };
+    };
+    const Eigen::Vector3d up(0, 0, 1), x(1, 0, 0);
+    expect_calibrated(family("cone"), of(Cone{{3, 4, 5}, up, x, 1 / (5 * kInch), 0.5}), 1000);
+    // Seven parameters from sixteen touches: at the probe's usual noise the corner scatters by a tenth more than to
+    // first order in it.
+    expect_calibrated(family("torus"), of(Torus{{3, 4, 5}, up, x, 1 / (4 * kInch), 0.1, 1 / (9 * kInch)}), 1000,
+                      0.0127);
+    expect_calibrated(family("quadratic"), quadratic, 1000);
+    const auto cubic = [](double u, double v) { return quadratic(u, v) + 1e-4 * u * u * u - 5e-5 * u * v * v; };
+    expect_calibrated(family("cubic"), cubic, 1000);
 }
 
 double wavy(double x, double y) { return quadratic(x, y) + 1.5 * std::sin(x / 25) * std::cos(y / 30); }
