@@ -1,0 +1,111 @@
+#include "align/align.h"
+
+#include "align/pose_search.h"
+#include "core/error.h"
+
+#include <Eigen/Dense>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace fettle {
+
+namespace {
+
+// Points that a place found by the search is judged with, and those that the last steps are taken with: more would
+// make the figures of the fit no better than the scan's own errors leave them.
+constexpr Eigen::Index kJudged = 400;
+constexpr int kJudgedSteps = 30;
+constexpr Eigen::Index kFitted = 20000;
+// Of the places that the search found, so many are fitted in full.
+constexpr std::size_t kFinalists = 3;
+// Two poses that put the scan closer together than this, in radii, are one.
+constexpr double kSame = 0.1;
+
+std::vector<IcpFit> fits(const std::vector<IcpFit>& starts, const Eigen::Matrix3Xd& points, const TwistFrame& about,
+                         const AlignReference& reference, const IcpOptions& options)
+{
+    std::vector<IcpFit> found(starts.size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, found.size(), 1), [&](const auto& range) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i)
+            found[i] = icp(starts[i].T_reference_scan, points, about, reference, options);
+    });
+    std::stable_sort(found.begin(), found.end(), [](const IcpFit& a, const IcpFit& b) { return a.misfit < b.misfit; });
+    std::vector<IcpFit> apart;
+    for (const IcpFit& fit : found) {
+        const auto same = [&](const IcpFit& other) {
+            return distance_between(fit.T_reference_scan, other.T_reference_scan, about) < kSame * about.radius;
+        };
+        if (std::none_of(apart.begin(), apart.end(), same)) apart.push_back(fit);
+    }
+    return apart;
+}
+
+std::vector<IcpFit> starts_for(const Eigen::Matrix3Xd& scan, const TwistFrame& about, const AlignReference& reference,
+                               const AlignOptions& options)
+{
+    std::vector<IcpFit> starts;
+    if (options.start) {
+        starts.emplace_back().T_reference_scan = *options.start;
+        return starts;
+    }
+    for (const Pose& pose : search_poses(scan, about, reference.points(), options.icp.held))
+        starts.emplace_back().T_reference_scan = pose.T_reference_scan;
+    IcpOptions few = options.icp;
+    few.iterations = std::min(few.iterations, kJudgedSteps);
+    starts = fits(starts, scan(Eigen::all, farthest_points(scan, kJudged)), about, reference, few);
+    starts.resize(std::min(starts.size(), kFinalists));
+    return starts;
+}
+
+// Covariance of the step, as if the points' distances were independent: sigma² (Σ w g gᵀ)⁻¹.
+std::array<Freedom, 6> freedoms(const IcpFit& fit, const HeldAxes& held)
+{
+    TwistMatrix A = fit.information;
+    for (Eigen::Index k = 0; k < 6; ++k)
+        if (held[static_cast<std::size_t>(k)]) {
+            A.row(k).setZero();
+            A.col(k).setZero();
+        }
+    const Eigen::SelfAdjointEigenSolver<TwistMatrix> modes(A);
+    std::array<Freedom, 6> found;
+    for (Eigen::Index k = 0; k < 6; ++k) {
+        Freedom& freedom = found[static_cast<std::size_t>(5 - k)];
+        freedom.motion = modes.eigenvectors().col(k);
+        Eigen::Index largest = 0; // one of two signs, whatever the rounding
+        freedom.motion.cwiseAbs().maxCoeff(&largest);
+        if (freedom.motion[largest] < 0) freedom.motion *= -1;
+        const double value = modes.eigenvalues()[k];
+        freedom.determined = value > fit.least_information;
+        freedom.sd = freedom.determined ? fit.sigma / std::sqrt(value) : std::numeric_limits<double>::infinity();
+        double on_held = 0;
+        for (Eigen::Index j = 0; j < 6; ++j)
+            if (held[static_cast<std::size_t>(j)]) on_held += freedom.motion[j] * freedom.motion[j];
+        freedom.held = on_held > 0.5; // 0 or 1, but for rounding
+    }
+    return found;
+}
+
+} // namespace
+
+Alignment align(const OrientedPoints& scan, const AlignReference& reference, const AlignOptions& options)
+{
+    if (scan.xyz.cols() < 6) // one a degree of freedom
+        throw InputError("needs at least 6 points, got " + std::to_string(scan.xyz.cols()));
+    const TwistFrame about = twist_frame(scan.xyz);
+    if (!(about.radius > 0)) throw InputError("all points lie in one place");
+    const Eigen::Matrix3Xd fitted = scan.xyz(Eigen::all, every_nth(scan.xyz.cols(), kFitted));
+    const std::vector<IcpFit> best =
+        fits(starts_for(fitted, about, reference, options), fitted, about, reference, options.icp);
+    Alignment alignment;
+    alignment.fit = best.front();
+    alignment.frame = {alignment.fit.T_reference_scan * about.centre, about.radius};
+    alignment.freedoms = freedoms(alignment.fit, options.icp.held);
+    if (best.size() > 1) alignment.next = best[1];
+    return alignment;
+}
+
+} // namespace fettle
