@@ -1,8 +1,8 @@
 #pragma once
 
+#include "core/lines.h"
 #include "core/text.h"
 
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -63,10 +63,9 @@ bool parse_element(std::string_view word, void* to)
         store(to, static_cast<T>(*value));
         return true;
     } else {
-        T value{};
-        const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-        if (error != std::errc() || end != word.data() + word.size()) return false;
-        store(to, value);
+        const std::optional<T> value = parse_whole<T>(word);
+        if (!value) return false;
+        store(to, *value);
         return true;
     }
 }

@@ -6,7 +6,6 @@
 #include "core/text.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -87,13 +86,10 @@ bool HeaderParser::next_line()
 
 std::size_t HeaderParser::number(std::string_view word, const std::string& entry, std::size_t most) const
 {
-    std::size_t value = 0;
-    const std::from_chars_result result = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (result.ec == std::errc::invalid_argument || result.ptr != word.data() + word.size())
-        refuse(entry + ": expected a whole number, got " + in_quotes(word));
-    if (result.ec != std::errc() || value > most)
-        refuse(entry + ": at most " + std::to_string(most) + ", got " + in_quotes(word));
-    return value;
+    const std::optional<std::size_t> value = parse_whole<std::size_t>(word);
+    if (!value) refuse(entry + ": expected a whole number, got " + in_quotes(word));
+    if (*value > most) refuse(entry + ": at most " + std::to_string(most) + ", got " + in_quotes(word));
+    return *value;
 }
 
 std::size_t HeaderParser::only_number(const Words& words, std::size_t most) const
@@ -112,19 +108,14 @@ void HeaderParser::check_count(const Words& words) const
 
 void HeaderParser::read_comment(std::string_view text)
 {
-    const Words found = words(text);
-    if (found.empty() || found[0] != "units") return;
-    StatedUnits units;
-    if (found.size() != 2 && found.size() != 3)
-        refuse("expected '# units LENGTH [FORCE]', got " + in_quotes(lines_.line()));
+    std::optional<StatedUnits> units;
     try {
-        units.length = parse_length_unit(std::string(found[1]));
-        if (found.size() == 3) units.force = parse_force_unit(std::string(found[2]));
+        units = parse_stated_units(text);
     } catch (const InputError& error) {
         refuse(error.what());
     }
-    if (header_.units) refuse("second units comment");
-    header_.units = units;
+    if (units && header_.units) refuse("second units comment");
+    if (units) header_.units = units;
 }
 
 void HeaderParser::read_fields(const Words& words)
@@ -277,22 +268,6 @@ void check_binary_size(const PcdHeader& header, std::size_t size, std::string_vi
     throw InputError(source, "POINTS " + std::to_string(header.points) + " need " + std::to_string(needed) +
                                  " bytes, there are " + std::to_string(size) +
                                  (size > needed && looks_like_pcd(next) ? ": another PCD follows" : ""));
-}
-
-Units agreed_units(const std::optional<StatedUnits>& stated, const std::optional<Units>& wanted,
-                   const std::string& source)
-{
-    Units units = wanted.value_or(Units{});
-    if (!stated) return units;
-    if (wanted && stated->length != wanted->length)
-        throw InputError(source, "units: the file says " + to_string(stated->length) + ", expected " +
-                                     to_string(wanted->length));
-    if (wanted && stated->force && *stated->force != wanted->force)
-        throw InputError(source, "units: the file says " + to_string(*stated->force) + ", expected " +
-                                     to_string(wanted->force));
-    units.length = stated->length;
-    units.force = stated->force.value_or(units.force);
-    return units;
 }
 
 bool looks_like_pcd(std::string_view bytes)

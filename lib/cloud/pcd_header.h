@@ -1,6 +1,6 @@
 #pragma once
 
-#include "units/units.h"
+#include "cloud/stated_units.h"
 
 #include <Eigen/Geometry>
 
@@ -20,12 +20,6 @@ struct PcdColumn {
     int count = 1;
 
     std::size_t bytes() const { return static_cast<std::size_t>(size) * static_cast<std::size_t>(count); }
-};
-
-/// Units that a header names: `# units in`, `# units in lbf`. The force may be left out.
-struct StatedUnits {
-    Units::Length length = Units::Length::mm;
-    std::optional<Units::Force> force;
 };
 
 /// The header of a PCD file, checked: every number in range, x y z there once, WIDTH · HEIGHT = POINTS.
@@ -55,11 +49,6 @@ PcdHeader parse_pcd_header(std::string_view bytes, const std::string& source);
 /// Refuses a binary body that is not as long as POINTS say. @param size  of the body in bytes  @param next  what
 /// follows the last point
 void check_binary_size(const PcdHeader& header, std::size_t size, std::string_view next, const std::string& source);
-
-/// The units of a file: what it states, else what is wanted, else mm and N.
-/// @throws InputError if the two disagree
-Units agreed_units(const std::optional<StatedUnits>& stated, const std::optional<Units>& wanted,
-                   const std::string& source);
 
 /// Could these bytes be a PCD file: does the first line that is no comment begin with one of its words?
 bool looks_like_pcd(std::string_view bytes);

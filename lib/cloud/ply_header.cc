@@ -4,7 +4,6 @@
 #include "core/lines.h"
 
 #include <algorithm>
-#include <charconv>
 #include <utility>
 
 namespace fettle {
@@ -92,14 +91,13 @@ class HeaderParser {
     void read_element(const Words& found)
     {
         if (found.size() != 3) refuse("expected 'element NAME COUNT', got " + in_quotes(lines_.line()));
-        std::size_t count = 0;
-        const auto [end, error] = std::from_chars(found[2].data(), found[2].data() + found[2].size(), count);
-        if (error != std::errc() || end != found[2].data() + found[2].size() || count > kMostCount)
+        const std::optional<std::size_t> count = parse_whole<std::size_t>(found[2]);
+        if (!count || *count > kMostCount)
             refuse("element " + std::string(found[1]) + ": expected a number from 0 to " + std::to_string(kMostCount) +
                    ", got " + in_quotes(found[2]));
         for (const PlyHeader::Element& element : header_.elements)
             if (element.name == found[1]) refuse("element " + in_quotes(found[1]) + " stands twice");
-        header_.elements.push_back({std::string(found[1]), count, {}});
+        header_.elements.push_back({std::string(found[1]), *count, {}});
     }
 
     TypeName type(std::string_view name) const

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <charconv>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 namespace fettle {
@@ -29,6 +32,17 @@ class Lines {
 /// Walks over the words of a line, which blanks and tabs separate. @return  the next word; empty at the end
 std::string_view next_word(std::string_view& rest);
 std::vector<std::string_view> words(std::string_view line);
+
+/// Digits and nothing else around them, a minus before them if it is signed; otherwise, or if the type does not hold
+/// the number, nothing.
+template <typename Whole>
+std::optional<Whole> parse_whole(std::string_view text)
+{
+    Whole value{};
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+    return value;
+}
 
 /// Text from a file as a message may quote it: in quotes, shortened, unprintable bytes replaced.
 std::string in_quotes(std::string_view text);

@@ -5,7 +5,6 @@
 #include "mesh/polygons.h"
 
 #include <algorithm>
-#include <charconv>
 #include <limits>
 #include <vector>
 
@@ -69,11 +68,9 @@ class ObjParser {
 
     std::int64_t index(std::string_view text, std::string_view corner) const
     {
-        std::int64_t value = 0;
-        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-        if (error != std::errc() || end != text.data() + text.size())
-            refuse(in_quotes(corner) + " is no corner of a face");
-        return value;
+        const std::optional<std::int64_t> value = parse_whole<std::int64_t>(text);
+        if (!value) refuse(in_quotes(corner) + " is no corner of a face");
+        return *value;
     }
 
     // "7", "7/1", "7//3", "7/1/3": vertex, texture, normal, each from 1, or from the last one backwards.

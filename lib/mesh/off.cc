@@ -4,7 +4,6 @@
 #include "mesh/obj_off.h"
 #include "mesh/polygons.h"
 
-#include <charconv>
 #include <limits>
 #include <vector>
 
@@ -56,11 +55,10 @@ class OffParser {
     std::size_t whole(const std::string& what, std::size_t most)
     {
         const std::string_view word = next_word(rest_);
-        std::size_t value = 0;
-        const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-        if (error != std::errc() || end != word.data() + word.size() || value > most)
+        const std::optional<std::size_t> value = parse_whole<std::size_t>(word);
+        if (!value || *value > most)
             refuse(what + ": expected a number from 0 to " + std::to_string(most) + ", got " + in_quotes(word));
-        return value;
+        return *value;
     }
 
     // "OFF", then the numbers of vertices, faces and edges on the same line or the next.
