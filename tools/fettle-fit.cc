@@ -57,6 +57,11 @@ int main(int argc, char** argv)
         const bool& use_boundary = t.flag(
             "--use-boundary", "Take the anomaly's boundary points as touches, too: those of role 0, else the job's "
                               "that have a z; planes always do");
+        const std::string& noise =
+            t.choice("--noise", "job", {"job", "estimate"},
+                     "Standard deviation of a touch: by the probe's accuracy that the job names, or by the residuals, "
+                     "which takes 3 touches more than the surface needs; sigma then is Student's t's. A scan's "
+                     "always is by the residuals");
         const std::optional<Units::Length>& file_unit =
             t.length_unit("--file-units", "Unit of POINTS, if it is not the job's");
         const std::optional<double>& spacing =
@@ -81,6 +86,7 @@ int main(int argc, char** argv)
             return finish(t, dense.fit, dense.counts.used, dense.counts.ignored());
         }
         FitInput input = fit_input(job, *stream.cloud(), source);
+        input.estimate_noise = noise == "estimate";
         if (use_boundary) take_boundary(input);
         if (spacing) input.spacing = *spacing * job.units.mm();
         const Fit fit = fit_surface(input, method);

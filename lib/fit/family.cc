@@ -22,6 +22,8 @@ using Eigen::VectorXd;
 
 // Of columns of unit length: a combination of parameters that moves the touches by less is not determined.
 constexpr double kRankThreshold = 1e-6;
+// Of the touches that are no slips: one set in a thousand looks worse.
+constexpr double kLeastGoodness = 1e-3;
 
 /// A solution, seen from all touches.
 struct Judged {
@@ -133,7 +135,8 @@ class TrimmedSearch {
 
 Touched touched_of(const Surface& surface, const Job& job)
 {
-    return {surface.touches, surface.touch_sigma, job.theta + job.direction, job.surface == SurfaceType::swept};
+    return {surface.touches, surface.touch_sigma, job.theta + job.direction, job.surface == SurfaceType::swept,
+            surface.touch_freedom};
 }
 
 Columns all_touches(const Touched& touched)
@@ -159,12 +162,13 @@ Columns trimmed_touches(const Touched& touched)
     return all;
 }
 
-double price_of_a_slip(double sigma)
+double price_of_a_slip(double sigma, double freedom)
 {
     // One touch in twenty, and then anywhere within an inch (chips, dust, the anomaly's foot).
     constexpr double kShare = 0.05;
     constexpr double kWidth = 25.4; // mm
-    return -2 * std::log(kShare / (1 - kShare) * sigma * std::sqrt(2 * std::numbers::pi) / kWidth);
+    const double price = -2 * std::log(kShare / (1 - kShare) * sigma * std::sqrt(2 * std::numbers::pi) / kWidth);
+    return std::isfinite(freedom) ? freedom * std::expm1(price / (freedom + 1)) : price;
 }
 
 double goodness(double chi2, double freedom)
@@ -208,11 +212,10 @@ std::optional<Fitted> fitted(const std::string& name, const Touched& touched, st
 /// does not: nothing.
 std::optional<Fitted> without_slips(const std::string& name, const Touched& touched, Fitted now)
 {
-    constexpr double kMostSlips = 0.25;     // of the touches
-    constexpr double kLeastGoodness = 1e-3; // of the touches that are no slips
+    constexpr double kMostSlips = 0.25; // of the touches
     const auto n = static_cast<Index>(touched.xyz.cols());
     const auto most = static_cast<std::ptrdiff_t>(kMostSlips * static_cast<double>(n));
-    const double price = price_of_a_slip(touched.sigma);
+    const double price = price_of_a_slip(touched.sigma, touched.freedom);
     for (Index change = 0; change <= 2 * n; ++change) { // they might come and go in turns
         const std::ptrdiff_t slips = std::count(now.is_kept.begin(), now.is_kept.end(), 0);
         const Index i = to_change(now.judged, now.is_kept, now.freedom > 1, price);
@@ -251,8 +254,9 @@ std::optional<Candidate> fit_family(const std::string& name, const Touched& touc
     candidate.converged = best->solution.converged;
     candidate.iterations = best->iterations;
     const auto p = static_cast<double>(best->judged.parameters);
-    candidate.score = candidate.chi2 + p * std::log(static_cast<double>(n)) +
-                      price_of_a_slip(touched.sigma) * static_cast<double>(candidate.gross_errors.size());
+    candidate.score =
+        candidate.chi2 + p * std::log(static_cast<double>(n)) +
+        price_of_a_slip(touched.sigma, touched.freedom) * static_cast<double>(candidate.gross_errors.size());
     return candidate;
 }
 
@@ -265,12 +269,13 @@ void refuse_undetermined(const Touched& touched, const std::string& name, const 
 
 Fit fit_family_by_name(const FitInput& input, const std::string& name)
 {
-    static const std::map<std::string, int> least = {{"sphere", 4},    {"cylinder", 5}, {"cone", 6},     {"torus", 7},
-                                                     {"quadratic", 6}, {"cubic", 10},   {"quartic", 15}, {"swept", 5}};
+    static const std::map<std::string, int> least = {{"sphere", 4}, {"cylinder", 5}, {"cone", 6},
+                                                     {"torus", 7},  {"quadric", 9},  {"quadratic", 6},
+                                                     {"cubic", 10}, {"quartic", 15}, {"swept", 5}};
     Surface surface = begin_surface(input, name, kSampleRoles, least.at(name));
     const Touched touched = touched_of(surface, input.job);
     std::optional<Candidate> best = fit_family(name, touched, all_touches(touched));
-    if (best && !best->gross_errors.empty()) {
+    if (best && (!best->gross_errors.empty() || goodness(best->chi2, best->freedom) < kLeastGoodness)) {
         std::optional<Candidate> trimmed = fit_family(name, touched, trimmed_touches(touched));
         if (trimmed && trimmed->score < best->score) best = std::move(trimmed);
     }

@@ -37,8 +37,9 @@ Columns trimmed_touches(const Touched& touched);
 /// All touches.
 Columns all_touches(const Touched& touched);
 
-/// −2 ln of the odds that a touch is a slip, against a touch with no error.
-double price_of_a_slip(double sigma);
+/// −2 ln of the odds that a touch is a slip, against a touch with no error. With ν degrees of freedom of sigma the
+/// residual's density is Student's t, ∝ (1 + χ²/ν)^(-(ν+1)/2), and the price is the χ² at which that is as improbable.
+double price_of_a_slip(double sigma, double freedom = std::numeric_limits<double>::infinity());
 
 /// χ²'s probability to be larger.
 double goodness(double chi2, double freedom);

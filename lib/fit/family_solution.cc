@@ -1,5 +1,6 @@
 #include "fit/family_solution.h"
 
+#include "fit/quadric_family.h"
 #include "fit/round_family.h"
 #include "surface/shapes.h"
 
@@ -61,6 +62,12 @@ std::optional<FamilySolution> polynomial(const Touched& touched, const Columns& 
     const std::optional<Polynomial> fitted = fit_polynomial(touched, kept, kDegree);
     if (!fitted) return std::nullopt;
     return FamilySolution{*fitted, height_gradients(*fitted, touched.xyz.topRows(2)), {}, true, 1};
+}
+
+std::optional<FamilySolution> quadric(const Touched& touched, const Columns& kept)
+{
+    const std::optional<Polynomial> paraboloid = fit_polynomial(touched, kept, 2);
+    return paraboloid ? solve_quadric(touched, kept, *paraboloid) : std::nullopt;
 }
 
 std::optional<FamilySolution> plane(const Touched& touched, const Columns& kept)
@@ -261,6 +268,7 @@ const std::map<std::string, Solver>& families()
         {"cylinder", round<RoundFamily::cylinder>},
         {"cone", round<RoundFamily::cone>},
         {"torus", round<RoundFamily::torus>},
+        {"quadric", quadric},
         {"quadratic", polynomial<2>},
         {"cubic", polynomial<3>},
         {"quartic", polynomial<4>},
@@ -273,8 +281,8 @@ const std::map<std::string, Solver>& families()
 
 const std::vector<std::string>& family_names()
 {
-    static const std::vector<std::string> names = {"plane",     "sphere", "cylinder", "cone", "torus",
-                                                   "quadratic", "cubic",  "quartic",  "swept"};
+    static const std::vector<std::string> names = {"plane",   "sphere",    "cylinder", "cone",    "torus",
+                                                   "quadric", "quadratic", "cubic",    "quartic", "swept"};
     return names;
 }
 

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,10 +15,11 @@ using Columns = std::vector<Eigen::Index>;
 
 /// What every family is fitted to.
 struct Touched {
-    Eigen::Matrix3Xd xyz;         ///< M, mm
-    double sigma = 0;             ///< standard deviation of a touch, mm
-    double direction = 0;         ///< of the rulings, from X_m, rad
-    bool given_direction = false; ///< are round surfaces straight along it? (swept jobs)
+    Eigen::Matrix3Xd xyz;                                     ///< M, mm
+    double sigma = 0;                                         ///< standard deviation of a touch, mm
+    double direction = 0;                                     ///< of the rulings, from X_m, rad
+    bool given_direction = false;                             ///< are round surfaces straight along it? (swept jobs)
+    double freedom = std::numeric_limits<double>::infinity(); ///< of sigma, where it is an estimate
 };
 
 /// The least-squares member of a family.
@@ -29,7 +31,7 @@ struct FamilySolution {
     int iterations = 0;
 };
 
-/// plane, sphere, cylinder, cone, torus; quadratic, cubic, quartic (polynomials); swept.
+/// plane, sphere, cylinder, cone, torus, quadric; quadratic, cubic, quartic (polynomials); swept.
 const std::vector<std::string>& family_names();
 
 /// Least squares of the vertical errors of some touches; for the round families of the orthogonal distances over n_z of

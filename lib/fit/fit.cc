@@ -64,6 +64,7 @@ Surface begin_surface(const FitInput& input, const std::string& method, const st
     surface.units = input.job.units;
     surface.method = method;
     surface.touch_sigma = touch_sigma(input.job.probe);
+    surface.touch_freedom = input.noise_freedom;
     surface.touches = input.xyz(Eigen::all, used);
     surface.roles = input.roles(used);
     surface.ignored = static_cast<int>(input.xyz.cols()) - static_cast<int>(used.size());
@@ -75,6 +76,7 @@ Fit finish_fit(Surface surface, double freedom, bool converged, int iterations)
     // Fewer degrees of freedom than this are rounding of a trace: nothing is left to test.
     constexpr double kLeastFreedom = 1e-3;
     Fit fit;
+    fit.freedom = freedom;
     fit.converged = converged;
     fit.iterations = iterations;
     fit.residuals = surface.touches.row(2).transpose() - heights(surface, surface.touches.topRows(2));

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,7 +18,9 @@ struct FitInput {
     Eigen::VectorXi roles;  ///< N; see docs/conventions.md
     Eigen::VectorXi curves; ///< N, number of each touch's line; empty: unknown
     Job job;
-    bool use_boundary = false;      ///< fit points of role 0, too (take_boundary)
+    bool use_boundary = false;   ///< fit points of role 0, too (take_boundary)
+    bool estimate_noise = false; ///< by the residuals, not by job.probe (noise_estimate.h)
+    double noise_freedom = std::numeric_limits<double>::infinity(); ///< of job.probe's, where it is such an estimate
     std::optional<double> spacing;  ///< griddata: of its uniform sampling, mm; nothing: by the points' density
     std::string source = "touches"; ///< their name in messages
 };
@@ -27,6 +30,7 @@ struct Fit {
     Surface surface;
     Eigen::VectorXd residuals; ///< touch - surface at the same (x, y), one for each of surface.touches, mm;
                                ///< empty for a fit to more points than it keeps (dense.h)
+    double freedom = 0;        ///< degrees of freedom of the residuals; 0: none are known
     bool converged = true;
     int iterations = 0;
 };

@@ -4,6 +4,7 @@
 #include "fit/family.h"
 #include "fit/fit.h"
 #include "fit/griddata.h"
+#include "fit/noise_estimate.h"
 #include "fit/plane.h"
 #include "fit/selection.h"
 
@@ -24,6 +25,13 @@ const std::map<std::string, Fit (*)(const FitInput&)>& methods()
     return table;
 }
 
+Fit fit_by(const FitInput& input, const std::string& method)
+{
+    if (method == "auto") return fit_auto(input);
+    const auto own = methods().find(method);
+    return own != methods().end() ? own->second(input) : fit_family_by_name(input, method);
+}
+
 } // namespace
 
 const std::vector<std::string>& fit_methods()
@@ -39,9 +47,7 @@ const std::vector<std::string>& fit_methods()
 
 Fit fit_surface(const FitInput& input, const std::string& method)
 {
-    if (method == "auto") return fit_auto(input);
-    const auto own = methods().find(method);
-    return own != methods().end() ? own->second(input) : fit_family_by_name(input, method);
+    return input.estimate_noise ? fit_with_estimated_noise(input, method, fit_by) : fit_by(input, method);
 }
 
 } // namespace fettle

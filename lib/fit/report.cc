@@ -13,6 +13,7 @@ void report(json::Value& out, const Fit& fit)
         .set("max_abs", fit.residuals.cwiseAbs().maxCoeff() / mm)
         .set("touch_sigma", fit.surface.touch_sigma / mm)
         .set("goodness", fit.surface.goodness)
+        .set("touch_freedom", fit.surface.touch_freedom)
         .set("weight", fit.surface.weight)
         .set("gross_errors", static_cast<int>(fit.surface.gross_errors.size()));
     if (fit.surface.alternatives.empty()) return;

@@ -1,10 +1,9 @@
 #include "fit/round_family.h"
 
+#include "fit/tiny_least_squares.h"
 #include "surface/revolution.h"
 
 #include <ceres/jet.h>
-#include <ceres/tiny_solver.h>
-#include <Eigen/QR>
 
 #include <limits>
 
@@ -73,23 +72,6 @@ struct Distances {
     }
 };
 
-/// The solver compares costs, whose rounding hides small changes: Gauss and Newton's steps go on from there.
-template <int P>
-void polish(const Distances<P>& function, Eigen::Matrix<double, P, 1>& x)
-{
-    constexpr int kSteps = 4;
-    double last = 1e-5; // larger steps are no polish; each must be smaller than the one before
-    VectorXd residuals(function.NumResiduals());
-    Eigen::Matrix<double, Eigen::Dynamic, P> jacobian(function.NumResiduals(), P);
-    for (int i = 0; i < kSteps; ++i) {
-        function(x.data(), residuals.data(), jacobian.data());
-        const Eigen::Matrix<double, P, 1> step = jacobian.colPivHouseholderQr().solve(residuals);
-        if (!(step.norm() < last)) return;
-        last = step.norm();
-        x -= step;
-    }
-}
-
 template <int P>
 RoundSolution solve_with(RoundFamily family, const RoundProblem& problem, double around, double along)
 {
@@ -105,32 +87,21 @@ RoundSolution solve_with(RoundFamily family, const RoundProblem& problem, double
     start[kAround] = around * extent;
     start[kAlong] = along * extent;
 
-    ceres::TinySolver<Distances<P>> solver;
-    // Down to rounding: lengths are in units of the extent, residuals in units of the touch error.
-    constexpr double kNoChange = 1e-16; // of the sum of squares
-    constexpr double kRounding = 1e-12; // of the parameters, and of the gradient
-    constexpr int kIterations = 100;    // ten are common
-    solver.options.max_num_iterations = kIterations;
-    solver.options.function_tolerance = kNoChange;
-    solver.options.parameter_tolerance = kRounding;
-    solver.options.gradient_tolerance = kRounding;
-    solver.options.cost_threshold = kRounding * kRounding;
     Eigen::Matrix<double, P, 1> x;
     for (int k = 0; k < P; ++k) x[k] = start[function.free[static_cast<std::size_t>(k)]];
-    const auto& summary = solver.Solve(function, &x);
-    polish(function, x);
+    const Minimum<P> minimum = least_squares(function, x);
 
     RevolutionParameters<double> end = RevolutionParameters<double>::Zero();
-    for (int k = 0; k < P; ++k) end[function.free[static_cast<std::size_t>(k)]] = x[k];
+    for (int k = 0; k < P; ++k) end[function.free[static_cast<std::size_t>(k)]] = minimum.x[k];
     close(family, end);
     RoundSolution solution;
     end[kOffset] *= extent;
     end[kAround] /= extent;
     end[kAlong] /= extent;
     solution.theta = end;
-    solution.cost = x.allFinite() ? summary.final_cost : std::numeric_limits<double>::infinity();
-    solution.converged = summary.status != ceres::TinySolver<Distances<P>>::HIT_MAX_ITERATIONS;
-    solution.iterations = summary.iterations;
+    solution.cost = minimum.x.allFinite() ? minimum.cost : std::numeric_limits<double>::infinity();
+    solution.converged = minimum.converged;
+    solution.iterations = minimum.iterations;
     return solution;
 }
 

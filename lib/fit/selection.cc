@@ -136,15 +136,17 @@ Fit fit_auto(const FitInput& input)
     const Eigen::Index n = touched.xyz.cols();
     if (!explains(best_of(candidates), n)) fit_families(touched, names, trimmed_touches(touched), candidates);
     charge_rare_families(candidates, n);
-    // A rare family also explains some touches of surfaces that are of no family.
+    // A rare family also explains some touches of surfaces that are of no family, noise that is not known all of them.
     const Candidate* best = best_of(candidates);
-    if (input.job.surface == SurfaceType::freeform && (!explains(best, n) || rarity(best->method) > 0))
+    if (input.job.surface == SurfaceType::freeform && !input.estimate_noise &&
+        (!explains(best, n) || rarity(best->method) > 0))
         if (std::optional<Candidate> smooth = fit_process(touched, spline_grid(input, surface.touches)))
             candidates.push_back(std::move(*smooth));
     if (candidates.empty()) refuse_undetermined(touched, surface.method + " surface", input.source);
     weigh(candidates, surface);
     const Candidate& chosen = candidates.front();
-    return finish_fit(std::move(surface), chosen.freedom, true, chosen.iterations);
+    const double all = chosen.freedom + static_cast<double>(chosen.gross_errors.size());
+    return finish_fit(std::move(surface), all, true, chosen.iterations);
 }
 
 } // namespace fettle

@@ -42,6 +42,15 @@ Eigen::MatrixXd field_root(const Eigen::MatrixXd& gradients, const Eigen::Matrix
     return field;
 }
 
+/// Where the touches' noise was estimated: what it may be, over what the covariance was widened for (its mean square is
+/// 1), so that heights have Student's t distribution.
+double noise_ratio(double freedom, std::mt19937_64& random)
+{
+    if (!std::isfinite(freedom)) return 1;
+    std::chi_squared_distribution<double> squares(freedom);
+    return std::sqrt((freedom - 2) / squares(random));
+}
+
 struct Possible {
     double weight;
     Eigen::VectorXd offset; ///< from the mean
@@ -80,8 +89,9 @@ Eigen::MatrixXd draw_fields(const Surface& surface, const Eigen::Matrix2Xd& xy, 
         for (double& number : unit.reshaped()) number = normal(random);
         const Eigen::MatrixXd about = one.field * unit;
         for (Eigen::Index k = 0; k < count; ++k) {
-            fields.col(column++) = one.offset + about.col(k);
-            fields.col(column++) = one.offset - about.col(k);
+            const double noise = noise_ratio(surface.touch_freedom, random);
+            fields.col(column++) = one.offset + noise * about.col(k);
+            fields.col(column++) = one.offset - noise * about.col(k);
         }
     }
     return fields;

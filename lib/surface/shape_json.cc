@@ -32,6 +32,10 @@ class Writer {
     void vector(const char* key, const Eigen::VectorXd& v, int power) { value_.set(key, Value(in_unit(v, power))); }
     void matrix(const char* key, const Eigen::MatrixXd& m) { value_.set(key, Value(in_unit(m, 1))); }
     void points(const char* key, const Eigen::Matrix3Xd& m) { matrix(key, m.transpose()); }
+    void lower_triangle(const char* key, const Eigen::Matrix3d& A, int power)
+    {
+        vector(key, (Eigen::VectorXd(6) << A(0, 0), A(1, 0), A(1, 1), A(2, 0), A(2, 1), A(2, 2)).finished(), power);
+    }
     void direction(const char* key, const Eigen::VectorXd& v) { vector(key, v, 0); }
     void upward(const char* key, const Eigen::Vector3d& v) { vector(key, v, 0); }
     void across(const char* key, const Eigen::Vector3d& v, const Eigen::Vector3d&) { vector(key, v, 0); }
@@ -65,6 +69,12 @@ class Parser {
     }
     void matrix(const char* key, Eigen::MatrixXd& m) { m = reader_.matrix(key) * mm_; }
     void points(const char* key, Eigen::Matrix3Xd& m) { m = reader_.matrix(key, 3).transpose() * mm_; }
+    void lower_triangle(const char* key, Eigen::Matrix3d& A, int power)
+    {
+        Eigen::Vector<double, 6> a;
+        vector(key, a, power);
+        A << a[0], a[1], a[3], a[1], a[2], a[4], a[3], a[4], a[5];
+    }
     template <typename Vector>
     void direction(const char* key, Vector& v)
     {
@@ -142,6 +152,14 @@ void members(Io& io, Torus& torus)
     io.number("around", torus.around, -1);
     io.angle("lean_deg", torus.lean);
     io.number("along", torus.along, -1);
+}
+
+template <typename Io>
+void members(Io& io, Quadric& quadric)
+{
+    io.vector("point", quadric.point, 1);
+    io.upward("normal", quadric.normal);
+    io.lower_triangle("form", quadric.form, -1);
 }
 
 template <typename Io>
@@ -231,8 +249,9 @@ void complete(const Reader& reader, Griddata& griddata)
 /// Names of the types, in the order of Shape.
 const std::vector<std::string>& type_names()
 {
-    static const std::vector<std::string> names = {"plane",      "sphere", "cylinder", "cone",           "torus",
-                                                   "polynomial", "swept",  "bspline",  "tensor-bspline", "griddata"};
+    static const std::vector<std::string> names = {"plane",   "sphere",         "cylinder",   "cone",
+                                                   "torus",   "quadric",        "polynomial", "swept",
+                                                   "bspline", "tensor-bspline", "griddata"};
     return names;
 }
 

@@ -14,6 +14,7 @@ double height(const Sphere& sphere, const Eigen::Vector2d& xy);
 double height(const Cylinder& cylinder, const Eigen::Vector2d& xy);
 double height(const Cone& cone, const Eigen::Vector2d& xy);
 double height(const Torus& torus, const Eigen::Vector2d& xy);
+double height(const Quadric& quadric, const Eigen::Vector2d& xy);
 double height(const Polynomial& polynomial, const Eigen::Vector2d& xy);
 double height(const Swept& swept, const Eigen::Vector2d& xy);
 double height(const Bspline& bspline, const Eigen::Vector2d& xy);
@@ -24,6 +25,7 @@ Eigen::Vector2d slope(const Sphere& sphere, const Eigen::Vector2d& xy);
 Eigen::Vector2d slope(const Cylinder& cylinder, const Eigen::Vector2d& xy);
 Eigen::Vector2d slope(const Cone& cone, const Eigen::Vector2d& xy);
 Eigen::Vector2d slope(const Torus& torus, const Eigen::Vector2d& xy);
+Eigen::Vector2d slope(const Quadric& quadric, const Eigen::Vector2d& xy);
 Eigen::Vector2d slope(const Polynomial& polynomial, const Eigen::Vector2d& xy);
 Eigen::Vector2d slope(const Swept& swept, const Eigen::Vector2d& xy);
 Eigen::Vector2d slope(const Bspline& bspline, const Eigen::Vector2d& xy);
@@ -34,6 +36,7 @@ Eigen::VectorXd height_gradient(const Sphere& sphere, const Eigen::Vector2d& xy)
 Eigen::VectorXd height_gradient(const Cylinder& cylinder, const Eigen::Vector2d& xy);
 Eigen::VectorXd height_gradient(const Cone& cone, const Eigen::Vector2d& xy);
 Eigen::VectorXd height_gradient(const Torus& torus, const Eigen::Vector2d& xy);
+Eigen::VectorXd height_gradient(const Quadric& quadric, const Eigen::Vector2d& xy);
 Eigen::VectorXd height_gradient(const Polynomial& polynomial, const Eigen::Vector2d& xy);
 Eigen::VectorXd height_gradient(const Swept& swept, const Eigen::Vector2d& xy);
 Eigen::VectorXd height_gradient(const Bspline& bspline, const Eigen::Vector2d& xy);
@@ -44,6 +47,7 @@ Eigen::VectorXi parameter_powers(const Sphere& sphere);
 Eigen::VectorXi parameter_powers(const Cylinder& cylinder);
 Eigen::VectorXi parameter_powers(const Cone& cone);
 Eigen::VectorXi parameter_powers(const Torus& torus);
+Eigen::VectorXi parameter_powers(const Quadric& quadric);
 Eigen::VectorXi parameter_powers(const Polynomial& polynomial);
 Eigen::VectorXi parameter_powers(const Swept& swept);
 Eigen::VectorXi parameter_powers(const Bspline& bspline);
@@ -70,8 +74,8 @@ Eigen::Vector3d centre(const Round& round)
     return round.point - round.normal / round.curvature;
 }
 
-/// Two unit tangents that make a right-handed frame with the normal; the first has no y.
-std::array<Eigen::Vector3d, 2> tangents(const Sphere& sphere);
+/// Two unit tangents that make a right-handed frame with an upward normal; the first has no y.
+std::array<Eigen::Vector3d, 2> tangents(const Eigen::Vector3d& normal);
 
 /// Basis functions of a cell that do not vanish over xy: the control height (i, j) weighs u[i - row] · v[j - column].
 struct BsplineWeights {

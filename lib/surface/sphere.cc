@@ -31,7 +31,7 @@ Eigen::Vector2d slope(const Sphere& sphere, const Eigen::Vector2d& xy)
 Eigen::VectorXd height_gradient(const Sphere& sphere, const Eigen::Vector2d& xy)
 {
     const Eigen::Vector3d d = offset(sphere, xy);
-    const std::array<Eigen::Vector3d, 2> t = tangents(sphere);
+    const std::array<Eigen::Vector3d, 2> t = tangents(sphere.normal);
     const double k = sphere.curvature;
     const Eigen::Vector4d F_theta(-k * sphere.normal.dot(d) - 1, t[0].dot(d), t[1].dot(d), d.squaredNorm() / 2);
     return -F_theta / (k * d.z() + sphere.normal.z());
@@ -39,10 +39,10 @@ Eigen::VectorXd height_gradient(const Sphere& sphere, const Eigen::Vector2d& xy)
 
 Eigen::VectorXi parameter_powers(const Sphere&) { return Eigen::Vector4i(1, 0, 0, -1); }
 
-std::array<Eigen::Vector3d, 2> tangents(const Sphere& sphere)
+std::array<Eigen::Vector3d, 2> tangents(const Eigen::Vector3d& normal)
 {
-    const Eigen::Vector3d first = Eigen::Vector3d(sphere.normal.z(), 0, -sphere.normal.x()).normalized();
-    return {first, sphere.normal.cross(first)};
+    const Eigen::Vector3d first = Eigen::Vector3d(normal.z(), 0, -normal.x()).normalized();
+    return {first, normal.cross(first)};
 }
 
 Sphere sphere_about(const Eigen::Vector3d& centre, double radius, bool convex)

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -68,6 +69,15 @@ struct Torus {
     double along = 0;       ///< 1/mm; > 0: convex
 };
 
+/// A piece of any quadric about a point of it, as the sphere and the cylinder are:  ½ dᵀ A d + n·d = 0. Ellipsoids,
+/// hyperboloids, paraboloids, cones and cylinders; A = u nᵀ + n uᵀ is the plane.
+/// θ = (offset along n, tilts of n to tangents(n)[0] and [1], A_00, A_10, A_11, A_20, A_21, A_22 in that frame, n last)
+struct Quadric {
+    Eigen::Vector3d point;  ///< on the surface, M
+    Eigen::Vector3d normal; ///< unit, out of the metal: up
+    Eigen::Matrix3d form;   ///< A, symmetric, M, 1/mm; uᵀ A u > 0: convex along the tangent u
+};
+
 /// z = Σ c_ij u^i v^j with (u, v) = (xy - origin) / scale; by total degree, then with falling powers of u: 1, u, v, u²,
 /// uv, v², …   θ = the coefficients.
 struct Polynomial {
@@ -116,7 +126,8 @@ struct Griddata {
     std::shared_ptr<const Interpolant> interpolant;
 };
 
-using Shape = std::variant<Plane, Sphere, Cylinder, Cone, Torus, Polynomial, Swept, Bspline, TensorBspline, Griddata>;
+using Shape =
+    std::variant<Plane, Sphere, Cylinder, Cone, Torus, Quadric, Polynomial, Swept, Bspline, TensorBspline, Griddata>;
 
 /// What is known of a spline's height where its control heights are too many for a covariance (surface/precision.h).
 struct SplinePrecision {
@@ -155,12 +166,14 @@ struct Surface {
     double weight = 1;                        ///< probability of `shape`
     std::vector<Alternative> alternatives;    ///< weights and `weight` sum up to 1
     double touch_sigma = 0;                   ///< standard deviation of one touch that the covariance rests on, mm
-    double rms = 0;                           ///< of the residuals, vertical, mm
-    double goodness = 0;                      ///< p-value of χ² of the residuals against touch_sigma
-    Eigen::Matrix3Xd touches;                 ///< used, M, mm
-    Eigen::VectorXi roles;                    ///< of the touches
-    std::vector<Eigen::Index> gross_errors;   ///< columns of `touches` that were taken for slips and left out
-    int ignored = 0; ///< touches given but not used (estimated points in a statistical fit, NaN)
+    double touch_freedom = std::numeric_limits<double>::infinity(); ///< of touch_sigma where the residuals tell it;
+                                                                    ///< else infinite: it is known
+    double rms = 0;                                                 ///< of the residuals, vertical, mm
+    double goodness = 0;                    ///< p-value of χ² of the residuals against touch_sigma
+    Eigen::Matrix3Xd touches;               ///< used, M, mm
+    Eigen::VectorXi roles;                  ///< of the touches
+    std::vector<Eigen::Index> gross_errors; ///< columns of `touches` that were taken for slips and left out
+    int ignored = 0;                        ///< touches given but not used (estimated points in a statistical fit, NaN)
     std::optional<Prediction> prediction;
 };
 

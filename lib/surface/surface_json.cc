@@ -121,7 +121,9 @@ std::optional<SplinePrecision> read_precision(Reader& reader, const Surface& sur
 Value write_fit(const Surface& surface, double mm)
 {
     Value fit;
-    fit.set("method", surface.method).set("touch_sigma", surface.touch_sigma / mm).set("rms", surface.rms / mm);
+    fit.set("method", surface.method).set("touch_sigma", surface.touch_sigma / mm);
+    if (std::isfinite(surface.touch_freedom)) fit.set("touch_freedom", surface.touch_freedom);
+    fit.set("rms", surface.rms / mm);
     if (std::isfinite(surface.goodness)) fit.set("goodness", surface.goodness);
     if (!surface.alternatives.empty()) fit.set("score", surface.score).set("weight", surface.weight);
     if (!surface.gross_errors.empty()) {
@@ -137,6 +139,8 @@ void read_fit(Reader reader, Surface& surface, double mm)
 {
     surface.method = reader.text("method");
     surface.touch_sigma = reader.number("touch_sigma", Range::at_least(0)) * mm;
+    surface.touch_freedom =
+        reader.number_or("touch_freedom", std::numeric_limits<double>::infinity(), Range{2, kMostTouches, false, true});
     surface.rms = reader.number("rms", Range::at_least(0)) * mm;
     surface.goodness = reader.number_or("goodness", std::numeric_limits<double>::quiet_NaN(), Range::between(0, 1));
     surface.ignored = reader.integer("ignored", 0, std::numeric_limits<int>::max());

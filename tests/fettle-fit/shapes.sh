@@ -26,4 +26,6 @@ check auto cylinder freeform.json '7 + sqrt(16 - (0.6 * x + 0.8 * y) ^ 2)'
 # a cone about the x axis, half-angle atan 0.5; a torus about the z axis: ring 6, tube 4, seen near its top
 check cone cone freeform.json 'sqrt((5 + 0.5 * x) ^ 2 - y ^ 2)'
 check torus torus freeform.json 'sqrt(16 - (sqrt((x + 6) ^ 2 + y ^ 2) - 6) ^ 2)'
+# an ellipsoid with semi-axes 5, 7 and 4, its longest turned by 37 degrees from the y axis
+check quadric quadric freeform.json '4 * sqrt(1 - ((0.8 * x + 0.6 * y) / 5) ^ 2 - ((0.8 * y - 0.6 * x) / 7) ^ 2)'
 check auto cubic freeform.json '1 + 0.2 * x ^ 2 - 0.1 * x * y - 0.3 * y ^ 2 + 0.1 * x ^ 3 - 0.2 * x * y ^ 2'

@@ -5,6 +5,7 @@
 #include "surface/shapes.h"
 #include "json/document.h"
 
+#include <boost/math/distributions/students_t.hpp>
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
@@ -140,6 +141,56 @@ TEST(Family, ReproducesConesAndTori)
                               Torus{{3, 4, 5}, n, a, side / (5 * kInch), 0.1, side / (12 * kInch)}, 1e-8);
             expect_reproduced([](const FitInput& i) { return fit_named("torus", i); },
                               Torus{{3, 4, 5}, n, a, side / (9 * kInch), 0, -side / (6 * kInch)}, 1e-8);
+        }
+}
+
+/// Coefficients of pᵀ Q p + l·p + k with p = T (x, y, z, 1) / 1 in, and the higher of its two roots in z or the lower.
+struct ImplicitQuadric {
+    Eigen::Matrix3d Q;
+    Eigen::Vector3d l;
+    double k;
+    double side; ///< > 0: the higher root
+    Eigen::Affine3d T = Eigen::Affine3d::Identity();
+
+    double operator()(double x, double y) const
+    {
+        const Eigen::Vector3d p = T * (Eigen::Vector3d(x, y, 0) / kInch), v = T.linear().col(2);
+        const double a = v.dot(Q * v), b = 2 * p.dot(Q * v) + l.dot(v), c = p.dot(Q * p) + l.dot(p) + k;
+        if (a == 0) return -c / b * kInch;
+        return (-b + std::copysign(std::sqrt(b * b - 4 * a * c), side * a)) / (2 * a) * kInch;
+    }
+};
+
+/// Of all kinds, inches; the touches reach 2.5 in from the origin.
+std::vector<ImplicitQuadric> implicit_quadrics()
+{
+    const auto diagonal = [](double x, double y, double z) {
+        return Eigen::Matrix3d(Eigen::Vector3d(x, y, z).asDiagonal());
+    };
+    const Eigen::Vector3d none(0, 0, 0), up(0, 0, 1);
+    return {{diagonal(1 / 36., 1 / 64., 1 / 16.), none, -1, 1},         // ellipsoid
+            {diagonal(1 / 36., 1 / 64., 1 / 16.), none, -1, -1},        // from within
+            {diagonal(1 / 36., 0, 1 / 16.), none, -1, 1},               // elliptic cylinder
+            {diagonal(1 / 36., -1 / 64., 1 / 25.), none, -1, 1},        // hyperboloid of one sheet
+            {diagonal(-1 / 36., -1 / 64., 1 / 25.), none, -1, 1},       // of two sheets
+            {diagonal(-1 / 36., 0, 1 / 25.), none, -1, 1},              // hyperbolic cylinder
+            {diagonal(1 / 9., 0, 1 / 16.), {0, 0.1, 0}, -1, 1},         // elliptic paraboloid along y
+            {diagonal(1 / 9., -1 / 90., 1 / 16.), {0, -.2, 0}, -1, -1}, // elliptic cone
+            {diagonal(0.1, 0.05, 0), up, 0, 1},                         // elliptic paraboloid
+            {diagonal(0.1, -0.05, 0), up, 0, 1},                        // hyperbolic paraboloid
+            {diagonal(0.1, 0, 0), up, 0, 1}};                           // parabolic cylinder
+}
+
+TEST(Family, ReproducesEveryQuadric)
+{
+    for (ImplicitQuadric truth : implicit_quadrics())
+        for (const double tilt : {0.0, 0.2}) {
+            truth.T =
+                Eigen::AngleAxisd(tilt, Eigen::Vector3d(3, 1, -2).normalized()) * Eigen::Translation3d(0.2, -0.1, 0);
+            const Fit fit = fit_named("quadric", touched(wang_layout(), truth, job_with(kQuiet)));
+            EXPECT_TRUE(fit.converged);
+            EXPECT_LT(largest_error(fit.surface, truth, kInch), 1e-8) << truth.Q << " tilt " << tilt;
+            EXPECT_LT(fit.surface.rms, 1e-8) << truth.Q << " tilt " << tilt;
         }
 }
 
@@ -369,6 +420,94 @@ TEST(Sigma, AgreesWithNoisyRefits)
     expect_calibrated(family("quadratic"), quadratic, 1000);
     const auto cubic = [](double u, double v) { return quadratic(u, v) + 1e-4 * u * u * u - 5e-5 * u * v * v; };
     expect_calibrated(family("cubic"), cubic, 1000);
+    expect_calibrated(family("quadric"), implicit_quadrics()[0], 1000);
+    expect_calibrated(family("quadric"), implicit_quadrics()[3], 1000);
+}
+
+/// Variance of Student's t.
+double freedom_ratio(double freedom) { return freedom / (freedom - 2); }
+
+/// Fits to touches of many runs whose job says nothing of their noise.
+template <typename Truth>
+void expect_estimated(const char* method, const Truth& truth, int runs)
+{
+    constexpr double kSigma = 0.05; // mm
+    FitInput exact = touched(wang_layout(), truth, job_with(3));
+    exact.estimate_noise = true;
+    std::mt19937 random(21);
+    std::normal_distribution<double> noise(0, kSigma);
+    double variance = 0, squares = 0, covered = 0, freedom = 0;
+    for (int run = 0; run < runs; ++run) {
+        FitInput noisy = exact;
+        for (Eigen::Index i = 0; i < noisy.xyz.cols(); ++i) noisy.xyz(2, i) += noise(random);
+        const Surface surface = fit_surface(noisy, method).surface;
+        const double error = height(surface, {5, -8}) - truth(5, -8);
+        const double ratio = error / sigma(surface, {5, -8});
+        const boost::math::students_t t(surface.touch_freedom);
+        freedom += surface.touch_freedom / runs;
+        variance += surface.touch_sigma * surface.touch_sigma / (kSigma * kSigma) / runs;
+        squares += ratio * ratio / runs;
+        covered +=
+            std::abs(ratio) * std::sqrt(freedom_ratio(surface.touch_freedom)) <= quantile(t, 0.975) ? 1. / runs : 0;
+    }
+    // Three standard errors: of χ²_ν / ν, of t²'s mean, of a share.
+    EXPECT_NEAR(variance, 1, 3 * std::sqrt(2 / freedom / runs)) << method;
+    EXPECT_NEAR(squares, 1, 3 * std::sqrt(2 * (freedom - 1) / (freedom - 4) / runs)) << method;
+    EXPECT_NEAR(covered, 0.95, 3 * std::sqrt(0.95 * 0.05 / runs)) << method;
+}
+
+TEST(Noise, SigmaIsRightOnAverageWhereItIsEstimated)
+{
+    const auto of = [](const Shape& shape) { return [shape](double x, double y) { return height_of(shape, x, y); }; };
+    expect_estimated("plane", of(Plane{{0, 0}, 3, {0.2, -0.4}}), 1000);
+    expect_estimated("sphere", of(sphere_about({5, -3, 10}, 4 * kInch, true)), 1000);
+    expect_estimated("quadratic", quadratic, 1000);
+}
+
+// What the job says of the probe does not matter, and slips are told from noise.
+TEST(Noise, IsTheTouchesOwn)
+{
+    const Shape sphere = sphere_about({5, -3, 10}, 4 * kInch, true);
+    FitInput input = touched(
+        wang_layout(), [&](double x, double y) { return height_of(sphere, x, y); }, job_with(1));
+    std::mt19937 random(3);
+    std::normal_distribution<double> noise(0, 0.02);
+    for (Eigen::Index i = 0; i < input.xyz.cols(); ++i) input.xyz(2, i) += noise(random);
+    input.xyz(2, 6) += 1;
+    input.xyz(2, 11) -= 1.5;
+    input.estimate_noise = true;
+    const Columns slips = {6, 11};
+    for (const char* method : {"auto", "sphere"}) {
+        const Surface coarse = fit_surface(input, method).surface;
+        FitInput other = input;
+        other.job.probe.accuracy = 1e-3;
+        const Surface fine = fit_surface(other, method).surface;
+        EXPECT_EQ(coarse.gross_errors, slips) << method;
+        EXPECT_NEAR(coarse.touch_sigma, fine.touch_sigma, 1e-9) << method;
+        EXPECT_NEAR(height(coarse, {5, 5}), height(fine, {5, 5}), 1e-9) << method;
+        EXPECT_GT(coarse.touch_sigma, 0.01) << method; // χ²_8 is less once in two hundred
+        EXPECT_LT(coarse.touch_sigma, 0.035) << method;
+    }
+}
+
+TEST(Noise, NeedsDegreesOfFreedom)
+{
+    FitInput input = touched(wang_layout(), quadratic, job_with(1));
+    input.estimate_noise = true;
+    const auto refusal = [&](const char* method) -> std::string {
+        try {
+            fit_surface(input, method);
+        } catch (const InputError& error) {
+            return error.what();
+        }
+        return "";
+    };
+    EXPECT_EQ(refusal("quadratic"), "");
+    input.xyz.conservativeResize(3, 5);
+    input.roles.conservativeResize(5);
+    EXPECT_EQ(refusal("plane"),
+              "touches: a plane fit leaves 2 degrees of freedom, too few to tell the noise of the touches (3)");
+    EXPECT_NE(refusal("griddata").find("too few to tell the noise"), std::string::npos);
 }
 
 double wavy(double x, double y) { return quadratic(x, y) + 1.5 * std::sin(x / 25) * std::cos(y / 30); }
@@ -592,6 +731,11 @@ TEST(Input, RefusesTouchesThatDetermineNothing)
     for (Eigen::Index i = 0; i < 8; ++i) circle.col(i) << 20 * std::cos(i * M_PI / 4), 20 * std::sin(i * M_PI / 4), 1;
     EXPECT_EQ(refusal("sphere", circle),
               "touches: touches do not determine a sphere: another one goes through them as well");
+    const FitInput flat = touched(
+        wang_layout(), [](double x, double y) { return 0.1 * x + 0.01 * std::sin(x * y); },
+        job_with(0.127)); // pairs of planes, hyperboloids as flat
+    EXPECT_EQ(refusal("quadric", flat.xyz),
+              "touches: touches do not determine a quadric: another one goes through them as well");
     Eigen::Matrix3Xd wall(3, 6);
     wall << 0, 0, 0, 0, 0, 0, 0, 10, 20, 0, 10, 20, 0, 0, 0, 10, 12, 15;
     EXPECT_NE(refusal("plane", wall).find("vertical plane"), std::string::npos);

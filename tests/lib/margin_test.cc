@@ -186,6 +186,20 @@ TEST(Posterior, of_one_number_has_normal_quantiles)
     EXPECT_GT(predict_by_posterior(surface, job, 0.99, 1).shift, prediction.shift);
 }
 
+// The same where the noise was estimated with 4 degrees of freedom, which has doubled the variance: Student's t. 4096
+// independent draws of the noise, three standard errors.
+TEST(Posterior, of_one_number_with_estimated_noise_has_students_quantiles)
+{
+    const Job job = square_job(SurfaceType::plane);
+    Surface surface;
+    surface.shape = Plane{{0, 0}, 0, {0, 0}};
+    surface.covariance = Eigen::Vector3d(2 * 0.04, 0, 0).asDiagonal();
+    surface.touch_freedom = 4;
+    const Prediction prediction = predict_by_posterior(surface, job, 0.95, 1);
+    EXPECT_NEAR(prediction.shift, 0.2 * 2.1318, 0.2 * 0.11);
+    EXPECT_NEAR(prediction.band, 0.2 * 2.7764, 0.2 * 0.22);
+}
+
 TEST(Posterior, refuses_surfaces_that_cannot_be_foreseen)
 {
     const Job job = square_job(SurfaceType::freeform);

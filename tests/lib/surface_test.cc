@@ -47,6 +47,14 @@ Torus some_torus(double around, double lean, double along)
     return {frame.point, frame.normal, frame.axis, around, lean, along};
 }
 
+/// Its curvatures are those of no sphere, and change.
+Quadric some_quadric()
+{
+    Eigen::Matrix3d form;
+    form << 9, 2, -1, 2, -7, 3, -1, 3, 12;
+    return {{3, -2, 7}, Eigen::Vector3d(-0.3, 0.25, 1).normalized(), form / 1000};
+}
+
 std::vector<Shape> some_shapes()
 {
     return {Plane{{2, -5}, 3, {0.4, -1.5}},
@@ -59,6 +67,7 @@ std::vector<Shape> some_shapes()
             some_torus(1 / 70.0, 0.3, 1 / 200.0),
             some_torus(-1 / 150.0, -0.5, 1 / 60.0),
             some_torus(0, 0.1, 0),
+            some_quadric(),
             Polynomial{{3, -2}, 20, Eigen::VectorXd::LinSpaced(10, -3, 4)},
             Swept{{1, 2}, Eigen::Vector2d(0.6, 0.8), 25, {1, -2, 3, 0.5}, 0.2, -25, 25},
             some_bspline()};
@@ -102,7 +111,7 @@ Shape changed(const Shape& shape, Eigen::Index j, double by)
     if (const Sphere* sphere = std::get_if<Sphere>(&shape)) {
         Sphere result = *sphere;
         if (j == 0) result.point += by * sphere->normal;
-        if (j == 1 || j == 2) result.normal += by * tangents(*sphere)[static_cast<std::size_t>(j - 1)];
+        if (j == 1 || j == 2) result.normal += by * tangents(sphere->normal)[static_cast<std::size_t>(j - 1)];
         result.normal.normalize();
         if (j == 3) result.curvature += by;
         return result;
@@ -124,6 +133,18 @@ Shape changed(const Shape& shape, Eigen::Index j, double by)
     if (const Torus* torus = std::get_if<Torus>(&shape)) {
         Torus result = changed_revolution(*torus, j, by);
         if (j == 6) result.along += by;
+        return result;
+    }
+    if (const Quadric* quadric = std::get_if<Quadric>(&shape)) {
+        Quadric result = *quadric;
+        Eigen::Matrix3d frame;
+        frame << tangents(quadric->normal)[0], tangents(quadric->normal)[1], quadric->normal;
+        if (j == 0) result.point += by * quadric->normal;
+        if (j == 1 || j == 2) result.normal = (quadric->normal + by * frame.col(j - 1)).normalized();
+        const Eigen::Index row = j < 4 ? 0 : j < 6 ? 1 : 2, column = j - 3 - row * (row + 1) / 2;
+        Eigen::Matrix3d change = Eigen::Matrix3d::Zero();
+        if (j >= 3) change(row, column) = change(column, row) = by;
+        result.form += frame * change * frame.transpose();
         return result;
     }
     if (const Polynomial* polynomial = std::get_if<Polynomial>(&shape)) {
@@ -233,6 +254,22 @@ TEST(Surface, ConesAndToriHoldCylindersAndSpheres)
     }
 }
 
+TEST(Surface, QuadricsHoldSpheresCylindersAndPlanes)
+{
+    const Sphere sphere = some_sphere(1 / 90.0);
+    const Cylinder cylinder = some_cylinder(-1 / 70.0);
+    const Eigen::Matrix3d one = Eigen::Matrix3d::Identity();
+    const Eigen::Matrix3d across = one - cylinder.axis * cylinder.axis.transpose();
+    const Eigen::Vector3d u(0.01, -0.02, 0.005);
+    const Eigen::Matrix3d pair = u * sphere.normal.transpose() + sphere.normal * u.transpose(); // n·d (1 + u·d)
+    for (const Eigen::Vector2d& xy : kPlaces) {
+        EXPECT_NEAR(height(Quadric{sphere.point, sphere.normal, one / 90}, xy), height(sphere, xy), 1e-12);
+        EXPECT_NEAR(height(Quadric{cylinder.point, cylinder.normal, across / -70}, xy), height(cylinder, xy), 1e-12);
+        EXPECT_NEAR(height(Quadric{sphere.point, sphere.normal, pair}, xy),
+                    height(Sphere{sphere.point, sphere.normal, 0}, xy), 1e-12);
+    }
+}
+
 // The mean of a mixture, its variance within and between, and its slope.
 TEST(Surface, IsTheMeanOfItsAlternatives)
 {
@@ -296,6 +333,7 @@ Surface with_everything(const Shape& shape, Units::Length unit)
         n, n, [](Eigen::Index i, Eigen::Index j) { return std::cos(1.0 + static_cast<double>(3 * i + 7 * j)); });
     surface.covariance = root * root.transpose();
     surface.touch_sigma = 0.05;
+    surface.touch_freedom = 6;
     surface.rms = 0.03;
     surface.goodness = 0.7;
     surface.touches.resize(3, 2);
@@ -320,6 +358,7 @@ TEST(SurfaceJson, RoundTripInAnyUnit)
             EXPECT_LT((back.touches - surface.touches).norm(), 1e-12);
             EXPECT_EQ(back.roles, surface.roles);
             EXPECT_NEAR(back.touch_sigma, 0.05, 1e-15);
+            EXPECT_EQ(back.touch_freedom, 6);
             EXPECT_NEAR(back.rms, 0.03, 1e-15);
             EXPECT_EQ(back.goodness, 0.7);
             EXPECT_EQ(back.ignored, 3);
@@ -366,10 +405,10 @@ TEST(SurfaceJson, RefusesWhatIsWrong)
     EXPECT_EQ(refusal(surface_text(plane, R"(, "touches": [[1, 2, 3, 9]])")),
               "s.json: touches[0][3]: is no role (0 to 5)");
     EXPECT_EQ(refusal(surface_text(plane, R"(, "shiftt": 1)")), "s.json: shiftt: unknown key, did you mean \"shift\"?");
-    EXPECT_EQ(
-        refusal(surface_text(R"({"type": "plan", "origin": [0, 0], "z0": 1, "slope": [0, 0]})")),
-        "s.json: shape.type: \"plan\" is none of plane, sphere, cylinder, cone, torus, polynomial, swept, bspline, "
-        "tensor-bspline, griddata; did you mean \"plane\"?");
+    EXPECT_EQ(refusal(surface_text(R"({"type": "plan", "origin": [0, 0], "z0": 1, "slope": [0, 0]})")),
+              "s.json: shape.type: \"plan\" is none of plane, sphere, cylinder, cone, torus, quadric, polynomial, "
+              "swept, bspline, "
+              "tensor-bspline, griddata; did you mean \"plane\"?");
     EXPECT_EQ(refusal(surface_text(R"({"type": "sphere", "point": [0, 0, 0], "normal": [0, 0, 2], "curvature": 0})")),
               "s.json: shape.normal: must have length 1");
     EXPECT_EQ(refusal(surface_text(R"({"type": "sphere", "point": [0, 0, 0], "normal": [0, 0, -1], "curvature": 0})")),
