@@ -101,7 +101,7 @@ FormZone least_squares(FormElement element, const Eigen::Matrix3Xd& points, doub
 double centre(FormElement& element, const Eigen::VectorXd& d)
 {
     const double middle = (d.maxCoeff() + d.minCoeff()) / 2;
-    if (element.kind == FormKind::flatness)
+    if (is_flat(element.kind))
         element.point += middle * element.direction;
     else
         element.radius += middle;
@@ -170,21 +170,6 @@ FormZone minimum_zone(const FormZone& start, const Eigen::Matrix3Xd& points, dou
     return zone;
 }
 
-json::Value to_json(const FormZone& zone, const Eigen::Matrix3Xd& points, double mm)
-{
-    const FormElement& e = zone.element;
-    json::Value value;
-    value.set("width", zone.width / mm).set("converged", zone.converged);
-    const char* point = e.kind == FormKind::sphericity ? "centre" : "point";
-    value.set(point, Eigen::VectorXd(e.point / mm));
-    if (e.kind == FormKind::flatness) value.set("normal", Eigen::VectorXd(e.direction));
-    if (e.kind == FormKind::cylindricity) value.set("axis", Eigen::VectorXd(e.direction));
-    if (e.kind != FormKind::flatness) value.set("radius", e.radius / mm);
-    if (!zone.contacts.empty())
-        value.set("contacts", Eigen::MatrixXd(points(Eigen::all, zone.contacts).transpose() / mm));
-    return value;
-}
-
 // One of the two signs of a direction, whatever the rounding: its largest component is positive.
 void orient(FormElement& element)
 {
@@ -193,41 +178,80 @@ void orient(FormElement& element)
     if (element.direction[largest] < 0) element.direction *= -1;
 }
 
+// What the deviations say, with the element where it is.
+void measure(FormZone& zone, const Eigen::Matrix3Xd& points)
+{
+    const Eigen::VectorXd d = deviations(zone.element, points);
+    zone.peak = d.maxCoeff();
+    zone.valley = -d.minCoeff();
+    zone.rms = std::sqrt(d.squaredNorm() / static_cast<double>(d.size()));
+}
+
+/// The points about their centroid, and the element of least squares there.
+struct Start {
+    Eigen::Vector3d centroid;
+    Eigen::Matrix3Xd about;
+    double scale = 0;
+    FormZone zone;
+};
+
+Start start_of(FormKind kind, const Eigen::Matrix3Xd& points, const Eigen::Vector3d& section)
+{
+    Start start;
+    start.centroid = points.cols() > 0 ? Eigen::Vector3d(points.rowwise().mean()) : Eigen::Vector3d::Zero();
+    start.about = points.colwise() - start.centroid;
+    FormElement element = form_start(kind, start.about, section);
+    orient(element);
+    start.scale = start.about.colwise().norm().maxCoeff();
+    start.zone = least_squares(element, start.about, start.scale);
+    return start;
+}
+
+double median_size(Eigen::VectorXd d)
+{
+    d = d.cwiseAbs().eval();
+    std::nth_element(d.begin(), d.begin() + d.size() / 2, d.end());
+    return d[d.size() / 2];
+}
+
 } // namespace
 
-Form form(FormKind kind, const Eigen::Matrix3Xd& points)
+Form form(FormKind kind, const Eigen::Matrix3Xd& points, const Eigen::Vector3d& section)
 {
-    const Eigen::Vector3d centroid =
-        points.cols() > 0 ? Eigen::Vector3d(points.rowwise().mean()) : Eigen::Vector3d::Zero();
-    const Eigen::Matrix3Xd about = points.colwise() - centroid;
-    FormElement start = form_start(kind, about);
-    orient(start);
-    const double scale = about.colwise().norm().maxCoeff();
+    const Start start = start_of(kind, points, section);
     Form form;
-    form.least_squares = least_squares(start, about, scale);
-    form.minimum_zone = minimum_zone(form.least_squares, about, scale);
+    form.least_squares = start.zone;
+    form.minimum_zone = minimum_zone(form.least_squares, start.about, start.scale);
     for (FormZone* zone : {&form.least_squares, &form.minimum_zone}) {
-        zone->element.point += centroid;
+        measure(*zone, start.about);
+        zone->element.point += start.centroid;
         if (kind == FormKind::cylindricity) // the axis point beside the middle of the points
             zone->element.point +=
-                zone->element.direction.dot(centroid - zone->element.point) * zone->element.direction;
+                zone->element.direction.dot(start.centroid - zone->element.point) * zone->element.direction;
     }
     return form;
 }
 
-json::Value to_json(const Form& form, const Eigen::Matrix3Xd& points, const Units& units)
+std::vector<Eigen::Index> without_outliers(FormKind kind, const Eigen::Matrix3Xd& points, double sigmas,
+                                           const Eigen::Vector3d& section)
 {
-    constexpr const char* kNames[] = {"flatness", "cylindricity", "sphericity"};
-    json::Value unit, elements, value;
-    unit.set("length", to_string(units.length));
-    elements.set("least_squares", to_json(form.least_squares, points, units.mm()));
-    elements.set("minimum_zone", to_json(form.minimum_zone, points, units.mm()));
-    value.set("kind", "form").set("units", unit);
-    value.set("form", kNames[static_cast<int>(form.least_squares.element.kind)]);
-    value.set("count", static_cast<std::size_t>(points.cols()));
-    value.set("least_squares", form.least_squares.width / units.mm());
-    value.set("minimum_zone", form.minimum_zone.width / units.mm());
-    return value.set("elements", elements);
+    constexpr double kMedianToSigma = 1.4826; // of a normal distribution
+    constexpr int kMostRounds = 50;           // a few do, unless points go in and out at the bound
+    std::vector<Eigen::Index> kept(static_cast<std::size_t>(points.cols()));
+    std::iota(kept.begin(), kept.end(), 0);
+    for (int round = 0; round < kMostRounds; ++round) {
+        Start start = start_of(kind, points(Eigen::all, kept), section);
+        start.zone.element.point += start.centroid;
+        const Eigen::VectorXd d = deviations(start.zone.element, points);
+        // Of all points: those left out by mistake come back.
+        const double bound = std::max(sigmas * kMedianToSigma * median_size(d), kStill * start.scale);
+        std::vector<Eigen::Index> within;
+        for (Eigen::Index i = 0; i < d.size(); ++i)
+            if (std::abs(d[i]) <= bound) within.push_back(i);
+        if (within == kept) break;
+        kept = within;
+    }
+    return kept;
 }
 
 } // namespace fettle

@@ -16,7 +16,7 @@ Eigen::Vector3d across(const Eigen::Vector3d& from_axis_point, const Eigen::Vect
 double deviation(const FormElement& element, const Eigen::Vector3d& point)
 {
     const Eigen::Vector3d q = point - element.point;
-    if (element.kind == FormKind::flatness) return element.direction.dot(q);
+    if (is_flat(element.kind)) return element.direction.dot(q);
     if (element.kind == FormKind::sphericity) return q.norm() - element.radius;
     return across(q, element.direction).norm() - element.radius;
 }
@@ -30,13 +30,24 @@ Eigen::VectorXd deviations(const FormElement& element, const Eigen::Matrix3Xd& p
 
 FormMotion::FormMotion(const FormElement& element, double scale) : element_(element), scale_(scale)
 {
-    u_ = element.direction.unitOrthogonal();
+    u_ = element.kind == FormKind::straightness ? Eigen::Vector3d(element.section.cross(element.direction))
+                                                : element.direction.unitOrthogonal();
     v_ = element.direction.cross(u_);
 }
 
 Eigen::Index FormMotion::parameters() const
 {
-    return element_.kind == FormKind::flatness ? 3 : element_.kind == FormKind::cylindricity ? 5 : 4;
+    switch (element_.kind) {
+    case FormKind::flatness:
+        return 3;
+    case FormKind::cylindricity:
+        return 5;
+    case FormKind::sphericity:
+        return 4;
+    case FormKind::straightness:
+        break;
+    }
+    return 2;
 }
 
 FormVector FormMotion::gradient(const Eigen::Vector3d& point) const
@@ -45,6 +56,8 @@ FormVector FormMotion::gradient(const Eigen::Vector3d& point) const
     FormVector g(parameters());
     if (element_.kind == FormKind::flatness) {
         g << u_.dot(q) / scale_, v_.dot(q) / scale_, -1;
+    } else if (element_.kind == FormKind::straightness) {
+        g << u_.dot(q) / scale_, -1;
     } else if (element_.kind == FormKind::sphericity) {
         g << -q.normalized(), -1;
     } else {
@@ -61,6 +74,9 @@ FormElement FormMotion::moved(const FormVector& motion) const
     if (element.kind == FormKind::flatness) {
         element.direction = (element.direction + (motion[0] * u_ + motion[1] * v_) / scale_).normalized();
         element.point += motion[2] * element_.direction;
+    } else if (element.kind == FormKind::straightness) {
+        element.direction = (element.direction + motion[0] * u_ / scale_).normalized();
+        element.point += motion[1] * element_.direction;
     } else if (element.kind == FormKind::sphericity) {
         element.point += motion.head<3>();
         element.radius += motion[3];

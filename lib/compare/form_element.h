@@ -6,17 +6,22 @@
 
 namespace fettle {
 
-enum class FormKind { flatness, cylindricity, sphericity };
+enum class FormKind { flatness, cylindricity, sphericity, straightness };
 
-/// A perfect plane, cylinder or sphere.
+/// A perfect plane, cylinder or sphere, or a line in a section plane.
 struct FormElement {
     FormKind kind = FormKind::flatness;
-    Eigen::Vector3d point;     ///< on the plane; on the axis; the centre
-    Eigen::Vector3d direction; ///< unit: normal of the plane; axis; unused for a sphere
-    double radius = 0;         ///< mm; unused for a plane
+    Eigen::Vector3d point; ///< on the plane; on the axis; the centre; on the line
+    Eigen::Vector3d
+        direction;     ///< unit: normal of the plane; axis; unused for a sphere; normal of the line, in its section
+    double radius = 0; ///< mm; unused for a plane and a line
+    Eigen::Vector3d section = Eigen::Vector3d::Zero(); ///< unit: normal of the section that a line lies in
 };
 
-/// Orthogonal distance, mm: + on the side of the normal, or outside.
+/// Does its zone lie between parallels, not between radii?
+inline bool is_flat(FormKind kind) { return kind == FormKind::flatness || kind == FormKind::straightness; }
+
+/// Orthogonal distance (of a line: in its section), mm: + on the side of the normal, or outside.
 double deviation(const FormElement& element, const Eigen::Vector3d& point);
 Eigen::VectorXd deviations(const FormElement& element, const Eigen::Matrix3Xd& points);
 
@@ -25,7 +30,8 @@ using FormVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 5, 1>;
 using FormMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 5, 5>;
 
 /// Small motions of an element, all measured in mm, so that they are of one size: shifts and tilts · scale and, where
-/// there is one, the radius. Plane: 3 (tilt, tilt, shift); cylinder: 5 (shift, shift, tilt, tilt, radius); sphere: 4.
+/// there is one, the radius. Plane: 3 (tilt, tilt, shift); cylinder: 5 (shift, shift, tilt, tilt, radius); sphere: 4;
+/// line: 2 (tilt, shift).
 class FormMotion {
   public:
     /// @param scale  half the size of the part: a tilt moves a point at this distance by the same length as a shift

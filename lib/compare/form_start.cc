@@ -51,7 +51,7 @@ Round algebraic_fit(const Eigen::MatrixXd& points)
 FormElement cylinder_start(const Eigen::Matrix3Xd& points)
 {
     const Eigen::Matrix3Xd few = thinned(points);
-    FormElement best{FormKind::cylindricity, {}, {}, 0};
+    FormElement best{FormKind::cylindricity, {}, {}};
     double least = std::numeric_limits<double>::infinity();
     for (int k = 0; k < kDirections; ++k) { // a spiral of equal areas over the upper half sphere
         const double z = (k + 0.5) / kDirections, turn = k * 2 * std::numbers::pi / std::numbers::phi;
@@ -70,18 +70,31 @@ FormElement cylinder_start(const Eigen::Matrix3Xd& points)
     return best;
 }
 
+// The line of least squares in the section: the principal axis of the points as they lie in it.
+FormElement line_start(const Eigen::Matrix3Xd& points, const Eigen::Vector3d& thinnest, const Eigen::Vector3d& section)
+{
+    const Eigen::Vector3d across = section.isZero(0) ? thinnest : section;
+    Eigen::Matrix<double, 3, 2> in_plane;
+    in_plane << across.unitOrthogonal(), across.cross(across.unitOrthogonal());
+    const Eigen::Matrix2Xd flat = in_plane.transpose() * points;
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> spread(flat * flat.transpose());
+    if (!(spread.eigenvalues()[1] > 0)) throw InputError("the points of the section lie in one place");
+    return {FormKind::straightness, Eigen::Vector3d::Zero(), in_plane * spread.eigenvectors().col(0), 0, across};
+}
+
 } // namespace
 
-FormElement form_start(FormKind kind, const Eigen::Matrix3Xd& points)
+FormElement form_start(FormKind kind, const Eigen::Matrix3Xd& points, const Eigen::Vector3d& section)
 {
-    const Eigen::Index needed = kind == FormKind::flatness ? 3 : kind == FormKind::sphericity ? 4 : 6;
+    const Eigen::Index needed = is_flat(kind) ? 3 : kind == FormKind::sphericity ? 4 : 6;
     if (points.cols() < needed)
         throw InputError("needs at least " + std::to_string(needed) + " points, got " + std::to_string(points.cols()));
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> spread(points * points.transpose());
     const Eigen::Vector3d extent = spread.eigenvalues().cwiseMax(0).cwiseSqrt();
+    if (kind == FormKind::straightness) return line_start(points, spread.eigenvectors().col(0), section);
     if (extent[1] <= kFlat * extent[2]) throw InputError("the points lie on a line");
     if (kind == FormKind::flatness)
-        return {kind, Eigen::Vector3d::Zero(), Eigen::Vector3d(spread.eigenvectors().col(0)), 0};
+        return {kind, Eigen::Vector3d::Zero(), Eigen::Vector3d(spread.eigenvectors().col(0))};
     if (extent[0] <= kFlat * extent[2]) throw InputError("the points lie in a plane: no curvature to fit");
     if (kind == FormKind::cylindricity) return cylinder_start(points);
     const Round sphere = algebraic_fit(thinned(points));

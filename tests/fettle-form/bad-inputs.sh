@@ -20,4 +20,17 @@ refused flatnes plane.xyz
 grep -q "did you mean 'flatness'" err
 refused
 refused flatness plane.xyz --file-units ft
+for file in empty one nan; do refused straightness $file.xyz -q; done
+awk 'BEGIN { for (i = 0; i < 9; i++) print 1, 1, 1 }' >equal.xyz
+refused straightness equal.xyz
+refused straightness plane.xyz --sections 0
+refused flatness plane.xyz --sections 1
+refused straightness plane.xyz --section-width 1
+refused straightness plane.xyz --sections 1e-9
+refused straightness plane.xyz --sections 1 --section-width 0.1 --direction 90
+grep -q 'plane.xyz: straightness: no section has as many as 3 points' err
+refused straightness plane.xyz --sections 1 --direction 1e9
+refused flatness plane.xyz --outliers 0
+refused flatness plane.xyz --outliers nan
+fettle-form straightness line.xyz | jq -e '.least_squares < 1e-12 and .minimum_zone < 1e-12' >/dev/null
 fettle-form flatness plane.xyz | jq -e '.least_squares < 1e-12 and .minimum_zone < 1e-12' >/dev/null

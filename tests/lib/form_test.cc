@@ -1,4 +1,5 @@
 #include "compare/form.h"
+#include "compare/sections.h"
 
 #include "core/error.h"
 
@@ -7,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 
 namespace fettle {
@@ -55,6 +57,61 @@ TEST(Form, FlatnessByBruteForce)
         EXPECT_NEAR(f.minimum_zone.width, least, 1e-12);
         EXPECT_GE(f.least_squares.width, f.minimum_zone.width);
     }
+}
+
+// Independent: the narrowest strip about points of a plane has an edge of theirs on one side; so over all pairs. The
+// points also lie off their section, which must not count.
+TEST(Form, StraightnessByBruteForce)
+{
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> place(-1, 1);
+    const Eigen::Vector3d section = Eigen::Vector3d(1, -2, 0.5).normalized(), along = section.unitOrthogonal();
+    for (int round = 0; round < 5; ++round) {
+        const Eigen::Matrix2Xd flat = Eigen::Vector2d(20, 0.05).asDiagonal() *
+                                      Eigen::Matrix2Xd::NullaryExpr(2, 40, [&] { return place(random); });
+        Eigen::Matrix3Xd p = along * flat.row(0) + section.cross(along) * flat.row(1);
+        p += section * Eigen::RowVectorXd::NullaryExpr(40, [&] { return place(random); });
+        double least = 1;
+        for (int a = 0; a < 40; ++a)
+            for (int b = 0; b < a; ++b) {
+                const Eigen::Vector2d edge = (flat.col(a) - flat.col(b)).normalized();
+                const Eigen::RowVectorXd d = Eigen::Vector2d(-edge.y(), edge.x()).transpose() * flat;
+                least = std::min(least, d.maxCoeff() - d.minCoeff());
+            }
+        const Form f = form(FormKind::straightness, p, section);
+        EXPECT_NEAR(f.minimum_zone.width, least, 1e-12);
+        EXPECT_EQ(f.minimum_zone.contacts.size(), 3U);
+        EXPECT_NEAR(f.least_squares.peak + f.least_squares.valley, f.least_squares.width, 1e-12);
+        EXPECT_GE(f.least_squares.width, f.minimum_zone.width);
+    }
+}
+
+// Points far off are named, and no others, although they are a tenth of all and pull at the first fit.
+TEST(Form, OutliersAreLeftOut)
+{
+    std::mt19937 random(4);
+    std::normal_distribution<double> noise(0, 0.01);
+    Eigen::Matrix3Xd p(3, 2000);
+    for (Eigen::Index i = 0; i < p.cols(); ++i) {
+        const double turn = static_cast<double>(i % 100) / 60;
+        const double r = 25 + noise(random) + (i % 10 == 3 ? 0.5 : 0);
+        p.col(i) << r * std::sin(turn), static_cast<double>(i) / 40, r * std::cos(turn);
+    }
+    const std::vector<Eigen::Index> kept = without_outliers(FormKind::cylindricity, p, 6);
+    EXPECT_EQ(kept.size(), 1800U);
+    for (const Eigen::Index i : kept) EXPECT_NE(i % 10, 3);
+}
+
+TEST(Form, Sections)
+{
+    Eigen::Matrix3Xd p(3, 12);
+    for (Eigen::Index i = 0; i < 12; ++i) p.col(i) << static_cast<double>(i % 4), 2.0 * static_cast<double>(i / 4), 5;
+    const std::vector<Section> along_x = vertical_sections(p, 0, 2, 2);
+    ASSERT_EQ(along_x.size(), 3U);
+    EXPECT_EQ(along_x[1].offset, 2);
+    EXPECT_EQ(along_x[1].points, (std::vector<Eigen::Index>{4, 5, 6, 7}));
+    EXPECT_EQ(vertical_sections(p, std::numbers::pi / 2, 1, 0.5).size(), 4U);
+    EXPECT_THROW(vertical_sections(p, 0, 1e-9, 1e-9), InputError);
 }
 
 Eigen::Matrix3Xd bumpy_cylinder()
@@ -106,8 +163,10 @@ TEST(Form, RigidMotionChangesNothing)
 TEST(Form, Gradients)
 {
     const Eigen::Vector3d point(11, -7, 5);
-    for (const FormKind kind : {FormKind::flatness, FormKind::cylindricity, FormKind::sphericity}) {
-        const FormElement element{kind, {1, 2, 3}, Eigen::Vector3d(1, -1, 2).normalized(), 10};
+    for (const FormKind kind :
+         {FormKind::flatness, FormKind::cylindricity, FormKind::sphericity, FormKind::straightness}) {
+        const FormElement element{
+            kind, {1, 2, 3}, Eigen::Vector3d(1, -1, 2).normalized(), 10, Eigen::Vector3d(1, 1, 0).normalized()};
         const FormMotion motion(element, 20);
         const FormVector g = motion.gradient(point);
         for (Eigen::Index k = 0; k < g.size(); ++k) {

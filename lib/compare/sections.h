@@ -1,0 +1,24 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <vector>
+
+namespace fettle {
+
+/// Points near one section plane of a surface that is seen from above.
+struct Section {
+    double offset = 0;                ///< of the plane from the origin, along its normal, mm
+    std::vector<Eigen::Index> points; ///< columns, ascending
+};
+
+/// Vertical section planes along `direction` (radians from X, counter-clockwise), one at each multiple of `spacing`,
+/// with the points within half of `width` of it. Ascending; planes without points are left out.
+/// @param points  3xN, mm, finite
+/// @throws InputError if the planes would be more than ten million
+std::vector<Section> vertical_sections(const Eigen::Matrix3Xd& points, double direction, double spacing, double width);
+
+/// Unit normal of those planes.
+Eigen::Vector3d section_normal(double direction);
+
+} // namespace fettle
