@@ -14,8 +14,8 @@ namespace fettle {
 
 namespace {
 
-// Points that are measured at a time. So many along a Hilbert curve are close to each other, and take some 50 MiB.
-constexpr std::size_t kBlock = 1 << 18;
+// Points that are measured at a time. So many along a Hilbert curve are close to each other, and take some 20 MiB.
+constexpr std::size_t kBlock = 1 << 17;
 // Points whose errors set the colours: their 99th percentile is then good to a tenth of the percent beyond it.
 constexpr std::size_t kSample = 1 << 14;
 
@@ -118,7 +118,7 @@ class Collected {
     // What each kind of error may take: all of them, and those of three regions again. The rest is for blocks.
     static std::size_t share(const ComparisonOptions& options)
     {
-        constexpr std::size_t kBlocks = std::size_t{128} << 20;
+        constexpr std::size_t kBlocks = std::size_t{96} << 20;
         return (options.memory - std::min(options.memory / 2, kBlocks)) / (options.job ? 4 : 1);
     }
 
@@ -159,7 +159,7 @@ Comparison compare(const TestPoints& test, const Reference& reference, const Com
         return block;
     };
     // While one block is measured the last one is written and the next one read.
-    constexpr std::size_t kUnderWay = 3;
+    constexpr std::size_t kUnderWay = 2;
     std::size_t next = 0, done = 0;
     bool begun = false; // a cloud without points is one empty block
     using Numbered = std::pair<std::size_t, std::shared_ptr<Block>>;

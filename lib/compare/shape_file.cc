@@ -6,12 +6,30 @@
 #include "mesh/mesh_file.h"
 #include "mesh/stl.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <memory>
 
 namespace fettle {
 
 namespace {
+
+/// All bytes of a file: read by several threads, into memory that nobody has touched before.
+struct FileBytes {
+    explicit FileBytes(const InputFile& file)
+        : bytes(std::make_unique_for_overwrite<char[]>(file.size())), size(file.size())
+    {
+        constexpr std::size_t kPiece = 1 << 22;
+        tbb::parallel_for(std::size_t{0}, (size + kPiece - 1) / kPiece, [&](std::size_t i) {
+            file.read(i * kPiece, bytes.get() + i * kPiece, std::min(kPiece, size - i * kPiece));
+        });
+    }
+    std::string_view view() const { return {bytes.get(), size}; }
+
+    std::unique_ptr<char[]> bytes;
+    std::size_t size;
+};
 
 ShapeFile parse_shape(std::string_view bytes, const std::string& name, const std::optional<Units>& units)
 {
@@ -29,7 +47,7 @@ ShapeFile parse_shape(std::string_view bytes, const std::string& name, const std
 
 ShapeFile read_shape(const std::string& path, const std::optional<Units>& units)
 {
-    return parse_shape(read_whole(path), display_name(path), units);
+    return parse_shape(FileBytes(InputFile(path)).view(), display_name(path), units);
 }
 
 const Eigen::Matrix3Xd& places_of(const MeshOrCloud& shape)
@@ -70,9 +88,7 @@ TestPoints open_test_points(const std::string& path, const std::optional<Units>&
         test.units = stream->units();
         return test;
     }
-    std::string bytes(file->size(), '\0');
-    file->read(0, bytes.data(), bytes.size());
-    const ShapeFile shape = parse_shape(bytes, display_name(path), units);
+    const ShapeFile shape = parse_shape(FileBytes(*file).view(), display_name(path), units);
     return test_points(shape.shape, shape.units);
 }
 

@@ -5,10 +5,12 @@
 #include "core/hilbert.h"
 #include "mesh/mesh_index.h"
 
+#include <Eigen/Geometry>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <utility>
 #include <variant>
@@ -105,17 +107,45 @@ class CloudMeasure {
     CloudReference surface_;
 };
 
-// Points that follow each other on the curve are near each other: what one of them touched is in the cache for the
-// next, and its foot is a good guess.
+// Of a surface that is scanned line by line the steps from point to point are about its spacing, a share 1/sqrt(N) of
+// its extent; so far above it they still are no leaps.
+constexpr double kCoherent = 4;
+
+bool coherent(const Eigen::Matrix3Xd& points)
+{
+    Eigen::AlignedBox3d box;
+    double way = 0;
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+        if (!std::isfinite(points.col(i).sum())) continue;
+        box.extend(points.col(i));
+        if (i > 0) {
+            const double step = (points.col(i) - points.col(i - 1)).norm();
+            way += std::isfinite(step) ? step : 0;
+        }
+    }
+    return !(way > kCoherent * box.sizes().norm() * std::sqrt(static_cast<double>(points.cols())));
+}
+
+/// In what order to measure. Points that follow each other are near each other then: what one of them touched is in the
+/// cache for the next, and its foot is a good guess.
+std::vector<std::uint32_t> order_of(const Eigen::Matrix3Xd& points)
+{
+    const auto count = static_cast<std::size_t>(points.cols());
+    if (!coherent(points))
+        return hilbert_order(
+            count, [&](std::size_t i) -> Eigen::Vector3d { return points.col(static_cast<Eigen::Index>(i)); });
+    std::vector<std::uint32_t> order(count);
+    std::iota(order.begin(), order.end(), 0u);
+    return order;
+}
+
 template <typename At>
 ErrorMap measure(const Eigen::Matrix3Xd& points, const At& at, bool mesh)
 {
     const Eigen::Index count = points.cols();
     ErrorMap map{Eigen::VectorXd(count), Eigen::Matrix3Xd(3, count), Eigen::Matrix3Xd(3, count),
                  Eigen::VectorXd(mesh ? count : 0), Eigen::VectorXd(mesh ? 0 : count)};
-    const std::vector<std::uint32_t> order =
-        hilbert_order(static_cast<std::size_t>(count),
-                      [&](std::size_t i) -> Eigen::Vector3d { return points.col(static_cast<Eigen::Index>(i)); });
+    const std::vector<std::uint32_t> order = order_of(points);
     constexpr std::size_t kShare = 512; // points of one task: many to a thread, but worth its beginning
     tbb::parallel_for(
         tbb::blocked_range<std::size_t>(0, order.size(), kShare),

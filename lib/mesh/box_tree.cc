@@ -1,13 +1,14 @@
 #include "mesh/box_tree.h"
 
-#include "core/hilbert.h"
-
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
+#include <span>
 
 namespace fettle {
 
@@ -75,6 +76,57 @@ std::vector<Boxes8> nodes_over(const std::vector<Child>& children)
     return nodes;
 }
 
+/// A triangle on its way to a leaf.
+struct Middle {
+    std::array<float, 3> at; ///< the middle of its corners
+    std::uint32_t triangle;
+};
+
+/// Puts what belongs to one subtree together: the range is cut in two across its longer side, at a whole number of the
+/// largest subtrees below it, until it fits a leaf.
+void arrange(std::span<Middle> range)
+{
+    if (range.size() <= kWide) return;
+    std::size_t whole = kWide;
+    while (whole * kWide < range.size()) whole *= kWide;
+    const std::size_t half = std::max((range.size() / 2 + whole / 2) / whole, std::size_t{1}) * whole;
+    Eigen::AlignedBox3f box;
+    for (const Middle& middle : range) box.extend(Eigen::Vector3f::Map(middle.at.data()));
+    int axis = 0;
+    box.sizes().maxCoeff(&axis);
+    const auto k = static_cast<std::size_t>(axis);
+    std::nth_element(range.begin(), range.begin() + static_cast<std::ptrdiff_t>(half), range.end(),
+                     [k](const Middle& a, const Middle& b) {
+                         return a.at[k] != b.at[k] ? a.at[k] < b.at[k] : a.triangle < b.triangle;
+                     });
+    const auto lower = [&] { arrange(range.first(half)); };
+    const auto upper = [&] { arrange(range.subspan(half)); };
+    constexpr std::size_t kParallel = 1 << 13; // smaller ranges are not worth a task
+    if (range.size() > kParallel) {
+        tbb::parallel_invoke(lower, upper);
+    } else {
+        lower();
+        upper();
+    }
+}
+
+/// The triangles in the order of the leaves.
+std::vector<std::uint32_t> order_of(const Mesh& mesh, const Eigen::Vector3d& centre)
+{
+    std::vector<Middle> middles(static_cast<std::size_t>(mesh.triangles.cols()));
+    tbb::parallel_for(std::size_t{0}, middles.size(), [&](std::size_t t) {
+        const Eigen::Vector3i corners = mesh.triangles.col(static_cast<Eigen::Index>(t));
+        const Eigen::Vector3d sum =
+            mesh.vertices.col(corners[0]) + mesh.vertices.col(corners[1]) + mesh.vertices.col(corners[2]);
+        Eigen::Vector3f::Map(middles[t].at.data()) = (sum / 3 - centre).cast<float>();
+        middles[t].triangle = static_cast<std::uint32_t>(t);
+    });
+    arrange(middles);
+    std::vector<std::uint32_t> order(middles.size());
+    std::transform(middles.begin(), middles.end(), order.begin(), [](const Middle& middle) { return middle.triangle; });
+    return order;
+}
+
 } // namespace
 
 BoxTree::BoxTree(const Mesh& mesh) : box(box_of(mesh))
@@ -83,10 +135,7 @@ BoxTree::BoxTree(const Mesh& mesh) : box(box_of(mesh))
     if (count == 0) return;
     centre = box.center();
     rounding = std::numeric_limits<float>::epsilon() * box.sizes().maxCoeff() / 2;
-    order = hilbert_order(count, [&](std::size_t t) -> Eigen::Vector3d {
-        const Eigen::Vector3i corners = mesh.triangles.col(static_cast<Eigen::Index>(t));
-        return (mesh.vertices.col(corners[0]) + mesh.vertices.col(corners[1]) + mesh.vertices.col(corners[2])) / 3;
-    });
+    order = order_of(mesh, centre);
     leaves.resize((count + kWide - 1) / kWide);
     tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t l) {
         for (std::size_t k = 0; k < kWide; ++k) {

@@ -27,8 +27,8 @@ struct Triangles8 {
     Float8 corner[3][3]; ///< corner, axis
 };
 
-/// The triangles of a mesh in the order of a Hilbert curve, eight to a leaf, eight leaves or nodes to a node: a packed
-/// tree without pointers (Kamel & Faloutsos, On packing R-trees, 1993). Node i of level l holds the boxes of its
+/// The triangles of a mesh, eight to a leaf, eight leaves or nodes to a node: a packed tree without pointers (Kamel &
+/// Faloutsos, On packing R-trees, 1993), in the order of a k-d tree. Node i of level l holds the boxes of its
 /// children, nodes 8 i to 8 i + 7 of level l - 1, or leaves for level 0; the last level is the root alone.
 /// Coordinates are floats about `centre`, where floats are finest; each is off by no more than `rounding`.
 struct BoxTree {

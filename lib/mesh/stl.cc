@@ -3,12 +3,12 @@
 #include "core/error.h"
 #include "core/lines.h"
 #include "core/text.h"
+#include "mesh/equal_corners.h"
 #include "mesh/mesh_file.h"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
-#include <bit>
 #include <cctype>
 #include <cmath>
 #include <cstdint>
@@ -25,7 +25,7 @@ constexpr std::size_t kHeader = 80;             // bytes of free text in a binar
 constexpr std::size_t kPrelude = kHeader + 4;   // and the number of triangles
 constexpr std::size_t kFacet = 12 * 4 + 2;      // normal, three corners, attribute
 constexpr std::size_t kCorners = 12;            // offset of the corners in a facet
-constexpr std::size_t kMostVertices = 1u << 31; // indices are ints
+constexpr std::size_t kMostVertices = 1u << 30; // indices are ints, and hash tables of them too
 
 std::uint32_t stated_triangles(std::string_view bytes)
 {
@@ -34,105 +34,31 @@ std::uint32_t stated_triangles(std::string_view bytes)
     return count;
 }
 
-/// Makes equal vertices one: a hash table with open addressing over the vertices found so far.
-class Welder {
-  public:
-    explicit Welder(std::size_t triangles)
+/// The corners in a binary file.
+struct BinaryCorners {
+    const char* facets;
+
+    Corner<float> operator()(std::uint32_t c) const
     {
-        triangles_.reserve(3 * triangles);
-        vertices_.reserve(3 * triangles / 2); // a closed mesh has half as many vertices as triangles
-        slots_.resize(std::bit_ceil(2 * triangles + 16), kEmpty);
+        Corner<float> corner;
+        std::memcpy(corner.data(), place(c), sizeof corner);
+        for (float& coordinate : corner) coordinate += 0.0f;
+        return corner;
     }
-
-    void add(const Eigen::Vector3d (&corners)[3])
+    void expect(std::uint32_t c) const { __builtin_prefetch(place(c)); }
+    const char* place(std::uint32_t c) const
     {
-        for (const Eigen::Vector3d& corner : corners)
-            if (!corner.allFinite()) {
-                ++repair_.dropped_triangles;
-                return;
-            }
-        for (const Eigen::Vector3d& corner : corners) triangles_.push_back(index_of(corner));
+        return facets + kFacet * (c / 3) + kCorners + sizeof(Corner<float>) * (c % 3);
     }
-
-    Mesh mesh() const
-    {
-        Mesh mesh;
-        mesh.vertices = Eigen::Map<const Eigen::Matrix3Xd>(vertices_.data(), 3, count());
-        mesh.triangles =
-            Eigen::Map<const Eigen::Matrix3Xi>(triangles_.data(), 3, static_cast<Eigen::Index>(triangles_.size() / 3));
-        return mesh;
-    }
-
-    MeshRepair repair() const
-    {
-        MeshRepair repair = repair_;
-        repair.welded_vertices = static_cast<Eigen::Index>(triangles_.size()) - count();
-        return repair;
-    }
-
-  private:
-    static constexpr int kEmpty = -1;
-
-    Eigen::Index count() const { return static_cast<Eigen::Index>(vertices_.size() / 3); }
-
-    static std::size_t hash(const Eigen::Vector3d& p)
-    {
-        std::uint64_t mixed = 0;
-        for (const double coordinate : {p.x(), p.y(), p.z()}) {
-            mixed ^= std::bit_cast<std::uint64_t>(coordinate);
-            mixed *= 0x9e3779b97f4a7c15; // 2^64 / golden ratio: spreads neighbours (Knuth)
-            mixed ^= mixed >> 32;
-        }
-        return mixed;
-    }
-
-    int index_of(const Eigen::Vector3d& corner)
-    {
-        const Eigen::Vector3d p = corner.array() + 0.0; // -0 becomes +0: they are equal but differ in their bits
-        if (2 * static_cast<std::size_t>(count()) >= slots_.size()) grow();
-        const std::size_t mask = slots_.size() - 1;
-        std::size_t slot = hash(p) & mask;
-        for (; slots_[slot] != kEmpty; slot = (slot + 1) & mask) {
-            const double* other = &vertices_[3 * static_cast<std::size_t>(slots_[slot])];
-            if (other[0] == p.x() && other[1] == p.y() && other[2] == p.z()) return slots_[slot];
-        }
-        slots_[slot] = static_cast<int>(count());
-        vertices_.insert(vertices_.end(), p.data(), p.data() + 3);
-        return slots_[slot];
-    }
-
-    void grow()
-    {
-        std::vector<int> wider(2 * slots_.size(), kEmpty);
-        const std::size_t mask = wider.size() - 1;
-        for (const int index : slots_) {
-            if (index == kEmpty) continue;
-            std::size_t slot =
-                hash(Eigen::Map<const Eigen::Vector3d>(&vertices_[3 * static_cast<std::size_t>(index)])) & mask;
-            while (wider[slot] != kEmpty) slot = (slot + 1) & mask;
-            wider[slot] = index;
-        }
-        slots_.swap(wider);
-    }
-
-    std::vector<double> vertices_;
-    std::vector<int> triangles_;
-    std::vector<int> slots_;
-    MeshRepair repair_;
 };
 
-Welder parse_binary(std::string_view bytes)
-{
-    Welder welder(stated_triangles(bytes));
-    for (const char* facet = bytes.data() + kPrelude; facet != bytes.data() + bytes.size(); facet += kFacet) {
-        float numbers[9];
-        std::memcpy(numbers, facet + kCorners, sizeof numbers);
-        Eigen::Vector3d corners[3];
-        for (int k = 0; k < 3; ++k) corners[k] = Eigen::Map<const Eigen::Vector3f>(numbers + 3 * k).cast<double>();
-        welder.add(corners);
-    }
-    return welder;
-}
+/// The corners of a text file.
+struct TextCorners {
+    const std::vector<Corner<double>>& corners;
+
+    const Corner<double>& operator()(std::uint32_t c) const { return corners[c]; }
+    void expect(std::uint32_t c) const { __builtin_prefetch(&corners[c]); }
+};
 
 bool same_word(std::string_view word, std::string_view lower_case)
 {
@@ -145,19 +71,19 @@ class AsciiStl {
   public:
     AsciiStl(std::string_view text, const std::string& source) : text_(text), source_(source) {}
 
-    Welder parse()
+    /// The corners of all facets.
+    std::vector<Corner<double>> parse()
     {
-        constexpr std::size_t kShortestFacet = 80; // bytes: the keywords alone, with single digits
-        Welder welder(text_.size() / kShortestFacet / 3);
+        std::vector<Corner<double>> corners;
         expect("solid");
         skip_line();
         for (;;) {
             const std::string_view word = next();
             if (same_word(word, "facet")) {
-                parse_facet(welder);
+                parse_facet(corners);
             } else if (same_word(word, "endsolid")) {
                 skip_line();
-                if (at_end()) return welder;
+                if (at_end()) return corners;
                 expect("solid");
                 skip_line();
             } else {
@@ -167,20 +93,19 @@ class AsciiStl {
     }
 
   private:
-    void parse_facet(Welder& welder)
+    void parse_facet(std::vector<Corner<double>>& corners)
     {
         expect("normal");
         for (int k = 0; k < 3; ++k) number(); // whatever it says: the corners tell
         expect("outer");
         expect("loop");
-        Eigen::Vector3d corners[3];
-        for (Eigen::Vector3d& corner : corners) {
+        for (int corner = 0; corner < 3; ++corner) {
             expect("vertex");
-            for (int k = 0; k < 3; ++k) corner[k] = number();
+            const double x = number(), y = number(), z = number();
+            corners.push_back({x + 0.0, y + 0.0, z + 0.0});
         }
         expect("endloop");
         expect("endfacet");
-        welder.add(corners);
     }
 
     std::string_view next()
@@ -262,9 +187,9 @@ Mesh parse_stl(std::string_view bytes, const std::string& source, MeshRepair& re
     if (!binary && !looks_like_ascii_stl(bytes)) throw InputError(source, size_problem(bytes));
     if (binary && 3 * std::size_t{stated_triangles(bytes)} >= kMostVertices)
         throw InputError(source, std::to_string(stated_triangles(bytes)) + " triangles are too many");
-    const Welder welder = binary ? parse_binary(bytes) : AsciiStl(bytes, source).parse();
-    repair = welder.repair();
-    return welder.mesh();
+    if (binary) return welded(stated_triangles(bytes), BinaryCorners{bytes.data() + kPrelude}, repair);
+    const std::vector<Corner<double>> corners = AsciiStl(bytes, source).parse();
+    return welded(corners.size() / 3, TextCorners{corners}, repair);
 }
 
 void write_stl(std::ostream& out, const Mesh& mesh, Units::Length unit)

@@ -1,0 +1,222 @@
+// Signed distances to a mesh beside the same by Embree's point query: preparation and query, all threads, in turn, so
+// that their ratio tells something on a busy machine too. A sample of the points is measured by brute force as well.
+//   of_embree     time of fettle / time of Embree        of_embree_cpu  the same of processor time
+//   worst_mm      largest difference from brute force    wrong_signs    of the sample
+
+#include "compare/pseudo_normals.h"
+#include "compare/signed_distance.h"
+#include "mesh/triangle.h"
+
+#include <benchmark/benchmark.h>
+#include <embree3/rtcore.h>
+#include <tbb/parallel_for.h>
+
+#include <chrono>
+#include <cmath>
+#include <ctime>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <random>
+
+using namespace fettle;
+
+namespace {
+
+constexpr double kTurn = 2 * std::numbers::pi;
+
+struct Scene {
+    Mesh mesh;
+    Eigen::Matrix3Xd points;
+};
+
+/// A grid of `across` x `along` cells over the unit square, closed in either direction or not.
+Mesh grid(int across, int along, bool closed, const std::function<Eigen::Vector3d(double, double)>& at)
+{
+    const int rows = along + (closed ? 0 : 1), columns = across + (closed ? 0 : 1);
+    Mesh mesh;
+    mesh.vertices.resize(3, rows * columns);
+    for (int j = 0; j < rows; ++j)
+        for (int i = 0; i < columns; ++i)
+            mesh.vertices.col(j * columns + i) =
+                at(static_cast<double>(i) / across, static_cast<double>(j) / along).cast<float>().cast<double>();
+    mesh.triangles.resize(3, 2 * across * along);
+    for (int j = 0; j < along; ++j)
+        for (int i = 0; i < across; ++i) {
+            const int right = (i + 1) % columns, up = (j + 1) % rows;
+            const int a = j * columns + i, b = j * columns + right, c = up * columns + right, d = up * columns + i;
+            mesh.triangles.col(2 * (j * across + i)) << a, b, c;
+            mesh.triangles.col(2 * (j * across + i) + 1) << a, c, d;
+        }
+    return mesh;
+}
+
+/// A wavy field of a million facets, scanned line by line within 0.5 mm.
+Scene wavy()
+{
+    const auto height = [](double x, double y) {
+        return 6 * std::sin(kTurn * x / 120) + 4 * std::cos(kTurn * y / 90) + std::sin(kTurn * (x + y) / 17);
+    };
+    Scene scene;
+    scene.mesh = grid(1000, 500, false,
+                      [&](double u, double v) { return Eigen::Vector3d(500 * u, 250 * v, height(500 * u, 250 * v)); });
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> jitter(0.1, 0.9), off(-0.5, 0.5);
+    scene.points.resize(3, 1000 * 1000);
+    for (int i = 0; i < 1000 * 1000; ++i) {
+        const double x = 1 + 0.498 * (i % 1000 + jitter(random)), y = 1 + 0.248 * (i / 1000 + jitter(random));
+        scene.points.col(i) << x, y, height(x, y) + off(random);
+    }
+    return scene;
+}
+
+/// A bumpy torus of 200 000 facets; half of the points near it, half anywhere, in no order.
+Scene torus()
+{
+    const auto at = [](double u, double v, double lift) -> Eigen::Vector3d {
+        const double r = 30 + 2 * std::sin(8 * kTurn * u) * std::sin(5 * kTurn * v) + lift;
+        const double ring = 100 + r * std::cos(kTurn * v);
+        return {ring * std::cos(kTurn * u), ring * std::sin(kTurn * u), r * std::sin(kTurn * v)};
+    };
+    Scene scene;
+    scene.mesh = grid(500, 200, true, [&](double u, double v) { return at(u, v, 0); });
+    std::mt19937 random(2);
+    std::uniform_real_distribution<double> unit(0, 1), side(-1, 1);
+    scene.points.resize(3, 500000);
+    for (Eigen::Index i = 0; i < scene.points.cols(); ++i)
+        if (random() % 2 == 0)
+            scene.points.col(i) = at(unit(random), unit(random), 2 * side(random));
+        else
+            scene.points.col(i) << 160 * side(random), 160 * side(random), 45 * side(random);
+    return scene;
+}
+
+struct Query {
+    const ReferenceMesh* reference;
+    Eigen::Vector3d point;
+    TrianglePoint nearest;
+    MeshIndex::Closest closest;
+};
+
+Triangle corners_of(const Mesh& mesh, Eigen::Index t)
+{
+    Triangle corners;
+    for (int k = 0; k < 3; ++k) corners.col(k) = mesh.vertices.col(mesh.triangles(k, t));
+    return corners;
+}
+
+void offer(Query& query, Eigen::Index t)
+{
+    const TrianglePoint found = closest_on_triangle(corners_of(query.reference->mesh, t), query.point);
+    if (found.squared_distance >= query.nearest.squared_distance) return;
+    query.nearest = found;
+    query.closest = {found.point, t, found.barycentric};
+}
+
+double signed_by(const PseudoNormals& normals, const Query& query)
+{
+    const Eigen::Vector3d offset = query.point - query.nearest.point;
+    return std::copysign(offset.norm(), offset.dot(normals.normal(query.closest)));
+}
+
+bool approach(RTCPointQueryFunctionArguments* arguments)
+{
+    Query& query = *static_cast<Query*>(arguments->userPtr);
+    offer(query, arguments->primID);
+    constexpr double kUp = 1 + 1e-6; // floats round
+    const auto radius = static_cast<float>(std::sqrt(query.nearest.squared_distance) * kUp);
+    if (radius >= arguments->query->radius) return false;
+    arguments->query->radius = radius;
+    return true;
+}
+
+Query query_at(const ReferenceMesh& reference, const Eigen::Vector3d& point)
+{
+    Query query{&reference, point, {}, {}};
+    query.nearest.squared_distance = std::numeric_limits<double>::infinity();
+    return query;
+}
+
+Eigen::VectorXd by_embree(const Scene& scene)
+{
+    const ReferenceMesh reference = reference_mesh(scene.mesh);
+    const PseudoNormals normals(reference);
+    const RTCDevice device = rtcNewDevice(nullptr);
+    const RTCScene tree = rtcNewScene(device);
+    const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    const Mesh& mesh = reference.mesh;
+    const auto buffer = [&](RTCBufferType type, RTCFormat format, Eigen::Index count) {
+        return rtcSetNewGeometryBuffer(geometry, type, 0, format, 12, static_cast<std::size_t>(count));
+    };
+    Eigen::Matrix3Xf::Map(static_cast<float*>(buffer(RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, mesh.vertices.cols())),
+                          3, mesh.vertices.cols()) = mesh.vertices.cast<float>();
+    Eigen::Matrix3Xi::Map(static_cast<int*>(buffer(RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, mesh.triangles.cols())), 3,
+                          mesh.triangles.cols()) = mesh.triangles;
+    rtcSetGeometryPointQueryFunction(geometry, approach);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(tree, geometry);
+    rtcCommitScene(tree);
+    Eigen::VectorXd errors(scene.points.cols());
+    tbb::parallel_for(Eigen::Index{0}, errors.size(), [&](Eigen::Index i) {
+        Query query = query_at(reference, scene.points.col(i));
+        RTCPointQuery sphere = {static_cast<float>(query.point.x()), static_cast<float>(query.point.y()),
+                                static_cast<float>(query.point.z()), 0, std::numeric_limits<float>::infinity()};
+        RTCPointQueryContext context;
+        rtcInitPointQueryContext(&context);
+        rtcPointQuery(tree, &sphere, &context, nullptr, &query);
+        errors[i] = signed_by(normals, query);
+    });
+    rtcReleaseGeometry(geometry);
+    rtcReleaseScene(tree);
+    rtcReleaseDevice(device);
+    return errors;
+}
+
+struct Stopwatch {
+    std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
+    std::clock_t cpu_start = std::clock();
+    double wall() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); }
+    double cpu() const { return static_cast<double>(std::clock() - cpu_start) / CLOCKS_PER_SEC; }
+};
+
+/// Differences of a sample from the nearest of all facets, each looked at.
+void check(benchmark::State& state, const Scene& scene, const Eigen::VectorXd& errors)
+{
+    const ReferenceMesh reference = reference_mesh(scene.mesh);
+    const PseudoNormals normals(reference);
+    double worst = 0, wrong = 0;
+    for (Eigen::Index i = 0; i < errors.size(); i += errors.size() / 50) {
+        Query query = query_at(reference, scene.points.col(i));
+        for (Eigen::Index t = 0; t < reference.mesh.triangles.cols(); ++t) offer(query, t);
+        const double exact = signed_by(normals, query);
+        worst = std::max(worst, std::abs(std::abs(exact) - std::abs(errors[i])));
+        wrong += exact * errors[i] < 0;
+    }
+    state.counters["worst_mm"] = worst;
+    state.counters["wrong_signs"] = wrong;
+}
+
+void signed_distances(benchmark::State& state, const std::function<Scene()>& make)
+{
+    const Scene scene = make();
+    double wall = 0, cpu = 0, embree_wall = 0, embree_cpu = 0;
+    Eigen::VectorXd errors;
+    for (auto _ : state) {
+        const Stopwatch ours;
+        errors = signed_distance(scene.points, scene.mesh).error;
+        wall += ours.wall();
+        cpu += ours.cpu();
+        state.SetIterationTime(ours.wall());
+        const Stopwatch theirs;
+        benchmark::DoNotOptimize(by_embree(scene));
+        embree_wall += theirs.wall();
+        embree_cpu += theirs.cpu();
+    }
+    state.counters["of_embree"] = wall / embree_wall;
+    state.counters["of_embree_cpu"] = cpu / embree_cpu;
+    check(state, scene, errors);
+}
+BENCHMARK_CAPTURE(signed_distances, wavy, wavy)->UseManualTime()->Iterations(3)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(signed_distances, torus, torus)->UseManualTime()->Iterations(3)->Unit(benchmark::kMillisecond);
+
+} // namespace
