@@ -128,39 +128,63 @@ Bspline grid_over(const Extent& extent, const Job& job, const Eigen::Matrix2d& r
     return grid;
 }
 
-/// Whole cells by their middles, as far as no edge comes near.
-std::vector<DensePoints::Cell> classified(const DensePoints& points, const Eigen::Matrix2d& rotation)
+/// Of the points within `reach` of a place. @param w  W
+DensePoints::Cell kind_about(const Boundaries& region, const Vector2d& w, double reach)
 {
+    const Polygon& B = region.anomaly;
+    const Polygon& S = region.sampling;
+    const bool anomaly_near = distance_to_edge(B, w) <= reach;
+    const bool sampling_near = S.cols() > 0 && distance_to_edge(S, w) <= reach;
+    if (anomaly_near && sampling_near) return DensePoints::edge_of_both;
+    if (!anomaly_near && contains(B, w)) return DensePoints::drop_anomaly;
+    if (!sampling_near && S.cols() > 0 && !contains(S, w)) return DensePoints::drop_outside;
+    if (anomaly_near) return DensePoints::edge_of_anomaly;
+    return sampling_near ? DensePoints::edge_of_sampling : DensePoints::take;
+}
+
+/// Whole cells by their middles, as far as no edge comes near; parts of the others likewise.
+void classify(DensePoints& points, const Eigen::Matrix2d& rotation)
+{
+    constexpr int kParts = DensePoints::kParts;
     const Index cells_u = points.grid.heights.rows() - 3, cells_v = points.grid.heights.cols() - 3;
-    std::vector<DensePoints::Cell> cells(static_cast<std::size_t>(cells_u * cells_v), DensePoints::take);
-    const Polygon& B = points.region.anomaly;
-    const Polygon& S = points.region.sampling;
-    if (B.cols() == 0) return cells;
+    points.cells.assign(static_cast<std::size_t>(cells_u * cells_v), DensePoints::take);
+    points.first_part.assign(points.cells.size(), -1);
+    if (points.region.anomaly.cols() == 0) return;
     const double reach = points.grid.cell.norm() / 2;
-    tbb::parallel_for(Index{0}, cells_u * cells_v, [&](Index k) {
-        const Vector2d middle(static_cast<double>(k % cells_u) + 0.5, static_cast<double>(k / cells_u) + 0.5);
-        const Vector2d w = rotation * place_in(points.grid, middle);
-        const bool anomaly_near = distance_to_edge(B, w) <= reach;
-        const bool sampling_near = S.cols() > 0 && distance_to_edge(S, w) <= reach;
-        DensePoints::Cell& cell = cells[static_cast<std::size_t>(k)];
-        if (anomaly_near && sampling_near)
-            cell = DensePoints::edge_of_both;
-        else if (!anomaly_near && contains(B, w))
-            cell = DensePoints::drop_anomaly;
-        else if (!sampling_near && S.cols() > 0 && !contains(S, w))
-            cell = DensePoints::drop_outside;
-        else if (anomaly_near || sampling_near)
-            cell = anomaly_near ? DensePoints::edge_of_anomaly : DensePoints::edge_of_sampling;
+    const auto kind = [&](std::size_t cell, const Vector2d& inside, double near) {
+        const auto k = static_cast<Index>(cell);
+        const Vector2d corner(static_cast<double>(k % cells_u), static_cast<double>(k / cells_u));
+        return kind_about(points.region, rotation * place_in(points.grid, corner + inside), near);
+    };
+    tbb::parallel_for(std::size_t{0}, points.cells.size(), [&](std::size_t k) {
+        points.cells[k] = kind(k, {0.5, 0.5}, reach);
     });
-    return cells;
+    std::vector<std::size_t> crossed;
+    for (std::size_t k = 0; k < points.cells.size(); ++k) {
+        if (points.cells[k] <= DensePoints::drop_outside) continue;
+        points.first_part[k] = static_cast<std::int32_t>(kParts * kParts * crossed.size());
+        crossed.push_back(k);
+    }
+    points.parts.resize(kParts * kParts * crossed.size());
+    tbb::parallel_for(std::size_t{0}, points.parts.size(), [&](std::size_t part) {
+        const auto i = static_cast<int>(part % (kParts * kParts));
+        const Vector2d middle((i % kParts + 0.5) / kParts, (i / kParts + 0.5) / kParts);
+        points.parts[part] = kind(crossed[part / (kParts * kParts)], middle, reach / kParts);
+    });
 }
 
 /// A point on the rectangle's far edge belongs to the last cell.
 std::int32_t cell_at(double u, std::int32_t cells) { return std::min(static_cast<std::int32_t>(u), cells - 1); }
 
-/// @param kind  of the point's cell  @param w  W
-DensePoints::Cell kind_of(const Boundaries& region, DensePoints::Cell kind, const Vector2d& w)
+/// Of a point in a cell that edges cross. @param u, v  from the cell's corner, in cells  @param w  W
+DensePoints::Cell kind_of(const DensePoints& points, std::int32_t cell, double u, double v, const Vector2d& w)
 {
+    constexpr int kParts = DensePoints::kParts;
+    const std::int32_t row = cell_at(kParts * u, kParts), column = cell_at(kParts * v, kParts);
+    const std::int32_t part = points.first_part[static_cast<std::size_t>(cell)] + kParts * column + row;
+    const DensePoints::Cell kind = points.parts[static_cast<std::size_t>(part)];
+    if (kind <= DensePoints::drop_outside) return kind;
+    const Boundaries& region = points.region;
     const bool by_anomaly = kind == DensePoints::edge_of_anomaly || kind == DensePoints::edge_of_both;
     const bool by_sampling = kind == DensePoints::edge_of_sampling || kind == DensePoints::edge_of_both;
     if (by_anomaly && contains(region.anomaly, w)) return DensePoints::drop_anomaly;
@@ -187,7 +211,7 @@ Vector2d place_in(const Bspline& grid, const Vector2d& uv)
 
 DensePoints dense_points(const PointSource& source, const Job& job, bool use_boundary, const std::string& name)
 {
-    DensePoints points{source, use_boundary, {}, {}, {}, 0};
+    DensePoints points{source, use_boundary, {}, {}, {}, {}, {}, 0};
     if (!source.has_roles) points.region = boundaries(job);
     const Eigen::Matrix2d rotation = rotation_working_machine(job.theta);
     const Extent extent = extent_of(points, rotation, rotation * job.anomaly.topRows<2>().rowwise().mean());
@@ -196,7 +220,7 @@ DensePoints dense_points(const PointSource& source, const Job& job, bool use_bou
                                    " is no role (0 to 5)");
     refuse_few(extent, job, name, source.points);
     points.grid = grid_over(extent, job, rotation);
-    points.cells = classified(points, rotation);
+    classify(points, rotation);
     points.largest = extent.largest;
     return points;
 }
@@ -229,7 +253,7 @@ void locate(const DensePoints& points, const PointBlock& block, std::vector<Cell
         const std::int32_t cell = column * cells_u + row;
         DensePoints::Cell kind = points.cells[static_cast<std::size_t>(cell)];
         if (kind > DensePoints::drop_outside)
-            kind = kind_of(points.region, kind, {c * p[0] + s * p[1], c * p[1] - s * p[0]});
+            kind = kind_of(points, cell, u - row, v - column, {c * p[0] + s * p[1], c * p[1] - s * p[0]});
         if (kind == DensePoints::take)
             into.push_back({cell, u - row - 0.5, v - column - 0.5, p[2]});
         else

@@ -54,10 +54,13 @@ struct DensePoints {
     Boundaries region;         ///< W; both empty with roles
     Bspline grid;              ///< aligned with W, around B and the points; its heights are 0
 
-    /// Of a cell: what its points are, as far as they are all alike; else which edges cross it.
+    /// Of a cell or a part of one: what its points are, as far as they are all alike; else which edges cross it.
     enum Cell : std::uint8_t { take, drop_anomaly, drop_outside, edge_of_anomaly, edge_of_sampling, edge_of_both };
-    std::vector<Cell> cells; ///< column-major
-    double largest = 0;      ///< |coordinate|, mm
+    std::vector<Cell> cells;              ///< column-major
+    static constexpr int kParts = 8;      ///< along a side of a cell that edges cross
+    std::vector<Cell> parts;              ///< kParts x kParts of each such cell, column-major
+    std::vector<std::int32_t> first_part; ///< of each cell, in `parts`; -1: it has none
+    double largest = 0;                   ///< |coordinate|, mm
 };
 
 /// Reads the points once to see where they lie.
