@@ -28,24 +28,39 @@ constexpr double kLeastRatio = 0.3;
 constexpr int kRatios = 25;
 constexpr double kRatioStep = 1.6487212707001282;
 
-/// One length, as independent numbers: y_i ~ N(0, σ² + τ² λ_i).
+/// Smooth without end (squared exponential), or twice differentiable (Matérn's of 5/2), which trusts waves less to go
+/// on beneath the anomaly as they do between the touches.
+enum class Roughness { none, matern };
+
+struct Correlation {
+    Roughness roughness = Roughness::none;
+    double length = 0; ///< mm
+};
+
+/// One correlation, as independent numbers: y_i ~ N(0, σ² + τ² λ_i).
 struct Spectrum {
-    double length = 0;  ///< mm
     VectorXd lambda, y; ///< y over σ
 };
 
-/// A hypothesis that has weight.
 struct Hypothesis {
-    double length = 0; ///< mm
-    double tau = 0;    ///< mm
+    Correlation correlation;
+    double tau = 0; ///< mm
     double score = 0;
 };
 
-MatrixXd correlation(const Matrix2Xd& a, const Matrix2Xd& b, double length)
+MatrixXd correlations(const Correlation& correlation, const Matrix2Xd& a, const Matrix2Xd& b)
 {
+    const double length = correlation.length;
     MatrixXd K(a.cols(), b.cols());
-    for (Index j = 0; j < b.cols(); ++j)
-        K.col(j) = ((a.colwise() - b.col(j)).colwise().squaredNorm().array() / (-2 * length * length)).exp();
+    for (Index j = 0; j < b.cols(); ++j) {
+        const Eigen::ArrayXd squared = (a.colwise() - b.col(j)).colwise().squaredNorm().array() / (length * length);
+        if (correlation.roughness == Roughness::none) {
+            K.col(j) = (squared / -2).exp();
+        } else {
+            const Eigen::ArrayXd r = (5 * squared).sqrt();
+            K.col(j) = (1 + r + r.square() / 3) * (-r).exp();
+        }
+    }
     return K;
 }
 
@@ -68,15 +83,15 @@ Problem part_of(const Problem& all, const Columns& kept)
     return {all.xy(Eigen::all, kept), all.z(kept), all.sigma, all.F(kept, Eigen::all)};
 }
 
-Spectrum spectrum(const Problem& problem, double length, const MatrixXd& rest)
+Spectrum spectrum(const Problem& problem, const Correlation& correlation, const MatrixXd& rest)
 {
-    const MatrixXd K = rest.transpose() * correlation(problem.xy, problem.xy, length) * rest;
+    const MatrixXd K = rest.transpose() * correlations(correlation, problem.xy, problem.xy) * rest;
     const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(K);
-    return {length, eigen.eigenvalues().cwiseMax(0),
+    return {eigen.eigenvalues().cwiseMax(0),
             eigen.eigenvectors().transpose() * (rest.transpose() * problem.z) / problem.sigma};
 }
 
-/// All lengths and amplitudes. Scores as the families': -2 ln restricted likelihood + p ln n, from that of σ.
+/// All correlations and amplitudes. Scores as the families': -2 ln restricted likelihood + p ln n, from that of σ.
 std::vector<Hypothesis> hypotheses(const Problem& problem)
 {
     std::vector<Hypothesis> all;
@@ -84,15 +99,18 @@ std::vector<Hypothesis> hypotheses(const Problem& problem)
     const Index n = problem.F.rows(), p = problem.F.cols();
     const double price = static_cast<double>(p) * std::log(static_cast<double>(n));
     const MatrixXd Q = Eigen::HouseholderQR<MatrixXd>(problem.F).householderQ() * MatrixXd::Identity(n, n);
-    for (const double length : kLengths) {
-        const Spectrum s = spectrum(problem, length * half, Q.rightCols(n - p));
-        double ratio = kLeastRatio;
-        for (int i = 0; i < kRatios; ++i, ratio *= kRatioStep) {
-            const Eigen::ArrayXd variance = 1 + ratio * ratio * s.lambda.array();
-            const double score = variance.log().sum() + (s.y.array().square() / variance).sum() + price;
-            all.push_back({s.length, ratio * problem.sigma, score});
+    const MatrixXd rest = Q.rightCols(n - p);
+    for (const Roughness roughness : {Roughness::none, Roughness::matern})
+        for (const double length : kLengths) {
+            const Correlation correlation{roughness, length * half};
+            const Spectrum s = spectrum(problem, correlation, rest);
+            double ratio = kLeastRatio;
+            for (int i = 0; i < kRatios; ++i, ratio *= kRatioStep) {
+                const Eigen::ArrayXd variance = 1 + ratio * ratio * s.lambda.array();
+                const double score = variance.log().sum() + (s.y.array().square() / variance).sum() + price;
+                all.push_back({correlation, ratio * problem.sigma, score});
+            }
         }
-    }
     return all;
 }
 
@@ -114,7 +132,7 @@ struct Given {
 Given given(const Problem& problem, const Hypothesis& h)
 {
     Given g;
-    MatrixXd C = h.tau * h.tau * correlation(problem.xy, problem.xy, h.length);
+    MatrixXd C = h.tau * h.tau * correlations(h.correlation, problem.xy, problem.xy);
     C.diagonal().array() += problem.sigma * problem.sigma;
     g.C.compute(C);
     g.CF = g.C.solve(problem.F);
@@ -180,13 +198,13 @@ Field field_of(const Problem& problem, const Hypothesis& h, const Matrix2Xd& nod
 {
     const Given g = given(problem, h);
     const double t2 = h.tau * h.tau;
-    const MatrixXd K = t2 * correlation(nodes, problem.xy, h.length); // N x n
+    const MatrixXd K = t2 * correlations(h.correlation, nodes, problem.xy); // N x n
     Field field;
     field.mean = F_nodes * g.beta + K * g.alpha;
     const MatrixXd half = g.C.matrixL().solve(K.transpose());
     const MatrixXd D = F_nodes - K * g.CF;
     const MatrixXd half_D = g.FCF.matrixL().solve(D.transpose());
-    field.covariance = t2 * correlation(nodes, nodes, h.length);
+    field.covariance = t2 * correlations(h.correlation, nodes, nodes);
     field.covariance.noalias() -= half.transpose() * half;
     field.covariance.noalias() += half_D.transpose() * half_D;
     return field;
