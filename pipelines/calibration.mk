@@ -11,17 +11,19 @@ B           ?= build
 CELLS       ?= 1000
 SEED        ?= 1
 CALIBRATION ?= $(B)/calibration/cells-$(CELLS)/$(SEED)
-FAMILIES    := plane sphere_convex sphere_concave cylinder cylinder_turned saddle saddle_turned cone torus hull
+FAMILIES    := plane sphere_convex sphere_concave cylinder cylinder_turned saddle saddle_turned cone
+NEAR        := torus hull
 OTHERS      := bump wave franke1 franke3
 
 .PHONY: calibration
-calibration: $(FAMILIES:%=$(CALIBRATION)/%.csv) $(OTHERS:%=$(CALIBRATION)/%.csv)
-	@pipelines/calibration-table $(CALIBRATION) "$(FAMILIES)" "$(OTHERS)"
+calibration: $(patsubst %,$(CALIBRATION)/%.csv,$(FAMILIES) $(NEAR) $(OTHERS))
+	@pipelines/calibration-table $(CALIBRATION) "$(FAMILIES)" "$(NEAR)" "$(OTHERS)"
 
 include pipelines/step.mk
 
-$(FAMILIES:%=$(CALIBRATION)/%.csv): $(CALIBRATION)/%.csv: $(B)/study/calibration
-	$(call step,$< $* $(CELLS) $(SEED) auto limit > $@.part)
+$(FAMILIES:%=$(CALIBRATION)/%.csv): METHODS := auto limit
+$(NEAR:%=$(CALIBRATION)/%.csv): METHODS := auto limit gp griddata
+$(OTHERS:%=$(CALIBRATION)/%.csv): METHODS := auto gp griddata
 
-$(OTHERS:%=$(CALIBRATION)/%.csv): $(CALIBRATION)/%.csv: $(B)/study/calibration
-	$(call step,$< $* $(CELLS) $(SEED) auto gp griddata > $@.part)
+$(CALIBRATION)/%.csv: $(B)/study/calibration
+	$(call step,$< $* $(CELLS) $(SEED) $(METHODS) > $@.part)
