@@ -101,7 +101,8 @@ Reference make_reference(MeshOrCloud shape, const DistanceOptions& options)
 
 void write_histogram(std::ostream& out, const Histogram& histogram, const Units& units)
 {
-    const double limit = histogram.limit / units.mm(), width = 2 * limit / static_cast<double>(histogram.counts.size());
+    const double limit = histogram.limit / units.mm();
+    const double width = 2 * limit / static_cast<double>(histogram.counts.size());
     out << "from,to,count\n-inf," << to_text(-limit) << ',' << histogram.below << '\n';
     for (std::size_t i = 0; i < histogram.counts.size(); ++i)
         out << to_text(-limit + width * static_cast<double>(i)) << ','
@@ -164,9 +165,10 @@ int main(int argc, char** argv)
         const std::string& direction = t.text("--direction", "", "X,Y,Z", "Of --mode direction, out of the material");
         const auto& max_distance =
             t.number_if_given("--max-distance", "LENGTH", "No error beyond it", Range::positive());
-        const std::string& winding = t.choice("--winding", "mend", {"mend", "keep"},
-                                              "Turn facets of a mesh that disagree with most, and closed meshes that "
-                                              "are inside out");
+        const std::string& winding =
+            t.choice("--winding", "mend", {"mend", "keep", "turn"},
+                     "Of a mesh: turn facets that disagree with most and closed pieces that are inside out; keep all; "
+                     "or turn an open mesh over");
         const std::string& reverse = t.text("--reverse", "", "FILE",
                                             "Also the error map of the reference's points against TEST; + is "
                                             "material left, too");
@@ -190,7 +192,9 @@ int main(int argc, char** argv)
         if (!job_path.empty()) options.job = read_job(job_path);
         set_fields(options, fields);
         options.distance = distance_options(mode, direction);
-        options.distance.mend_winding = winding == "mend";
+        options.distance.winding = winding == "mend"   ? Winding::mend
+                                   : winding == "turn" ? Winding::turn
+                                                       : Winding::keep;
         options.bins = bins;
         options.memory = static_cast<std::size_t>(memory) << 20;
         const CloudFormat written = format_of(format, ascii);
@@ -229,7 +233,7 @@ int main(int argc, char** argv)
         }
         if (!csv.empty()) write_csv(t.output_file(csv), rows_of(comparisons), units);
         if (!histogram.empty()) write_histogram(t.output_file(histogram), comparisons.front().histogram, units);
-        if (reference.repair().flipped_facets > 0)
+        if (reference.repair().flipped_facets > 0 && winding == "mend")
             t.warn(display_name(reference_path) + ": " + std::to_string(reference.repair().flipped_facets) +
                    " facets are turned over (--winding)");
         if (!options.tolerance) return Verdict::yes;

@@ -98,7 +98,7 @@ double ReferenceMesh::rounding(const Eigen::Vector3d& place) const
     return float_rounding(std::max(size, place.cwiseAbs().maxCoeff()));
 }
 
-ReferenceMesh reference_mesh(Mesh mesh, bool mend_winding)
+ReferenceMesh reference_mesh(Mesh mesh, Winding winding)
 {
     ReferenceMesh reference;
     reference.mesh = std::move(mesh);
@@ -110,13 +110,16 @@ ReferenceMesh reference_mesh(Mesh mesh, bool mend_winding)
     if (reference.repair.welded_vertices > 0) gaps = open();
     drop_repeated(reference, gaps);
     if (reference.repair.repeated_facets > 0) gaps = open();
-    if (!mend_winding) return reference;
-    const std::vector<std::uint32_t> turned = wrongly_wound(reference.mesh.vertices, reference.facets(), gaps);
-    for (const std::uint32_t t : turned) {
+    if (winding == Winding::keep) return reference;
+    std::vector<bool> turn(static_cast<std::size_t>(reference.mesh.triangles.cols()), winding == Winding::turn);
+    for (const std::uint32_t t : wrongly_wound(reference.mesh.vertices, reference.facets(), gaps)) turn[t].flip();
+    for (std::size_t i = 0; i < turn.size(); ++i) {
+        if (!turn[i]) continue;
+        const auto t = static_cast<Eigen::Index>(i);
         std::swap(reference.mesh.triangles(1, t), reference.mesh.triangles(2, t));
         if (reference.welded.cols() > 0) std::swap(reference.welded(1, t), reference.welded(2, t));
+        ++reference.repair.flipped_facets;
     }
-    reference.repair.flipped_facets = static_cast<Eigen::Index>(turned.size());
     return reference;
 }
 

@@ -17,6 +17,13 @@ struct ReferenceRepair {
     Eigen::Index flipped_facets = 0;
 };
 
+/// Which way round facets are taken.
+enum class Winding {
+    mend, ///< as most of their connected piece; closed pieces with their outer side out
+    keep, ///< as they are
+    turn, ///< mended, then all turned over: for an open mesh that is inside out, of which nobody else can know
+};
+
 /// A mesh as it is compared to: vertices that agree within the rounding of floats count as one, so that cracks are no
 /// borders; what stands twice stands once; windings agree.
 struct ReferenceMesh {
@@ -38,7 +45,6 @@ struct ReferenceMesh {
 /// Only vertices whose facets leave a gap are welded. Of facets that share an edge the way round that most of their
 /// connected area has is taken for right; a closed piece that is inside out and not in another one's box, where it
 /// might be a cavity, is turned.
-/// @param mend_winding  false: facets stay as they are
-ReferenceMesh reference_mesh(Mesh mesh, bool mend_winding = true);
+ReferenceMesh reference_mesh(Mesh mesh, Winding winding = Winding::mend);
 
 } // namespace fettle

@@ -33,8 +33,7 @@ struct Measured {
 class MeshReference {
   public:
     MeshReference(Mesh mesh, const DistanceOptions& options)
-        : options_(options),
-          mesh_(std::make_unique<ReferenceMesh>(reference_mesh(std::move(mesh), options.mend_winding))),
+        : options_(options), mesh_(std::make_unique<ReferenceMesh>(reference_mesh(std::move(mesh), options.winding))),
           index_(mesh_->mesh), normals_(*mesh_)
     {
     }

@@ -21,7 +21,7 @@ struct DistanceOptions {
     DistanceMode mode = DistanceMode::normal;
     Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();          ///< unit, out of the material
     double max_distance = std::numeric_limits<double>::infinity(); ///< beyond it the error is undefined, mm
-    bool mend_winding = true;                                      ///< of a mesh (reference_mesh.h)
+    Winding winding = Winding::mend;                               ///< of a mesh
 };
 
 /// The signed distance of test points from a reference. Where the reference says nothing (beyond an open border or

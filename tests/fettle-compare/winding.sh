@@ -12,3 +12,6 @@ for mesh in sound mixed inside-out; do
         cat err
     done
 done
+# An open mesh that is inside out is turned on request.
+printf 'v 0 0 0\nv 10 0 0\nv 10 10 0\nv 0 10 0\nf 4 3 2 1\n' >plate.obj
+for winding in mend turn; do fettle-compare test.xyz --to plate.obj --winding $winding --format csv | tail -n 1 | cut -d , -f 7; done

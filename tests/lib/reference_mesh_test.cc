@@ -68,7 +68,7 @@ TEST(ReferenceMesh, MinorityOfWindingsIsTurned)
         EXPECT_EQ(reference_mesh(mesh).repair.flipped_facets, wrong);
         EXPECT_NEAR(error_at(mesh, {0.9, 0.2, 0.1}), -0.1, 1e-14);
         EXPECT_NEAR(error_at(mesh, {1.1, 0.2, 0.1}), 0.1, 1e-14);
-        EXPECT_EQ(reference_mesh(mesh, false).repair.flipped_facets, 0);
+        EXPECT_EQ(reference_mesh(mesh, Winding::keep).repair.flipped_facets, 0);
     }
 }
 
@@ -94,8 +94,21 @@ TEST(ReferenceMesh, ClosedPiecesAreTurnedOutsideOut)
     EXPECT_EQ(error_at(mesh, {5, 0, 0.25}), -0.75);
     EXPECT_EQ(error_at(mesh, {0, 0, 0.25}), -0.75);
     DistanceOptions keep;
-    keep.mend_winding = false;
+    keep.winding = Winding::keep;
     EXPECT_EQ(error_at(mesh, {5, 0, 0.25}, keep), 0.75);
+}
+
+// Nobody can tell that an open mesh is inside out but who knows the part.
+TEST(ReferenceMesh, OpenMeshesAreTurnedOnRequest)
+{
+    Mesh mesh = inside_out(cube(1));
+    mesh.triangles.conservativeResize(3, 10);
+    turn(mesh, 4);
+    DistanceOptions options;
+    EXPECT_NEAR(error_at(mesh, {-0.9, 0.1, 0.2}, options), 0.1, 1e-14);
+    options.winding = Winding::turn;
+    EXPECT_NEAR(error_at(mesh, {-0.9, 0.1, 0.2}, options), -0.1, 1e-14);
+    EXPECT_EQ(reference_mesh(mesh, Winding::turn).repair.flipped_facets, 9);
 }
 
 // A cavity is wound inside out by right: its surface faces the hollow.
