@@ -9,6 +9,8 @@
 #include <limits>
 #include <numbers>
 #include <random>
+#include <utility>
+#include <vector>
 
 namespace fettle {
 namespace {
@@ -188,6 +190,75 @@ TEST(SignedDistance, NothingBeyondAnOpenBorder)
         EXPECT_TRUE(map.normal.col(i).array().isNaN().all()) << i;
     }
     EXPECT_NEAR(map.error[6], 0, 1e-6);
+}
+
+// Quadrilaterals over shared corners, each cut in two.
+Mesh of_quads(const Eigen::Matrix3Xd& corners, const std::vector<Eigen::Vector4i>& quads)
+{
+    Mesh mesh;
+    mesh.vertices = corners;
+    mesh.triangles.resize(3, 2 * static_cast<Eigen::Index>(quads.size()));
+    for (std::size_t q = 0; q < quads.size(); ++q) {
+        const auto t = 2 * static_cast<Eigen::Index>(q);
+        mesh.triangles.col(t) << quads[q][0], quads[q][1], quads[q][2];
+        mesh.triangles.col(t + 1) << quads[q][0], quads[q][2], quads[q][3];
+    }
+    return mesh;
+}
+
+// Corners of a profile in x-z at y = 0 and y = 10: 2 i and 2 i + 1.
+Eigen::Matrix3Xd extruded(const std::vector<Eigen::Vector2d>& profile)
+{
+    Eigen::Matrix3Xd corners(3, 2 * static_cast<Eigen::Index>(profile.size()));
+    for (std::size_t i = 0; i < profile.size(); ++i)
+        for (int side = 0; side < 2; ++side)
+            corners.col(2 * static_cast<Eigen::Index>(i) + side) << profile[i].x(), 10 * side, profile[i].y();
+    return corners;
+}
+
+void expect_errors(const Mesh& mesh, const std::vector<std::pair<Eigen::Vector3d, double>>& expected)
+{
+    for (const auto& [point, error] : expected) {
+        const double found = signed_distance(point, mesh).error[0];
+        if (std::isnan(error))
+            EXPECT_TRUE(std::isnan(found)) << point.transpose();
+        else
+            EXPECT_NEAR(found, error, 1e-14) << point.transpose();
+    }
+}
+
+// A step of 2 with its wall at x = 5, material below; distances and sides by hand.
+TEST(SignedDistance, OfAStep)
+{
+    const Mesh step = of_quads(extruded({{0, 0}, {5, 0}, {5, 2}, {10, 2}}), {{0, 2, 3, 1}, {2, 4, 5, 3}, {4, 6, 7, 5}});
+    expect_errors(step, {{{2, 5, 0.5}, 0.5},
+                         {{2, 5, -0.25}, -0.25},
+                         {{8, 5, 2.5}, 0.5},
+                         {{4.5, 5, 1.5}, 0.5},                // before the wall
+                         {{5.5, 5, 1.75}, -0.25},             // in the material, under the top
+                         {{5.25, 5, 1}, -0.25},               // behind the wall
+                         {{4.75, 5, 0.25}, 0.25},             // in the inner edge: wall and ground are as near
+                         {{4.5, 5, 2.5}, std::sqrt(0.5)},     // beyond the outer edge
+                         {{5.5, 5, -0.5}, -std::sqrt(0.5)}}); // below the inner edge
+}
+
+// Two plates with a slot between them, 4 < x < 6: over the slot there is no surface to be far from.
+TEST(SignedDistance, OverAGap)
+{
+    const Mesh plates = of_quads(extruded({{0, 0}, {4, 0}, {6, 0}, {10, 0}}), {{0, 2, 3, 1}, {4, 6, 7, 5}});
+    expect_errors(plates, {{{3.75, 5, 0.5}, 0.5},
+                           {{4, 5, -0.5}, -0.5},
+                           {{4.25, 5, 0.5}, kNaN},
+                           {{5, 5, 0}, kNaN},
+                           {{5.75, 5, -0.5}, kNaN},
+                           {{6, 5, 0.25}, 0.25}});
+}
+
+// A plate with a fin on top: three facets at one edge, which is no border.
+TEST(SignedDistance, OfAnEdgeOfThreeFacets)
+{
+    const Mesh fin = of_quads(extruded({{-5, 0}, {0, 0}, {5, 0}, {0, 3}}), {{0, 2, 3, 1}, {2, 4, 5, 3}, {2, 6, 7, 3}});
+    expect_errors(fin, {{{0, 5, -0.5}, -0.5}, {{-1, 5, 0.25}, 0.25}, {{2, 5, -1}, -1}, {{1, 5, 0.5}, 0.5}});
 }
 
 TEST(SignedDistance, NothingBeyondMaxDistance)
