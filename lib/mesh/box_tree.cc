@@ -96,9 +96,7 @@ void arrange(std::span<Middle> range)
     box.sizes().maxCoeff(&axis);
     const auto k = static_cast<std::size_t>(axis);
     std::nth_element(range.begin(), range.begin() + static_cast<std::ptrdiff_t>(half), range.end(),
-                     [k](const Middle& a, const Middle& b) {
-                         return a.at[k] != b.at[k] ? a.at[k] < b.at[k] : a.triangle < b.triangle;
-                     });
+                     [k](const Middle& a, const Middle& b) { return a.at[k] < b.at[k]; });
     const auto lower = [&] { arrange(range.first(half)); };
     const auto upper = [&] { arrange(range.subspan(half)); };
     constexpr std::size_t kParallel = 1 << 13; // smaller ranges are not worth a task
