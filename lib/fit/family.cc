@@ -29,6 +29,7 @@ constexpr double kLeastGoodness = 1e-3;
 struct Judged {
     VectorXd chi;      ///< r/σ
     VectorXd leverage; ///< of the kept: share of a touch's error that its fitted height follows; others: σ(height)²/σ²
+    MatrixXd moves;    ///< W: Wᵀ W is by how much the heights follow the errors of the kept touches
     MatrixXd covariance; ///< of θ over σ²
     Index parameters = 0;
 };
@@ -50,7 +51,8 @@ std::optional<Judged> judge(const FamilySolution& solution, const Touched& touch
     judged.covariance = root * root.transpose();
     judged.parameters = p;
     if (solution.free.size() > 0) judged.covariance = solution.free * judged.covariance * solution.free.transpose();
-    judged.leverage = (root.transpose() * G).colwise().squaredNorm();
+    judged.moves = root.transpose() * G;
+    judged.leverage = judged.moves.colwise().squaredNorm();
     judged.chi = (touched.xyz.row(2).transpose() - heights(solution.shape, touched.xyz.topRows(2))) / touched.sigma;
     if (!judged.chi.allFinite()) return std::nullopt;
     return judged;
@@ -208,14 +210,43 @@ std::optional<Fitted> fitted(const std::string& name, const Touched& touched, st
     return Fitted{std::move(*solution), std::move(*judged), std::move(is_kept), chi2, freedom, iterations};
 }
 
+constexpr double kMostSlips = 0.25; // of the touches
+
+/// Would the others not nearly fit, however many touches are taken for slips? As far as heights are linear in θ,
+/// without touch i the residuals are r - P_i r_i / P_ii, P_i the i-th column of P = I - WᵀW, and P changes likewise
+/// (Cook and Weisberg 1982, 2.2).
+bool hopeless(const Fitted& start, Index most)
+{
+    constexpr double kNear = 3; // times the sum of squares that fits: room for what is not linear
+    const Columns kept = marked(start.is_kept, 1);
+    const MatrixXd W = start.judged.moves(Eigen::all, kept);
+    MatrixXd P = -W.transpose() * W;
+    P.diagonal().array() += 1;
+    VectorXd r = start.judged.chi(kept);
+    double chi2 = start.chi2;
+    for (Index slips = 0; slips < most; ++slips) {
+        constexpr double kNoFreedom = 1e-6;
+        Index worst = -1;
+        const Eigen::ArrayXd free = P.diagonal().array();
+        const double gain = (free > kNoFreedom).select(r.array().square() / free, 0).maxCoeff(&worst);
+        if (!(gain > 0)) break;
+        const VectorXd column = P.col(worst) / P(worst, worst);
+        r -= column * r[worst];
+        P -= column * P.row(worst).eval();
+        P(worst, worst) = 0;
+        chi2 -= gain;
+    }
+    return goodness(std::max(chi2, 0.0) / kNear, start.freedom) < kLeastGoodness;
+}
+
 /// Slips left out, others taken back, one by one. Slips are few, and the other touches fit; else it is the family that
 /// does not: nothing.
 std::optional<Fitted> without_slips(const std::string& name, const Touched& touched, Fitted now)
 {
-    constexpr double kMostSlips = 0.25; // of the touches
     const auto n = static_cast<Index>(touched.xyz.cols());
     const auto most = static_cast<std::ptrdiff_t>(kMostSlips * static_cast<double>(n));
     const double price = price_of_a_slip(touched.sigma, touched.freedom);
+    if (hopeless(now, most)) return std::nullopt;
     for (Index change = 0; change <= 2 * n; ++change) { // they might come and go in turns
         const std::ptrdiff_t slips = std::count(now.is_kept.begin(), now.is_kept.end(), 0);
         const Index i = to_change(now.judged, now.is_kept, now.freedom > 1, price);
@@ -242,7 +273,6 @@ std::optional<Candidate> fit_family(const std::string& name, const Touched& touc
     std::optional<Fitted> start = fitted(name, touched, is_kept, 0);
     std::optional<Fitted> best = start ? without_slips(name, touched, *start) : std::nullopt;
     if (!best && start && kept.size() == n) best = std::move(start);
-    if (!best && kept.size() < n) best = fitted(name, touched, std::vector<char>(n, 1), 0);
     if (!best) return std::nullopt;
     Candidate candidate;
     candidate.method = name;

@@ -3,8 +3,7 @@
 #include "fit/tiny_least_squares.h"
 #include "surface/revolution.h"
 
-#include <ceres/jet.h>
-
+#include <cmath>
 #include <limits>
 
 namespace fettle {
@@ -26,8 +25,7 @@ std::vector<int> free_parameters(RoundFamily family, bool given_direction)
     return free;
 }
 
-template <typename T>
-void close(RoundFamily family, RevolutionParameters<T>& theta)
+void close(RoundFamily family, RevolutionParameters& theta)
 {
     if (family == RoundFamily::sphere) theta[kAlong] = theta[kAround];
 }
@@ -40,7 +38,7 @@ struct Distances {
 
     RoundFamily family;
     std::vector<int> free;
-    RevolutionParameters<double> fixed;
+    RevolutionParameters fixed;
     Matrix3Xd points; ///< in the frame
     VectorXd weight;
 
@@ -50,23 +48,22 @@ struct Distances {
     {
         // Beyond the centre there is no distance: so bad that the step is taken back.
         constexpr double kFar = 1e6;
-        if (jacobian == nullptr) {
-            RevolutionParameters<double> theta = fixed;
-            for (int k = 0; k < P; ++k) theta[free[static_cast<std::size_t>(k)]] = x[k];
-            close(family, theta);
-            for (Index i = 0; i < points.cols(); ++i)
-                residuals[i] = weight[i] * revolution_distance<double>(Eigen::Vector3d(points.col(i)), theta, kFar);
-            return true;
-        }
-        using Jet = ceres::Jet<double, P>;
-        RevolutionParameters<Jet> theta = fixed.template cast<Jet>();
-        for (int k = 0; k < P; ++k) theta[free[static_cast<std::size_t>(k)]] = Jet(x[k], k);
+        RevolutionParameters theta = fixed;
+        for (int k = 0; k < P; ++k) theta[free[static_cast<std::size_t>(k)]] = x[k];
         close(family, theta);
+        const Revolution surface = revolution(theta);
         for (Index i = 0; i < points.cols(); ++i) {
-            const Eigen::Matrix<Jet, 3, 1> point = points.col(i).cast<Jet>();
-            const Jet d = revolution_distance<Jet>(point, theta, Jet(kFar));
-            residuals[i] = weight[i] * d.a;
-            for (int k = 0; k < P; ++k) jacobian[k * points.cols() + i] = weight[i] * d.v[k];
+            if (jacobian == nullptr) {
+                const double d = distance(surface, points.col(i));
+                residuals[i] = weight[i] * (std::isnan(d) ? kFar : d);
+                continue;
+            }
+            RevolutionDistance d = distance_and_slopes(surface, points.col(i));
+            if (std::isnan(d.value)) d = {kFar, Eigen::Vector3d::Zero(), RevolutionParameters::Zero()};
+            if (family == RoundFamily::sphere) d.by_theta[kAround] += d.by_theta[kAlong];
+            residuals[i] = weight[i] * d.value;
+            for (int k = 0; k < P; ++k)
+                jacobian[k * points.cols() + i] = weight[i] * d.by_theta[free[static_cast<std::size_t>(k)]];
         }
         return true;
     }
@@ -82,8 +79,8 @@ RoundSolution solve_with(RoundFamily family, const RoundProblem& problem, double
     function.weight = problem.weight * extent;
     function.family = family;
     function.free = free_parameters(family, problem.given_direction);
-    function.fixed = RevolutionParameters<double>::Zero();
-    RevolutionParameters<double> start = RevolutionParameters<double>::Zero();
+    function.fixed = RevolutionParameters::Zero();
+    RevolutionParameters start = RevolutionParameters::Zero();
     start[kAround] = around * extent;
     start[kAlong] = along * extent;
 
@@ -91,7 +88,7 @@ RoundSolution solve_with(RoundFamily family, const RoundProblem& problem, double
     for (int k = 0; k < P; ++k) x[k] = start[function.free[static_cast<std::size_t>(k)]];
     const Minimum<P> minimum = least_squares(function, x);
 
-    RevolutionParameters<double> end = RevolutionParameters<double>::Zero();
+    RevolutionParameters end = RevolutionParameters::Zero();
     for (int k = 0; k < P; ++k) end[function.free[static_cast<std::size_t>(k)]] = minimum.x[k];
     close(family, end);
     RoundSolution solution;

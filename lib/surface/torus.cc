@@ -2,7 +2,7 @@
 #include "surface/revolution.h"
 #include "surface/shapes.h"
 
-#include <ceres/jet.h>
+#include <Eigen/Geometry>
 
 #include <cmath>
 #include <limits>
@@ -23,33 +23,13 @@ Eigen::Matrix3d frame(const Torus& torus)
     return axes;
 }
 
-RevolutionParameters<double> parameters(const Torus& torus)
+RevolutionParameters parameters(const Torus& torus)
 {
-    RevolutionParameters<double> theta = RevolutionParameters<double>::Zero();
+    RevolutionParameters theta = RevolutionParameters::Zero();
     theta[kAround] = torus.around;
     theta[kLean] = torus.lean;
     theta[kAlong] = torus.along;
     return theta;
-}
-
-/// The distance and its derivatives by `N` parameters that `vary` along.
-template <int N>
-ceres::Jet<double, N> distance(const Torus& torus, const Eigen::Vector3d& d, const Eigen::Matrix<double, 3, N>& d_vary,
-                               const Eigen::Matrix<double, kRevolutionParameters, N>& theta_vary)
-{
-    using T = ceres::Jet<double, N>;
-    Eigen::Matrix<T, 3, 1> point;
-    for (int i = 0; i < 3; ++i) {
-        point[i].a = d[i];
-        point[i].v = d_vary.row(i);
-    }
-    const RevolutionParameters<double> values = parameters(torus);
-    RevolutionParameters<T> theta;
-    for (int i = 0; i < kRevolutionParameters; ++i) {
-        theta[i].a = values[i];
-        theta[i].v = theta_vary.row(i);
-    }
-    return revolution_distance<T>(point, theta, T(kNan));
 }
 
 /// From the point to the surface over xy, in the frame; by Newton's method along the vertical from the osculating
@@ -68,13 +48,13 @@ Eigen::Vector3d offset(const Torus& torus, const Eigen::Matrix3d& axes, const Ei
     double z =
         rising_root(half(vertical, vertical), vertical[2] + 2 * half(level, vertical), half(level, level) + level[2]);
     if (std::isnan(z)) z = -level[2] / vertical[2];
-    const Eigen::Matrix<double, kRevolutionParameters, 1> fixed =
-        Eigen::Matrix<double, kRevolutionParameters, 1>::Zero();
+    const Revolution surface = revolution(parameters(torus));
     for (int i = 0; i < kIterations; ++i) {
         const Eigen::Vector3d d = level + z * vertical;
-        const ceres::Jet<double, 1> f = distance<1>(torus, d, vertical, fixed);
-        if (!(f.v[0] > 0)) return Eigen::Vector3d::Constant(kNan);
-        const double step = f.a / f.v[0];
+        const RevolutionDistance f = distance_and_slopes(surface, d);
+        const double rise = f.by_point.dot(vertical);
+        if (!(rise > 0)) return Eigen::Vector3d::Constant(kNan);
+        const double step = f.value / rise;
         z -= step;
         if (std::abs(step) <= kSettled * d.norm()) return level + z * vertical;
     }
@@ -92,22 +72,16 @@ double height(const Torus& torus, const Eigen::Vector2d& xy)
 Eigen::Vector2d slope(const Torus& torus, const Eigen::Vector2d& xy)
 {
     const Eigen::Matrix3d axes = frame(torus);
-    const Eigen::Matrix<double, kRevolutionParameters, 3> fixed =
-        Eigen::Matrix<double, kRevolutionParameters, 3>::Zero();
-    const ceres::Jet<double, 3> f = distance<3>(torus, offset(torus, axes, xy), axes.transpose(), fixed);
-    return -f.v.head<2>() / f.v[2];
+    const Eigen::Vector3d gradient =
+        axes * distance_and_slopes(revolution(parameters(torus)), offset(torus, axes, xy)).by_point;
+    return -gradient.head<2>() / gradient.z();
 }
 
 Eigen::VectorXd height_gradient(const Torus& torus, const Eigen::Vector2d& xy)
 {
-    constexpr int N = kRevolutionParameters + 1; // the last: along the vertical
     const Eigen::Matrix3d axes = frame(torus);
-    Eigen::Matrix<double, 3, N> d_vary = Eigen::Matrix<double, 3, N>::Zero();
-    d_vary.col(N - 1) = axes.row(2);
-    Eigen::Matrix<double, kRevolutionParameters, N> theta_vary;
-    theta_vary.setIdentity();
-    const ceres::Jet<double, N> f = distance<N>(torus, offset(torus, axes, xy), d_vary, theta_vary);
-    return -f.v.head<N - 1>() / f.v[N - 1];
+    const RevolutionDistance f = distance_and_slopes(revolution(parameters(torus)), offset(torus, axes, xy));
+    return -f.by_theta / axes.row(2).dot(f.by_point);
 }
 
 Eigen::VectorXi parameter_powers(const Torus&) { return (Eigen::VectorXi(7) << 1, 0, 0, 0, -1, 0, -1).finished(); }

@@ -1,0 +1,112 @@
+#include "surface/revolution.h"
+
+#include <Eigen/Geometry>
+
+#include <cmath>
+#include <limits>
+
+namespace fettle {
+
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// Of v/|v|, as v changes.
+Vector3d change_of_unit(const Vector3d& unit, double norm, const Vector3d& change)
+{
+    return (change - unit.dot(change) * unit) / norm;
+}
+
+/// A circle (line) of curvature k in its plane: with q = k/2 |x|² + (its normal)·x the distance of x from it is
+/// f = 2q / (1 + r), r = √(1 + 2kq), so that ∂f/∂q = 1/r and ∂f/∂k = -f²/2r.
+struct FromCircle {
+    double f, r;
+};
+FromCircle from_circle(double k, double q)
+{
+    const double ratio = 1 + 2 * k * q;
+    if (!(ratio > 0)) return {kNan, kNan};
+    const double r = std::sqrt(ratio);
+    return {2 * q / (1 + r), r};
+}
+
+struct Profile {
+    Vector3d d;
+    double height, away, level2; ///< w·d, m·d, |d|² - (w·d)²
+    FromCircle around, along;
+};
+
+Profile profile(const Revolution& surface, const Vector3d& point)
+{
+    Profile p;
+    p.d = Vector3d(point.x(), point.y(), point.z() - surface.offset);
+    p.height = surface.w.dot(p.d);
+    p.away = surface.m.dot(p.d);
+    p.level2 = p.d.squaredNorm() - p.height * p.height;
+    p.around = from_circle(surface.around, surface.around * p.level2 / 2 + p.away);
+    const double g = p.around.f;
+    p.along = from_circle(surface.along,
+                          surface.along * (g * g + p.height * p.height) / 2 + surface.c * g + surface.s * p.height);
+    return p;
+}
+
+} // namespace
+
+Revolution revolution(const RevolutionParameters& theta)
+{
+    const Vector3d to(1, theta[kTurn], -theta[kTiltAlong]);
+    const double to_norm = to.norm();
+    const Vector3d a = to / to_norm;
+    const Vector3d up(0, theta[kTiltAcross], 1);
+    const double up_a = up.dot(a);
+    const Vector3d across = up - up_a * a;
+    const double across_norm = across.norm();
+    const Vector3d n = across / across_norm;
+    const double c = std::cos(theta[kLean]), s = std::sin(theta[kLean]);
+    Revolution surface;
+    surface.w = s * n + c * a;
+    surface.m = c * n - s * a;
+    surface.c = c;
+    surface.s = s;
+    surface.offset = theta[kOffset];
+    surface.around = theta[kAround];
+    surface.along = theta[kAlong];
+    surface.w_theta.setZero();
+    surface.m_theta.setZero();
+    const auto set = [&](RevolutionParameter k, const Vector3d& to_change, const Vector3d& up_change) {
+        const Vector3d da = change_of_unit(a, to_norm, to_change);
+        const Vector3d dn = change_of_unit(n, across_norm, up_change - (up_change.dot(a) + up.dot(da)) * a - up_a * da);
+        surface.w_theta.col(k) = s * dn + c * da;
+        surface.m_theta.col(k) = c * dn - s * da;
+    };
+    set(kTiltAcross, Vector3d::Zero(), Vector3d::UnitY());
+    set(kTiltAlong, -Vector3d::UnitZ(), Vector3d::Zero());
+    set(kTurn, Vector3d::UnitY(), Vector3d::Zero());
+    surface.w_theta.col(kLean) = surface.m;
+    surface.m_theta.col(kLean) = -surface.w;
+    return surface;
+}
+
+double distance(const Revolution& surface, const Vector3d& point) { return profile(surface, point).along.f; }
+
+RevolutionDistance distance_and_slopes(const Revolution& surface, const Vector3d& point)
+{
+    const Profile p = profile(surface, point);
+    const double g = p.around.f, f = p.along.f;
+    const double by_g = (surface.along * g + surface.c) / p.along.r;
+    const double by_q = by_g / p.around.r; // q of the circle around
+    const double by_height = (surface.along * p.height + surface.s) / p.along.r - by_q * surface.around * p.height;
+    RevolutionDistance result;
+    result.value = f;
+    result.by_point = by_height * surface.w + by_q * surface.m + by_q * surface.around * p.d;
+    result.by_theta = by_height * (surface.w_theta.transpose() * p.d) + by_q * (surface.m_theta.transpose() * p.d);
+    result.by_theta[kOffset] = -result.by_point.z();
+    result.by_theta[kAround] = by_q * p.level2 / 2 - by_g * g * g / (2 * p.around.r);
+    result.by_theta[kLean] += (surface.c * p.height - surface.s * g) / p.along.r;
+    result.by_theta[kAlong] = (g * g + p.height * p.height - f * f) / (2 * p.along.r);
+    return result;
+}
+
+} // namespace fettle
