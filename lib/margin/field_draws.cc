@@ -12,19 +12,25 @@ namespace fettle {
 
 namespace {
 
-/// F with F Fᵀ = covariance. By eigenvalues: rounding makes the small pivots of a factorisation negative.
+/// F with F Fᵀ = covariance: Cholesky's factor, the largest variance left first (Golub and Van Loan 2013, 4.2.8), up to
+/// where rounding makes pivots negative. Smooth fields have few columns.
 Eigen::MatrixXd root(const Eigen::MatrixXd& covariance)
 {
-    // Few factors carry a smooth field: those below this share of the largest variance are rounding.
-    constexpr double kRounding = 1e-10;
+    constexpr double kRounding = 1e-10; // of the largest variance
     // Parameters differ in unit (lengths, angles, curvatures): by their own size first.
     const Eigen::VectorXd size = covariance.diagonal().cwiseMax(0).cwiseSqrt();
     const Eigen::VectorXd inverse = size.unaryExpr([](double s) { return s > 0 ? 1 / s : 0; });
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(inverse.asDiagonal() * covariance *
-                                                               inverse.asDiagonal()); // ascending
-    const Eigen::VectorXd& variance = eigen.eigenvalues();
-    const Eigen::Index rank = (variance.array() > kRounding * variance.maxCoeff()).count();
-    return size.asDiagonal() * eigen.eigenvectors().rightCols(rank) * variance.tail(rank).cwiseSqrt().asDiagonal();
+    Eigen::VectorXd left = covariance.diagonal().cwiseProduct(inverse.cwiseAbs2());
+    Eigen::MatrixXd L(covariance.rows(), covariance.cols());
+    Eigen::Index rank = 0, largest = 0;
+    for (; rank < L.cols() && left.maxCoeff(&largest) > kRounding; ++rank) {
+        Eigen::VectorXd column = covariance.col(largest).cwiseProduct(inverse) * inverse[largest];
+        column.noalias() -= L.leftCols(rank) * L.row(largest).head(rank).transpose();
+        L.col(rank) = column / std::sqrt(left[largest]);
+        left -= L.col(rank).cwiseAbs2();
+        left[largest] = 0;
+    }
+    return size.asDiagonal() * L.leftCols(rank);
 }
 
 /// The same of the heights Gᵀ θ, by the principal axes of the heights themselves, so that a job that is turned has the
