@@ -10,6 +10,8 @@
 B       ?= build
 CHAIN   := $(B)/chain
 export PATH := $(abspath $(B)/bin):$(PATH)
+# Further options of fettle-sample; with them, a CHAIN of its own (probing.mk).
+SAMPLING ?=
 
 WANG    := wang1 wang2 wang3
 SCANS   := hammer panel
@@ -60,7 +62,7 @@ $(CHAIN)/parts/%-truth.stl $(CHAIN)/parts/%-truth.pcd: samples/parts/%.json $(B)
 
 $(CHAIN)/%/samples.pcd: $$(call job,$$*) $$(call part,$$*) $(B)/bin/fettle-sample
 	@mkdir -p $(@D)
-	fettle-sample $< --on $(call part,$*) --noise $(call noise,$*) --seed $(call seed,$*) --report $(@D)/sample.json -o $@
+	fettle-sample $< --on $(call part,$*) $(SAMPLING) --noise $(call noise,$*) --seed $(call seed,$*) --report $(@D)/sample.json -o $@
 
 $(CHAIN)/%/fit.json: $$(call job,$$*) $(CHAIN)/%/samples.pcd $(B)/bin/fettle-fit $(B)/bin/fettle-estimate
 	fettle-estimate $< $(@D)/samples.pcd | fettle-fit $< -o $@
