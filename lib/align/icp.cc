@@ -15,8 +15,8 @@ namespace {
 // Tukey's biweight at 95 % efficiency for normal noise, and the factor from the median |residual| to sigma.
 constexpr double kTukey = 4.685;
 constexpr double kMedianToSigma = 1.4826;
-// Of float coordinates, as a share of the scan's radius.
-constexpr double kRounding = 1e-7;
+// Of float coordinates, as a share of the scan's radius; and of sums of doubles, as a share of how far off it lies.
+constexpr double kRounding = 1e-7, kDoubleRounding = 1e-14;
 // A motion that changes the distances by less than a hundredth of itself is made by what normals are wrong by.
 constexpr double kLeastSlope = 0.01;
 // A step that moves the scan by less than this share of what noise leaves open is none.
@@ -110,7 +110,8 @@ IcpFit icp(const Eigen::Isometry3d& start, const Eigen::Matrix3Xd& scan, const T
 {
     IcpFit fit;
     fit.T_reference_scan = start;
-    const double rounding = kRounding * about.radius;
+    const double rounding =
+        kRounding * about.radius + kDoubleRounding * std::max(about.centre.norm(), (start * about.centre).norm());
     Twist last = Twist::Zero();
     double share = 1; // of a step that is taken
     for (;; ++fit.iterations) {

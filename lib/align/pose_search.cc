@@ -41,6 +41,15 @@ class NearestMap {
         count_ = (size / cell_).ceil().cast<int>().max(1);
         nearest_.resize(static_cast<std::size_t>(count_.prod()));
         const Neighbours neighbours(reference.xyz);
+        std::vector<double> apart(static_cast<std::size_t>(reference.xyz.cols()));
+        tbb::parallel_for(tbb::blocked_range<Eigen::Index>(0, reference.xyz.cols()), [&](const auto& range) {
+            for (Eigen::Index i = range.begin(); i < range.end(); ++i) {
+                const Eigen::Vector3d p = reference.xyz.col(i);
+                apart[static_cast<std::size_t>(i)] = (reference.xyz.col(neighbours.nearest(p, 2).back()) - p).norm();
+            }
+        });
+        std::nth_element(apart.begin(), apart.begin() + static_cast<std::ptrdiff_t>(apart.size() / 2), apart.end());
+        slack_ = apart[apart.size() / 2] + cell_;
         tbb::parallel_for(tbb::blocked_range<int>(0, count_[2]), [&](const auto& range) {
             for (int k = range.begin(); k < range.end(); ++k)
                 for (int j = 0; j < count_[1]; ++j)
@@ -57,8 +66,16 @@ class NearestMap {
         return nearest_[place(static_cast<int>(at[0]), static_cast<int>(at[1]), static_cast<int>(at[2]))];
     }
 
-    Eigen::Vector3d point(Eigen::Index i) const { return points_.xyz.col(i); }
     Eigen::Vector3d normal(Eigen::Index i) const { return points_.normals.col(i); }
+    /// From the i-th point's disc, which reaches as far as the map may be wrong along the surface, to `p`.
+    Eigen::Vector3d offset(Eigen::Index i, const Eigen::Vector3d& p) const
+    {
+        const Eigen::Vector3d n = normal(i), whole = p - points_.xyz.col(i);
+        const Eigen::Vector3d across = n.dot(whole) * n, along = whole - across;
+        const double length = along.norm();
+        if (n.isZero(0)) return whole;
+        return length > slack_ ? Eigen::Vector3d(across + (1 - slack_ / length) * along) : across;
+    }
 
   private:
     std::size_t place(int i, int j, int k) const
@@ -70,7 +87,7 @@ class NearestMap {
 
     const OrientedPoints& points_;
     Eigen::Array3d least_;
-    double cell_ = 0;
+    double cell_ = 0, slack_ = 0; // mm
     Eigen::Array3i count_;
     std::vector<std::int32_t> nearest_;
 };
@@ -95,7 +112,7 @@ Pose descend(Eigen::Isometry3d T, const Eigen::Matrix3Xd& scan, const TwistFrame
         for (Eigen::Index i = 0; i < at.cols(); ++i) {
             const Eigen::Vector3d p = at.col(i);
             const Eigen::Index foot = map(p);
-            const Eigen::Vector3d offset = p - map.point(foot), normal = map.normal(foot);
+            const Eigen::Vector3d offset = map.offset(foot, p), normal = map.normal(foot);
             const double relative = offset.squaredNorm() / (width * width);
             cost += relative / (1 + relative) / n;
             const double weight = 1 / ((1 + relative) * (1 + relative));
@@ -175,11 +192,10 @@ std::vector<Eigen::Matrix3d> start_turns(const Eigen::Matrix3Xd& scan, const Eig
 }
 
 // Where the scan's middle may lie: on the reference's, and if the scan is smaller, all over the reference.
-Eigen::Matrix3Xd start_places(const Eigen::Matrix3Xd& reference, double scan_radius)
+Eigen::Matrix3Xd start_places(const Eigen::Matrix3Xd& reference, const Eigen::Vector3d& middle, double scan_radius)
 {
-    const auto [middle, radius] = twist_frame(reference);
     // A descent finds its way over about half a radius: some thirty places do for a scan half as large.
-    const double ratio = radius / scan_radius;
+    const double ratio = twist_frame(reference).radius / scan_radius;
     constexpr double kAsLarge = 1.25, kMostPlaces = 30;
     const auto count = ratio <= kAsLarge ? 0 : static_cast<Eigen::Index>(std::min(kMostPlaces, 6 * ratio * ratio));
     const std::vector<Eigen::Index> chosen = farthest_points(reference, count);
@@ -205,15 +221,18 @@ std::vector<Pose> search_poses(const Eigen::Matrix3Xd& scan_points, const TwistF
     const OrientedPoints reference{reference_points.xyz(Eigen::all, spread),
                                    reference_points.normals(Eigen::all, spread)};
     const NearestMap map(reference, radius / 2);
-    const Eigen::Matrix3Xd places = start_places(reference.xyz, radius);
-    const std::vector<Eigen::Matrix3d> turns = start_turns(scan, reference.xyz, held, places.cols());
+    // Where both lie, and their axes, by as many points spread in the same way: their density plays no part.
+    const Eigen::Matrix3Xd outline = reference.xyz.leftCols(std::min(kScanPoints, reference.xyz.cols()));
+    const Eigen::Vector3d scan_middle = scan.rowwise().mean();
+    const Eigen::Matrix3Xd places = start_places(reference.xyz, outline.rowwise().mean(), radius);
+    const std::vector<Eigen::Matrix3d> turns = start_turns(scan, outline, held, places.cols());
 
     std::vector<Pose> found(turns.size() * static_cast<std::size_t>(places.cols()));
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, found.size()), [&](const auto& range) {
         for (std::size_t i = range.begin(); i < range.end(); ++i) {
             Eigen::Isometry3d start(turns[i % turns.size()]);
             const Eigen::Vector3d place = places.col(static_cast<Eigen::Index>(i / turns.size()));
-            start.translation() = place - start.linear() * middle;
+            start.translation() = place - start.linear() * scan_middle;
             for (int k = 0; k < 3; ++k)
                 if (held[static_cast<std::size_t>(k)]) start.translation()[k] = (middle - start.linear() * middle)[k];
             found[i] = descend(start, scan, about, map, held);
