@@ -82,9 +82,10 @@ std::vector<std::int32_t> weld(const Eigen::Matrix3Xd& vertices, const std::vect
             lowest[static_cast<std::size_t>(high)] = low;
         }
     }
-    for (std::size_t c = 0; c < lowest.size(); ++c)
-        lowest[c] = candidates[static_cast<std::size_t>(root(static_cast<std::int32_t>(c)))];
-    return lowest;
+    std::vector<std::int32_t> to(lowest.size());
+    for (std::size_t c = 0; c < to.size(); ++c)
+        to[c] = candidates[static_cast<std::size_t>(root(static_cast<std::int32_t>(c)))];
+    return to;
 }
 
 } // namespace fettle

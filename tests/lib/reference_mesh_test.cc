@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <random>
 
@@ -137,6 +138,11 @@ TEST(ReferenceMesh, CracksAreWelded)
         soup.vertices.col(i) = mesh.vertices.col(mesh.triangles(i % 3, i / 3)) * (1 + (i % 3 - 1) * 6e-8);
     soup.triangles = Eigen::VectorXi::LinSpaced(36, 0, 35).reshaped(3, 12);
     EXPECT_EQ(reference_mesh(soup).repair.welded_vertices, 36 - 8);
+    // Beside a sound piece, whose vertices come first and are no candidates.
+    const Mesh both = joined(cube(1, {9, 0, 0}), soup);
+    EXPECT_EQ(reference_mesh(both).repair.welded_vertices, 36 - 8);
+    EXPECT_NEAR(error_at(both, {0.5, 0.25, 1.5}), 0.5, 1e-6);
+    EXPECT_NEAR(error_at(both, {1.5, 0.25, 1.5}), std::sqrt(0.5), 1e-6);
     turn(soup, 5);
     EXPECT_EQ(reference_mesh(soup).repair.flipped_facets, 1);
 }
