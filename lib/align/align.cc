@@ -15,13 +15,12 @@ namespace fettle {
 
 namespace {
 
-// Points that a place found by the search is judged with, and those that the last steps are taken with: more would
-// make the figures of the fit no better than the scan's own errors leave them.
-constexpr Eigen::Index kJudged = 400;
+// Points that a place found by the search is judged with, those that the best of these places are compared with, and
+// those that the last steps are taken with: more would make the figures of the fit no better than the scan's own errors
+// leave them.
+constexpr Eigen::Index kJudged = 400, kCompared = 2000, kFitted = 20000;
 constexpr int kJudgedSteps = 30;
-constexpr Eigen::Index kFitted = 20000;
-// Of the places that the search found, so many are fitted in full.
-constexpr std::size_t kFinalists = 3;
+constexpr std::size_t kFinalists = 3; // of the places, so many are compared
 // Two poses that put the scan closer together than this, in radii, are one.
 constexpr double kSame = 0.1;
 
@@ -44,6 +43,7 @@ std::vector<IcpFit> fits(const std::vector<IcpFit>& starts, const Eigen::Matrix3
     return apart;
 }
 
+// Where the last steps may begin, the best first.
 std::vector<IcpFit> starts_for(const Eigen::Matrix3Xd& scan, const TwistFrame& about, const AlignReference& reference,
                                const AlignOptions& options)
 {
@@ -58,7 +58,7 @@ std::vector<IcpFit> starts_for(const Eigen::Matrix3Xd& scan, const TwistFrame& a
     few.iterations = std::min(few.iterations, kJudgedSteps);
     starts = fits(starts, scan(Eigen::all, farthest_points(scan, kJudged)), about, reference, few);
     starts.resize(std::min(starts.size(), kFinalists));
-    return starts;
+    return fits(starts, scan(Eigen::all, every_nth(scan.cols(), kCompared)), about, reference, options.icp);
 }
 
 // Covariance of the step, as if the points' distances were independent: sigma² (Σ w g gᵀ)⁻¹.
@@ -69,6 +69,7 @@ std::array<Freedom, 6> freedoms(const IcpFit& fit, const HeldAxes& held)
         if (held[static_cast<std::size_t>(k)]) {
             A.row(k).setZero();
             A.col(k).setZero();
+            A(k, k) = -1; // a mode by itself, apart from those that nothing determines
         }
     const Eigen::SelfAdjointEigenSolver<TwistMatrix> modes(A);
     std::array<Freedom, 6> found;
@@ -81,10 +82,7 @@ std::array<Freedom, 6> freedoms(const IcpFit& fit, const HeldAxes& held)
         const double value = modes.eigenvalues()[k];
         freedom.determined = value > fit.least_information;
         freedom.sd = freedom.determined ? fit.sigma / std::sqrt(value) : std::numeric_limits<double>::infinity();
-        double on_held = 0;
-        for (Eigen::Index j = 0; j < 6; ++j)
-            if (held[static_cast<std::size_t>(j)]) on_held += freedom.motion[j] * freedom.motion[j];
-        freedom.held = on_held > 0.5; // 0 or 1, but for rounding
+        freedom.held = value < -0.5;
     }
     return found;
 }
@@ -98,13 +96,12 @@ Alignment align(const OrientedPoints& scan, const AlignReference& reference, con
     const TwistFrame about = twist_frame(scan.xyz);
     if (!(about.radius > 0)) throw InputError("all points lie in one place");
     const Eigen::Matrix3Xd fitted = scan.xyz(Eigen::all, every_nth(scan.xyz.cols(), kFitted));
-    const std::vector<IcpFit> best =
-        fits(starts_for(fitted, about, reference, options), fitted, about, reference, options.icp);
+    const std::vector<IcpFit> starts = starts_for(fitted, about, reference, options);
     Alignment alignment;
-    alignment.fit = best.front();
+    alignment.fit = icp(starts.front().T_reference_scan, fitted, about, reference, options.icp);
     alignment.frame = {alignment.fit.T_reference_scan * about.centre, about.radius};
     alignment.freedoms = freedoms(alignment.fit, options.icp.held);
-    if (best.size() > 1) alignment.next = best[1];
+    if (starts.size() > 1) alignment.next = starts[1];
     return alignment;
 }
 

@@ -12,3 +12,6 @@ fettle-align above.xyz --to plane.xyz --near --report r.json --ascii 2>err >back
 grep -q 'not all of its motions are determined' err
 jq -e '.determined == 3 and .sd.x == null and .sd.rz_deg == null and .sd.z < 1e-3 and
     (.transform[0][3] | fabs) < 1e-9 and (.transform[2][3] + 0.5 | fabs) < 1e-6' r.json >/dev/null
+fettle-align above.xyz --to plane.xyz --near --hold z,rx --report r.json --ascii -q >back.pcd
+jq -e '.determined == 1 and ([.degrees_of_freedom[] | select(.held)] | length) == 2 and .sd.z == 0 and .sd.x == null and
+    ([.degrees_of_freedom[] | select(.held) | .shift + .turn | map(fabs) | add] == [1, 1])' r.json >/dev/null
