@@ -123,7 +123,9 @@ FETTLE_INLINE Float8 entries(const Boxes8& boxes, const FirstHit& hit)
         near = larger(near, smaller(to_least, to_most));
         far = smaller(far, larger(to_least, to_most));
     }
-    return near <= far ? near : all(std::numeric_limits<float>::infinity());
+    // A box that is not there ends before it begins: as a slab, that is the whole line.
+    const Mask8 there = boxes.least[0] <= boxes.most[0];
+    return ((near <= far) & there) ? near : all(std::numeric_limits<float>::infinity());
 }
 
 FETTLE_INLINE Boxes8 boxes_of(const Triangles8& triangles)
