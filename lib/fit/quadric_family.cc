@@ -54,18 +54,13 @@ Parameters by_parameters(const Vector3d& d)
     return F_theta;
 }
 
-/// Residuals for ceres::TinySolver: touch less surface over σ. With F(d + t e_z; θ) = 0 it is ∂t/∂θ = -F_θ / F_z.
+/// Touch less surface over σ. With F(d + t e_z; θ) = 0 it is ∂t/∂θ = -F_θ / F_z.
 struct VerticalErrors {
-    using Scalar = double;
-    enum { NUM_RESIDUALS = Eigen::Dynamic, NUM_PARAMETERS = kParameters };
-
     Eigen::Matrix3Xd points; ///< in the frame
     Vector3d up;             ///< e_z
     double weight;           ///< extent over σ
 
-    int NumResiduals() const { return static_cast<int>(points.cols()); }
-
-    bool operator()(const double* x, double* residuals, double* jacobian) const
+    void operator()(const double* x, double* residuals, double* jacobian) const
     {
         constexpr double kFar = 1e6; // no surface over a touch: so bad that the step is taken back
         const Form form{Parameters(Eigen::Map<const Parameters>(x))};
@@ -77,7 +72,6 @@ struct VerticalErrors {
             const Parameters by = by_parameters(d) * (weight / up.dot(form.gradient(d)));
             for (int k = 0; k < kParameters; ++k) jacobian[k * points.cols() + i] = std::isnan(t) ? 0 : by[k];
         }
-        return true;
     }
 };
 
@@ -110,8 +104,8 @@ bool is_determined(const Form& form, const VerticalErrors& errors, const Eigen::
 {
     constexpr double kMostChange = 3;  // times as large or as small as in the middle
     constexpr double kMostSpread = .3; // of the gradient's size: errors are propagated as if it were known
-    Eigen::Matrix<double, Eigen::Dynamic, kParameters> J(errors.NumResiduals(), kParameters);
-    Eigen::VectorXd residuals(errors.NumResiduals());
+    Eigen::Matrix<double, Eigen::Dynamic, kParameters> J(errors.points.cols(), kParameters);
+    Eigen::VectorXd residuals(errors.points.cols());
     errors(x.data(), residuals.data(), J.data());
     const Eigen::LDLT<Eigen::Matrix<double, kParameters, kParameters>> information(J.transpose() * J);
     for (const Vector3d& touch : all.colwise()) {
@@ -133,8 +127,9 @@ std::optional<FamilySolution> solve_quadric(const Touched& touched, const Column
     const Frame frame = frame_of(paraboloid, touched.xyz);
     const Eigen::Matrix3Xd all = frame.axes.transpose() * (touched.xyz.colwise() - frame.point) / frame.extent;
     const VerticalErrors errors{all(Eigen::all, kept), frame.axes.row(2), frame.extent / touched.sigma};
-    const Minimum<kParameters> best = least_squares(errors, start(paraboloid, frame));
-    const Form form(best.x);
+    const Minimum best =
+        least_squares({static_cast<int>(kept.size()), kParameters, std::cref(errors)}, start(paraboloid, frame));
+    const Form form{Parameters(best.x)};
     if (!best.x.allFinite() || !is_determined(form, errors, all, best.x)) return std::nullopt;
     const Vector3d d = form.distance(Vector3d::Zero(), errors.up) * errors.up;
     const Vector3d gradient = form.gradient(d);

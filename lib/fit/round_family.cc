@@ -4,6 +4,7 @@
 #include "surface/revolution.h"
 
 #include <cmath>
+#include <functional>
 #include <limits>
 
 namespace fettle {
@@ -30,28 +31,26 @@ void close(RoundFamily family, RevolutionParameters& theta)
     if (family == RoundFamily::sphere) theta[kAlong] = theta[kAround];
 }
 
-/// Residuals for ceres::TinySolver, in units of the touches' extent.
-template <int P>
+/// Distances of the touches, in units of their extent.
 struct Distances {
-    using Scalar = double;
-    enum { NUM_RESIDUALS = Eigen::Dynamic, NUM_PARAMETERS = P };
-
     RoundFamily family;
     std::vector<int> free;
-    RevolutionParameters fixed;
     Matrix3Xd points; ///< in the frame
     VectorXd weight;
 
-    int NumResiduals() const { return static_cast<int>(points.cols()); }
+    RevolutionParameters theta(const double* x) const
+    {
+        RevolutionParameters all = RevolutionParameters::Zero();
+        for (std::size_t k = 0; k < free.size(); ++k) all[free[k]] = x[k];
+        close(family, all);
+        return all;
+    }
 
-    bool operator()(const double* x, double* residuals, double* jacobian) const
+    void operator()(const double* x, double* residuals, double* jacobian) const
     {
         // Beyond the centre there is no distance: so bad that the step is taken back.
         constexpr double kFar = 1e6;
-        RevolutionParameters theta = fixed;
-        for (int k = 0; k < P; ++k) theta[free[static_cast<std::size_t>(k)]] = x[k];
-        close(family, theta);
-        const Revolution surface = revolution(theta);
+        const Revolution surface = revolution(theta(x));
         for (Index i = 0; i < points.cols(); ++i) {
             if (jacobian == nullptr) {
                 const double d = distance(surface, points.col(i));
@@ -62,45 +61,14 @@ struct Distances {
             if (std::isnan(d.value)) d = {kFar, Eigen::Vector3d::Zero(), RevolutionParameters::Zero()};
             if (family == RoundFamily::sphere) d.by_theta[kAround] += d.by_theta[kAlong];
             residuals[i] = weight[i] * d.value;
-            for (int k = 0; k < P; ++k)
-                jacobian[k * points.cols() + i] = weight[i] * d.by_theta[free[static_cast<std::size_t>(k)]];
+            double* slope = jacobian + i;
+            for (const int k : free) {
+                *slope = weight[i] * d.by_theta[k];
+                slope += points.cols();
+            }
         }
-        return true;
     }
 };
-
-template <int P>
-RoundSolution solve_with(RoundFamily family, const RoundProblem& problem, double around, double along)
-{
-    Distances<P> function;
-    function.points = problem.frame.axes.transpose() * (problem.touches.colwise() - problem.frame.point);
-    const double extent = function.points.cwiseAbs().maxCoeff();
-    function.points /= extent;
-    function.weight = problem.weight * extent;
-    function.family = family;
-    function.free = free_parameters(family, problem.given_direction);
-    function.fixed = RevolutionParameters::Zero();
-    RevolutionParameters start = RevolutionParameters::Zero();
-    start[kAround] = around * extent;
-    start[kAlong] = along * extent;
-
-    Eigen::Matrix<double, P, 1> x;
-    for (int k = 0; k < P; ++k) x[k] = start[function.free[static_cast<std::size_t>(k)]];
-    const Minimum<P> minimum = least_squares(function, x);
-
-    RevolutionParameters end = RevolutionParameters::Zero();
-    for (int k = 0; k < P; ++k) end[function.free[static_cast<std::size_t>(k)]] = minimum.x[k];
-    close(family, end);
-    RoundSolution solution;
-    end[kOffset] *= extent;
-    end[kAround] /= extent;
-    end[kAlong] /= extent;
-    solution.theta = end;
-    solution.cost = minimum.x.allFinite() ? minimum.cost : std::numeric_limits<double>::infinity();
-    solution.converged = minimum.converged;
-    solution.iterations = minimum.iterations;
-    return solution;
-}
 
 } // namespace
 
@@ -111,16 +79,28 @@ int parameters(RoundFamily family, bool given_direction)
 
 RoundSolution solve(RoundFamily family, const RoundProblem& problem, double around, double along)
 {
-    switch (parameters(family, problem.given_direction)) {
-    case 4:
-        return solve_with<4>(family, problem, around, along);
-    case 5:
-        return solve_with<5>(family, problem, around, along);
-    case 6:
-        return solve_with<6>(family, problem, around, along);
-    default:
-        return solve_with<7>(family, problem, around, along);
-    }
+    Distances distances{family, free_parameters(family, problem.given_direction), {}, {}};
+    distances.points = problem.frame.axes.transpose() * (problem.touches.colwise() - problem.frame.point);
+    const double extent = distances.points.cwiseAbs().maxCoeff();
+    distances.points /= extent;
+    distances.weight = problem.weight * extent;
+    RevolutionParameters start = RevolutionParameters::Zero();
+    start[kAround] = around * extent;
+    start[kAlong] = along * extent;
+
+    const Residuals residuals{static_cast<int>(distances.points.cols()), static_cast<int>(distances.free.size()),
+                              std::cref(distances)};
+    const Minimum minimum = least_squares(residuals, start(distances.free));
+
+    RoundSolution solution;
+    solution.theta = distances.theta(minimum.x.data());
+    solution.theta[kOffset] *= extent;
+    solution.theta[kAround] /= extent;
+    solution.theta[kAlong] /= extent;
+    solution.cost = minimum.x.allFinite() ? minimum.cost : std::numeric_limits<double>::infinity();
+    solution.converged = minimum.converged;
+    solution.iterations = minimum.iterations;
+    return solution;
 }
 
 Shape round_shape(RoundFamily family, const RoundFrame& frame, const VectorXd& theta)
