@@ -21,9 +21,8 @@ calibration: $(patsubst %,$(CALIBRATION)/%.csv,$(FAMILIES) $(NEAR) $(OTHERS))
 
 include pipelines/step.mk
 
-$(FAMILIES:%=$(CALIBRATION)/%.csv): METHODS := auto limit
-$(NEAR:%=$(CALIBRATION)/%.csv): METHODS := auto limit gp griddata
-$(OTHERS:%=$(CALIBRATION)/%.csv): METHODS := auto gp griddata
+$(FAMILIES:%=$(CALIBRATION)/%.csv): METHODS := auto
+$(NEAR:%=$(CALIBRATION)/%.csv) $(OTHERS:%=$(CALIBRATION)/%.csv): METHODS := auto gp griddata
 
 $(CALIBRATION)/%.csv: $(B)/study/calibration
 	$(call step,$< $* $(CELLS) $(SEED) $(METHODS) > $@.part)

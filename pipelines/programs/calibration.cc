@@ -3,8 +3,8 @@
 //
 //     calibration KIND CELLS SEED METHOD...       a line a cell and method, CSV
 //
-// Inches, as in the paper. Methods are fettle-fit's, "gp" (a Gaussian process on a quadratic, its hyperparameters by
-// restricted likelihood: what a statistician would take) and "limit": the family of the truth, known beforehand.
+// Inches, as in the paper. Methods are fettle-fit's, and "gp": a Gaussian process on a quadratic, its hyperparameters
+// by restricted likelihood, what a statistician would take.
 #include "cells.h"
 
 #include "fit/family.h"
@@ -114,14 +114,13 @@ int main(int argc, char** argv)
             const std::string method = argv[m];
             Surface surface;
             Eigen::VectorXd z;
-            if (method == "limit" && family.empty()) continue;
             double shift = NAN, predicted = NAN, covered = NAN, z2 = NAN;
             if (method == "gp") {
                 z = gaussian_process(input, grid * kInch, noise.stddev());
             } else {
                 FitInput mine = input;
                 if (method == "griddata" || method == "bspline-wang") add_estimated(mine);
-                surface = fit_surface(mine, method == "limit" ? family : method).surface;
+                surface = fit_surface(mine, method).surface;
                 z = heights(surface, grid * kInch);
                 if (surface.covariance.size() > 0) {
                     const Prediction foreseen = predict_by_posterior(surface, input.job, 0.99, 1);
