@@ -24,6 +24,10 @@ constexpr int kTurnsAboutAxis = 36;
 constexpr int kSteps = 24;
 // Widths of the robust weight, in radii of the scan: from all that is near, down to the size of the map's cells.
 constexpr double kWidest = 0.5, kNarrowest = 0.06;
+// A foot pulls along its plane, too: fully in the first step, no more than this from two thirds of the steps on.
+constexpr double kLeastAlong = 0.02, kLessAlong = 1.5;
+// Of the trace of the normal equations: keeps still what no foot determines.
+constexpr double kStill = 1e-6;
 // Two poses closer than this, in radii, are one.
 constexpr double kSame = 0.15;
 constexpr std::size_t kMostPoses = 32;
@@ -103,7 +107,7 @@ Pose descend(Eigen::Isometry3d T, const Eigen::Matrix3Xd& scan, const TwistFrame
     for (int step = 0; step <= kSteps; ++step) {
         const double share = std::min(1.0, step / (kSteps - 4.0)); // the last steps stay at the narrowest
         const double width = radius * kWidest * std::pow(kNarrowest / kWidest, share);
-        const double along = std::max(0.02, 1 - 1.5 * share);
+        const double along = std::max(kLeastAlong, 1 - kLessAlong * share);
         const Eigen::Matrix3Xd at = T * scan;
         const TwistFrame frame{T * about.centre, radius};
         TwistMatrix A = TwistMatrix::Zero();
@@ -125,7 +129,7 @@ Pose descend(Eigen::Isometry3d T, const Eigen::Matrix3Xd& scan, const TwistFrame
             A.noalias() += J.transpose() * M * J;
             b.noalias() += J.transpose() * (M * offset);
         }
-        if (step < kSteps) T = straightened(frame.motion(solve_step(A, b, held, 1e-6 * A.trace())) * T);
+        if (step < kSteps) T = straightened(frame.motion(solve_step(A, b, held, kStill * A.trace())) * T);
     }
     return {T, cost};
 }
