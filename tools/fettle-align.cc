@@ -6,7 +6,6 @@
 #include "core/file.h"
 
 #include <algorithm>
-#include <sstream>
 
 namespace {
 
@@ -21,8 +20,7 @@ HeldAxes held_axes(const std::string& text)
 {
     const std::vector<std::string> axes = {"x", "y", "z", "rx", "ry", "rz"};
     HeldAxes held{};
-    std::istringstream parts(text);
-    for (std::string part; std::getline(parts, part, ',');) {
+    for (const std::string& part : listed(text)) {
         const auto found = std::find(axes.begin(), axes.end(), part);
         if (found == axes.end())
             throw InputError("--hold", "expected some of x,y,z,rx,ry,rz with commas between, got '" + text + "'");

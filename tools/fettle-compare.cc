@@ -1,6 +1,8 @@
+#include "cli/option.h"
 #include "cli/tool.h"
 #include "cloud/cloud_writer.h"
 #include "compare/comparison.h"
+#include "compare/comparison_report.h"
 #include "compare/shape_file.h"
 #include "core/file.h"
 #include "core/text.h"
@@ -8,8 +10,8 @@
 #include "job/plausible.h"
 #include "mesh/mesh.h"
 
+#include <algorithm>
 #include <cmath>
-#include <sstream>
 
 namespace {
 
@@ -32,8 +34,7 @@ CloudFormat format_of(const std::string& name, bool ascii)
 
 void set_fields(ComparisonOptions& options, const std::string& list)
 {
-    std::istringstream names(list);
-    for (std::string name; std::getline(names, name, ',');) {
+    for (const std::string& name : listed(list))
         if (name == "foot")
             options.foot = true;
         else if (name == "facet")
@@ -46,51 +47,29 @@ void set_fields(ComparisonOptions& options, const std::string& list)
             throw InputError("--fields", name == "region"
                                              ? "region needs --within"
                                              : "expected foot, facet, region or sigma, got '" + name + "'");
-    }
 }
 
-DistanceOptions distance_options(const std::string& mode, const std::string& direction)
+Eigen::Vector3d direction_of(const std::string& text)
 {
-    DistanceOptions options;
-    if (mode != "normal") options.mode = DistanceMode::direction;
+    const std::vector<std::string> parts = listed(text);
+    const auto number = [&](std::size_t k) { return parse_number(parts[k]).value_or(std::nan("")); };
+    const Eigen::Vector3d way =
+        parts.size() == 3 ? Eigen::Vector3d(number(0), number(1), number(2)) : Eigen::Vector3d::Constant(std::nan(""));
+    if (!way.allFinite()) throw InputError("--direction", "expected three numbers x,y,z, got '" + text + "'");
+    if (!(way.norm() > 0)) throw InputError("--direction", "has no length: '" + text + "'");
+    return way.normalized();
+}
+
+DistanceOptions distance_options(const std::string& mode, const std::string& direction, const std::string& winding)
+{
     if ((mode == "direction") == direction.empty())
         throw InputError("--direction", mode == "direction" ? "--mode direction needs one, x,y,z"
                                                             : "goes with --mode direction, not with --mode " + mode);
-    if (mode != "direction") return options;
-    std::istringstream parts(direction + ",");
-    std::string part;
-    int read = 0;
-    for (; std::getline(parts, part, ','); ++read) {
-        const std::optional<double> number = parse_number(part);
-        if (read >= 3 || !number || !std::isfinite(*number))
-            throw InputError("--direction", "expected three numbers x,y,z, got '" + direction + "'");
-        options.direction[read] = *number;
-    }
-    if (read != 3) throw InputError("--direction", "expected three numbers x,y,z, got '" + direction + "'");
-    if (!(options.direction.norm() > 0)) throw InputError("--direction", "has no length: '" + direction + "'");
-    options.direction.normalize();
+    DistanceOptions options;
+    if (mode != "normal") options.mode = DistanceMode::direction;
+    if (mode == "direction") options.direction = direction_of(direction);
+    if (winding != "mend") options.winding = winding == "turn" ? Winding::turn : Winding::keep;
     return options;
-}
-
-json::Value to_json(const Comparison& comparison, const Units& units)
-{
-    json::Value report = to_json(comparison.all, units);
-    json::Value regions;
-    for (const auto& [name, statistics] : comparison.regions) regions.set(name, to_json(statistics, units));
-    if (!comparison.regions.empty()) report.set("regions", regions);
-    report.set("histogram", to_json(comparison.histogram, units));
-    if (!std::isnan(comparison.reference_sigma)) report.set("reference_sigma", comparison.reference_sigma / units.mm());
-    return report;
-}
-
-json::Value to_json(const ReferenceRepair& repair, const MeshRepair& reading, const Units& units)
-{
-    json::Value report;
-    report.set("dropped_facets", static_cast<std::size_t>(reading.dropped_triangles));
-    report.set("weld_tolerance", repair.weld_tolerance / units.mm());
-    report.set("welded_vertices", static_cast<std::size_t>(repair.welded_vertices));
-    report.set("repeated_facets", static_cast<std::size_t>(repair.repeated_facets));
-    return report.set("flipped_facets", static_cast<std::size_t>(repair.flipped_facets));
 }
 
 Reference make_reference(MeshOrCloud shape, const DistanceOptions& options)
@@ -99,42 +78,14 @@ Reference make_reference(MeshOrCloud shape, const DistanceOptions& options)
     return Reference(std::get<Cloud>(shape), options);
 }
 
-void write_histogram(std::ostream& out, const Histogram& histogram, const Units& units)
-{
-    const double limit = histogram.limit / units.mm();
-    const double width = 2 * limit / static_cast<double>(histogram.counts.size());
-    out << "from,to,count\n-inf," << to_text(-limit) << ',' << histogram.below << '\n';
-    for (std::size_t i = 0; i < histogram.counts.size(); ++i)
-        out << to_text(-limit + width * static_cast<double>(i)) << ','
-            << to_text(-limit + width * static_cast<double>(i + 1)) << ',' << histogram.counts[i] << '\n';
-    out << to_text(limit) << ",inf," << histogram.above << '\n';
-}
-
-std::vector<std::pair<std::string, Statistics>> rows_of(const std::vector<Comparison>& comparisons)
-{
-    std::vector<std::pair<std::string, Statistics>> rows;
-    for (const Comparison& comparison : comparisons) {
-        const std::string way = rows.empty() ? "" : "reverse ";
-        rows.emplace_back(way + "all", comparison.all);
-        for (const auto& [name, statistics] : comparison.regions) rows.emplace_back(way + name, statistics);
-    }
-    return rows;
-}
-
-/// What is judged: inside the anomaly's boundary, if there is a job.
-const Statistics& judged(const Comparison& comparison)
-{
-    return comparison.regions.empty() ? comparison.all : comparison.regions.front().second;
-}
-
 /// Adds the verdict to the report.
 Verdict give_verdict(Tool& t, const std::vector<Comparison>& comparisons, double tolerance, const Units& units)
 {
     Judgement both{true, 0};
     for (const Comparison& comparison : comparisons) {
-        const Judgement one = judge(judged(comparison), tolerance, comparison.largest);
+        const Judgement one = judge(comparison.judged(), tolerance, comparison.largest);
         both = {both.within && one.within, std::max(one.worst, both.worst)};
-        if (judged(comparison).count == 0) t.warn("no point to judge has an error: out of tolerance");
+        if (comparison.judged().count == 0) t.warn("no point to judge has an error: out of tolerance");
     }
     t.report().set("tolerance", tolerance / units.mm());
     t.report().set("judged", comparisons.front().regions.empty() ? "all" : "inside");
@@ -149,8 +100,7 @@ int main(int argc, char** argv)
     const std::string description =
         "Signed error map of a part against its reference: + material left (under-cut), - over-cut.\n"
         "Either is a mesh (STL, PLY, OBJ, OFF) or a cloud (PCD, PLY, XYZ). Out: the points of the test (vertices, if "
-        "it "
-        "is a mesh) with all their fields, the reference's normal, error and rgb. Beyond an open border of the "
+        "it is a mesh) with all their fields, the reference's normal, error and rgb. Beyond an open border of the "
         "reference the error is NaN. Exit 1 if an error (with a job: one inside the anomaly's boundary) exceeds the "
         "tolerance. A binary PCD is streamed; other files are held in memory.";
     return tool_main(argc, argv, description, [](Tool& t) {
@@ -191,10 +141,7 @@ int main(int argc, char** argv)
         ComparisonOptions options;
         if (!job_path.empty()) options.job = read_job(job_path);
         set_fields(options, fields);
-        options.distance = distance_options(mode, direction);
-        options.distance.winding = winding == "mend"   ? Winding::mend
-                                   : winding == "turn" ? Winding::turn
-                                                       : Winding::keep;
+        options.distance = distance_options(mode, direction, winding);
         options.bins = bins;
         options.memory = static_cast<std::size_t>(memory) << 20;
         const CloudFormat written = format_of(format, ascii);
@@ -231,8 +178,8 @@ int main(int argc, char** argv)
             comparisons.push_back(run(*back, make_reference(whole_test->shape, options.distance), *back_out));
             t.report().set("reverse", to_json(comparisons.back(), units));
         }
-        if (!csv.empty()) write_csv(t.output_file(csv), rows_of(comparisons), units);
-        if (!histogram.empty()) write_histogram(t.output_file(histogram), comparisons.front().histogram, units);
+        if (!csv.empty()) write_csv(t.output_file(csv), comparisons, units);
+        if (!histogram.empty()) write_csv(t.output_file(histogram), comparisons.front().histogram, units);
         if (reference.repair().flipped_facets > 0 && winding == "mend")
             t.warn(display_name(reference_path) + ": " + std::to_string(reference.repair().flipped_facets) +
                    " facets are turned over (--winding)");

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 namespace fettle {
 
@@ -49,6 +50,15 @@ const std::string& one_of(const std::vector<std::string>& choices, const std::st
     const std::string guess = nearest_word(text, choices);
     throw InputError("'" + text + "' is none of " + joined(choices, ", ") +
                      (guess.empty() ? "" : "; did you mean '" + guess + "'?"));
+}
+
+std::vector<std::string> listed(const std::string& text)
+{
+    std::vector<std::string> parts;
+    if (text.empty()) return parts;
+    std::istringstream rest(text + ","); // what follows the last comma is a part, too
+    for (std::string part; std::getline(rest, part, ',');) parts.push_back(part);
+    return parts;
 }
 
 std::string joined(const std::vector<std::string>& words, const std::string& separator)

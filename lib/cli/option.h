@@ -28,6 +28,9 @@ double whole_number_in(const std::string& text, double least, double most);
 /// @throws InputError, with a guess at what was meant, if `text` is none of the choices
 const std::string& one_of(const std::vector<std::string>& choices, const std::string& text);
 
+/// "a,b" as "a" and "b"; nothing of an empty text.
+std::vector<std::string> listed(const std::string& text);
+
 /// "plane|swept|freeform"
 std::string joined(const std::vector<std::string>& words, const std::string& separator);
 

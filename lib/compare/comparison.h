@@ -38,6 +38,9 @@ struct Comparison {
     Histogram histogram;
     double reference_sigma; ///< median, mm; NaN for a mesh
     double largest = 0;     ///< coordinate of the points, mm
+
+    /// What a verdict rests on: inside the anomaly's boundary, if there is a job.
+    const Statistics& judged() const { return regions.empty() ? all : regions.front().second; }
 };
 
 /// Compares points to a reference, block by block: neither points nor map are held.

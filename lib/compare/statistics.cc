@@ -1,7 +1,6 @@
 #include "compare/statistics.h"
 
 #include "compare/order_statistics.h"
-#include "core/text.h"
 #include "job/boundary.h"
 
 #include <tbb/parallel_for.h>
@@ -9,7 +8,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <ostream>
 #include <span>
 
 namespace fettle {
@@ -48,41 +46,6 @@ void set_percentiles(Statistics& s, const Numbers& numbers)
         const double beyond = static_cast<double>(last) * shares[i] - static_cast<double>(ranks[2 * i]);
         *to[i] = at[2 * i] + beyond * (at[2 * i + 1] - at[2 * i]);
     }
-}
-
-/// A name and a number in the unit of a report; volumes have power 3.
-struct Member {
-    const char* name;
-    double Statistics::*value;
-    int power;
-};
-constexpr Member kMembers[] = {{"mean", &Statistics::mean, 1},
-                               {"mean_abs", &Statistics::mean_abs, 1},
-                               {"rms", &Statistics::rms, 1},
-                               {"sd", &Statistics::sd, 1},
-                               {"min", &Statistics::min, 1},
-                               {"max", &Statistics::max, 1},
-                               {"band", &Statistics::band, 1},
-                               {"p01", &Statistics::p01, 1},
-                               {"p05", &Statistics::p05, 1},
-                               {"p50", &Statistics::p50, 1},
-                               {"p95", &Statistics::p95, 1},
-                               {"p99", &Statistics::p99, 1},
-                               {"within", &Statistics::within, 0},
-                               {"over_cut_area", &Statistics::over_cut_area, 2},
-                               {"under_cut_area", &Statistics::under_cut_area, 2},
-                               {"over_cut_volume", &Statistics::over_cut_volume, 3},
-                               {"under_cut_volume", &Statistics::under_cut_volume, 3}};
-
-struct Place {
-    const char* name;
-    Eigen::Vector3d Statistics::*value;
-};
-constexpr Place kPlaces[] = {{"min_at", &Statistics::min_at}, {"max_at", &Statistics::max_at}};
-
-double in_units(const Statistics& s, const Member& member, const Units& units)
-{
-    return s.*member.value / std::pow(units.mm(), member.power);
 }
 
 } // namespace
@@ -209,39 +172,6 @@ Judgement judge(const Statistics& judged, double tolerance, double largest)
     const double rounding = static_cast<double>(std::numeric_limits<float>::epsilon()) * largest; // half of it a file
     const double worst = std::max(std::abs(judged.min), std::abs(judged.max));
     return {worst <= tolerance + rounding, worst};
-}
-
-json::Value to_json(const Statistics& s, const Units& units)
-{
-    json::Value value;
-    value.set("count", static_cast<std::size_t>(s.count)).set("undefined", static_cast<std::size_t>(s.undefined));
-    for (const Member& member : kMembers) value.set(member.name, in_units(s, member, units));
-    for (const Place& place : kPlaces) value.set(place.name, Eigen::VectorXd(s.*place.value / units.mm()));
-    return value;
-}
-
-json::Value to_json(const Histogram& histogram, const Units& units)
-{
-    json::Value value;
-    value.set("limit", histogram.limit / units.mm()).set("below", histogram.below).set("above", histogram.above);
-    value.set("counts", std::vector<json::Value>(histogram.counts.begin(), histogram.counts.end()));
-    return value;
-}
-
-void write_csv(std::ostream& out, const std::vector<std::pair<std::string, Statistics>>& rows, const Units& units)
-{
-    out << "points,count,undefined";
-    for (const Member& member : kMembers) out << ',' << member.name;
-    for (const Place& place : kPlaces)
-        for (const char* axis : {"_x", "_y", "_z"}) out << ',' << place.name << axis;
-    out << '\n';
-    for (const auto& [name, s] : rows) {
-        out << name << ',' << s.count << ',' << s.undefined;
-        for (const Member& member : kMembers) out << ',' << to_text(in_units(s, member, units));
-        for (const Place& place : kPlaces)
-            for (const double coordinate : s.*place.value) out << ',' << to_text(coordinate / units.mm());
-        out << '\n';
-    }
 }
 
 } // namespace fettle

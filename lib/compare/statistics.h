@@ -3,17 +3,12 @@
 #include "compare/sum.h"
 #include "core/spool.h"
 #include "job/job.h"
-#include "units/units.h"
-#include "json/document.h"
 
 #include <Eigen/Core>
 
 #include <cstddef>
-#include <iosfwd>
 #include <limits>
 #include <optional>
-#include <string>
-#include <utility>
 #include <vector>
 
 namespace fettle {
@@ -92,12 +87,5 @@ struct Judgement {
 };
 /// @param largest  coordinate of the points, mm
 Judgement judge(const Statistics& judged, double tolerance, double largest);
-
-/// The flat members of a report, in `units`.
-json::Value to_json(const Statistics& statistics, const Units& units);
-json::Value to_json(const Histogram& histogram, const Units& units);
-
-/// A row for each of some statistics, with a row of names; the members of the report, places as three columns.
-void write_csv(std::ostream& out, const std::vector<std::pair<std::string, Statistics>>& rows, const Units& units);
 
 } // namespace fettle

@@ -21,6 +21,7 @@ refused one.xyz --to plate.obj --mode zz
 refused one.xyz --to plate.obj --mode direction
 refused one.xyz --to plate.obj --direction 0,0,1
 refused one.xyz --to plate.obj --mode direction --direction 0,0
+refused one.xyz --to plate.obj --mode direction --direction 0,0,1,
 refused one.xyz --to plate.obj --mode direction --direction 0,0,0
 refused one.xyz --to plate.obj --to-units ft
 # What can be read is: one point, NaN points, a cloud too small to be a surface.
