@@ -1,6 +1,7 @@
 #include "cli/tool.h"
 #include "cloud/pcd.h"
 #include "compare/picture.h"
+#include "core/direction.h"
 #include "core/file.h"
 #include "mesh/mesh_file.h"
 
@@ -11,7 +12,9 @@ using namespace fettle;
 int main(int argc, char** argv)
 {
     return tool_main(
-        argc, argv, "Draw an error map or a height map, seen from above: PNG with legend and histogram.", [](Tool& t) {
+        argc, argv,
+        "Draw an error map or a height map, from above or any direction: PNG with legend, scale bar and histogram.",
+        [](Tool& t) {
             const std::string& path = t.input("POINTS", "An error map or a part (PCD), or a mesh (STL, PLY, OBJ, OFF)");
             const std::string& shown =
                 t.text("--field", "", "NAME", "What to show: error, z, removed, … [error if there is one, else z]");
@@ -19,6 +22,9 @@ int main(int argc, char** argv)
                 "--scale", "A", "Colours from -A to A (error), from the least value to A above it (others)",
                 Range::positive());
             const int& bands = t.count("--bands", 0, "Colours in so many steps; 0: continuous", 0, 100);
+            const std::string& from =
+                t.text("--from", "0,0,1", "X,Y,Z",
+                       "Towards the eye, in the machine frame; Z is up in the picture, or Y when looking along Z");
             const std::string& title = t.text("--title", "", "TEXT", "Headline");
             const std::string& within =
                 t.text("--within", "", "JOB", "Draw this job's B and S; numbers are those inside B");
@@ -33,6 +39,11 @@ int main(int argc, char** argv)
             options.title = title;
             options.scale = scale;
             options.bands = bands;
+            try {
+                options.from = parse_direction(from);
+            } catch (const InputError& error) {
+                throw InputError("--from", error.what());
+            }
             if (!within.empty()) options.within = read_job(within);
             std::optional<Units> units;
             if (options.within) units = options.within->units;

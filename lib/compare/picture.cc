@@ -14,11 +14,11 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector2d;
 
-// The sheet, in pixels: the map in its frame, the legend to the right, a line of numbers below.
 // Of the largest value: ticks nearer to each other would need more digits than a label shows.
 constexpr double kLabelled = 1e-9;
+// The sheet, in pixels: the map in its frame, the title above it, the legend to the right, a line of numbers below.
 constexpr double kMapWidth = 900, kMapHeight = 680, kLeastMapHeight = 360;
-constexpr double kLeft = 84, kTop = 78, kBelowMap = 122, kLegendWidth = 310;
+constexpr double kLeft = 84, kTop = 36, kTitleHeight = 42, kBelowMap = 122, kLegendWidth = 310;
 constexpr Rgb kBackground = {228, 228, 232}; // darker than no error, lighter than undefined
 
 /// The next of 1, 1.5, 2, 3, 4, 5, 6, 8, 10 times a power of ten that is not below x.
@@ -63,25 +63,31 @@ Scale scale_for(const Eigen::VectorXd& values, const PictureOptions& options)
     return scale;
 }
 
-/// @param xy  2xN, what must be seen   @param spacing  of points that are drawn as cells, mm; 0: they are no points
-Layout lay_out(const Eigen::Matrix2Xd& xy, double spacing)
+bool from_above(const Eigen::Vector3d& from) { return from.head<2>().isZero(0) && from.z() > 0; }
+
+/// @param seen  3xN, V, what must be seen   @param spacing  of points that are drawn as cells, mm; 0: they are no
+/// points
+Layout lay_out(const Eigen::Matrix3Xd& seen, double spacing, const PictureOptions& options)
 {
     Eigen::AlignedBox2d box;
-    for (const Vector2d& p : xy.colwise())
-        if (p.allFinite()) box.extend(p);
-    if (box.isEmpty()) throw InputError("no point has a finite x and y: there is nothing to draw");
+    for (const Eigen::Vector3d& p : seen.colwise())
+        if (p.head<2>().allFinite()) box.extend(p.head<2>());
+    if (box.isEmpty())
+        throw InputError("no point has a finite " + std::string(from_above(options.from) ? "x and y" : "x, y and z") +
+                         ": there is nothing to draw");
     box = Eigen::AlignedBox2d(box.min() - Vector2d::Constant(spacing / 2), box.max() + Vector2d::Constant(spacing / 2));
     // A line of points is drawn as a strip.
     constexpr double kLeastSide = 1e-3;
     const Vector2d size = box.sizes().cwiseMax(kLeastSide * box.sizes().maxCoeff());
     Layout layout;
+    layout.rotation_view_machine = view_rotation(options.from);
     layout.view.pixel = std::max(size.x() / kMapWidth, size.y() / kMapHeight);
     // Less the rounding of a whole number of pixels.
     const Eigen::Array2i pixels = (size / layout.view.pixel).array().round().cast<int>().max(1);
     layout.view.columns = pixels.x();
     layout.view.rows = pixels.y();
     layout.view.least = box.min();
-    layout.map_corner = {kLeft, kTop};
+    layout.map_corner = {kLeft, kTop + (options.title.empty() ? 0 : kTitleHeight)};
     layout.map_size = {kMapWidth, std::max(kLeastMapHeight, double(pixels.y()))};
     layout.drawn_at = (layout.map_corner + (layout.map_size - pixels.matrix().cast<double>()) / 2).array().floor();
     return layout;
@@ -90,19 +96,20 @@ Layout lay_out(const Eigen::Matrix2Xd& xy, double spacing)
 /// How far from a point its colour reaches, mm.
 double reach_of(Index points, double spacing, double pixel)
 {
-    // A cell's corner is 0.71 spacings from its point; the rest bridges uneven scans. Few points are shown as dots.
-    constexpr double kReach = 0.8, kLeastPixels = 0.75, kDotPixels = 7;
+    // A cell's corner is 0.71 spacings from its point. Of points at random, one place in a hundred is farther than 1.1
+    // from all of them. Few points are shown as dots.
+    constexpr double kReach = 1.1, kLeastPixels = 0.75, kDotPixels = 7;
     constexpr Index kFew = 100;
     return points < kFew ? kDotPixels * pixel : std::max(kReach * spacing, kLeastPixels * pixel);
 }
 
-/// The numbers that lie inside B, or all of them.
-Eigen::VectorXd judged(const Eigen::Matrix2Xd& xy, const Eigen::VectorXd& numbers, const std::optional<Job>& job)
+/// The numbers that lie inside B, or all of them. @param points  3xN, M
+Eigen::VectorXd judged(const Eigen::Matrix3Xd& points, const Eigen::VectorXd& numbers, const std::optional<Job>& job)
 {
     if (!job) return numbers;
-    Eigen::Matrix3Xd points = Eigen::Matrix3Xd::Zero(3, xy.cols());
-    points.topRows<2>() = xy;
-    const std::vector<Region> places = regions(*job, points);
+    Eigen::Matrix3Xd flat = points;
+    flat.row(2).setZero(); // a point without a height still lies inside
+    const std::vector<Region> places = regions(*job, flat);
     std::vector<double> chosen;
     for (std::size_t i = 0; i < places.size(); ++i)
         if (places[i] == Region::inside) chosen.push_back(numbers[static_cast<Index>(i)]);
@@ -120,19 +127,18 @@ struct Drawing {
 Drawing draw(const Cloud& cloud, const PictureOptions& options)
 {
     Drawing d;
-    const Eigen::Matrix2Xd xy = cloud.xyz.topRows<2>();
     const bool heights = options.field == "z";
     const Eigen::VectorXd numbers =
         heights ? Eigen::VectorXd(cloud.xyz.row(2) / options.units.mm())
                 : Eigen::VectorXd(field(cloud, options.field) / to_base(options.units, field_dimension(options.field)));
-    const double spacing = point_spacing(xy);
+    const double spacing = point_spacing(cloud.xyz);
     constexpr double kAlone = 1; // the room of a single place, mm
-    d.layout = lay_out(xy, spacing > 0 ? spacing : kAlone);
+    const Eigen::Matrix3Xd seen = in_view(view_rotation(options.from), cloud.xyz);
+    d.layout = lay_out(seen, spacing > 0 ? spacing : kAlone, options);
     const double pixel = d.layout.view.pixel;
-    const double reach = reach_of(xy.cols(), spacing, pixel);
-    d.raster = rasterise(d.layout.view, xy, numbers, reach);
+    d.raster = rasterise(d.layout.view, seen, numbers, reach_of(seen.cols(), spacing, pixel));
     d.smoothing = std::max(0.7, spacing / pixel / 2); // half a cell: no steps are left
-    d.values.numbers = judged(xy, numbers, options.within);
+    d.values.numbers = judged(cloud.xyz, numbers, options.within);
     return d;
 }
 
@@ -140,40 +146,56 @@ Drawing draw(const Mesh& mesh, const PictureOptions& options)
 {
     if (options.field != "z") throw InputError("a mesh has no field '" + options.field + "', only z");
     Drawing d;
-    d.layout = lay_out(mesh.vertices.topRows<2>(), 0);
+    const Eigen::Matrix3d rotation = view_rotation(options.from);
+    const Mesh seen = {in_view(rotation, mesh.vertices), mesh.triangles};
+    d.layout = lay_out(seen.vertices, 0, options);
     const View& view = d.layout.view;
-    d.raster = rasterise(view, mesh);
-    d.raster.value /= options.units.mm();
+    d.raster = rasterise(view, seen, mesh.vertices.row(2).transpose() / options.units.mm());
     d.smoothing = 0.7;
+    if (!from_above(options.from)) { // the numbers do not depend on where one looks from
+        PictureOptions above = options;
+        above.from = Eigen::Vector3d::UnitZ();
+        d.values.numbers = draw(mesh, above).values.numbers;
+        return d;
+    }
     // What is seen counts, each place as much as the next; vertices would count where the mesh is fine, and underneath.
-    Eigen::Matrix2Xd xy(2, d.raster.covered.count());
-    Eigen::VectorXd numbers(xy.cols());
+    Eigen::Matrix3Xd places(3, d.raster.covered.count());
+    Eigen::VectorXd numbers(places.cols());
     for (Index column = 0, k = 0; column < view.columns; ++column)
         for (Index row = 0; row < view.rows; ++row)
             if (d.raster.covered(row, column)) {
-                xy.col(k) = view.least + view.pixel * Vector2d(double(column) + 0.5, double(view.rows - row) - 0.5);
+                places.col(k) << view.centre(row, column), d.raster.depth(row, column);
                 numbers[k++] = d.raster.value(row, column);
             }
-    d.values.numbers = judged(xy, numbers, options.within);
+    d.values.numbers = judged(places, numbers, options.within);
     return d;
 }
 
-void draw_map(Canvas& sheet, const Drawing& d, const Scale& scale, double mm)
+/// How much light and shade a picture bears. Heights from above all of it, as hills on a map; the colours of other
+/// fields are read as numbers, so they are shaded only where the part's shape could not be told otherwise.
+double shading_of(const PictureOptions& options)
+{
+    constexpr double kHeights = 0.75, kOthers = 0.5; // from the side: what turns away from the light is not black
+    if (from_above(options.from)) return options.field == "z" ? 1 : 0;
+    return options.field == "z" ? kHeights : kOthers;
+}
+
+void draw_map(Canvas& sheet, const Drawing& d, const Scale& scale, double shading)
 {
     const View& view = d.layout.view;
     Eigen::ArrayXXd shade = Eigen::ArrayXXd::Ones(view.rows, view.columns);
-    if (d.values.name == "z") shade = hill_shading(d.raster, view.pixel / mm, d.smoothing);
+    if (shading > 0) shade = hill_shading(d.raster, view.pixel, d.smoothing);
     const Eigen::Vector2i corner = d.layout.drawn_at.cast<int>();
     for (int row = 0; row < view.rows; ++row)
         for (int column = 0; column < view.columns; ++column) {
             if (!d.raster.covered(row, column)) continue;
             Rgb colour = scale(d.raster.value(row, column));
             // Shades keep a quarter of the colour, lights go at most half-way to white: the value stays legible.
-            const double s = shade(row, column);
-            if (s != 1)
-                for (std::uint8_t& c : colour)
-                    c = static_cast<std::uint8_t>(
-                        std::lround(s < 1 ? c * (0.25 + 0.75 * s) : std::lerp(double(c), 255, std::min(0.5, s - 1))));
+            // Near-white means "no error", so diverging colours get no lights.
+            const double s = shade(row, column), dark = 1 - 0.75 * shading * (1 - s);
+            const double light = scale.diverging ? 0 : std::min(0.5, shading * (s - 1));
+            for (std::uint8_t& c : colour)
+                c = static_cast<std::uint8_t>(std::lround(s < 1 ? c * dark : std::lerp(double(c), 255, light)));
             sheet.dot(corner.x() + column, corner.y() + row, colour);
         }
 }
@@ -188,15 +210,15 @@ std::string picture(const std::variant<Cloud, Mesh>& part, const PictureOptions&
     const Scale scale = scale_for(d.values.numbers, options);
     const Layout& layout = d.layout;
 
-    Canvas sheet(static_cast<int>(kLeft + layout.map_size.x() + kLegendWidth),
-                 static_cast<int>(kTop + layout.map_size.y() + kBelowMap));
+    Canvas sheet(static_cast<int>(layout.map_corner.x() + layout.map_size.x() + kLegendWidth),
+                 static_cast<int>(layout.map_corner.y() + layout.map_size.y() + kBelowMap));
     sheet.box(layout.map_corner, layout.map_size, kBackground);
-    draw_map(sheet, d, scale, options.units.mm());
-    if (options.within) draw_outlines(sheet, layout, *options.within);
+    draw_map(sheet, d, scale, shading_of(options));
+    if (options.within) draw_outlines(sheet, layout, d.raster, *options.within);
     draw_axes(sheet, layout, options.units);
     draw_legend(sheet, layout, d.values, scale);
     draw_numbers(sheet, layout, d.values, options.within ? "inside B" : "");
-    sheet.text(options.title, {kLeft, kTop - 38}, kTitle, Canvas::kInk, Canvas::Align::left, true);
+    sheet.text(options.title, {kLeft, kTop + 4}, kTitle, Canvas::kInk, Canvas::Align::left, true);
     return sheet.png();
 }
 

@@ -18,11 +18,13 @@ struct PictureOptions {
     int bands = 0;               ///< colours in so many equal steps; 0: continuous
     Units units;                 ///< of the numbers in the picture
     std::optional<Job> within;   ///< draw its B and S; the statistics and the colours are those of B
+    Eigen::Vector3d from = Eigen::Vector3d::UnitZ(); ///< unit, M: towards the eye, which is far away
 };
 
-/// A part seen from above, x to the right and y upwards: values as colours, with legend, histogram, scale and
-/// statistics. `error` has the diverging colours of ColourScale, every other field a sequential map; z is shaded as
-/// hills are. What has no value is grey.
+/// A part seen from above, x to the right and y upwards, or from any other direction (view_rotation()): values as
+/// colours, with legend, histogram, scale and statistics. `error` has the diverging colours of ColourScale, every other
+/// field a sequential map; z is shaded as hills are, and from the side all fields are, more lightly. What has no value
+/// is grey; what is behind something else is hidden.
 /// @return the bytes of a PNG, the same for the same input
 /// @throws InputError if there is no such field, or no point with finite x and y
 std::string picture(const std::variant<Cloud, Mesh>& part, const PictureOptions& options);

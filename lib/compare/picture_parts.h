@@ -26,21 +26,27 @@ struct Scale {
 
 /// Where the map lies on the sheet.
 struct Layout {
+    Eigen::Matrix3d rotation_view_machine;
     View view;
     Eigen::Vector2d map_corner; ///< of the frame, pixels
     Eigen::Vector2d map_size;
     Eigen::Vector2d drawn_at; ///< of the view inside the frame
-    double reach = 0;         ///< of a point, mm
 };
 
 /// Heights of capital letters, pixels.
 inline constexpr double kTitle = 15, kLabel = 10.5, kSmall = 9.5;
+inline constexpr Rgb kGrey = {120, 120, 120}, kFrame = {170, 170, 170};
 
-/// Frame, ticks and a bar of round length.
+/// Three digits that matter.
+std::string number_text(double value);
+/// The corners of a box, for a line around it.
+Eigen::Matrix2Xd frame_of(const Eigen::Vector2d& corner, const Eigen::Vector2d& size);
+
+/// Frame, a bar of round length, and ticks along each side that is an axis of the machine; else a tripod of the axes.
 void draw_axes(Canvas& sheet, const Layout& layout, const Units& units);
-/// B and S of a job.
-void draw_outlines(Canvas& sheet, const Layout& layout, const Job& job);
-/// Bar of colours with ticks, and beside it how often each value occurs.
+/// B and S of a job, where nothing of the part hides them; from above all of them.
+void draw_outlines(Canvas& sheet, const Layout& layout, const Raster& part, const Job& job);
+/// Bar of colours with ticks, its ends pointed where values lie beyond; beside it how often each value occurs.
 void draw_legend(Canvas& sheet, const Layout& layout, const Values& values, const Scale& scale);
 /// One line of statistics. @param place  the region they hold for; empty: all
 void draw_numbers(Canvas& sheet, const Layout& layout, const Values& values, const std::string& place);

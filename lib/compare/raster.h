@@ -1,43 +1,35 @@
 #pragma once
 
+#include "compare/view.h"
 #include "mesh/mesh.h"
 
 #include <Eigen/Core>
 
 namespace fettle {
 
-/// The x-y plane as seen from above on a raster: column to the right along x, row downwards against y.
-struct View {
-    Eigen::Vector2d least; ///< lower left corner, mm
-    double pixel = 1;      ///< side of a pixel, mm
-    int columns = 0, rows = 0;
-
-    /// In pixels from the upper left corner.
-    Eigen::Vector2d to_pixel(const Eigen::Vector2d& xy) const
-    {
-        return {(xy.x() - least.x()) / pixel, rows - (xy.y() - least.y()) / pixel};
-    }
-};
-
 /// One value a pixel, rows x columns.
 struct Raster {
     Eigen::ArrayXXd value;
+    Eigen::ArrayXXd depth;                                      ///< z of V where the part is seen, mm; NaN: unknown
     Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> covered; ///< false: nothing lies there
 };
 
-/// The typical distance of neighbouring points, mm: the cell of a gridded cloud. 0 for fewer than two places.
-/// @param xy  2xN; NaN columns do not count
-double point_spacing(const Eigen::Matrix2Xd& xy);
+/// The typical distance of a point to its fourth neighbour, mm: the cell of a gridded cloud. 0 for fewer than two
+/// places. Where no point has a z, it is that in the plane.
+/// @param points  3xN; columns with a NaN x or y do not count
+double point_spacing(const Eigen::Matrix3Xd& points);
 
-/// Each pixel has the value of the nearest point, if that is within `reach` mm: a gridded cloud becomes its cells,
-/// turned as they lie, a sparse one discs.
-Raster rasterise(const View& view, const Eigen::Matrix2Xd& xy, const Eigen::VectorXd& values, double reach);
+/// Each pixel has the value of the point nearest to it in the plane, if that is within `reach` mm and not hidden behind
+/// others: a gridded cloud becomes its cells, turned as they lie, a sparse one discs.
+/// @param points  3xN, V
+Raster rasterise(const View& view, const Eigen::Matrix3Xd& points, const Eigen::VectorXd& values, double reach);
 
-/// Each pixel has the height of the mesh's highest point over its centre, mm.
-Raster rasterise(const View& view, const Mesh& mesh);
+/// Each pixel has the value of the mesh where it is nearest to the eye over the pixel's centre.
+/// @param mesh  V   @param values  of its vertices; linear between them
+Raster rasterise(const View& view, const Mesh& mesh, const Eigen::VectorXd& values);
 
-/// Brightness of a height map under light from the upper left, about 1 where it is level; 1 where nothing lies.
+/// Brightness of what is seen under light from the upper left, about 1 where it faces the eye; 1 where nothing lies.
 /// @param smoothing  standard deviation of the filter that takes away the steps between cells, pixels
-Eigen::ArrayXXd hill_shading(const Raster& heights, double pixel, double smoothing);
+Eigen::ArrayXXd hill_shading(const Raster& raster, double pixel, double smoothing);
 
 } // namespace fettle

@@ -31,3 +31,8 @@ refused "part.stl: .*'error'" part.stl --field error
 refused '.scale' one.pcd --scale 0
 refused '.bands' one.pcd --bands -1
 refused '.bands' one.pcd --bands 101
+refused '.from: .*0,1' one.pcd --from 0,1
+refused '.from: .*x,0,1' one.pcd --from x,0,1
+refused '.from: .*no length' one.pcd --from 0,0,0
+pcd '1 2 nan' '2 3 nan' >flat.pcd
+refused 'flat.pcd: no point has a finite x, y and z' flat.pcd --from 0,-1,0

@@ -4,8 +4,10 @@
 #include "compare/colours.h"
 #include "compare/png.h"
 #include "compare/raster.h"
+#include "compare/view.h"
 #include "core/error.h"
 
+#include <Eigen/LU>
 #include <gtest/gtest.h>
 #include <png.h>
 
@@ -74,8 +76,8 @@ PictureOptions errors_to(double limit)
     return options;
 }
 
-// A square map of 680 pixels stands in the middle of the frame of 900 x 680 whose corner is (84, 78).
-constexpr int kLeft = 84 + 110, kTop = 78, kSide = 680;
+// A square map of 680 pixels stands in the middle of the frame of 900 x 680 whose corner is (84, 36).
+constexpr int kLeft = 84 + 110, kTop = 36, kSide = 680;
 
 TEST(Picture, EachPointIsItsCellWithTheColourOfItsValue)
 {
@@ -92,9 +94,9 @@ TEST(Picture, EachPointIsItsCellWithTheColourOfItsValue)
             ASSERT_EQ(at(sheet, kLeft + column, kTop + row), kUnit(error)) << column << ' ' << row;
         }
     // The legend: material left on top, over-cut at the bottom.
-    const double third_row = 1 - 2 * 2.5 / (kSide - 92); // of a bar that stands 46 pixels inside the frame
-    EXPECT_EQ(at(sheet, 84 + 900 + 40 + 10, kTop + 46 + 2), kUnit(third_row));
-    EXPECT_EQ(at(sheet, 84 + 900 + 40 + 10, kTop + kSide - 46 - 3), kUnit(-third_row));
+    const double third_row = 1 - 2 * 2.5 / (kSide - 124); // of a bar that stands 62 pixels inside the frame
+    EXPECT_EQ(at(sheet, 84 + 900 + 40 + 10, kTop + 62 + 2), kUnit(third_row));
+    EXPECT_EQ(at(sheet, 84 + 900 + 40 + 10, kTop + kSide - 62 - 3), kUnit(-third_row));
 }
 
 TEST(Picture, TurnedGridsHaveNoHoles)
@@ -121,6 +123,86 @@ TEST(Picture, IsTheSameEachTime)
 {
     const Cloud cloud = grid([](const Eigen::Vector2d& p) { return std::sin(p.x()); });
     EXPECT_EQ(picture(cloud, errors_to(1)), picture(cloud, errors_to(1)));
+}
+
+/// A square of 21 x 21 points, 1 mm apart, upright in the plane y = `y`, x and z from -10 to 10, all of one error.
+void add_wall(Cloud& cloud, double y, double error)
+{
+    Cloud wall;
+    wall.xyz.resize(3, 441);
+    for (int i = 0; i < 441; ++i) wall.xyz.col(i) << i % 21 - 10, y, i / 21 - 10;
+    const Eigen::Index known = cloud.size();
+    Eigen::VectorXd errors(known + 441);
+    if (known > 0) errors.head(known) = field(cloud, "error");
+    errors.tail(441).setConstant(error);
+    cloud.xyz.conservativeResize(3, known + 441);
+    cloud.xyz.rightCols(441) = wall.xyz;
+    set_field(cloud, "error", errors);
+}
+
+// Two walls behind each other, 2 mm apart: of either side one is seen, all over.
+TEST(Picture, WhatIsBehindIsHidden)
+{
+    Cloud cloud;
+    add_wall(cloud, 0, 0.5);
+    add_wall(cloud, 2, -0.5);
+    for (const double side : {-1.0, 1.0}) {
+        PictureOptions options = errors_to(1);
+        options.from = {0, side, 0};
+        const Sheet sheet = drawn(cloud, options);
+        for (int column = 5; column < kSide - 5; ++column)
+            for (int row = 5; row < kSide - 5; ++row)
+                ASSERT_EQ(at(sheet, kLeft + column, kTop + row), kUnit(-0.5 * side)) << column << ' ' << row;
+    }
+}
+
+// Up and right of each view: Z is up, or Y when looking along Z. Reference: right-handed frames, by hand.
+TEST(View, ZIsUpOnTheSheet)
+{
+    const auto expect = [](const Eigen::Vector3d& from, const Eigen::Vector3d& right, const Eigen::Vector3d& up) {
+        const Eigen::Matrix3d rotation = view_rotation(from);
+        EXPECT_LT((rotation.row(0).transpose() - right).norm(), 1e-15);
+        EXPECT_LT((rotation.row(1).transpose() - up).norm(), 1e-15);
+        EXPECT_LT((rotation.row(2).transpose() - from).norm(), 1e-15);
+        EXPECT_NEAR(rotation.determinant(), 1, 1e-15);
+    };
+    expect({0, 0, 1}, {1, 0, 0}, {0, 1, 0});
+    expect({0, 0, -1}, {-1, 0, 0}, {0, 1, 0});
+    expect({0, -1, 0}, {1, 0, 0}, {0, 0, 1});
+    expect({1, 0, 0}, {0, 1, 0}, {0, 0, 1});
+    const double half = std::sqrt(0.5);
+    expect({0, -half, half}, {1, 0, 0}, {0, half, half});
+}
+
+// Where an edge lies between colours tells where the eye is: a step of the error at x = 1 on a plane that is seen at
+// 60° from its normal, so that y is half as long on the sheet and x is not.
+TEST(Picture, LengthsAreThoseSeen)
+{
+    PictureOptions options = errors_to(1);
+    options.from = {0, -std::sqrt(0.75), 0.5};
+    const Sheet sheet = drawn(grid([](const Eigen::Vector2d& p) { return p.y() < 9 ? 1 : -1; }), options); // 40 x 40 mm
+    const double pixel = 40.0 / 900;
+    int blue = 0, red = 0; // rows in the middle column
+    for (int row = 0; row < 480; ++row) {
+        const Rgb colour = at(sheet, 84 + 450, kTop + row);
+        blue += colour[2] > colour[0] + 30;
+        red += colour[0] > colour[2] + 30;
+    }
+    // Rows of points are 1 mm apart on the sheet; half a spacing is left around them.
+    EXPECT_NEAR(blue * pixel, 9 / 2.0 + 1, 1);
+    EXPECT_NEAR(red * pixel, (38 - 9) / 2.0 + 1, 1);
+}
+
+// Of the legend: pointed where values lie beyond, else not. The tips stand 2 pixels beyond the bar's frame.
+TEST(Picture, MarksTheEndsThatValuesExceed)
+{
+    const int middle = 84 + 900 + 40 + 11, top = kTop + 62 - 6, bottom = kTop + kSide - 62 + 6;
+    const Rgb white = {255, 255, 255};
+    const Cloud cloud = grid([](const Eigen::Vector2d& p) { return p.x() < 1 ? 2 : 0.5; });
+    const Sheet beyond = drawn(cloud, errors_to(1)), within = drawn(cloud, errors_to(2));
+    EXPECT_EQ(at(beyond, middle, top), kUnit(1));
+    EXPECT_EQ(at(beyond, middle, bottom), white);
+    EXPECT_EQ(at(within, middle, top), white);
 }
 
 // A pyramid under light from the upper left.
@@ -175,11 +257,12 @@ TEST(Png, HoldsEveryPixel)
 TEST(Raster, SpacingOfAGridIsItsCell)
 {
     for (const double angle : {0.0, 0.3, std::numbers::pi / 4})
-        EXPECT_NEAR(point_spacing(grid([](const Eigen::Vector2d&) { return 0; }, angle).xyz.topRows<2>()), 2, 1e-12);
-    EXPECT_EQ(point_spacing(Eigen::Matrix2Xd::Constant(2, 3, 7)), 0);
-    Eigen::Matrix2Xd line = Eigen::Matrix2Xd::Zero(2, 5);
-    line.row(0) << 0, 3, 6, 9, kNaN;
-    EXPECT_NEAR(point_spacing(line), 3, 1e-12);
+        EXPECT_NEAR(point_spacing(grid([](const Eigen::Vector2d&) { return 0; }, angle).xyz), 2, 1e-12);
+    EXPECT_EQ(point_spacing(Eigen::Matrix3Xd::Constant(3, 3, 7)), 0);
+    Eigen::Matrix3Xd line = Eigen::Matrix3Xd::Zero(3, 5);
+    line.row(0) << 0, 3, 6, 9, kNaN; // each has a neighbour 3 away and one 6 away; nothing is farther than two shares
+    EXPECT_GE(point_spacing(line), 3);
+    EXPECT_LE(point_spacing(line), 6);
 }
 
 } // namespace

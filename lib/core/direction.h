@@ -1,0 +1,13 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <string>
+
+namespace fettle {
+
+/// "x,y,z" as a unit vector.
+/// @throws InputError if these are not three finite numbers, or all are 0
+Eigen::Vector3d parse_direction(const std::string& text);
+
+} // namespace fettle
