@@ -157,6 +157,15 @@ struct Attempt {
     RoundSolution solution;
 };
 
+/// As near as touches of their standard deviation come? Few touches may be explained in several ways: never.
+bool explains(const Attempt& attempt, int parameters)
+{
+    constexpr double kSpread = 2; // standard deviations of chi2
+    const auto n = static_cast<double>(attempt.problem.touches.cols());
+    const double freedom = n - parameters;
+    return freedom >= parameters && 2 * attempt.solution.cost <= freedom + kSpread * std::sqrt(2 * freedom);
+}
+
 void attempt(RoundFamily family, RoundProblem problem, double angle, double around, double along,
              std::optional<Attempt>& best, int& iterations)
 {
@@ -203,7 +212,8 @@ std::optional<FamilySolution> round(const Touched& touched, const Columns& kept)
 {
     constexpr double kQuarter = std::numbers::pi / 2;
     const RoundStart start = round_start(touched, kept);
-    if (static_cast<int>(kept.size()) < parameters(kFamily, touched.given_direction)) return std::nullopt;
+    const int free = parameters(kFamily, touched.given_direction);
+    if (static_cast<int>(kept.size()) < free) return std::nullopt;
     std::optional<Attempt> best;
     int iterations = 0;
     if (kFamily == RoundFamily::sphere) {
@@ -213,8 +223,11 @@ std::optional<FamilySolution> round(const Touched& touched, const Columns& kept)
         const double along = kFamily == RoundFamily::torus ? start.least : 0;
         const double across = kFamily == RoundFamily::torus ? start.most : 0;
         attempt(kFamily, start.problem, 0, start.most, along, best, iterations);
-        if (!touched.given_direction) attempt(kFamily, start.problem, kQuarter, start.least, across, best, iterations);
-        if (!start.known && !touched.given_direction)
+        // A straight ruling that the touches lie along is the only one; tori bend both ways and may have two minima.
+        const bool found = kFamily != RoundFamily::torus && best && explains(*best, free);
+        if (!touched.given_direction && !found)
+            attempt(kFamily, start.problem, kQuarter, start.least, across, best, iterations);
+        if (!start.known && !touched.given_direction && !found)
             for (const double angle : {kQuarter / 2, 1.5 * kQuarter})
                 attempt(kFamily, start.problem, angle, start.most, along, best, iterations);
     }

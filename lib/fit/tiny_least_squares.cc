@@ -63,9 +63,9 @@ VectorXd polished(const Residuals& residuals, VectorXd x)
 
 Minimum least_squares(const Residuals& residuals, const VectorXd& start)
 {
-    constexpr double kNoChange = 1e-16; // of the sum of squares
+    constexpr double kNoChange = 1e-10; // of the sum of squares; what is left is polished
     constexpr double kRounding = 1e-12; // of the parameters, and of the gradient
-    constexpr int kIterations = 100;    // ten are common
+    constexpr int kIterations = 50;     // ten are common; tori on a sphere's touches find no end
     using Solver = ceres::TinySolver<Function>;
     Solver solver;
     solver.options.max_num_iterations = kIterations;
