@@ -12,6 +12,7 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <optional>
 
 namespace fettle {
 
@@ -39,7 +40,7 @@ struct Pass {
 
 /// What a lane gathers.
 struct Lane {
-    CellMoments moments;
+    std::optional<CellMoments> moments; ///< with the first points: made by the thread that fills it
     std::size_t outliers = 0;
     PointCounts counts;
     std::vector<CellPoint> points;
@@ -60,7 +61,7 @@ void weigh(Lane& lane, double cut)
 Pass read_points(const DensePoints& points, const Bspline& spline, double sigma)
 {
     const std::vector<double> polynomials = cell_polynomials(spline);
-    std::vector<Lane> lanes(kBlockLanes, {CellMoments(points.grid), 0, {}, {}, {}, {}});
+    std::vector<Lane> lanes(kBlockLanes);
     for_blocks(points.source, [&](std::size_t k, std::size_t, const PointBlock& block) {
         Lane& lane = lanes[k];
         locate(points, block, lane.points, lane.counts);
@@ -68,13 +69,14 @@ Pass read_points(const DensePoints& points, const Bspline& spline, double sigma)
         lane.w.resize(lane.points.size());
         residuals(lane.points, polynomials, lane.r.data());
         weigh(lane, kCut * sigma);
-        lane.moments.add(lane.points, lane.r.data(), lane.w.data());
+        if (!lane.moments) lane.moments.emplace(points.grid);
+        lane.moments->add(lane.points, lane.r.data(), lane.w.data());
     });
     for (std::size_t k = 1; k < kBlockLanes; ++k) {
-        lanes[0].moments.add(lanes[k].moments);
+        if (lanes[k].moments) lanes[0].moments->add(*lanes[k].moments);
         lanes[0].outliers += lanes[k].outliers;
     }
-    const CellMoments sum = std::move(lanes[0].moments);
+    const CellMoments sum = std::move(*lanes[0].moments);
     const std::size_t outliers = lanes[0].outliers;
     lanes.clear(); // before the matrix is made
     const MatrixXd s = density_factors(sum.weights());

@@ -2,7 +2,10 @@
 
 #include "surface/spline_energy.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
@@ -76,6 +79,15 @@ Smoothed smoothed_by_likelihood(const NormalEquations& equations, const VectorXd
     const int lowest = static_cast<int>(std::floor(std::log(least / start) / kStep));
     const int highest = static_cast<int>(std::ceil(std::log(most / start) / kStep));
     std::map<int, Solution> known;
+    { // the least that it takes, at once
+        std::array<Solution, 3> first;
+        const int from = std::max(lowest, -1), to = std::min(highest, 1);
+        tbb::parallel_for(from, to + 1, [&](int k) {
+            first[static_cast<std::size_t>(k - from)] =
+                solve(equations, heights, energy, start * std::exp(kStep * k));
+        });
+        for (int k = from; k <= to; ++k) known.emplace(k, std::move(first[static_cast<std::size_t>(k - from)]));
+    }
     const auto at = [&](int k) -> const Solution& {
         auto found = known.find(k);
         if (found == known.end())
