@@ -83,8 +83,7 @@ Smoothed smoothed_by_likelihood(const NormalEquations& equations, const VectorXd
         std::array<Solution, 3> first;
         const int from = std::max(lowest, -1), to = std::min(highest, 1);
         tbb::parallel_for(from, to + 1, [&](int k) {
-            first[static_cast<std::size_t>(k - from)] =
-                solve(equations, heights, energy, start * std::exp(kStep * k));
+            first[static_cast<std::size_t>(k - from)] = solve(equations, heights, energy, start * std::exp(kStep * k));
         });
         for (int k = from; k <= to; ++k) known.emplace(k, std::move(first[static_cast<std::size_t>(k - from)]));
     }

@@ -1,0 +1,147 @@
+#include "fit/process_mixture.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/QR>
+
+#include <cmath>
+#include <cstdlib>
+
+namespace fettle {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::Vector2d;
+using Eigen::VectorXd;
+
+} // namespace
+
+ControlHeights::ControlHeights(const Bspline& grid)
+    : rows_(grid.heights.rows()), columns_(grid.heights.cols()), cell_(grid.cell),
+      nodes_(2, (rows_ + 2) * (columns_ + 2))
+{
+    const Eigen::Rotation2Dd turn(grid.angle);
+    for (Index j = 0; j < columns_ + 2; ++j)
+        for (Index i = 0; i < rows_ + 2; ++i)
+            nodes_.col(j * (rows_ + 2) + i) =
+                grid.origin +
+                turn * cell_.cwiseProduct(Vector2d(static_cast<double>(i - 2), static_cast<double>(j - 2)));
+}
+
+MatrixXd ControlHeights::from(const MatrixXd& values) const
+{
+    MatrixXd result(size(), values.cols());
+    for (Index k = 0; k < values.cols(); ++k) {
+        const auto f = values.col(k).reshaped(rows_ + 2, columns_ + 2);
+        const MatrixXd along = (8 * f.middleRows(1, rows_) - f.topRows(rows_) - f.bottomRows(rows_)) / 6;
+        result.col(k) =
+            ((8 * along.middleCols(1, columns_) - along.leftCols(columns_) - along.rightCols(columns_)) / 6).reshaped();
+    }
+    return result;
+}
+
+// Σ w_p w_q (correlation of nodes p rows and q columns farther), w the interpolant's weights folded with themselves.
+MatrixXd ControlHeights::correlation_between(const Correlation& correlation) const
+{
+    constexpr std::array<double, 5> kFolded = {1 / 36.0, -16 / 36.0, 66 / 36.0, -16 / 36.0, 1 / 36.0};
+    const Eigen::ArrayXd u = Eigen::ArrayXd::LinSpaced(rows_ + 2, 0, static_cast<double>(rows_ + 1)) * cell_.x();
+    MatrixXd near(rows_ + 2, columns_ + 2), along(rows_, columns_ + 2), between = MatrixXd::Zero(rows_, columns_);
+    for (Index j = 0; j < near.cols(); ++j)
+        near.col(j) = at(correlation, u.square() + std::pow(static_cast<double>(j) * cell_.y(), 2));
+    along.setZero();
+    for (Index p = 0; p < 5; ++p) {
+        const double weight = kFolded[static_cast<std::size_t>(p)];
+        for (Index i = 0; i < rows_; ++i) along.row(i) += weight * near.row(std::abs(i + p - 2));
+    }
+    for (Index p = 0; p < 5; ++p) {
+        const double weight = kFolded[static_cast<std::size_t>(p)];
+        for (Index j = 0; j < columns_; ++j) between.col(j) += weight * along.col(std::abs(j + p - 2));
+    }
+    return between;
+}
+
+void ControlHeights::add_by_place(MatrixXd& sum, const MatrixXd& between) const
+{
+    for (Index column = 0; column < columns_; ++column)
+        for (Index other = column; other < columns_; ++other)
+            for (Index row = 0; row < rows_; ++row)
+                for (Index i = 0; i < rows_; ++i)
+                    sum(other * rows_ + i, column * rows_ + row) += between(std::abs(i - row), other - column);
+}
+
+ProcessMixture::ProcessMixture(const ProcessTouches& touches, const ControlHeights& controls, const MatrixXd& trend)
+    : touches_(touches), controls_(controls)
+{
+    const Eigen::HouseholderQR<MatrixXd> qr(touches.F);
+    const Index p = touches.F.cols();
+    Q_ = qr.householderQ() * MatrixXd::Identity(touches.F.rows(), p);
+    const MatrixXd R = qr.matrixQR().topRows(p).triangularView<Eigen::Upper>();
+    F_ = R.transpose().triangularView<Eigen::Lower>().solve(trend.transpose()).transpose();
+    trend_ = F_ * (Q_.transpose() * touches.z);
+}
+
+void ProcessMixture::add(const Spectrum& s, const std::array<double, kRatios>& weights)
+{
+    double sum = 0, tau2 = 0;
+    const double sigma = touches_.sigma;
+    VectorXd mean = VectorXd::Zero(s.y.size()), explained = mean;
+    MatrixXd spread = MatrixXd::Zero(s.y.size(), s.y.size());
+    for (int i = 0; i < kRatios; ++i) {
+        const double weight = weights[static_cast<std::size_t>(i)];
+        if (weight == 0) continue;
+        const double ratio = ratio_of(i), t2 = std::pow(ratio * sigma, 2);
+        const VectorXd d = precision(s, ratio), v = t2 / sigma * d.cwiseProduct(s.y);
+        sum += weight;
+        tau2 += weight * t2;
+        explained += weight * t2 * ratio * ratio * d;
+        mean += weight * v;
+        spread.noalias() += weight * v * v.transpose();
+    }
+    if (sum == 0) return;
+    mean /= sum;
+    spread.noalias() -= sum * mean * mean.transpose();
+    spread.diagonal() -= explained;
+
+    const MatrixXd C = controls_.from(correlations(s.correlation, controls_.nodes(), touches_.xy));
+    const MatrixXd QK = Q_.transpose() * correlations(s.correlation, touches_.xy, touches_.xy);
+    const MatrixXd B = (C - F_ * QK) * s.E;
+    const MatrixXd cross = tau2 * (F_ * (QK * Q_) / 2 - C * Q_) + sum * sigma * sigma / 2 * F_;
+    Part part{sum, trend_ + B * mean, MatrixXd(B.rows(), B.cols() + 2 * F_.cols()), {}};
+    part.right.resizeLike(part.left);
+    part.left << B * spread, cross, F_;
+    part.right << B, F_, cross;
+    parts_.push_back(std::move(part));
+    if (between_.size() == 0)
+        between_ = tau2 * controls_.correlation_between(s.correlation);
+    else
+        between_ += tau2 * controls_.correlation_between(s.correlation);
+}
+
+std::pair<VectorXd, MatrixXd> ProcessMixture::result() const
+{
+    VectorXd mean = VectorXd::Zero(controls_.size());
+    double sum = 0;
+    Index columns = 0;
+    for (const Part& part : parts_) {
+        mean += part.weight * part.mean;
+        sum += part.weight;
+        columns += part.left.cols() + 1;
+    }
+    mean /= sum;
+    MatrixXd left(controls_.size(), columns), right(controls_.size(), columns);
+    Index k = 0;
+    for (const Part& part : parts_) {
+        const Index count = part.left.cols();
+        left.middleCols(k, count + 1) << part.left, part.weight * (part.mean - mean);
+        right.middleCols(k, count + 1) << part.right, part.mean - mean;
+        k += count + 1;
+    }
+    MatrixXd covariance = MatrixXd::Zero(controls_.size(), controls_.size());
+    covariance.triangularView<Eigen::Lower>() += left * right.transpose();
+    controls_.add_by_place(covariance, between_);
+    covariance = MatrixXd(covariance.selfadjointView<Eigen::Lower>()) / sum;
+    return {mean, covariance};
+}
+
+} // namespace fettle
