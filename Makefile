@@ -49,6 +49,9 @@ LDLIBS_ALL := -llzf -ltbb
 # The one file that sees OpenCV.
 $(B)/lib/compare/canvas.o: override CPPFLAGS += $(addprefix -isystem ,$(wildcard /usr/include/opencv4))
 
+# Square roots of eight numbers at once are one instruction where nobody reads errno.
+$(B)/lib/mesh/mesh_index.o: override CXXFLAGS += -fno-math-errno
+
 include tools/libraries.mk
 
 # --- rules ----------------------------------------------------------------------------------------------------------

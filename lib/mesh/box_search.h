@@ -3,23 +3,14 @@
 // What a search through a box tree does with eight boxes or triangles at a time. Only for the search itself.
 
 #include "mesh/box_tree.h"
+#include "mesh/lanes.h"
 
 #include <array>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
-
-// Vectors go nowhere but into functions that are inlined.
-#pragma GCC diagnostic ignored "-Wpsabi"
 
 namespace fettle {
 
-inline constexpr double kEpsilon = std::numeric_limits<float>::epsilon() / 2; // most of a rounding, relative
-
-// Operations in float on the way to a distance, or to where a ray meets a box, are fewer than this, each off by a
-// rounding of numbers no larger than the way.
-inline constexpr double kRoundings = 16;
 // Squared sine at a corner below which float tells too little of a triangle: double must. At that sine the direction of
 // the normal is 16 times less certain than its parts are.
 inline constexpr float kNarrow = 1.0f / 256;
@@ -27,33 +18,6 @@ inline constexpr float kTriangleRoundings = static_cast<float>(16 * kRoundings *
 
 // Every visit of a node leaves seven more to visit, and there are at most eleven levels over 2^32 triangles.
 inline constexpr std::size_t kMostWaiting = 7 * 11 + 1;
-
-#define FETTLE_INLINE [[gnu::always_inline]] inline
-
-FETTLE_INLINE Float8 larger(Float8 a, Float8 b) { return a > b ? a : b; }
-FETTLE_INLINE Float8 smaller(Float8 a, Float8 b) { return a < b ? a : b; }
-FETTLE_INLINE Float8 all(float value) { return Float8{} + value; }
-
-struct Point8 {
-    Float8 x, y, z;
-};
-FETTLE_INLINE Point8 operator-(const Point8& a, const Point8& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-FETTLE_INLINE Float8 dot(const Point8& a, const Point8& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-FETTLE_INLINE Point8 cross(const Point8& a, const Point8& b)
-{
-    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
-/// The lanes in which a mask is set, a bit each.
-FETTLE_INLINE unsigned lanes_of(Mask8 mask)
-{
-    // Pairs of lanes are taken as words: the bits of the even lanes come together in the lower halves.
-    using Words = std::uint64_t __attribute__((vector_size(32)));
-    const Mask8 bits = mask & Mask8{1, 2, 4, 8, 16, 32, 64, 128};
-    const Words words = std::bit_cast<Words>(bits);
-    const std::uint64_t word = (words[0] | words[2]) | (words[1] | words[3]);
-    return static_cast<unsigned>(word | word >> 32);
-}
 
 /// Squared distance of a point to eight boxes; infinite for those that are not there.
 FETTLE_INLINE Float8 squared_distance(const Boxes8& boxes, const float (&point)[3])
@@ -66,6 +30,26 @@ FETTLE_INLINE Float8 squared_distance(const Boxes8& boxes, const float (&point)[
         sum += beside * beside;
     }
     return sum;
+}
+
+/// The same to eight discs.
+FETTLE_INLINE Float8 squared_distance(const Discs8& discs, const float (&point)[3])
+{
+    const auto& [x, y, z] = discs.centre;
+    const auto& [nx, ny, nz] = discs.normal;
+    const Point8 way = Point8{x, y, z} - all(point);
+    const Float8 above = dot(way, {nx, ny, nz});
+    const Float8 beside2 = dot(way, way) * (1 - kDiscRoundings) - above * above;
+    const Float8 over = larger(larger(above, -above) - discs.half, Float8{});
+    const Float8 beyond = larger(root(larger(beside2, Float8{})) - discs.radius, Float8{});
+    return over * over + beyond * beyond;
+}
+
+/// The same to the children of a node.
+FETTLE_INLINE Float8 squared_distance(const Level& level, std::size_t node, const float (&point)[3])
+{
+    const Float8 to_boxes = squared_distance(level.boxes[node], point);
+    return level.discs.empty() ? to_boxes : larger(to_boxes, squared_distance(level.discs[node], point));
 }
 
 /// Squared distance of the origin to the segments from a along ab. Segments without length are points.
@@ -82,11 +66,9 @@ FETTLE_INLINE Float8 squared_distance(const Point8& a, const Point8& ab, Float8 
 /// ones.
 FETTLE_INLINE Float8 squared_distance(const Triangles8& triangles, const float (&point)[3])
 {
-    const auto corner = [&](int k) -> Point8 {
-        return {triangles.corner[k][0] - point[0], triangles.corner[k][1] - point[1],
-                triangles.corner[k][2] - point[2]};
-    };
-    const Point8 a = corner(0), b = corner(1), c = corner(2);
+    const Point8 origin = all(point);
+    const Point8 a = corner(triangles, 0) - origin, b = corner(triangles, 1) - origin,
+                 c = corner(triangles, 2) - origin;
     const Point8 ab = b - a, bc = c - b, ca = a - c;
     const Float8 ab2 = dot(ab, ab), bc2 = dot(bc, bc), ca2 = dot(ca, ca);
     const Float8 longest2 = larger(ab2, larger(bc2, ca2));
@@ -111,24 +93,11 @@ struct Waiting {
     std::uint32_t index;
 };
 
-/// Lanes out of lanes_of(), one by one.
-struct Lanes {
-    unsigned bits;
-
-    FETTLE_INLINE bool any() const { return bits != 0; }
-    FETTLE_INLINE unsigned first() const { return static_cast<unsigned>(std::countr_zero(bits)); }
-    FETTLE_INLINE void next() { bits &= bits - 1; }
-};
-
 /// Nodes to visit, the nearest of the last visited node's children first.
 class Stack {
   public:
-    explicit Stack(const BoxTree& tree)
-    {
-        waiting_[size_++] = {0, static_cast<std::int32_t>(tree.levels.size()) - 1, 0};
-    }
-
     FETTLE_INLINE bool any() const { return size_ > 0; }
+    FETTLE_INLINE void push(const Waiting& node) { waiting_[size_++] = node; }
     FETTLE_INLINE const Waiting& pop() { return waiting_[--size_]; }
 
     /// Children of a node.

@@ -1,5 +1,7 @@
 #include "mesh/box_tree.h"
 
+#include "core/simd.h"
+
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
@@ -7,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <span>
 
@@ -15,6 +18,9 @@ namespace fettle {
 namespace {
 
 constexpr std::size_t kWide = 8;
+
+// So many levels have discs: the children of the next one are of 512 triangles, too many to be flat on most parts.
+constexpr std::size_t kFlatLevels = 2;
 
 struct Box {
     Eigen::Array3f least = Eigen::Array3f::Constant(std::numeric_limits<float>::infinity());
@@ -32,24 +38,77 @@ void set(Boxes8& boxes, std::size_t k, const Box& box)
 Box box_of(const Boxes8& boxes)
 {
     Box box;
-    for (int axis = 0; axis < 3; ++axis)
-        for (std::size_t k = 0; k < kWide; ++k) {
-            box.least[axis] = std::min(box.least[axis], boxes.least[axis][k]);
-            box.most[axis] = std::max(box.most[axis], boxes.most[axis][k]);
-        }
+    for (int axis = 0; axis < 3; ++axis) {
+        box.least[axis] = least_of(boxes.least[axis]);
+        box.most[axis] = most_of(boxes.most[axis]);
+    }
     return box;
 }
 
 Box box_of(const Triangles8& triangles)
 {
+    const auto& [a, b, c] = triangles.corner;
     Box box;
-    for (int axis = 0; axis < 3; ++axis)
-        for (const auto& corner : triangles.corner)
-            for (std::size_t k = 0; k < kWide; ++k) {
-                box.least[axis] = std::min(box.least[axis], corner[axis][k]);
-                box.most[axis] = std::max(box.most[axis], corner[axis][k]);
-            }
+    for (int axis = 0; axis < 3; ++axis) {
+        box.least[axis] = least_of(smaller(a[axis], smaller(b[axis], c[axis])));
+        box.most[axis] = most_of(larger(a[axis], larger(b[axis], c[axis])));
+    }
     return box;
+}
+
+Box box_of(const Boxes8& boxes, std::size_t k)
+{
+    Box box;
+    for (int axis = 0; axis < 3; ++axis) {
+        box.least[axis] = boxes.least[axis][k];
+        box.most[axis] = boxes.most[axis][k];
+    }
+    return box;
+}
+
+struct Disc {
+    Eigen::Vector3f centre, normal;
+    float radius, half;
+};
+
+void set(Discs8& discs, std::size_t k, const Disc& disc)
+{
+    for (int axis = 0; axis < 3; ++axis) {
+        discs.centre[axis][k] = disc.centre[axis];
+        discs.normal[axis][k] = disc.normal[axis];
+    }
+    discs.radius[k] = disc.radius;
+    discs.half[k] = disc.half;
+}
+
+/// The disc about some leaves in a box, across the sum of their areas.
+FETTLE_CLONES Disc disc_about(std::span<const Triangles8> leaves, const Box& box)
+{
+    Point8 area = {};
+    for (const Triangles8& t : leaves) {
+        const Point8 a = corner(t, 0);
+        area = area + cross(corner(t, 1) - a, corner(t, 2) - a);
+    }
+    Disc disc;
+    disc.normal = Eigen::Vector3f(sum_of(area.x), sum_of(area.y), sum_of(area.z)).stableNormalized();
+    if (!(disc.normal.norm() > 0.5f)) disc.normal = Eigen::Vector3f::UnitZ(); // areas that cancel: any will do
+    const Eigen::Vector3f middle = (box.least + box.most) / 2;
+    const Point8 normal = all(disc.normal.data()), origin = all(middle.data());
+    Float8 lowest = all(std::numeric_limits<float>::infinity()), highest = -lowest, beside2 = {};
+    for (const Triangles8& t : leaves)
+        for (int k = 0; k < 3; ++k) {
+            const Point8 way = corner(t, k) - origin;
+            const Float8 above = dot(way, normal);
+            lowest = smaller(lowest, above);
+            highest = larger(highest, above);
+            beside2 = larger(beside2, dot(way, way) * (1 + kDiscRoundings) - above * above);
+        }
+    const float low = least_of(lowest), high = most_of(highest);
+    const float rounding = kDiscRoundings * box.least.abs().max(box.most.abs()).maxCoeff();
+    disc.centre = middle + disc.normal * ((low + high) / 2);
+    disc.radius = std::sqrt(most_of(beside2)) + rounding;
+    disc.half = (high - low) / 2 + rounding;
+    return disc;
 }
 
 Eigen::AlignedBox3d box_of(const Mesh& mesh)
@@ -66,14 +125,28 @@ Eigen::AlignedBox3d box_of(const Mesh& mesh)
 
 /// Nodes over `children`, eight to each.
 template <typename Child>
-std::vector<Boxes8> nodes_over(const std::vector<Child>& children)
+Level level_over(const std::vector<Child>& children)
 {
-    std::vector<Boxes8> nodes((children.size() + kWide - 1) / kWide);
-    tbb::parallel_for(std::size_t{0}, nodes.size(), [&](std::size_t i) {
+    Level level;
+    level.boxes.resize((children.size() + kWide - 1) / kWide);
+    tbb::parallel_for(std::size_t{0}, level.boxes.size(), [&](std::size_t i) {
         for (std::size_t k = 0; k < kWide; ++k)
-            set(nodes[i], k, kWide * i + k < children.size() ? box_of(children[kWide * i + k]) : Box{});
+            set(level.boxes[i], k, kWide * i + k < children.size() ? box_of(children[kWide * i + k]) : Box{});
     });
-    return nodes;
+    return level;
+}
+
+/// Adds the discs of children with `each` leaves.
+void add_discs(Level& level, std::span<const Triangles8> leaves, std::size_t each)
+{
+    level.discs.resize(level.boxes.size());
+    tbb::parallel_for(std::size_t{0}, level.discs.size(), [&](std::size_t i) {
+        for (std::size_t k = 0; k < kWide; ++k) {
+            const std::size_t first = std::min((kWide * i + k) * each, leaves.size());
+            const std::size_t count = std::min(each, leaves.size() - first);
+            if (count > 0) set(level.discs[i], k, disc_about(leaves.subspan(first, count), box_of(level.boxes[i], k)));
+        }
+    });
 }
 
 /// A triangle on its way to a leaf.
@@ -144,8 +217,11 @@ BoxTree::BoxTree(const Mesh& mesh) : box(box_of(mesh))
             }
         }
     });
-    levels.push_back(nodes_over(leaves));
-    while (levels.back().size() > 1) levels.push_back(nodes_over(levels.back()));
+    levels.push_back(level_over(leaves));
+    while (levels.back().boxes.size() > 1) levels.push_back(level_over(levels.back().boxes));
+    std::size_t each = 1; // leaves of a child
+    for (std::size_t l = 0; l < std::min(kFlatLevels, levels.size()); ++l, each *= kWide)
+        add_discs(levels[l], leaves, each);
 }
 
 } // namespace fettle

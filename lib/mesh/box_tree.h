@@ -1,5 +1,6 @@
 #pragma once
 
+#include "mesh/lanes.h"
 #include "mesh/mesh.h"
 
 #include <Eigen/Core>
@@ -12,23 +13,38 @@
 
 namespace fettle {
 
-/// Eight numbers side by side, anywhere in memory. A comparison gives Mask8: all bits set where it holds, never for
-/// NaN.
-using Float8 = float __attribute__((vector_size(32), aligned(4)));
-using Mask8 = std::int32_t __attribute__((vector_size(32), aligned(4)));
+// Operations in float on the way to a distance, or to where a ray meets a box, are fewer than this, each off by a
+// rounding of numbers no larger than the way.
+inline constexpr double kRoundings = 16;
+// The same for making a disc and finding the way to it, of coordinates of the mesh and of the way.
+inline constexpr float kDiscRoundings = static_cast<float>(4 * kRoundings * kEpsilon);
 
 /// Eight boxes; one that is not there has its least corner at +infinity and is far from everything.
 struct Boxes8 {
     Float8 least[3], most[3];
 };
 
+/// Eight flat cylinders, each about the triangles of a child. Where a surface is flat they lie closer to it than boxes
+/// do: from afar few of them seem to be nearest.
+struct Discs8 {
+    Float8 centre[3], normal[3], radius;
+    Float8 half; ///< of the thickness
+};
+
+/// Nodes that are equally far from the leaves.
+struct Level {
+    std::vector<Boxes8> boxes;
+    std::vector<Discs8> discs; ///< none where the children are too large to be flat
+};
+
 /// Eight triangles: coordinates of their corners.
 struct Triangles8 {
     Float8 corner[3][3]; ///< corner, axis
 };
+FETTLE_INLINE Point8 corner(const Triangles8& t, int k) { return {t.corner[k][0], t.corner[k][1], t.corner[k][2]}; }
 
 /// The triangles of a mesh, eight to a leaf, eight leaves or nodes to a node: a packed tree without pointers (Kamel &
-/// Faloutsos, On packing R-trees, 1993), in the order of a k-d tree. Node i of level l holds the boxes of its
+/// Faloutsos, On packing R-trees, 1993), in the order of a k-d tree. Node i of level l holds the bounds of its
 /// children, nodes 8 i to 8 i + 7 of level l - 1, or leaves for level 0; the last level is the root alone.
 /// Coordinates are floats about `centre`, where floats are finest; each is off by no more than `rounding`.
 struct BoxTree {
@@ -44,7 +60,7 @@ struct BoxTree {
     double rounding = 0;                              ///< of a coordinate, mm
     std::vector<std::uint32_t> order; ///< of the mesh's triangles; triangle k of leaf l is order[8 l + k]
     std::vector<Triangles8> leaves;   ///< where there is none, the last triangle stands again
-    std::vector<std::vector<Boxes8>> levels;
+    std::vector<Level> levels;
 };
 
 } // namespace fettle

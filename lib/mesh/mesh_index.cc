@@ -73,22 +73,35 @@ FETTLE_INLINE void look_through(std::uint32_t leaf, Nearest& nearest, const BoxT
         if (lanes.first() != best && distances[lanes.first()] <= nearest.bound) offer(lanes.first());
 }
 
-FETTLE_CLONES void find(Nearest& nearest, std::uint32_t first, const BoxTree& tree, const Mesh& mesh)
+/// Goes through what waits.
+FETTLE_INLINE void go_through(Stack& stack, Nearest& nearest, const BoxTree& tree, const Mesh& mesh)
 {
-    look_through(first, nearest, tree, mesh);
-    Stack stack(tree);
     while (stack.any()) {
-        const Waiting& next = stack.pop();
+        const Waiting next = stack.pop();
         if (next.distance > nearest.bound) continue;
-        const std::int32_t level = next.level;
-        const std::uint32_t index = next.index;
-        if (level >= 0) {
-            const Float8 children =
-                squared_distance(tree.levels[static_cast<std::size_t>(level)][index], nearest.place);
-            stack.push(lanes_of(children <= nearest.bound), children, level - 1, index);
-        } else if (index != first) {
-            look_through(index, nearest, tree, mesh);
+        if (next.level < 0) {
+            look_through(next.index, nearest, tree, mesh);
+            continue;
         }
+        const Float8 children =
+            squared_distance(tree.levels[static_cast<std::size_t>(next.level)], next.index, nearest.place);
+        stack.push(lanes_of(children <= nearest.bound), children, next.level - 1, next.index);
+    }
+}
+
+/// From a leaf that is probably near upwards: of most nodes above it no other child is near enough.
+FETTLE_CLONES void find(Nearest& nearest, std::uint32_t leaf, const BoxTree& tree, const Mesh& mesh)
+{
+    look_through(leaf, nearest, tree, mesh);
+    Stack stack;
+    std::uint32_t child = leaf;
+    for (std::size_t level = 0; level < tree.levels.size(); ++level) {
+        const std::uint32_t node = child / 8;
+        const Float8 children = squared_distance(tree.levels[level], node, nearest.place);
+        const unsigned others = lanes_of(children <= nearest.bound) & ~(1u << child % 8);
+        stack.push(others, children, static_cast<std::int32_t>(level) - 1, node);
+        go_through(stack, nearest, tree, mesh);
+        child = node;
     }
 }
 
@@ -142,19 +155,18 @@ FETTLE_INLINE Boxes8 boxes_of(const Triangles8& triangles)
 FETTLE_CLONES void find(FirstHit& hit, const BoxTree& tree, const Mesh& mesh)
 {
     const auto met = [](const Float8& entry) { return lanes_of(entry < std::numeric_limits<float>::infinity()); };
-    Stack stack(tree);
+    Stack stack;
+    stack.push({0, static_cast<std::int32_t>(tree.levels.size()) - 1, 0});
     while (stack.any()) {
-        const Waiting& next = stack.pop();
+        const Waiting next = stack.pop();
         if (next.distance > hit.bound) continue;
-        const std::int32_t level = next.level;
-        const std::uint32_t index = next.index;
-        if (level >= 0) {
-            const Float8 children = entries(tree.levels[static_cast<std::size_t>(level)][index], hit);
-            stack.push(met(children), children, level - 1, index);
+        if (next.level >= 0) {
+            const Float8 children = entries(tree.levels[static_cast<std::size_t>(next.level)].boxes[next.index], hit);
+            stack.push(met(children), children, next.level - 1, next.index);
             continue;
         }
-        for (Lanes lanes{met(entries(boxes_of(tree.leaves[index]), hit))}; lanes.any(); lanes.next()) {
-            const Eigen::Index t = tree.triangle(index, lanes.first());
+        for (Lanes lanes{met(entries(boxes_of(tree.leaves[next.index]), hit))}; lanes.any(); lanes.next()) {
+            const Eigen::Index t = tree.triangle(next.index, lanes.first());
             hit.offer(triangle_of(mesh, t), t);
         }
     }

@@ -14,7 +14,7 @@ namespace fettle {
 /// index wins. Thread-safe.
 class MeshIndex {
   public:
-    /// The mesh must outlive the index. 41 bytes a triangle.
+    /// The mesh must outlive the index. 48 bytes a triangle.
     explicit MeshIndex(const Mesh& mesh);
     MeshIndex(MeshIndex&&) noexcept;
     ~MeshIndex();

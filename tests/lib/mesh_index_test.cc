@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <random>
 
 namespace fettle {
@@ -121,6 +122,62 @@ TEST(MeshIndex, ClosestIsThatOfBruteForceOnSoups)
                 EXPECT_FALSE(index.closest(point, expected - 1e-9 * (1 + shift)));
                 EXPECT_TRUE(index.closest(point, expected + 1e-9 * (1 + shift)));
             }
+        }
+}
+
+// A torus of 4 000 facets with a bump here and there.
+Mesh torus()
+{
+    const int across = 50, along = 40;
+    Mesh mesh;
+    mesh.vertices.resize(3, across * along);
+    mesh.triangles.resize(3, 2 * across * along);
+    for (int j = 0; j < along; ++j)
+        for (int i = 0; i < across; ++i) {
+            const double u = 2 * std::numbers::pi * i / across, v = 2 * std::numbers::pi * j / along;
+            const double r = 30 + (i % 7 == 0 && j % 5 == 0 ? 2 : 0), ring = 100 + r * std::cos(v);
+            mesh.vertices.col(j * across + i) << ring * std::cos(u), ring * std::sin(u), r * std::sin(v);
+            const int a = j * across + i, b = j * across + (i + 1) % across;
+            const int d = (j + 1) % along * across + i, c = (j + 1) % along * across + (i + 1) % across;
+            mesh.triangles.col(2 * a) << a, b, c;
+            mesh.triangles.col(2 * a + 1) << a, c, d;
+        }
+    return mesh;
+}
+
+// Points near a curved surface, far from it and near its medial axis, where much of it is equally far; wherever the
+// search begins. The nearest facet is that of brute force, too: of equally near ones the first.
+TEST(MeshIndex, ClosestIsThatOfBruteForceOnCurvedSurfaces)
+{
+    const Mesh mesh = torus();
+    const MeshIndex index(mesh);
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> turn(0, 2 * std::numbers::pi), unit(0, 1);
+    for (const double far : {1e-3, 1.0, 29.99, 1e3, 1e6})
+        for (int i = 0; i < 100; ++i) {
+            const double u = turn(random), v = turn(random), r = 30 - far * (far < 30 ? unit(random) : -1);
+            const double ring = 100 + r * std::cos(v);
+            const Eigen::Vector3d point =
+                i % 2 == 0 && far > 30 ? mesh.vertices.col(i) * (1 + far / 130)
+                                       : Eigen::Vector3d(ring * std::cos(u), ring * std::sin(u), r * std::sin(v));
+            TrianglePoint nearest;
+            nearest.squared_distance = std::numeric_limits<double>::infinity();
+            Eigen::Index triangle = -1;
+            for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t)
+                if (const TrianglePoint other = closest_on_triangle(corners_of(mesh, t), point);
+                    other.squared_distance < nearest.squared_distance) {
+                    nearest = other;
+                    triangle = t;
+                }
+            for (const std::uint32_t leaf : {0u, 123u, 499u, 1u << 31}) {
+                const auto found = index.closest(point, std::numeric_limits<double>::infinity(), leaf);
+                ASSERT_TRUE(found);
+                EXPECT_EQ(found->triangle, triangle);
+                EXPECT_EQ(found->point, nearest.point);
+            }
+            const double distance = std::sqrt(nearest.squared_distance);
+            EXPECT_TRUE(index.closest(point, distance * (1 + 1e-12)));
+            EXPECT_FALSE(index.closest(point, distance * (1 - 1e-12)));
         }
 }
 
