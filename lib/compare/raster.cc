@@ -144,8 +144,9 @@ Raster rasterise(const View& view, const Eigen::Matrix3Xd& points, const Eigen::
             each_pixel_near(view, points.col(i).head<2>(), radius, [&](int row, int column, double) {
                 front(row, column) = std::max(front(row, column), depth_of(i));
             });
-    // Of a surface that leans by 45° the points that share a pixel lie up to their reach behind one another.
-    front -= reach;
+    // Of a surface that leans by 60° the points that share a pixel lie up to twice their reach behind one another.
+    constexpr double kBehind = 2;
+    front -= kBehind * reach;
     ArrayXXd nearest = ArrayXXd::Constant(view.rows, view.columns, kInfinity);
     for (Index i = 0; i < points.cols(); ++i)
         if (points.col(i).head<2>().allFinite())

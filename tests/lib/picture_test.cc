@@ -140,12 +140,12 @@ void add_wall(Cloud& cloud, double y, double error)
     set_field(cloud, "error", errors);
 }
 
-// Two walls behind each other, 2 mm apart: of either side one is seen, all over.
+// Two walls behind each other, 3 mm apart: of either side one is seen, all over.
 TEST(Picture, WhatIsBehindIsHidden)
 {
     Cloud cloud;
     add_wall(cloud, 0, 0.5);
-    add_wall(cloud, 2, -0.5);
+    add_wall(cloud, 3, -0.5);
     for (const double side : {-1.0, 1.0}) {
         PictureOptions options = errors_to(1);
         options.from = {0, side, 0};
