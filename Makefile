@@ -44,6 +44,7 @@ CERES  := -lceres -lglog
 EMBREE := -lembree3
 OPENCV := -lopencv_imgproc -lopencv_core
 PNG    := -lpng
+MD     := -lmd
 LDLIBS_ALL := -llzf -ltbb
 
 # The one file that sees OpenCV.
@@ -73,7 +74,7 @@ $(B)/study/%: $(B)/pipelines/programs/%.o $(B)/libfettle.a
 	@mkdir -p $(@D)
 	$(CXX) $(LDFLAGS) -o $@ $^ $(LDLIBS) $(LDLIBS_ALL)
 
-$(B)/tests/%: LDLIBS = $(CERES) $(OPENCV) $(PNG) -lgtest_main -lgtest
+$(B)/tests/%: LDLIBS = $(CERES) $(OPENCV) $(PNG) $(MD) -lgtest_main -lgtest
 $(B)/tests/cloud_test: LDLIBS += -lpcl_io -lpcl_common
 $(B)/tests/%: $(B)/tests/lib/%.o $(B)/libfettle.a
 	@mkdir -p $(@D)

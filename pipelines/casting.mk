@@ -1,6 +1,6 @@
 # The chain, from a part with an anomaly to an error map, for each case in samples/: one rule a stage.
 #
-#   make -f pipelines/casting.mk demo       real scans and Wang's parts: a table, and pictures in $(CHAIN)
+#   make -f pipelines/casting.mk demo       real scans and Wang's parts: a table, pictures and pages in $(CHAIN)
 #   make -f pipelines/casting.mk figures    the chain's figures beside what they must reach; exit 1 if one is missed
 #   make -f pipelines/casting.mk hills      the hills and the moon of Wang 2007, figure 5-8
 #   make -f pipelines/casting.mk seeds      how the figures of Wang's parts spread over 20 draws of the touch noise
@@ -111,10 +111,17 @@ $(CHAIN)/%/after.png: $$(call job,$$*) $(CHAIN)/%/ground.pcd $(B)/bin/fettle-ren
 $(CHAIN)/%/errors.png: $$(call job,$$*) $(CHAIN)/%/errors.pcd $(B)/bin/fettle-render
 	fettle-render $(@D)/errors.pcd --within $< --title "$(call case,$*): ground surface against the truth" -o $@
 
+# The page takes the plan's job and surface; everything of the run is on it.
+$(CHAIN)/%/report.html: $$(call job,$$*) $$(call part,$$*) $(CHAIN)/%/errors.pcd $(B)/bin/fettle-report
+	fettle-report --title "$(call case,$*): ground to its desired surface" --job $< --samples $(@D)/samples.pcd \
+	    --surface $(@D)/desired.json --plan $(@D)/plan.json --grinding $(@D)/grind.json --trace $(@D)/trace.pcd \
+	    --before $(call part,$*) --before-units $(call units,$*) --after $(@D)/ground.pcd \
+	    --errors $(@D)/errors.pcd --comparison $(@D)/errors.json -o $@
+
 # --- what is asked for ------------------------------------------------------------------------------------------------
 SHOWN    := $(SCANS) $(WANG)
 results   = $(foreach c,$2,$(addprefix $(CHAIN)/$1/$c/,errors.pcd band.json))
-pictures  = $(foreach c,$2,$(addprefix $(CHAIN)/$1/$c/,before.png after.png errors.png))
+pictures  = $(foreach c,$2,$(addprefix $(CHAIN)/$1/$c/,before.png after.png errors.png report.html))
 
 W := $(CHAIN)/1
 figures: $(call results,1,$(WANG)) $W/wang1/flatness.json $W/wang2/cylindricity.json $W/wang2/boundary/cylindricity.json
@@ -128,7 +135,7 @@ seeds: $(foreach s,$(shell seq $(SEEDS)),$(call results,$s,$(WANG)))
 
 demo: $(call results,1,$(SHOWN)) $(call pictures,1,$(SHOWN))
 	@pipelines/chain-table $(CHAIN)/1 $(SHOWN)
-	@echo "pictures: $(CHAIN)/1/*/{before,after,errors}.png"
+	@echo "pictures: $(CHAIN)/1/*/{before,after,errors}.png, pages: $(CHAIN)/1/*/report.html"
 
 hills: $(call results,1,$(HILLS)) $(call pictures,1,$(HILLS))
 	@pipelines/chain-table $(CHAIN)/1 $(HILLS)

@@ -2,3 +2,4 @@
 $(B)/bin/fettle-fit:     LDLIBS = $(CERES)
 $(B)/bin/fettle-sample:  LDLIBS = $(CERES)
 $(B)/bin/fettle-render:  LDLIBS = $(OPENCV) $(PNG)
+$(B)/bin/fettle-report:  LDLIBS = $(OPENCV) $(PNG) $(MD)

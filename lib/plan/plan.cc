@@ -143,9 +143,10 @@ Plan make_plan(const Job& job, const Surface& surface)
     return plan;
 }
 
-Plan read_plan(const std::string& path)
+Plan read_plan(const std::string& path) { return parse_plan(json::Reader::open(path)); }
+
+Plan parse_plan(json::Reader reader)
 {
-    json::Reader reader = json::Reader::open(path);
     reader.expect_kind("plan");
     Plan plan;
     json::Reader units = reader.object("units");

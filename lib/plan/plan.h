@@ -40,6 +40,7 @@ struct Plan {
 Plan make_plan(const Job& job, const Surface& surface);
 
 Plan read_plan(const std::string& path);
+Plan parse_plan(json::Reader reader);
 json::Value to_json(const Plan& plan);
 
 } // namespace fettle

@@ -1,0 +1,163 @@
+#include "compare/ticks.h"
+#include "plan/wheel_section.h"
+#include "report/charts.h"
+#include "report/figures.h"
+#include "report/svg.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+
+namespace fettle {
+namespace {
+
+using Eigen::Index;
+using Eigen::Matrix2Xd;
+using Eigen::Vector2d;
+using svg::Anchor;
+
+constexpr double kWidth = 720, kMapWidth = 640, kMapHeight = 330, kMargin = 26, kBelow = 54;
+
+/// From the machine's x-y plane to the drawing.
+struct Sheet {
+    Vector2d least, corner; ///< lower left, of the part and of the drawing
+    double scale = 1;       ///< pixels a mm
+
+    Vector2d operator()(const Vector2d& xy) const
+    {
+        return corner + scale * Vector2d(xy.x() - least.x(), least.y() - xy.y());
+    }
+    Matrix2Xd all(const Eigen::Matrix3Xd& points) const
+    {
+        Matrix2Xd placed(2, points.cols());
+        for (Index i = 0; i < points.cols(); ++i) placed.col(i) = (*this)(points.col(i).head<2>());
+        return placed;
+    }
+};
+
+/// The touches with their roles, and which were left out as slips.
+struct Touches {
+    Eigen::Matrix3Xd points = Eigen::Matrix3Xd(3, 0);
+    Eigen::VectorXd roles;
+    std::vector<Index> slips;
+};
+
+Touches touches_of(const RunFiles& run)
+{
+    Touches touches;
+    if (run.surface && run.surface->touches.cols() > 0) {
+        touches.points = run.surface->touches;
+        touches.roles = run.surface->roles.cast<double>();
+        touches.slips = run.surface->gross_errors;
+    } else if (run.samples) {
+        touches.points = run.samples->xyz;
+        touches.roles = has_field(*run.samples, "role") ? field(*run.samples, "role")
+                                                        : Eigen::VectorXd::Constant(touches.points.cols(), 1);
+    }
+    return touches;
+}
+
+Html draw_touches(const Sheet& sheet, const Touches& touches)
+{
+    Html html;
+    for (Index i = 0; i < touches.points.cols(); ++i) {
+        if (!touches.points.col(i).head<2>().allFinite()) continue;
+        const Vector2d at = sheet(touches.points.col(i).head<2>());
+        const bool slip = std::find(touches.slips.begin(), touches.slips.end(), i) != touches.slips.end();
+        if (slip)
+            html += svg::circle(at, 7, "slip") +
+                    svg::path("M" + svg::coordinate(at.x() - 4) + " " + svg::coordinate(at.y() - 4) + "l8 8m0 -8l-8 8",
+                              "slip");
+        else
+            html += svg::circle(at, 3.2, touches.roles[i] == 0 ? "touch-edge" : "touch");
+    }
+    return html;
+}
+
+Html draw_passes(const Sheet& sheet, const Plan& plan)
+{
+    const Eigen::Matrix2d axes = pass_axes(plan.job);
+    std::string path;
+    const auto add = [&](char command, const Vector2d& across_along) {
+        const Vector2d at = sheet(axes * across_along);
+        path += command + svg::coordinate(at.x()) + " " + svg::coordinate(at.y());
+    };
+    for (const Pass& pass : plan.passes)
+        for (const Interval& interval : pass.intervals) {
+            add('M', {pass.line, interval.first});
+            add('L', {pass.line, interval.second});
+        }
+    const Vector2d start = sheet(plan.start.head<2>());
+    return svg::path(path, "pass") + svg::circle(start, 5, "start");
+}
+
+/// X_w and Y_w, the axes that the job's directions refer to.
+Html draw_working_axes(const Vector2d& at, double theta)
+{
+    constexpr double kLength = 26, kRoom = 15;
+    Html html;
+    const Eigen::Matrix2d rotation_machine_working = rotation_working_machine(theta).transpose();
+    for (int axis = 0; axis < 2; ++axis) {
+        const Vector2d way = rotation_machine_working.col(axis).cwiseProduct(Vector2d(1, -1));
+        html += svg::line(at, at + kLength * way, "axis-w");
+        html += svg::text(at + (kLength + kRoom) * way + Vector2d(0, 4), axis == 0 ? "X_w" : "Y_w", Anchor::middle);
+    }
+    return html + svg::circle(at, 2, "touch");
+}
+
+Html draw_key(double y, const RunFiles& run, const Touches& touches)
+{
+    Html html;
+    double x = kMargin;
+    const auto add = [&](const Html& sample, const std::string& words) {
+        constexpr double kLetter = 6.4, kApart = 46;
+        html += sample + svg::text({x + 24, y + 4}, words);
+        x += kLetter * double(words.size()) + kApart;
+    };
+    add(svg::line({x, y}, {x + 18, y}, "edge-b"), "B, anomaly");
+    if (run.job->sampling.cols() > 0) add(svg::line({x, y}, {x + 18, y}, "edge-s"), "S, may be touched");
+    if (touches.points.cols() > 0) add(svg::circle({x + 9, y}, 3.2, "touch"), "touch");
+    if (!touches.slips.empty()) add(svg::circle({x + 9, y}, 6, "slip"), "slip, left out");
+    if (run.plan) {
+        add(svg::line({x, y}, {x + 18, y}, "pass"), "pass");
+        add(svg::circle({x + 9, y}, 5, "start"), "start");
+    }
+    return html;
+}
+
+} // namespace
+
+Html job_sketch(const RunFiles& run)
+{
+    if (!run.job) return {};
+    const Job& job = *run.job;
+    const Touches touches = touches_of(run);
+    Eigen::AlignedBox2d box;
+    for (const Eigen::Matrix3Xd* points : {&job.anomaly, &job.sampling, &touches.points})
+        for (const Eigen::Vector3d& p : points->colwise())
+            if (p.head<2>().allFinite()) box.extend(p.head<2>());
+    Sheet sheet;
+    const Vector2d size = box.sizes();
+    sheet.least = box.min();
+    sheet.scale = std::min(kMapWidth / size.x(), kMapHeight / size.y());
+    const double height = sheet.scale * size.y();
+    sheet.corner = {kMargin, kMargin + height};
+
+    Html html;
+    if (job.sampling.cols() > 0) html += svg::polygon(sheet.all(job.sampling), "edge-s");
+    html += svg::polygon(sheet.all(job.anomaly), "edge-b");
+    if (run.plan) html += draw_passes(sheet, *run.plan);
+    html += draw_touches(sheet, touches);
+
+    const double mm = run.units.mm(), bottom = kMargin + height + 26;
+    const double length = tick_step(size.maxCoeff() / mm, 6);
+    html += svg::box({kMargin, bottom}, {length * mm * sheet.scale, 4}, "scale-bar");
+    html += svg::text({kMargin + length * mm * sheet.scale + 8, bottom + 7},
+                      short_text(length) + " " + to_string(run.units.length));
+    html += draw_key(bottom + 26, run, touches);
+    html += draw_working_axes({std::min(kWidth - 50, kMargin + sheet.scale * size.x() + 44), bottom - 2}, job.theta);
+    return svg::drawing(kWidth, kMargin + height + kBelow + 10, "boundaries, touches and passes from above", html);
+}
+
+} // namespace fettle

@@ -1,0 +1,163 @@
+#include "report/run_files.h"
+
+#include "cloud/pcd.h"
+#include "core/error.h"
+#include "core/file.h"
+#include "mesh/mesh_file.h"
+#include "report/checksum.h"
+#include "json/document.h"
+
+#include <limits>
+
+namespace fettle {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+/// Reads a file once, for all that is told of it.
+class Files {
+  public:
+    struct Content {
+        std::string bytes, source;
+    };
+    Content read(const std::string& what, const std::string& path)
+    {
+        Content content = {read_whole(path), display_name(path)};
+        known_.push_back({what, content.source, content.bytes.size(), sha256(content.bytes)});
+        return content;
+    }
+    json::Reader json(const std::string& what, const std::string& path)
+    {
+        const Content content = read(what, path);
+        return json::Reader::parse(content.bytes, content.source);
+    }
+    std::vector<SourceFile> known() && { return std::move(known_); }
+
+  private:
+    std::vector<SourceFile> known_;
+};
+
+double number_or_nan(json::Reader& reader, const std::string& key)
+{
+    return reader.has(key) && reader.is_null(key) ? kNaN : reader.number(key);
+}
+
+Numbers statistics_of(json::Reader& reader)
+{
+    Numbers numbers;
+    for (const char* key :
+         {"count", "undefined", "mean", "mean_abs", "rms", "sd", "min", "max", "band", "p01", "p05", "p50", "p95",
+          "p99", "within", "over_cut_area", "under_cut_area", "over_cut_volume", "under_cut_volume"})
+        numbers[key] = number_or_nan(reader, key);
+    return numbers;
+}
+
+ComparisonReport comparison_of(json::Reader reader)
+{
+    ComparisonReport report;
+    report.regions.emplace_back("all", statistics_of(reader));
+    if (std::optional<json::Reader> regions = reader.object_or_none("regions"))
+        for (const char* name : {"inside", "around", "outside"})
+            if (std::optional<json::Reader> region = regions->object_or_none(name))
+                report.regions.emplace_back(name, statistics_of(*region));
+    if (std::optional<json::Reader> histogram = reader.object_or_none("histogram")) {
+        report.limit = histogram->number("limit", Range::positive());
+        report.below = histogram->number("below");
+        report.above = histogram->number("above");
+        const Eigen::VectorXd counts = histogram->vector("counts");
+        report.counts.assign(counts.begin(), counts.end());
+    }
+    if (!reader.has("verdict")) return report;
+    report.within = reader.choice("verdict", {"within", "out of tolerance"}) == "within";
+    report.judged = reader.choice("judged", {"all", "inside"});
+    report.tolerance = reader.number("tolerance", Range::at_least(0));
+    report.worst = number_or_nan(reader, "worst");
+    if (report.judged == "inside" && report.regions.size() == 1) reader.refuse("judged", "there is no region 'inside'");
+    return report;
+}
+
+GrindReport grinding_of(json::Reader reader)
+{
+    GrindReport report;
+    if (!reader.has("finished")) reader.refuse("finished", "missing");
+    report.finished = reader.flag_or("finished", false);
+    for (const char* key :
+         {"removed_volume", "machine_time", "grinding_time", "travel_time", "service_time", "layers", "coverings",
+          "re_cuts", "raises", "passes", "steps", "peak_force", "touch_offs", "wheel_changes", "wheel_radius"})
+        report.numbers[key] = number_or_nan(reader, key);
+    return report;
+}
+
+void require(const Cloud& cloud, const std::vector<std::string>& fields, const std::string& source)
+{
+    try {
+        for (const std::string& name : fields) field(cloud, name);
+    } catch (const InputError& error) {
+        throw InputError(source, error.what());
+    }
+}
+
+} // namespace
+
+const Numbers& ComparisonReport::region(const std::string& name) const
+{
+    for (const auto& [known, numbers] : regions)
+        if (known == name) return numbers;
+    throw InputError("the comparison has no region '" + name + "'");
+}
+
+RunFiles read_run(const RunFileNames& names)
+{
+    Files files;
+    RunFiles run;
+    std::optional<Units> units; // once a file has said them
+    const auto agree = [&](const Units& stated, const std::string& path) {
+        if (units && units->length != stated.length)
+            throw InputError(display_name(path),
+                             "in " + to_string(stated.length) + ", but the run is in " + to_string(units->length));
+        if (!units) units = stated;
+    };
+    const auto cloud = [&](const std::string& what, const std::string& path, const std::vector<std::string>& fields) {
+        const Files::Content content = files.read(what, path);
+        CloudFile file = parse_cloud(content.bytes, content.source, units);
+        agree(file.units, path);
+        require(file.cloud, fields, content.source);
+        return std::move(file.cloud);
+    };
+    const auto part = [&](const std::string& what, const std::string& path,
+                          const std::optional<Units::Length>& stated) -> std::variant<Cloud, Mesh> {
+        const Files::Content content = files.read(what, path);
+        std::optional<Units> own = units;
+        if (stated) own = Units{*stated, units.value_or(Units{}).force};
+        if (looks_like_cloud(content.bytes)) return parse_cloud(content.bytes, content.source, own).cloud;
+        return parse_mesh(content.bytes, content.source, own.value_or(Units{}).length);
+    };
+    if (!names.job.empty()) {
+        run.job = parse_job(files.json("job", names.job));
+        units = run.job->units;
+    }
+    if (!names.plan.empty()) {
+        run.plan = parse_plan(files.json("plan", names.plan));
+        agree(run.plan->job.units, names.plan);
+        if (!run.job) run.job = run.plan->job;
+    }
+    if (!names.surface.empty()) {
+        run.surface = parse_surface(files.json("desired surface", names.surface));
+        agree(run.surface->units, names.surface);
+    } else if (run.plan) {
+        run.surface = run.plan->surface;
+    }
+    if (!names.samples.empty()) run.samples = cloud("touches", names.samples, {});
+    if (!names.grinding.empty()) run.grinding = grinding_of(files.json("grinding", names.grinding));
+    if (!names.trace.empty()) run.trace = cloud("trace", names.trace, {"t", "layer", "event", "force", "feed"});
+    if (!names.errors.empty()) run.errors = cloud("error map", names.errors, {"error"});
+    if (!names.comparison.empty()) run.comparison = comparison_of(files.json("comparison", names.comparison));
+    if (!names.before.empty()) run.before = part("part before", names.before, names.before_units);
+    if (!names.after.empty()) run.after = part("part after", names.after, std::nullopt);
+    run.units = units.value_or(Units{});
+    run.sources = std::move(files).known();
+    if (run.sources.empty()) throw InputError("nothing to report: name at least one file of the run");
+    return run;
+}
+
+} // namespace fettle

@@ -1,0 +1,76 @@
+#pragma once
+
+#include "cloud/cloud.h"
+#include "job/job.h"
+#include "mesh/mesh.h"
+#include "plan/plan.h"
+#include "surface/surface.h"
+#include "units/units.h"
+
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace fettle {
+
+/// The flat numbers of a report, as they stand there: in the units of its file. What was null is NaN.
+using Numbers = std::map<std::string, double>;
+
+/// What fettle-compare reports.
+struct ComparisonReport {
+    std::vector<std::pair<std::string, Numbers>> regions; ///< "all" first, then those of the job
+    std::string judged;                                   ///< the region; empty: no tolerance, no verdict
+    bool within = false;
+    double tolerance = 0, worst = 0;
+    double limit = 0; ///< of the histogram, whose bins are equally wide from -limit to limit
+    std::vector<double> counts;
+    double below = 0, above = 0;
+
+    const Numbers& region(const std::string& name) const;
+};
+
+/// What fettle-grind reports.
+struct GrindReport {
+    bool finished = false;
+    Numbers numbers;
+};
+
+/// Where something was read.
+struct SourceFile {
+    std::string what, name;
+    std::size_t bytes = 0;
+    std::string sha256;
+};
+
+/// Everything that a page may tell of one run. Clouds, meshes, job, surface and plan in base units; reports in `units`.
+struct RunFiles {
+    Units units;
+    std::optional<Job> job;
+    std::optional<Cloud> samples;
+    std::optional<Surface> surface;
+    std::optional<Plan> plan;
+    std::optional<GrindReport> grinding;
+    std::optional<Cloud> trace;
+    std::optional<std::variant<Cloud, Mesh>> before;
+    std::optional<std::variant<Cloud, Mesh>> after;
+    std::optional<Cloud> errors;
+    std::optional<ComparisonReport> comparison;
+    std::vector<SourceFile> sources; ///< in the order of reading
+};
+
+/// The names of the files; empty: there is none.
+struct RunFileNames {
+    std::string job, samples, surface, plan, grinding, trace, before, after, errors, comparison;
+    std::optional<Units::Length> before_units; ///< if not the run's
+};
+
+/// Reads them. The units are those of the job, else of the plan, the surface, the first point file that states some,
+/// else mm.
+/// @throws InputError for a file that is not what it is named as (a trace without its fields, an error map without
+///         `error`), units that disagree, or if none is named
+RunFiles read_run(const RunFileNames& names);
+
+} // namespace fettle

@@ -1,0 +1,48 @@
+#include "compare/picture.h"
+#include "core/error.h"
+#include "report/base64.h"
+#include "report/sections.h"
+
+namespace fettle {
+namespace {
+
+/// @param what  the part's role among the sources, for messages
+Html picture_of(const RunFiles& run, const std::string& what, const std::variant<Cloud, Mesh>& part,
+                const PictureOptions& options, const std::string& caption)
+try {
+    return drawing_with_caption(
+        lone_element("img", {{"src", "data:image/png;base64," + base64(picture(part, options))}, {"alt", caption}}),
+        caption);
+} catch (const InputError& error) {
+    for (const SourceFile& file : run.sources)
+        if (file.what == what) throw InputError(file.name, error.what());
+    throw;
+}
+
+} // namespace
+
+Html maps_section(const RunFiles& run)
+{
+    PictureOptions options;
+    options.units = run.units;
+    options.within = run.job;
+    Html html;
+    if (run.before)
+        html += picture_of(run, "part before", *run.before, options, "Before: heights, shaded as hills are.");
+    if (run.after) html += picture_of(run, "part after", *run.after, options, "After: heights, shaded as hills are.");
+    if (run.errors) {
+        options.field = "error";
+        std::string scale;
+        if (run.comparison && run.comparison->tolerance > 0) {
+            options.scale = run.comparison->tolerance;
+            scale = " The colours end at the tolerance.";
+        }
+        html += picture_of(run, "error map", *run.errors, options,
+                           "Error map: blue is material left (under-cut), red is over-cut, grey is undefined." + scale);
+        options.from = Eigen::Vector3d(1, -2, 1.5).normalized(); // shows both the surface and what stands on it
+        html += picture_of(run, "error map", *run.errors, options, "The same from the side.");
+    }
+    return section("maps", "Maps", html);
+}
+
+} // namespace fettle

@@ -1,0 +1,23 @@
+# What no page can be made of: exit 2, one line that names the file. Reference: the rules of every tool.
+refuses=$HERE/../refuses
+job=$SAMPLES/jobs/wang1.json
+"$refuses" 'nothing to report: name at least one file of the run' fettle-report
+"$refuses" 'nowhere.json: cannot open' fettle-report --job nowhere.json
+echo '{"count": 3}' >short.json
+"$refuses" 'short.json: undefined: missing' fettle-report --comparison short.json
+"$refuses" 'short.json: finished: missing' fettle-report --grinding short.json
+"$refuses" 'wang1.json: kind: expected "plan", got "job"' fettle-report --plan "$job"
+"$refuses" 'wang1.json: kind: expected "surface", got "job"' fettle-report --surface "$job"
+echo '{' >broken.json
+"$refuses" 'broken.json: ' fettle-report --comparison broken.json
+for fields in 'x y z' 'x y z t layer'; do
+    n=$(wc -w <<<"$fields")
+    row() { for ((i = 0; i < n; i++)); do printf ' %s' "$1"; done; }
+    printf '# .PCD v0.7\n# units mm\nVERSION 0.7\nFIELDS %s\nSIZE%s\nTYPE%s\nCOUNT%s\nWIDTH 1\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 1\nDATA ascii\n%s\n' \
+        "$fields" "$(row 4)" "$(row F)" "$(row 1)" "$(row 1)" >"$n.pcd"
+done
+"$refuses" "3.pcd: the points have no field 'error'" fettle-report --errors 3.pcd
+"$refuses" "3.pcd: the points have no field 't'" fettle-report --trace 3.pcd
+"$refuses" "5.pcd: the points have no field 'event'" fettle-report --trace 5.pcd
+"$refuses" '3.pcd: ' fettle-report --job "$job" --samples 3.pcd # mm against in
+"$refuses" '--before-units' fettle-report --before 3.pcd --before-units ft

@@ -1,0 +1,23 @@
+# The page is well-formed, holds all it shows, has the sections whose files are named and no others, and is the same for the
+# same input. Reference: the XML parser of libxml2; byte comparison.
+. "$HERE/run.bash"
+page --title 'Part 1' -o page.html
+page --title 'Part 1' --threads 1 | cmp - page.html
+xmllint --noout --nonet page.html
+not grep -qiE '<(script|link|iframe|object|embed)|https?:|@import|url\(|href=' page.html
+test "$(grep -o 'src="[^"]\{22\}' page.html | sort -u)" = 'src="data:image/png;base64,'
+for id in verdict job fit margin plan grinding maps statistics provenance; do grep -q "<section id=\"$id\">" page.html; done
+grep -q 'data-verdict="Within tolerance"' page.html
+for file in part.stl samples.pcd errors.json; do grep -q "$(sha256sum $file | cut -d' ' -f1)" page.html; done
+
+fettle-report --comparison errors.json -o numbers.html
+xmllint --noout --nonet numbers.html
+test "$(grep -o '<section id="[a-z]*"' numbers.html | tr '\n' ' ')" = '<section id="verdict" <section id="statistics" <section id="provenance" '
+# out of tolerance, and without any
+fettle-compare ground.pcd --to truth.stl --within "$job" --tolerance 0.0001 --report tight.json -o /dev/null || test $? -eq 1
+fettle-report --job "$job" --comparison tight.json | grep -q 'data-verdict="Out of tolerance"'
+fettle-compare ground.pcd --to truth.stl --report free.json -o /dev/null
+fettle-report --comparison free.json | grep -q 'data-verdict="Not judged"'
+# a plan carries job and surface
+fettle-report --plan plan.json | grep -o '<section id="[a-z]*"' | tr '\n' ' ' >sections
+grep -q 'id="job" <section id="fit" <section id="margin" <section id="plan"' sections

@@ -1,0 +1,38 @@
+#include "cli/tool.h"
+#include "report/page.h"
+
+#include <ostream>
+
+using namespace fettle;
+
+int main(int argc, char** argv)
+{
+    const std::string description =
+        "One page about a run: verdict, job, touches and fit, margin, plan, force trace, maps, statistics, provenance. "
+        "Self-contained HTML, for the screen and for A4. Sections without their files are left out.";
+    return tool_main(argc, argv, description, [](Tool& t) {
+        const std::string& title = t.text("--title", "", "TEXT", "Headline");
+        RunFileNames names;
+        const std::string& job = t.text("--job", "", "FILE", "Job, JSON [the plan's]");
+        const std::string& samples = t.text("--samples", "", "FILE", "Touches, PCD [the surface's]");
+        const std::string& surface = t.text("--surface", "", "FILE", "Desired surface, JSON [the plan's]");
+        const std::string& plan = t.text("--plan", "", "FILE", "Plan, JSON");
+        const std::string& grinding = t.text("--grinding", "", "FILE", "Report of fettle-grind, JSON");
+        const std::string& trace = t.text("--trace", "", "FILE", "Trace of fettle-grind, PCD");
+        const std::string& before = t.text("--before", "", "FILE", "The part before: mesh or cloud");
+        const auto& before_units = t.length_unit("--before-units", "Unit of the part before, if not the run's");
+        const std::string& after = t.text("--after", "", "FILE", "The part after: mesh or cloud");
+        const std::string& errors = t.text("--errors", "", "FILE", "Error map of fettle-compare, PCD");
+        const std::string& comparison = t.text("--comparison", "", "FILE", "Report of fettle-compare, JSON");
+        t.example(
+            "fettle-part parts/wang1.json | fettle-compare --to <(fettle-part parts/wang1.json --without-anomaly) "
+            "--within jobs/wang1.json --report errors.json -o errors.pcd; "
+            "fettle-report --job jobs/wang1.json --errors errors.pcd --comparison errors.json -o report.html",
+            "an anomaly that was not ground yet: out of tolerance");
+        t.parse();
+
+        names = {job, samples, surface, plan, grinding, trace, before, after, errors, comparison, before_units};
+        t.output() << report_page(read_run(names), title, FETTLE_VERSION);
+        return Verdict::yes;
+    });
+}
