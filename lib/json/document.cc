@@ -208,6 +208,24 @@ Eigen::MatrixXd Reader::ragged(const std::string& key, int least_columns, int mo
     return values;
 }
 
+std::vector<std::vector<std::string>> Reader::text_rows(const std::string& key, int size)
+{
+    const Json& json = member(key, "an array of rows");
+    if (!json.is_array()) refuse(key, "expected an array of rows, got " + type_of(json));
+    std::vector<std::vector<std::string>> rows(json.size());
+    for (std::size_t i = 0; i < json.size(); ++i) {
+        const std::string place = key + "[" + std::to_string(i) + "]";
+        if (!json[i].is_array() || json[i].size() != static_cast<std::size_t>(size))
+            refuse(place, "expected " + std::to_string(size) + " texts");
+        for (std::size_t j = 0; j < json[i].size(); ++j) {
+            if (!json[i][j].is_string())
+                refuse(place + "[" + std::to_string(j) + "]", "expected text, got " + type_of(json[i][j]));
+            rows[i].push_back(json[i][j].get<std::string>());
+        }
+    }
+    return rows;
+}
+
 std::vector<Eigen::MatrixXd> Reader::grid(const std::string& key, int size)
 {
     const Json& json = member(key, "an array of rows");

@@ -80,6 +80,8 @@ class Reader {
     /// An array of equally long rows of equally long arrays of finite numbers: [k](i, j) is number k of element j of
     /// row i. @param size  numbers in an element
     std::vector<Eigen::MatrixXd> grid(const std::string& key, int size);
+    /// An array of rows of `size` texts each.
+    std::vector<std::vector<std::string>> text_rows(const std::string& key, int size);
     /// Is the member missing, or null?
     bool is_null(const std::string& key);
 

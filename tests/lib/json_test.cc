@@ -99,6 +99,16 @@ TEST(Json, MembersHaveTypesAndRanges)
     expect_refused(text, "v[0]: expected an object, got a number", [](Reader& r) { r.objects("v"); });
 }
 
+TEST(Json, RowsOfTexts)
+{
+    const std::vector<std::vector<std::string>> rows =
+        Reader::parse(R"({"a": [["x", "y"], ["z", ""]]})", "f").text_rows("a", 2);
+    EXPECT_EQ(rows, (std::vector<std::vector<std::string>>{{"x", "y"}, {"z", ""}}));
+    EXPECT_TRUE(Reader::parse(R"({"a": []})", "f").text_rows("a", 2).empty());
+    for (const char* bad : {R"({"a": 1})", R"({"a": ["x", "y"]})", R"({"a": [["x"]]})", R"({"a": [["x", 1]]})", "{}"})
+        EXPECT_THROW(Reader::parse(bad, "f").text_rows("a", 2), InputError) << bad;
+}
+
 TEST(Json, WhatNobodyAskedForIsRefused)
 {
     expect_refused(R"({"tolerance": 1, "tolerence": 2})", "tolerence: unknown key, did you mean \"tolerance\"?",
