@@ -1,27 +1,16 @@
 #include "plan/gcode.h"
 
-#include "core/text.h"
+#include "core/fixed_text.h"
 
 #include <cmath>
-#include <iomanip>
 #include <ostream>
-#include <sstream>
 
 namespace fettle {
 
 namespace {
 
-// Numbers in G-code have no exponent; 0.0001 mm is finer than any drive.
-std::string fixed(double value)
-{
-    std::ostringstream text;
-    text.imbue(std::locale::classic());
-    text << std::fixed << std::setprecision(5) << value;
-    std::string result = text.str();
-    result.erase(result.find_last_not_of('0') + 1);
-    if (result.back() == '.') result.pop_back();
-    return result == "-0" ? "0" : result;
-}
+// 0.0001 mm is finer than any drive.
+std::string fixed(double value) { return to_fixed_text(value, 5); }
 
 std::string words(const Eigen::Vector3d& point, double mm)
 {
