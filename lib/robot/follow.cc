@@ -1,0 +1,219 @@
+#include "robot/follow.h"
+
+#include "robot/arm.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace fettle {
+
+namespace {
+
+constexpr double kTurn = 2 * std::numbers::pi;
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+// One way to reach a pose, and the best way to it.
+struct Station {
+    Joints joints;
+    int branch;
+    std::size_t from = 0; // number of the station before
+    int jumps = 0;        // on the way
+    double motion = 0;    // sum of squares on the way, rad²
+};
+
+// All whole turns of the joints that stay in range, joint by joint from the first.
+void add_turns(const Robot& robot, const ArmSolution& solution, Eigen::Index joint, std::vector<Station>& stations)
+{
+    if (joint == 6) {
+        stations.push_back({solution.joints, solution.branch});
+        return;
+    }
+    const JointRange& range = robot.dh[static_cast<std::size_t>(joint)].range;
+    ArmSolution turned = solution;
+    double& q = turned.joints[joint];
+    while (within(range, q - kTurn)) q -= kTurn;
+    for (; within(range, q); q += kTurn) add_turns(robot, turned, joint + 1, stations);
+}
+
+class PathSearch {
+  public:
+    PathSearch(const Robot& robot, const FollowOptions& options) : robot_(robot), options_(options) {}
+
+    /// @return  is there a way to this pose?
+    bool add(const ArmSolutions& solutions, bool gap)
+    {
+        const std::size_t first = stations_.size();
+        for (const ArmSolution& solution : solutions) add_turns(robot_, solution, 0, stations_);
+        if (stations_.size() == first) return false;
+        for (std::size_t i = first; i < stations_.size(); ++i) connect(i, gap);
+        before_ = first;
+        end_before_ = stations_.size();
+        return true;
+    }
+
+    /// Joints of the best way so far.
+    const Joints& near() const { return before_ == end_before_ ? options_.start : stations_[best()].joints; }
+
+    std::size_t best() const
+    {
+        std::size_t best = before_;
+        for (std::size_t i = before_; i < end_before_; ++i)
+            if (shorter(stations_[i], stations_[best])) best = i;
+        return best;
+    }
+
+    const Station& station(std::size_t i) const { return stations_[i]; }
+
+  private:
+    static bool shorter(const Station& a, const Station& b)
+    {
+        return a.jumps != b.jumps ? a.jumps < b.jumps : a.motion < b.motion;
+    }
+
+    void connect(std::size_t i, bool gap)
+    {
+        Station& here = stations_[i];
+        if (before_ == end_before_) {
+            here.motion = (here.joints - options_.start).squaredNorm();
+            return;
+        }
+        Station best = here;
+        best.jumps = std::numeric_limits<int>::max();
+        for (std::size_t from = before_; from < end_before_; ++from) {
+            const Joints move = here.joints - stations_[from].joints;
+            Station way = here;
+            way.from = from;
+            way.jumps = stations_[from].jumps + (!gap && move.cwiseAbs().maxCoeff() > options_.jump ? 1 : 0);
+            way.motion = stations_[from].motion + move.squaredNorm();
+            if (shorter(way, best)) best = way;
+        }
+        here = best;
+    }
+
+    const Robot& robot_;
+    const FollowOptions& options_;
+    std::vector<Station> stations_;           // of all poses
+    std::size_t before_ = 0, end_before_ = 0; // those of the last pose that has any
+};
+
+// The joint that is farthest out of its range in the solution that is least far out.
+Eigen::Index blocking_joint(const Robot& robot, const Arm& arm, const Eigen::Isometry3d& flange)
+{
+    double least = std::numeric_limits<double>::infinity();
+    Eigen::Index joint = 0;
+    for (const ArmSolution& solution : arm.solve(flange, Joints::Zero(), Ranges::ignore)) {
+        Joints beyond;
+        for (Eigen::Index k = 0; k < 6; ++k) {
+            const JointRange& range = robot.dh[static_cast<std::size_t>(k)].range;
+            beyond[k] = std::max(range.least - solution.joints[k], solution.joints[k] - range.most);
+        }
+        Eigen::Index worst = 0;
+        const double most = beyond.maxCoeff(&worst);
+        if (most < least) {
+            least = most;
+            joint = worst;
+        }
+    }
+    return joint;
+}
+
+// Track (6) or table (7) where it is out of its range, else -1.
+Eigen::Index external_out_of_range(const Robot& robot, const Eigen::Vector2d& external)
+{
+    if (robot.track && !within(robot.track->range, external[0])) return 6;
+    if (robot.table && !within(robot.table->range, external[1])) return 7;
+    return -1;
+}
+
+FollowedPath no_path(Eigen::Index count)
+{
+    FollowedPath path;
+    path.joints = CellJointsPath::Constant(8, count, kNaN);
+    path.state.assign(static_cast<std::size_t>(count), PoseState::undefined);
+    path.branch.assign(static_cast<std::size_t>(count), -1);
+    path.singularity = Eigen::VectorXd::Constant(count, kNaN);
+    path.blocked.setZero();
+    return path;
+}
+
+std::vector<Eigen::Index> jumps_of(const CellJointsPath& joints, double jump)
+{
+    std::vector<Eigen::Index> jumps;
+    for (Eigen::Index i = 1; i < joints.cols(); ++i)
+        if ((joints.col(i) - joints.col(i - 1)).head<6>().cwiseAbs().maxCoeff<Eigen::PropagateNaN>() > jump)
+            jumps.push_back(i);
+    return jumps;
+}
+
+} // namespace
+
+std::vector<std::pair<int, Joints>> all_solutions(const Robot& robot, const Eigen::Isometry3d& T_base_flange)
+{
+    std::vector<Station> stations;
+    for (const ArmSolution& solution : Arm(robot).solve(T_base_flange, Joints::Zero(), Ranges::respect))
+        add_turns(robot, solution, 0, stations);
+    std::vector<std::pair<int, Joints>> all;
+    for (const Station& station : stations) all.emplace_back(station.branch, station.joints);
+    return all;
+}
+
+FollowedPath follow(const Robot& robot, const PosePath& poses, const Eigen::Matrix2Xd& externals,
+                    const FollowOptions& options)
+{
+    const Arm arm(robot);
+    const auto count = static_cast<Eigen::Index>(poses.size());
+    FollowedPath path = no_path(count);
+    PathSearch search(robot, options);
+    Eigen::Index last = -1; // pose reached before
+    for (Eigen::Index i = 0; i < count; ++i) {
+        PoseState& state = path.state[static_cast<std::size_t>(i)];
+        const Eigen::Isometry3d& pose = poses[static_cast<std::size_t>(i)];
+        if (pose.translation().hasNaN()) continue;
+        const Eigen::Isometry3d flange = flange_for(robot, pose, externals(0, i), externals(1, i));
+        const Eigen::Index external = external_out_of_range(robot, externals.col(i));
+        const ArmSolutions solutions = arm.solve(flange, search.near(), Ranges::respect);
+        if (external < 0 && search.add(solutions, last != i - 1)) {
+            state = PoseState::reached;
+            last = i;
+        } else if (external >= 0 || solutions.reachable) {
+            state = PoseState::out_of_range;
+            ++path.blocked[external >= 0 ? external : blocking_joint(robot, arm, flange)];
+        } else {
+            state = PoseState::unreachable;
+        }
+    }
+    if (last < 0) return path;
+    std::size_t at = search.best();
+    for (Eigen::Index i = last; i >= 0; --i) {
+        if (path.state[static_cast<std::size_t>(i)] != PoseState::reached) continue;
+        const Station& station = search.station(at);
+        path.joints.col(i) << station.joints, externals.col(i);
+        path.branch[static_cast<std::size_t>(i)] = station.branch;
+        path.singularity[i] = arm.singularity(station.joints).least();
+        at = station.from;
+    }
+    path.jumps = jumps_of(path.joints, options.jump);
+    return path;
+}
+
+FollowedPath judge(const Robot& robot, const CellJointsPath& joints, double jump)
+{
+    const Arm arm(robot);
+    FollowedPath path = no_path(joints.cols());
+    path.joints = joints;
+    for (Eigen::Index i = 0; i < joints.cols(); ++i) {
+        const CellJoints q = joints.col(i);
+        if (q.hasNaN()) continue;
+        Eigen::Index blocked = external_out_of_range(robot, q.tail<2>());
+        for (Eigen::Index k = 5; k >= 0; --k)
+            if (!within(robot.dh[static_cast<std::size_t>(k)].range, q[k])) blocked = k;
+        if (blocked >= 0) ++path.blocked[blocked];
+        path.state[static_cast<std::size_t>(i)] = blocked >= 0 ? PoseState::out_of_range : PoseState::reached;
+        path.singularity[i] = arm.singularity(q.head<6>()).least();
+    }
+    path.jumps = jumps_of(joints, jump);
+    return path;
+}
+
+} // namespace fettle

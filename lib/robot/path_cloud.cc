@@ -1,0 +1,101 @@
+#include "robot/path_cloud.h"
+
+#include "core/error.h"
+#include "core/text.h"
+#include "robot/arm.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace fettle {
+
+namespace {
+
+constexpr double kRadPerDegree = std::numbers::pi / 180;
+const char* const kQuaternion[] = {"qw", "qx", "qy", "qz"};
+
+bool has_joint(const Robot& robot, Eigen::Index joint)
+{
+    return joint < 6 || (joint == 6 && robot.track) || (joint == 7 && robot.table);
+}
+
+std::string joint_name(Eigen::Index joint) { return "joint" + std::to_string(joint + 1); }
+double joint_unit(Eigen::Index joint) { return joint == 6 ? 1 : kRadPerDegree; }
+
+} // namespace
+
+PosePath path_poses(const Cloud& cloud)
+{
+    Eigen::Matrix4Xd q(4, cloud.size());
+    for (Eigen::Index k = 0; k < 4; ++k) q.row(k) = field(cloud, kQuaternion[k]);
+    PosePath poses(static_cast<std::size_t>(cloud.size()));
+    for (Eigen::Index i = 0; i < cloud.size(); ++i) {
+        Eigen::Isometry3d& pose = poses[static_cast<std::size_t>(i)];
+        pose.setIdentity();
+        pose.translation() = cloud.xyz.col(i);
+        const double norm = q.col(i).stableNorm();
+        if (norm == 0) throw InputError("point " + std::to_string(i) + ": the quaternion qw qx qy qz is 0");
+        if (!std::isfinite(norm) || !cloud.xyz.col(i).allFinite()) {
+            pose.translation().setConstant(NAN);
+            continue;
+        }
+        const Eigen::Vector4d unit = q.col(i) / norm;
+        pose.linear() = Eigen::Quaterniond(unit[0], unit[1], unit[2], unit[3]).toRotationMatrix();
+    }
+    return poses;
+}
+
+void set_path(Cloud& cloud, const PosePath& poses)
+{
+    Eigen::Matrix4Xd q(4, cloud.size());
+    for (Eigen::Index i = 0; i < cloud.size(); ++i) {
+        const Eigen::Isometry3d& pose = poses[static_cast<std::size_t>(i)];
+        cloud.xyz.col(i) = pose.translation();
+        const Eigen::Quaterniond turn(pose.linear());
+        const double sign = turn.w() < 0 ? -1 : 1; // one of two signs
+        q.col(i) << sign * turn.w(), sign * turn.x(), sign * turn.y(), sign * turn.z();
+        if (pose.translation().hasNaN()) q.col(i).setConstant(NAN);
+    }
+    for (Eigen::Index k = 0; k < 4; ++k) set_field(cloud, kQuaternion[k], q.row(k), 8);
+}
+
+CellJointsPath path_joints(const Cloud& cloud, const Robot& robot)
+{
+    CellJointsPath joints = CellJointsPath::Zero(8, cloud.size());
+    for (Eigen::Index k = 0; k < 8; ++k)
+        if (has_joint(robot, k)) joints.row(k) = field(cloud, joint_name(k)) * joint_unit(k);
+    return joints;
+}
+
+void set_joints(Cloud& cloud, const Robot& robot, const CellJointsPath& joints)
+{
+    for (Eigen::Index k = 0; k < 8; ++k)
+        if (has_joint(robot, k)) set_field(cloud, joint_name(k), joints.row(k) / joint_unit(k), 8);
+}
+
+void set_states(Cloud& cloud, const FollowedPath& path)
+{
+    Eigen::VectorXd states(cloud.size());
+    for (Eigen::Index i = 0; i < cloud.size(); ++i)
+        states[i] = static_cast<double>(path.state[static_cast<std::size_t>(i)]);
+    set_field(cloud, "state", states);
+    set_field(cloud, "singularity", path.singularity);
+}
+
+PosePath forward(const Robot& robot, const CellJointsPath& joints)
+{
+    const Arm arm(robot);
+    PosePath poses;
+    for (const auto q : joints.colwise()) {
+        Eigen::Isometry3d& pose = poses.emplace_back(Eigen::Isometry3d::Identity());
+        if (q.hasNaN()) {
+            pose.translation().setConstant(NAN);
+            continue;
+        }
+        pose =
+            cell_part(robot, q[7]).inverse() * cell_base(robot, q[6]) * arm.flange(q.head<6>()) * robot.T_flange_tool;
+    }
+    return poses;
+}
+
+} // namespace fettle

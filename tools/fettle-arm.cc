@@ -1,0 +1,164 @@
+#include "cli/tool.h"
+#include "cloud/pcd.h"
+#include "core/file.h"
+#include "core/lines.h"
+#include "core/text.h"
+#include "robot/arm_report.h"
+#include "robot/path_cloud.h"
+#include "robot/rapid.h"
+
+#include <numbers>
+#include <sstream>
+
+using namespace fettle;
+
+namespace {
+
+constexpr double kRadPerDegree = std::numbers::pi / 180;
+
+Joints joints_in(const std::string& text)
+{
+    Joints joints = Joints::Zero();
+    std::istringstream parts(text);
+    std::vector<double> degrees;
+    for (std::string part; std::getline(parts, part, ',');) degrees.push_back(parse_number(part).value_or(NAN));
+    for (std::size_t i = 0; i < 6 && degrees.size() == 6; ++i)
+        joints[static_cast<Eigen::Index>(i)] = degrees[i] * kRadPerDegree;
+    if (degrees.size() != 6 || !joints.allFinite())
+        throw InputError("--start", "expected six angles in degrees with commas between, got " + in_quotes(text));
+    return joints;
+}
+
+// With the option's name before what the library has against its value.
+std::optional<AxisRule> rule_in(const std::string& option, const std::string& text, bool exists, double unit)
+{
+    try {
+        if (text != "auto" && !exists) throw InputError("the robot has none");
+        return parse_axis_rule(text, unit);
+    } catch (const InputError& error) {
+        throw InputError(option, error.what());
+    }
+}
+
+template <typename Work>
+auto named(const std::string& path, const Work& work)
+{
+    try {
+        return work();
+    } catch (const InputError& error) {
+        throw InputError(display_name(path), error.what());
+    }
+}
+
+// Every solution of every pose, a point each: fields pose and branch.
+void write_all(Tool& t, const Cloud& cloud, const Robot& robot, const PosePath& poses,
+               const Eigen::Matrix2Xd& externals, const Units& units, PcdEncoding encoding)
+{
+    std::vector<Eigen::Index> from;
+    std::vector<double> branches;
+    std::vector<CellJoints> solutions;
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+        if (poses[i].translation().hasNaN()) continue;
+        const Eigen::Vector2d external = externals.col(static_cast<Eigen::Index>(i));
+        for (const auto& [branch, joints] :
+             all_solutions(robot, flange_for(robot, poses[i], external[0], external[1]))) {
+            from.push_back(static_cast<Eigen::Index>(i));
+            branches.push_back(branch);
+            solutions.emplace_back() << joints, external;
+        }
+    }
+    Cloud all = select(cloud, from);
+    const auto count = static_cast<Eigen::Index>(from.size());
+    CellJointsPath joints(8, count);
+    for (Eigen::Index i = 0; i < count; ++i) joints.col(i) = solutions[static_cast<std::size_t>(i)];
+    set_joints(all, robot, joints);
+    set_field(all, "pose",
+              Eigen::Map<Eigen::Matrix<Eigen::Index, Eigen::Dynamic, 1>>(from.data(), count).cast<double>());
+    set_field(all, "branch", Eigen::Map<Eigen::VectorXd>(branches.data(), count));
+    write_pcd(t.output(), all, units, encoding);
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+    const std::string description =
+        "Kinematics of a robot along a path: joints to tool poses (--forward), or tool poses to joints (--inverse), in "
+        "closed form.\n"
+        "Of all solutions in range, whole turns included, --inverse takes the way with the fewest jumps and the least "
+        "motion. Points: x y z is the tip, qw qx qy qz turns the tool's frame (+z from the tip to the holder, +x along "
+        "the feed) to the part's; joint1 to joint6 in degrees, joint7 the track, joint8 the table in degrees. Added: "
+        "state (0 reached, 1 unreachable, 2 out of range, 3 undefined) and singularity, the distance from one. Exit 1 "
+        "if a pose is not reached, the path jumps or a joint is too fast.";
+    return tool_main(argc, argv, description, [](Tool& t) {
+        const std::string& robot_file = t.file("ROBOT", "The robot, JSON");
+        const std::string& points = t.input("POINTS", "joints or path, PCD");
+        const bool& to_pose = t.flag("--forward", "From joints to poses");
+        const bool& to_joints = t.flag("--inverse", "From poses to joints");
+        const auto& unit = t.length_unit("--file-units", "Unit of POINTS, and of lengths here [its header, or mm]");
+        const std::string& track_text = t.text(
+            "--track", "auto", "RULE",
+            "The track stands at a place (LENGTH), or follows the tip (follow:LENGTH behind it along the track); "
+            "auto: the rule under which all of the path is reached farthest from singularities, standing still "
+            "if that will do");
+        const std::string& table_text =
+            t.text("--table", "auto", "RULE", "The table: DEG, follow:DEG (the tip's azimuth about its axis) or auto");
+        const std::string& start = t.text("--start", "0,0,0,0,0,0", "DEG,…", "The path begins nearest to these joints");
+        const double& jump = t.number("--jump", 30, "DEG", "More between two poses is a jump", Range::positive());
+        const double& singular = t.number("--singular", 0.05, "D",
+                                          "Poses nearer to a singularity are counted: the least of the sines of "
+                                          "joint 5 and of the elbow, and the wrist centre's share of the reach",
+                                          Range::between(0, 1));
+        const auto& feed = t.number_if_given("--feed", "LENGTH/S",
+                                             "Of the tip, for speeds and accelerations of the joints [the field t]",
+                                             Range::positive());
+        const double& turn_feed = t.number("--turn-feed", 500, "DEG/S", "The tool turns no faster", Range::positive());
+        const bool& all = t.flag("--all", "Write every solution of each pose: a point each, with pose and branch");
+        const std::string& rapid = t.text("--rapid", "", "FILE", "Write an ABB RAPID module, too; it needs --feed");
+        const std::string& zone = t.choice("--zone", "z0", {"fine", "z0", "z1", "z5", "z10"}, "RAPID: of the targets");
+        const bool& ascii = t.flag("--ascii", "Text instead of binary");
+        t.example("fettle-arm robots/irb1400.json --inverse paths/keel.pcd --feed 50 --rapid keel.mod > joints.pcd",
+                  "joints along the keel of a hull, and the robot's program");
+        t.reference("Chen & Wei, eq. 1 and 2, table 1; Pieper 1968 (closed form)");
+        t.parse();
+
+        if (to_pose == to_joints) throw InputError("give one of --forward and --inverse");
+        if (all && to_pose) throw InputError("--all goes with --inverse");
+        if (!rapid.empty() && !feed) throw InputError("--rapid needs --feed");
+        const Robot robot = read_robot(robot_file);
+        CloudFile file = read_cloud(points, unit ? std::optional(Units{*unit, Units::Force::N}) : std::nullopt);
+        Cloud& cloud = file.cloud;
+        const double mm = file.units.mm();
+        const PcdEncoding encoding = ascii ? PcdEncoding::ascii : PcdEncoding::binary;
+        const ExternalRules wanted = {rule_in("--track", track_text, robot.track.has_value(), mm),
+                                      rule_in("--table", table_text, robot.table.has_value(), kRadPerDegree)};
+        PosePath poses;
+        FollowedPath path;
+        if (to_pose) {
+            path = judge(robot, named(points, [&] { return path_joints(cloud, robot); }), jump * kRadPerDegree);
+            poses = forward(robot, path.joints);
+            set_path(cloud, poses);
+        } else {
+            poses = named(points, [&] { return path_poses(cloud); });
+            const ExternalChoice choice = choose_externals(robot, poses, wanted);
+            const Eigen::Matrix2Xd externals = external_values(robot, poses, choice.track, choice.table);
+            path = follow(robot, poses, externals, {joints_in(start), jump * kRadPerDegree});
+            if (robot.track) t.report().set("track", to_json(choice.track, mm));
+            if (robot.table) t.report().set("table", to_json(choice.table, kRadPerDegree));
+            if (all) write_all(t, cloud, robot, poses, externals, file.units, encoding);
+            set_joints(cloud, robot, path.joints);
+        }
+        std::optional<Eigen::VectorXd> times;
+        const Feedrate feedrate = {feed.value_or(0) * mm, turn_feed * kRadPerDegree};
+        if (feed)
+            set_field(cloud, "t", times.emplace(arrival_times(poses, feedrate)), 8);
+        else if (has_field(cloud, "t"))
+            times = field(cloud, "t");
+        set_states(cloud, path);
+        if (!all) write_pcd(t.output(), cloud, file.units, encoding);
+        const bool done = add_report(t.report(), robot, path, singular, times, file.units);
+        if (done && !rapid.empty()) write_rapid(t.output_file(rapid), robot, poses, path, {feedrate, zone});
+        if (!done && !rapid.empty()) t.warn("the robot cannot run this path: " + rapid + " is not written");
+        return done ? Verdict::yes : Verdict::no;
+    });
+}
