@@ -1,0 +1,72 @@
+#include "machining/cutter_path.h"
+
+#include "core/error.h"
+#include "core/text.h"
+
+#include <cmath>
+
+namespace fettle {
+namespace {
+
+/// The map of heights is upright, so the cutter must be, too: q turns +z into +z.
+void require_upright(const Cloud& points, const std::string& source)
+{
+    if (!has_field(points, "qx") || !has_field(points, "qy")) return;
+    constexpr double kUpright = 1e-6; // rounding of floats
+    const Eigen::VectorXd qx = field(points, "qx"), qy = field(points, "qy");
+    for (Eigen::Index i = 0; i < points.size(); ++i)
+        if (!(std::hypot(qx[i], qy[i]) <= kUpright))
+            throw InputError(source, "point " + std::to_string(i + 1) + ": the cutter's axis is tilted (qx " +
+                                         to_short_text(qx[i]) + ", qy " + to_short_text(qy[i]) +
+                                         "), expected an upright one");
+}
+
+Eigen::Matrix3Xd tips_at(const Cloud& points, const Cutter& cutter, const std::string& source)
+{
+    if (!has_normals(points)) throw InputError(source, "contact points need normal_x, normal_y and normal_z");
+    const Eigen::Matrix3Xd directions = normals(points);
+    Eigen::Matrix3Xd tips(3, points.size());
+    for (Eigen::Index i = 0; i < points.size(); ++i) try {
+            const double size = directions.col(i).norm();
+            if (!(size > 0 && std::isfinite(size))) throw InputError("its normal has no direction");
+            tips.col(i) = tip_at_contact(cutter, points.xyz.col(i), directions.col(i) / size);
+        } catch (const InputError& error) {
+            throw InputError(source, "point " + std::to_string(i + 1) + ": " + error.what());
+        }
+    return tips;
+}
+
+} // namespace
+
+double length(const CutterMove& move)
+{
+    if (move.sweep == 0) return (move.to - move.from).norm();
+    return std::abs(move.sweep) * (move.from.head<2>() - move.centre).norm();
+}
+
+std::vector<CutterMove> moves_through(const Cloud& points, const Cutter& cutter, bool contacts, double feed,
+                                      const std::string& source)
+{
+    require_upright(points, source);
+    const Eigen::Matrix3Xd tips = contacts ? tips_at(points, cutter, source) : points.xyz;
+    Eigen::VectorXd feeds = Eigen::VectorXd::Constant(points.size(), feed);
+    if (has_field(points, "feed")) feeds = field(points, "feed");
+    std::vector<CutterMove> moves;
+    for (Eigen::Index i = 0; i < tips.cols(); ++i) {
+        const std::string place = "point " + std::to_string(i + 1);
+        if (!tips.col(i).allFinite()) throw InputError(source, place + ": not a finite position");
+        if (!(feeds[i] >= 0 && std::isfinite(feeds[i])))
+            throw InputError(source, place + ": feed must be at least 0, got " + to_text(feeds[i]));
+        if (i == 0) continue;
+        CutterMove move;
+        move.from = tips.col(i - 1);
+        move.to = tips.col(i);
+        move.feed = feeds[i];
+        move.place = static_cast<std::size_t>(i + 1);
+        moves.push_back(move);
+    }
+    if (moves.empty()) throw InputError(source, "a path needs two points or more");
+    return moves;
+}
+
+} // namespace fettle
