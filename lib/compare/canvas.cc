@@ -48,15 +48,14 @@ Canvas::~Canvas() = default;
 int Canvas::width() const { return state_->sheet.cols; }
 int Canvas::height() const { return state_->sheet.rows; }
 
-double Canvas::text_width(const std::string& words, double capital_height, bool bold)
+double Canvas::text_width(const std::string& words, double capital_height, bool bold) const
 {
     return double(text_size(words, capital_height, bold).width) / kOversampling;
 }
 
-void Canvas::text(const std::string& words, const Eigen::Vector2d& at, double capital_height, const Rgb& colour,
-                  Align align, bool bold)
+void Canvas::draw_text(const std::string& words, const Eigen::Vector2d& at, double capital_height, const Rgb& colour,
+                       Align align, bool bold)
 {
-    if (words.empty()) return;
     const double shift = align == Align::left ? 0 : align == Align::centre ? 0.5 : 1;
     const double left = at.x() - shift * text_width(words, capital_height, bold);
     const double base = at.y() + capital_height / 2;
@@ -91,7 +90,7 @@ void Canvas::box(const Eigen::Vector2d& corner, const Eigen::Vector2d& size, con
     if (!rectangle.empty()) cv::rectangle(state_->sheet, rectangle, scalar(colour), cv::FILLED);
 }
 
-void Canvas::line(const Eigen::Matrix2Xd& points, const Rgb& colour, double width, bool closed)
+void Canvas::draw_line(const Eigen::Matrix2Xd& points, const Rgb& colour, double width, bool closed)
 {
     std::vector<cv::Point> path;
     for (const Eigen::Vector2d& p : points.colwise())

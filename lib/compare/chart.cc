@@ -11,7 +11,7 @@ namespace fettle {
 
 namespace {
 
-using Align = Canvas::Align;
+using Align = Sheet::Align;
 using Eigen::Vector2d;
 
 constexpr Rgb kGrey = {120, 120, 120}, kFrame = {170, 170, 170}, kGrid = {228, 228, 228};
@@ -53,7 +53,7 @@ struct Frame {
 
 double shown(const Chart& chart, double y) { return chart.logarithmic ? std::log10(y) : y; }
 
-void draw_tick(Canvas& sheet, const Frame& frame, bool upright, double value, const std::string& text)
+void draw_tick(Sheet& sheet, const Frame& frame, bool upright, double value, const std::string& text)
 {
     const Vector2d at = upright ? frame.at(frame.x.least, value) : frame.at(value, frame.y.least);
     const Vector2d across = upright ? Vector2d(frame.size.x(), 0) : Vector2d(0, -frame.size.y());
@@ -62,7 +62,7 @@ void draw_tick(Canvas& sheet, const Frame& frame, bool upright, double value, co
     sheet.text(text, beside, kSmall, kGrey, upright ? Align::right : Align::centre);
 }
 
-void draw_linear_ticks(Canvas& sheet, const Frame& frame, bool upright)
+void draw_linear_ticks(Sheet& sheet, const Frame& frame, bool upright)
 {
     const Axis& axis = upright ? frame.y : frame.x;
     const double step = tick_step(axis.most - axis.least, 6);
@@ -71,7 +71,7 @@ void draw_linear_ticks(Canvas& sheet, const Frame& frame, bool upright)
 }
 
 /// 1, 2 and 5 times the powers of ten.
-void draw_logarithmic_ticks(Canvas& sheet, const Frame& frame)
+void draw_logarithmic_ticks(Sheet& sheet, const Frame& frame)
 {
     for (double power = std::floor(frame.y.least); power <= frame.y.most; ++power)
         for (const double digit : {1.0, 2.0, 5.0}) {
@@ -81,7 +81,7 @@ void draw_logarithmic_ticks(Canvas& sheet, const Frame& frame)
         }
 }
 
-void draw_curve(Canvas& sheet, const Frame& frame, const Chart& chart, const Curve& curve)
+void draw_curve(Sheet& sheet, const Frame& frame, const Chart& chart, const Curve& curve)
 {
     constexpr double kWidth = 1.6, kMark = 5;
     const auto place = [&](Eigen::Index i) -> Vector2d {
@@ -95,7 +95,7 @@ void draw_curve(Canvas& sheet, const Frame& frame, const Chart& chart, const Cur
     }
 }
 
-void draw_key(Canvas& sheet, const Frame& frame, const Chart& chart)
+void draw_key(Sheet& sheet, const Frame& frame, const Chart& chart)
 {
     constexpr double kLine = 18, kSample = 16;
     Vector2d at = frame.corner + Vector2d(frame.size.x() + 12, 8);
@@ -117,7 +117,7 @@ Rgb curve_colour(std::size_t index)
     return kColours[index % kColours.size()];
 }
 
-void draw_chart(Canvas& sheet, const Vector2d& corner, const Vector2d& size, const Chart& chart)
+void draw_chart(Sheet& sheet, const Vector2d& corner, const Vector2d& size, const Chart& chart)
 {
     Frame frame{corner + Vector2d(kLeft, kAbove), size - Vector2d(kLeft + kRight, kAbove + kBelow), {}, {}};
     for (const Curve& curve : chart.curves)
@@ -127,7 +127,7 @@ void draw_chart(Canvas& sheet, const Vector2d& corner, const Vector2d& size, con
             frame.x.take(curve.points(0, i));
             frame.y.take(y);
         }
-    sheet.text(chart.title, corner + Vector2d(kLeft, 14), kTitle, Canvas::kInk, Align::left, true);
+    sheet.text(chart.title, corner + Vector2d(kLeft, 14), kTitle, Sheet::kInk, Align::left, true);
     if (!frame.x.empty()) {
         frame.x.widen();
         frame.y.widen();

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "compare/canvas.h"
+#include "compare/sheet.h"
 
 #include <Eigen/Core>
 
@@ -13,7 +13,7 @@ namespace fettle {
 struct Curve {
     std::string name;        ///< in the key; empty: not in the key
     Eigen::Matrix2Xd points; ///< x and y, joined in order; where y is NaN (or has no logarithm) the line is broken
-    Rgb colour = Canvas::kInk;
+    Rgb colour = Sheet::kInk;
     bool marked = true; ///< a small square at each point
 };
 
@@ -28,6 +28,6 @@ Rgb curve_colour(std::size_t index);
 
 /// Draws axes with ticks, the curves and their key. Without a point that can be shown, only the frame.
 /// @param corner, size  of the whole chart on the sheet, pixels
-void draw_chart(Canvas& sheet, const Eigen::Vector2d& corner, const Eigen::Vector2d& size, const Chart& chart);
+void draw_chart(Sheet& sheet, const Eigen::Vector2d& corner, const Eigen::Vector2d& size, const Chart& chart);
 
 } // namespace fettle

@@ -1,6 +1,7 @@
 #include "compare/picture.h"
 
 #include "cloud/fields.h"
+#include "compare/canvas.h"
 #include "compare/picture_parts.h"
 #include "compare/statistics.h"
 #include "core/error.h"
@@ -180,7 +181,7 @@ double shading_of(const PictureOptions& options)
     return options.field == "z" ? kHeights : kOthers;
 }
 
-void draw_map(Canvas& sheet, const Drawing& d, const Scale& scale, double shading)
+void draw_map(Sheet& sheet, const Drawing& d, const Scale& scale, double shading)
 {
     const View& view = d.layout.view;
     Eigen::ArrayXXd shade = Eigen::ArrayXXd::Ones(view.rows, view.columns);
@@ -202,7 +203,8 @@ void draw_map(Canvas& sheet, const Drawing& d, const Scale& scale, double shadin
 
 } // namespace
 
-std::string picture(const std::variant<Cloud, Mesh>& part, const PictureOptions& options)
+void draw_picture(const std::variant<Cloud, Mesh>& part, const PictureOptions& options,
+                  const std::function<Sheet&(int width, int height)>& make)
 {
     Drawing d = std::visit([&](const auto& p) { return draw(p, options); }, part);
     d.values.name = options.field;
@@ -210,16 +212,22 @@ std::string picture(const std::variant<Cloud, Mesh>& part, const PictureOptions&
     const Scale scale = scale_for(d.values.numbers, options);
     const Layout& layout = d.layout;
 
-    Canvas sheet(static_cast<int>(layout.map_corner.x() + layout.map_size.x() + kLegendWidth),
-                 static_cast<int>(layout.map_corner.y() + layout.map_size.y() + kBelowMap));
+    Sheet& sheet = make(static_cast<int>(layout.map_corner.x() + layout.map_size.x() + kLegendWidth),
+                        static_cast<int>(layout.map_corner.y() + layout.map_size.y() + kBelowMap));
     sheet.box(layout.map_corner, layout.map_size, kBackground);
     draw_map(sheet, d, scale, shading_of(options));
     if (options.within) draw_outlines(sheet, layout, d.raster, *options.within);
     draw_axes(sheet, layout, options.units);
     draw_legend(sheet, layout, d.values, scale);
     draw_numbers(sheet, layout, d.values, options.within ? "inside B" : "");
-    sheet.text(options.title, {kLeft, kTop + 4}, kTitle, Canvas::kInk, Canvas::Align::left, true);
-    return sheet.png();
+    sheet.text(options.title, {kLeft, kTop + 4}, kTitle, Sheet::kInk, Sheet::Align::left, true);
+}
+
+std::string picture(const std::variant<Cloud, Mesh>& part, const PictureOptions& options)
+{
+    std::optional<Canvas> canvas;
+    draw_picture(part, options, [&](int width, int height) -> Sheet& { return canvas.emplace(width, height); });
+    return canvas->png();
 }
 
 } // namespace fettle

@@ -8,7 +8,7 @@
 namespace fettle {
 namespace {
 
-using Align = Canvas::Align;
+using Align = Sheet::Align;
 using Eigen::Index;
 using Eigen::Vector2d;
 
@@ -29,7 +29,7 @@ Rgb sequential(double share)
 }
 
 /// Above the bar or below it: a tip where values lie beyond its end.
-void draw_tip(Canvas& sheet, const Vector2d& middle, double width, double height, const Rgb& colour)
+void draw_tip(Sheet& sheet, const Vector2d& middle, double width, double height, const Rgb& colour)
 {
     const int rows = static_cast<int>(std::abs(height));
     for (int row = 0; row < rows; ++row) {
@@ -57,7 +57,7 @@ Rgb Scale::operator()(double value) const
     return diverging ? ColourScale{1}(2 * share - 1) : sequential(share);
 }
 
-void draw_legend(Canvas& sheet, const Layout& layout, const Values& values, const Scale& scale)
+void draw_legend(Sheet& sheet, const Layout& layout, const Values& values, const Scale& scale)
 {
     // The bar, with room above and below for its tips and names.
     constexpr double kBar = 22, kTicks = 70, kHistogram = 150, kRoom = 62, kTip = 14;
@@ -65,7 +65,7 @@ void draw_legend(Canvas& sheet, const Layout& layout, const Values& values, cons
     const double top = layout.map_corner.y() + kRoom, height = layout.map_size.y() - 2 * kRoom;
     const auto row_of = [&](double value) { return top + height * (scale.high - value) / (scale.high - scale.low); };
     sheet.text(values.name + (values.unit.empty() ? "" : ", " + values.unit), {x, layout.map_corner.y() + 4}, kLabel,
-               Canvas::kInk, Align::left, true);
+               Sheet::kInk, Align::left, true);
     for (int row = 0; row < static_cast<int>(height); ++row)
         sheet.box({x, top + row}, {kBar, 1}, scale(scale.high - (row + 0.5) / height * (scale.high - scale.low)));
     sheet.line(frame_of({x, top}, {kBar, height}), kFrame, 1, true);
@@ -119,7 +119,7 @@ void draw_legend(Canvas& sheet, const Layout& layout, const Values& values, cons
     }
 }
 
-void draw_numbers(Canvas& sheet, const Layout& layout, const Values& values, const std::string& place)
+void draw_numbers(Sheet& sheet, const Layout& layout, const Values& values, const std::string& place)
 {
     const Statistics s = statistics(values.numbers, Eigen::VectorXd::Zero(values.numbers.size()), std::nullopt);
     // What is rounding beside the largest number is shown as 0.
@@ -134,8 +134,8 @@ void draw_numbers(Canvas& sheet, const Layout& layout, const Values& values, con
     double x = layout.map_corner.x();
     const std::string head = place + (place.empty() || values.unit.empty() ? "" : ", ") + values.unit;
     if (!head.empty()) {
-        sheet.text(head, {x, y}, kLabel, Canvas::kInk, Align::left, true);
-        x += Canvas::text_width(head, kLabel, true) + 30;
+        sheet.text(head, {x, y}, kLabel, Sheet::kInk, Align::left, true);
+        x += sheet.text_width(head, kLabel, true) + 30;
     }
     for (const auto& [name, value] : items) {
         if (name == "undefined" && s.undefined > 0) { // the key of the grey places
@@ -144,9 +144,9 @@ void draw_numbers(Canvas& sheet, const Layout& layout, const Values& values, con
             x += kSwatch + 6;
         }
         sheet.text(name, {x, y}, kLabel, kGrey);
-        x += Canvas::text_width(name, kLabel) + 8;
+        x += sheet.text_width(name, kLabel) + 8;
         sheet.text(value, {x, y}, kLabel);
-        x += Canvas::text_width(value, kLabel) + 26;
+        x += sheet.text_width(value, kLabel) + 26;
     }
 }
 

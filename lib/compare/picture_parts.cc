@@ -8,7 +8,7 @@
 namespace fettle {
 namespace {
 
-using Align = Canvas::Align;
+using Align = Sheet::Align;
 using Eigen::Index;
 using Eigen::Vector2d;
 
@@ -33,7 +33,7 @@ MachineAxis axis_along(const Eigen::Vector3d& way)
 }
 
 /// Ticks of the axis of the machine that runs along a side of the frame. @param side  0: below, 1: left
-void draw_ticks(Canvas& sheet, const Layout& layout, int side, double step, double mm)
+void draw_ticks(Sheet& sheet, const Layout& layout, int side, double step, double mm)
 {
     const MachineAxis axis = axis_along(layout.rotation_view_machine.row(side));
     if (axis.name.empty()) return;
@@ -55,7 +55,7 @@ void draw_ticks(Canvas& sheet, const Layout& layout, int side, double step, doub
 }
 
 /// The axes of the machine as they are seen: those that point away are paler, one that points at the eye is left out.
-void draw_tripod(Canvas& sheet, const Vector2d& centre, const Eigen::Matrix3d& rotation_view_machine)
+void draw_tripod(Sheet& sheet, const Vector2d& centre, const Eigen::Matrix3d& rotation_view_machine)
 {
     constexpr double kLength = 22, kRoom = 9, kSeen = 0.2;
     constexpr Rgb kAway = {170, 170, 170};
@@ -63,7 +63,7 @@ void draw_tripod(Canvas& sheet, const Vector2d& centre, const Eigen::Matrix3d& r
         const Eigen::Vector3d way = rotation_view_machine.col(axis);
         const Vector2d on_sheet(way.x(), -way.y());
         if (on_sheet.norm() < kSeen) continue;
-        const Rgb& colour = way.z() < 0 ? kAway : Canvas::kInk;
+        const Rgb& colour = way.z() < 0 ? kAway : Sheet::kInk;
         sheet.line((Eigen::Matrix2d() << centre, centre + kLength * on_sheet).finished(), colour, 2);
         sheet.text(std::string(1, "xyz"[axis]), centre + kLength * on_sheet + kRoom * on_sheet.normalized(), kSmall,
                    colour, Align::centre);
@@ -135,7 +135,7 @@ Eigen::Matrix2Xd frame_of(const Vector2d& corner, const Vector2d& size)
     return frame;
 }
 
-void draw_axes(Canvas& sheet, const Layout& layout, const Units& units)
+void draw_axes(Sheet& sheet, const Layout& layout, const Units& units)
 {
     const double mm = units.mm();
     const double pixel = layout.view.pixel / mm;
@@ -149,7 +149,7 @@ void draw_axes(Canvas& sheet, const Layout& layout, const Units& units)
     // The length that the eye measures with: a fifth of the map or somewhat more.
     const double length = tick_step(size.maxCoeff() * pixel, 6);
     const double y = corner.y() + 48;
-    sheet.box({layout.map_corner.x(), y - 2}, {length / pixel, 4}, Canvas::kInk);
+    sheet.box({layout.map_corner.x(), y - 2}, {length / pixel, 4}, Sheet::kInk);
     sheet.text(number_text(length) + " " + to_string(units.length), {layout.map_corner.x() + length / pixel + 12, y},
                kLabel);
     const Eigen::Matrix3d& rotation = layout.rotation_view_machine;
@@ -167,7 +167,7 @@ void draw_axes(Canvas& sheet, const Layout& layout, const Units& units)
                {corner.x() - 2 * kTripod - 8, y}, kSmall, kGrey, Align::right);
 }
 
-void draw_outlines(Canvas& sheet, const Layout& layout, const Raster& part, const Job& job)
+void draw_outlines(Sheet& sheet, const Layout& layout, const Raster& part, const Job& job)
 {
     const bool from_above = layout.rotation_view_machine.isIdentity(0);
     const auto draw = [&](const Eigen::Matrix3Xd& polygon, const Rgb& colour, double width, const std::string& name) {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "compare/canvas.h"
 #include "compare/raster.h"
+#include "compare/sheet.h"
 #include "job/job.h"
 
 #include <string>
@@ -43,12 +43,12 @@ std::string number_text(double value);
 Eigen::Matrix2Xd frame_of(const Eigen::Vector2d& corner, const Eigen::Vector2d& size);
 
 /// Frame, a bar of round length, and ticks along each side that is an axis of the machine; else a tripod of the axes.
-void draw_axes(Canvas& sheet, const Layout& layout, const Units& units);
+void draw_axes(Sheet& sheet, const Layout& layout, const Units& units);
 /// B and S of a job, where nothing of the part hides them; from above all of them.
-void draw_outlines(Canvas& sheet, const Layout& layout, const Raster& part, const Job& job);
+void draw_outlines(Sheet& sheet, const Layout& layout, const Raster& part, const Job& job);
 /// Bar of colours with ticks, its ends pointed where values lie beyond; beside it how often each value occurs.
-void draw_legend(Canvas& sheet, const Layout& layout, const Values& values, const Scale& scale);
+void draw_legend(Sheet& sheet, const Layout& layout, const Values& values, const Scale& scale);
 /// One line of statistics. @param place  the region they hold for; empty: all
-void draw_numbers(Canvas& sheet, const Layout& layout, const Values& values, const std::string& place);
+void draw_numbers(Sheet& sheet, const Layout& layout, const Values& values, const std::string& place);
 
 } // namespace fettle

@@ -46,6 +46,8 @@ std::string short_text(double value)
         std::snprintf(buffer, sizeof buffer, "%.2e", size);
         return with_sign(value < 0, buffer);
     }
+    constexpr double kGrouped = 1e4;
+    if (size >= kGrouped) return with_sign(value < 0, count_text(size));
     std::string digits = fixed_text(size, decimals_for(size));
     if (digits.find('.') != std::string::npos) { // 2.50 is 2.5, 3.00 is 3
         digits.erase(digits.find_last_not_of('0') + 1);

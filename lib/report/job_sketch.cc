@@ -88,8 +88,7 @@ Html draw_passes(const Sheet& sheet, const Plan& plan)
             add('M', {pass.line, interval.first});
             add('L', {pass.line, interval.second});
         }
-    const Vector2d start = sheet(plan.start.head<2>());
-    return svg::path(path, "pass") + svg::circle(start, 5, "start");
+    return svg::path(path, "pass");
 }
 
 /// X_w and Y_w, the axes that the job's directions refer to.
@@ -146,8 +145,9 @@ Html job_sketch(const RunFiles& run)
 
     Html html;
     if (job.sampling.cols() > 0) html += svg::polygon(sheet.all(job.sampling), "edge-s");
-    html += svg::polygon(sheet.all(job.anomaly), "edge-b");
     if (run.plan) html += draw_passes(sheet, *run.plan);
+    html += svg::polygon(sheet.all(job.anomaly), "edge-b");
+    if (run.plan) html += svg::circle(sheet(run.plan->start.head<2>()), 5, "start");
     html += draw_touches(sheet, touches);
 
     const double mm = run.units.mm(), bottom = kMargin + height + 26;

@@ -27,7 +27,7 @@ std::string report_page(const RunFiles& run, const std::string& title, const std
                                                                          : "Inspection report";
     Html subtitle;
     if (run.job) subtitle += std::filesystem::path(run.job->source).filename().string() + " \u00B7 ";
-    subtitle += "lengths in " + to_string(run.units.length) + ", forces in " + to_string(run.units.force);
+    subtitle += "units: " + to_string(run.units.length) + ", " + to_string(run.units.force);
     const Html head = lone_element("meta", {{"charset", "utf-8"}}) +
                       lone_element("meta", {{"name", "viewport"}, {"content", "width=device-width, initial-scale=1"}}) +
                       element("title", headline) + style_sheet();

@@ -9,13 +9,19 @@ namespace {
 
 Html weight_bar(double weight) { return element("i", {{"style", "width:" + fixed_text(100 * weight, 1) + "%"}}); }
 
+/// What a method is called where people read.
+std::string name_of(const std::string& method)
+{
+    return method == "gp" ? "smooth (Gaussian process)" : method == "bspline" ? "B-spline" : method;
+}
+
 /// The kinds of surface that were weighed, best first, and their weights as bars.
 Html candidates(const Surface& surface)
 {
     Html rows;
     const auto add = [&](const std::string& key, const std::string& method, double score, double weight, bool chosen) {
         rows += element("tr", chosen ? Attributes{{"class", "chosen"}} : Attributes{},
-                        element("th", method) +
+                        element("th", name_of(method)) +
                             element("td", {{"class", "number"}}, figure(key + "score", score, fixed_text(score, 1))) +
                             element("td", {{"class", "number"}},
                                     figure(key + "weight", weight, fixed_text(100 * weight, 1)) + " %") +
@@ -59,7 +65,7 @@ Html fit_section(const RunFiles& run)
     const Surface& surface = *run.surface;
     const Units& units = run.units;
     const double used = double(surface.touches.cols()) - double(surface.gross_errors.size());
-    Facts rows = {{"Desired surface", surface.method}, {"Touches used", count_text(used)}};
+    Facts rows = {{"Desired surface", name_of(surface.method)}, {"Touches used", count_text(used)}};
     if (!surface.gross_errors.empty())
         rows.emplace_back("Slips, left out", count_text(double(surface.gross_errors.size())));
     if (surface.ignored > 0) rows.emplace_back("Points not used", count_text(surface.ignored));

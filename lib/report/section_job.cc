@@ -18,7 +18,7 @@ Html job_section(const RunFiles& run)
     const auto force = [&](const std::string& key, double newton) { return force_figure("job." + key, newton, units); };
     constexpr double kDegrees = 180 / std::numbers::pi;
 
-    Html surface = to_string(job.surface);
+    Html surface = job.surface == SurfaceType::freeform ? "free-form" : to_string(job.surface);
     if (job.surface == SurfaceType::swept)
         surface += ", rulings " + short_text(job.direction * kDegrees) + "\u00B0 from " + symbol("X_w");
     const double area_of_b = area(boundaries(job).anomaly) / (units.mm() * units.mm());

@@ -1,7 +1,7 @@
 #include "compare/picture.h"
 #include "core/error.h"
-#include "report/base64.h"
 #include "report/sections.h"
+#include "report/svg_sheet.h"
 
 namespace fettle {
 namespace {
@@ -10,9 +10,9 @@ namespace {
 Html picture_of(const RunFiles& run, const std::string& what, const std::variant<Cloud, Mesh>& part,
                 const PictureOptions& options, const std::string& caption)
 try {
-    return drawing_with_caption(
-        lone_element("img", {{"src", "data:image/png;base64," + base64(picture(part, options))}, {"alt", caption}}),
-        caption);
+    std::optional<SvgSheet> sheet;
+    draw_picture(part, options, [&](int width, int height) -> Sheet& { return sheet.emplace(width, height); });
+    return drawing_with_caption(sheet->drawing(caption), caption);
 } catch (const InputError& error) {
     for (const SourceFile& file : run.sources)
         if (file.what == what) throw InputError(file.name, error.what());

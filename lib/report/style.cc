@@ -72,8 +72,8 @@ svg .sign-purple { fill: var(--purple); } svg .sign-cross { fill: none; stroke: 
 svg .bin { stroke: #8a949e; stroke-width: .6; }
 svg .gauge-out { fill: #ead9cf; } svg .gauge-in { fill: #e4efe9; }
 svg .whisker { stroke: var(--ink); stroke-width: 1.4; } svg .spread { fill: #56748f; } svg .mean { fill: #fff; stroke: var(--ink); stroke-width: 1.6; }
-svg .edge-b { fill: #1c273312; stroke: var(--ink); stroke-width: 2; } svg .edge-s { fill: none; stroke: var(--purple); stroke-width: 1.2; }
-svg .pass { fill: none; stroke: #9aa5af; stroke-width: 1; } svg .start { fill: none; stroke: var(--green); stroke-width: 2; }
+svg .edge-b { fill: #1c27330a; stroke: var(--ink); stroke-width: 2; } svg .edge-s { fill: none; stroke: var(--purple); stroke-width: 1.2; }
+svg .pass { fill: none; stroke: #b4bdc5; stroke-width: .8; } svg .start { fill: none; stroke: var(--green); stroke-width: 2; }
 svg .touch { fill: var(--blue); } svg .touch-edge { fill: #fff; stroke: var(--blue); stroke-width: 1.4; }
 svg .slip { fill: none; stroke: var(--orange); stroke-width: 1.8; } svg .scale-bar { fill: var(--ink); } svg .axis-w { stroke: var(--ink); stroke-width: 1.4; }
 @media (max-width: 44rem) { body { padding: 1.2rem; } .columns { grid-template-columns: 1fr; } .scroll { overflow-x: auto; } }

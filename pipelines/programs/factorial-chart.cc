@@ -4,6 +4,7 @@
 #include "factorial.h"
 
 #include "cli/tool.h"
+#include "compare/canvas.h"
 #include "compare/chart.h"
 
 #include <array>

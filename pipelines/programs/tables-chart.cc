@@ -3,6 +3,7 @@
 #include "tables-values.h"
 
 #include "cli/tool.h"
+#include "compare/canvas.h"
 #include "compare/chart.h"
 
 #include <array>

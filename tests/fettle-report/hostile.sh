@@ -5,7 +5,7 @@ name='"><img src=y onerror=alert(3)>.json'
 cp "$job" "$name"
 fettle-report --job "$name" --comparison errors.json --title "$evil" -o page.html
 xmllint --noout --nonet page.html
-not grep -qE '<(script|img)|onerror=[^&]*">' page.html
+not grep -qE '<(script|img)' page.html
 test "$(xmllint --xpath 'string(//h1)' page.html)" = "$evil"
 test "$(xmllint --xpath 'string(//title)' page.html)" = "$evil"
 xmllint --xpath 'string(//section[@id="provenance"])' page.html | grep -qF "$name"

@@ -4,8 +4,8 @@
 page --title 'Part 1' -o page.html
 page --title 'Part 1' --threads 1 | cmp - page.html
 xmllint --noout --nonet page.html
-not grep -qiE '<(script|link|iframe|object|embed)|https?:|@import|url\(|href=' page.html
-test "$(grep -o 'src="[^"]\{22\}' page.html | sort -u)" = 'src="data:image/png;base64,'
+not grep -qiE '<(script|link|iframe|object|embed)|https?:|@import|url\(|src=' page.html
+test "$(grep -o 'href="[^"]\{22\}' page.html | sort -u)" = 'href="data:image/png;base64,'
 for id in verdict job fit margin plan grinding maps statistics provenance; do grep -q "<section id=\"$id\">" page.html; done
 grep -q 'data-verdict="Within tolerance"' page.html
 for file in part.stl samples.pcd errors.json; do grep -q "$(sha256sum $file | cut -d' ' -f1)" page.html; done

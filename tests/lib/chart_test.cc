@@ -1,6 +1,8 @@
 // Charts read back: where the marks of known points are.
 #include "compare/chart.h"
 
+#include "compare/canvas.h"
+
 #include <gtest/gtest.h>
 #include <png.h>
 

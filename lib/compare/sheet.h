@@ -1,0 +1,44 @@
+#pragma once
+
+#include "compare/colours.h"
+
+#include <Eigen/Core>
+
+#include <string>
+
+namespace fettle {
+
+/// What pictures are drawn on, whatever becomes of it: pixels (Canvas) or a drawing of a page. Coordinates in pixels, x
+/// right, y down.
+class Sheet {
+  public:
+    virtual ~Sheet() = default;
+
+    enum class Align { left, centre, right };
+    static constexpr Rgb kInk = {40, 40, 40};
+
+    /// One line of text. @param at  the left end, middle or right end, half-way up the capital letters
+    void text(const std::string& words, const Eigen::Vector2d& at, double capital_height, const Rgb& colour = kInk,
+              Align align = Align::left, bool bold = false)
+    {
+        if (!words.empty()) draw_text(words, at, capital_height, colour, align, bold);
+    }
+    /// How wide a text will be.
+    virtual double text_width(const std::string& words, double capital_height, bool bold = false) const = 0;
+
+    virtual void box(const Eigen::Vector2d& corner, const Eigen::Vector2d& size, const Rgb& colour) = 0;
+    /// Anti-aliased. @param points  2xN
+    void line(const Eigen::Matrix2Xd& points, const Rgb& colour, double width, bool closed = false)
+    {
+        draw_line(points, colour, width, closed);
+    }
+    /// Sets one pixel; beside the sheet nothing happens.
+    virtual void dot(int column, int row, const Rgb& colour) = 0;
+
+  private:
+    virtual void draw_text(const std::string& words, const Eigen::Vector2d& at, double capital_height,
+                           const Rgb& colour, Align align, bool bold) = 0;
+    virtual void draw_line(const Eigen::Matrix2Xd& points, const Rgb& colour, double width, bool closed) = 0;
+};
+
+} // namespace fettle
