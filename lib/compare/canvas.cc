@@ -100,10 +100,21 @@ void Canvas::draw_line(const Eigen::Matrix2Xd& points, const Rgb& colour, double
                   cv::LINE_AA, kShift);
 }
 
-void Canvas::dot(int column, int row, const Rgb& colour)
+void Canvas::image(const Eigen::Vector2d& corner, const Eigen::Vector2d& size, int columns,
+                   std::span<const std::uint8_t> rgb)
 {
-    if (column < 0 || column >= width() || row < 0 || row >= height()) return;
-    state_->sheet(row, column) = cv::Vec3b(colour[0], colour[1], colour[2]);
+    const Eigen::Vector2d least = corner.array().round(), whole = size.array().round();
+    const int rows = static_cast<int>(rgb.size()) / (3 * columns);
+    const cv::Rect place(static_cast<int>(least.x()), static_cast<int>(least.y()), static_cast<int>(whole.x()),
+                         static_cast<int>(whole.y()));
+    const cv::Rect visible = place & cv::Rect(0, 0, width(), height());
+    for (int row = visible.y; row < visible.y + visible.height; ++row)
+        for (int column = visible.x; column < visible.x + visible.width; ++column) {
+            const int from_row = (row - place.y) * rows / place.height;
+            const int from_column = (column - place.x) * columns / place.width;
+            const std::uint8_t* pixel = rgb.data() + 3 * (std::ptrdiff_t(from_row) * columns + from_column);
+            state_->sheet(row, column) = cv::Vec3b(pixel[0], pixel[1], pixel[2]);
+        }
 }
 
 std::string Canvas::png() const

@@ -16,7 +16,9 @@ class Canvas final : public Sheet {
 
     double text_width(const std::string& words, double capital_height, bool bold = false) const override;
     void box(const Eigen::Vector2d& corner, const Eigen::Vector2d& size, const Rgb& colour) override;
-    void dot(int column, int row, const Rgb& colour) override;
+    /// Pixel by pixel, the nearest of the picture each.
+    void image(const Eigen::Vector2d& corner, const Eigen::Vector2d& size, int columns,
+               std::span<const std::uint8_t> rgb) override;
 
     int width() const;
     int height() const;

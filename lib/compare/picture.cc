@@ -18,7 +18,7 @@ using Eigen::Vector2d;
 // Of the largest value: ticks nearer to each other would need more digits than a label shows.
 constexpr double kLabelled = 1e-9;
 // The sheet, in pixels: the map in its frame, the title above it, the legend to the right, a line of numbers below.
-constexpr double kMapWidth = 900, kMapHeight = 680, kLeastMapHeight = 360;
+constexpr double kHeightPerWidth = 680.0 / 900, kLeastHeightPerWidth = 0.4, kLeastHeight = 290; // room for the legend
 constexpr double kLeft = 84, kTop = 36, kTitleHeight = 42, kBelowMap = 122, kLegendWidth = 310;
 constexpr Rgb kBackground = {228, 228, 232}; // darker than no error, lighter than undefined
 
@@ -76,20 +76,26 @@ Layout lay_out(const Eigen::Matrix3Xd& seen, double spacing, const PictureOption
     if (box.isEmpty())
         throw InputError("no point has a finite " + std::string(from_above(options.from) ? "x and y" : "x, y and z") +
                          ": there is nothing to draw");
+    if (options.within)
+        for (const Eigen::Matrix3Xd* polygon : {&options.within->anomaly, &options.within->sampling}) {
+            const Eigen::Matrix3Xd corners = in_view(view_rotation(options.from), outline(*polygon));
+            for (const Eigen::Vector3d& p : corners.colwise()) box.extend(p.head<2>());
+        }
     box = Eigen::AlignedBox2d(box.min() - Vector2d::Constant(spacing / 2), box.max() + Vector2d::Constant(spacing / 2));
     // A line of points is drawn as a strip.
     constexpr double kLeastSide = 1e-3;
     const Vector2d size = box.sizes().cwiseMax(kLeastSide * box.sizes().maxCoeff());
     Layout layout;
     layout.rotation_view_machine = view_rotation(options.from);
-    layout.view.pixel = std::max(size.x() / kMapWidth, size.y() / kMapHeight);
+    layout.view.pixel = std::max(size.x() / options.width, size.y() / (kHeightPerWidth * options.width));
     // Less the rounding of a whole number of pixels.
     const Eigen::Array2i pixels = (size / layout.view.pixel).array().round().cast<int>().max(1);
     layout.view.columns = pixels.x();
     layout.view.rows = pixels.y();
     layout.view.least = box.min();
     layout.map_corner = {kLeft, kTop + (options.title.empty() ? 0 : kTitleHeight)};
-    layout.map_size = {kMapWidth, std::max(kLeastMapHeight, double(pixels.y()))};
+    layout.map_size = {double(options.width),
+                       std::max({kLeastHeightPerWidth * options.width, kLeastHeight, double(pixels.y())})};
     layout.drawn_at = (layout.map_corner + (layout.map_size - pixels.matrix().cast<double>()) / 2).array().floor();
     return layout;
 }
@@ -120,10 +126,16 @@ Eigen::VectorXd judged(const Eigen::Matrix3Xd& points, const Eigen::VectorXd& nu
 /// A map ready to be coloured.
 struct Drawing {
     Layout layout;
+    View view;        ///< of the raster: that of the layout, or a finer one
     Raster raster;    ///< in the units of the picture
     double smoothing; ///< of its shades, pixels
     Values values;
 };
+
+View finer(const View& view, int times)
+{
+    return {view.least, view.pixel / times, view.columns * times, view.rows * times};
+}
 
 Drawing draw(const Cloud& cloud, const PictureOptions& options)
 {
@@ -136,8 +148,9 @@ Drawing draw(const Cloud& cloud, const PictureOptions& options)
     constexpr double kAlone = 1; // the room of a single place, mm
     const Eigen::Matrix3Xd seen = in_view(view_rotation(options.from), cloud.xyz);
     d.layout = lay_out(seen, spacing > 0 ? spacing : kAlone, options);
-    const double pixel = d.layout.view.pixel;
-    d.raster = rasterise(d.layout.view, seen, numbers, reach_of(seen.cols(), spacing, pixel));
+    d.view = finer(d.layout.view, options.fineness);
+    const double pixel = d.view.pixel;
+    d.raster = rasterise(d.view, seen, numbers, reach_of(seen.cols(), spacing, d.layout.view.pixel));
     d.smoothing = std::max(0.7, spacing / pixel / 2); // half a cell: no steps are left
     d.values.numbers = judged(cloud.xyz, numbers, options.within);
     return d;
@@ -150,8 +163,8 @@ Drawing draw(const Mesh& mesh, const PictureOptions& options)
     const Eigen::Matrix3d rotation = view_rotation(options.from);
     const Mesh seen = {in_view(rotation, mesh.vertices), mesh.triangles};
     d.layout = lay_out(seen.vertices, 0, options);
-    const View& view = d.layout.view;
-    d.raster = rasterise(view, seen, mesh.vertices.row(2).transpose() / options.units.mm());
+    d.view = finer(d.layout.view, options.fineness);
+    d.raster = rasterise(d.view, seen, mesh.vertices.row(2).transpose() / options.units.mm());
     d.smoothing = 0.7;
     if (!from_above(options.from)) { // the numbers do not depend on where one looks from
         PictureOptions above = options;
@@ -162,10 +175,10 @@ Drawing draw(const Mesh& mesh, const PictureOptions& options)
     // What is seen counts, each place as much as the next; vertices would count where the mesh is fine, and underneath.
     Eigen::Matrix3Xd places(3, d.raster.covered.count());
     Eigen::VectorXd numbers(places.cols());
-    for (Index column = 0, k = 0; column < view.columns; ++column)
-        for (Index row = 0; row < view.rows; ++row)
+    for (Index column = 0, k = 0; column < d.view.columns; ++column)
+        for (Index row = 0; row < d.view.rows; ++row)
             if (d.raster.covered(row, column)) {
-                places.col(k) << view.centre(row, column), d.raster.depth(row, column);
+                places.col(k) << d.view.centre(row, column), d.raster.depth(row, column);
                 numbers[k++] = d.raster.value(row, column);
             }
     d.values.numbers = judged(places, numbers, options.within);
@@ -181,24 +194,33 @@ double shading_of(const PictureOptions& options)
     return options.field == "z" ? kHeights : kOthers;
 }
 
+/// Shades keep a quarter of the colour, lights go at most half-way to white: the value stays legible. Near-white means
+/// "no error", so diverging colours get no lights.
+/// @param shade  about 1 where the part faces the eye
+Rgb shaded(Rgb colour, double shading, double shade, bool diverging)
+{
+    const double dark = 1 - 0.75 * shading * (1 - shade);
+    const double light = diverging ? 0 : std::min(0.5, shading * (shade - 1));
+    for (std::uint8_t& c : colour)
+        c = static_cast<std::uint8_t>(std::lround(shade < 1 ? c * dark : std::lerp(double(c), 255, light)));
+    return colour;
+}
+
 void draw_map(Sheet& sheet, const Drawing& d, const Scale& scale, double shading)
 {
-    const View& view = d.layout.view;
+    const View& view = d.view;
     Eigen::ArrayXXd shade = Eigen::ArrayXXd::Ones(view.rows, view.columns);
     if (shading > 0) shade = hill_shading(d.raster, view.pixel, d.smoothing);
-    const Eigen::Vector2i corner = d.layout.drawn_at.cast<int>();
+    std::vector<std::uint8_t> pixels;
+    pixels.reserve(3 * static_cast<std::size_t>(view.rows) * static_cast<std::size_t>(view.columns));
     for (int row = 0; row < view.rows; ++row)
         for (int column = 0; column < view.columns; ++column) {
-            if (!d.raster.covered(row, column)) continue;
-            Rgb colour = scale(d.raster.value(row, column));
-            // Shades keep a quarter of the colour, lights go at most half-way to white: the value stays legible.
-            // Near-white means "no error", so diverging colours get no lights.
-            const double s = shade(row, column), dark = 1 - 0.75 * shading * (1 - s);
-            const double light = scale.diverging ? 0 : std::min(0.5, shading * (s - 1));
-            for (std::uint8_t& c : colour)
-                c = static_cast<std::uint8_t>(std::lround(s < 1 ? c * dark : std::lerp(double(c), 255, light)));
-            sheet.dot(corner.x() + column, corner.y() + row, colour);
+            Rgb colour = kBackground;
+            if (d.raster.covered(row, column))
+                colour = shaded(scale(d.raster.value(row, column)), shading, shade(row, column), scale.diverging);
+            pixels.insert(pixels.end(), colour.begin(), colour.end());
         }
+    sheet.image(d.layout.drawn_at, {double(d.layout.view.columns), double(d.layout.view.rows)}, view.columns, pixels);
 }
 
 } // namespace

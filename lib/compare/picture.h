@@ -20,6 +20,8 @@ struct PictureOptions {
     int bands = 0;               ///< colours in so many equal steps; 0: continuous
     Units units;                 ///< of the numbers in the picture
     std::optional<Job> within;   ///< draw its B and S; the statistics and the colours are those of B
+    int width = 900;             ///< of the map at most, pixels; the sheet is 394 wider
+    int fineness = 1;            ///< points of the map a pixel of the sheet, each way: for sheets that are printed
     Eigen::Vector3d from = Eigen::Vector3d::UnitZ(); ///< unit, M: towards the eye, which is far away
 };
 

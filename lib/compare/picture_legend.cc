@@ -130,23 +130,29 @@ void draw_numbers(Sheet& sheet, const Layout& layout, const Values& values, cons
     if (values.name == "error") items.insert(items.end(), {{"mean |error|", text(s.mean_abs)}, {"rms", text(s.rms)}});
     items.insert(items.end(), {{"min", text(s.min)}, {"max", text(s.max)}});
     items.insert(items.end(), {{"points", std::to_string(s.count)}, {"undefined", std::to_string(s.undefined)}});
-    const double y = layout.map_corner.y() + layout.map_size.y() + 88;
-    double x = layout.map_corner.x();
+    // One line, or two on a narrow sheet.
+    constexpr double kBelow = 88, kLine = 22, kBesideMap = 290;
+    const double right = layout.map_corner.x() + layout.map_size.x() + kBesideMap;
+    Vector2d at = layout.map_corner + Vector2d(0, layout.map_size.y() + kBelow);
     const std::string head = place + (place.empty() || values.unit.empty() ? "" : ", ") + values.unit;
     if (!head.empty()) {
-        sheet.text(head, {x, y}, kLabel, Sheet::kInk, Align::left, true);
-        x += sheet.text_width(head, kLabel, true) + 30;
+        sheet.text(head, at, kLabel, Sheet::kInk, Align::left, true);
+        at.x() += sheet.text_width(head, kLabel, true) + 30;
     }
     for (const auto& [name, value] : items) {
-        if (name == "undefined" && s.undefined > 0) { // the key of the grey places
-            constexpr double kSwatch = 12;
-            sheet.box({x, y - kSwatch / 2}, {kSwatch, kSwatch}, kUndefinedColour);
-            x += kSwatch + 6;
+        constexpr double kSwatch = 12, kGap = 8, kApart = 26;
+        const bool key = name == "undefined" && s.undefined > 0; // of the grey places
+        const double name_width = sheet.text_width(name, kLabel), value_width = sheet.text_width(value, kLabel);
+        if (at.x() + name_width + kGap + value_width + (key ? kSwatch + kGap : 0) > right)
+            at = Vector2d(layout.map_corner.x(), at.y() + kLine);
+        if (key) {
+            sheet.box(at - Vector2d(0, kSwatch / 2), {kSwatch, kSwatch}, kUndefinedColour);
+            at.x() += kSwatch + kGap;
         }
-        sheet.text(name, {x, y}, kLabel, kGrey);
-        x += sheet.text_width(name, kLabel) + 8;
-        sheet.text(value, {x, y}, kLabel);
-        x += sheet.text_width(value, kLabel) + 26;
+        sheet.text(name, at, kLabel, kGrey);
+        at.x() += name_width + kGap;
+        sheet.text(value, at, kLabel);
+        at.x() += value_width + kApart;
     }
 }
 

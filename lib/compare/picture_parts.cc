@@ -70,28 +70,13 @@ void draw_tripod(Sheet& sheet, const Vector2d& centre, const Eigen::Matrix3d& ro
     }
 }
 
-/// Corners of a polygon; one whose z is left out has the mean height of the others, 0 if none has one.
-Eigen::Matrix3Xd corners_of(const Eigen::Matrix3Xd& polygon)
-{
-    Eigen::Matrix3Xd corners = polygon;
-    double sum = 0;
-    Index known = 0;
-    for (const double z : polygon.row(2))
-        if (std::isfinite(z)) {
-            sum += z;
-            ++known;
-        }
-    for (double& z : corners.row(2))
-        if (!std::isfinite(z)) z = known > 0 ? sum / double(known) : 0;
-    return corners;
-}
-
 /// The pieces of a closed line that the part does not hide. @param corners  3xN, V
 std::vector<Eigen::Matrix2Xd> seen_pieces(const Layout& layout, const Raster& part, const Eigen::Matrix3Xd& corners)
 {
     // A line between corners sinks into a convex part: by that share of the picture it still counts as in front.
     constexpr double kSunk = 0.03, kStep = 2; // pixels
     const View& view = layout.view;
+    const double fineness = double(part.depth.cols()) / view.columns;
     const double sunk = kSunk * view.pixel * std::max(view.columns, view.rows);
     std::vector<std::vector<Vector2d>> pieces(1);
     for (Index i = 0; i < corners.cols(); ++i) {
@@ -100,8 +85,9 @@ std::vector<Eigen::Matrix2Xd> seen_pieces(const Layout& layout, const Raster& pa
         for (int k = 0; k <= steps; ++k) {
             const Eigen::Vector3d p = from + double(k) / steps * (to - from);
             const Vector2d at = view.to_pixel(p.head<2>());
-            const Eigen::Array2i cell = at.array().floor().cast<int>();
-            const bool beside = cell.x() < 0 || cell.y() < 0 || cell.x() >= view.columns || cell.y() >= view.rows;
+            const Eigen::Array2i cell = (fineness * at).array().floor().cast<int>();
+            const bool beside =
+                cell.x() < 0 || cell.y() < 0 || cell.x() >= part.depth.cols() || cell.y() >= part.depth.rows();
             const bool hidden = !beside && p.z() + sunk < part.depth(cell.y(), cell.x()); // NaN hides nothing
             if (!hidden)
                 pieces.back().push_back(layout.drawn_at + at);
@@ -167,12 +153,27 @@ void draw_axes(Sheet& sheet, const Layout& layout, const Units& units)
                {corner.x() - 2 * kTripod - 8, y}, kSmall, kGrey, Align::right);
 }
 
+Eigen::Matrix3Xd outline(const Eigen::Matrix3Xd& polygon)
+{
+    Eigen::Matrix3Xd corners = polygon;
+    double sum = 0;
+    Index known = 0;
+    for (const double z : polygon.row(2))
+        if (std::isfinite(z)) {
+            sum += z;
+            ++known;
+        }
+    for (double& z : corners.row(2))
+        if (!std::isfinite(z)) z = known > 0 ? sum / double(known) : 0;
+    return corners;
+}
+
 void draw_outlines(Sheet& sheet, const Layout& layout, const Raster& part, const Job& job)
 {
     const bool from_above = layout.rotation_view_machine.isIdentity(0);
     const auto draw = [&](const Eigen::Matrix3Xd& polygon, const Rgb& colour, double width, const std::string& name) {
         if (polygon.cols() == 0) return;
-        const Eigen::Matrix3Xd corners = in_view(layout.rotation_view_machine, corners_of(polygon));
+        const Eigen::Matrix3Xd corners = in_view(layout.rotation_view_machine, outline(polygon));
         std::vector<Eigen::Matrix2Xd> lines;
         if (from_above) {
             lines.emplace_back(2, corners.cols());
@@ -181,16 +182,21 @@ void draw_outlines(Sheet& sheet, const Layout& layout, const Raster& part, const
         } else {
             lines = seen_pieces(layout, part, corners);
         }
-        Vector2d top(0, std::numeric_limits<double>::infinity());
+        Vector2d top(0, std::numeric_limits<double>::infinity()), middle(0, 0);
+        Index count = 0;
         for (const Eigen::Matrix2Xd& line : lines) {
             sheet.line(line, kHalo, width + 3, from_above); // seen on any colour
             for (const Vector2d& p : line.colwise())
                 if (p.y() < top.y()) top = p;
+            middle += line.rowwise().sum();
+            count += line.cols();
         }
         for (const Eigen::Matrix2Xd& line : lines) sheet.line(line, colour, width, from_above);
-        constexpr double kAbove = 13; // but inside the frame
-        const Vector2d at(top.x(), std::max(top.y() - kAbove, layout.map_corner.y() + kAbove));
-        if (!lines.empty()) sheet.text(name, at, kLabel, colour, Align::centre, true);
+        if (lines.empty()) return;
+        constexpr double kBeside = 13;
+        const bool room = top.y() - kBeside > layout.map_corner.y() + kLabel;
+        const Vector2d inwards = (middle / double(count) - top).normalized();
+        sheet.text(name, top + kBeside * (room ? Vector2d(0, -1) : inwards), kLabel, colour, Align::centre, true);
     };
     draw(job.sampling, kSamplingEdge, 1, "S");
     draw(job.anomaly, kInsideEdge, 2, "B");

@@ -44,6 +44,8 @@ Eigen::Matrix2Xd frame_of(const Eigen::Vector2d& corner, const Eigen::Vector2d& 
 
 /// Frame, a bar of round length, and ticks along each side that is an axis of the machine; else a tripod of the axes.
 void draw_axes(Sheet& sheet, const Layout& layout, const Units& units);
+/// Corners of B or S, 3xN, M; one whose z is left out has the mean height of the others, 0 if none has one.
+Eigen::Matrix3Xd outline(const Eigen::Matrix3Xd& polygon);
 /// B and S of a job, where nothing of the part hides them; from above all of them.
 void draw_outlines(Sheet& sheet, const Layout& layout, const Raster& part, const Job& job);
 /// Bar of colours with ticks, its ends pointed where values lie beyond; beside it how often each value occurs.

@@ -130,6 +130,13 @@ void each_pixel_near(const View& view, const Vector2d& point, double radius, con
                 visit(row, column, d2);
 }
 
+/// How much a point counts at a squared distance, as a share of its reach: smoothly down to nothing, but not to 0.
+double kernel(double distance2)
+{
+    constexpr double kLeast = 1e-6;
+    return (1 - distance2) * (1 - distance2) + kLeast;
+}
+
 } // namespace
 
 Raster rasterise(const View& view, const Eigen::Matrix3Xd& points, const Eigen::VectorXd& values, double reach)
@@ -148,15 +155,22 @@ Raster rasterise(const View& view, const Eigen::Matrix3Xd& points, const Eigen::
     constexpr double kBehind = 2;
     front -= kBehind * reach;
     ArrayXXd nearest = ArrayXXd::Constant(view.rows, view.columns, kInfinity);
+    ArrayXXd weights = ArrayXXd::Zero(view.rows, view.columns), depths = weights;
     for (Index i = 0; i < points.cols(); ++i)
         if (points.col(i).head<2>().allFinite())
             each_pixel_near(view, points.col(i).head<2>(), radius, [&](int row, int column, double distance2) {
-                if (!(distance2 < nearest(row, column)) || depth_of(i) < front(row, column)) return;
+                if (depth_of(i) < front(row, column)) return;
+                if (std::isfinite(points(2, i))) {
+                    const double weight = kernel(distance2 / (radius * radius));
+                    weights(row, column) += weight;
+                    depths(row, column) += weight * points(2, i);
+                }
+                if (!(distance2 < nearest(row, column))) return;
                 nearest(row, column) = distance2;
                 raster.value(row, column) = values[i];
-                raster.depth(row, column) = points(2, i);
                 raster.covered(row, column) = true;
             });
+    raster.depth = depths / weights; // NaN where none is known
     return raster;
 }
 

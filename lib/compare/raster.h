@@ -20,7 +20,8 @@ struct Raster {
 double point_spacing(const Eigen::Matrix3Xd& points);
 
 /// Each pixel has the value of the point nearest to it in the plane, if that is within `reach` mm and not hidden behind
-/// others: a gridded cloud becomes its cells, turned as they lie, a sparse one discs.
+/// others: a gridded cloud becomes its cells, turned as they lie, a sparse one discs. Depths are smooth: the mean of
+/// the points within reach, the near ones counting more.
 /// @param points  3xN, V
 Raster rasterise(const View& view, const Eigen::Matrix3Xd& points, const Eigen::VectorXd& values, double reach);
 

@@ -4,6 +4,8 @@
 
 #include <Eigen/Core>
 
+#include <cstdint>
+#include <span>
 #include <string>
 
 namespace fettle {
@@ -32,8 +34,9 @@ class Sheet {
     {
         draw_line(points, colour, width, closed);
     }
-    /// Sets one pixel; beside the sheet nothing happens.
-    virtual void dot(int column, int row, const Rgb& colour) = 0;
+    /// A picture that fills a box. @param rgb  red, green, blue, row by row: 3 · columns · rows
+    virtual void image(const Eigen::Vector2d& corner, const Eigen::Vector2d& size, int columns,
+                       std::span<const std::uint8_t> rgb) = 0;
 
   private:
     virtual void draw_text(const std::string& words, const Eigen::Vector2d& at, double capital_height,

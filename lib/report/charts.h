@@ -22,7 +22,11 @@ Html error_histogram(const std::vector<double>& counts, double limit, double bel
 /// Force, layer and feed of a trace against the time, with what happened besides. @param job  for the force's bounds
 Html trace_chart(const Cloud& trace, const std::optional<Job>& job, const Units& units);
 
-/// B, S, touches and passes, from above and to scale.
-Html job_sketch(const RunFiles& run);
+/// B, S, touches and passes, from above and to scale; the run has a job.
+struct Sketch {
+    Html drawing;
+    bool narrow = false; ///< as wide as half of the page
+};
+Sketch job_sketch(const RunFiles& run);
 
 } // namespace fettle

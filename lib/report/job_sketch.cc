@@ -17,7 +17,7 @@ using Eigen::Matrix2Xd;
 using Eigen::Vector2d;
 using svg::Anchor;
 
-constexpr double kWidth = 720, kMapWidth = 640, kMapHeight = 330, kMargin = 26, kBelow = 54;
+constexpr double kMapHeight = 330, kMargin = 26, kBesideMap = 72, kLine = 22;
 
 /// From the machine's x-y plane to the drawing.
 struct Sheet {
@@ -105,41 +105,53 @@ Html draw_working_axes(const Vector2d& at, double theta)
     return html + svg::circle(at, 2, "touch");
 }
 
-Html draw_key(double y, const RunFiles& run, const Touches& touches)
+/// The key, as many lines as it takes; how high it is.
+std::pair<Html, double> draw_key(double top, double width, const RunFiles& run, const Touches& touches)
 {
     Html html;
-    double x = kMargin;
-    const auto add = [&](const Html& sample, const std::string& words) {
-        constexpr double kLetter = 6.4, kApart = 46;
-        html += sample + svg::text({x + 24, y + 4}, words);
-        x += kLetter * double(words.size()) + kApart;
+    Vector2d at(kMargin, top);
+    const auto add = [&](const std::string& words, const auto& sample) {
+        constexpr double kLetter = 6.4, kSample = 24, kApart = 20;
+        const double needed = kSample + kLetter * double(words.size());
+        if (at.x() + needed > width && at.x() > kMargin) at = Vector2d(kMargin, at.y() + kLine);
+        html += sample(at) + svg::text(at + Vector2d(kSample, 4), words);
+        at.x() += needed + kApart;
     };
-    add(svg::line({x, y}, {x + 18, y}, "edge-b"), "B, anomaly");
-    if (run.job->sampling.cols() > 0) add(svg::line({x, y}, {x + 18, y}, "edge-s"), "S, may be touched");
-    if (touches.points.cols() > 0) add(svg::circle({x + 9, y}, 3.2, "touch"), "touch");
-    if (!touches.slips.empty()) add(svg::circle({x + 9, y}, 6, "slip"), "slip, left out");
+    const auto stroke = [](const char* style) {
+        return [style](const Vector2d& p) { return svg::line(p, p + Vector2d(18, 0), style); };
+    };
+    const auto ring = [](double radius, const char* style) {
+        return [radius, style](const Vector2d& p) { return svg::circle(p + Vector2d(9, 0), radius, style); };
+    };
+    add("B, anomaly", stroke("edge-b"));
+    if (run.job->sampling.cols() > 0) add("S, may be touched", stroke("edge-s"));
+    if (touches.points.cols() > 0) add("touch", ring(3.2, "touch"));
+    if (!touches.slips.empty()) add("slip, left out", ring(6, "slip"));
     if (run.plan) {
-        add(svg::line({x, y}, {x + 18, y}, "pass"), "pass");
-        add(svg::circle({x + 9, y}, 5, "start"), "start");
+        add("pass", stroke("pass"));
+        add("start", ring(5, "start"));
     }
-    return html;
+    return {html, at.y() - top + kLine};
 }
 
 } // namespace
 
-Html job_sketch(const RunFiles& run)
+Sketch job_sketch(const RunFiles& run)
 {
-    if (!run.job) return {};
     const Job& job = *run.job;
     const Touches touches = touches_of(run);
     Eigen::AlignedBox2d box;
     for (const Eigen::Matrix3Xd* points : {&job.anomaly, &job.sampling, &touches.points})
         for (const Eigen::Vector3d& p : points->colwise())
             if (p.head<2>().allFinite()) box.extend(p.head<2>());
-    Sheet sheet;
     const Vector2d size = box.sizes();
+    constexpr double kWide = 1.6, kWholePage = 720, kHalfPage = 345; // drawn as large as it is shown: so are letters
+    Sketch sketch;
+    sketch.narrow = size.x() < kWide * size.y();
+    const double width = sketch.narrow ? kHalfPage : kWholePage;
+    Sheet sheet;
     sheet.least = box.min();
-    sheet.scale = std::min(kMapWidth / size.x(), kMapHeight / size.y());
+    sheet.scale = std::min((width - kMargin - kBesideMap) / size.x(), kMapHeight / size.y());
     const double height = sheet.scale * size.y();
     sheet.corner = {kMargin, kMargin + height};
 
@@ -155,9 +167,12 @@ Html job_sketch(const RunFiles& run)
     html += svg::box({kMargin, bottom}, {length * mm * sheet.scale, 4}, "scale-bar");
     html += svg::text({kMargin + length * mm * sheet.scale + 8, bottom + 7},
                       short_text(length) + " " + to_string(run.units.length));
-    html += draw_key(bottom + 26, run, touches);
-    html += draw_working_axes({std::min(kWidth - 50, kMargin + sheet.scale * size.x() + 44), bottom - 2}, job.theta);
-    return svg::drawing(kWidth, kMargin + height + kBelow + 10, "boundaries, touches and passes from above", html);
+    const auto [key, key_height] = draw_key(bottom + 26, width, run, touches);
+    html += key;
+    html += draw_working_axes({kMargin + sheet.scale * size.x() + (sketch.narrow ? 14 : 44), bottom - 2}, job.theta);
+    sketch.drawing =
+        svg::drawing(width, bottom + 26 + key_height - 8, "boundaries, touches and passes from above", html);
+    return sketch;
 }
 
 } // namespace fettle

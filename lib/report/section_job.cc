@@ -48,9 +48,13 @@ Html job_section(const RunFiles& run)
          {"Step-over", length("feed.step_over", job.feed.step_over)},
          {"Removal", figure("job.removal.coefficient", removal, short_text(removal)) + " " + length_unit + "\u00B3/(" +
                          force_unit + " s)"}});
-    return section("job", "Job",
-                   drawing_with_caption(job_sketch(run), "Seen from above, to scale.") +
-                       element("div", {{"class", "columns"}}, left + right));
+    const Sketch sketch = job_sketch(run);
+    const Html drawing = drawing_with_caption(sketch.drawing, "Seen from above, to scale.");
+    if (sketch.narrow)
+        return section(
+            "job", "Job",
+            element("div", {{"class", "columns"}}, drawing + element("div", {{"class", "stacked"}}, left + right)));
+    return section("job", "Job", drawing + element("div", {{"class", "columns"}}, left + right));
 }
 
 } // namespace fettle

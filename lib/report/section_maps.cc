@@ -26,6 +26,9 @@ Html maps_section(const RunFiles& run)
     PictureOptions options;
     options.units = run.units;
     options.within = run.job;
+    constexpr int kWidth = 560; // its letters are then as large as those of the page
+    options.width = kWidth;
+    options.fineness = 2;
     Html html;
     if (run.before)
         html += picture_of(run, "part before", *run.before, options, "Before: heights, shaded as hills are.");

@@ -41,7 +41,8 @@ thead th { border-bottom: 1px solid var(--ink); font-weight: 600; font-size: .85
 tbody th { font-weight: 400; color: var(--soft); }
 td.number { white-space: nowrap; }
 td.number, th.number { text-align: right; padding-right: .4rem; padding-left: .6rem; }
-table.facts th { width: 50%; }
+table.facts th { width: 50%; } .stacked table + table { margin-top: -.9rem; }
+.columns > figure { margin-top: 0; }
 table tr.chosen td, table tr.chosen th { font-weight: 650; color: var(--ink); }
 td.bar { width: 30%; }
 td.bar i { display: block; height: .62rem; background: var(--blue); min-width: 1px; }

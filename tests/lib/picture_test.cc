@@ -205,6 +205,31 @@ TEST(Picture, MarksTheEndsThatValuesExceed)
     EXPECT_EQ(at(within, middle, top), white);
 }
 
+// Outlines beyond the part belong to the picture: they lie in the frame, and the part where it is.
+TEST(Picture, BoundariesAreInTheFrame)
+{
+    PictureOptions options = errors_to(1);
+    options.within.emplace();
+    options.within->anomaly.resize(3, 4);
+    options.within->anomaly << 10, 28, 28, 10, 10, 10, 28, 28, 1, 1, 1, 1;
+    options.within->sampling.resize(3, 4);
+    options.within->sampling << -31, 69, 69, -31, -31, -31, 69, 69, kNaN, kNaN, kNaN, kNaN;
+    const Sheet sheet = drawn(grid([](const Eigen::Vector2d&) { return 1; }), options); // from 0 to 38
+    // S, and half a spacing around it, fill the frame's height: 102 mm on 680 pixels.
+    const double pixel = 102.0 / kSide;
+    const auto place = [&](double x, double y) {
+        return at(sheet, kLeft + static_cast<int>((x + 32) / pixel), kTop + kSide - static_cast<int>((y + 32) / pixel));
+    };
+    EXPECT_EQ(place(5, 5), kUnit(1));
+    EXPECT_NE(place(-10, -10), kUnit(1));
+    for (const double end : {-31.0, 69.0}) {
+        const Rgb edge = place(end, 19); // violet
+        EXPECT_GT(edge[2], edge[1] + 40) << end;
+    }
+    const Rgb inner = place(10, 19); // black, on blue
+    EXPECT_LT(inner[2], 60);
+}
+
 // A pyramid under light from the upper left.
 TEST(Picture, HeightsAreShaded)
 {
