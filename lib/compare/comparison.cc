@@ -158,7 +158,7 @@ Comparison compare(const TestPoints& test, const Reference& reference, const Com
         set_fields(block, options, scale);
         return block;
     };
-    // While one block is measured the last one is written and the next one read.
+    // While one block is measured another is read, measured or written.
     constexpr std::size_t kUnderWay = 2;
     std::size_t next = 0, done = 0;
     bool begun = false; // a cloud without points is one empty block
@@ -173,7 +173,7 @@ Comparison compare(const TestPoints& test, const Reference& reference, const Com
             const std::size_t first = std::exchange(next, next + kBlock);
             return Numbered(first, std::make_shared<Block>(read(first)));
         });
-    const auto work = tbb::make_filter<Numbered, Numbered>(tbb::filter_mode::serial_in_order, [&](const Numbered& in) {
+    const auto work = tbb::make_filter<Numbered, Numbered>(tbb::filter_mode::parallel, [&](const Numbered& in) {
         *in.second = measure(in.first, std::move(*in.second));
         return in;
     });

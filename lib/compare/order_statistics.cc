@@ -45,9 +45,13 @@ std::vector<double> order_statistics(const Numbers& numbers, const std::vector<s
             const auto same = [&](const Prefix& prefix) { return prefix.bits == w.bits; };
             if (std::none_of(prefixes.begin(), prefixes.end(), same)) prefixes.push_back({w.bits});
         }
+        std::vector<char> first_digits(kDigits, known == 0); // with which a prefix begins: few numbers do
+        for (const Prefix& prefix : prefixes)
+            if (known > 0) first_digits[prefix.bits >> (known - kDigitBits)] = true;
         numbers([&](std::span<const double> some) {
             for (const double number : some) {
                 const std::uint64_t key = key_of(number);
+                if (!first_digits[key >> (64 - kDigitBits)]) continue;
                 const std::uint64_t begin = known == 0 ? 0 : key >> (64 - known);
                 for (Prefix& prefix : prefixes)
                     if (prefix.bits == begin) ++prefix.counts[(key >> (64 - kDigitBits - known)) % kDigits];

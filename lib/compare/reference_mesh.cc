@@ -111,8 +111,10 @@ ReferenceMesh reference_mesh(Mesh mesh, Winding winding)
     drop_repeated(reference, gaps);
     if (reference.repair.repeated_facets > 0) gaps = open();
     if (winding == Winding::keep) return reference;
+    const std::vector<std::uint32_t> wrong = wrongly_wound(reference.mesh.vertices, reference.facets(), gaps);
+    if (wrong.empty() && winding == Winding::mend) return reference;
     std::vector<bool> turn(static_cast<std::size_t>(reference.mesh.triangles.cols()), winding == Winding::turn);
-    for (const std::uint32_t t : wrongly_wound(reference.mesh.vertices, reference.facets(), gaps)) turn[t].flip();
+    for (const std::uint32_t t : wrong) turn[t].flip();
     for (std::size_t i = 0; i < turn.size(); ++i) {
         if (!turn[i]) continue;
         const auto t = static_cast<Eigen::Index>(i);

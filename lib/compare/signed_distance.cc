@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
 
 #include <cmath>
 #include <numeric>
@@ -33,9 +34,9 @@ struct Measured {
 class MeshReference {
   public:
     MeshReference(Mesh mesh, const DistanceOptions& options)
-        : options_(options), mesh_(std::make_unique<ReferenceMesh>(reference_mesh(std::move(mesh), options.winding))),
-          index_(mesh_->mesh), normals_(*mesh_)
+        : options_(options), mesh_(std::make_unique<ReferenceMesh>(reference_mesh(std::move(mesh), options.winding)))
     {
+        tbb::parallel_invoke([&] { index_.emplace(mesh_->mesh); }, [&] { normals_.emplace(*mesh_); });
     }
 
     /// @param leaf  of the index, where to begin; set to where the foot was found
@@ -49,12 +50,12 @@ class MeshReference {
   private:
     Measured closest(const Eigen::Vector3d& point, std::uint32_t& leaf) const
     {
-        const std::optional<MeshIndex::Closest> found = index_.closest(point, options_.max_distance, leaf);
+        const std::optional<MeshIndex::Closest> found = index_->closest(point, options_.max_distance, leaf);
         if (!found) return {};
         leaf = found->leaf;
         const Eigen::Vector3d offset = point - found->point;
-        if (normals_.beyond_border(*found, offset) > mesh_->rounding(found->point)) return {};
-        const Eigen::Vector3d normal = normals_.normal(*found);
+        if (normals_->beyond_border(*found, offset) > mesh_->rounding(found->point)) return {};
+        const Eigen::Vector3d normal = normals_->normal(*found);
         if (normal.isZero(0)) return {};
         return {std::copysign(offset.norm(), offset.dot(normal)), normal, found->point, number(found->triangle)};
     }
@@ -67,10 +68,10 @@ class MeshReference {
         Measured nearest;
         bool nearest_faces = false;
         for (const double way : {1.0, -1.0}) {
-            const auto hit = index_.cast(point - way * start * up, way * up);
+            const auto hit = index_->cast(point - way * start * up, way * up);
             if (!hit) continue;
             const double error = way * (start - hit->distance);
-            const Eigen::Vector3d normal = normals_.facet(hit->triangle);
+            const Eigen::Vector3d normal = normals_->facet(hit->triangle);
             const bool faces = normal.dot(up) > 0;
             const bool better = faces != nearest_faces ? faces : !(std::abs(nearest.error) <= std::abs(error));
             if (std::abs(error) > options_.max_distance || !better) continue;
@@ -84,8 +85,8 @@ class MeshReference {
 
     DistanceOptions options_;
     std::unique_ptr<const ReferenceMesh> mesh_; ///< stays where it is
-    MeshIndex index_;
-    PseudoNormals normals_;
+    std::optional<MeshIndex> index_; ///< these two are made at the same time
+    std::optional<PseudoNormals> normals_;
 };
 
 /// What a cloud says about one point.
