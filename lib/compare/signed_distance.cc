@@ -85,7 +85,7 @@ class MeshReference {
 
     DistanceOptions options_;
     std::unique_ptr<const ReferenceMesh> mesh_; ///< stays where it is
-    std::optional<MeshIndex> index_; ///< these two are made at the same time
+    std::optional<MeshIndex> index_;            ///< made at the same time as the normals
     std::optional<PseudoNormals> normals_;
 };
 

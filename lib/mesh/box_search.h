@@ -62,9 +62,12 @@ FETTLE_INLINE Float8 squared_distance(const Point8& a, const Point8& ab, Float8 
     return dot(foot, foot);
 }
 
-/// A lower bound of the squared distance of a point to eight triangles, exact but for roundings; below 0 for the narrow
-/// ones.
-FETTLE_INLINE Float8 squared_distance(const Triangles8& triangles, const float (&point)[3])
+/// Between these bounds lie the squared distances of a point to eight triangles.
+struct Bounds8 {
+    Float8 least; ///< below 0 for narrow triangles
+    Float8 most;
+};
+FETTLE_INLINE Bounds8 squared_distances(const Triangles8& triangles, const float (&point)[3])
 {
     const Point8 origin = all(point);
     const Point8 a = corner(triangles, 0) - origin, b = corner(triangles, 1) - origin,
@@ -79,11 +82,12 @@ FETTLE_INLINE Float8 squared_distance(const Triangles8& triangles, const float (
         (dot(cross(a, ab), normal) > 0) & (dot(cross(b, bc), normal) > 0) & (dot(cross(c, ca), normal) > 0);
     const Float8 to_edges =
         smaller(squared_distance(a, ab, ab2), smaller(squared_distance(b, bc, bc2), squared_distance(c, ca, ca2)));
-    const Float8 nearest = over ? height * height / normal2 : to_edges;
+    const Mask8 wide = normal2 > kNarrow * longest2 * longest2;
+    const Float8 nearest = (over & wide) ? height * height / normal2 : to_edges;
     // The distance d is off by less than k (d + longest), with k = kTriangleRoundings: its square by 3 k d² + k
     // longest².
-    const Float8 least = nearest * (1 - 3 * kTriangleRoundings) - kTriangleRoundings * longest2;
-    return normal2 > kNarrow * longest2 * longest2 ? least : all(-1);
+    const Float8 off = kTriangleRoundings * (3 * nearest + longest2);
+    return {wide ? nearest - off : all(-1), nearest + off};
 }
 
 /// A node or, at level -1, a leaf that waits to be visited.

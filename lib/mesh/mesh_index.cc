@@ -26,21 +26,38 @@ Triangle triangle_of(const Mesh& mesh, Eigen::Index index)
 
 constexpr Eigen::Index kNone = std::numeric_limits<Eigen::Index>::max(); // any triangle has a lower index
 
+/// A triangle that may be the nearest.
+struct Candidate {
+    float least; ///< squared distance
+    std::uint32_t leaf, lane;
+};
+
 /// The nearest triangle so far, and how near others must be to matter.
 struct Nearest {
+    /// @param roundings  of the way from the point to a box or triangle, mm
+    Nearest(const Eigen::Vector3d& asked, const Eigen::Vector3d& about_centre, double radius, double roundings)
+        : point(asked), rounding(roundings)
+    {
+        Eigen::Vector3f::Map(place) = about_centre.cast<float>();
+        found.squared_distance = radius * radius;
+        set_bound(radius);
+    }
+
     const Eigen::Vector3d& point;
-    float place[3];  ///< of the point, about the tree's centre
-    double rounding; ///< of the way from the point to a box or triangle, mm
+    float place[3]; ///< of the point, about the tree's centre
+    double rounding;
     TrianglePoint found;
     Eigen::Index triangle = kNone;
     std::uint32_t leaf = 0;
-    float bound = 0; ///< squared
+    float bound = std::numeric_limits<float>::max(); ///< squared; nearer than a box that is not there
+    std::array<Candidate, 64> candidates;            ///< the first few of them wait, hardly ever more than six
+    std::size_t waiting = 0;
 
-    void set_bound()
+    /// A triangle is known to be no farther than this.
+    void set_bound(double distance)
     {
-        constexpr double kMost = std::numeric_limits<float>::max(); // still nearer than a box that is not there
-        const double far = (std::sqrt(found.squared_distance) + rounding) * (1 + kRoundings * kEpsilon);
-        bound = static_cast<float>(std::min(far * far, kMost));
+        const double far = (distance + rounding) * (1 + kRoundings * kEpsilon);
+        if (far * far < bound) bound = static_cast<float>(far * far);
     }
 
     void offer(const Triangle& corners, Eigen::Index index, std::uint32_t in_leaf)
@@ -51,26 +68,31 @@ struct Nearest {
         found = other;
         triangle = index;
         leaf = in_leaf;
-        set_bound();
+        set_bound(std::sqrt(found.squared_distance));
     }
 };
 
-/// Offers what is near enough in a leaf, the nearest first.
+/// Measures the candidates that still matter, in double: the last ones, the nearest as a rule, first.
+void settle(Nearest& nearest, const BoxTree& tree, const Mesh& mesh)
+{
+    while (nearest.waiting > 0) {
+        const Candidate& next = nearest.candidates[--nearest.waiting];
+        if (next.least > nearest.bound) continue;
+        const Eigen::Index t = tree.triangle(next.leaf, next.lane);
+        nearest.offer(triangle_of(mesh, t), t, next.leaf);
+    }
+}
+
+/// Looks for candidates in a leaf, in float.
 FETTLE_INLINE void look_through(std::uint32_t leaf, Nearest& nearest, const BoxTree& tree, const Mesh& mesh)
 {
-    const Float8 distances = squared_distance(tree.leaves[leaf], nearest.place);
-    Lanes lanes{lanes_of(distances <= nearest.bound)};
-    if (!lanes.any()) return;
-    unsigned best = lanes.first();
-    for (Lanes left = lanes; left.any(); left.next())
-        if (distances[left.first()] < distances[best]) best = left.first();
-    const auto offer = [&](unsigned lane) {
-        const Eigen::Index t = tree.triangle(leaf, lane);
-        nearest.offer(triangle_of(mesh, t), t, leaf);
-    };
-    offer(best);
-    for (; lanes.any(); lanes.next())
-        if (lanes.first() != best && distances[lanes.first()] <= nearest.bound) offer(lanes.first());
+    const Bounds8 distances = squared_distances(tree.leaves[leaf], nearest.place);
+    if (lanes_of(distances.most < nearest.bound) != 0)
+        nearest.set_bound(std::sqrt(static_cast<double>(least_of(distances.most))) + nearest.rounding);
+    for (Lanes lanes{lanes_of(distances.least <= nearest.bound)}; lanes.any(); lanes.next()) {
+        if (nearest.waiting == nearest.candidates.size()) settle(nearest, tree, mesh);
+        nearest.candidates[nearest.waiting++] = {distances.least[lanes.first()], leaf, lanes.first()};
+    }
 }
 
 /// Goes through what waits.
@@ -103,6 +125,7 @@ FETTLE_CLONES void find(Nearest& nearest, std::uint32_t leaf, const BoxTree& tre
         go_through(stack, nearest, tree, mesh);
         child = node;
     }
+    settle(nearest, tree, mesh);
 }
 
 /// The first hit so far of a ray, and the ray as the tree sees it.
@@ -244,10 +267,7 @@ std::optional<MeshIndex::Closest> MeshIndex::closest(const Eigen::Vector3d& poin
     if (tree.levels.empty() || !point.allFinite() || !(radius >= 0)) return std::nullopt;
     const Eigen::Vector3d place = point - tree.centre;
     const double rounding = 2 * (tree.rounding + kEpsilon * place.cwiseAbs().maxCoeff()); // 2 > sqrt(3): of three axes
-    Nearest nearest{point, {}, rounding, {}};
-    for (int axis = 0; axis < 3; ++axis) nearest.place[axis] = static_cast<float>(place[axis]);
-    nearest.found.squared_distance = radius * radius;
-    nearest.set_bound();
+    Nearest nearest(point, place, radius, rounding);
     find(nearest, std::min<std::uint32_t>(leaf, static_cast<std::uint32_t>(tree.leaves.size()) - 1), tree,
          state_->mesh);
     if (nearest.triangle == kNone) return std::nullopt;

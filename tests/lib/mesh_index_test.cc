@@ -181,6 +181,28 @@ TEST(MeshIndex, ClosestIsThatOfBruteForceOnCurvedSurfaces)
         }
 }
 
+// A cone of a thousand needles: over its apex all of them are equally near, from any leaf on. The first one counts.
+TEST(MeshIndex, OfNeedlesAtTheNearestVertexTheFirst)
+{
+    const int needles = 1000;
+    Mesh mesh;
+    mesh.vertices.resize(3, needles + 1);
+    mesh.triangles.resize(3, needles);
+    mesh.vertices.col(needles) << 0, 0, 5;
+    for (int i = 0; i < needles; ++i) {
+        const double turn = 2 * std::numbers::pi * i / needles;
+        mesh.vertices.col(i) << std::cos(turn), std::sin(turn), 0;
+        mesh.triangles.col(i) << needles, i, (i + 1) % needles;
+    }
+    const MeshIndex index(mesh);
+    for (std::uint32_t leaf = 0; leaf < 125; ++leaf) {
+        const auto found = index.closest({0, 0, 7}, 10, leaf);
+        ASSERT_TRUE(found);
+        EXPECT_EQ(found->triangle, 0);
+        EXPECT_EQ(found->point, Eigen::Vector3d(0, 0, 5));
+    }
+}
+
 TEST(MeshIndex, BarycentricIsExactlyZeroOffEdgesAndVertices)
 {
     const Mesh mesh = grid(4);
