@@ -32,7 +32,9 @@ int main(int argc, char** argv)
         t.parse();
 
         names = {job, samples, surface, plan, grinding, trace, before, after, errors, comparison, before_units};
-        t.output() << report_page(read_run(names), title, FETTLE_VERSION);
+        const RunFiles run = read_run(names);
+        for (const std::string& doubt : run.doubts) t.warn(doubt);
+        t.output() << report_page(run, title, FETTLE_VERSION);
         return Verdict::yes;
     });
 }

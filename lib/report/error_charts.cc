@@ -21,6 +21,17 @@ Html sides(const svg::Axis& x, double y)
            svg::text({x.end, y}, "material left \u2192", Anchor::end, "under");
 }
 
+/// Neighbouring bins together, so that they can be seen.
+std::vector<double> joined(const std::vector<double>& counts)
+{
+    constexpr std::size_t kMost = 120;
+    std::size_t together = (counts.size() + kMost - 1) / kMost;
+    while (counts.size() % together != 0) ++together; // equally wide, and up to the limit
+    std::vector<double> sums(counts.size() / together, 0);
+    for (std::size_t i = 0; i < counts.size(); ++i) sums[i / together] += counts[i];
+    return sums;
+}
+
 } // namespace
 
 Html error_gauge(const Numbers& judged, double tolerance, const std::string& unit)
@@ -48,10 +59,11 @@ Html error_gauge(const Numbers& judged, double tolerance, const std::string& uni
     return svg::drawing(kWidth, kHeight - 18, "range of the errors between the tolerances", html);
 }
 
-Html error_histogram(const std::vector<double>& counts, double limit, double below, double above, double tolerance,
+Html error_histogram(const std::vector<double>& all_counts, double limit, double below, double above, double tolerance,
                      const std::string& unit)
 {
     constexpr double kHeight = 250, kTop = 18, kBottom = 196, kLeft = 64, kRight = 20;
+    const std::vector<double> counts = joined(all_counts);
     const double most = std::max(1.0, *std::max_element(counts.begin(), counts.end()));
     const svg::Axis x = {-limit, limit, kLeft, kWidth - kRight};
     const svg::Axis y = {0, 1.05 * most, kBottom, kTop};

@@ -3,10 +3,12 @@
 #include "cloud/pcd.h"
 #include "core/error.h"
 #include "core/file.h"
+#include "core/text.h"
 #include "mesh/mesh_file.h"
 #include "report/checksum.h"
 #include "json/document.h"
 
+#include <cmath>
 #include <limits>
 
 namespace fettle {
@@ -69,6 +71,7 @@ ComparisonReport comparison_of(json::Reader reader)
     }
     if (!reader.has("verdict")) return report;
     report.within = reader.choice("verdict", {"within", "out of tolerance"}) == "within";
+    report.reversed = reader.has("reverse");
     report.judged = reader.choice("judged", {"all", "inside"});
     report.tolerance = reader.number("tolerance", Range::at_least(0));
     report.worst = number_or_nan(reader, "worst");
@@ -95,6 +98,32 @@ void require(const Cloud& cloud, const std::vector<std::string>& fields, const s
     } catch (const InputError& error) {
         throw InputError(source, error.what());
     }
+}
+
+/// Time goes on, and layers are numbers from 1.
+void check_trace(const Cloud& trace, const std::string& source)
+{
+    const Eigen::VectorXd t = field(trace, "t"), layer = field(trace, "layer");
+    constexpr double kMostLayers = 1e6; // a plan's are bounded by the safe height
+    for (Eigen::Index i = 0; i < t.size(); ++i) {
+        const std::string point = "point " + std::to_string(i) + ": ";
+        if (!(t[i] >= (i == 0 ? 0 : t[i - 1])) || !std::isfinite(t[i]))
+            throw InputError(source, point + "t does not go on: " + to_short_text(t[i]));
+        if (!(layer[i] >= 1 && layer[i] <= kMostLayers))
+            throw InputError(source, point + "there is no layer " + to_short_text(layer[i]));
+    }
+}
+
+/// A plan carries its job and its surface: those that are named should be the same.
+std::vector<std::string> doubts(const RunFiles& run, const RunFileNames& names)
+{
+    std::vector<std::string> found;
+    if (!run.plan) return found;
+    if (run.job && to_json(*run.job).text() != to_json(run.plan->job).text())
+        found.push_back(names.plan + ": made for another job than " + names.job);
+    if (run.surface && to_json(*run.surface).text() != to_json(run.plan->surface).text())
+        found.push_back(names.plan + ": made for another surface than " + names.surface);
+    return found;
 }
 
 } // namespace
@@ -139,17 +168,20 @@ RunFiles read_run(const RunFileNames& names)
     if (!names.plan.empty()) {
         run.plan = parse_plan(files.json("plan", names.plan));
         agree(run.plan->job.units, names.plan);
-        if (!run.job) run.job = run.plan->job;
     }
     if (!names.surface.empty()) {
         run.surface = parse_surface(files.json("desired surface", names.surface));
         agree(run.surface->units, names.surface);
-    } else if (run.plan) {
-        run.surface = run.plan->surface;
     }
+    run.doubts = doubts(run, names);
+    if (run.plan && !run.job) run.job = run.plan->job;
+    if (run.plan && !run.surface) run.surface = run.plan->surface;
     if (!names.samples.empty()) run.samples = cloud("touches", names.samples, {});
     if (!names.grinding.empty()) run.grinding = grinding_of(files.json("grinding", names.grinding));
-    if (!names.trace.empty()) run.trace = cloud("trace", names.trace, {"t", "layer", "event", "force", "feed"});
+    if (!names.trace.empty()) {
+        run.trace = cloud("trace", names.trace, {"t", "layer", "event", "force", "feed"});
+        check_trace(*run.trace, display_name(names.trace));
+    }
     if (!names.errors.empty()) run.errors = cloud("error map", names.errors, {"error"});
     if (!names.comparison.empty()) run.comparison = comparison_of(files.json("comparison", names.comparison));
     if (!names.before.empty()) run.before = part("part before", names.before, names.before_units);

@@ -23,6 +23,7 @@ using Numbers = std::map<std::string, double>;
 struct ComparisonReport {
     std::vector<std::pair<std::string, Numbers>> regions; ///< "all" first, then those of the job
     std::string judged;                                   ///< the region; empty: no tolerance, no verdict
+    bool reversed = false;                                ///< the verdict is about both directions
     bool within = false;
     double tolerance = 0, worst = 0;
     double limit = 0; ///< of the histogram, whose bins are equally wide from -limit to limit
@@ -59,6 +60,7 @@ struct RunFiles {
     std::optional<Cloud> errors;
     std::optional<ComparisonReport> comparison;
     std::vector<SourceFile> sources; ///< in the order of reading
+    std::vector<std::string> doubts; ///< about files that are not of one run
 };
 
 /// The names of the files; empty: there is none.

@@ -28,7 +28,6 @@ std::map<int, LayerWork> layer_work(const Cloud& trace)
     const Eigen::VectorXd layer = field(trace, "layer"), event = field(trace, "event");
     std::map<int, LayerWork> layers;
     for (Index i = 0; i < t.size(); ++i) {
-        if (!std::isfinite(layer[i])) continue;
         LayerWork& work = layers[static_cast<int>(layer[i])];
         const double took = i == 0 ? t[i] : t[i] - t[i - 1];
         work.time += took;

@@ -36,8 +36,8 @@ Html judged_card(const ComparisonReport& c, const std::string& unit)
         return card("out", "\u2717", "Out of tolerance", "No point " + where(c) + " has an error to judge.");
     const std::string side = -numbers.at("min") > numbers.at("max") ? "over-cut" : "material left";
     Html text = "Largest error " + where(c) + ": ";
-    text += length("comparison.worst", c.worst) + " (" + side + "), allowed \u00B1" +
-            length("comparison.tolerance", c.tolerance);
+    text += length("comparison.worst", c.worst) + " (" + (c.reversed ? "of both directions" : side) +
+            "), allowed \u00B1" + length("comparison.tolerance", c.tolerance);
     const double spare = c.tolerance - c.worst;
     text +=
         (c.within ? "; to spare " : "; exceeded by ") + Html(fixed_text(std::abs(spare), decimals) + " " + unit) + ".";

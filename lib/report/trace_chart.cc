@@ -18,6 +18,7 @@ using svg::coordinate;
 
 constexpr double kWidth = 720, kLeft = 52, kRight = 646;
 constexpr double kForceTop = 46, kForceBottom = 196, kGap = 30, kFeedHeight = 44;
+constexpr double kLeast = 1e-9; // of an axis that would have no length
 constexpr double kPerLayer = 12, kLeastLayers = 34, kMostLayers = 110;
 
 /// A line that may have far more points than the drawing has columns: of each column half a pixel wide it keeps the
@@ -75,6 +76,10 @@ std::string steps(const Eigen::VectorXd& t, const Eigen::VectorXd& values, const
 {
     ThinnedLine line(x, y);
     for (Index i = 0; i < t.size(); ++i) {
+        if (!std::isfinite(values[i])) {
+            line.lift();
+            continue;
+        }
         line.add(i == 0 ? 0 : t[i - 1], values[i]); // a row tells of the move that ends there
         line.add(t[i], values[i]);
     }
@@ -145,7 +150,9 @@ Html idle_times(const Eigen::VectorXd& t, const Eigen::VectorXd& feed, const svg
 Html force_panel(const Eigen::VectorXd& t, const Eigen::VectorXd& force, const Eigen::VectorXd& feed,
                  const svg::Axis& x, const std::optional<Job>& job, const Units& units)
 {
-    const double most = std::max({force.maxCoeff(), job ? job->force.max : 0, 1e-9}) / units.newton();
+    double most = job ? job->force.max : kLeast;
+    for (const double f : force) most = std::isfinite(f) ? std::max(most, f) : most;
+    most /= units.newton();
     const svg::Axis y = {0, 1.08 * most, kForceBottom, kForceTop};
     Html html = svg::ticks_left(y, x.begin, x.end, 5);
     html += svg::text({x.begin, kForceTop - 6}, "force, " + to_string(units.force), Anchor::start, "panel");
@@ -173,23 +180,25 @@ Html trace_chart(const Cloud& trace, const std::optional<Job>& job, const Units&
 {
     const Eigen::VectorXd t = field(trace, "t"), force = field(trace, "force"), feed = field(trace, "feed");
     const Eigen::VectorXd layer = field(trace, "layer"), events = field(trace, "event");
-    if (t.size() == 0 || !t.allFinite()) return {};
+    if (t.size() == 0) return {};
     constexpr double kInMinutes = 600; // s
     const double unit = t.maxCoeff() > kInMinutes ? 60 : 1;
     const Eigen::VectorXd time = t / unit;
-    const svg::Axis x = {0, std::max(time.maxCoeff(), 1e-9), kLeft, kRight};
+    const svg::Axis x = {0, std::max(time.maxCoeff(), kLeast), kLeft, kRight};
 
+    double fastest = kLeast;
+    for (const double f : feed) fastest = std::isfinite(f) ? std::max(fastest, f) : fastest;
     const double layers = std::max(1.0, layer.maxCoeff());
     const double layer_top = kForceBottom + kGap;
     const double layer_bottom = layer_top + std::clamp(kPerLayer * layers, kLeastLayers, kMostLayers);
     const double feed_top = layer_bottom + kGap, bottom = feed_top + kFeedHeight;
     const svg::Axis layer_y = {0.5, layers + 0.5, layer_bottom, layer_top};
-    const svg::Axis feed_y = {0, 1.15 * std::max(feed.maxCoeff() / units.mm(), 1e-9), bottom, feed_top};
+    const svg::Axis feed_y = {0, 1.15 * fastest / units.mm(), bottom, feed_top};
 
     Html html = idle_times(time, feed, x, bottom);
     html += svg::ticks_below(x, kForceTop, bottom, 9);
     html += force_panel(time, force, feed, x, job, units);
-    html += svg::ticks_left(layer_y, x.begin, x.end, std::min(4, static_cast<int>(layers)));
+    html += svg::ticks_left(layer_y, x.begin, x.end, static_cast<int>(std::min(4.0, layers)));
     html += svg::text({x.begin, layer_top - 6}, "layer", Anchor::start, "panel");
     html += svg::path(steps(time, layer, x, layer_y), "layer");
     html += svg::ticks_left(feed_y, x.begin, x.end, 2);

@@ -20,4 +20,16 @@ done
 "$refuses" "3.pcd: the points have no field 't'" fettle-report --trace 3.pcd
 "$refuses" "5.pcd: the points have no field 'event'" fettle-report --trace 5.pcd
 "$refuses" '3.pcd: ' fettle-report --job "$job" --samples 3.pcd # mm against in
+trace() { # ROW…: t layer event force feed
+    printf '# .PCD v0.7\n# units mm N\nVERSION 0.7\nFIELDS x y z t layer event force feed\nSIZE 4 4 4 4 4 4 4 4\nTYPE F F F F F F F F\nCOUNT 1 1 1 1 1 1 1 1\nWIDTH %d\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS %d\nDATA ascii\n' $# $#
+    printf '0 0 0 %s\n' "$@"
+}
+trace '2 1 0 0 0' '1 1 0 0 0' >back.pcd
+"$refuses" 'back.pcd: point 1: t does not go on: 1' fettle-report --trace back.pcd
+trace '2 1e30 0 0 0' >layer.pcd
+"$refuses" 'layer.pcd: point 0: there is no layer 1e+30' fettle-report --trace layer.pcd
+trace '0 1 0 nan 0' '1 1 0 nan 1' >nan.pcd # nothing was measured: a page without a line
+fettle-report --trace nan.pcd >nan.html
+xmllint --noout nan.html
+if grep -qE '="([^"]*[^a-z"])?(nan|inf)[^a-z]' nan.html; then false; fi
 "$refuses" '--before-units' fettle-report --before 3.pcd --before-units ft

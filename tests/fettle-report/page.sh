@@ -18,6 +18,14 @@ fettle-compare ground.pcd --to truth.stl --within "$job" --tolerance 0.0001 --re
 fettle-report --job "$job" --comparison tight.json | grep -q 'data-verdict="Out of tolerance"'
 fettle-compare ground.pcd --to truth.stl --report free.json -o /dev/null
 fettle-report --comparison free.json | grep -q 'data-verdict="Not judged"'
+# files of one run agree; those of another are told
+fettle-report --job "$job" --surface desired.json --plan plan.json -o /dev/null 2>err
+test ! -s err
+jq '.probe.accuracy *= 2' "$job" >other.json
+jq '.shift += 0.001' desired.json >raised.json
+fettle-report --job other.json --surface raised.json --plan plan.json -o /dev/null 2>err
+grep -qx 'fettle-report: warning: plan.json: made for another job than other.json' err
+grep -qx 'fettle-report: warning: plan.json: made for another surface than raised.json' err
 # a plan carries job and surface
 fettle-report --plan plan.json | grep -o '<section id="[a-z]*"' | tr '\n' ' ' >sections
 grep -q 'id="job" <section id="fit" <section id="margin" <section id="plan"' sections
