@@ -17,5 +17,5 @@ v 0 1 0
 f 1 2 3
 f 1 3 4
 END
-! fettle-diff a.off b.obj
+! fettle-diff a.off b.obj || exit 1
 fettle-diff --tol 0.125 a.off b.obj

@@ -31,5 +31,5 @@ trace '2 1e30 0 0 0' >layer.pcd
 trace '0 1 0 nan 0' '1 1 0 nan 1' >nan.pcd # nothing was measured: a page without a line
 fettle-report --trace nan.pcd >nan.html
 xmllint --noout nan.html
-if grep -qE '="([^"]*[^a-z"])?(nan|inf)[^a-z]' nan.html; then false; fi
+! grep -qE '="([^"]*[^a-z"])?(nan|inf)[^a-z]' nan.html || exit 1
 "$refuses" '--before-units' fettle-report --before 3.pcd --before-units ft

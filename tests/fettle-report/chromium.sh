@@ -10,9 +10,9 @@ browse() {
 }
 browse --window-size=1000,4000 --screenshot=shot.png
 test -s shot.png
-not grep -i 'CONSOLE' log
+! grep -i 'CONSOLE' log || exit 1
 browse --no-pdf-header-footer --print-to-pdf=page.pdf
-not grep -i 'CONSOLE' log
+! grep -i 'CONSOLE' log || exit 1
 pages=$(grep -ac '/Type /Page$' page.pdf)
 echo "$pages pages" >&2
 test "$pages" -ge 3 && test "$pages" -le 8

@@ -5,7 +5,7 @@ name='"><img src=y onerror=alert(3)>.json'
 cp "$job" "$name"
 fettle-report --job "$name" --comparison errors.json --title "$evil" -o page.html
 xmllint --noout --nonet page.html
-not grep -qE '<(script|img)' page.html
+! grep -qE '<(script|img)' page.html || exit 1
 test "$(xmllint --xpath 'string(//h1)' page.html)" = "$evil"
 test "$(xmllint --xpath 'string(//title)' page.html)" = "$evil"
 xmllint --xpath 'string(//section[@id="provenance"])' page.html | grep -qF "$name"
@@ -15,4 +15,4 @@ xmllint --noout --nonet page.html
 test "$(xmllint --xpath 'string(//h1)' page.html)" = $'a\uFFFD\uFFFD[2Jb\uFFFDc'
 jq '.fit.method = "<b>quadratic</b>"' desired.json >method.json
 fettle-report --surface method.json >page.html || test $? -eq 2
-not grep -q '<b>quadratic' page.html
+! grep -q '<b>quadratic' page.html || exit 1

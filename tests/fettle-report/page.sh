@@ -4,7 +4,7 @@
 page --title 'Part 1' -o page.html
 page --title 'Part 1' --threads 1 | cmp - page.html
 xmllint --noout --nonet page.html
-not grep -qiE '<(script|link|iframe|object|embed)|https?:|@import|url\(|src=' page.html
+! grep -qiE '<(script|link|iframe|object|embed)|https?:|@import|url\(|src=' page.html || exit 1
 test "$(grep -o 'href="[^"]\{22\}' page.html | sort -u)" = 'href="data:image/png;base64,'
 for id in verdict job fit margin plan grinding maps statistics provenance; do grep -q "<section id=\"$id\">" page.html; done
 grep -q 'data-verdict="Within tolerance"' page.html

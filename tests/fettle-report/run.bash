@@ -13,7 +13,3 @@ page() { # OPTION…
     fettle-report --job "$job" --samples samples.pcd --surface desired.json --plan plan.json --grinding grind.json \
         --trace trace.pcd --before part.stl --after ground.pcd --errors errors.pcd --comparison errors.json "$@"
 }
-
-not() { # COMMAND…: it must fail; bash -e passes over "! COMMAND"
-    if "$@"; then return 1; fi
-}

@@ -13,7 +13,7 @@ test "$(grep -c reached all.out)" -eq 4
 # A random rotation is one, and numbers differ. Reference: its inverse is its transpose.
 "$root/pipelines/random-transform" 1 2 >1.txt
 "$root/pipelines/random-transform" 2 2 >2.txt
-! cmp -s 1.txt 2.txt
+! cmp -s 1.txt 2.txt || exit 1
 awk 'NR < 4 { for (k = 1; k <= 3; k++) m[NR, k] = $k; if ($4 > 2 || $4 < -2) exit 1 }
     END { for (i = 1; i <= 3; i++) for (j = 1; j <= 3; j++) { s = 0; for (k = 1; k <= 3; k++) s += m[i, k] * m[j, k]
         if ((s - (i == j))^2 > 1e-28) exit 1 } }' 1.txt
