@@ -23,7 +23,6 @@ namespace {
 
 constexpr std::size_t kHeader = 80;             // bytes of free text in a binary file
 constexpr std::size_t kPrelude = kHeader + 4;   // and the number of triangles
-constexpr std::size_t kFacet = 12 * 4 + 2;      // normal, three corners, attribute
 constexpr std::size_t kCorners = 12;            // offset of the corners in a facet
 constexpr std::size_t kMostVertices = 1u << 30; // indices are ints, and hash tables of them too
 
@@ -48,7 +47,7 @@ struct BinaryCorners {
     void expect(std::uint32_t c) const { __builtin_prefetch(place(c)); }
     const char* place(std::uint32_t c) const
     {
-        return facets + kFacet * (c / 3) + kCorners + sizeof(Corner<float>) * (c % 3);
+        return facets + kStlTriangle * (c / 3) + kCorners + sizeof(Corner<float>) * (c % 3);
     }
 };
 
@@ -155,8 +154,8 @@ std::string size_problem(std::string_view bytes)
         return "binary STL of " + std::to_string(bytes.size()) + " bytes, expected at least " +
                std::to_string(kPrelude);
     const std::uint32_t count = stated_triangles(bytes);
-    const std::uint64_t needed = kPrelude + std::uint64_t{kFacet} * count;
-    const std::uint64_t swapped = kPrelude + std::uint64_t{kFacet} * __builtin_bswap32(count);
+    const std::uint64_t needed = kPrelude + std::uint64_t{kStlTriangle} * count;
+    const std::uint64_t swapped = kPrelude + std::uint64_t{kStlTriangle} * __builtin_bswap32(count);
     if (swapped == bytes.size()) return "binary STL in big-endian order, expected little-endian";
     return "binary STL of " + std::to_string(count) + " triangles needs " + std::to_string(needed) +
            " bytes, there are " + std::to_string(bytes.size());
@@ -168,7 +167,7 @@ bool is_binary_stl(std::string_view bytes) { return is_binary_stl(bytes, bytes.s
 
 bool is_binary_stl(std::string_view head, std::size_t size)
 {
-    return head.size() >= kPrelude && size == kPrelude + std::uint64_t{kFacet} * stated_triangles(head);
+    return head.size() >= kPrelude && size == kPrelude + std::uint64_t{kStlTriangle} * stated_triangles(head);
 }
 
 bool looks_like_ascii_stl(std::string_view bytes)
@@ -192,24 +191,35 @@ Mesh parse_stl(std::string_view bytes, const std::string& source, MeshRepair& re
     return welded(corners.size() / 3, TextCorners{corners}, repair);
 }
 
-void write_stl(std::ostream& out, const Mesh& mesh, Units::Length unit)
+std::string stl_header(std::size_t triangles, Units::Length unit)
 {
-    const auto count = static_cast<std::uint32_t>(mesh.triangles.cols());
-    const std::size_t size = kPrelude + kFacet * count;
-    const auto buffer = std::make_unique<char[]>(size);
-    const std::string header = "binary STL, units " + to_string(unit);
-    header.copy(buffer.get(), kHeader);
-    std::memcpy(buffer.get() + kHeader, &count, sizeof count);
-    const Eigen::Matrix3Xd normals = triangle_normals(mesh);
+    std::string header = "binary STL, units " + to_string(unit);
+    header.resize(kPrelude);
+    const auto count = static_cast<std::uint32_t>(triangles);
+    std::memcpy(header.data() + kHeader, &count, sizeof count);
+    return header;
+}
+
+void put_stl_triangles(const Mesh& part, Units::Length unit, char* to)
+{
+    const Eigen::Matrix3Xd normals = triangle_normals(part);
     const double scale = mm_per(unit);
-    char* to = buffer.get() + kPrelude;
-    for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t, to += kFacet) {
+    for (Eigen::Index t = 0; t < part.triangles.cols(); ++t, to += kStlTriangle) {
         Eigen::Matrix<float, 3, 4> facet;
         facet.col(0) = normals.col(t).cast<float>();
-        for (int k = 0; k < 3; ++k) facet.col(k + 1) = (mesh.vertices.col(mesh.triangles(k, t)) / scale).cast<float>();
+        for (int k = 0; k < 3; ++k) facet.col(k + 1) = (part.vertices.col(part.triangles(k, t)) / scale).cast<float>();
         std::memcpy(to, facet.data(), sizeof(float) * 12);
+        std::memset(to + sizeof(float) * 12, 0, 2);
     }
-    out.write(buffer.get(), static_cast<std::streamsize>(size));
+}
+
+void write_stl(std::ostream& out, const Mesh& mesh, Units::Length unit)
+{
+    const auto count = static_cast<std::size_t>(mesh.triangles.cols());
+    const auto buffer = std::make_unique_for_overwrite<char[]>(kStlTriangle * count);
+    put_stl_triangles(mesh, unit, buffer.get());
+    out << stl_header(count, unit);
+    out.write(buffer.get(), static_cast<std::streamsize>(kStlTriangle * count));
 }
 
 } // namespace fettle

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "mesh/mesh.h"
+#include "units/units.h"
 
 #include <cstddef>
 #include <string>
@@ -21,5 +22,12 @@ bool looks_like_ascii_stl(std::string_view bytes);
 /// exactly equal vertices are made one.
 /// @throws InputError with the line, the triangle, or the sizes that disagree
 Mesh parse_stl(std::string_view bytes, const std::string& source, MeshRepair& repair);
+
+/// A binary STL by parts, for what is too large to be held as a mesh: the bytes before the triangles, which name the
+/// unit, then those of the triangles.
+inline constexpr std::size_t kStlTriangle = 12 * 4 + 2; // normal, three corners, attribute
+std::string stl_header(std::size_t triangles, Units::Length unit);
+/// @param to  room for kStlTriangle bytes a triangle
+void put_stl_triangles(const Mesh& part, Units::Length unit, char* to);
 
 } // namespace fettle

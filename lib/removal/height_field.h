@@ -32,6 +32,10 @@ struct HeightField {
 /// @throws InputError for a cell that is not positive, or so small that the cells would not fit the memory
 HeightField empty_height_field(const Eigen::Matrix2d& box, const Eigen::Vector2d& margin, double theta, double cell);
 
+/// Puts the scan's surface into the cells that it lies over: the highest z of a mesh over their centres, or what a
+/// touch of a cloud finds there. Other cells stay.
+void lay(HeightField& field, const Scan& scan);
+
 /// The stock over the anomaly B and as far around it as the wheel reaches: its radius along Y_w, half its width along
 /// X_w.
 /// @param source  the scan's name for messages

@@ -79,7 +79,7 @@ class FacetOverCells {
 };
 
 /// The highest z of the mesh over each cell's centre: as a ray meets it, but triangle by triangle.
-void lay(HeightField& field, const Mesh& mesh)
+void lay_mesh(HeightField& field, const Mesh& mesh)
 {
     const Eigen::Matrix2d R_working_machine = rotation_working_machine(field.theta);
     const Eigen::Matrix2d R_machine_working = R_working_machine.transpose();
@@ -110,7 +110,7 @@ void lay(HeightField& field, const Mesh& mesh)
 }
 
 /// The same over a cloud, whose surface is found cell by cell.
-void lay(HeightField& field, const Scan& cloud)
+void lay_cloud(HeightField& field, const Scan& cloud)
 {
     const Eigen::Matrix2d R_machine_working = rotation_working_machine(field.theta).transpose();
     tbb::parallel_for(tbb::blocked_range<Eigen::Index>(0, field.rows()), [&](const auto& range) {
@@ -155,14 +155,19 @@ try {
 
 } // namespace
 
+void lay(HeightField& field, const Scan& scan)
+{
+    if (const Mesh* mesh = scan.mesh())
+        lay_mesh(field, *mesh);
+    else
+        lay_cloud(field, scan);
+}
+
 HeightField height_field(const Scan& scan, const Job& job, double cell, const std::string& source)
 {
     const Polygon B = boundaries(job).anomaly;
     HeightField field = field_around(B, job, cell);
-    if (const Mesh* mesh = scan.mesh())
-        lay(field, *mesh);
-    else
-        lay(field, scan);
+    lay(field, scan);
     require_material(field, B, job.units, source);
     return field;
 }

@@ -1,0 +1,110 @@
+#include "machining/workpiece.h"
+
+#include "core/error.h"
+#include "machining/number_list.h"
+#include "mesh/mesh.h"
+#include "mesh/stl.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <ostream>
+#include <vector>
+
+namespace fettle {
+namespace {
+
+/// Rows that are made triangles at a time: some megabytes.
+constexpr Eigen::Index kRowsOfPart = 16;
+/// Parts in the making, whatever the number of threads.
+constexpr Eigen::Index kPartsAtOnce = 16;
+
+/// The triangles between rows first to last.
+Mesh surface_between(const HeightField& field, Eigen::Index first, Eigen::Index last)
+{
+    const Eigen::Index columns = field.columns(), rows = last - first + 1;
+    Mesh mesh;
+    mesh.vertices.resize(3, columns * rows);
+    for (Eigen::Index j = 0; j < rows; ++j)
+        for (Eigen::Index i = 0; i < columns; ++i)
+            mesh.vertices.col(j * columns + i) << field.centre(i, first + j), field.z(i, first + j);
+    mesh.triangles.resize(3, 2 * (columns - 1) * (rows - 1));
+    Eigen::Index count = 0;
+    const auto add = [&](Eigen::Index a, Eigen::Index b, Eigen::Index c) {
+        if (std::isnan(mesh.vertices(2, a) + mesh.vertices(2, b) + mesh.vertices(2, c))) return;
+        mesh.triangles.col(count++) << static_cast<int>(a), static_cast<int>(b), static_cast<int>(c);
+    };
+    for (Eigen::Index j = 0; j + 1 < rows; ++j)
+        for (Eigen::Index i = 0; i + 1 < columns; ++i) {
+            const Eigen::Index at = j * columns + i, beyond = at + columns;
+            add(at, at + 1, beyond + 1);
+            add(at, beyond + 1, beyond);
+        }
+    mesh.triangles.conservativeResize(Eigen::NoChange, count);
+    return mesh;
+}
+
+std::size_t count_triangles(const HeightField& field)
+{
+    std::size_t count = 0;
+    for (Eigen::Index j = 0; j + 1 < field.rows(); ++j)
+        for (Eigen::Index i = 0; i + 1 < field.columns(); ++i) {
+            const double diagonal = field.z(i, j) + field.z(i + 1, j + 1);
+            count += !std::isnan(diagonal + field.z(i + 1, j));
+            count += !std::isnan(diagonal + field.z(i, j + 1));
+        }
+    return count;
+}
+
+} // namespace
+
+Workpiece box_workpiece(const std::string& corners, double cell)
+{
+    const auto numbers = numbers_of(corners, {"x0", "y0", "z0", "x1", "y1", "z1"});
+    Eigen::Matrix2d box;
+    box << numbers[0], numbers[3], numbers[1], numbers[4];
+    if (!((box.col(1) - box.col(0)).minCoeff() > 0 && numbers[5] > numbers[2]))
+        throw InputError("a box needs x0 < x1, y0 < y1 and z0 < z1, got " + corners);
+    Workpiece piece{empty_height_field(box, {0, 0}, 0, cell), numbers[2]};
+    HeightField& field = piece.stock;
+    for (Eigen::Index j = 0; j < field.rows(); ++j)
+        for (Eigen::Index i = 0; i < field.columns(); ++i)
+            if ((field.centre(i, j).array() <= box.col(1).array()).all()) field.z(i, j) = numbers[5];
+    return piece;
+}
+
+Workpiece scanned_workpiece(const Scan& scan, double cell)
+{
+    Workpiece piece{empty_height_field(scan.bounds().topRows<2>(), {0, 0}, 0, cell)};
+    lay(piece.stock, scan);
+    return piece;
+}
+
+std::size_t write_stl(std::ostream& out, const HeightField& field)
+{
+    const std::size_t triangles = count_triangles(field);
+    if (triangles > UINT32_MAX) throw InputError("too many triangles for an STL");
+    out << stl_header(triangles, Units::Length::mm);
+    const Eigen::Index parts = (std::max<Eigen::Index>(field.rows(), 1) - 1 + kRowsOfPart - 1) / kRowsOfPart;
+    struct Bytes {
+        std::unique_ptr<char[]> data;
+        std::size_t size = 0;
+    };
+    for (Eigen::Index begin = 0; begin < parts; begin += kPartsAtOnce) {
+        std::vector<Bytes> bytes(static_cast<std::size_t>(std::min(kPartsAtOnce, parts - begin)));
+        tbb::parallel_for(std::size_t{0}, bytes.size(), [&](std::size_t k) {
+            const Eigen::Index first = (begin + static_cast<Eigen::Index>(k)) * kRowsOfPart;
+            const Mesh part = surface_between(field, first, std::min(first + kRowsOfPart, field.rows() - 1));
+            bytes[k].size = kStlTriangle * static_cast<std::size_t>(part.triangles.cols());
+            bytes[k].data = std::make_unique_for_overwrite<char[]>(bytes[k].size);
+            put_stl_triangles(part, Units::Length::mm, bytes[k].data.get());
+        });
+        for (const Bytes& part : bytes) out.write(part.data.get(), static_cast<std::streamsize>(part.size));
+    }
+    return triangles;
+}
+
+} // namespace fettle

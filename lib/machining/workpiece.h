@@ -1,0 +1,30 @@
+#pragma once
+
+#include "removal/height_field.h"
+#include "sampling/scan.h"
+
+#include <iosfwd>
+#include <limits>
+#include <string>
+
+namespace fettle {
+
+/// What is milled: heights over cells that lie along M.
+struct Workpiece {
+    HeightField stock;
+    double floor = -std::numeric_limits<double>::infinity(); ///< there is no material below it, mm
+};
+
+/// A box: "x0,y0,z0,x1,y1,z1", mm; floor z0. A cell has material if its centre lies in the box.
+/// @throws InputError if that is not six numbers, the box has no inside, or the cells are too many (height_field.h)
+Workpiece box_workpiece(const std::string& corners, double cell);
+
+/// A mesh or a cloud as it is seen from above; below its surface everything is material.
+/// @throws InputError if the cells are too many
+Workpiece scanned_workpiece(const Scan& scan, double cell);
+
+/// The surface as triangles between the centres of neighbouring cells that have material, binary STL, mm: vertices lie
+/// on the grid. @return  how many
+std::size_t write_stl(std::ostream& out, const HeightField& field);
+
+} // namespace fettle

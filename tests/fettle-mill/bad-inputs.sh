@@ -1,0 +1,39 @@
+# What is no path, stock, cutter or command line ends with status 2, one line that names it and the place, and nothing on
+# stdout.
+printf '0 0 5\n9 9 5\n' > path.xyz
+printf 'G0 X0 Y0 Z5\nG81 X5\n' > cycle.nc
+printf 'G0 X0 Y0 Z5\nG1 X5\n' > feed.nc
+printf '0 0 5\n9 nan 5\n' > nan.xyz
+printf '0 0 5\n' > one.xyz
+printf 'x y z feed\n0 0 5 1\n1 1 5 -1\n' > slow.xyz
+printf 'x y z qw qx qy qz\n0 0 5 1 0 0 0\n1 1 5 0.7 0.7 0 0\n' > tilted.xyz
+: > empty
+refused() { # MESSAGE PATH [STOCK [CUTTER [OPTION...]]]
+    local message=$1 path=$2 stock=${3:-box:0,0,0,9,9,9} cutter=${4:-ball:6}
+    shift $(($# < 4 ? $# : 4))
+    "$HERE/../refuses" "$message" fettle-mill "$path" --stock "$stock" --cutter "$cutter" --step 0.5 "$@"
+}
+box=box:0,0,0,9,9,9
+refused "cycle.nc: line 2: 'G81' is not accepted" cycle.nc
+refused 'feed.nc: line 2: a feed move, but no F yet' feed.nc
+refused 'nan.xyz: point 2: not a finite position' nan.xyz
+refused 'one.xyz: a path needs two points or more' one.xyz
+refused 'slow.xyz: point 2: feed must be at least 0, got -1' slow.xyz
+refused 'tilted.xyz: point 2: the cutter' tilted.xyz
+refused 'contact points need normal_x' path.xyz $box ball:6 --points cc
+refused 'a program has no contact points' feed.nc $box ball:6 --points cc
+refused 'empty' empty
+refused 'missing.nc' missing.nc
+refused '--stock: a box needs x0 < x1' path.xyz box:0,0,0,0,9,9
+refused '--stock: expected a number for y1 and a comma' path.xyz box:0,0,0,9,9
+refused '--stock: expected a number for z1' path.xyz box:0,0,0,9,9,9,9
+refused '--stock: a cell of' path.xyz box:0,0,0,90000,90000,9
+refused 'missing.stl' path.xyz missing.stl
+refused '--cutter: the diameter must be positive' path.xyz $box ball:0
+refused '--cutter: expected ball:D' path.xyz $box drill:3
+refused '--cutter: a corner of radius 4' path.xyz $box bull:6,4
+refused '--holder: both must be positive' path.xyz $box ball:6 --holder 20,-3
+refused '--ascii: belongs to --pcd' path.xyz $box ball:6 --ascii
+refused '--feed' path.xyz $box ball:6 --feed 0
+refused 'a box is in mm' path.xyz $box ball:6 --stock-units in
+"$HERE/../refuses" '--step: must be given' fettle-mill path.xyz --stock $box --cutter ball:6

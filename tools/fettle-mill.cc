@@ -1,0 +1,150 @@
+#include "cli/tool.h"
+#include "cloud/pcd.h"
+#include "core/file.h"
+#include "core/text.h"
+#include "machining/cutter.h"
+#include "machining/milling.h"
+#include "machining/milling_summary.h"
+#include "machining/nc_program.h"
+#include "machining/number_list.h"
+#include "machining/workpiece.h"
+#include "sampling/scan.h"
+
+#include <ostream>
+
+using namespace fettle;
+
+namespace {
+
+// With an option's or a file's name before what the library has against its value.
+template <typename Work>
+auto named(const std::string& name, const Work& work)
+{
+    try {
+        return work();
+    } catch (const InputError& error) {
+        throw InputError(name, error.what());
+    }
+}
+
+Holder parse_holder(const std::string& text)
+{
+    const auto numbers = numbers_of(text, {"the diameter", "the height over the tip"});
+    if (!(numbers[0] > 0 && numbers[1] > 0)) throw InputError("both must be positive, got " + text);
+    return {numbers[0] / 2, numbers[1]};
+}
+
+Workpiece read_stock(const std::string& stock, std::optional<Units::Length> unit, double cell)
+{
+    constexpr std::string_view kBox = "box:";
+    return named("--stock", [&] {
+        if (!stock.starts_with(kBox)) return scanned_workpiece(read_scan(stock, Units{}, unit), cell);
+        if (unit) throw InputError("a box is in mm; --stock-units belongs to a file");
+        return box_workpiece(stock.substr(kBox.size()), cell);
+    });
+}
+
+json::Value to_json(const Clash& clash)
+{
+    return json::Value().set("moves", clash.moves).set("first_place", clash.first_place).set("depth", clash.depth);
+}
+
+void report(json::Value& out, const MillingSummary& sum, const NcProgram& program, const HeightField& left)
+{
+    json::Value words;
+    for (const auto& [word, count] : program.without_motion) words.set(word, count);
+    out.set("removed_volume", sum.volume)
+        .set("time", sum.feed_time + sum.rapid_time)
+        .set("feed_time", sum.feed_time)
+        .set("rapid_time", sum.rapid_time)
+        .set("cutting_time", sum.cutting_time)
+        .set("feed_length", sum.feed_length)
+        .set("rapid_length", sum.rapid_length)
+        .set("deepest_cut", sum.deepest_cut)
+        .set("mean_removal_rate", sum.mean_rate)
+        .set("peak_removal_rate", sum.peak_rate)
+        .set("rapid_volume", sum.rapid_volume)
+        .set("rapid_cuts", to_json(sum.rapid_cuts))
+        .set("holder_collisions", to_json(sum.holder))
+        .set("moves", program.moves.size())
+        .set("unplaced_rapids", program.unplaced)
+        .set("chorded_arcs", program.chorded)
+        .set("arc_chord_error", kArcChord)
+        .set("words_without_motion", words)
+        .set("columns", static_cast<int>(left.columns()))
+        .set("rows", static_cast<int>(left.rows()))
+        .set("step", left.cell)
+        .set("cells_without_material", static_cast<double>(left.z.isNaN().count()));
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+    const std::string description =
+        "Machines a stock virtually: cuts a map of heights with a cutter along a path of three axes.\n"
+        "Every cell's centre comes to the lowest height at which the cutter passes over it, computed from whole moves. "
+        "Lengths in mm, feeds in mm/s; a program states its own (F in length a minute). Exit 1 if a rapid move went "
+        "through material or the holder collides.";
+    return tool_main(argc, argv, description, [](Tool& t) {
+        const std::string& path = t.input(
+            "PATH",
+            "Points of the tool tip with, if they vary, feeds (field feed, 0: rapid), PCD; or a program, G-code");
+        const std::string& stock =
+            t.required_text("--stock", "STOCK", "box:x0,y0,z0,x1,y1,z1, or STL, PLY, OBJ or PCD");
+        const auto& stock_units = t.length_unit("--stock-units", "Unit of the stock's file, if it is not mm");
+        const std::string& cutter_text =
+            t.required_text("--cutter", "CUTTER",
+                            "ball:D, flat:D, bull:D,r or taper:D,halfangle_deg,r: diameter, radius of corner or tip");
+        const auto& step = t.number_if_given("--step", "MM", "Side of a cell; must be given", Range::positive());
+        const std::string& points = t.choice(
+            "--points", "cl", {"cl", "cc"}, "Are points those of the tip, or where the cutter touches (with normals)?");
+        const double& feed = t.number("--feed", 10, "MM/S", "Feed of points without one", Range::positive());
+        const double& rapid = t.number("--rapid", 200, "MM/S", "Rate of rapid moves", Range::positive());
+        const std::string& holder = t.text("--holder", "", "D,HEIGHT",
+                                           "A cylinder above the cutter, this high over the tip, that must not touch");
+        const bool& pcd = t.flag("--pcd", "Write a point for each cell, field removed, instead of triangles");
+        const bool& ascii = t.flag("--ascii", "With --pcd: as text");
+        t.example(
+            "fettle-mill programs/pocket.nc --stock box:0,0,-12,80,60,0 --cutter ball:6 --step 0.2 --holder 40,30 "
+            "--report mill.json > machined.stl",
+            "a pocket with an island, and what it takes");
+        t.reference("Guan & Xiong, Virtual machining accuracy verification by triangular patch comparison: steps 1, 2");
+        t.parse();
+
+        if (!step) throw InputError("--step", "must be given");
+        if (ascii && !pcd) throw InputError("--ascii", "belongs to --pcd");
+        const Cutter cutter = named("--cutter", [&] { return parse_cutter(cutter_text); });
+        MillingOptions options;
+        if (!holder.empty()) options.holder = named("--holder", [&] { return parse_holder(holder); });
+        const std::string bytes = read_whole(path), source = display_name(path);
+        NcProgram program;
+        if (looks_like_nc_program(bytes)) {
+            if (points == "cc") throw InputError("--points", "a program has no contact points");
+            program = parse_nc_program(bytes, source);
+        } else {
+            program.moves = moves_through(parse_cloud(bytes, source).cloud, cutter, points == "cc", feed, source);
+        }
+        Workpiece piece = read_stock(stock, stock_units, *step);
+        options.floor = piece.floor;
+
+        std::optional<HeightField> before;
+        if (pcd) before = piece.stock;
+        const MillingSummary sum = summarise(program.moves, mill(piece.stock, cutter, program.moves, options), rapid);
+        if (pcd)
+            write_pcd(t.output(), to_cloud(*before, piece.stock), Units{},
+                      ascii ? PcdEncoding::ascii : PcdEncoding::binary);
+        else
+            write_stl(t.output(), piece.stock);
+        report(t.report(), sum, program, piece.stock);
+        const std::string unit = looks_like_nc_program(bytes) ? "line " : "point ";
+        const auto warn = [&](const Clash& clash, const std::string& what) {
+            if (clash.moves > 0)
+                t.warn(source + ": " + what + ": " + std::to_string(clash.moves) + ", the first to " + unit +
+                       std::to_string(clash.first_place) + "; up to " + to_short_text(clash.depth) + " mm deep");
+        };
+        warn(sum.rapid_cuts, "rapid moves through material");
+        warn(sum.holder, "moves with the holder in material");
+        return sum.rapid_cuts.moves + sum.holder.moves == 0 ? Verdict::yes : Verdict::no;
+    });
+}
