@@ -17,11 +17,11 @@ namespace {
 constexpr double kLeastWeight = 1e-3;
 
 /// −2 ln of how rare a family is beforehand. Castings are mostly planes, cylinders, spheres and what bends like a
-/// quadratic; cones, tori and surfaces (sections) of changing curvature count as five times rarer. Without it, sixteen
+/// quadratic; cones, tori and surfaces (sections) of changing curvature count as four times rarer. Without it, sixteen
 /// touches follow their own noise into one of those in one case of twenty.
 double rarity(const std::string& family)
 {
-    constexpr double kRarer = 5;
+    constexpr double kRarer = 4;
     return family == "cone" || family == "torus" || family == "cubic" || family == "swept" ? 2 * std::log(kRarer) : 0;
 }
 
