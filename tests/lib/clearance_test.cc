@@ -1,0 +1,319 @@
+#include "robot/clearance.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace fettle {
+namespace {
+
+using Eigen::Isometry3d, Eigen::Vector3d;
+
+const Isometry3d kHere = Isometry3d::Identity();
+
+solid::Box box(double x, double y, double z, const Vector3d& at = Vector3d::Zero())
+{
+    return {Isometry3d(Eigen::Translation3d(at)), Vector3d(x, y, z) / 2};
+}
+
+Triangle triangle(const Vector3d& a, const Vector3d& b, const Vector3d& c)
+{
+    Triangle t;
+    t << a, b, c;
+    return t;
+}
+
+double between(const Solid& a, const Solid& b)
+{
+    return clearance(PlacedSolid(a, kHere), PlacedSolid(b, kHere)).distance;
+}
+double between(const Solid& a, const Triangle& b) { return clearance(PlacedSolid(a, kHere), PlacedSolid(b)).distance; }
+
+constexpr double kTight = 2e-9;
+
+TEST(Clearance, Spheres)
+{
+    const solid::Sphere one = {{0, 0, 0}, 2};
+    EXPECT_NEAR(between(one, solid::Sphere{{3, 4, 0}, 1}), 2, kTight);
+    EXPECT_NEAR(between(one, solid::Sphere{{0, 0, 3}, 1}), 0, kTight);
+    EXPECT_NEAR(between(one, solid::Sphere{{0, 2, 0}, 1}), -1, kTight);
+    EXPECT_NEAR(between(one, solid::Sphere{{0, 0, 0}, 1}), -3, kTight); // enclosed, about one centre
+    // face, edge, corner of a box, and with the centre inside it
+    EXPECT_NEAR(between(one, box(2, 2, 2, {0, 0, 5})), 2, kTight);
+    EXPECT_NEAR(between(one, box(2, 2, 2, {0, 4, 5})), 5 - 2, kTight);
+    EXPECT_NEAR(between(one, box(2, 2, 2, {3, 3, 2})), 3 - 2, kTight);
+    EXPECT_NEAR(between(one, box(20, 30, 6, {1, 2, 1})), -(2 + 2), kTight);
+}
+
+TEST(Clearance, Capsules)
+{
+    const solid::Capsule one = {{0, 0, 0}, {0, 0, 10}, 1};
+    EXPECT_NEAR(between(one, solid::Capsule{{5, 0, 2}, {5, 0, 20}, 1}), 3, kTight);     // parallel
+    EXPECT_NEAR(between(one, solid::Capsule{{0, 0, 13}, {0, 0, 20}, 1}), 1, kTight);    // in line
+    EXPECT_NEAR(between(one, solid::Capsule{{-5, 4, 5}, {5, 4, 5}, 1}), 2, kTight);     // across
+    EXPECT_NEAR(between(one, solid::Capsule{{-5, 0, 5}, {5, 0, 5}, 1}), -2, kTight);    // axes cross
+    EXPECT_NEAR(between(one, solid::Capsule{{3, 0, -4}, {3, 0, -4}, 1}), 3, kTight);    // one end alone
+    EXPECT_NEAR(between(one, solid::Capsule{{0, 0, 3}, {0, 0, 5}, 0.5}), -1.5, kTight); // enclosed, one axis
+}
+
+TEST(Clearance, Cylinders)
+{
+    const solid::Cylinder one = {{0, 0, 0}, {0, 0, 10}, 2};
+    EXPECT_NEAR(between(one, solid::Cylinder{{6, 0, 4}, {6, 0, 14}, 1}), 3, kTight);                 // side by side
+    EXPECT_NEAR(between(one, solid::Cylinder{{0.5, 0, 13}, {0.5, 0, 20}, 1}), 3, kTight);            // end to end
+    EXPECT_NEAR(between(one, solid::Cylinder{{6, 0, 13}, {6, 0, 14}, 1}), std::hypot(3, 3), kTight); // rim to rim
+    EXPECT_NEAR(between(one, solid::Cylinder{{-20, 7, 5}, {20, 7, 5}, 1}), 4, kTight);               // across
+    EXPECT_NEAR(between(one, solid::Cylinder{{2.5, 0, 0}, {2.5, 0, 10}, 1}), -0.5, 1e-6);            // sides overlap
+    EXPECT_NEAR(between(one, solid::Cylinder{{0.1, 0, 9.75}, {0.1, 0, 20}, 2}), -0.25, 1e-6);        // ends overlap
+    EXPECT_NEAR(between(one, solid::Cylinder{{0, 0, 4}, {0, 0, 5}, 1}), -3, 1e-6); // enclosed: out by the side
+    // leaning by 45 degrees over a table: the lowest point is on the rim of an end
+    const double c = std::sqrt(0.5);
+    const solid::Cylinder leaning = {{0, 0, 20}, {10 * c, 0, 20 + 10 * c}, 2};
+    EXPECT_NEAR(between(leaning, box(100, 100, 10, {0, 0, -5})), 20 - 2 * c, kTight);
+    EXPECT_NEAR(between(leaning, box(100, 100, 10, {0, 0, 15})), -2 * c, 1e-6);
+    // a frustum, apex down, and lying on its side
+    EXPECT_NEAR(between(solid::Cone{{0, 0, 3}, {0, 0, 10}, 0, 5}, box(50, 50, 2, {0, 0, -1})), 3, kTight);
+    EXPECT_NEAR(between(solid::Cone{{-5, 0, 7}, {5, 0, 7}, 2, 4}, box(50, 50, 2, {0, 0, -1})), 3, kTight);
+}
+
+TEST(Clearance, Boxes)
+{
+    const solid::Box one = box(4, 6, 8);
+    EXPECT_NEAR(between(one, box(2, 2, 2, {6, 0, 0})), 3, kTight);
+    EXPECT_NEAR(between(one, box(2, 2, 2, {6, 8, 0})), 5, kTight);
+    EXPECT_NEAR(between(one, box(2, 2, 2, {3, 0, 0})), 0, kTight);
+    EXPECT_NEAR(between(one, box(2, 2, 2, {2.5, 0, 0})), -0.5, kTight * 100);
+    EXPECT_NEAR(between(one, box(2, 2, 2, {0, 0, 0})), -3, kTight * 100); // enclosed: out by the shortest way
+    // two edges that cross each other at right angles, 1 apart
+    solid::Box diamond = box(2, 2, 20);
+    diamond.T_body_box =
+        Eigen::Translation3d(2 + 1 + std::sqrt(2.0), 3, 0) * Eigen::AngleAxisd(std::numbers::pi / 4, Vector3d::UnitZ());
+    EXPECT_NEAR(between(one, diamond), 1, kTight);
+}
+
+// The paper's eq. 18 takes the distance to the plane of a triangle for that to the triangle: |M| < R far beside it.
+TEST(Clearance, TriangleIsNotItsPlane)
+{
+    const Triangle t = triangle({0, 0, 0}, {10, 0, 0}, {0, 10, 0});
+    EXPECT_NEAR(between(solid::Sphere{{100, 0, 1}, 6}, t), std::hypot(90, 1) - 6, kTight);
+    EXPECT_NEAR(between(solid::Sphere{{2, 2, 7}, 6}, t), 1, kTight);
+    EXPECT_NEAR(between(solid::Sphere{{2, 2, 5.99}, 6}, t), -0.01, kTight);
+    EXPECT_NEAR(between(solid::Sphere{{10, 10, 0}, 6}, t), std::hypot(5, 5) - 6, kTight); // beside the long edge
+}
+
+// Eq. 5 has no end caps: a triangle under the middle of an end is a radius away from the mantle, but touches the end.
+TEST(Clearance, CylinderHasEnds)
+{
+    const solid::Cylinder one = {{0, 0, 1}, {0, 0, 10}, 45};
+    EXPECT_NEAR(between(one, triangle({-1, -1, 0}, {1, -1, 0}, {0, 1, 0})), 1, kTight);
+    EXPECT_LT(between(one, triangle({-1, -1, 2}, {1, -1, 2}, {0, 1, 2})), -0.9); // inside, no edge crosses the mantle
+}
+
+// Eq. 16 asks for the sphere's centre on a face; it is a point of the sphere that is.
+TEST(Clearance, SpherePiercesAFaceBesideItsCentre)
+{
+    EXPECT_NEAR(between(solid::Sphere{{0, 0, 5}, 3}, box(10, 10, 6)), -1, kTight);
+}
+
+TEST(Clearance, DegenerateTriangles)
+{
+    const solid::Cylinder one = {{0, 0, 0}, {0, 0, 10}, 2};
+    EXPECT_NEAR(between(one, triangle({5, 0, 5}, {5, 0, 5}, {5, 0, 5})), 3, kTight);
+    EXPECT_NEAR(between(one, triangle({5, -5, 5}, {5, 5, 5}, {5, 0, 5})), 3, kTight);
+    EXPECT_NEAR(between(solid::Sphere{{0, 0, 0}, 1}, triangle({-3, 0, 0}, {3, 0, 0}, {1, 0, 0})), -1, kTight);
+    EXPECT_NEAR(between(box(2, 2, 2), triangle({3, -1e6, 0}, {3, 1e6, 0}, {3 + 1e-9, 0, 0})), 2, 1e-6);
+}
+
+// --- random pairs ----------------------------------------------------------------------------------------------------
+
+class Draw {
+  public:
+    explicit Draw(unsigned seed) : random_(seed) {}
+    double number(double least, double most) { return std::uniform_real_distribution<double>(least, most)(random_); }
+    Vector3d point(double size)
+    {
+        return Vector3d::NullaryExpr([&] { return number(-size, size); });
+    }
+    Isometry3d placement(double size)
+    {
+        std::normal_distribution<double> normal;
+        const Eigen::Vector4d q = Eigen::Vector4d::NullaryExpr([&] { return normal(random_); }).normalized();
+        return Eigen::Translation3d(point(size)) * Eigen::Quaterniond(q);
+    }
+    Solid solid()
+    {
+        switch (random_() % 6) {
+        case 0:
+            return solid::Sphere{point(5), number(1, 10)};
+        case 1:
+            return solid::Capsule{point(20), point(20), number(1, 8)};
+        case 2:
+            return solid::Cylinder{point(20), point(20), number(1, 12)};
+        case 3:
+            return solid::Cone{point(20), point(20), number(0, 12), number(1, 12)};
+        case 4:
+            return solid::Box{placement(5), Vector3d(number(1, 15), number(1, 15), number(1, 15))};
+        default:
+            return hull();
+        }
+    }
+    solid::Hull hull()
+    {
+        solid::Hull hull{Eigen::Matrix3Xd(3, 12)};
+        for (auto p : hull.points.colwise()) p = point(12);
+        return hull;
+    }
+
+  private:
+    std::mt19937 random_;
+};
+
+// How far a point is outside a solid, by its own formula; hulls are not asked.
+double outside(const Solid& solid, const Vector3d& p)
+{
+    const auto frustum = [&p](const Vector3d& from, const Vector3d& to, double r0, double r1) {
+        const Vector3d axis = (to - from).normalized();
+        const double length = (to - from).norm(), z = (p - from).dot(axis), r = (p - from - z * axis).norm();
+        return std::max({-z, z - length, r - (r0 + (r1 - r0) * std::clamp(z / length, 0.0, 1.0))});
+    };
+    if (const auto* s = std::get_if<solid::Sphere>(&solid)) return (p - s->centre).norm() - s->radius;
+    if (const auto* s = std::get_if<solid::Capsule>(&solid)) {
+        const Vector3d d = s->to - s->from;
+        const double t = std::clamp((p - s->from).dot(d) / d.squaredNorm(), 0.0, 1.0);
+        return (p - s->from - t * d).norm() - s->radius;
+    }
+    if (const auto* s = std::get_if<solid::Cylinder>(&solid)) return frustum(s->from, s->to, s->radius, s->radius);
+    if (const auto* s = std::get_if<solid::Cone>(&solid)) return frustum(s->from, s->to, s->radius_from, s->radius_to);
+    if (const auto* s = std::get_if<solid::Box>(&solid))
+        return ((s->T_body_box.inverse() * p).cwiseAbs() - s->half).maxCoeff();
+    return 0;
+}
+
+double reach(const PlacedSolid& s, const Vector3d& unit) { return s.farthest(unit).dot(unit) + s.radius(); }
+
+// How far the planes across a direction part the two; the shortest shift along it if they overlap.
+double parted(const PlacedSolid& a, const PlacedSolid& b, const Vector3d& unit)
+{
+    return -reach(b, -unit) - reach(a, unit);
+}
+
+// Points of the two that are as far apart as two planes between which neither reaches: nothing can be nearer, and
+// nothing need be farther. And depths: the planes give as much, and no direction of many gives less.
+TEST(Clearance, RandomPairsAreCertain)
+{
+    Draw draw(7);
+    int apart = 0, overlapping = 0, less_certain = 0;
+    std::vector<Vector3d> directions;
+    for (int i = 0; i < 4000; ++i) directions.push_back(draw.placement(1).linear().col(0));
+    for (int k = 0; k < 6000; ++k) {
+        const Solid a = draw.solid(), b = draw.solid();
+        const double size = k % 3 == 0 ? 30 : 8; // mostly near each other
+        const Isometry3d T_a = draw.placement(size), T_b = draw.placement(size);
+        const PlacedSolid at_a(a, T_a), at_b(b, T_b);
+        const Clearance c = clearance(at_a, at_b);
+        EXPECT_NEAR(c.normal.norm(), 1, 1e-12);
+        EXPECT_LT((c.on_b - c.on_a - c.distance * c.normal).norm(), 1e-6);
+        EXPECT_LT(outside(a, T_a.inverse() * c.on_a), 1e-6);
+        EXPECT_LT(outside(b, T_b.inverse() * c.on_b), 1e-6);
+        const double planes = parted(at_a, at_b, c.normal);
+        if (c.distance > 0) {
+            ++apart;
+            EXPECT_NEAR(planes, c.distance, kClearanceTolerance) << a.index() << " " << b.index();
+            if (std::abs(planes - c.distance) > 1e-8) ++less_certain;
+            const Clearance lazy = clearance(at_a, at_b, 5);
+            if (c.distance > 5)
+                EXPECT_TRUE(lazy.distance > 5 && lazy.distance <= c.distance + kClearanceTolerance);
+            else
+                EXPECT_NEAR(lazy.distance, c.distance, kClearanceTolerance);
+        } else {
+            ++overlapping;
+            EXPECT_NEAR(planes, c.distance, kClearanceTolerance) << a.index() << " " << b.index();
+            if (std::abs(planes - c.distance) > 2e-7) ++less_certain;
+            if (k % 10 != 0) continue;
+            for (const Vector3d& direction : directions) EXPECT_LE(parted(at_a, at_b, direction), c.distance + 2e-7);
+        }
+        EXPECT_NEAR(clearance(at_b, at_a).distance, c.distance, 2 * kClearanceTolerance);
+    }
+    EXPECT_LE(less_certain, 6); // of 6000
+    EXPECT_GT(apart, 1500);
+    EXPECT_GT(overlapping, 1500);
+}
+
+// Depth of two polytopes by the separating axis theorem: all normals of faces and all products of edges.
+TEST(Clearance, DepthsOfBoxesBySeparatingAxes)
+{
+    Draw draw(8);
+    int overlapping = 0;
+    for (int k = 0; k < 3000; ++k) {
+        const solid::Box a = {draw.placement(2), Vector3d(draw.number(1, 9), draw.number(1, 9), draw.number(1, 9))};
+        const solid::Box b = {draw.placement(2), Vector3d(draw.number(1, 9), draw.number(1, 9), draw.number(1, 9))};
+        const Isometry3d T_b = draw.placement(8);
+        const PlacedSolid at_a(a, kHere), at_b(b, T_b);
+        const double distance = clearance(at_a, at_b).distance;
+        const Eigen::Matrix3d A = a.T_body_box.linear(), B = T_b.linear() * b.T_body_box.linear();
+        double best = -INFINITY;
+        const auto try_axis = [&](const Vector3d& axis) {
+            if (axis.norm() < 1e-9) return;
+            for (const double sign : {1.0, -1.0}) best = std::max(best, parted(at_a, at_b, sign * axis.normalized()));
+        };
+        for (int i = 0; i < 3; ++i) {
+            try_axis(A.col(i));
+            try_axis(B.col(i));
+            for (int j = 0; j < 3; ++j) try_axis(A.col(i).cross(B.col(j)));
+        }
+        EXPECT_EQ(distance < 0, best < 0);
+        if (best >= 0) continue;
+        ++overlapping;
+        EXPECT_NEAR(distance, best, 2e-7);
+    }
+    EXPECT_GT(overlapping, 1000);
+}
+
+// Reference: the distance of a point to a triangle, for points spread over the solid's core.
+TEST(Clearance, TrianglesAgainstPoints)
+{
+    Draw draw(9);
+    for (int k = 0; k < 3000; ++k) {
+        const Triangle t = triangle(draw.point(20), draw.point(20), draw.point(20));
+        const Vector3d centre = draw.point(30);
+        EXPECT_NEAR(between(solid::Sphere{centre, 3}, t),
+                    std::sqrt(closest_on_triangle(t, centre).squared_distance) - 3, kTight);
+        const solid::Capsule capsule = {draw.point(30), draw.point(30), 3};
+        double least = INFINITY; // golden section along the axis: the distance is convex
+        double from = 0, to = 1;
+        const auto at = [&](double s) {
+            return std::sqrt(closest_on_triangle(t, capsule.from + s * (capsule.to - capsule.from)).squared_distance);
+        };
+        for (int i = 0; i < 100; ++i) {
+            const double p = from + 0.381966 * (to - from), q = to - 0.381966 * (to - from);
+            (at(p) < at(q) ? to : from) = at(p) < at(q) ? q : p;
+            least = std::min({least, at(p), at(q)});
+        }
+        if (least > 1e-6)
+            EXPECT_NEAR(between(capsule, t), least - 3, 1e-6);
+        else // the axis pierces the triangle
+            EXPECT_LE(between(capsule, t), -3 + kTight);
+    }
+}
+
+TEST(Clearance, BoxesHoldTheirSolids)
+{
+    Draw draw(10);
+    for (int k = 0; k < 200; ++k) {
+        const Solid s = draw.solid();
+        const PlacedSolid placed(s, draw.placement(30));
+        const Eigen::AlignedBox3d around = placed.box();
+        for (int i = 0; i < 50; ++i) {
+            const Vector3d d = draw.placement(1).linear().col(0);
+            EXPECT_LT(around.exteriorDistance(placed.farthest(d) + placed.radius() * d), 1e-9);
+        }
+        for (Eigen::Index axis = 0; axis < 3; ++axis)
+            EXPECT_NEAR(reach(placed, Vector3d::Unit(axis)), around.max()[axis], 1e-9);
+    }
+}
+
+} // namespace
+} // namespace fettle
