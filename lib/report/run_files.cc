@@ -4,6 +4,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/text.h"
+#include "diff/diff.h"
 #include "mesh/mesh_file.h"
 #include "report/checksum.h"
 #include "json/document.h"
@@ -114,14 +115,21 @@ void check_trace(const Cloud& trace, const std::string& source)
     }
 }
 
+/// Do two documents say the same, but for what changes of units round?
+bool same(const json::Value& a, const json::Value& b)
+{
+    constexpr Tolerance kRounding = {.absolute = 0, .relative = 1e-9};
+    return difference(a.text(), "", b.text(), "", kRounding).equal();
+}
+
 /// A plan carries its job and its surface: those that are named should be the same.
 std::vector<std::string> doubts(const RunFiles& run, const RunFileNames& names)
 {
     std::vector<std::string> found;
     if (!run.plan) return found;
-    if (run.job && to_json(*run.job).text() != to_json(run.plan->job).text())
+    if (run.job && !same(to_json(*run.job), to_json(run.plan->job)))
         found.push_back(names.plan + ": made for another job than " + names.job);
-    if (run.surface && to_json(*run.surface).text() != to_json(run.plan->surface).text())
+    if (run.surface && !same(to_json(*run.surface), to_json(run.plan->surface)))
         found.push_back(names.plan + ": made for another surface than " + names.surface);
     return found;
 }
