@@ -4,14 +4,13 @@
 #include "compare/comparison.h"
 #include "compare/comparison_report.h"
 #include "compare/shape_file.h"
+#include "core/direction.h"
 #include "core/file.h"
-#include "core/text.h"
 #include "job/job.h"
 #include "job/plausible.h"
 #include "mesh/mesh.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace {
 
@@ -49,17 +48,6 @@ void set_fields(ComparisonOptions& options, const std::string& list)
                                              : "expected foot, facet, region or sigma, got '" + name + "'");
 }
 
-Eigen::Vector3d direction_of(const std::string& text)
-{
-    const std::vector<std::string> parts = listed(text);
-    const auto number = [&](std::size_t k) { return parse_number(parts[k]).value_or(std::nan("")); };
-    const Eigen::Vector3d way =
-        parts.size() == 3 ? Eigen::Vector3d(number(0), number(1), number(2)) : Eigen::Vector3d::Constant(std::nan(""));
-    if (!way.allFinite()) throw InputError("--direction", "expected three numbers x,y,z, got '" + text + "'");
-    if (!(way.norm() > 0)) throw InputError("--direction", "has no length: '" + text + "'");
-    return way.normalized();
-}
-
 DistanceOptions distance_options(const std::string& mode, const std::string& direction, const std::string& winding)
 {
     if ((mode == "direction") == direction.empty())
@@ -67,7 +55,7 @@ DistanceOptions distance_options(const std::string& mode, const std::string& dir
                                                             : "goes with --mode direction, not with --mode " + mode);
     DistanceOptions options;
     if (mode != "normal") options.mode = DistanceMode::direction;
-    if (mode == "direction") options.direction = direction_of(direction);
+    if (mode == "direction") options.direction = parse_direction(direction, "--direction");
     if (winding != "mend") options.winding = winding == "turn" ? Winding::turn : Winding::keep;
     return options;
 }

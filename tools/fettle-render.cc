@@ -39,11 +39,7 @@ int main(int argc, char** argv)
             options.title = title;
             options.scale = scale;
             options.bands = bands;
-            try {
-                options.from = parse_direction(from);
-            } catch (const InputError& error) {
-                throw InputError("--from", error.what());
-            }
+            options.from = parse_direction(from, "--from");
             if (!within.empty()) options.within = read_job(within);
             std::optional<Units> units;
             if (options.within) units = options.within->units;

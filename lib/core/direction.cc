@@ -9,9 +9,9 @@
 
 namespace fettle {
 
-Eigen::Vector3d parse_direction(const std::string& text)
+Eigen::Vector3d parse_direction(const std::string& text, const std::string& source)
 {
-    const auto refuse = [&] { throw InputError("expected three numbers x,y,z, got '" + text + "'"); };
+    const auto refuse = [&] { throw InputError(source, "expected three numbers x,y,z, got '" + text + "'"); };
     Eigen::Vector3d direction;
     std::istringstream parts(text + ",");
     int read = 0;
@@ -22,7 +22,7 @@ Eigen::Vector3d parse_direction(const std::string& text)
     }
     if (read != 3) refuse();
     const double length = direction.stableNorm();
-    if (!(length > 0)) throw InputError("has no length: '" + text + "'");
+    if (!(length > 0)) throw InputError(source, "has no length: '" + text + "'");
     return direction / length;
 }
 

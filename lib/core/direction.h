@@ -7,7 +7,8 @@
 namespace fettle {
 
 /// "x,y,z" as a unit vector.
+/// @param source  the option, for messages
 /// @throws InputError if these are not three finite numbers, or all are 0
-Eigen::Vector3d parse_direction(const std::string& text);
+Eigen::Vector3d parse_direction(const std::string& text, const std::string& source);
 
 } // namespace fettle
