@@ -231,6 +231,9 @@ void draw_picture(const std::variant<Cloud, Mesh>& part, const PictureOptions& o
     Drawing d = std::visit([&](const auto& p) { return draw(p, options); }, part);
     d.values.name = options.field;
     d.values.unit = unit_of(options.field, options.units);
+    const auto shown = [&](double otherwise) { return d.raster.value.isFinite().select(d.raster.value, otherwise); };
+    d.values.least_shown = shown(std::numeric_limits<double>::infinity()).minCoeff();
+    d.values.most_shown = shown(-std::numeric_limits<double>::infinity()).maxCoeff();
     const Scale scale = scale_for(d.values.numbers, options);
     const Layout& layout = d.layout;
 

@@ -28,15 +28,8 @@ Rgb sequential(double share)
     return mixed;
 }
 
-/// Above the bar or below it: a tip where values lie beyond its end.
-void draw_tip(Sheet& sheet, const Vector2d& middle, double width, double height, const Rgb& colour)
-{
-    const int rows = static_cast<int>(std::abs(height));
-    for (int row = 0; row < rows; ++row) {
-        const double half = width / 2 * (1 - (row + 0.5) / rows);
-        sheet.box(middle + Vector2d(-half, height < 0 ? -row - 1 : row), {2 * half, 1}, colour);
-    }
-}
+// The legend, pixels: beside the map the bar, its ticks, the histogram; room above and below for tips and names.
+constexpr double kBesideMap = 40, kBarWidth = 22, kTicks = 70, kRoom = 62;
 
 /// "1.2 % beyond", never 0 where there are some.
 std::string beyond_text(Index beyond, Index count)
@@ -45,6 +38,93 @@ std::string beyond_text(Index beyond, Index count)
     char buffer[32];
     std::snprintf(buffer, sizeof buffer, percent < 9.95 ? "%.1f" : "%.0f", percent);
     return (percent < 0.05 ? "< 0.1" : std::string(buffer)) + " % beyond";
+}
+
+/// The bar of colours.
+struct Bar {
+    Vector2d corner;
+    double height;
+    const Scale& scale;
+
+    double row_of(double value) const { return corner.y() + height * (scale.high - value) / (scale.high - scale.low); }
+};
+
+void draw_bar(Sheet& sheet, const Bar& bar)
+{
+    const Scale& scale = bar.scale;
+    for (int row = 0; row < static_cast<int>(bar.height); ++row)
+        sheet.box(bar.corner + Vector2d(0, row), {kBarWidth, 1},
+                  scale(scale.high - (row + 0.5) / bar.height * (scale.high - scale.low)));
+    sheet.line(frame_of(bar.corner, {kBarWidth, bar.height}), kFrame, 1, true);
+    const double step = tick_step(scale.high - scale.low, 8);
+    for (double k = std::ceil(scale.low / step - 1e-9); k * step <= scale.high + 1e-9 * step; ++k) {
+        const Vector2d at(bar.corner.x() + kBarWidth, bar.row_of(k * step));
+        sheet.box(at, {5, 0}, kGrey);
+        const std::string sign = scale.diverging && k > 0.5 ? "+" : "";
+        sheet.text(sign + tick_text(k * step, step), at + Vector2d(10, 0), kSmall);
+    }
+}
+
+/// How many values lie where on the scale.
+struct Counts {
+    Eigen::ArrayXd bins;
+    Index above = 0, below = 0, all = 0;
+};
+
+/// The ends belong to the scale, to the rounding of float fields.
+double rounding_of(const Scale& scale) { return 1e-6 * std::max(std::abs(scale.low), std::abs(scale.high)); }
+
+Counts counted(const Eigen::VectorXd& numbers, const Scale& scale)
+{
+    constexpr int kBins = 60;
+    Counts counts;
+    counts.bins = Eigen::ArrayXd::Zero(kBins);
+    const double rounding = rounding_of(scale);
+    for (const double value : numbers) {
+        if (!std::isfinite(value)) continue;
+        ++counts.all;
+        if (value > scale.high + rounding)
+            ++counts.above;
+        else if (value < scale.low - rounding)
+            ++counts.below;
+        else
+            counts.bins[std::clamp(static_cast<int>((value - scale.low) / (scale.high - scale.low) * kBins), 0,
+                                   kBins - 1)] += 1;
+    }
+    return counts;
+}
+
+void draw_histogram(Sheet& sheet, const Bar& bar, const Eigen::ArrayXd& bins)
+{
+    constexpr double kWidth = 150;
+    const double left = bar.corner.x() + kBarWidth + kTicks, most = bins.maxCoeff(),
+                 half = bar.height / double(bins.size()) / 2;
+    for (Index i = 0; i < bins.size(); ++i) {
+        if (!(bins[i] > 0)) continue;
+        const double value = std::lerp(bar.scale.low, bar.scale.high, (double(i) + 0.5) / double(bins.size()));
+        const double upper = std::round(bar.row_of(value) - half), lower = std::round(bar.row_of(value) + half);
+        Rgb colour = bar.scale(value);
+        for (std::uint8_t& c : colour) c = static_cast<std::uint8_t>(0.9 * c); // the palest is still seen on white
+        sheet.box({left, upper}, {std::max(1.0, kWidth * bins[i] / most), lower - upper - 2}, colour);
+    }
+    sheet.box({left - 1, bar.corner.y()}, {0, bar.height}, kFrame);
+}
+
+/// Above the bar or below it: a tip where values lie beyond its end, and how many of those that count.
+/// @param shown  the map has some
+void draw_end(Sheet& sheet, const Bar& bar, bool upper, Index beyond, Index all, bool shown)
+{
+    if (beyond == 0 && !shown) return;
+    constexpr int kTip = 14;
+    const double way = upper ? -1 : 1;
+    const Vector2d middle(bar.corner.x() + kBarWidth / 2, bar.corner.y() + (upper ? -2 : bar.height + 3));
+    for (int row = 0; row < kTip; ++row) {
+        const double half = kBarWidth / 2 * (1 - (row + 0.5) / kTip);
+        sheet.box(middle + Vector2d(-half, upper ? -row - 1 : row), {2 * half, 1},
+                  bar.scale(upper ? bar.scale.high : bar.scale.low));
+    }
+    sheet.text(beyond > 0 ? beyond_text(beyond, all) : "some, not counted",
+               {bar.corner.x() + kBarWidth + kTicks, middle.y() + 10 * way}, kSmall, kGrey);
 }
 
 } // namespace
@@ -59,64 +139,21 @@ Rgb Scale::operator()(double value) const
 
 void draw_legend(Sheet& sheet, const Layout& layout, const Values& values, const Scale& scale)
 {
-    // The bar, with room above and below for its tips and names.
-    constexpr double kBar = 22, kTicks = 70, kHistogram = 150, kRoom = 62, kTip = 14;
-    const double x = layout.map_corner.x() + layout.map_size.x() + 40;
-    const double top = layout.map_corner.y() + kRoom, height = layout.map_size.y() - 2 * kRoom;
-    const auto row_of = [&](double value) { return top + height * (scale.high - value) / (scale.high - scale.low); };
-    sheet.text(values.name + (values.unit.empty() ? "" : ", " + values.unit), {x, layout.map_corner.y() + 4}, kLabel,
+    const Vector2d corner = layout.map_corner + Vector2d(layout.map_size.x() + kBesideMap, 0);
+    const Bar bar = {corner + Vector2d(0, kRoom), layout.map_size.y() - 2 * kRoom, scale};
+    sheet.text(values.name + (values.unit.empty() ? "" : ", " + values.unit), corner + Vector2d(0, 4), kLabel,
                Sheet::kInk, Align::left, true);
-    for (int row = 0; row < static_cast<int>(height); ++row)
-        sheet.box({x, top + row}, {kBar, 1}, scale(scale.high - (row + 0.5) / height * (scale.high - scale.low)));
-    sheet.line(frame_of({x, top}, {kBar, height}), kFrame, 1, true);
-    const double step = tick_step(scale.high - scale.low, 8);
-    for (double k = std::ceil(scale.low / step - 1e-9); k * step <= scale.high + 1e-9 * step; ++k) {
-        const double at = row_of(k * step);
-        sheet.box({x + kBar, at}, {5, 0}, kGrey);
-        const std::string sign = scale.diverging && k > 0.5 ? "+" : "";
-        sheet.text(sign + tick_text(k * step, step), {x + kBar + 10, at}, kSmall);
-    }
     if (scale.diverging) {
-        sheet.text("material left", {x, layout.map_corner.y() + 28}, kSmall, kGrey);
-        sheet.text("over-cut", {x, top + height + kRoom - 28}, kSmall, kGrey);
+        sheet.text("material left", corner + Vector2d(0, 28), kSmall, kGrey);
+        sheet.text("over-cut", corner + Vector2d(0, layout.map_size.y() - 28), kSmall, kGrey);
     }
-
-    constexpr int kBins = 60;
-    Eigen::ArrayXd counts = Eigen::ArrayXd::Zero(kBins);
-    Index above = 0, below = 0, count = 0;
-    // The ends belong to the scale, to the rounding of float fields.
-    const double rounding = 1e-6 * std::max(std::abs(scale.low), std::abs(scale.high));
-    for (const double value : values.numbers) {
-        if (!std::isfinite(value)) continue;
-        ++count;
-        if (value > scale.high + rounding)
-            ++above;
-        else if (value < scale.low - rounding)
-            ++below;
-        else
-            counts[std::clamp(static_cast<int>((value - scale.low) / (scale.high - scale.low) * kBins), 0,
-                              kBins - 1)] += 1;
-    }
-    const double left = x + kBar + kTicks;
-    for (int bin = 0; bin < kBins; ++bin) {
-        const double value = scale.low + (bin + 0.5) / kBins * (scale.high - scale.low);
-        const double upper = std::round(row_of(value) - height / kBins / 2),
-                     lower = std::round(row_of(value) + height / kBins / 2);
-        const double length = counts.maxCoeff() > 0 ? kHistogram * counts[bin] / counts.maxCoeff() : 0;
-        Rgb colour = scale(value);
-        for (std::uint8_t& c : colour) c = static_cast<std::uint8_t>(0.9 * c); // the palest is still seen on white
-        if (counts[bin] > 0) sheet.box({left, upper}, {std::max(1.0, length), lower - upper - 2}, colour);
-    }
-    sheet.box({left - 1, top}, {0, height}, kFrame);
-    const Vector2d end(x + kBar / 2, top + height + 1);
-    if (above > 0) {
-        draw_tip(sheet, {end.x(), top - 2}, kBar, -kTip, scale(scale.high));
-        sheet.text(beyond_text(above, count), {left, top - 12}, kSmall, kGrey);
-    }
-    if (below > 0) {
-        draw_tip(sheet, end + Vector2d(0, 2), kBar, kTip, scale(scale.low));
-        sheet.text(beyond_text(below, count), {left, end.y() + 12}, kSmall, kGrey);
-    }
+    draw_bar(sheet, bar);
+    constexpr double kSlack = 0.01; // of the scale: a mesh is seen at other places from the side
+    const double slack = kSlack * (scale.high - scale.low);
+    const Counts counts = counted(values.numbers, scale);
+    draw_histogram(sheet, bar, counts.bins);
+    draw_end(sheet, bar, true, counts.above, counts.all, values.most_shown > scale.high + slack);
+    draw_end(sheet, bar, false, counts.below, counts.all, values.least_shown < scale.low - slack);
 }
 
 void draw_numbers(Sheet& sheet, const Layout& layout, const Values& values, const std::string& place)
@@ -131,8 +168,8 @@ void draw_numbers(Sheet& sheet, const Layout& layout, const Values& values, cons
     items.insert(items.end(), {{"min", text(s.min)}, {"max", text(s.max)}});
     items.insert(items.end(), {{"points", std::to_string(s.count)}, {"undefined", std::to_string(s.undefined)}});
     // One line, or two on a narrow sheet.
-    constexpr double kBelow = 88, kLine = 22, kBesideMap = 290;
-    const double right = layout.map_corner.x() + layout.map_size.x() + kBesideMap;
+    constexpr double kBelow = 88, kLine = 22, kLegend = 290;
+    const double right = layout.map_corner.x() + layout.map_size.x() + kLegend;
     Vector2d at = layout.map_corner + Vector2d(0, layout.map_size.y() + kBelow);
     const std::string head = place + (place.empty() || values.unit.empty() ? "" : ", ") + values.unit;
     if (!head.empty()) {

@@ -12,7 +12,8 @@ namespace fettle {
 /// What the numbers are about: those that count for colours, histogram and statistics, in the units of the picture.
 struct Values {
     std::string name, unit;
-    Eigen::VectorXd numbers; ///< NaN: undefined
+    Eigen::VectorXd numbers;                ///< NaN: undefined
+    double least_shown = 0, most_shown = 0; ///< of the whole map, also where it does not count
 };
 
 /// Colours of values: the diverging ones of ColourScale, or a sequential map.

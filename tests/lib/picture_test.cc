@@ -226,6 +226,9 @@ TEST(Picture, BoundariesAreInTheFrame)
         const Rgb edge = place(end, 19); // violet
         EXPECT_GT(edge[2], edge[1] + 40) << end;
     }
+    // Errors of 2 outside B: the legend's end is pointed although none of those that count lies beyond.
+    const Cloud steps = grid([](const Eigen::Vector2d& p) { return p.x() < 7 ? 2 : 0.5; });
+    EXPECT_EQ(at(drawn(steps, options), 84 + 900 + 40 + 11, kTop + 62 - 6), kUnit(1));
     const Rgb inner = place(10, 19); // black, on blue
     EXPECT_LT(inner[2], 60);
 }
