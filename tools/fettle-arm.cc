@@ -6,6 +6,7 @@
 #include "robot/arm_report.h"
 #include "robot/path_cloud.h"
 #include "robot/rapid.h"
+#include "robot/reach.h"
 
 #include <numbers>
 #include <sstream>
@@ -16,17 +17,46 @@ namespace {
 
 constexpr double kRadPerDegree = std::numbers::pi / 180;
 
+// Numbers with commas between; NaN for what is none.
+Eigen::VectorXd numbers_in(const std::string& text)
+{
+    std::istringstream parts(text);
+    std::vector<double> numbers;
+    for (std::string part; std::getline(parts, part, ',');) numbers.push_back(parse_number(part).value_or(NAN));
+    return Eigen::Map<Eigen::VectorXd>(numbers.data(), static_cast<Eigen::Index>(numbers.size()));
+}
+
 Joints joints_in(const std::string& text)
 {
-    Joints joints = Joints::Zero();
-    std::istringstream parts(text);
-    std::vector<double> degrees;
-    for (std::string part; std::getline(parts, part, ',');) degrees.push_back(parse_number(part).value_or(NAN));
-    for (std::size_t i = 0; i < 6 && degrees.size() == 6; ++i)
-        joints[static_cast<Eigen::Index>(i)] = degrees[i] * kRadPerDegree;
-    if (degrees.size() != 6 || !joints.allFinite())
+    const Eigen::VectorXd degrees = numbers_in(text);
+    if (degrees.size() != 6 || !degrees.allFinite())
         throw InputError("--start", "expected six angles in degrees with commas between, got " + in_quotes(text));
-    return joints;
+    return degrees * kRadPerDegree;
+}
+
+Eigen::AlignedBox3d box_in(const std::string& text, double mm)
+{
+    const Eigen::VectorXd corners = numbers_in(text) * mm;
+    if (corners.size() != 6 || !corners.allFinite() || (corners.tail<3>() - corners.head<3>()).minCoeff() < 0)
+        throw InputError("--box", "expected x,y,z of its least and of its greatest corner, got " + in_quotes(text));
+    return {corners.head<3>(), corners.tail<3>()};
+}
+
+// The cells of a box, with the share of directions in which the tool reaches them.
+void write_reach(Tool& t, const Robot& robot, const std::string& box, double step, const Units& units,
+                 PcdEncoding encoding)
+{
+    const double mm = units.mm();
+    const ReachStudy study = study_reach(robot, box_in(box, mm), step * mm, t.progress("reach"));
+    Cloud cloud;
+    cloud.xyz = study.tips;
+    set_field(cloud, "reach", study.share);
+    t.report()
+        .set("cells", static_cast<std::size_t>(study.share.size()))
+        .set("reached", (study.share.array() > 0).cast<double>().mean())
+        .set("reached_from_all_sides", (study.share.array() == 1).cast<double>().mean())
+        .set("mean_reach", study.share.mean());
+    write_pcd(t.output(), cloud, units, encoding);
 }
 
 // With the option's name before what the library has against its value.
@@ -84,7 +114,7 @@ int main(int argc, char** argv)
 {
     const std::string description =
         "Kinematics of a robot along a path: joints to tool poses (--forward), or tool poses to joints (--inverse), in "
-        "closed form.\n"
+        "closed form; or where a robot reaches (--reach).\n"
         "Of all solutions in range, whole turns included, --inverse takes the way with the fewest jumps and the least "
         "motion. Points: x y z is the tip, qw qx qy qz turns the tool's frame (+z from the tip to the holder, +x along "
         "the feed) to the part's; joint1 to joint6 in degrees, joint7 the track, joint8 the table in degrees. Added: "
@@ -95,6 +125,12 @@ int main(int argc, char** argv)
         const std::string& points = t.input("POINTS", "joints or path, PCD");
         const bool& to_pose = t.flag("--forward", "From joints to poses");
         const bool& to_joints = t.flag("--inverse", "From poses to joints");
+        const bool& reach =
+            t.flag("--reach", "No path: cells of --box, in the field reach the share of 26 directions of "
+                              "the tool in which its tip can be there, with any place of the track");
+        const std::string& box =
+            t.text("--box", "", "X0,Y0,Z0,X1,Y1,Z1", "Reach: least and greatest corner, cell frame");
+        const double& step = t.number("--step", 100, "LENGTH", "Reach: side of the cells", Range::positive());
         const auto& unit = t.length_unit("--file-units", "Unit of POINTS, and of lengths here [its header, or mm]");
         const std::string& track_text = t.text(
             "--track", "auto", "RULE",
@@ -122,14 +158,19 @@ int main(int argc, char** argv)
         t.reference("Chen & Wei, eq. 1 and 2, table 1; Pieper 1968 (closed form)");
         t.parse();
 
-        if (to_pose == to_joints) throw InputError("give one of --forward and --inverse");
+        if (int(to_pose) + int(to_joints) + int(reach) != 1)
+            throw InputError("give one of --forward, --inverse and --reach");
         if (all && to_pose) throw InputError("--all goes with --inverse");
         if (!rapid.empty() && !feed) throw InputError("--rapid needs --feed");
         const Robot robot = read_robot(robot_file);
+        const PcdEncoding encoding = ascii ? PcdEncoding::ascii : PcdEncoding::binary;
+        if (reach) {
+            write_reach(t, robot, box, step, Units{unit.value_or(Units::Length::mm), Units::Force::N}, encoding);
+            return Verdict::yes;
+        }
         CloudFile file = read_cloud(points, unit ? std::optional(Units{*unit, Units::Force::N}) : std::nullopt);
         Cloud& cloud = file.cloud;
         const double mm = file.units.mm();
-        const PcdEncoding encoding = ascii ? PcdEncoding::ascii : PcdEncoding::binary;
         const ExternalRules wanted = {rule_in("--track", track_text, robot.track.has_value(), mm),
                                       rule_in("--table", table_text, robot.table.has_value(), kRadPerDegree)};
         PosePath poses;

@@ -7,8 +7,8 @@ cp "$SAMPLES/paths/keel.pcd" path.pcd
 refuses 'empty: ' fettle-arm empty --inverse path.pcd
 refuses 'empty: ' fettle-arm good.json --inverse empty
 refuses 'missing.json' fettle-arm missing.json --inverse path.pcd
-refuses 'one of --forward and --inverse' fettle-arm good.json path.pcd
-refuses 'one of --forward and --inverse' fettle-arm good.json --forward --inverse path.pcd
+refuses 'one of --forward, --inverse and --reach' fettle-arm good.json path.pcd
+refuses 'one of --forward, --inverse and --reach' fettle-arm good.json --forward --inverse path.pcd
 refuses '--all goes with --inverse' fettle-arm good.json --forward --all path.pcd
 refuses '--rapid needs --feed' fettle-arm good.json --inverse --rapid out.mod path.pcd
 refuses "path.pcd: the points have no field 'joint1'" fettle-arm good.json --forward path.pcd
@@ -22,6 +22,11 @@ refuses '--table: the robot has none' fettle-arm good.json --inverse --table fol
 for start in 1,2,3 1,2,3,4,5,6,7 1,2,3,4,5,x 1,2,3,4,5,nan; do
     refuses '--start: expected six angles' fettle-arm good.json --inverse --start "$start" path.pcd
 done
+for box in 0,0,0,1,1 0,0,0,1,1,1,1 0,0,0,1,1,-1 0,0,0,1,1,x 0,0,0,1,1,inf; do
+    refuses '--box: expected x,y,z of its least and of its greatest corner' fettle-arm good.json --reach --box $box
+done
+refuses '--box: expected' fettle-arm good.json --reach
+refuses 'the box has 1e+09 cells, at most 1e+07' fettle-arm good.json --reach --box 0,0,0,1000,1000,1000 --step 1
 refuses '--feed' fettle-arm good.json --inverse --feed 0 path.pcd
 refuses '--jump' fettle-arm good.json --inverse --jump -1 path.pcd
 refuses '--singular' fettle-arm good.json --inverse --singular 2 path.pcd

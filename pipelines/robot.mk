@@ -1,0 +1,32 @@
+# The robot: where the IRB 1400 of Chen & Wei reaches in its cell of 2 x 4 x 2 m, as pictures of layers.
+#
+#   make -f pipelines/robot.mk reach            a picture of each layer, and the whole cell's numbers
+#   make -f pipelines/robot.mk reach CELL=20    finer cells, mm
+#
+# ROBOT/reach/HEIGHT.png is a layer, one cell thick; ROBOT/reach/cell.json counts all cells of 100 mm.
+
+B       ?= build
+ROBOT   ?= $(B)/robot
+CELL    ?= 50
+HEIGHTS := 100 300 500 700 900 1100 1300 1500 1700 1900
+ARM     := $(B)/bin/fettle-arm samples/robots/irb1400.json
+
+.PHONY: reach
+reach: $(HEIGHTS:%=$(ROBOT)/reach/%.png) $(ROBOT)/reach/cell.json
+	@jq -r '"of \(.cells) cells \(100 * .reached | round) % are reached, \(100 * .reached_from_all_sides | round) % from all sides"' $(ROBOT)/reach/cell.json
+
+include pipelines/step.mk
+
+# Commas are no part of a step's command.
+LAYER = 0,-1000,$*,2000,3000,$*
+WHOLE = 0,-1000,0,2000,3000,2000
+TITLE = Reach of the IRB 1400 on its track, z $* mm
+
+$(ROBOT)/reach/%.pcd: $(B)/bin/fettle-arm samples/robots/irb1400.json
+	$(call step,$(ARM) --reach --box $(LAYER) --step $(CELL) -o $@.part)
+
+$(ROBOT)/reach/%.png: $(ROBOT)/reach/%.pcd $(B)/bin/fettle-render
+	$(call step,$(B)/bin/fettle-render $< --field reach --title "$(TITLE)" -o $@.part)
+
+$(ROBOT)/reach/cell.json: $(B)/bin/fettle-arm samples/robots/irb1400.json
+	$(call step,$(ARM) --reach --box $(WHOLE) --report $@.part > /dev/null)
