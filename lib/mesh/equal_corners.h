@@ -4,6 +4,7 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
 
 #include <algorithm>
 #include <array>
@@ -12,6 +13,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <type_traits>
@@ -89,6 +91,18 @@ class FirstCorners {
         return kFull;
     }
     std::atomic<std::uint32_t>& operator[](std::uint32_t slot) { return slots_[slot]; }
+    /// How many corners stand in it.
+    Eigen::Index count() const
+    {
+        return tbb::parallel_reduce(
+            tbb::blocked_range<std::size_t>(0, mask_ + 1), Eigen::Index{0},
+            [&](const auto& range, Eigen::Index count) {
+                for (std::size_t i = range.begin(); i < range.end(); ++i)
+                    count += slots_[i].load(std::memory_order_relaxed) != kEmpty;
+                return count;
+            },
+            std::plus<>());
+    }
 
   private:
     static constexpr std::uint32_t kEmpty = ~0u;
@@ -157,8 +171,7 @@ Mesh welded(std::size_t facets, const At& corner_at, MeshRepair& repair)
     FirstCorners& first = *table;
     // Of equal corners the first is met first: it gets the next number, which then stands in its slot.
     constexpr std::uint32_t kNumbered = 1u << 31;
-    std::vector<double> vertices;
-    vertices.reserve(facets / 2 * 3 + facets / 8); // a closed mesh has half as many vertices as triangles
+    mesh.vertices.resize(3, first.count());
     std::uint32_t count = 0;
     std::size_t kept = 0;
     for (std::uint32_t c = 0; c < 3 * facets; ++c) {
@@ -169,13 +182,12 @@ Mesh welded(std::size_t facets, const At& corner_at, MeshRepair& repair)
         std::atomic<std::uint32_t>& slot = first[slots[c]];
         if (slot.load(std::memory_order_relaxed) == c) {
             const auto corner = corner_at(c);
-            vertices.insert(vertices.end(), corner.begin(), corner.end());
+            mesh.vertices.col(count) << corner[0], corner[1], corner[2];
             slot.store(kNumbered | count++, std::memory_order_relaxed);
         }
         slots[kept++] = slot.load(std::memory_order_relaxed) & ~kNumbered;
     }
     mesh.triangles.conservativeResize(3, static_cast<Eigen::Index>(kept / 3));
-    mesh.vertices = Eigen::Map<const Eigen::Matrix3Xd>(vertices.data(), 3, count);
     repair.welded_vertices = static_cast<Eigen::Index>(kept) - count;
     return mesh;
 }
