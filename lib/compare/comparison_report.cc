@@ -46,15 +46,6 @@ double in_units(const Statistics& s, const Member& member, const Units& units)
     return s.*member.value / std::pow(units.mm(), member.power);
 }
 
-json::Value to_json(const Statistics& s, const Units& units)
-{
-    json::Value value;
-    value.set("count", static_cast<std::size_t>(s.count)).set("undefined", static_cast<std::size_t>(s.undefined));
-    for (const Member& member : kMembers) value.set(member.name, in_units(s, member, units));
-    for (const Place& place : kPlaces) value.set(place.name, Eigen::VectorXd(s.*place.value / units.mm()));
-    return value;
-}
-
 json::Value to_json(const Histogram& histogram, const Units& units)
 {
     json::Value value;
@@ -75,6 +66,15 @@ std::vector<std::pair<std::string, Statistics>> rows_of(const std::vector<Compar
 }
 
 } // namespace
+
+json::Value to_json(const Statistics& s, const Units& units)
+{
+    json::Value value;
+    value.set("count", static_cast<std::size_t>(s.count)).set("undefined", static_cast<std::size_t>(s.undefined));
+    for (const Member& member : kMembers) value.set(member.name, in_units(s, member, units));
+    for (const Place& place : kPlaces) value.set(place.name, Eigen::VectorXd(s.*place.value / units.mm()));
+    return value;
+}
 
 json::Value to_json(const Comparison& comparison, const Units& units)
 {

@@ -12,6 +12,9 @@
 
 namespace fettle {
 
+/// All of its numbers, and where the extremes are.
+json::Value to_json(const Statistics& statistics, const Units& units);
+
 /// The members of a report: of all points, flat; of the regions, under "regions"; and the histogram.
 json::Value to_json(const Comparison& comparison, const Units& units);
 

@@ -2,7 +2,6 @@
 
 #include "core/error.h"
 #include "machining/number_list.h"
-#include "mesh/mesh.h"
 #include "mesh/stl.h"
 
 #include <tbb/parallel_for.h>
@@ -21,31 +20,6 @@ namespace {
 constexpr Eigen::Index kRowsOfPart = 16;
 /// Parts in the making, whatever the number of threads.
 constexpr Eigen::Index kPartsAtOnce = 16;
-
-/// The triangles between rows first to last.
-Mesh surface_between(const HeightField& field, Eigen::Index first, Eigen::Index last)
-{
-    const Eigen::Index columns = field.columns(), rows = last - first + 1;
-    Mesh mesh;
-    mesh.vertices.resize(3, columns * rows);
-    for (Eigen::Index j = 0; j < rows; ++j)
-        for (Eigen::Index i = 0; i < columns; ++i)
-            mesh.vertices.col(j * columns + i) << field.centre(i, first + j), field.z(i, first + j);
-    mesh.triangles.resize(3, 2 * (columns - 1) * (rows - 1));
-    Eigen::Index count = 0;
-    const auto add = [&](Eigen::Index a, Eigen::Index b, Eigen::Index c) {
-        if (std::isnan(mesh.vertices(2, a) + mesh.vertices(2, b) + mesh.vertices(2, c))) return;
-        mesh.triangles.col(count++) << static_cast<int>(a), static_cast<int>(b), static_cast<int>(c);
-    };
-    for (Eigen::Index j = 0; j + 1 < rows; ++j)
-        for (Eigen::Index i = 0; i + 1 < columns; ++i) {
-            const Eigen::Index at = j * columns + i, beyond = at + columns;
-            add(at, at + 1, beyond + 1);
-            add(at, beyond + 1, beyond);
-        }
-    mesh.triangles.conservativeResize(Eigen::NoChange, count);
-    return mesh;
-}
 
 std::size_t count_triangles(const HeightField& field)
 {
@@ -81,6 +55,30 @@ Workpiece scanned_workpiece(const Scan& scan, double cell)
     Workpiece piece{empty_height_field(scan.bounds().topRows<2>(), {0, 0}, 0, cell)};
     lay(piece.stock, scan);
     return piece;
+}
+
+Mesh surface_between(const HeightField& field, Eigen::Index first, Eigen::Index last)
+{
+    const Eigen::Index columns = field.columns(), rows = last - first + 1;
+    Mesh mesh;
+    mesh.vertices.resize(3, columns * rows);
+    for (Eigen::Index j = 0; j < rows; ++j)
+        for (Eigen::Index i = 0; i < columns; ++i)
+            mesh.vertices.col(j * columns + i) << field.centre(i, first + j), field.z(i, first + j);
+    mesh.triangles.resize(3, 2 * (columns - 1) * (rows - 1));
+    Eigen::Index count = 0;
+    const auto add = [&](Eigen::Index a, Eigen::Index b, Eigen::Index c) {
+        if (std::isnan(mesh.vertices(2, a) + mesh.vertices(2, b) + mesh.vertices(2, c))) return;
+        mesh.triangles.col(count++) << static_cast<int>(a), static_cast<int>(b), static_cast<int>(c);
+    };
+    for (Eigen::Index j = 0; j + 1 < rows; ++j)
+        for (Eigen::Index i = 0; i + 1 < columns; ++i) {
+            const Eigen::Index at = j * columns + i, beyond = at + columns;
+            add(at, at + 1, beyond + 1);
+            add(at, beyond + 1, beyond);
+        }
+    mesh.triangles.conservativeResize(Eigen::NoChange, count);
+    return mesh;
 }
 
 std::size_t write_stl(std::ostream& out, const HeightField& field)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "mesh/mesh.h"
 #include "removal/height_field.h"
 #include "sampling/scan.h"
 
@@ -23,8 +24,11 @@ Workpiece box_workpiece(const std::string& corners, double cell);
 /// @throws InputError if the cells are too many
 Workpiece scanned_workpiece(const Scan& scan, double cell);
 
-/// The surface as triangles between the centres of neighbouring cells that have material, binary STL, mm: vertices lie
-/// on the grid. @return  how many
+/// The surface as triangles between the centres of neighbouring cells of rows first to last, where they have material:
+/// the vertices lie on the grid; those without material are NaN.
+Mesh surface_between(const HeightField& field, Eigen::Index first, Eigen::Index last);
+
+/// All of these triangles as binary STL, mm. @return  how many
 std::size_t write_stl(std::ostream& out, const HeightField& field);
 
 } // namespace fettle

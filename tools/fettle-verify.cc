@@ -1,0 +1,100 @@
+#include "cli/tool.h"
+#include "cloud/pcd.h"
+#include "compare/signed_distance.h"
+#include "core/file.h"
+#include "core/text.h"
+#include "machining/patch_error.h"
+#include "machining/patch_report.h"
+#include "machining/workpiece.h"
+#include "mesh/mesh_file.h"
+#include "sampling/scan.h"
+
+#include <ostream>
+
+using namespace fettle;
+
+namespace {
+
+/// The machined mesh, or its upper side on a grid.
+Mesh read_machined(const std::string& path, std::optional<Units::Length> unit, const std::optional<double>& step)
+{
+    Mesh mesh = read_mesh(path, unit.value_or(Units::Length::mm));
+    if (!step) return mesh;
+    try {
+        const HeightField field = scanned_workpiece(Scan(std::move(mesh)), *step).stock;
+        return surface_between(field, 0, field.rows() - 1);
+    } catch (const InputError& error) {
+        throw InputError("--step", error.what());
+    }
+}
+
+Cloud z_errors(const Mesh& machined, const Eigen::VectorXd& errors)
+{
+    Cloud cloud;
+    cloud.xyz = machined.vertices;
+    set_field(cloud, "error", errors);
+    return cloud;
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+    const std::string description =
+        "Verifies a machined surface against its design by triangle patches.\n"
+        "The design is re-sampled at the x, y of the machined vertices; of each pair of triangles d is the mean of the "
+        "three differences along Z, and the error is d along the normal of the design's triangle: + material left. "
+        "Where "
+        "the design is vertical or not hit, or the machined triangle does not face up, it is undefined: counted and "
+        "listed. Out: a point for each patch, coloured bright red, dark red (over-cut), grey, violet, dark blue "
+        "(material "
+        "left). Lengths in mm. Exit 1 if a patch is over-cut beyond the tolerance, or none is defined.";
+    return tool_main(argc, argv, description, [](Tool& t) {
+        const std::string& path = t.input("MACHINED", "Triangles that face up (fettle-mill): STL, PLY, OBJ or OFF");
+        const auto& unit = t.length_unit("--file-units", "Unit of MACHINED, if it is not mm");
+        const std::string& design_path = t.required_text("--design", "FILE", "The design: STL, PLY, OBJ or OFF");
+        const auto& design_unit = t.length_unit("--design-units", "Unit of the design, if it is not mm");
+        const double& tolerance = t.number("-t,--tolerance", 0.05, "MM", "Most error either way", Range::positive());
+        const auto& inner =
+            t.number_if_given("--inner-tolerance", "MM", "Most over-cut, if another", Range::positive());
+        const auto& outer =
+            t.number_if_given("--outer-tolerance", "MM", "Most material left, if another", Range::positive());
+        const double& neutral =
+            t.number("--neutral", 0.1, "SHARE", "Of the tolerances: errors that are neither", Range::between(0, 1));
+        const std::string& method = t.choice("--method", "patch", {"patch", "closest"},
+                                             "closest: judge by the distance of the patch's centre from the closest "
+                                             "point of the design; the report says how far the two are apart");
+        const auto& step = t.number_if_given(
+            "--step", "MM", "Sample the machined surface from above on such a grid, too", Range::positive());
+        const std::string& csv = t.text("--csv", "", "FILE", "Data sheet: triangle, centre, d, mu, class");
+        const std::string& z_file = t.text("--z-errors", "", "FILE", "Errors along Z at the machined vertices, PCD");
+        const bool& ascii = t.flag("--ascii", "Write PCDs as text");
+        t.example(
+            "fettle-mill programs/pocket.nc --stock box:0,0,-12,80,60,0 --cutter ball:6 --step 0.25 | fettle-verify "
+            "--design <(fettle-mill programs/pocket.nc --stock box:0,0,-12,80,60,0 --cutter ball:5.9 --step 0.5) "
+            "--tolerance 0.03 --csv sheet.csv > patches.pcd",
+            "a cutter that is 0.1 mm too thick cuts walls too wide");
+        t.reference("Guan & Xiong, Virtual machining accuracy verification by triangular patch comparison: eq. 4 to 6");
+        t.parse();
+
+        const Mesh machined = read_machined(path, unit, step);
+        const Mesh design = read_mesh(design_path, design_unit.value_or(Units::Length::mm));
+        PatchVerdict verdict;
+        verdict.tolerances = {inner.value_or(tolerance), outer.value_or(tolerance), neutral};
+        verdict.patches = patch_errors(machined, design);
+        verdict.by_closest = method == "closest";
+        if (verdict.by_closest) verdict.closest = signed_distance(verdict.patches.centre, design).error;
+
+        const PcdEncoding encoding = ascii ? PcdEncoding::ascii : PcdEncoding::binary;
+        if (!csv.empty()) write_csv(t.output_file(csv), verdict);
+        if (!z_file.empty())
+            write_pcd(t.output_file(z_file), z_errors(machined, verdict.patches.z_error), Units{}, encoding);
+        write_pcd(t.output(), to_cloud(verdict), Units{}, encoding);
+        t.report() = to_json(verdict);
+        const auto undefined = verdict.error().array().isNaN().count();
+        if (undefined > 0)
+            t.warn(display_name(path) + ": " + std::to_string(undefined) + " of " +
+                   std::to_string(verdict.error().size()) + " patches have no error: see \"undefined_by_patch\"");
+        return over_cut(verdict) == 0 && undefined < verdict.error().size() ? Verdict::yes : Verdict::no;
+    });
+}
