@@ -123,7 +123,7 @@ void draw_end(Sheet& sheet, const Bar& bar, bool upper, Index beyond, Index all,
         sheet.box(middle + Vector2d(-half, upper ? -row - 1 : row), {2 * half, 1},
                   bar.scale(upper ? bar.scale.high : bar.scale.low));
     }
-    sheet.text(beyond > 0 ? beyond_text(beyond, all) : "some, not counted",
+    sheet.text(beyond > 0 ? beyond_text(beyond, all) : "some beyond",
                {bar.corner.x() + kBarWidth + kTicks, middle.y() + 10 * way}, kSmall, kGrey);
 }
 
