@@ -8,7 +8,8 @@ using namespace fettle;
 int main(int argc, char** argv)
 {
     const std::string description =
-        "One page about a run: verdict, job, touches and fit, margin, plan, force trace, maps, statistics, provenance. "
+        "One page about a run: verdict, job, touches and fit, margin, plan, force trace, maps, statistics, form, "
+        "provenance. "
         "Self-contained HTML, for the screen and for A4. Sections without their files are left out.";
     return tool_main(argc, argv, description, [](Tool& t) {
         const std::string& title = t.text("--title", "", "TEXT", "Headline");
@@ -24,6 +25,8 @@ int main(int argc, char** argv)
         const std::string& after = t.text("--after", "", "FILE", "The part after: mesh or cloud");
         const std::string& errors = t.text("--errors", "", "FILE", "Error map of fettle-compare, PCD");
         const std::string& comparison = t.text("--comparison", "", "FILE", "Report of fettle-compare, JSON");
+        const std::string& alignment = t.text("--alignment", "", "FILE", "Report of fettle-align, JSON");
+        const std::string& form = t.text("--form", "", "FILE", "What fettle-form measured, JSON");
         t.example(
             "fettle-part parts/wang1.json | fettle-compare --to <(fettle-part parts/wang1.json --without-anomaly) "
             "--within jobs/wang1.json --report errors.json -o errors.pcd; "
@@ -31,7 +34,8 @@ int main(int argc, char** argv)
             "an anomaly that was not ground yet: out of tolerance");
         t.parse();
 
-        names = {job, samples, surface, plan, grinding, trace, before, after, errors, comparison, before_units};
+        names = {job,   samples, surface,    plan,      grinding, trace,       before,
+                 after, errors,  comparison, alignment, form,     before_units};
         const RunFiles run = read_run(names);
         for (const std::string& doubt : run.doubts) t.warn(doubt);
         t.output() << report_page(run, title, FETTLE_VERSION);

@@ -33,7 +33,7 @@ std::string report_page(const RunFiles& run, const std::string& title, const std
                       element("title", headline) + style_sheet();
     Html body = element("header", element("h1", headline) + element("p", subtitle)) + Html::markup("\n");
     for (const auto part : {verdict_section, job_section, fit_section, margin_section, plan_section, grinding_section,
-                            maps_section, statistics_section, provenance_section})
+                            registration_section, maps_section, statistics_section, form_section, provenance_section})
         body += part(run);
     body += element("footer",
                     "Written by fettle-report " + version + ". Numbers carry their full value in the page's source.");

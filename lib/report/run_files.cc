@@ -80,6 +80,35 @@ ComparisonReport comparison_of(json::Reader reader)
     return report;
 }
 
+/// The length in which a report is.
+Units::Length unit_of(json::Reader& reader)
+{
+    return parse_length_unit(reader.object("units").choice("length", {"mm", "in", "m"}));
+}
+
+AlignmentReport alignment_of(json::Reader& reader)
+{
+    AlignmentReport report;
+    reader.expect_kind("alignment");
+    for (const char* key : {"count", "overlap", "max_distance", "median", "p95", "rms", "determined"})
+        report.numbers[key] = number_or_nan(reader, key);
+    const Eigen::MatrixXd rows = reader.matrix("transform", 4);
+    if (rows.rows() != 4) reader.refuse("transform", "expected 4 rows");
+    report.transform = rows;
+    return report;
+}
+
+FormReport form_of(json::Reader& reader)
+{
+    FormReport report;
+    reader.expect_kind("form");
+    report.form = reader.text("form");
+    report.parameter = reader.text_or("parameter", "");
+    for (const char* key : {"count", "dropped", "outliers", "least_squares", "minimum_zone"})
+        report.numbers[key] = number_or_nan(reader, key);
+    return report;
+}
+
 GrindReport grinding_of(json::Reader reader)
 {
     GrindReport report;
@@ -192,6 +221,16 @@ RunFiles read_run(const RunFileNames& names)
     }
     if (!names.errors.empty()) run.errors = cloud("error map", names.errors, {"error"});
     if (!names.comparison.empty()) run.comparison = comparison_of(files.json("comparison", names.comparison));
+    if (!names.alignment.empty()) {
+        json::Reader reader = files.json("registration", names.alignment);
+        agree({unit_of(reader), run.units.force}, names.alignment);
+        run.alignment = alignment_of(reader);
+    }
+    if (!names.form.empty()) {
+        json::Reader reader = files.json("form", names.form);
+        agree({unit_of(reader), run.units.force}, names.form);
+        run.form = form_of(reader);
+    }
     if (!names.before.empty()) run.before = part("part before", names.before, names.before_units);
     if (!names.after.empty()) run.after = part("part after", names.after, std::nullopt);
     run.units = units.value_or(Units{});

@@ -39,6 +39,18 @@ struct GrindReport {
     Numbers numbers;
 };
 
+/// What fettle-align reports.
+struct AlignmentReport {
+    Numbers numbers; ///< lengths in the run's units
+    Eigen::Matrix4d transform;
+};
+
+/// What fettle-form measures.
+struct FormReport {
+    std::string form, parameter; ///< "flatness", "FLTt"; the second may be empty
+    Numbers numbers;
+};
+
 /// Where something was read.
 struct SourceFile {
     std::string what, name;
@@ -53,6 +65,8 @@ struct RunFiles {
     std::optional<Cloud> samples;
     std::optional<Surface> surface;
     std::optional<Plan> plan;
+    std::optional<AlignmentReport> alignment;
+    std::optional<FormReport> form;
     std::optional<GrindReport> grinding;
     std::optional<Cloud> trace;
     std::optional<std::variant<Cloud, Mesh>> before;
@@ -65,7 +79,7 @@ struct RunFiles {
 
 /// The names of the files; empty: there is none.
 struct RunFileNames {
-    std::string job, samples, surface, plan, grinding, trace, before, after, errors, comparison;
+    std::string job, samples, surface, plan, grinding, trace, before, after, errors, comparison, alignment, form;
     std::optional<Units::Length> before_units; ///< if not the run's
 };
 

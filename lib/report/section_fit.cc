@@ -15,6 +15,13 @@ std::string name_of(const std::string& method)
     return method == "gp" ? "smooth (Gaussian process)" : method == "bspline" ? "B-spline" : method;
 }
 
+/// A probability; digits of very small ones mean nothing.
+std::string p_text(double p)
+{
+    constexpr double kLeast = 1e-4;
+    return p < kLeast ? "< " + short_text(kLeast) : short_text(p);
+}
+
 /// The kinds of surface that were weighed, best first, and their weights as bars.
 Html candidates(const Surface& surface)
 {
@@ -75,7 +82,7 @@ Html fit_section(const RunFiles& run)
     rows.emplace_back("Residuals, root mean square", length_figure("surface.fit.rms", surface.rms, units));
     if (surface.goodness > 0)
         rows.emplace_back("Goodness of fit (p of \u03C7\u00B2)",
-                          figure("surface.fit.goodness", surface.goodness, short_text(surface.goodness)));
+                          figure("surface.fit.goodness", surface.goodness, p_text(surface.goodness)));
     Html html = facts(rows);
     if (!surface.alternatives.empty()) html = element("div", {{"class", "columns"}}, html + candidates(surface));
     return section("fit", "Touches and fit", html + slips(surface, units));

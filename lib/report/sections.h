@@ -17,6 +17,8 @@ Html margin_section(const RunFiles& run);
 Html plan_section(const RunFiles& run);
 Html grinding_section(const RunFiles& run);
 Html maps_section(const RunFiles& run);
+Html registration_section(const RunFiles& run);
+Html form_section(const RunFiles& run);
 Html statistics_section(const RunFiles& run);
 Html provenance_section(const RunFiles& run);
 

@@ -29,7 +29,7 @@ p { margin: .5rem 0; max-width: 46rem; }
 .verdict.out .sign, .verdict.out strong { color: #b34700; }
 .verdict strong { display: block; font-size: 1.35rem; line-height: 1.25; font-weight: 650; }
 .verdict p { margin: .15rem 0 0; }
-.tiles { display: grid; grid-template-columns: repeat(auto-fit, minmax(8.2rem, 1fr)); gap: .7rem; margin: 1rem 0 0; padding: 0; list-style: none; }
+.tiles { display: grid; grid-template-columns: repeat(auto-fill, minmax(8.2rem, 1fr)); gap: .7rem; margin: 1rem 0 0; padding: 0; list-style: none; }
 .tiles li { border: 1px solid var(--rule); padding: .5rem .75rem .55rem; }
 .tiles b { display: block; font-size: 1.22rem; font-weight: 600; line-height: 1.3; white-space: nowrap; }
 .tiles span.label { color: var(--soft); font-size: .82rem; line-height: 1.3; display: block; }

@@ -7,6 +7,10 @@ echo '{"count": 3}' >short.json
 "$refuses" 'short.json: undefined: missing' fettle-report --comparison short.json
 "$refuses" 'short.json: finished: missing' fettle-report --grinding short.json
 "$refuses" 'wang1.json: kind: expected "plan", got "job"' fettle-report --plan "$job"
+"$refuses" 'wang1.json: ' fettle-report --alignment "$job"
+"$refuses" 'wang1.json: kind: expected "form", got "job"' fettle-report --form "$job"
+echo '{"kind": "form", "units": {"length": "mm"}, "form": "flatness", "count": 3, "least_squares": 1, "minimum_zone": 1, "dropped": 0, "outliers": 0}' >form.json
+"$refuses" 'form.json: in mm, but the run is in in' fettle-report --job "$job" --form form.json
 "$refuses" 'wang1.json: kind: expected "surface", got "job"' fettle-report --surface "$job"
 echo '{' >broken.json
 "$refuses" 'broken.json: ' fettle-report --comparison broken.json

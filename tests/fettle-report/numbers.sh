@@ -13,16 +13,18 @@ numbers() { # PREFIX FILE FILTER: every number with its path
     numbers plan plan-report.json '{covering_length}'
     numbers grinding grind.json .
     numbers comparison errors.json .
+    numbers alignment align.json .
+    numbers form form.json .
 } >known
 # to 1e-12 where a length goes through mm; to 1e-6 where one goes through the pass frame
 awk 'NR == FNR { known[$1] = $2; next }
     $1 ~ /^trace\./ { next }
     !($1 in known) { print "not in an input:", $1; bad = 1; next }
     { d = $2 - known[$1]; if (d < 0) d = -d; size = known[$1] < 0 ? -known[$1] : known[$1]
-      tol = $1 ~ /^(grinding|comparison)/ ? 0 : $1 ~ /covering_length/ ? 1e-6 : 1e-12
+      tol = $1 ~ /^(grinding|comparison|alignment|form)/ ? 0 : $1 ~ /covering_length/ ? 1e-6 : 1e-12
       if (d > tol * size) { print $1, "shown", $2, "is", known[$1]; bad = 1 } }
     END { exit bad }' known shown
-for part in job surface plan grinding comparison; do # not for want of numbers
+for part in job surface plan grinding comparison alignment form; do # not for want of numbers
     test "$(grep -c "^$part\." shown)" -ge 4
 done
 test "$(grep -c '^comparison\.regions\.inside\.' shown)" -eq 19

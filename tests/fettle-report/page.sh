@@ -6,7 +6,7 @@ page --title 'Part 1' --threads 1 | cmp - page.html
 xmllint --noout --nonet page.html
 ! grep -qiE '<(script|link|iframe|object|embed)|https?:|@import|url\(|src=' page.html || exit 1
 test "$(grep -o 'href="[^"]\{22\}' page.html | sort -u)" = 'href="data:image/png;base64,'
-for id in verdict job fit margin plan grinding maps statistics provenance; do grep -q "<section id=\"$id\">" page.html; done
+for id in verdict job fit margin plan grinding registration maps statistics form provenance; do grep -q "<section id=\"$id\">" page.html; done
 grep -q 'data-verdict="Within tolerance"' page.html
 for file in part.stl samples.pcd errors.json; do grep -q "$(sha256sum $file | cut -d' ' -f1)" page.html; done
 
@@ -18,6 +18,9 @@ fettle-compare ground.pcd --to truth.stl --within "$job" --tolerance 0.0001 --re
 fettle-report --job "$job" --comparison tight.json | grep -q 'data-verdict="Out of tolerance"'
 fettle-compare ground.pcd --to truth.stl --report free.json -o /dev/null
 fettle-report --comparison free.json | grep -q 'data-verdict="Not judged"'
+# slips are named
+jq '.fit.gross_errors = [2]' desired.json >slip.json
+fettle-report --job "$job" --surface slip.json | grep -q 'Slips, left out</th><td>1<.*>touch 2<'
 # files of one run agree; those of another are told
 fettle-report --job "$job" --surface desired.json --plan plan.json -o /dev/null 2>err
 test ! -s err
