@@ -27,8 +27,7 @@ Html registration_section(const RunFiles& run)
         }
         rows.push_back(row);
     }
-    const Html matrix =
-        table("Transform: reference = matrix \u00B7 scan, lengths in" + unit, {"", "", "", ""}, rows, 0);
+    const Html matrix = table("Transform: reference = matrix \u00B7 scan, lengths in" + unit, {}, rows, 0);
     return section("registration", "Registration", element("div", {{"class", "columns"}}, numbers + matrix));
 }
 

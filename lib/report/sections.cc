@@ -2,6 +2,8 @@
 
 #include "report/figures.h"
 
+#include <algorithm>
+
 namespace fettle {
 
 Html section(const std::string& id, const std::string& heading, const Html& content)
@@ -24,14 +26,15 @@ Html table(const std::string& caption, const std::vector<Html>& names, const std
         Html row;
         for (std::size_t i = 0; i < cells.size(); ++i) {
             const Attributes right = i >= numbers ? Attributes{{"class", "number"}} : Attributes{};
-            row += element(heading || i == 0 ? "th" : "td", right, cells[i]);
+            row += element(heading || i < std::min<std::size_t>(numbers, 1) ? "th" : "td", right, cells[i]);
         }
         return element("tr", row);
     };
     Html body;
     for (const std::vector<Html>& cells : rows) body += row_of(cells, false);
     Html content = caption.empty() ? Html() : element("caption", caption);
-    content += element("thead", row_of(names, true)) + element("tbody", body);
+    if (!names.empty()) content += element("thead", row_of(names, true));
+    content += element("tbody", body);
     return element("div", {{"class", "scroll"}}, element("table", content));
 }
 

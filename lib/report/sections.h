@@ -28,7 +28,8 @@ Html section(const std::string& id, const std::string& heading, const Html& cont
 /// A table of two columns: what, and how much.
 using Facts = std::vector<std::pair<std::string, Html>>;
 Html facts(const Facts& rows);
-/// A table with a row of names. @param numbers  the first column that holds numbers, which stand to the right
+/// A table with a row of names, if there are any. The first column names the rows, but for a table of numbers alone.
+/// @param numbers  the first column that holds numbers, which stand to the right
 Html table(const std::string& caption, const std::vector<Html>& names, const std::vector<std::vector<Html>>& rows,
            std::size_t numbers);
 Html drawing_with_caption(const Html& drawing, const std::string& caption);
