@@ -3,13 +3,16 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "machining/cutter.h"
+#include "machining/discretization.h"
 #include "machining/milling.h"
 #include "machining/milling_summary.h"
 #include "machining/nc_program.h"
 #include "machining/number_list.h"
 #include "machining/workpiece.h"
+#include "mesh/mesh_file.h"
 #include "sampling/scan.h"
 
+#include <numbers>
 #include <ostream>
 
 using namespace fettle;
@@ -47,6 +50,18 @@ Workpiece read_stock(const std::string& stock, std::optional<Units::Length> unit
 json::Value to_json(const Clash& clash)
 {
     return json::Value().set("moves", clash.moves).set("first_place", clash.first_place).set("depth", clash.depth);
+}
+
+json::Value to_json(const Spacing& spacing, const DesignShape& shape)
+{
+    return json::Value()
+        .set("shape", to_string(spacing.kind))
+        .set("convex_radius", shape.convex_radius) // null: none
+        .set("concave_radius", shape.concave_radius)
+        .set("slope_deg", shape.slope * 180 / std::numbers::pi)
+        .set("surface_error", spacing.surface_error)
+        .set("sampling_error", spacing.sampling_error)
+        .set("predicted_error", spacing.predicted_error);
 }
 
 void report(json::Value& out, const MillingSummary& sum, const NcProgram& program, const HeightField& left)
@@ -96,7 +111,14 @@ int main(int argc, char** argv)
         const std::string& cutter_text =
             t.required_text("--cutter", "CUTTER",
                             "ball:D, flat:D, bull:D,r or taper:D,halfangle_deg,r: diameter, radius of corner or tip");
-        const auto& step = t.number_if_given("--step", "MM", "Side of a cell; must be given", Range::positive());
+        const auto& step = t.number_if_given("--step", "MM", "Side of a cell", Range::positive());
+        const auto& tolerance = t.number_if_given(
+            "--tolerance", "MM", "Instead of --step: cells so small that errors of the grid are within it",
+            Range::positive());
+        const std::string& design = t.text(
+            "--design", "", "FILE", "With --tolerance: the design, whose curvatures and slopes count; else a plane");
+        const auto& design_units = t.length_unit("--design-units", "Unit of the design, if it is not mm");
+        const bool& published = t.flag("--as-published", "With --tolerance: without regard to slopes");
         const std::string& points = t.choice(
             "--points", "cl", {"cl", "cc"}, "Are points those of the tip, or where the cutter touches (with normals)?");
         const double& feed = t.number("--feed", 10, "MM/S", "Feed of points without one", Range::positive());
@@ -109,10 +131,13 @@ int main(int argc, char** argv)
             "fettle-mill programs/pocket.nc --stock box:0,0,-12,80,60,0 --cutter ball:6 --step 0.2 --holder 40,30 "
             "--report mill.json > machined.stl",
             "a pocket with an island, and what it takes");
-        t.reference("Guan & Xiong, Virtual machining accuracy verification by triangular patch comparison: steps 1, 2");
+        t.reference("Guan & Xiong, Virtual machining accuracy verification by triangular patch comparison: steps 1, 2, "
+                    "eq. 1 to 3");
         t.parse();
 
-        if (!step) throw InputError("--step", "must be given");
+        if (step.has_value() == tolerance.has_value()) throw InputError("give either --step or --tolerance");
+        if (step && (!design.empty() || published))
+            throw InputError("--design and --as-published belong to --tolerance");
         if (ascii && !pcd) throw InputError("--ascii", "belongs to --pcd");
         const Cutter cutter = named("--cutter", [&] { return parse_cutter(cutter_text); });
         MillingOptions options;
@@ -125,7 +150,12 @@ int main(int argc, char** argv)
         } else {
             program.moves = moves_through(parse_cloud(bytes, source).cloud, cutter, points == "cc", feed, source);
         }
-        Workpiece piece = read_stock(stock, stock_units, *step);
+        const DesignShape shape = design.empty() ? DesignShape{} : named(display_name(design), [&] {
+            return shape_of(read_mesh(design, design_units.value_or(Units::Length::mm)));
+        });
+        const Spacing spacing =
+            step ? Spacing{*step} : spacing_for(*tolerance, sampling_radius(cutter), shape, published);
+        Workpiece piece = read_stock(stock, stock_units, spacing.step);
         options.floor = piece.floor;
 
         std::optional<HeightField> before;
@@ -137,6 +167,7 @@ int main(int argc, char** argv)
         else
             write_stl(t.output(), piece.stock);
         report(t.report(), sum, program, piece.stock);
+        if (tolerance) t.report().set("discretization", to_json(spacing, shape));
         const std::string unit = looks_like_nc_program(bytes) ? "line " : "point ";
         const auto warn = [&](const Clash& clash, const std::string& what) {
             if (clash.moves > 0)

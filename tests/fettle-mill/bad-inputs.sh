@@ -36,4 +36,7 @@ refused '--holder: both must be positive' path.xyz $box ball:6 --holder 20,-3
 refused '--ascii: belongs to --pcd' path.xyz $box ball:6 --ascii
 refused '--feed' path.xyz $box ball:6 --feed 0
 refused 'a box is in mm' path.xyz $box ball:6 --stock-units in
-"$HERE/../refuses" '--step: must be given' fettle-mill path.xyz --stock $box --cutter ball:6
+"$HERE/../refuses" 'give either --step or --tolerance' fettle-mill path.xyz --stock $box --cutter ball:6
+refused 'give either --step or --tolerance' path.xyz $box ball:6 --tolerance 0.1
+refused '--design and --as-published belong to --tolerance' path.xyz $box ball:6 --as-published
+"$HERE/../refuses" 'path.xyz: points, expected a mesh' fettle-mill path.xyz --stock $box --cutter ball:6 --tolerance 0.1 --design path.xyz
