@@ -7,32 +7,15 @@
 #include "robot/path_cloud.h"
 #include "robot/rapid.h"
 #include "robot/reach.h"
+#include "robot/solve_path.h"
 
 #include <numbers>
-#include <sstream>
 
 using namespace fettle;
 
 namespace {
 
 constexpr double kRadPerDegree = std::numbers::pi / 180;
-
-// Numbers with commas between; NaN for what is none.
-Eigen::VectorXd numbers_in(const std::string& text)
-{
-    std::istringstream parts(text);
-    std::vector<double> numbers;
-    for (std::string part; std::getline(parts, part, ',');) numbers.push_back(parse_number(part).value_or(NAN));
-    return Eigen::Map<Eigen::VectorXd>(numbers.data(), static_cast<Eigen::Index>(numbers.size()));
-}
-
-Joints joints_in(const std::string& text)
-{
-    const Eigen::VectorXd degrees = numbers_in(text);
-    if (degrees.size() != 6 || !degrees.allFinite())
-        throw InputError("--start", "expected six angles in degrees with commas between, got " + in_quotes(text));
-    return degrees * kRadPerDegree;
-}
 
 Eigen::AlignedBox3d box_in(const std::string& text, double mm)
 {
@@ -59,37 +42,29 @@ void write_reach(Tool& t, const Robot& robot, const std::string& box, double ste
     write_pcd(t.output(), cloud, units, encoding);
 }
 
-// With the option's name before what the library has against its value.
-std::optional<AxisRule> rule_in(const std::string& option, const std::string& text, bool exists, double unit)
-{
-    try {
-        if (text != "auto" && !exists) throw InputError("the robot has none");
-        return parse_axis_rule(text, unit);
-    } catch (const InputError& error) {
-        throw InputError(option, error.what());
-    }
-}
-
+// With the file's name before what the library has against it, but for options, which name themselves.
 template <typename Work>
 auto named(const std::string& path, const Work& work)
 {
     try {
         return work();
     } catch (const InputError& error) {
+        if (std::string(error.what()).starts_with("--")) throw;
         throw InputError(display_name(path), error.what());
     }
 }
 
 // Every solution of every pose, a point each: fields pose and branch.
-void write_all(Tool& t, const Cloud& cloud, const Robot& robot, const PosePath& poses,
-               const Eigen::Matrix2Xd& externals, const Units& units, PcdEncoding encoding)
+void write_all(Tool& t, const Cloud& cloud, const Robot& robot, const SolvedPath& solved, const Units& units,
+               PcdEncoding encoding)
 {
+    const PosePath& poses = solved.poses;
     std::vector<Eigen::Index> from;
     std::vector<double> branches;
     std::vector<CellJoints> solutions;
     for (std::size_t i = 0; i < poses.size(); ++i) {
         if (poses[i].translation().hasNaN()) continue;
-        const Eigen::Vector2d external = externals.col(static_cast<Eigen::Index>(i));
+        const Eigen::Vector2d external = solved.external_values.col(static_cast<Eigen::Index>(i));
         for (const auto& [branch, joints] :
              all_solutions(robot, flange_for(robot, poses[i], external[0], external[1]))) {
             from.push_back(static_cast<Eigen::Index>(i));
@@ -132,12 +107,12 @@ int main(int argc, char** argv)
             t.text("--box", "", "X0,Y0,Z0,X1,Y1,Z1", "Reach: least and greatest corner, cell frame");
         const double& step = t.number("--step", 100, "LENGTH", "Reach: side of the cells", Range::positive());
         const auto& unit = t.length_unit("--file-units", "Unit of POINTS, and of lengths here [its header, or mm]");
-        const std::string& track_text = t.text(
+        const std::string& track = t.text(
             "--track", "auto", "RULE",
             "The track stands at a place (LENGTH), or follows the tip (follow:LENGTH behind it along the track); "
             "auto: the rule under which all of the path is reached farthest from singularities, standing still "
             "if that will do");
-        const std::string& table_text =
+        const std::string& table =
             t.text("--table", "auto", "RULE", "The table: DEG, follow:DEG (the tip's azimuth about its axis) or auto");
         const std::string& start = t.text("--start", "0,0,0,0,0,0", "DEG,…", "The path begins nearest to these joints");
         const double& jump = t.number("--jump", 30, "DEG", "More between two poses is a jump", Range::positive());
@@ -171,34 +146,28 @@ int main(int argc, char** argv)
         CloudFile file = read_cloud(points, unit ? std::optional(Units{*unit, Units::Force::N}) : std::nullopt);
         Cloud& cloud = file.cloud;
         const double mm = file.units.mm();
-        const ExternalRules wanted = {rule_in("--track", track_text, robot.track.has_value(), mm),
-                                      rule_in("--table", table_text, robot.table.has_value(), kRadPerDegree)};
-        PosePath poses;
-        FollowedPath path;
+        const PathWishes wishes = {track, table, start, jump};
+        const SolvedPath solved = named(
+            points, [&] { return to_pose ? given_path(robot, cloud, jump) : solve_path(robot, cloud, wishes, mm); });
+        const FollowedPath& path = solved.path;
         if (to_pose) {
-            path = judge(robot, named(points, [&] { return path_joints(cloud, robot); }), jump * kRadPerDegree);
-            poses = forward(robot, path.joints);
-            set_path(cloud, poses);
+            set_path(cloud, solved.poses);
         } else {
-            poses = named(points, [&] { return path_poses(cloud); });
-            const ExternalChoice choice = choose_externals(robot, poses, wanted);
-            const Eigen::Matrix2Xd externals = external_values(robot, poses, choice.track, choice.table);
-            path = follow(robot, poses, externals, {joints_in(start), jump * kRadPerDegree});
-            if (robot.track) t.report().set("track", to_json(choice.track, mm));
-            if (robot.table) t.report().set("table", to_json(choice.table, kRadPerDegree));
-            if (all) write_all(t, cloud, robot, poses, externals, file.units, encoding);
+            if (robot.track) t.report().set("track", to_json(solved.externals.track, mm));
+            if (robot.table) t.report().set("table", to_json(solved.externals.table, kRadPerDegree));
+            if (all) write_all(t, cloud, robot, solved, file.units, encoding);
             set_joints(cloud, robot, path.joints);
         }
         std::optional<Eigen::VectorXd> times;
         const Feedrate feedrate = {feed.value_or(0) * mm, turn_feed * kRadPerDegree};
         if (feed)
-            set_field(cloud, "t", times.emplace(arrival_times(poses, feedrate)), 8);
+            set_field(cloud, "t", times.emplace(arrival_times(solved.poses, feedrate)), 8);
         else if (has_field(cloud, "t"))
             times = field(cloud, "t");
         set_states(cloud, path);
         if (!all) write_pcd(t.output(), cloud, file.units, encoding);
         const bool done = add_report(t.report(), robot, path, singular, times, file.units);
-        if (done && !rapid.empty()) write_rapid(t.output_file(rapid), robot, poses, path, {feedrate, zone});
+        if (done && !rapid.empty()) write_rapid(t.output_file(rapid), robot, solved.poses, path, {feedrate, zone});
         if (!done && !rapid.empty()) t.warn("the robot cannot run this path: " + rapid + " is not written");
         return done ? Verdict::yes : Verdict::no;
     });

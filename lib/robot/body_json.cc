@@ -93,6 +93,8 @@ std::size_t body_called(Reader& reader, const std::string& key, const Robot& rob
         if (robot.bodies[i].name == name) return i;
         names.push_back(robot.bodies[i].name);
     }
+    if (name == kWorkpiece) return robot.bodies.size();
+    names.push_back(kWorkpiece);
     const std::string meant = nearest_word(name, names);
     reader.refuse(key, "no body is called '" + name + "'" + (meant.empty() ? "" : ", did you mean '" + meant + "'?"));
 }
@@ -147,6 +149,7 @@ void parse_bodies(Reader& reader, const std::string& path, double mm, Robot& rob
     if (reader.has("bodies"))
         for (Reader& body : reader.objects("bodies")) {
             const std::string name = body.text("name");
+            if (name == kWorkpiece) body.refuse("name", "is what the part is called");
             for (const Body& other : robot.bodies)
                 if (other.name == name) body.refuse("name", "another body is called '" + name + "', too");
             const int on = body.integer("link", link::kCell, link::kTable);

@@ -66,7 +66,10 @@ struct Body {
     Solid solid;
 };
 
-/// Two bodies, by their numbers, the lower one first.
+/// How robot files call what is machined; no body may be called so.
+inline constexpr const char* kWorkpiece = "workpiece";
+
+/// Two bodies, by their numbers, the lower one first; the number after the last one is the workpiece's.
 using BodyPair = std::pair<std::size_t, std::size_t>;
 
 /// A robot cell ("kind": "robot"), mm and rad. The arm has a spherical wrist and parallel axes 2 and 3, so that its

@@ -1,0 +1,27 @@
+# Everything refused: exit 2, one line that names the file or option and the value, nothing on stdout.
+refuses() { "$HERE/../refuses" "$@" </dev/null; }
+cp "$SAMPLES/robots/irb1400.json" robot.json
+cp "$SAMPLES/paths/keel.pcd" path.pcd
+: >empty
+refuses 'empty: ' fettle-collide empty path.pcd
+refuses 'empty: ' fettle-collide robot.json empty
+refuses 'empty' fettle-collide robot.json path.pcd --workpiece empty
+refuses 'missing.stl' fettle-collide robot.json path.pcd --workpiece missing.stl
+sed 's/ qz$/ qq/' path.pcd >no_qz.pcd
+refuses "no_qz.pcd: the points have no field 'qz'" fettle-collide robot.json no_qz.pcd
+sed 's/ qz$/ joint1/' path.pcd >joints.pcd
+refuses "joints.pcd: the points have no field 'joint2'" fettle-collide robot.json joints.pcd
+refuses '--tolerance' fettle-collide robot.json path.pcd --tolerance -1
+refuses '--beyond' fettle-collide robot.json path.pcd --beyond 0
+refuses '--resolution' fettle-collide robot.json path.pcd --resolution 0
+refuses '--track: expected auto' fettle-collide robot.json path.pcd --track x
+refuses '--table: the robot has none' fettle-collide robot.json path.pcd --table 5
+jq '.bodies[0].name = "workpiece"' robot.json >named.json
+refuses 'named.json: bodies[0].name: is what the part is called' fettle-collide named.json path.pcd
+# an unreachable pose: the answer is no, and its clearance is not known
+sed '$s/^1000/9000/' path.pcd >far.pcd
+status=0
+fettle-collide robot.json far.pcd --report r.json --ascii >far.out || status=$?
+test $status -eq 1
+jq -e '.reached == 60 and .looked_at == 60 and .unreachable == 1' r.json >/dev/null
+tail -n 1 far.out | grep -q nan

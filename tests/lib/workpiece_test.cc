@@ -1,0 +1,126 @@
+#include "robot/workpiece.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace fettle {
+namespace {
+
+using Eigen::Isometry3d, Eigen::Vector3d;
+
+// A sheet z = 5 sin(x / 9) cos(y / 7) over a square; with a floor and walls it is a body.
+double height(double x, double y) { return 5 * std::sin(x / 9) * std::cos(y / 7); }
+
+Mesh sheet(int cells, double side)
+{
+    Mesh mesh;
+    mesh.vertices.resize(3, (cells + 1) * (cells + 1));
+    mesh.triangles.resize(3, 2 * cells * cells);
+    for (int j = 0; j <= cells; ++j)
+        for (int i = 0; i <= cells; ++i) {
+            const double x = side * i / cells - side / 2, y = side * j / cells - side / 2;
+            mesh.vertices.col(j * (cells + 1) + i) << x, y, height(x, y);
+        }
+    Eigen::Index t = 0;
+    for (int j = 0; j < cells; ++j)
+        for (int i = 0; i < cells; ++i) {
+            const int a = j * (cells + 1) + i, b = a + 1, c = a + cells + 1, d = c + 1;
+            mesh.triangles.col(t++) << a, b, d;
+            mesh.triangles.col(t++) << a, d, c;
+        }
+    return mesh;
+}
+
+Mesh cube(double side)
+{
+    Mesh mesh;
+    mesh.vertices.resize(3, 8);
+    for (int k = 0; k < 8; ++k)
+        mesh.vertices.col(k) << (k & 1 ? side : -side) / 2, (k & 2 ? side : -side) / 2, (k & 4 ? side : -side) / 2;
+    mesh.triangles.resize(3, 12);
+    const int faces[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+    for (int f = 0; f < 6; ++f) {
+        mesh.triangles.col(2 * f) << faces[f][0], faces[f][1], faces[f][2];
+        mesh.triangles.col(2 * f + 1) << faces[f][0], faces[f][2], faces[f][3];
+    }
+    return mesh;
+}
+
+// Reference: every triangle, one by one.
+TEST(Workpiece, NearestAsByBruteForce)
+{
+    const Mesh mesh = sheet(24, 100);
+    const Workpiece workpiece(mesh);
+    EXPECT_FALSE(workpiece.closed());
+    std::mt19937 random(11);
+    const auto number = [&](double least, double most) {
+        return std::uniform_real_distribution<double>(least, most)(random);
+    };
+    int touching = 0;
+    for (int k = 0; k < 600; ++k) {
+        const Vector3d at(number(-70, 70), number(-70, 70), number(-15, 30));
+        const Vector3d to = at + Vector3d(number(-20, 20), number(-20, 20), number(1, 40));
+        const Solid solid = k % 3 == 0   ? Solid(solid::Sphere{at, number(1, 8)})
+                            : k % 3 == 1 ? Solid(solid::Cylinder{at, to, number(1, 15)})
+                                         : Solid(solid::Cone{at, to, number(0, 5), number(5, 20)});
+        const PlacedSolid body(solid, Isometry3d::Identity());
+        double least = INFINITY;
+        for (const auto t : mesh.triangles.colwise()) {
+            Triangle corners;
+            for (int i = 0; i < 3; ++i) corners.col(i) = mesh.vertices.col(t[i]);
+            least = std::min(least, clearance(body, PlacedSolid(corners)).distance);
+        }
+        const Workpiece::Nearest found = workpiece.nearest(body);
+        EXPECT_NEAR(found.clearance.distance, least, 2 * kClearanceTolerance);
+        EXPECT_GE(found.triangle, 0);
+        const Workpiece::Nearest near = workpiece.nearest(body, 3);
+        EXPECT_NEAR(near.clearance.distance, std::min(least, 3.0), 2 * kClearanceTolerance);
+        EXPECT_EQ(near.triangle >= 0, least < 3);
+        if (least < 0) ++touching;
+    }
+    EXPECT_GT(touching, 100);
+    EXPECT_LT(touching, 500);
+}
+
+TEST(Workpiece, BallOnAPlane)
+{
+    const Mesh mesh = cube(100);
+    const Workpiece workpiece(mesh);
+    EXPECT_TRUE(workpiece.closed());
+    const auto gap = [&](double z) {
+        const Solid ball = solid::Sphere{{10, 20, z}, 6};
+        return workpiece.nearest(PlacedSolid(ball, Isometry3d::Identity()));
+    };
+    EXPECT_NEAR(gap(57).clearance.distance, 1, 1e-8);
+    EXPECT_NEAR(gap(56).clearance.distance, 0, 1e-8);
+    EXPECT_NEAR(gap(55.95).clearance.distance, -0.05, 1e-8);
+    EXPECT_NEAR((gap(57).clearance.on_b - Vector3d(10, 20, 50)).norm(), 0, 1e-6);
+    // wholly inside: no triangle is touched
+    EXPECT_TRUE(gap(20).inside);
+    EXPECT_NEAR(gap(20).clearance.distance, -24, 1e-8);
+    EXPECT_FALSE(gap(57).inside);
+    const Solid ball = solid::Sphere{{10, 20, 20}, 6};
+    EXPECT_NEAR(workpiece.nearest(PlacedSolid(ball, Isometry3d::Identity()), 2).clearance.distance, -24, 1e-8);
+    // a hole in the mesh: it has no inside
+    Mesh open = mesh;
+    open.triangles.conservativeResize(3, 11);
+    EXPECT_FALSE(is_closed(open));
+    EXPECT_FALSE(Workpiece(open).nearest(PlacedSolid(ball, Isometry3d::Identity())).inside);
+}
+
+// A cell crossed only by an edge of a long needle, corners far away: it is found all the same.
+TEST(Workpiece, NeedlesAreNotMissed)
+{
+    Mesh mesh;
+    mesh.vertices.resize(3, 3);
+    mesh.vertices << -1000, 1000, 1000, 0, 0.01, -0.01, 0, 0, 0;
+    mesh.triangles = Eigen::Vector3i(0, 1, 2);
+    const Workpiece workpiece(mesh);
+    const Solid ball = solid::Sphere{{3, 0, 7}, 6};
+    EXPECT_NEAR(workpiece.nearest(PlacedSolid(ball, Isometry3d::Identity())).clearance.distance, 1, 1e-8);
+}
+
+} // namespace
+} // namespace fettle

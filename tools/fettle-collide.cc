@@ -1,0 +1,99 @@
+#include "cli/tool.h"
+#include "cloud/pcd.h"
+#include "core/file.h"
+#include "mesh/mesh_file.h"
+#include "robot/arm_report.h"
+#include "robot/collision_report.h"
+#include "robot/path_cloud.h"
+#include "robot/solve_path.h"
+
+using namespace fettle;
+
+namespace {
+
+// With the file's name before what the library has against it, but for options, which name themselves.
+SolvedPath path_in(const Robot& robot, const std::string& file, const Cloud& cloud, const PathWishes& wishes, double mm)
+{
+    try {
+        return has_field(cloud, "joint1") ? given_path(robot, cloud, wishes.jump_deg)
+                                          : solve_path(robot, cloud, wishes, mm);
+    } catch (const InputError& error) {
+        if (std::string(error.what()).starts_with("--")) throw;
+        throw InputError(display_name(file), error.what());
+    }
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+    const std::string description =
+        "Collisions of a robot along a path: arm, tool, fixtures and workpiece, at the poses and between them.\n"
+        "Signed clearances of the solids of the robot file among each other and against every triangle of the "
+        "workpiece: "
+        "negative is how far the two must shift to come apart. Bodies on one link or on neighbouring links and allowed "
+        "pairs are left out. A contact no deeper than the tolerance is no collision. PATH holds poses (as for "
+        "fettle-arm "
+        "--inverse, whose joints are found here) or joints. Added: clearance of the pose, clearance_between (on the "
+        "way "
+        "from the pose before, a lower bound), body and other (who: numbers in the robot file from 0, the workpiece's "
+        "after the last), foot_x foot_y foot_z (where, in the cell). Exit 1 if something collides, a pose is not "
+        "reached "
+        "or the path jumps.";
+    return tool_main(argc, argv, description, [](Tool& t) {
+        const std::string& robot_file = t.file("ROBOT", "The robot, JSON");
+        const std::string& points = t.input("PATH", "path or joints, PCD");
+        const std::string& part = t.text("--workpiece", "", "MESH", "STL, PLY, OBJ, OFF, in the part's frame [none]");
+        const auto& part_unit = t.length_unit("--workpiece-units", "Unit of that file, if it is not the path's");
+        const auto& unit = t.length_unit("--file-units", "Unit of PATH, and of lengths here [its header, or mm]");
+        const auto& tolerance = t.number_if_given("--tolerance", "LENGTH", "What goes no deeper is a contact [0.01 mm]",
+                                                  Range::at_least(0));
+        const auto& beyond =
+            t.number_if_given("--beyond", "LENGTH", "Clearances are told up to here [50 mm]", Range::positive());
+        const auto& resolution = t.number_if_given(
+            "--resolution", "LENGTH",
+            "Between poses, where bodies are near, they move no farther from look to look [0.1 mm]", Range::positive());
+        PathWishes wishes;
+        const std::string& track = t.text("--track", wishes.track, "RULE", "As of fettle-arm");
+        const std::string& table = t.text("--table", wishes.table, "RULE", "As of fettle-arm");
+        const std::string& start = t.text("--start", wishes.start, "DEG,…", "As of fettle-arm");
+        const double& jump = t.number("--jump", wishes.jump_deg, "DEG", "As of fettle-arm", Range::positive());
+        const bool& ascii = t.flag("--ascii", "Text instead of binary");
+        t.example("fettle-part parts/keel.json | fettle-collide robots/irb1400.json paths/keel.pcd --workpiece - "
+                  "--report clear.json > checked.pcd",
+                  "does the robot touch anything but the keel along which its ball runs?");
+        t.reference("Chen & Wei, 5 and algorithm 1; Gilbert, Johnson & Keerthi 1988; van den Bergen 2001");
+        t.parse();
+
+        wishes = {track, table, start, jump};
+        const Robot robot = read_robot(robot_file);
+        CloudFile file = read_cloud(points, unit ? std::optional(Units{*unit, Units::Force::N}) : std::nullopt);
+        Cloud& cloud = file.cloud;
+        const double mm = file.units.mm();
+        CollisionOptions options;
+        if (tolerance) options.tolerance = *tolerance * mm;
+        if (beyond) options.beyond = *beyond * mm;
+        if (resolution) options.resolution = *resolution * mm;
+        const SolvedPath solved = path_in(robot, points, cloud, wishes, mm);
+        Mesh mesh;
+        std::optional<Workpiece> workpiece;
+        if (!part.empty()) {
+            mesh = read_mesh(part, part_unit.value_or(file.units.length));
+            workpiece.emplace(mesh);
+            if (!workpiece->closed())
+                t.warn(display_name(part) + ": is not closed: a body wholly inside it would not be noticed");
+        }
+        const CheckedPath checked =
+            check_path(robot, workpiece ? &*workpiece : nullptr, solved.path.joints, options, t.progress("poses"));
+        set_path(cloud, solved.poses);
+        set_joints(cloud, robot, solved.path.joints);
+        set_states(cloud, solved.path);
+        set_clearances(cloud, robot, checked);
+        std::optional<Eigen::VectorXd> times;
+        if (has_field(cloud, "t")) times = field(cloud, "t");
+        const bool run = add_report(t.report(), robot, solved.path, 0, times, file.units);
+        const bool clear = add_report(t.report(), robot, checked, options, times, file.units);
+        write_pcd(t.output(), cloud, file.units, ascii ? PcdEncoding::ascii : PcdEncoding::binary);
+        return run && clear ? Verdict::yes : Verdict::no;
+    });
+}
