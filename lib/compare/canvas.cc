@@ -4,6 +4,7 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include <array>
 #include <cmath>
 
 namespace fettle {
@@ -18,6 +19,35 @@ constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
 constexpr int kShift = 4;
 
 cv::Scalar scalar(const Rgb& c) { return {double(c[0]), double(c[1]), double(c[2])}; }
+
+// U+00A0 to U+00FF as they are written where there is only ASCII.
+constexpr std::array<const char*, 96> kLatin = {
+    " ",   "!",  "c", "GBP", "?",  "JPY", "|",    "par.", "\"", "(c)", "a", "<<", "-",   "-",   "(R)", "-",
+    "deg", "+-", "2", "3",   "'",  "u",   "par.", ".",    ",",  "1",   "o", ">>", "1/4", "1/2", "3/4", "?",
+    "A",   "A",  "A", "A",   "Ae", "Aa",  "AE",   "C",    "E",  "E",   "E", "E",  "I",   "I",   "I",   "I",
+    "D",   "N",  "O", "O",   "O",  "O",   "Oe",   "x",    "Oe", "U",   "U", "U",  "Ue",  "Y",   "Th",  "ss",
+    "a",   "a",  "a", "a",   "ae", "aa",  "ae",   "c",    "e",  "e",   "e", "e",  "i",   "i",   "i",   "i",
+    "d",   "n",  "o", "o",   "o",  "o",   "oe",   "/",    "oe", "u",   "u", "u",  "ue",  "y",   "th",  "y"};
+
+/// The font holds ASCII alone: letters of western languages are written by others, dashes as "-", the rest as "?".
+std::string plain(const std::string& words)
+{
+    std::string ascii;
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        const auto byte = [&](std::size_t k) { return k < words.size() ? static_cast<unsigned char>(words[k]) : 0U; };
+        const bool latin = (byte(i) == 0xC2 && byte(i + 1) >= 0xA0) || byte(i) == 0xC3;
+        const bool dash = byte(i) == 0xE2 && ((byte(i + 1) == 0x80 && byte(i + 2) >= 0x90 && byte(i + 2) <= 0x95) ||
+                                              (byte(i + 1) == 0x88 && byte(i + 2) == 0x92));
+        if (byte(i) < 0x80)
+            ascii += words[i];
+        else if (latin && byte(i + 1) >= 0x80)
+            ascii += kLatin[(byte(i + 1) & 0x3FU) + (byte(i) == 0xC3 ? 0x40U : 0U) - 0x20U];
+        else
+            ascii += dash ? "-" : "?";
+        while (byte(i) >= 0x80 && (byte(i + 1) & 0xC0U) == 0x80) ++i; // the rest of the character
+    }
+    return ascii;
+}
 
 /// A stroke grows with the letter: a ninth of its height, bold a sixth.
 int stroke(double capital_height, bool bold)
@@ -50,7 +80,7 @@ int Canvas::height() const { return state_->sheet.rows; }
 
 double Canvas::text_width(const std::string& words, double capital_height, bool bold) const
 {
-    return double(text_size(words, capital_height, bold).width) / kOversampling;
+    return double(text_size(plain(words), capital_height, bold).width) / kOversampling;
 }
 
 void Canvas::draw_text(const std::string& words, const Eigen::Vector2d& at, double capital_height, const Rgb& colour,
@@ -61,14 +91,15 @@ void Canvas::draw_text(const std::string& words, const Eigen::Vector2d& at, doub
     const double base = at.y() + capital_height / 2;
     // A mask around the text, with room for strokes, tails and the average; then the ink by how much of it there is.
     const int room = static_cast<int>(std::ceil(capital_height));
-    const cv::Size letters = text_size(words, capital_height, bold) / kOversampling;
+    const std::string letters_of_font = plain(words);
+    const cv::Size letters = text_size(letters_of_font, capital_height, bold) / kOversampling;
     const cv::Rect place(static_cast<int>(std::floor(left)) - room, static_cast<int>(std::floor(base)) - 2 * room,
                          letters.width + 2 * room + 2, 3 * room + 2);
     cv::Mat1b mask(place.height * kOversampling, place.width * kOversampling, uchar(0));
     const cv::Point pen(static_cast<int>(std::lround(kOversampling * (left - place.x))),
                         static_cast<int>(std::lround(kOversampling * (base - place.y))));
-    cv::putText(mask, words, pen, kFont, kOversampling * capital_height / kCapital, 255, stroke(capital_height, bold),
-                cv::LINE_AA);
+    cv::putText(mask, letters_of_font, pen, kFont, kOversampling * capital_height / kCapital, 255,
+                stroke(capital_height, bold), cv::LINE_AA);
     cv::resize(mask, mask, place.size(), 0, 0, cv::INTER_AREA);
     const cv::Rect visible = place & cv::Rect(0, 0, width(), height());
     for (int row = visible.y; row < visible.y + visible.height; ++row)

@@ -19,7 +19,7 @@ class Sheet {
     enum class Align { left, centre, right };
     static constexpr Rgb kInk = {40, 40, 40};
 
-    /// One line of text. @param at  the left end, middle or right end, half-way up the capital letters
+    /// One line of text, UTF-8. @param at  the left end, middle or right end, half-way up the capital letters
     void text(const std::string& words, const Eigen::Vector2d& at, double capital_height, const Rgb& colour = kInk,
               Align align = Align::left, bool bold = false)
     {

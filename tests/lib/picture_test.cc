@@ -1,6 +1,7 @@
 // Pictures read back: the colours at known places are those of the values there.
 #include "compare/picture.h"
 
+#include "compare/canvas.h"
 #include "compare/colours.h"
 #include "compare/png.h"
 #include "compare/raster.h"
@@ -266,6 +267,19 @@ TEST(Picture, RefusesWhatItCannotDraw)
     EXPECT_THROW(picture(cloud, {}), InputError);
     cloud.xyz.setRandom();
     EXPECT_THROW(picture(cloud, errors_to(1)), InputError); // no such field
+}
+
+// The font is ASCII: what it lacks is written with what it has. Reference: the same words in ASCII.
+TEST(Canvas, WritesWesternLettersByOthers)
+{
+    const auto drawn_text = [](const std::string& words) {
+        Canvas sheet(700, 40);
+        sheet.text(words, {10, 20}, 12);
+        return sheet.png();
+    };
+    EXPECT_EQ(drawn_text("Gu\u00DFteil \u2013 Pr\u00FCfung \u00B10.5 \u00E9\u00FF"),
+              drawn_text("Gussteil - Pruefung +-0.5 ey"));
+    EXPECT_EQ(drawn_text("a\u4E2D\xFFz\xC3"), drawn_text("a??z?"));
 }
 
 // Noise cannot be packed: the file is larger than its pixels.

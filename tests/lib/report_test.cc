@@ -4,6 +4,7 @@
 #include "report/figures.h"
 #include "report/html.h"
 #include "report/svg.h"
+#include "report/svg_sheet.h"
 
 #include <gtest/gtest.h>
 
@@ -77,6 +78,27 @@ TEST(Figures, DurationsCarryOver)
     EXPECT_EQ(duration_text(270.8), "4 min 31 s");
     EXPECT_EQ(duration_text(119.7), "2 min 00 s");
     EXPECT_EQ(duration_text(7260), "2 h 01 min");
+}
+
+// Widths as in Helvetica's metrics: m is 833, e, a and n 556 thousandths.
+TEST(SvgSheet, KnowsHowWideTextIs)
+{
+    const SvgSheet sheet(100, 100);
+    EXPECT_NEAR(sheet.text_width("mean", 7.18), (833 + 3 * 556) / 100.0, 1e-12);
+    EXPECT_NEAR(sheet.text_width("\u00E4", 7.18), 5.56, 1e-12);
+}
+
+TEST(SvgSheet, DrawsTextPicturesAndSigns)
+{
+    SvgSheet sheet(100, 50);
+    sheet.text("-1 a-b <", {10, 20}, 7.18, {1, 2, 3});
+    const std::vector<std::uint8_t> pixels = {255, 0, 0, 0, 0, 255};
+    sheet.image({1, 2}, {20, 10}, 2, pixels);
+    const std::string html = sheet.drawing("a map").bytes();
+    EXPECT_NE(html.find(">\u22121 a-b &lt;</text>"), std::string::npos) << html;
+    EXPECT_NE(html.find("fill:#010203"), std::string::npos);
+    EXPECT_NE(html.find("<image x=\"1\" y=\"2\" width=\"20\" height=\"10\""), std::string::npos);
+    EXPECT_NE(html.find("viewBox=\"0 0 100 50\""), std::string::npos);
 }
 
 TEST(Svg, TicksAreRoundAndInside)
