@@ -10,6 +10,13 @@
 
 namespace fettle {
 
+/// Of a point from a solid, mm: negative inside. It is convex in the point: gradient · (q - p) is no more than what it
+/// grows by on the way to any q.
+struct PointDistance {
+    double value = 0;
+    Eigen::Vector3d gradient = Eigen::Vector3d::Zero(); ///< unit; 0 at the core of a sphere or capsule
+};
+
 /// A convex solid where it stands: all points within `radius` of a core.
 class PlacedSolid {
   public:
@@ -21,19 +28,22 @@ class PlacedSolid {
     Eigen::Vector3d farthest(const Eigen::Vector3d& direction) const;
     double radius() const { return radius_; }
     /// Of the solid, not of its core.
+    PointDistance distance(const Eigen::Vector3d& point) const;
+    /// Of the solid, not of its core.
     Eigen::AlignedBox3d box() const;
 
   private:
-    enum class Kind { few_points, hull, frustum };
+    enum class Kind { segment, box, triangle, hull, frustum };
     void set_segment(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double radius);
     void set_frustum(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double radius_from, double radius_to);
 
-    Kind kind_ = Kind::few_points;
+    Kind kind_ = Kind::segment;
     int count_ = 0;
-    Eigen::Matrix<double, 3, 8> few_;        ///< corners of a polytope
-    const Eigen::Matrix3Xd* hull_ = nullptr; ///< its corners, in the body's frame
-    Eigen::Isometry3d T_ = Eigen::Isometry3d::Identity();
-    Eigen::Vector3d from_, to_, axis_; ///< of a frustum
+    Eigen::Matrix<double, 3, 8> few_;                     ///< corners of a polytope
+    const Eigen::Matrix3Xd* hull_ = nullptr;              ///< its corners, in the body's frame
+    Eigen::Isometry3d T_ = Eigen::Isometry3d::Identity(); ///< of a hull's or a box's frame
+    Eigen::Vector3d half_;                                ///< of a box's sides
+    Eigen::Vector3d from_, to_, axis_;                    ///< of a frustum
     double radius_from_ = 0, radius_to_ = 0, radius_ = 0;
 };
 

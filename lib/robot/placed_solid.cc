@@ -1,5 +1,6 @@
 #include "robot/clearance.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace fettle {
@@ -17,6 +18,54 @@ struct Overloaded : Visitors... {
 };
 template <typename... Visitors>
 Overloaded(Visitors...) -> Overloaded<Visitors...>;
+
+PointDistance from_segment(const Vector3d& from, const Vector3d& to, double radius, const Vector3d& p)
+{
+    const Vector3d d = to - from;
+    const double squared = d.squaredNorm();
+    const double t = squared > 0 ? std::clamp((p - from).dot(d) / squared, 0.0, 1.0) : 0;
+    const Vector3d off = p - from - t * d;
+    const double length = off.norm();
+    return {length - radius, length > 0 ? Vector3d(off / length) : Vector3d::Zero()};
+}
+
+PointDistance from_box(const Eigen::Isometry3d& T_cell_box, const Vector3d& half, const Vector3d& p)
+{
+    const Vector3d q = T_cell_box.inverse() * p, beyond = q.cwiseAbs() - half;
+    const Vector3d sign = q.unaryExpr([](double x) { return x < 0 ? -1.0 : 1.0; });
+    Eigen::Index side = 0;
+    const double most = beyond.maxCoeff(&side);
+    if (most <= 0) return {most, T_cell_box.linear().col(side) * sign[side]};
+    const Vector3d off = beyond.cwiseMax(0.0);
+    return {off.norm(), T_cell_box.linear() * sign.cwiseProduct(off).normalized()};
+}
+
+// In the plane of the axis and the point a frustum is a trapezoid: (distance from the axis, height).
+struct Flat {
+    Eigen::Vector2d gradient;
+    double value;
+};
+
+Flat from_trapezoid(double r0, double r1, double length, const Eigen::Vector2d& p)
+{
+    using Eigen::Vector2d;
+    const Vector2d out = Vector2d(length, r0 - r1).normalized(); // of the slanted side
+    const double below = -p.y(), above = p.y() - length, beside = (p.x() - r0) * out.x() + p.y() * out.y();
+    if (below <= 0 && above <= 0 && beside <= 0) {
+        if (beside >= below && beside >= above) return {out, beside};
+        return below >= above ? Flat{{0, -1}, below} : Flat{{0, 1}, above};
+    }
+    const auto nearest = [&p](const Vector2d& a, const Vector2d& b) {
+        const double squared = (b - a).squaredNorm();
+        const double t = squared > 0 ? std::clamp((p - a).dot(b - a) / squared, 0.0, 1.0) : 0;
+        return Vector2d(p - a - t * (b - a));
+    };
+    Vector2d off = nearest({r0, 0}, {r1, length});
+    for (const Vector2d& other : {nearest({0, 0}, {r0, 0}), nearest({0, length}, {r1, length})})
+        if (other.squaredNorm() < off.squaredNorm()) off = other;
+    const double distance = off.norm();
+    return distance > 0 ? Flat{off / distance, distance} : Flat{out, 0};
+}
 
 } // namespace
 
@@ -45,10 +94,13 @@ PlacedSolid::PlacedSolid(const Solid& solid, const Eigen::Isometry3d& T)
                           [&](const solid::Cylinder& s) { set_frustum(T * s.from, T * s.to, s.radius, s.radius); },
                           [&](const solid::Cone& s) { set_frustum(T * s.from, T * s.to, s.radius_from, s.radius_to); },
                           [&](const solid::Box& s) {
+                              kind_ = Kind::box;
                               count_ = 8;
+                              T_ = T * s.T_body_box;
+                              half_ = s.half;
                               for (int k = 0; k < 8; ++k) {
                                   const Vector3d sign(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1);
-                                  few_.col(k) = T * (s.T_body_box * Vector3d(sign.cwiseProduct(s.half)));
+                                  few_.col(k) = T_ * Vector3d(sign.cwiseProduct(s.half));
                               }
                           },
                           [&](const solid::Hull& s) {
@@ -59,11 +111,11 @@ PlacedSolid::PlacedSolid(const Solid& solid, const Eigen::Isometry3d& T)
                solid);
 }
 
-PlacedSolid::PlacedSolid(const Triangle& triangle) : count_(3) { few_.leftCols<3>() = triangle; }
+PlacedSolid::PlacedSolid(const Triangle& triangle) : kind_(Kind::triangle), count_(3) { few_.leftCols<3>() = triangle; }
 
 Vector3d PlacedSolid::farthest(const Vector3d& direction) const
 {
-    if (kind_ == Kind::few_points) {
+    if (kind_ == Kind::segment || kind_ == Kind::box || kind_ == Kind::triangle) {
         int best = 0;
         double most = few_.col(0).dot(direction);
         for (int k = 1; k < count_; ++k) {
@@ -88,6 +140,22 @@ Vector3d PlacedSolid::farthest(const Vector3d& direction) const
     }
     const Vector3d from = from_ + radius_from_ * rim, to = to_ + radius_to_ * rim;
     return from.dot(direction) > to.dot(direction) ? from : to;
+}
+
+PointDistance PlacedSolid::distance(const Vector3d& p) const
+{
+    if (kind_ == Kind::segment) return from_segment(few_.col(0), few_.col(count_ - 1), radius_, p);
+    if (kind_ == Kind::box) return from_box(T_, half_, p);
+    if (kind_ == Kind::frustum) {
+        const double height = (p - from_).dot(axis_);
+        const Vector3d across = p - from_ - height * axis_;
+        const double r = across.norm();
+        const Flat flat = from_trapezoid(radius_from_, radius_to_, (to_ - from_).norm(), {r, height});
+        const Vector3d rim = r > 0 ? Vector3d(across / r) : axis_.unitOrthogonal();
+        return {flat.value, flat.gradient.x() * rim + flat.gradient.y() * axis_};
+    }
+    const Clearance c = clearance(*this, PlacedSolid(Triangle(p.replicate<1, 3>())));
+    return {c.distance, c.normal};
 }
 
 Eigen::AlignedBox3d PlacedSolid::box() const

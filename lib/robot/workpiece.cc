@@ -1,6 +1,7 @@
 #include "robot/workpiece.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -14,9 +15,55 @@ using Eigen::Vector3d;
 
 constexpr std::uint32_t kLeaf = 4; // triangles; a distance to one costs about as much as a few boxes
 
-double squared_apart(const Eigen::AlignedBox3d& a, const Eigen::AlignedBox3d& b)
+// Distances are told to this, mm.
+constexpr double kDistanceTolerance = 1e-9;
+// Depths inside cylinders, cones, boxes and hulls are told to this, mm, a tenth of what machining asks for: where the
+// way out changes sides, every halving costs twice as many pieces.
+constexpr double kDepthTolerance = 1e-3;
+
+// No point of the box is nearer: the distance from a convex body lies above its tangent planes.
+double lower_bound(const PlacedSolid& body, const Eigen::AlignedBox3d& box)
 {
-    return (a.min() - b.max()).cwiseMax(b.min() - a.max()).cwiseMax(0.0).squaredNorm();
+    const PointDistance at = body.distance(box.center());
+    return at.value - at.gradient.cwiseAbs().dot(box.sizes()) / 2;
+}
+
+void take(const PlacedSolid& body, const Vector3d& point, Clearance& best, bool& nearer)
+{
+    const PointDistance at = body.distance(point);
+    if (!(at.value < best.distance)) return;
+    best = {at.value, at.gradient, point - at.value * at.gradient, point};
+    nearer = true;
+}
+
+// No point of the triangle is nearer, by the tangent plane at its middle. The corner that is nearest by it is tried.
+double lower_bound(const PlacedSolid& body, const Triangle& t, Clearance& best, bool& nearer)
+{
+    const Vector3d middle = t.rowwise().mean();
+    const PointDistance at = body.distance(middle);
+    Eigen::Index corner = 0;
+    const double slope = (at.gradient.transpose() * (t.colwise() - middle)).minCoeff(&corner);
+    if (at.value + slope < best.distance) take(body, t.col(corner), best, nearer);
+    return at.value + slope;
+}
+
+// The deepest point of a triangle, by halving its sides where a tangent plane leaves room for a deeper one than is
+// known.
+void find_deepest(const PlacedSolid& body, const Triangle& whole, Clearance& best, bool& nearer)
+{
+    std::vector<Triangle> waiting = {whole};
+    while (!waiting.empty()) {
+        const Triangle t = waiting.back();
+        waiting.pop_back();
+        if (lower_bound(body, t, best, nearer) >= best.distance - kDepthTolerance) continue;
+        const Vector3d a = (t.col(1) + t.col(2)) / 2, b = (t.col(2) + t.col(0)) / 2, c = (t.col(0) + t.col(1)) / 2;
+        Triangle part;
+        for (const auto& corners :
+             {std::array<Vector3d, 3>{t.col(0), c, b}, {c, t.col(1), a}, {b, a, t.col(2)}, {a, b, c}}) {
+            part << corners[0], corners[1], corners[2];
+            waiting.push_back(part);
+        }
+    }
 }
 
 // Solid angle of a triangle, seen from a point: van Oosterom & Strackee (1983).
@@ -98,30 +145,44 @@ bool Workpiece::holds(const Vector3d& point) const
     return std::abs(angle) > 2 * std::numbers::pi; // half a turn, 4 pi being a whole one
 }
 
+void Workpiece::look_at(const PlacedSolid& body, std::uint32_t place, Nearest& best) const
+{
+    const Triangle t = corners(place);
+    bool nearer = false;
+    const double bound = lower_bound(body, t, best.clearance, nearer);
+    if (bound < best.clearance.distance - kDistanceTolerance) {
+        // Outside the core the distance to the triangle is exact, also where the solid about the core overlaps it.
+        const bool beside_core = best.clearance.distance > -body.radius();
+        const Clearance c = beside_core ? clearance(body, PlacedSolid(t), best.clearance.distance) : Clearance{};
+        if (!beside_core || c.distance <= -body.radius()) {
+            find_deepest(body, t, best.clearance, nearer);
+        } else if (c.distance < best.clearance.distance) {
+            best.clearance = c;
+            nearer = true;
+        }
+    }
+    if (nearer) best.triangle = order_[place];
+}
+
 Workpiece::Nearest Workpiece::nearest(const PlacedSolid& body, double beyond) const
 {
     Nearest best;
     best.clearance.distance = beyond;
     const Eigen::AlignedBox3d around = body.box();
-    std::vector<std::pair<double, std::uint32_t>> waiting = {{0, 0}};
+    std::vector<std::pair<double, std::uint32_t>> waiting = {{lower_bound(body, nodes_[0].box), 0}};
     while (!waiting.empty()) {
-        const auto [squared, index] = waiting.back();
+        const auto [bound, index] = waiting.back();
         waiting.pop_back();
-        const double reach = std::max(best.clearance.distance, 0.0);
-        if (squared > reach * reach) continue;
+        if (bound >= best.clearance.distance) continue;
         const Node& node = nodes_[index];
-        for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-            const Clearance c = clearance(body, PlacedSolid(corners(i)), best.clearance.distance);
-            if (c.distance >= best.clearance.distance) continue;
-            best.clearance = c;
-            best.triangle = order_[i];
-        }
+        for (std::uint32_t i = node.first; i < node.first + node.count; ++i) look_at(body, i, best);
         if (node.count > 0) continue;
         std::pair<double, std::uint32_t> child[2];
         for (std::uint32_t k = 0; k < 2; ++k)
-            child[k] = {squared_apart(around, nodes_[node.first + k].box), node.first + k};
+            child[k] = {lower_bound(body, nodes_[node.first + k].box), node.first + k};
         if (child[0].first < child[1].first) std::swap(child[0], child[1]); // the nearer one is visited first
-        waiting.insert(waiting.end(), std::begin(child), std::end(child));
+        for (const auto& c : child)
+            if (c.first < best.clearance.distance) waiting.push_back(c);
     }
     if (closed_ && best.clearance.distance > 0 && nodes_[0].box.contains(around) &&
         holds(body.farthest(Vector3d::UnitZ()))) {

@@ -299,6 +299,22 @@ TEST(Clearance, TrianglesAgainstPoints)
     }
 }
 
+// Of points: as the distance of a tiny triangle there; and above the tangent plane at any other point.
+TEST(Clearance, PointsAndTangentPlanes)
+{
+    Draw draw(11);
+    for (int k = 0; k < 2000; ++k) {
+        const Solid s = draw.solid();
+        const PlacedSolid placed(s, draw.placement(10));
+        const Vector3d p = draw.point(25), q = draw.point(25);
+        const PointDistance at = placed.distance(p);
+        const double by_search = clearance(placed, PlacedSolid(triangle(p, p, p))).distance;
+        EXPECT_NEAR(at.value, by_search, kClearanceTolerance) << s.index();
+        EXPECT_NEAR(at.gradient.norm(), 1, 1e-9);
+        EXPECT_GE(placed.distance(q).value, at.value + at.gradient.dot(q - p) - kClearanceTolerance) << s.index();
+    }
+}
+
 TEST(Clearance, BoxesHoldTheirSolids)
 {
     Draw draw(10);
