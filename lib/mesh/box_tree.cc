@@ -155,6 +155,51 @@ struct Middle {
     std::uint32_t triangle;
 };
 
+/// Puts those that are `wanted` first. No branch depends on the data, which no processor could foresee.
+/// @return  how many they are
+template <typename Wanted>
+std::size_t put_first(std::span<Middle> range, const Wanted& wanted)
+{
+    std::size_t count = 0;
+    for (Middle& next : range) {
+        const Middle middle = next;
+        next = range[count];
+        range[count] = middle;
+        count += wanted(middle);
+    }
+    return count;
+}
+
+/// Where along an axis the `count` lowest probably end: from a sample.
+float probable_end(std::span<const Middle> range, std::size_t count, std::size_t axis)
+{
+    std::array<float, 63> sample;
+    const std::size_t size = std::clamp<std::size_t>(range.size() / 16 | 1, 3, sample.size());
+    for (std::size_t i = 0; i < size; ++i) sample[i] = range[(2 * i + 1) * range.size() / (2 * size)].at[axis];
+    const auto end = sample.begin() + static_cast<std::ptrdiff_t>(count * size / range.size());
+    std::nth_element(sample.begin(), end, sample.begin() + static_cast<std::ptrdiff_t>(size));
+    return *end;
+}
+
+/// Puts the `count` lowest along an axis first (Hoare, Algorithm 65: FIND, 1961).
+void put_lowest_first(std::span<Middle> range, std::size_t count, std::size_t axis)
+{
+    while (count > 0 && count < range.size()) {
+        const float end = probable_end(range, count, axis);
+        const std::size_t below = put_first(range, [&](const Middle& middle) { return middle.at[axis] < end; });
+        if (count <= below) {
+            range = range.first(below);
+            continue;
+        }
+        range = range.subspan(below);
+        count -= below;
+        const std::size_t equal = put_first(range, [&](const Middle& middle) { return middle.at[axis] <= end; });
+        if (count <= equal || equal == 0) return; // none: the end is NaN, and any order will do
+        range = range.subspan(equal);
+        count -= equal;
+    }
+}
+
 /// Puts what belongs to one subtree together: the range is cut in two across its longer side, at a whole number of the
 /// largest subtrees below it, until it fits a leaf.
 void arrange(std::span<Middle> range)
@@ -167,9 +212,7 @@ void arrange(std::span<Middle> range)
     for (const Middle& middle : range) box.extend(Eigen::Vector3f::Map(middle.at.data()));
     int axis = 0;
     box.sizes().maxCoeff(&axis);
-    const auto k = static_cast<std::size_t>(axis);
-    std::nth_element(range.begin(), range.begin() + static_cast<std::ptrdiff_t>(half), range.end(),
-                     [k](const Middle& a, const Middle& b) { return a.at[k] < b.at[k]; });
+    put_lowest_first(range, half, static_cast<std::size_t>(axis));
     const auto lower = [&] { arrange(range.first(half)); };
     const auto upper = [&] { arrange(range.subspan(half)); };
     constexpr std::size_t kParallel = 1 << 13; // smaller ranges are not worth a task
