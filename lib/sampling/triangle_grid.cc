@@ -118,18 +118,6 @@ Eigen::Vector2i TriangleGrid::cell_of(const Vector2d& xy) const
     return cell.max(0).min((size_.array() - 1).cast<double>()).cast<int>();
 }
 
-// A triangle that lies in several cells is visited several times.
-template <typename Visit>
-void TriangleGrid::visit(const Vector2d& low, const Vector2d& high, Visit&& visit) const
-{
-    const Eigen::Vector2i from = cell_of(low), to = cell_of(high);
-    for (int y = from.y(); y <= to.y(); ++y)
-        for (int x = from.x(); x <= to.x(); ++x) {
-            const std::size_t c = static_cast<std::size_t>(y) * size_.x() + x;
-            for (std::size_t e = start_[c]; e < start_[c + 1]; ++e) visit(entries_[e]);
-        }
-}
-
 std::optional<double> TriangleGrid::highest(const Vector2d& xy) const
 {
     std::optional<double> z;

@@ -22,9 +22,19 @@ class TriangleGrid {
     /// z of the centre of a ball that comes down over xy, when it first touches a facet, an edge or a vertex.
     std::optional<double> ball_centre(const Eigen::Vector2d& xy, double radius) const;
 
-  private:
+    /// Calls visit(triangle) for the triangles that may lie over a box, some of them several times.
     template <typename Visit>
-    void visit(const Eigen::Vector2d& low, const Eigen::Vector2d& high, Visit&& visit) const;
+    void visit(const Eigen::Vector2d& low, const Eigen::Vector2d& high, Visit&& visit) const
+    {
+        const Eigen::Vector2i from = cell_of(low), to = cell_of(high);
+        for (int y = from.y(); y <= to.y(); ++y)
+            for (int x = from.x(); x <= to.x(); ++x) {
+                const std::size_t c = static_cast<std::size_t>(y) * size_.x() + x;
+                for (std::size_t e = start_[c]; e < start_[c + 1]; ++e) visit(entries_[e]);
+            }
+    }
+
+  private:
     Eigen::Vector2i cell_of(const Eigen::Vector2d& xy) const;
 
     const Mesh& mesh_;

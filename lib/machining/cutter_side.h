@@ -1,0 +1,139 @@
+#pragma once
+
+// The lower side of a cutter over four places at a time. Only for sweep and drop_cutter.
+
+#include "core/simd.h"
+#include "machining/cutter.h"
+
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
+
+// Vectors go nowhere but into functions that are inlined.
+#pragma GCC diagnostic ignored "-Wpsabi"
+
+#ifndef FETTLE_INLINE
+#define FETTLE_INLINE [[gnu::always_inline]] inline
+#endif
+
+namespace fettle {
+
+inline constexpr std::ptrdiff_t kLanes = 4; // of Double4
+/// A cell on the cutter's rim, but for rounding, is under it; mm.
+inline constexpr double kOnRim = 1e-9;
+inline constexpr double kBeyond = std::numeric_limits<double>::infinity();
+
+FETTLE_INLINE Double4 all(double value) { return Double4{} + value; }
+FETTLE_INLINE Double4 larger(const Double4& a, const Double4& b) { return a > b ? a : b; }
+FETTLE_INLINE Double4 smaller(const Double4& a, const Double4& b) { return a < b ? a : b; }
+FETTLE_INLINE Double4 root(const Double4& a)
+{
+#ifdef __SSE2__
+    const __m128d low = _mm_sqrt_pd(__m128d{a[0], a[1]}), high = _mm_sqrt_pd(__m128d{a[2], a[3]});
+    return Double4{low[0], low[1], high[0], high[1]};
+#else
+    return Double4{std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3])};
+#endif
+}
+// The lower sides of the cutters: lead (cutter.h) and rise of four cells at once. Beyond the rim the rise is NaN or
+// infinite.
+
+struct BallSide {
+    double r, factor;
+    BallSide(const Cutter& c, double slope) : r(c.corner), factor(-slope / std::sqrt(1 + slope * slope)) {}
+    FETTLE_INLINE Double4 lead(const Double4& across) const
+    {
+        return factor * root(larger(all(r * r) - across * across, Double4{}));
+    }
+    FETTLE_INLINE Double4 rise(const Double4& square) const { return r - root(r * r - square); }
+};
+
+struct FlatSide {
+    double R, rim, sign;
+    FlatSide(const Cutter& c, double slope)
+        : R(c.radius), rim((R + kOnRim) * (R + kOnRim)), sign(slope > 0 ? -1 : (slope < 0 ? 1 : 0))
+    {
+    }
+    FETTLE_INLINE Double4 lead(const Double4& across) const
+    {
+        return sign * root(larger(all(R * R) - across * across, Double4{}));
+    }
+    FETTLE_INLINE Double4 rise(const Double4& square) const { return square <= rim ? Double4{} : all(kBeyond); }
+};
+
+/// A ball swept along a circle. Of its points, at c sin α from the way, the one that counts is where both are equally
+/// steep: c sin α + r sin β = across, tan β = κ tan α, with κ = slope/√(1 + slope²). In S = sin α this is an equation
+/// of degree four whose left side is convex and grows: Newton's method, begun anywhere, comes down to its root.
+struct BullSide {
+    double r, c, sign, kappa, less;
+    mutable Double4 S = all(1); // begins where the last cells' search ended, which are near
+
+    BullSide(const Cutter& cutter, double slope)
+        : r(cutter.corner), c(cutter.flat), sign(slope > 0 ? -1 : 1),
+          kappa(std::abs(slope) / std::sqrt(1 + slope * slope)), less((1 - kappa) * (1 + kappa))
+    {
+    }
+    FETTLE_INLINE Double4 lead(const Double4& side) const
+    {
+        constexpr int kMost = 100;       // a step gains a factor 3 at worst, then doubles the digits
+        constexpr double kEnough = 1e-9; // the next step would be its square; so is the height's error
+        const Double4 across = smaller(larger(side, -side), all(c + r));
+        for (int i = 0; i < kMost; ++i) {
+            const Double4 inverse = 1 / root(1 - less * S * S), tangent = r * kappa * inverse;
+            const Double4 step = (c * S + tangent * S - across) / (c + tangent * inverse * inverse);
+            S = smaller(larger(S - step, Double4{}), all(1));
+            const Mask4 far = (step > kEnough) | (step < -kEnough);
+            if (((far[0] | far[1]) | (far[2] | far[3])) == 0) break;
+        }
+        const Double4 beside = across - c * S;
+        return sign * (c * root(1 - S * S) + kappa * root(larger(all(r * r) - beside * beside, Double4{})));
+    }
+    FETTLE_INLINE Double4 rise(const Double4& square) const
+    {
+        const Double4 from_disc = larger(root(square) - c, Double4{});
+        return r - root((r - from_disc) * (r + from_disc));
+    }
+};
+
+struct TaperSide {
+    double R, r, rim, cone_from, cone_rise, cone_slope, sign, ball, cone;
+    TaperSide(const Cutter& c, double slope)
+        : R(c.radius), r(c.corner), rim((R + kOnRim) * (R + kOnRim)), cone_from(c.cone_from),
+          cone_rise(fettle::rise(c, c.cone_from)), cone_slope(c.cone_slope), sign(slope > 0 ? -1 : 1),
+          ball(std::abs(slope) / std::sqrt(1 + slope * slope))
+    {
+        const double up = std::abs(slope); // the cone's own way up is no less steep: its rim counts
+        cone = up < cone_slope ? up / std::sqrt((cone_slope - up) * (cone_slope + up)) : kBeyond;
+    }
+    FETTLE_INLINE Double4 lead(const Double4& side) const
+    {
+        const Double4 square = side * side, on_ball = ball * root(larger(r * r - square, Double4{}));
+        const Double4 on_rim = root(larger(R * R - square, Double4{}));
+        const Double4 on_cone = smaller(cone * larger(side, -side), on_rim); // of NaN, too, the rim
+        const Mask4 is_ball = on_ball * on_ball + square <= cone_from * cone_from;
+        return sign * (is_ball ? on_ball : on_cone);
+    }
+    FETTLE_INLINE Double4 rise(const Double4& square) const
+    {
+        const Double4 on_ball = r - root(larger(r * r - square, Double4{}));
+        const Double4 on_cone = cone_rise + cone_slope * (root(square) - cone_from);
+        const Double4 within = square > cone_from * cone_from ? on_cone : on_ball;
+        return square <= rim ? within : all(kBeyond);
+    }
+};
+
+/// Calls work.template operator()<Side>() with the cutter's own.
+template <typename Work>
+auto with_side(const Cutter& cutter, const Work& work)
+{
+    if (cutter.cone_from < cutter.radius) return work.template operator()<TaperSide>();
+    if (cutter.corner == 0) return work.template operator()<FlatSide>();
+    if (cutter.flat == 0) return work.template operator()<BallSide>();
+    return work.template operator()<BullSide>();
+}
+
+} // namespace fettle

@@ -1,0 +1,196 @@
+#include "machining/finishing.h"
+
+#include "core/error.h"
+#include "core/fixed_text.h"
+#include "core/text.h"
+#include "machining/drop_cutter.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <ostream>
+
+namespace fettle {
+namespace {
+
+/// Points of a pass in a step-over: chords of this length stand off a surface by a ninth of what the passes leave.
+constexpr double kPointsPerStep = 3;
+constexpr double kMostPoints = 1e8;
+/// Points that are thinned at a time; straight moves are no longer.
+constexpr std::size_t kMostThinned = 1000;
+
+using Line = std::vector<std::optional<Eigen::Vector3d>>; ///< of tips; nothing where the cutter meets nothing
+
+bool straight(const Line& line, std::size_t from, std::size_t to)
+{
+    const Eigen::Vector3d way = *line[to] - *line[from];
+    const double length = way.norm();
+    for (std::size_t i = from + 1; i < to; ++i) {
+        const Eigen::Vector3d off = *line[i] - *line[from];
+        const double share = length > 0 ? std::clamp(off.dot(way) / (length * length), 0.0, 1.0) : 0;
+        if ((off - share * way).norm() > kThinning) return false;
+    }
+    return true;
+}
+
+class Path {
+  public:
+    Path(double safe, double feed) : safe_(safe), feed_(feed) {}
+
+    /// Goes along a line, through the air where there is nothing.
+    void follow(const Line& line)
+    {
+        for (std::size_t i = 0; i < line.size();) {
+            if (!line[i]) {
+                lift();
+                ++i;
+                continue;
+            }
+            reach(*line[i]);
+            std::size_t to = i + 1;
+            if (to == line.size() || !line[to]) {
+                i = to;
+                continue;
+            }
+            // doubling, then halving: few looks at long straight ways
+            std::size_t step = 1;
+            const auto fits = [&](std::size_t end) {
+                for (std::size_t k = to; k <= end; ++k)
+                    if (!line[k]) return false;
+                return straight(line, i, end);
+            };
+            while (step < kMostThinned && to + step < line.size() && fits(to + step)) {
+                to += step;
+                step *= 2;
+            }
+            for (; step > 0; step /= 2)
+                if (to + step < line.size() && to + step - i <= kMostThinned && fits(to + step)) to += step;
+            i = to;
+        }
+    }
+    void lift()
+    {
+        if (!points.empty() && points.back().tip.z() < safe_)
+            add({points.back().tip.x(), points.back().tip.y(), safe_}, 0);
+    }
+
+    std::vector<TipPoint> points;
+
+  private:
+    void add(const Eigen::Vector3d& tip, double feed) { points.push_back({tip, feed}); }
+    void reach(const Eigen::Vector3d& tip)
+    {
+        const bool above = points.empty() || points.back().tip.z() >= safe_;
+        if (above) add({tip.x(), tip.y(), safe_}, 0);
+        if (points.back().tip != tip) add(tip, feed_);
+    }
+
+    double safe_, feed_;
+};
+
+/// Lines of tips along the passes, in turn forwards and backwards, and between their ends.
+std::vector<Line> touched_lines(const Mesh& design, const Cutter& cutter, const FinishingOptions& options)
+{
+    const Eigen::Vector2d u(std::cos(options.angle), std::sin(options.angle)), v(-u.y(), u.x());
+    Eigen::Array2d low = Eigen::Array2d::Constant(std::numeric_limits<double>::infinity()), high = -low;
+    for (const auto& vertex : design.vertices.colwise()) {
+        const Eigen::Array2d at(u.dot(vertex.head<2>()), v.dot(vertex.head<2>()));
+        low = low.min(at);
+        high = high.max(at);
+    }
+    low -= options.overhang;
+    high += options.overhang;
+    const Eigen::Array2d size = high - low;
+    const double along = options.step_over / kPointsPerStep;
+    const double passes = std::ceil(size.y() / options.step_over) + 1, points = std::ceil(size.x() / along) + 1;
+    if (!(passes * points <= kMostPoints))
+        throw InputError("a step-over of " + to_text(options.step_over) + " mm makes " +
+                         to_short_text(passes * points) + " points; at most " + to_short_text(kMostPoints) +
+                         " are possible");
+    const auto across_at = [&](double pass) { return low.y() + size.y() * (passes > 1 ? pass / (passes - 1) : 0.5); };
+    const auto along_at = [&](double point) { return low.x() + size.x() * (points > 1 ? point / (points - 1) : 0.5); };
+    const DropCutter drop(design, cutter);
+    const auto tip = [&](double a, double b) -> std::optional<Eigen::Vector3d> {
+        const Eigen::Vector2d xy = a * u + b * v;
+        const auto z = drop(xy);
+        if (!z) return std::nullopt;
+        return Eigen::Vector3d(xy.x(), xy.y(), *z + options.allowance);
+    };
+    std::vector<Line> lines(static_cast<std::size_t>(passes));
+    tbb::parallel_for(std::size_t{0}, lines.size(), [&](std::size_t p) {
+        const bool forwards = p % 2 == 0;
+        const double b = across_at(static_cast<double>(p));
+        for (double k = 0; k < points; ++k) lines[p].push_back(tip(along_at(forwards ? k : points - 1 - k), b));
+        if (p + 1 == lines.size()) return;
+        const double end = along_at(forwards ? points - 1 : 0), next = across_at(static_cast<double>(p + 1));
+        for (double k = 1; k < kPointsPerStep; ++k) lines[p].push_back(tip(end, b + (next - b) * k / kPointsPerStep));
+    });
+    return lines;
+}
+
+} // namespace
+
+double step_over_for(double scallop, const Cutter& cutter, const DesignShape& shape)
+{
+    if (cutter.corner == 0)
+        throw InputError("a cutter without ball or corner leaves no scallops by which passes could be spaced");
+    const double radius = 1 / (1 / cutter.corner + 1 / shape.convex_radius), height = std::min(scallop, radius);
+    return 2 * std::sqrt(height * (2 * radius - height)) * std::cos(shape.slope);
+}
+
+double overhang_for(const Cutter& cutter, const DesignShape& shape)
+{
+    return shape.slope > 0 ? cutter.flat + cutter.corner * std::sin(shape.slope) : 0;
+}
+
+std::vector<TipPoint> finishing_path(const Mesh& design, const Cutter& cutter, const FinishingOptions& options)
+{
+    const auto lines = touched_lines(design, cutter, options);
+    Line whole; // so that a straight move may go on from one pass to the next
+    for (const Line& line : lines) whole.insert(whole.end(), line.begin(), line.end());
+    Path path(design.vertices.row(2).maxCoeff() + options.allowance + options.clearance, options.feed);
+    path.follow(whole);
+    path.lift();
+    if (path.points.empty()) throw InputError("the cutter touches nothing of the design");
+    return std::move(path.points);
+}
+
+Cloud to_cloud(const std::vector<TipPoint>& path)
+{
+    Cloud cloud;
+    cloud.xyz.resize(3, static_cast<Eigen::Index>(path.size()));
+    Eigen::VectorXd feeds(cloud.xyz.cols());
+    for (std::size_t i = 0; i < path.size(); ++i) {
+        cloud.xyz.col(static_cast<Eigen::Index>(i)) = path[i].tip;
+        feeds[static_cast<Eigen::Index>(i)] = path[i].feed;
+    }
+    set_field(cloud, "feed", feeds);
+    return cloud;
+}
+
+void write_gcode(std::ostream& out, const std::vector<TipPoint>& path, const std::string& title)
+{
+    constexpr double kSecondsPerMinute = 60;
+    constexpr const char* kNames = "XYZ";
+    const auto number = [](double value) { return to_fixed_text(value, 5); }; // finer than any drive
+    out << "%\n(" << title << ")\nG21 G90 G17 G94\n";
+    double feed = 0;
+    bool rapid = false;
+    for (std::size_t i = 0; i < path.size(); ++i) {
+        const TipPoint& to = path[i];
+        std::string line;
+        if (i == 0 || (to.feed == 0) != rapid) line = to.feed == 0 ? "G0" : "G1";
+        rapid = to.feed == 0;
+        for (int k = 0; k < 3; ++k) {
+            const std::string word = number(to.tip[k]);
+            if (i == 0 || word != number(path[i - 1].tip[k])) line += (line.empty() ? "" : " ") + (kNames[k] + word);
+        }
+        if (!rapid && to.feed != feed) line += " F" + number((feed = to.feed) * kSecondsPerMinute);
+        if (!line.empty()) out << line << '\n';
+    }
+    out << "M30\n%\n";
+}
+
+} // namespace fettle

@@ -1,0 +1,151 @@
+// Cutters that come down on a mesh: closed forms, and the greatest height over points of facets, edges and vertices.
+
+#include "machining/drop_cutter.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <string>
+
+using namespace fettle;
+
+namespace {
+
+const std::vector<std::string> kCutters = {"ball:3",     "flat:3",         "bull:3,0.5",
+                                           "bull:3,1.4", "taper:3,20,0.4", "taper:3,50,0"};
+
+/// Some triangles of all sizes and slopes, over each other.
+Mesh soup(unsigned seed, int count)
+{
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> unit(-1, 1);
+    Mesh mesh;
+    mesh.vertices.resize(3, 3 * count);
+    mesh.triangles.resize(3, count);
+    for (int t = 0; t < count; ++t) {
+        const Eigen::Vector3d middle(5 * unit(random), 5 * unit(random), 2 * unit(random));
+        const double size = std::pow(10, unit(random));
+        for (int k = 0; k < 3; ++k) {
+            mesh.vertices.col(3 * t + k) = middle + size * Eigen::Vector3d(unit(random), unit(random), unit(random));
+            mesh.triangles(k, t) = 3 * t + k;
+        }
+    }
+    return mesh;
+}
+
+/// The greatest z − rise over a segment, by narrowing it down: a concave function where the cutter reaches.
+double over_segment(const Cutter& cutter, const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector2d& xy)
+{
+    const Eigen::Vector2d way = (b - a).head<2>(), off = xy - a.head<2>();
+    double first = 0, last = 1;
+    if (way.squaredNorm() > 0) {
+        const double middle = off.dot(way) / way.squaredNorm(), beside = (off - middle * way).squaredNorm();
+        if (beside > cutter.radius * cutter.radius) return -std::numeric_limits<double>::infinity();
+        const double half = std::sqrt((cutter.radius * cutter.radius - beside) / way.squaredNorm());
+        first = std::max(first, middle - half);
+        last = std::min(last, middle + half);
+        if (first > last) return -std::numeric_limits<double>::infinity();
+    }
+    const auto height = [&](double share) {
+        const Eigen::Vector3d p = a + share * (b - a);
+        return p.z() - rise(cutter, std::min((p.head<2>() - xy).norm(), cutter.radius));
+    };
+    double most = std::max(height(first), height(last));
+    for (int i = 0; i < 120; ++i) {
+        const double p = first + (last - first) / 3, q = last - (last - first) / 3;
+        const double at_p = height(p), at_q = height(q);
+        most = std::max({most, at_p, at_q});
+        if (at_p >= at_q) last = q;
+        if (at_p <= at_q) first = p;
+    }
+    return most;
+}
+
+/// The same over a triangle: of the segments from a corner to the points of the other side, the greatest, which is a
+/// concave function, too, where the cutter reaches all of them.
+double over_triangle(const Cutter& cutter, const Eigen::Matrix3d& t, const Eigen::Vector2d& xy)
+{
+    double most = -std::numeric_limits<double>::infinity();
+    for (int k = 0; k < 3; ++k) most = std::max(most, over_segment(cutter, t.col(k), t.col((k + 1) % 3), xy));
+    // First looked at from place to place, since not all are reached, then narrowed down about the best.
+    constexpr int kPlaces = 400;
+    const auto height = [&](double share) {
+        return over_segment(cutter, t.col(0), t.col(1) + share * (t.col(2) - t.col(1)), xy);
+    };
+    int best = 0;
+    double found = -std::numeric_limits<double>::infinity();
+    for (int i = 0; i <= kPlaces; ++i)
+        if (const double z = height(static_cast<double>(i) / kPlaces); z > found) {
+            found = z;
+            best = i;
+        }
+    double first = std::max(0, best - 1) / static_cast<double>(kPlaces),
+           last = std::min(kPlaces, best + 1) / static_cast<double>(kPlaces);
+    for (int i = 0; i < 80; ++i) {
+        const double p = first + (last - first) / 3, q = last - (last - first) / 3;
+        const double at_p = height(p), at_q = height(q);
+        found = std::max({found, at_p, at_q});
+        if (at_p >= at_q) last = q;
+        if (at_p <= at_q) first = p;
+    }
+    return std::max(most, found);
+}
+
+TEST(DropCutter, AgainstBruteForce)
+{
+    std::mt19937 random(11);
+    std::uniform_real_distribution<double> unit(-5, 5);
+    for (const std::string& name : kCutters) {
+        const Cutter cutter = parse_cutter(name);
+        const Mesh mesh = soup(3, 12);
+        const DropCutter drop(mesh, cutter);
+        int met = 0;
+        for (int i = 0; i < 40; ++i) {
+            const Eigen::Vector2d xy(unit(random), unit(random));
+            double most = -std::numeric_limits<double>::infinity();
+            for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t)
+                most = std::max(most, over_triangle(cutter, mesh.vertices.middleCols<3>(3 * t), xy));
+            const auto z = drop(xy);
+            ASSERT_EQ(z.has_value(), std::isfinite(most)) << name << " at " << xy.transpose();
+            if (!z) continue;
+            EXPECT_NEAR(*z, most, 1e-9) << name << " at " << xy.transpose();
+            ++met;
+        }
+        EXPECT_GT(met, 20) << name;
+    }
+}
+
+TEST(DropCutter, OnASlopeTouchesWhereItsContactIs)
+{
+    Mesh plane;
+    plane.vertices.resize(3, 3);
+    plane.vertices << -100, 100, 0, -100, -100, 200, -75, 75, 0; // z = 3/4 x
+    plane.triangles = Eigen::Vector3i(0, 1, 2);
+    const Eigen::Vector3d normal(-0.6, 0, 0.8), contact(1, 2, 0.75);
+    for (const char* name : {"ball:6", "flat:6", "bull:6,1", "taper:6,30,1"}) {
+        const Cutter cutter = parse_cutter(name);
+        const Eigen::Vector3d tip = tip_at_contact(cutter, contact, normal);
+        EXPECT_NEAR(*DropCutter(plane, cutter)(tip.head<2>()), tip.z(), 1e-12) << name;
+    }
+    EXPECT_FALSE(DropCutter(plane, parse_cutter("ball:6"))({300, 0}).has_value());
+}
+
+TEST(DropCutter, OnCornersAndEdges)
+{
+    // A roof with its ridge along y at z = 0, slopes of 45 degrees: over the ridge the tip rests on it.
+    Mesh roof;
+    roof.vertices.resize(3, 6);
+    roof.vertices << 0, 0, 5, 5, -5, -5, -9, 9, -9, 9, -9, 9, 0, 0, -5, -5, -5, -5;
+    roof.triangles.resize(3, 4);
+    roof.triangles << 0, 2, 0, 1, 2, 3, 1, 5, 1, 1, 4, 4;
+    for (const std::string& name : kCutters)
+        EXPECT_NEAR(*DropCutter(roof, parse_cutter(name))({0, 0}), 0, 1e-12) << name;
+    // A flat cutter beside the ridge still rests on it, to its rim.
+    EXPECT_NEAR(*DropCutter(roof, parse_cutter("flat:3"))({1.4, 0}), 0, 1e-12);
+    EXPECT_NEAR(*DropCutter(roof, parse_cutter("flat:3"))({2, 0}), -0.5, 1e-12);
+}
+
+} // namespace
