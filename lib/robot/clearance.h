@@ -44,7 +44,8 @@ class PlacedSolid {
     Eigen::Isometry3d T_ = Eigen::Isometry3d::Identity(); ///< of a hull's or a box's frame
     Eigen::Vector3d half_;                                ///< of a box's sides
     Eigen::Vector3d from_, to_, axis_;                    ///< of a frustum
-    double radius_from_ = 0, radius_to_ = 0, radius_ = 0;
+    double length_ = 0, radius_from_ = 0, radius_to_ = 0;
+    double radius_ = 0; ///< about the core
 };
 
 /// How far two bodies are apart, mm. Where they overlap it is negative, the length of the shortest shift that parts

@@ -55,14 +55,10 @@ Flat from_trapezoid(double r0, double r1, double length, const Eigen::Vector2d& 
         if (beside >= below && beside >= above) return {out, beside};
         return below >= above ? Flat{{0, -1}, below} : Flat{{0, 1}, above};
     }
-    const auto nearest = [&p](const Vector2d& a, const Vector2d& b) {
-        const double squared = (b - a).squaredNorm();
-        const double t = squared > 0 ? std::clamp((p - a).dot(b - a) / squared, 0.0, 1.0) : 0;
-        return Vector2d(p - a - t * (b - a));
-    };
-    Vector2d off = nearest({r0, 0}, {r1, length});
-    for (const Vector2d& other : {nearest({0, 0}, {r0, 0}), nearest({0, length}, {r1, length})})
-        if (other.squaredNorm() < off.squaredNorm()) off = other;
+    if (below > 0 && p.x() <= r0) return {{0, -1}, below};
+    if (above > 0 && p.x() <= r1) return {{0, 1}, above};
+    const Vector2d side(r1 - r0, length), from(p.x() - r0, p.y());
+    const Vector2d off = from - std::clamp(from.dot(side) / side.squaredNorm(), 0.0, 1.0) * side;
     const double distance = off.norm();
     return distance > 0 ? Flat{off / distance, distance} : Flat{out, 0};
 }
@@ -82,7 +78,8 @@ void PlacedSolid::set_frustum(const Vector3d& from, const Vector3d& to, double r
     kind_ = Kind::frustum;
     from_ = from;
     to_ = to;
-    axis_ = (to - from).normalized();
+    length_ = (to - from).norm();
+    axis_ = (to - from) / length_;
     radius_from_ = radius_from;
     radius_to_ = radius_to;
 }
@@ -150,7 +147,7 @@ PointDistance PlacedSolid::distance(const Vector3d& p) const
         const double height = (p - from_).dot(axis_);
         const Vector3d across = p - from_ - height * axis_;
         const double r = across.norm();
-        const Flat flat = from_trapezoid(radius_from_, radius_to_, (to_ - from_).norm(), {r, height});
+        const Flat flat = from_trapezoid(radius_from_, radius_to_, length_, {r, height});
         const Vector3d rim = r > 0 ? Vector3d(across / r) : axis_.unitOrthogonal();
         return {flat.value, flat.gradient.x() * rim + flat.gradient.y() * axis_};
     }
