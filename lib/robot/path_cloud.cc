@@ -64,6 +64,8 @@ CellJointsPath path_joints(const Cloud& cloud, const Robot& robot)
     CellJointsPath joints = CellJointsPath::Zero(8, cloud.size());
     for (Eigen::Index k = 0; k < 8; ++k)
         if (has_joint(robot, k)) joints.row(k) = field(cloud, joint_name(k)) * joint_unit(k);
+    for (auto q : joints.colwise())
+        if (!q.allFinite()) q.setConstant(NAN);
     return joints;
 }
 

@@ -15,7 +15,7 @@ PosePath path_poses(const Cloud& cloud);
 void set_path(Cloud& cloud, const PosePath& poses);
 
 /// Fields joint1 to joint6 in degrees, joint7 (track, mm) and joint8 (table, degrees) if the robot has them.
-/// @return  rad and mm
+/// @return  rad and mm; a column of NaN where one is not finite
 /// @throws InputError if one of them is missing
 CellJointsPath path_joints(const Cloud& cloud, const Robot& robot);
 

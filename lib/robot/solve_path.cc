@@ -16,11 +16,15 @@ namespace {
 
 constexpr double kRadPerDegree = std::numbers::pi / 180;
 
+// No joint turns farther (robot.cc), and the search goes by whole turns from there.
+constexpr double kMostDegrees = 720;
+
 Joints start_in(const std::string& text)
 {
     const Eigen::VectorXd degrees = numbers_in(text);
-    if (degrees.size() != 6 || !degrees.allFinite())
-        throw InputError("--start", "expected six angles in degrees with commas between, got " + in_quotes(text));
+    if (degrees.size() != 6 || !(degrees.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= kMostDegrees))
+        throw InputError("--start", "expected six angles in degrees, up to " + to_short_text(kMostDegrees) +
+                                        " either way, with commas between, got " + in_quotes(text));
     return degrees * kRadPerDegree;
 }
 
@@ -32,6 +36,11 @@ std::optional<AxisRule> rule_in(const std::string& option, const std::string& te
     } catch (const InputError& error) {
         throw InputError(option, error.what());
     }
+}
+
+void check_not_empty(const Cloud& cloud)
+{
+    if (cloud.size() == 0) throw InputError("needs at least 1 point, got 0");
 }
 
 } // namespace
@@ -49,6 +58,7 @@ SolvedPath solve_path(const Robot& robot, const Cloud& cloud, const PathWishes& 
     const ExternalRules wanted = {rule_in("--track", wishes.track, robot.track.has_value(), mm),
                                   rule_in("--table", wishes.table, robot.table.has_value(), kRadPerDegree)};
     const FollowOptions options = {start_in(wishes.start), wishes.jump_deg * kRadPerDegree};
+    check_not_empty(cloud);
     SolvedPath solved;
     solved.poses = path_poses(cloud);
     solved.externals = choose_externals(robot, solved.poses, wanted);
@@ -59,6 +69,7 @@ SolvedPath solve_path(const Robot& robot, const Cloud& cloud, const PathWishes& 
 
 SolvedPath given_path(const Robot& robot, const Cloud& cloud, double jump_deg)
 {
+    check_not_empty(cloud);
     SolvedPath given;
     given.path = judge(robot, path_joints(cloud, robot), jump_deg * kRadPerDegree);
     given.poses = forward(robot, given.path.joints);

@@ -27,11 +27,11 @@ struct SolvedPath {
 };
 
 /// From the fields of path_poses() to joints. @param mm  in a length unit of the wishes
-/// @throws InputError, for a wish with the option's name before it
+/// @throws InputError if there are no points, or for a wish, with the option's name before it
 SolvedPath solve_path(const Robot& robot, const Cloud& cloud, const PathWishes& wishes, double mm);
 
 /// From the fields of path_joints() to poses.
-/// @throws InputError if a field is missing
+/// @throws InputError if there are no points, or a field is missing
 SolvedPath given_path(const Robot& robot, const Cloud& cloud, double jump_deg);
 
 /// Numbers with commas between; NaN for what is none.

@@ -6,6 +6,8 @@ cp "$SAMPLES/paths/keel.pcd" path.pcd
 : >empty
 refuses 'empty: ' fettle-arm empty --inverse path.pcd
 refuses 'empty: ' fettle-arm good.json --inverse empty
+sed '/^DATA/q; s/61/0/' path.pcd >none.pcd
+refuses 'none.pcd: needs at least 1 point, got 0' fettle-arm good.json --inverse --feed 1 --rapid out.mod none.pcd
 refuses 'missing.json' fettle-arm missing.json --inverse path.pcd
 refuses 'one of --forward, --inverse and --reach' fettle-arm good.json path.pcd
 refuses 'one of --forward, --inverse and --reach' fettle-arm good.json --forward --inverse path.pcd
@@ -19,7 +21,7 @@ refuses 'zero.pcd: point 60: the quaternion qw qx qy qz is 0' fettle-arm good.js
 refuses "--track: expected auto, a number or follow:NUMBER, got 'there'" fettle-arm good.json --inverse --track there path.pcd
 refuses '--track: the robot has none' fettle-arm "$robot" --inverse --track 0 path.pcd
 refuses '--table: the robot has none' fettle-arm good.json --inverse --table follow:0 path.pcd
-for start in 1,2,3 1,2,3,4,5,6,7 1,2,3,4,5,x 1,2,3,4,5,nan; do
+for start in 1,2,3 1,2,3,4,5,1e9 1,2,3,4,5,6,7 1,2,3,4,5,x 1,2,3,4,5,nan; do
     refuses '--start: expected six angles' fettle-arm good.json --inverse --start "$start" path.pcd
 done
 for box in 0,0,0,1,1 0,0,0,1,1,1,1 0,0,0,1,1,-1 0,0,0,1,1,x 0,0,0,1,1,inf; do

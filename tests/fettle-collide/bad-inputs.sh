@@ -6,6 +6,8 @@ cp "$SAMPLES/paths/keel.pcd" path.pcd
 refuses 'empty: ' fettle-collide empty path.pcd
 refuses 'empty: ' fettle-collide robot.json empty
 refuses 'empty' fettle-collide robot.json path.pcd --workpiece empty
+sed '/^DATA/q; s/61/0/' path.pcd >none.pcd
+refuses 'none.pcd: needs at least 1 point, got 0' fettle-collide robot.json none.pcd
 refuses 'missing.stl' fettle-collide robot.json path.pcd --workpiece missing.stl
 sed 's/ qz$/ qq/' path.pcd >no_qz.pcd
 refuses "no_qz.pcd: the points have no field 'qz'" fettle-collide robot.json no_qz.pcd
