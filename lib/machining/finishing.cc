@@ -18,6 +18,10 @@ namespace {
 /// Points of a pass in a step-over: chords of this length stand off a surface by a ninth of what the passes leave.
 constexpr double kPointsPerStep = 3;
 constexpr double kMostPoints = 1e8;
+/// How far straight moves may be from where the cutter touches: a twentieth of the finest tolerance in use, mm.
+constexpr double kChord = 0.005;
+/// Points are no nearer to each other than half of this, mm: a tenth of the finest cells in use.
+constexpr double kFinest = 0.01;
 /// Points that are thinned at a time; straight moves are no longer.
 constexpr std::size_t kMostThinned = 1000;
 
@@ -90,6 +94,27 @@ class Path {
     double safe_, feed_;
 };
 
+/// Puts tips between two others, until the way between neighbours is no lower than the cutter may be by more than
+/// kChord. At a jump, over the rim of a wall, that never is so: there the tip goes straight up or down beside it.
+void refine(Line& line, const DropCutter& drop, const Eigen::Vector3d& from, const Eigen::Vector3d& to,
+            double allowance)
+{
+    const Eigen::Vector3d middle = (from + to) / 2;
+    const auto z = drop(middle.head<2>());
+    if (!z) return;
+    const Eigen::Vector3d tip(middle.x(), middle.y(), *z + allowance);
+    if (std::abs(tip.z() - middle.z()) <= kChord) return;
+    if ((to - from).head<2>().norm() > kFinest) {
+        refine(line, drop, from, tip, allowance);
+        line.push_back(tip);
+        refine(line, drop, tip, to, allowance);
+    } else {
+        const bool up = to.z() > from.z();
+        const Eigen::Vector3d& low = up ? from : to;
+        line.push_back(Eigen::Vector3d(low.x(), low.y(), std::max({from.z(), to.z(), tip.z()})));
+    }
+}
+
 /// Lines of tips along the passes, in turn forwards and backwards, and between their ends.
 std::vector<Line> touched_lines(const Mesh& design, const Cutter& cutter, const FinishingOptions& options)
 {
@@ -122,10 +147,18 @@ std::vector<Line> touched_lines(const Mesh& design, const Cutter& cutter, const 
     tbb::parallel_for(std::size_t{0}, lines.size(), [&](std::size_t p) {
         const bool forwards = p % 2 == 0;
         const double b = across_at(static_cast<double>(p));
-        for (double k = 0; k < points; ++k) lines[p].push_back(tip(along_at(forwards ? k : points - 1 - k), b));
-        if (p + 1 == lines.size()) return;
-        const double end = along_at(forwards ? points - 1 : 0), next = across_at(static_cast<double>(p + 1));
-        for (double k = 1; k < kPointsPerStep; ++k) lines[p].push_back(tip(end, b + (next - b) * k / kPointsPerStep));
+        Line coarse;
+        for (double k = 0; k < points; ++k) coarse.push_back(tip(along_at(forwards ? k : points - 1 - k), b));
+        if (p + 1 < lines.size()) {
+            const double end = along_at(forwards ? points - 1 : 0), next = across_at(static_cast<double>(p + 1));
+            for (double k = 1; k <= kPointsPerStep; ++k)
+                coarse.push_back(tip(end, b + (next - b) * k / kPointsPerStep));
+        }
+        for (std::size_t i = 0; i < coarse.size(); ++i) {
+            lines[p].push_back(coarse[i]);
+            if (i + 1 < coarse.size() && coarse[i] && coarse[i + 1])
+                refine(lines[p], drop, *coarse[i], *coarse[i + 1], options.allowance);
+        }
     });
     return lines;
 }
