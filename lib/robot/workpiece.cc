@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 #include <utility>
 
@@ -66,14 +65,6 @@ void find_deepest(const PlacedSolid& body, const Triangle& whole, Clearance& bes
     }
 }
 
-// Solid angle of a triangle, seen from a point: van Oosterom & Strackee (1983).
-double solid_angle(const Triangle& t, const Vector3d& point)
-{
-    const Vector3d a = t.col(0) - point, b = t.col(1) - point, c = t.col(2) - point;
-    const double la = a.norm(), lb = b.norm(), lc = c.norm();
-    return 2 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
-}
-
 } // namespace
 
 bool is_closed(const Mesh& mesh)
@@ -88,7 +79,7 @@ bool is_closed(const Mesh& mesh)
     });
 }
 
-Workpiece::Workpiece(const Mesh& mesh) : mesh_(&mesh), closed_(is_closed(mesh))
+Workpiece::Workpiece(const Mesh& mesh) : mesh_(&mesh), closed_(is_closed(mesh)), rays_(mesh)
 {
     const auto count = static_cast<std::uint32_t>(mesh.triangles.cols());
     order_.resize(count);
@@ -136,13 +127,20 @@ void Workpiece::build(std::uint32_t node, std::uint32_t first, std::uint32_t cou
     build(children + 1, first + half, count - half, centres);
 }
 
-// By the winding number: whole turns of the surface around the point.
+// A ray out of a closed mesh first meets a triangle from behind. One that only grazes it is drawn again.
 bool Workpiece::holds(const Vector3d& point) const
 {
-    if (!nodes_[0].box.contains(point)) return false;
-    double angle = 0;
-    for (std::uint32_t i = 0; i < order_.size(); ++i) angle += solid_angle(corners(i), point);
-    return std::abs(angle) > 2 * std::numbers::pi; // half a turn, 4 pi being a whole one
+    constexpr double kGrazing = 1e-6;
+    for (const Vector3d& direction : {Vector3d::UnitZ().eval(), Vector3d(0.8, 0, 0.6), Vector3d(-0.36, 0.48, 0.8)}) {
+        const auto hit = rays_.cast(point, direction);
+        if (!hit) return false;
+        const Eigen::Vector3i t = mesh_->triangles.col(hit->triangle);
+        const Vector3d a = mesh_->vertices.col(t[0]), b = mesh_->vertices.col(t[1]), c = mesh_->vertices.col(t[2]);
+        const Vector3d normal = (b - a).cross(c - a);
+        const double along = normal.dot(direction);
+        if (std::abs(along) > kGrazing * normal.norm()) return along > 0;
+    }
+    return false;
 }
 
 void Workpiece::look_at(const PlacedSolid& body, std::uint32_t place, Nearest& best) const

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "mesh/mesh.h"
+#include "mesh/mesh_index.h"
 #include "robot/clearance.h"
 
 #include <Eigen/Core>
@@ -49,6 +50,7 @@ class Workpiece {
 
     const Mesh* mesh_;
     bool closed_;
+    MeshIndex rays_;
     std::vector<std::uint32_t> order_;
     std::vector<Node> nodes_;
 };

@@ -116,6 +116,13 @@ TEST(Workpiece, BallOnAPlane)
     EXPECT_FALSE(gap(57).inside);
     const Solid ball = solid::Sphere{{10, 20, 20}, 6};
     EXPECT_NEAR(workpiece.nearest(PlacedSolid(ball, Isometry3d::Identity()), 2).clearance.distance, -24, 1e-8);
+    // in a pocket of the box around the mesh, but outside the metal
+    Mesh wedge = mesh;
+    wedge.vertices(2, 6) = wedge.vertices(2, 7) = -49; // two corners of the top pressed down: a slope
+    const Solid small = solid::Sphere{{0, 30, 30}, 1};
+    const Workpiece::Nearest over = Workpiece(wedge).nearest(PlacedSolid(small, Isometry3d::Identity()));
+    EXPECT_FALSE(over.inside);
+    EXPECT_GT(over.clearance.distance, 1);
     // a hole in the mesh: it has no inside
     Mesh open = mesh;
     open.triangles.conservativeResize(3, 11);
