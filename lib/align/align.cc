@@ -1,6 +1,7 @@
 #include "align/align.h"
 
 #include "align/pose_search.h"
+#include "core/decompositions.h"
 #include "core/error.h"
 
 #include <Eigen/Dense>
@@ -71,15 +72,15 @@ std::array<Freedom, 6> freedoms(const IcpFit& fit, const HeldAxes& held)
             A.col(k).setZero();
             A(k, k) = -1; // a mode by itself, apart from those that nothing determines
         }
-    const Eigen::SelfAdjointEigenSolver<TwistMatrix> modes(A);
+    const SymmetricEigen<6> modes = symmetric_eigen(A);
     std::array<Freedom, 6> found;
     for (Eigen::Index k = 0; k < 6; ++k) {
         Freedom& freedom = found[static_cast<std::size_t>(5 - k)];
-        freedom.motion = modes.eigenvectors().col(k);
+        freedom.motion = modes.vectors.col(k);
         Eigen::Index largest = 0; // one of two signs, whatever the rounding
         freedom.motion.cwiseAbs().maxCoeff(&largest);
         if (freedom.motion[largest] < 0) freedom.motion *= -1;
-        const double value = modes.eigenvalues()[k];
+        const double value = modes.values[k];
         freedom.determined = value > fit.least_information;
         freedom.sd = freedom.determined ? fit.sigma / std::sqrt(value) : std::numeric_limits<double>::infinity();
         freedom.held = value < -0.5;

@@ -1,5 +1,6 @@
 #include "align/rigid.h"
 
+#include "core/decompositions.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/lines.h"
@@ -114,11 +115,10 @@ Twist solve_step(const TwistMatrix& A, const Twist& b, const HeldAxes& held, dou
             free_A.col(k).setZero();
             free_b[k] = 0;
         }
-    const Eigen::SelfAdjointEigenSolver<TwistMatrix> modes(free_A);
+    const SymmetricEigen<6> modes = symmetric_eigen(free_A);
     Twist x = Twist::Zero();
     for (Eigen::Index k = 0; k < 6; ++k)
-        if (modes.eigenvalues()[k] > least)
-            x -= modes.eigenvectors().col(k) * (modes.eigenvectors().col(k).dot(free_b) / modes.eigenvalues()[k]);
+        if (modes.values[k] > least) x -= modes.vectors.col(k) * (modes.vectors.col(k).dot(free_b) / modes.values[k]);
     for (Eigen::Index k = 0; k < 6; ++k)
         if (held[static_cast<std::size_t>(k)]) x[k] = 0; // exactly
     return x;

@@ -1,5 +1,6 @@
 #include "compare/form_start.h"
 
+#include "core/decompositions.h"
 #include "core/error.h"
 #include "core/text.h"
 
@@ -39,7 +40,7 @@ Round algebraic_fit(const Eigen::MatrixXd& points)
     Eigen::MatrixXd A(points.cols(), dim + 1);
     A.leftCols(dim) = 2 * points.transpose();
     A.col(dim).setOnes();
-    const Eigen::VectorXd solution = A.colPivHouseholderQr().solve(points.colwise().squaredNorm().transpose());
+    const Eigen::VectorXd solution = least_squares_by_qr(A, points.colwise().squaredNorm().transpose()).x;
     Round round;
     round.centre = solution.head(dim);
     round.radius = std::sqrt(solution[dim] + round.centre.squaredNorm());
@@ -77,9 +78,9 @@ FormElement line_start(const Eigen::Matrix3Xd& points, const Eigen::Vector3d& th
     Eigen::Matrix<double, 3, 2> in_plane;
     in_plane << across.unitOrthogonal(), across.cross(across.unitOrthogonal());
     const Eigen::Matrix2Xd flat = in_plane.transpose() * points;
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> spread(flat * flat.transpose());
-    if (!(spread.eigenvalues()[1] > 0)) throw InputError("the points of the section lie in one place");
-    return {FormKind::straightness, Eigen::Vector3d::Zero(), in_plane * spread.eigenvectors().col(0), 0, across};
+    const SymmetricEigen<2> spread = symmetric_eigen<2>(flat * flat.transpose());
+    if (!(spread.values[1] > 0)) throw InputError("the points of the section lie in one place");
+    return {FormKind::straightness, Eigen::Vector3d::Zero(), in_plane * spread.vectors.col(0), 0, across};
 }
 
 } // namespace

@@ -1,5 +1,6 @@
 #include "fit/bspline.h"
 
+#include "core/decompositions.h"
 #include "core/error.h"
 #include "fit/dense.h"
 #include "fit/evidence.h"
@@ -9,9 +10,7 @@
 #include "surface/shapes.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
-#include <Eigen/QR>
 
 #include <algorithm>
 #include <cmath>
@@ -31,9 +30,9 @@ constexpr double kRounding = 1e-6;
 void refuse_line(const FitInput& input, const Eigen::Matrix3Xd& touches)
 {
     const Eigen::Matrix2Xd d = touches.topRows(2).colwise() - touches.topRows(2).rowwise().mean().eval();
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> spread(d * d.transpose());
-    const double least = std::sqrt(std::max(spread.eigenvalues()[0], 0.0) / static_cast<double>(d.cols()));
-    const double most = std::sqrt(spread.eigenvalues()[1] / static_cast<double>(d.cols()));
+    const SymmetricEigen<2> spread = symmetric_eigen<2>(d * d.transpose());
+    const double least = std::sqrt(std::max(spread.values[0], 0.0) / static_cast<double>(d.cols()));
+    const double most = std::sqrt(spread.values[1] / static_cast<double>(d.cols()));
     if (least <= std::max(input.job.probe.accuracy, kRounding * most))
         throw InputError(input.source, "touches lie on one line in x and y");
 }
@@ -88,15 +87,15 @@ struct Osculating {
 Osculating osculating(const Model& m, const Bspline& grid, const VectorXd& z)
 {
     constexpr int kIterations = 50; // the round part changes the curvature by a few percent: a digit each time
-    Eigen::CompleteOrthogonalDecomposition<MatrixXd> least_squares;
-    least_squares.setThreshold(kRounding); // a twist that is only rounding is left 0
     const MatrixXd quadratics = m.A * m.prior.quadratics;
-    least_squares.compute(quadratics);
+    const auto solve = [&](const VectorXd& heights) { // a twist that is only rounding is left 0
+        return shortest_least_squares(quadratics, heights, kRounding).x;
+    };
     const Eigen::Matrix2Xd uv = quadratics.middleCols(1, 2).transpose();
-    Osculating result{least_squares.solve(z), VectorXd::Zero(m.A.cols())};
+    Osculating result{solve(z), VectorXd::Zero(m.A.cols())};
     for (int i = 0; i < kIterations; ++i) {
         result.round = round_part(grid, m.prior, result.quadratic, uv);
-        const Eigen::Matrix<double, 6, 1> next = least_squares.solve(z - m.A * result.round);
+        const Eigen::Matrix<double, 6, 1> next = solve(z - m.A * result.round);
         const bool settled = (next - result.quadratic).norm() <= kRounding * next.norm();
         result.quadratic = next;
         if (settled) break;
@@ -228,12 +227,12 @@ Fit fit_bspline(const FitInput& input)
     const double tau = believed.rms;
 
     // R = S Sᵀ; touches on the same place make it singular: only what is above rounding.
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(m.R);
+    const SymmetricEigen<Eigen::Dynamic> eigen = symmetric_eigen(m.R);
     constexpr double kRank = 1e-12;
-    const VectorXd& d = eigen.eigenvalues();
+    const VectorXd& d = eigen.values;
     const Index rank = (d.array() > kRank * d.maxCoeff()).count();
     const VectorXd root = d.tail(rank).cwiseSqrt();
-    const MatrixXd V = eigen.eigenvectors().rightCols(rank);
+    const MatrixXd V = eigen.vectors.rightCols(rank);
 
     // Unknown: β, and γ in units of its prior's τ.
     RobustLinear problem;

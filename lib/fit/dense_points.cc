@@ -1,10 +1,10 @@
 #include "fit/dense_points.h"
 
+#include "core/decompositions.h"
 #include "core/error.h"
 #include "core/text.h"
 #include "fit/fit.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -104,8 +104,8 @@ void refuse_few(const Extent& extent, const Job& job, const std::string& name, s
                                    " points that it may use");
     const double n = static_cast<double>(extent.count);
     const Vector2d mean = extent.sum / n;
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> spread(extent.squares / n - mean * mean.transpose());
-    if (std::sqrt(std::max(spread.eigenvalues()[0], 0.0)) <= job.probe.accuracy)
+    const SymmetricEigen<2> spread = symmetric_eigen<2>(extent.squares / n - mean * mean.transpose());
+    if (std::sqrt(std::max(spread.values[0], 0.0)) <= job.probe.accuracy)
         throw InputError(name, "touches lie on one line in x and y");
 }
 

@@ -1,9 +1,8 @@
 #include "fit/dense_start.h"
 
+#include "core/decompositions.h"
 #include "core/error.h"
 #include "surface/spline_energy.h"
-
-#include <Eigen/QR>
 
 #include <algorithm>
 #include <cmath>
@@ -92,15 +91,12 @@ Eigen::Matrix<double, 6, 1> take_trend(std::vector<CellPoint>& points, const Bsp
     }
     // Columns are of the order of 1; coordinates in F4 leave this much of one that is not there.
     constexpr double kRounding = 1e-6;
-    Eigen::ColPivHouseholderQR<MatrixXd> least_squares;
-    least_squares.setThreshold(kRounding);
-    least_squares.compute(A);
-    if (least_squares.rank() < 6)
+    const LeastSquares trend = least_squares_by_qr(A, z, kRounding);
+    if (trend.rank < 6)
         throw InputError(name, "touches lie on a conic section in x and y, which leaves the curvature open");
-    const Eigen::Matrix<double, 6, 1> trend = least_squares.solve(z);
-    z -= A * trend;
+    z -= A * trend.x;
     for (Index i = 0; i < A.rows(); ++i) points[static_cast<std::size_t>(i)].z = z[i];
-    return trend;
+    return trend.x;
 }
 
 /// Standard deviation of normal residuals by their median, which outliers hardly move.

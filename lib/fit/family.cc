@@ -1,5 +1,6 @@
 #include "fit/family.h"
 
+#include "core/decompositions.h"
 #include "core/error.h"
 
 #include <boost/math/special_functions/gamma.hpp>
@@ -118,7 +119,7 @@ class TrimmedSearch {
     /// Replaces the touches by those nearest to their fit. @return  the sum of those squares
     double concentrate(Columns& touches) const
     {
-        const VectorXd theta = design_(touches, Eigen::all).completeOrthogonalDecomposition().solve(z_(touches));
+        const VectorXd theta = shortest_least_squares(design_(touches, Eigen::all), z_(touches)).x;
         const VectorXd squares = (z_ - design_ * theta).cwiseAbs2();
         Columns order(static_cast<std::size_t>(z_.size()));
         std::iota(order.begin(), order.end(), Index{0});

@@ -1,12 +1,11 @@
 #include "fit/family_solution.h"
 
+#include "core/decompositions.h"
 #include "fit/quadric_family.h"
 #include "fit/round_family.h"
 #include "surface/shapes.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
-#include <Eigen/QR>
 
 #include <cmath>
 #include <limits>
@@ -29,10 +28,9 @@ std::optional<VectorXd> linear_fit(const MatrixXd& gradients, const VectorXd& z,
 {
     const MatrixXd A = gradients(Eigen::all, kept).transpose();
     const VectorXd size = A.colwise().norm().cwiseMax(std::numeric_limits<double>::min());
-    Eigen::ColPivHouseholderQR<MatrixXd> qr(A * size.cwiseInverse().asDiagonal());
-    qr.setThreshold(kRankThreshold);
-    if (qr.rank() < A.cols()) return std::nullopt;
-    return qr.solve(z(kept)).cwiseQuotient(size);
+    const LeastSquares scaled = least_squares_by_qr(A * size.cwiseInverse().asDiagonal(), z(kept), kRankThreshold);
+    if (scaled.rank < A.cols()) return std::nullopt;
+    return scaled.x.cwiseQuotient(size);
 }
 
 Polynomial about_the_middle(const Eigen::Matrix3Xd& touches, int degree)
@@ -93,13 +91,10 @@ RoundStart round_start(const Touched& touched, const Columns& kept)
     const Eigen::Matrix3Xd xyz = touched.xyz(Eigen::all, kept);
     const Polynomial frame = about_the_middle(xyz, 2);
     const MatrixXd A = height_gradients(frame, xyz.topRows(2)).transpose();
-    Eigen::CompleteOrthogonalDecomposition<MatrixXd> least_squares;
-    least_squares.setThreshold(kRankThreshold);
-    least_squares.compute(A);
-    const VectorXd c = least_squares.solve(xyz.row(2).transpose());
+    const auto [c, rank] = shortest_least_squares(A, xyz.row(2).transpose(), kRankThreshold);
 
     RoundStart start;
-    start.known = least_squares.rank() == A.cols();
+    start.known = rank == A.cols();
     const Eigen::Vector2d slope = c.segment<2>(1) / frame.scale;
     const Eigen::Vector3d n = Eigen::Vector3d(-slope.x(), -slope.y(), 1).normalized();
     Eigen::Matrix3d& axes = start.problem.frame.axes;
@@ -125,11 +120,11 @@ RoundStart round_start(const Touched& touched, const Columns& kept)
         start.least = shape(0, 0);
         start.most = shape(1, 1);
     } else {
-        const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(shape);
-        const int smaller = std::abs(eigen.eigenvalues()[0]) < std::abs(eigen.eigenvalues()[1]) ? 0 : 1;
-        start.least = eigen.eigenvalues()[smaller];
-        start.most = eigen.eigenvalues()[1 - smaller];
-        axes.col(0) = (axes.leftCols<2>() * eigen.eigenvectors().col(smaller)).normalized().eval();
+        const SymmetricEigen<2> eigen = symmetric_eigen(shape);
+        const int smaller = std::abs(eigen.values[0]) < std::abs(eigen.values[1]) ? 0 : 1;
+        start.least = eigen.values[smaller];
+        start.most = eigen.values[1 - smaller];
+        axes.col(0) = (axes.leftCols<2>() * eigen.vectors.col(smaller)).normalized().eval();
         axes.col(1) = n.cross(axes.col(0));
     }
     // Distance over n_z is the vertical error, to first order.

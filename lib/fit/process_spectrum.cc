@@ -1,6 +1,7 @@
 #include "fit/process_spectrum.h"
 
-#include <Eigen/Eigenvalues>
+#include "core/decompositions.h"
+
 #include <Eigen/QR>
 
 #include <algorithm>
@@ -52,9 +53,9 @@ std::vector<Spectrum> spectra(const ProcessTouches& touches)
             Spectrum s;
             s.correlation = {roughness, length * half};
             const MatrixXd K = correlations(s.correlation, touches.xy, touches.xy);
-            const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(rest.transpose() * K * rest);
-            s.E = rest * eigen.eigenvectors();
-            s.lambda = eigen.eigenvalues().cwiseMax(0);
+            const SymmetricEigen<Eigen::Dynamic> eigen = symmetric_eigen<Eigen::Dynamic>(rest.transpose() * K * rest);
+            s.E = rest * eigen.vectors;
+            s.lambda = eigen.values.cwiseMax(0);
             s.y = s.E.transpose() * touches.z / touches.sigma;
             for (int i = 0; i < kRatios; ++i) {
                 const Eigen::ArrayXd d = precision(s, ratio_of(i));

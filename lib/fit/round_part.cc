@@ -1,6 +1,6 @@
 #include "fit/round_part.h"
 
-#include <Eigen/Eigenvalues>
+#include "core/decompositions.h"
 
 #include <algorithm>
 #include <cmath>
@@ -44,9 +44,9 @@ Form form_of(const Eigen::Matrix<double, 6, 1>& q, double half)
     form.gradient = q.segment<2>(1) / half;
     form.hessian << 2 * q[3], q[4], q[4], 2 * q[5];
     form.hessian /= half * half;
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> principal(form.hessian);
-    form.curvature = principal.eigenvalues();
-    form.directions = principal.eigenvectors();
+    const SymmetricEigen<2> principal = symmetric_eigen(form.hessian);
+    form.curvature = principal.values;
+    form.directions = principal.vectors;
     form.none = kNoCurvature * form.curvature.cwiseAbs().maxCoeff();
     return form;
 }

@@ -1,7 +1,8 @@
 #include "fit/tiny_least_squares.h"
 
+#include "core/decompositions.h"
+
 #include <ceres/tiny_solver.h>
-#include <Eigen/QR>
 
 namespace fettle {
 
@@ -38,7 +39,7 @@ VectorXd polished(const Residuals& residuals, VectorXd x)
     double last = kPolish;
     for (int i = 0; i < kSteps && last > kSettled; ++i) {
         residuals.evaluate(x.data(), values.data(), jacobian.data());
-        const VectorXd step = jacobian.colPivHouseholderQr().solve(values);
+        const VectorXd step = least_squares_by_qr(jacobian, values).x;
         if (!(step.norm() < last)) break;
         last = step.norm();
         x -= step;
@@ -54,7 +55,7 @@ VectorXd polished(const Residuals& residuals, VectorXd x)
         const VectorXd step = kStep * VectorXd::Unit(residuals.parameters, k);
         hessian.col(k) = (gradient(x + step) - gradient(x - step)) / (2 * kStep);
     }
-    const VectorXd step = hessian.colPivHouseholderQr().solve(gradient(x));
+    const VectorXd step = least_squares_by_qr(hessian, gradient(x)).x;
     if (step.norm() < kPolish) x -= step;
     return x;
 }

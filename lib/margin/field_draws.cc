@@ -1,8 +1,7 @@
 #include "margin/field_draws.h"
 
+#include "core/decompositions.h"
 #include "surface/precision.h"
-
-#include <Eigen/Eigenvalues>
 
 #include <cmath>
 #include <random>
@@ -38,8 +37,8 @@ Eigen::MatrixXd root(const Eigen::MatrixXd& covariance)
 Eigen::MatrixXd field_root(const Eigen::MatrixXd& gradients, const Eigen::MatrixXd& covariance)
 {
     const Eigen::MatrixXd B = gradients.transpose() * root(covariance);
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(B.transpose() * B);
-    Eigen::MatrixXd field = B * axes.eigenvectors();
+    const SymmetricEigen<Eigen::Dynamic> axes = symmetric_eigen<Eigen::Dynamic>(B.transpose() * B);
+    Eigen::MatrixXd field = B * axes.vectors;
     // Axes have no sign of their own. Weights without symmetry, or those of symmetric places cancel.
     const Eigen::VectorXd weights =
         Eigen::VectorXd::LinSpaced(field.rows(), 1, static_cast<double>(field.rows())).array().sin();

@@ -1,4 +1,6 @@
 #include "margin/regression.h"
+
+#include "core/decompositions.h"
 #include "core/error.h"
 #include "job/boundary.h"
 #include "margin/round_fit.h"
@@ -6,7 +8,6 @@
 #include "sampling/touch_plan.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/QR>
 
 #include <algorithm>
 #include <cmath>
@@ -58,7 +59,7 @@ Eigen::Vector2d bending(const Eigen::Matrix3Xd& touches)
     const Eigen::Matrix2Xd xy = touches.topRows<2>().colwise() - touches.topRows<2>().rowwise().mean();
     Eigen::MatrixXd model(touches.cols(), 5);
     model << Eigen::VectorXd::Ones(touches.cols()), xy.transpose(), xy.transpose().cwiseAbs2();
-    const Eigen::VectorXd fit = model.colPivHouseholderQr().solve(touches.row(2).transpose());
+    const Eigen::VectorXd fit = least_squares_by_qr(model, touches.row(2).transpose()).x;
     return fit.tail<2>();
 }
 

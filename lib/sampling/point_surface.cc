@@ -1,5 +1,7 @@
 #include "sampling/point_surface.h"
 
+#include "core/decompositions.h"
+
 #include <Eigen/Dense>
 
 #include <algorithm>
@@ -80,9 +82,9 @@ std::optional<double> robust_height(const Points& points, const Vector2d& xy, do
     }
     Eigen::VectorXd weights = Eigen::VectorXd::Ones(n), coefficients, residuals;
     const auto solve = [&] { // QR: the points may lie on one line or a circle, where a quadratic is not determined
-        const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(weights.asDiagonal() * A);
-        if (qr.rank() < static_cast<Index>(kUnknowns)) return false;
-        coefficients = qr.solve(weights.cwiseProduct(z));
+        const LeastSquares found = least_squares_by_qr(weights.asDiagonal() * A, weights.cwiseProduct(z));
+        if (found.rank < static_cast<Index>(kUnknowns)) return false;
+        coefficients = found.x;
         residuals = (A * coefficients - z).cwiseAbs();
         return true;
     };

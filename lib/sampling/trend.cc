@@ -1,5 +1,7 @@
 #include "sampling/trend.h"
 
+#include "core/decompositions.h"
+
 #include <Eigen/Dense>
 
 #include <cmath>
@@ -37,7 +39,7 @@ Trend::Trend(const Job& job, const Eigen::Matrix3Xd& points)
                 std::pow(uv.x(), powers_[k].first) * std::pow(uv.y(), powers_[k].second);
     }
     // rank may fail: touches on too few lines
-    coefficients_ = A.completeOrthogonalDecomposition().solve(points.row(2).transpose());
+    coefficients_ = shortest_least_squares(A, points.row(2).transpose()).x;
 }
 
 Eigen::Vector2d Trend::scaled(const Eigen::Vector2d& xy) const { return turn_ * (xy - centre_) / scale_; }

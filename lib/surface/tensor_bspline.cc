@@ -1,10 +1,9 @@
 #include "surface/tensor_bspline.h"
 
+#include "core/decompositions.h"
 #include "core/error.h"
 #include "job/job.h"
 #include "surface/basis.h"
-
-#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <array>
@@ -145,8 +144,7 @@ void check_spread(const Eigen::Matrix2Xd& xy)
 {
     if (!xy.allFinite()) throw InputError("a point is not finite");
     const Eigen::Matrix2Xd centred = xy.colwise() - xy.rowwise().mean();
-    const Eigen::Vector2d spread =
-        Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(centred * centred.transpose()).eigenvalues();
+    const Eigen::Vector2d spread = symmetric_eigen<2>(centred * centred.transpose()).values;
     if (spread[0] <= kOnALine * kOnALine * spread[1]) throw InputError("touches lie on one line in x and y");
 }
 

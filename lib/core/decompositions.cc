@@ -1,0 +1,42 @@
+#include "core/decompositions.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+
+namespace fettle {
+
+template <int kSize>
+SymmetricEigen<kSize> symmetric_eigen(const Eigen::Matrix<double, kSize, kSize>& A)
+{
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, kSize, kSize>> eigen(A);
+    return {eigen.eigenvalues(), eigen.eigenvectors()};
+}
+
+template SymmetricEigen<2> symmetric_eigen(const Eigen::Matrix<double, 2, 2>&);
+template SymmetricEigen<6> symmetric_eigen(const Eigen::Matrix<double, 6, 6>&);
+template SymmetricEigen<Eigen::Dynamic> symmetric_eigen(const Eigen::MatrixXd&);
+
+namespace {
+
+template <typename Decomposition>
+LeastSquares solved(const Eigen::MatrixXd& A, const Eigen::VectorXd& b, std::optional<double> threshold)
+{
+    Decomposition decomposition;
+    if (threshold) decomposition.setThreshold(*threshold);
+    decomposition.compute(A);
+    return {decomposition.solve(b), decomposition.rank()};
+}
+
+} // namespace
+
+LeastSquares least_squares_by_qr(const Eigen::MatrixXd& A, const Eigen::VectorXd& b, std::optional<double> threshold)
+{
+    return solved<Eigen::ColPivHouseholderQR<Eigen::MatrixXd>>(A, b, threshold);
+}
+
+LeastSquares shortest_least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b, std::optional<double> threshold)
+{
+    return solved<Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>>(A, b, threshold);
+}
+
+} // namespace fettle
