@@ -71,7 +71,7 @@ void write_gcode(std::ostream& out, const Plan& plan, const ToolPath& path, doub
         }
         forwards = !forwards;
     }
-    out << "M2\n";
+    out << "M30\n";
 }
 
 } // namespace fettle
