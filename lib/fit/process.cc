@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -33,6 +34,28 @@ Index worst_slip(const std::vector<Spectrum>& all, double sigma)
             return gain > price_of_a_slip(sigma) ? worst : -1;
         }
     return -1;
+}
+
+/// The longest cell on which a correlation is followed: the quasi-interpolant's error falls with its fourth power where
+/// the process is smooth without end.
+double longest_cell(const Correlation& correlation)
+{
+    return correlation.length / (correlation.roughness == Roughness::none ? 2 : 3);
+}
+
+/// The same rectangle in cells up to `longest` mm, no finer than they were.
+Bspline coarsened(const Bspline& grid, double longest)
+{
+    constexpr Index kMore = 3; // functions than cells: cubic
+    constexpr double kFewest = 4;
+    const Eigen::Array2d before(static_cast<double>(grid.heights.rows() - kMore),
+                                static_cast<double>(grid.heights.cols() - kMore));
+    const Eigen::Array2d side = before * grid.cell.array();
+    const Eigen::Array2d after = (side / longest).ceil().max(kFewest).min(before);
+    Bspline result = grid;
+    result.cell = side / after;
+    result.heights.setZero(static_cast<Index>(after.x()) + kMore, static_cast<Index>(after.y()) + kMore);
+    return result;
 }
 
 } // namespace
@@ -64,28 +87,34 @@ std::optional<Candidate> fit_process(const Touched& touched, const Bspline& grid
     std::sort(candidate.gross_errors.begin(), candidate.gross_errors.end());
 
     constexpr double kLeastWeight = 0.01; // of the most probable one
+    constexpr double kLeastShare = 0.01; // of the process as a whole, for a correlation to be followed
     const double best = best_score(believed);
-    double sum = 0;
     std::vector<std::array<double, kRatios>> weights(believed.size());
+    VectorXd shares = VectorXd::Zero(static_cast<Index>(believed.size()));
     for (std::size_t k = 0; k < believed.size(); ++k)
         for (std::size_t i = 0; i < kRatios; ++i) {
             const double weight = std::exp((best - believed[k].score[i]) / 2);
-            sum += weight;
+            shares[static_cast<Index>(k)] += weight;
             weights[k][i] = weight < kLeastWeight ? 0 : weight;
         }
+    const double sum = shares.sum();
+    double longest = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < believed.size(); ++k)
+        if (shares[static_cast<Index>(k)] >= kLeastShare * sum)
+            longest = std::min(longest, longest_cell(believed[k].correlation));
     candidate.score = best - 2 * std::log(sum / static_cast<double>(believed.size() * kRatios)) +
                       price_of_a_slip(touched.sigma) * static_cast<double>(candidate.gross_errors.size());
     candidate.freedom = static_cast<double>(kept.size()) - static_cast<double>(all.F.cols());
 
     // Their mean by probability.
-    const ControlHeights controls(grid);
+    Bspline spline = coarsened(grid, longest);
+    const ControlHeights controls(spline);
     const Eigen::MatrixXd trend_controls = controls.from(height_gradients(trend->shape, controls.nodes()).transpose());
     ProcessMixture mixture(some, controls, trend_controls);
     for (std::size_t k = 0; k < believed.size(); ++k) mixture.add(believed[k], weights[k]);
-    Bspline spline = grid;
     VectorXd heights;
     std::tie(heights, candidate.covariance) = mixture.result();
-    spline.heights = heights.reshaped(grid.heights.rows(), grid.heights.cols());
+    spline.heights = heights.reshaped(spline.heights.rows(), spline.heights.cols());
     candidate.shape = std::move(spline);
     return candidate;
 }

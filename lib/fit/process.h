@@ -10,7 +10,8 @@ namespace fettle {
 /// restricted likelihood (Patterson and Thompson 1971), orders of magnitude of both alike probable beforehand. The
 /// result is one height field, mean and covariance of all of these, on a bicubic B-spline grid. A richer trend than a
 /// quadratic takes up what the residual would follow better.
-/// @param grid  over B and the touches; its heights are not read
+/// @param grid  over B and the touches, the finest to be used; its heights are not read. Cells are as long as the
+/// correlations allow.
 /// @return  nothing for fewer touches than the trend's parameters and two, or touches on a line
 std::optional<Candidate> fit_process(const Touched& touched, const Bspline& grid);
 

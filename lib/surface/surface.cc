@@ -5,6 +5,7 @@
 #include "surface/shapes.h"
 #include "surface/tensor_bspline.h"
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <cmath>
@@ -138,8 +139,10 @@ Eigen::MatrixXd height_gradients(const Shape& shape, const Eigen::Matrix2Xd& xy)
 {
     const Eigen::VectorXi powers = parameter_powers(shape);
     Eigen::MatrixXd gradients(powers.size(), xy.cols());
-    tbb::parallel_for(Eigen::Index{0}, xy.cols(),
-                      [&](Eigen::Index i) { gradients.col(i) = gradient_of(shape, xy.col(i)); });
+    constexpr std::size_t kGrain = 512; // points: fewer take less time than it takes to wake another thread
+    tbb::parallel_for(tbb::blocked_range<Eigen::Index>(0, xy.cols(), kGrain), [&](const auto& part) {
+        for (Eigen::Index i = part.begin(); i < part.end(); ++i) gradients.col(i) = gradient_of(shape, xy.col(i));
+    });
     return gradients;
 }
 
