@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -58,6 +59,52 @@ Bspline coarsened(const Bspline& grid, double longest)
     return result;
 }
 
+/// Takes out of `touches` what is better explained as a slip than by the others, one by one, up to `most`.
+/// @return  which of all; `believed` are the spectra of the others
+Columns take_slips(ProcessTouches& touches, std::vector<Spectrum>& believed, std::size_t most)
+{
+    const ProcessTouches all = touches;
+    Columns kept(static_cast<std::size_t>(all.z.size())), slips;
+    std::iota(kept.begin(), kept.end(), Index{0});
+    for (believed = spectra(touches); slips.size() < most; believed = spectra(touches)) {
+        const Index worst = worst_slip(believed, all.sigma);
+        if (worst < 0) break;
+        slips.push_back(kept[static_cast<std::size_t>(worst)]);
+        kept.erase(kept.begin() + worst);
+        touches = part_of(all, kept);
+    }
+    std::sort(slips.begin(), slips.end());
+    return slips;
+}
+
+/// How probable the correlations and amplitudes are, against the most probable one of all.
+struct Weights {
+    std::vector<std::array<double, kRatios>> of; ///< 0 where they change nothing that shows
+    double sum = 0;
+    double cell = 0; ///< mm, on which all correlations are followed that matter
+};
+
+Weights weights_of(const std::vector<Spectrum>& believed)
+{
+    constexpr double kLeastWeight = 0.01;
+    constexpr double kLeastShare = 0.01; // of the sum, for a correlation to matter
+    const double best = best_score(believed);
+    Weights weights{std::vector<std::array<double, kRatios>>(believed.size()), 0,
+                    std::numeric_limits<double>::infinity()};
+    std::vector<double> shares(believed.size(), 0);
+    for (std::size_t k = 0; k < believed.size(); ++k)
+        for (std::size_t i = 0; i < kRatios; ++i) {
+            const double weight = std::exp((best - believed[k].score[i]) / 2);
+            shares[k] += weight;
+            weights.of[k][i] = weight < kLeastWeight ? 0 : weight;
+        }
+    weights.sum = std::accumulate(shares.begin(), shares.end(), 0.0);
+    for (std::size_t k = 0; k < believed.size(); ++k)
+        if (shares[k] >= kLeastShare * weights.sum)
+            weights.cell = std::min(weights.cell, longest_cell(believed[k].correlation));
+    return weights;
+}
+
 } // namespace
 
 std::optional<Candidate> fit_process(const Touched& touched, const Bspline& grid)
@@ -65,53 +112,28 @@ std::optional<Candidate> fit_process(const Touched& touched, const Bspline& grid
     std::optional<FamilySolution> trend = solve_family("quadratic", touched, all_touches(touched));
     if (!trend) trend = solve_family("plane", touched, all_touches(touched));
     constexpr Index kRest = 2; // touches that nothing has taken up yet
-    if (!trend || touched.xyz.cols() < trend->gradients.rows() + kRest) return std::nullopt;
-    const ProcessTouches all{touched.xyz.topRows(2), touched.xyz.row(2).transpose(), touched.sigma,
-                             trend->gradients.transpose()};
+    const Index n = touched.xyz.cols();
+    if (!trend || n < trend->gradients.rows() + kRest) return std::nullopt;
+    const Index p = trend->gradients.rows();
 
-    Columns kept = all_touches(touched);
-    ProcessTouches some = all;
-    const auto most_slips =
-        static_cast<std::size_t>(std::min(touched.xyz.cols() - all.F.cols() - kRest, touched.xyz.cols() / 4));
+    ProcessTouches touches{touched.xyz.topRows(2), touched.xyz.row(2).transpose(), touched.sigma,
+                           trend->gradients.transpose()};
     Candidate candidate;
     candidate.method = "gp";
-    std::vector<Spectrum> believed = spectra(some);
-    while (candidate.gross_errors.size() < most_slips) {
-        const Index worst = worst_slip(believed, touched.sigma);
-        if (worst < 0) break;
-        candidate.gross_errors.push_back(kept[static_cast<std::size_t>(worst)]);
-        kept.erase(kept.begin() + worst);
-        some = part_of(all, kept);
-        believed = spectra(some);
-    }
-    std::sort(candidate.gross_errors.begin(), candidate.gross_errors.end());
-
-    constexpr double kLeastWeight = 0.01; // of the most probable one
-    constexpr double kLeastShare = 0.01; // of the process as a whole, for a correlation to be followed
-    const double best = best_score(believed);
-    std::vector<std::array<double, kRatios>> weights(believed.size());
-    VectorXd shares = VectorXd::Zero(static_cast<Index>(believed.size()));
-    for (std::size_t k = 0; k < believed.size(); ++k)
-        for (std::size_t i = 0; i < kRatios; ++i) {
-            const double weight = std::exp((best - believed[k].score[i]) / 2);
-            shares[static_cast<Index>(k)] += weight;
-            weights[k][i] = weight < kLeastWeight ? 0 : weight;
-        }
-    const double sum = shares.sum();
-    double longest = std::numeric_limits<double>::infinity();
-    for (std::size_t k = 0; k < believed.size(); ++k)
-        if (shares[static_cast<Index>(k)] >= kLeastShare * sum)
-            longest = std::min(longest, longest_cell(believed[k].correlation));
-    candidate.score = best - 2 * std::log(sum / static_cast<double>(believed.size() * kRatios)) +
+    std::vector<Spectrum> believed;
+    candidate.gross_errors = take_slips(touches, believed, static_cast<std::size_t>(std::min(n - p - kRest, n / 4)));
+    const Weights weights = weights_of(believed);
+    candidate.score = best_score(believed) -
+                      2 * std::log(weights.sum / static_cast<double>(believed.size() * kRatios)) +
                       price_of_a_slip(touched.sigma) * static_cast<double>(candidate.gross_errors.size());
-    candidate.freedom = static_cast<double>(kept.size()) - static_cast<double>(all.F.cols());
+    candidate.freedom = static_cast<double>(touches.z.size() - p);
 
     // Their mean by probability.
-    Bspline spline = coarsened(grid, longest);
+    Bspline spline = coarsened(grid, weights.cell);
     const ControlHeights controls(spline);
     const Eigen::MatrixXd trend_controls = controls.from(height_gradients(trend->shape, controls.nodes()).transpose());
-    ProcessMixture mixture(some, controls, trend_controls);
-    for (std::size_t k = 0; k < believed.size(); ++k) mixture.add(believed[k], weights[k]);
+    ProcessMixture mixture(touches, controls, trend_controls);
+    for (std::size_t k = 0; k < believed.size(); ++k) mixture.add(believed[k], weights.of[k]);
     VectorXd heights;
     std::tie(heights, candidate.covariance) = mixture.result();
     spline.heights = heights.reshaped(spline.heights.rows(), spline.heights.cols());
