@@ -29,11 +29,6 @@ struct Candidate {
 /// @return  nothing if they do not determine such a surface
 std::optional<Candidate> fit_family(const std::string& name, const Touched& touched, const Columns& kept);
 
-/// Three quarters of the touches that lie near one quadratic (plane, if there are few): the least trimmed squares of
-/// many small subsets (Rousseeuw and Van Driessen 2006). Slips that outweigh the others in a least-squares fit are not
-/// among them.
-Columns trimmed_touches(const Touched& touched);
-
 /// All touches.
 Columns all_touches(const Touched& touched);
 

@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "core/text.h"
 #include "fit/family.h"
+#include "fit/trimmed_touches.h"
 
 #include <algorithm>
 #include <cmath>

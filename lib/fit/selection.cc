@@ -4,6 +4,7 @@
 #include "fit/family.h"
 #include "fit/plane.h"
 #include "fit/process.h"
+#include "fit/trimmed_touches.h"
 
 #include <algorithm>
 #include <cmath>
