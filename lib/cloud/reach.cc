@@ -10,6 +10,7 @@ namespace fettle {
 void check_reach(const Eigen::Matrix3Xd& xyz, const std::string& source)
 {
     constexpr double kFarthest = 1e12; // mm: the Earth has 1.3e10, as surveyors' coordinates may say
+    if (!(xyz.array().abs() > kFarthest).any()) return;
     for (Eigen::Index i = 0; i < xyz.cols(); ++i)
         for (const double coordinate : xyz.col(i))
             if (std::isfinite(coordinate) && std::abs(coordinate) > kFarthest)

@@ -31,23 +31,35 @@ struct FileBytes {
     std::size_t size;
 };
 
-ShapeFile parse_shape(std::string_view bytes, const std::string& name, const std::optional<Units>& units)
+std::string head_of(const InputFile& file)
 {
-    if (looks_like_cloud(bytes)) {
-        CloudFile file = parse_cloud(bytes, name, units);
-        return {std::move(file.cloud), file.units, {}};
+    constexpr std::size_t kHead = 1 << 12; // enough to tell a PCD or a binary STL
+    std::string head(std::min(file.size(), kHead), '\0');
+    file.read(0, head.data(), head.size());
+    return head;
+}
+
+ShapeFile read_shape(const InputFile& file, const std::string& name, const std::optional<Units>& units)
+{
+    ShapeFile shape{Mesh(), units.value_or(Units{}), {}};
+    if (is_binary_stl(head_of(file), file.size())) {
+        shape.shape = read_mesh(file, name, shape.units.length, &shape.repair);
+        return shape;
     }
-    const Units stated = units.value_or(Units{});
-    ShapeFile file{Mesh(), stated, {}};
-    file.shape = parse_mesh(bytes, name, stated.length, &file.repair);
-    return file;
+    const FileBytes bytes(file);
+    if (looks_like_cloud(bytes.view())) {
+        CloudFile cloud = parse_cloud(bytes.view(), name, units);
+        return {std::move(cloud.cloud), cloud.units, {}};
+    }
+    shape.shape = parse_mesh(bytes.view(), name, shape.units.length, &shape.repair);
+    return shape;
 }
 
 } // namespace
 
 ShapeFile read_shape(const std::string& path, const std::optional<Units>& units)
 {
-    return parse_shape(FileBytes(InputFile(path)).view(), display_name(path), units);
+    return read_shape(InputFile(path), display_name(path), units);
 }
 
 const Eigen::Matrix3Xd& places_of(const MeshOrCloud& shape)
@@ -77,9 +89,7 @@ TestPoints test_points(const MeshOrCloud& shape, const Units& units)
 TestPoints open_test_points(const std::string& path, const std::optional<Units>& units)
 {
     const auto file = std::make_shared<const InputFile>(path);
-    constexpr std::size_t kHead = 1 << 12; // enough to tell a PCD
-    std::string head(std::min(file->size(), kHead), '\0');
-    file->read(0, head.data(), head.size());
+    const std::string head = head_of(*file);
     if (looks_like_pcd(head) && !is_binary_stl(head, file->size())) {
         const auto stream = std::make_shared<const CloudStream>(file, display_name(path), units);
         TestPoints test;
@@ -88,7 +98,7 @@ TestPoints open_test_points(const std::string& path, const std::optional<Units>&
         test.units = stream->units();
         return test;
     }
-    const ShapeFile shape = parse_shape(FileBytes(*file).view(), display_name(path), units);
+    const ShapeFile shape = read_shape(*file, display_name(path), units);
     return test_points(shape.shape, shape.units);
 }
 

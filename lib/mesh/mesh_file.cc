@@ -45,27 +45,49 @@ Mesh parse_any(std::string_view bytes, const std::string& source, MeshRepair& re
     return parse_stl(bytes, source, repair); // says why it is none
 }
 
-} // namespace
-
-Mesh read_mesh(const std::string& path, Units::Length unit, MeshRepair* repair)
+/// The mesh in mm.
+/// @throws InputError if it has no triangles or reaches too far
+Mesh checked(Mesh mesh, MeshRepair done, const std::string& source, Units::Length unit, MeshRepair* repair)
 {
-    return parse_mesh(read_whole(path), display_name(path), unit, repair);
-}
-
-Mesh parse_mesh(std::string_view bytes, const std::string& source, Units::Length unit, MeshRepair* repair)
-{
-    MeshRepair done;
-    Mesh mesh = parse_any(bytes, source, done);
     done.dropped_triangles += drop_undefined(mesh);
     if (mesh.triangles.cols() == 0)
         throw InputError(source, done.dropped_triangles == 0
                                      ? "no triangles"
                                      : "no triangles but " + std::to_string(done.dropped_triangles) +
                                            " with NaN or infinite corners");
-    mesh.vertices *= mm_per(unit);
+    if (unit != Units::Length::mm) mesh.vertices *= mm_per(unit);
     check_reach(mesh.vertices, source);
     if (repair != nullptr) *repair = done;
     return mesh;
+}
+
+} // namespace
+
+Mesh read_mesh(const std::string& path, Units::Length unit, MeshRepair* repair)
+{
+    return read_mesh(InputFile(path), display_name(path), unit, repair);
+}
+
+Mesh read_mesh(const InputFile& file, const std::string& source, Units::Length unit, MeshRepair* repair)
+{
+    std::string head(std::min(file.size(), kStlHead), '\0');
+    file.read(0, head.data(), head.size());
+    if (!is_binary_stl(head, file.size())) {
+        std::string bytes(file.size(), '\0');
+        file.read(0, bytes.data(), bytes.size());
+        return parse_mesh(bytes, source, unit, repair);
+    }
+    MeshRepair done;
+    const auto read = [&](std::size_t offset, char* to, std::size_t count) { file.read(offset, to, count); };
+    Mesh mesh = read_binary_stl(head, read, source, done);
+    return checked(std::move(mesh), done, source, unit, repair);
+}
+
+Mesh parse_mesh(std::string_view bytes, const std::string& source, Units::Length unit, MeshRepair* repair)
+{
+    MeshRepair done;
+    Mesh mesh = parse_any(bytes, source, done);
+    return checked(std::move(mesh), done, source, unit, repair);
 }
 
 bool looks_like_cloud(std::string_view bytes)

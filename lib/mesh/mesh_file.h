@@ -9,12 +9,16 @@
 
 namespace fettle {
 
+class InputFile;
+
 /// Reads STL (binary or ASCII, told by size and content), PLY, OBJ or OFF. Equal vertices of an STL are made one; the
 /// lowest index stays, so the result does not depend on threads. Polygons are cut into triangles.
 /// @param path  a file, or "-" for stdin
 /// @param unit  of the file
 /// @throws InputError for what is malformed, with the place; also for a mesh without triangles
 Mesh read_mesh(const std::string& path, Units::Length unit = Units::Length::mm, MeshRepair* repair = nullptr);
+/// The same from an open file. @param source  its name for messages
+Mesh read_mesh(const InputFile& file, const std::string& source, Units::Length unit, MeshRepair* repair = nullptr);
 Mesh parse_mesh(std::string_view bytes, const std::string& source, Units::Length unit = Units::Length::mm,
                 MeshRepair* repair = nullptr);
 

@@ -7,6 +7,7 @@
 #include "mesh/mesh_file.h"
 
 #include <Eigen/Geometry>
+#include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
 #include <cctype>
@@ -21,10 +22,10 @@ namespace fettle {
 
 namespace {
 
-constexpr std::size_t kHeader = 80;             // bytes of free text in a binary file
-constexpr std::size_t kPrelude = kHeader + 4;   // and the number of triangles
-constexpr std::size_t kCorners = 12;            // offset of the corners in a facet
-constexpr std::size_t kMostVertices = 1u << 30; // indices are ints, and hash tables of them too
+constexpr std::size_t kHeader = 80;            // bytes of free text in a binary file
+constexpr std::size_t kPrelude = kStlHead;     // and the number of triangles
+constexpr std::size_t kCorners = 12;           // offset of the corners in a facet
+constexpr std::size_t kMostCorners = 1u << 30; // of all facets
 
 std::uint32_t stated_triangles(std::string_view bytes)
 {
@@ -32,32 +33,6 @@ std::uint32_t stated_triangles(std::string_view bytes)
     std::memcpy(&count, bytes.data() + kHeader, sizeof count);
     return count;
 }
-
-/// The corners in a binary file.
-struct BinaryCorners {
-    const char* facets;
-
-    Corner<float> operator()(std::uint32_t c) const
-    {
-        Corner<float> corner;
-        std::memcpy(corner.data(), place(c), sizeof corner);
-        for (float& coordinate : corner) coordinate += 0.0f;
-        return corner;
-    }
-    void expect(std::uint32_t c) const { __builtin_prefetch(place(c)); }
-    const char* place(std::uint32_t c) const
-    {
-        return facets + kStlTriangle * (c / 3) + kCorners + sizeof(Corner<float>) * (c % 3);
-    }
-};
-
-/// The corners of a text file.
-struct TextCorners {
-    const std::vector<Corner<double>>& corners;
-
-    const Corner<double>& operator()(std::uint32_t c) const { return corners[c]; }
-    void expect(std::uint32_t c) const { __builtin_prefetch(&corners[c]); }
-};
 
 bool same_word(std::string_view word, std::string_view lower_case)
 {
@@ -101,7 +76,7 @@ class AsciiStl {
         for (int corner = 0; corner < 3; ++corner) {
             expect("vertex");
             const double x = number(), y = number(), z = number();
-            corners.push_back({x + 0.0, y + 0.0, z + 0.0});
+            corners.push_back({x, y, z});
         }
         expect("endloop");
         expect("endfacet");
@@ -182,13 +157,32 @@ bool looks_like_ascii_stl(std::string_view bytes)
 
 Mesh parse_stl(std::string_view bytes, const std::string& source, MeshRepair& repair)
 {
-    const bool binary = is_binary_stl(bytes);
-    if (!binary && !looks_like_ascii_stl(bytes)) throw InputError(source, size_problem(bytes));
-    if (binary && 3 * std::size_t{stated_triangles(bytes)} >= kMostVertices)
-        throw InputError(source, std::to_string(stated_triangles(bytes)) + " triangles are too many");
-    if (binary) return welded(stated_triangles(bytes), BinaryCorners{bytes.data() + kPrelude}, repair);
+    if (is_binary_stl(bytes))
+        return read_binary_stl(
+            bytes.substr(0, kPrelude),
+            [&](std::size_t offset, char* to, std::size_t count) { std::memcpy(to, bytes.data() + offset, count); },
+            source, repair);
+    if (!looks_like_ascii_stl(bytes)) throw InputError(source, size_problem(bytes));
     const std::vector<Corner<double>> corners = AsciiStl(bytes, source).parse();
-    return welded(corners.size() / 3, TextCorners{corners}, repair);
+    const auto copy = [&](std::size_t first, std::size_t count, Corner<double>* to) {
+        std::copy_n(corners.data() + 3 * first, 3 * count, to);
+    };
+    return welded<double>(corners.size() / 3, copy, repair);
+}
+
+Mesh read_binary_stl(std::string_view head, const ReadBytes& read, const std::string& source, MeshRepair& repair)
+{
+    const std::size_t facets = stated_triangles(head);
+    if (3 * facets >= kMostCorners) throw InputError(source, std::to_string(facets) + " triangles are too many");
+    tbb::enumerable_thread_specific<std::vector<char>> rooms;
+    const auto copy = [&](std::size_t first, std::size_t count, Corner<float>* to) {
+        std::vector<char>& bytes = rooms.local();
+        bytes.resize(std::max(bytes.size(), kStlTriangle * count));
+        read(kPrelude + kStlTriangle * first, bytes.data(), kStlTriangle * count);
+        for (std::size_t f = 0; f < count; ++f)
+            std::memcpy(to + 3 * f, bytes.data() + kStlTriangle * f + kCorners, 3 * sizeof(Corner<float>));
+    };
+    return welded<float>(facets, copy, repair);
 }
 
 std::string stl_header(std::size_t triangles, Units::Length unit)

@@ -2,15 +2,21 @@
 #include "core/file.h"
 #include "mesh/mesh_file.h"
 #include "mesh/polygons.h"
+#include "own_folder.h"
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
 #include <limits>
+#include <map>
 #include <numbers>
+#include <random>
 #include <sstream>
 
 namespace fettle {
@@ -138,6 +144,46 @@ TEST(Stl, UndefinedCornersAreDroppedAndCounted)
     }
     mesh.vertices.setConstant(infinite);
     expect_refused(binary_stl(mesh), "no triangles but 4 with NaN", "nothing is left");
+}
+
+// Facets whose corners are drawn from few places, so that equal ones are near each other in the file and far apart. The
+// reference: corner by corner, a map from places to numbers.
+TEST(Stl, VerticesAreNumberedAsTheyFirstAppear)
+{
+    constexpr Eigen::Index kFacets = 30000;
+    std::mt19937 random(1);
+    Mesh soup;
+    soup.vertices = Eigen::Matrix3Xd::Zero(3, 3 * kFacets);
+    soup.triangles.resize(3, kFacets);
+    for (Eigen::Index c = 0; c < 3 * kFacets; ++c) {
+        const auto spread = static_cast<std::uint32_t>(c % 5 == 0 ? 20000 : 40);
+        soup.vertices.col(c) << static_cast<float>(random() % spread), static_cast<float>(c / 3000), 0;
+        if (random() % 1000 == 0) soup.vertices(2, c) = std::nan("");
+        soup.triangles(c % 3, c / 3) = static_cast<int>(c);
+    }
+    std::map<std::array<double, 3>, int> numbers;
+    std::vector<int> expected;
+    for (Eigen::Index t = 0; t < kFacets; ++t) {
+        if (!soup.vertices.middleCols(3 * t, 3).allFinite()) continue;
+        for (const auto& corner : soup.vertices.middleCols(3 * t, 3).colwise())
+            expected.push_back(
+                numbers.emplace(std::array{corner.x(), corner.y(), corner.z()}, numbers.size()).first->second);
+    }
+    MeshRepair repair;
+    const Mesh mesh = parse_mesh(binary_stl(soup), "file", Units::Length::mm, &repair);
+    ASSERT_EQ(mesh.triangles.size(), static_cast<Eigen::Index>(expected.size()));
+    EXPECT_TRUE(std::equal(expected.begin(), expected.end(), mesh.triangles.data()));
+    ASSERT_EQ(mesh.vertices.cols(), static_cast<Eigen::Index>(numbers.size()));
+    for (const auto& [place, number] : numbers)
+        EXPECT_EQ(mesh.vertices.col(number), Eigen::Vector3d::Map(place.data()));
+    EXPECT_EQ(repair.dropped_triangles, kFacets - mesh.triangles.cols());
+    EXPECT_EQ(repair.welded_vertices, mesh.triangles.size() - mesh.vertices.cols());
+
+    const OwnFolder folder;
+    std::ofstream("soup.stl", std::ios::binary) << binary_stl(soup);
+    const Mesh streamed = read_mesh("soup.stl");
+    EXPECT_EQ(streamed.vertices, mesh.vertices);
+    EXPECT_EQ(streamed.triangles, mesh.triangles);
 }
 
 TEST(Stl, NegativeZeroIsZero)
