@@ -135,20 +135,14 @@ Fit fit_auto(const FitInput& input)
     std::vector<Candidate> candidates;
     fit_families(touched, names, all_touches(touched), candidates);
     const Eigen::Index n = touched.xyz.cols();
-    const bool explained = explains(best_of(candidates), n);
-    const bool may_be_smooth = input.job.surface == SurfaceType::freeform && !input.estimate_noise;
-    const auto process = [&] { return fit_process(touched, spline_grid(input, surface.touches)); };
-    std::optional<Candidate> smooth;
-    if (!explained) {
-        if (may_be_smooth) smooth = process();
-        // Slips may have spoilt the families from the start. They would not have fooled the process, which bends.
-        if (!smooth || !smooth->gross_errors.empty())
-            fit_families(touched, names, trimmed_touches(touched), candidates);
-    }
+    if (!explains(best_of(candidates), n)) fit_families(touched, names, trimmed_touches(touched), candidates);
     charge_rare_families(candidates, n);
     // A rare family also explains some touches of surfaces that are of no family, noise that is not known all of them.
-    if (explained && may_be_smooth && rarity(best_of(candidates)->method) > 0) smooth = process();
-    if (smooth) candidates.push_back(std::move(*smooth));
+    const Candidate* best = best_of(candidates);
+    if (input.job.surface == SurfaceType::freeform && !input.estimate_noise &&
+        (!explains(best, n) || rarity(best->method) > 0))
+        if (std::optional<Candidate> smooth = fit_process(touched, spline_grid(input, surface.touches)))
+            candidates.push_back(std::move(*smooth));
     if (candidates.empty()) refuse_undetermined(touched, surface.method + " surface", input.source);
     weigh(candidates, surface);
     const Candidate& chosen = candidates.front();

@@ -332,6 +332,44 @@ TEST(Auto, FindsSlips)
     EXPECT_GE(found, 0.9 * runs);
 }
 
+// A fifth of the touches stand on the anomaly's foot, side by side and all too high: a smooth hill through them is no
+// excuse.
+TEST(Auto, FindsSlipsThatLieTogether)
+{
+    constexpr double kSide = 80; // mm
+    const Shape shapes[] = {sphere_about({5, -3, 10}, 8 * kInch, true), Plane{{0, 0}, 3, {0.2, -0.4}},
+                            cylinder_about({3, 4, 5}, {1, 0.4, 0}, 8 * kInch, false)};
+    constexpr int kRuns = 20, kTouches = 30, kSlips = 6;
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    int found = 0, runs = 0;
+    for (const Shape& shape : shapes)
+        for (int run = 0; run < kRuns; ++run) {
+            const Job job = job_with(0.127);
+            const Eigen::Vector2d begin(uniform(random), uniform(random));
+            std::vector<Eigen::Vector2d> places;
+            for (int i = 0; places.size() < kTouches; ++i) { // additive recurrence of the plastic number: even
+                const Eigen::Vector2d whole = begin + i * Eigen::Vector2d(0.7548776662466927, 0.5698402909980532);
+                const Eigen::Vector2d place = kSide * (whole.array() - whole.array().floor() - 0.5);
+                if (place.cwiseAbs().maxCoeff() > kSide / 4) places.push_back(place);
+            }
+            const Eigen::Vector2d foot(kSide / 3, kSide / 2 * (uniform(random) - 0.5));
+            std::sort(places.begin(), places.end(), [&](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+                return (a - foot).norm() < (b - foot).norm();
+            });
+            Eigen::Matrix2Xd xy(2, kTouches);
+            for (int i = 0; i < kTouches; ++i) xy.col(i) = places[static_cast<std::size_t>(i)];
+            FitInput input = touched(
+                xy, [&](double x, double y) { return height_of(shape, x, y); }, job);
+            std::normal_distribution<double> noise(0, touch_sigma(job.probe));
+            for (Eigen::Index i = 0; i < input.xyz.cols(); ++i)
+                input.xyz(2, i) += noise(random) + (i < kSlips ? 1 + 2 * uniform(random) : 0);
+            ++runs;
+            found += fit_surface(input, "auto").surface.gross_errors == Columns{0, 1, 2, 3, 4, 5};
+        }
+    EXPECT_GE(found, 0.95 * runs);
+}
+
 TEST(Swept, ReproducesSweptSurfaces)
 {
     for (const double degrees : {0.0, 30.0, 90.0}) {
