@@ -337,8 +337,9 @@ TEST(Auto, FindsSlips)
 TEST(Auto, FindsSlipsThatLieTogether)
 {
     constexpr double kSide = 80; // mm
-    const Shape shapes[] = {sphere_about({5, -3, 10}, 8 * kInch, true), Plane{{0, 0}, 3, {0.2, -0.4}},
-                            cylinder_about({3, 4, 5}, {1, 0.4, 0}, 8 * kInch, false)};
+    const Shape shapes[] = {sphere_about({5, -3, 10}, 8 * kInch, true),
+                            cylinder_about({3, 4, 5}, {0.8, 0.6, 0}, 8 * kInch, true),
+                            Polynomial{{0, 0}, 100, Eigen::VectorXd{{1, 10, 5, 25, 0, -25}}}};
     constexpr int kRuns = 20, kTouches = 30, kSlips = 6;
     std::mt19937 random(5);
     std::uniform_real_distribution<double> uniform(0, 1);
