@@ -70,7 +70,7 @@ struct FlatSide {
 /// of degree four whose left side is convex and grows: Newton's method, begun anywhere, comes down to its root.
 struct BullSide {
     double r, c, sign, kappa, less;
-    mutable Double4 S = all(1); // begins where the last cells' search ended, which are near
+    mutable Double4 S = all(1.0); // begins where the last cells' search ended, which are near
 
     BullSide(const Cutter& cutter, double slope)
         : r(cutter.corner), c(cutter.flat), sign(slope > 0 ? -1 : 1),
@@ -85,7 +85,7 @@ struct BullSide {
         for (int i = 0; i < kMost; ++i) {
             const Double4 inverse = 1 / root(1 - less * S * S), tangent = r * kappa * inverse;
             const Double4 step = (c * S + tangent * S - across) / (c + tangent * inverse * inverse);
-            S = smaller(larger(S - step, Double4{}), all(1));
+            S = smaller(larger(S - step, Double4{}), all(1.0));
             const Mask4 far = (step > kEnough) | (step < -kEnough);
             if (((far[0] | far[1]) | (far[2] | far[3])) == 0) break;
         }

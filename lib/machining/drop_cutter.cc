@@ -1,6 +1,8 @@
 #include "machining/drop_cutter.h"
 
+#include "core/simd.h"
 #include "machining/cutter_side.h"
+#include "mesh/box_search.h"
 #include "mesh/facet_from_above.h"
 
 #include <Eigen/Geometry>
@@ -14,63 +16,181 @@ namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
+using Touch = DropCutter::Touch;
+using Own = std::vector<std::uint8_t>; ///< of each triangle (DropCutter)
 
 constexpr double kNothing = -std::numeric_limits<double>::infinity();
 
+/// The highest touch so far, of a cutter over xy.
 template <typename Side>
-double rise_at(const Side& side, double square)
+struct Drop {
+    Drop(const Cutter& c, const Vector2d& place) : cutter(c), level(c, 0), xy(place) {}
+
+    void offer(double z, const Vector3d& contact)
+    {
+        if (z > highest.z) highest = {z, contact}; // never NaN
+    }
+
+    /// The cutter rests on a point; NaN or −∞ beyond the cutter.
+    void on_vertex(const Vector3d& vertex)
+    {
+        offer(vertex.z() - rise_at(level, (xy - vertex.head<2>()).squaredNorm()), vertex);
+    }
+
+    /// It rests between the ends of an edge. Over the edge's line the contact is where z − rise is greatest: the least
+    /// of −z + rise, the height of a sweep whose slope is the edge's, turned.
+    void on_edge(const Vector3d& a, const Vector3d& b)
+    {
+        const double length = (b - a).head<2>().norm();
+        if (length == 0) return; // upright: its upper end counts
+        const Vector2d way = (b - a).head<2>() / length, q = xy - a.head<2>();
+        const double along = q.dot(way), across = way.x() * q.y() - way.y() * q.x(), slope = (b.z() - a.z()) / length;
+        if (std::abs(across) > cutter.radius) return;
+        // no higher than its higher end at its nearest place
+        const double near = along - std::clamp(along, 0.0, length);
+        if (!(std::max(a.z(), b.z()) - rise_at(level, near * near + across * across) > highest.z)) return;
+        const Side side(cutter, -slope);
+        const double beside = slope == 0 ? 0 : side.lead(Double4{} + across)[0];
+        const double at = along + beside;
+        if (!(at >= 0 && at <= length)) return;
+        // the rim of a lead that ends there is within the cutter, but for rounding
+        const double square = std::min(beside * beside + across * across, cutter.radius * cutter.radius);
+        offer(a.z() + slope * at - rise_at(side, square), a + at / length * (b - a));
+    }
+
+    /// It rests on the inside of a facet, where the lower side has its slope; on a steeper one the rim.
+    /// @return  may it rest higher on a corner or side of it, which lie in its plane?
+    bool on_facet(const Mesh& mesh, Eigen::Index triangle)
+    {
+        const Eigen::Vector3i t = mesh.triangles.col(triangle);
+        const Vector3d a = mesh.vertices.col(t[0]), ab = mesh.vertices.col(t[1]) - a, ac = mesh.vertices.col(t[2]) - a;
+        Vector3d normal = ab.cross(ac);
+        const double area = normal.norm();
+        if (normal.z() == 0 || area == 0) return true;
+        normal *= (normal.z() > 0 ? 1 : -1) / area;
+        const double out = normal.head<2>().norm();
+        const bool has_cone = cutter.cone_from < cutter.radius;
+        const bool steep = has_cone && out > cutter.cone_slope * normal.z();
+        const double offset = steep ? cutter.radius : cutter.flat + cutter.corner * out;
+        const Vector2d outwards = out > 0 ? Vector2d(normal.head<2>() / out) : Vector2d(0, 0);
+        const Vector2d foot = xy - offset * outwards, from = foot - a.head<2>();
+        const double over_contact = steep ? rise(cutter, cutter.radius) : cutter.corner * (1 - normal.z());
+        // On the whole plane, and how far roundings of the normal may turn it, more the narrower the facet.
+        const double whole = a.z() - normal.head<2>().dot(from) / normal.z() - over_contact;
+        constexpr double kRoundings = 8 * std::numeric_limits<double>::epsilon();
+        const double turned = kRoundings * std::sqrt(ab.squaredNorm() * ac.squaredNorm()) / area;
+        if (!(whole + turned * (from.norm() + cutter.radius) / normal.z() > highest.z)) return false;
+        const auto z = FacetFromAbove(mesh, triangle).height(foot);
+        if (z) offer(*z - over_contact, {foot.x(), foot.y(), *z});
+        return !z;
+    }
+
+    static double rise_at(const Side& side, double square) { return side.rise(Double4{} + square)[0]; }
+
+    const Cutter& cutter;
+    const Side level;
+    const Vector2d xy;
+    Touch highest{kNothing, Vector3d::Zero()};
+};
+
+/// A cutter over a place among the boxes of a tree, in its coordinates.
+struct Over {
+    float x, y;
+    float rounding; ///< of a coordinate, of the place, and of a height
+    float radius, flat, corner, cone_from, cone_slope;
+};
+
+Over over(const Cutter& c, const Vector2d& xy, const BoxTree& tree)
 {
-    return side.rise(Double4{} + square)[0];
+    const Vector2d place = xy - tree.centre.head<2>();
+    const double reach = std::max(place.cwiseAbs().maxCoeff(), tree.box.sizes().maxCoeff()) + rise(c, c.radius);
+    const auto narrow = [](double value) { return static_cast<float>(value); };
+    return {narrow(place.x()),   narrow(place.y()),   narrow(8 * (tree.rounding + kEpsilon * reach)),
+            narrow(c.radius),    narrow(c.flat),      narrow(c.corner),
+            narrow(c.cone_from), narrow(c.cone_slope)};
 }
 
-/// z of the tip that rests on a point; NaN or −∞ beyond the cutter.
+/// No tip that rests on what is in one of eight boxes is higher than its top less the rise at its nearest place. All
+/// roundings are to the safe side; −∞ for boxes beyond the cutter.
+FETTLE_INLINE Float8 highest_tips(const Float8 (&least)[3], const Float8 (&most)[3], const Over& over)
+{
+    constexpr auto kLess = static_cast<float>(1 - 16 * kEpsilon), kMore = static_cast<float>(16 * kEpsilon);
+    const Float8 x = larger(larger(least[0] - over.x, over.x - most[0]) - over.rounding, Float8{});
+    const Float8 y = larger(larger(least[1] - over.y, over.y - most[1]) - over.rounding, Float8{});
+    const Float8 distance = kLess * root(x * x + y * y);
+    const Float8 on_torus =
+        smaller(larger(distance - over.flat, Float8{}), all(over.cone_from - over.flat)); // from the disc
+    const float r2 = over.corner * over.corner;
+    const Float8 height = over.corner + root(larger(r2 - on_torus * on_torus, Float8{}) + kMore * r2);
+    const Float8 torus = kLess * on_torus * on_torus / (height + std::numeric_limits<float>::min());
+    const Float8 cone = kLess * over.cone_slope * larger(distance - over.cone_from, Float8{});
+    const Float8 tips = most[2] - torus - cone + over.rounding;
+    return distance <= over.radius ? tips : all(-std::numeric_limits<float>::infinity());
+}
+
+/// @return  the lanes in which tips may be higher than what is found
+FETTLE_CLONES unsigned promising(const Boxes8& boxes, const Over& over, float found, Float8& tips)
+{
+    tips = highest_tips(boxes.least, boxes.most, over);
+    return lanes_of(tips > found);
+}
+FETTLE_CLONES unsigned promising(const Triangles8& triangles, const Over& over, float found, Float8& tips)
+{
+    const auto& [a, b, c] = triangles.corner;
+    Float8 least[3], most[3];
+#pragma GCC unroll 3
+    for (int axis = 0; axis < 3; ++axis) {
+        least[axis] = smaller(a[axis], smaller(b[axis], c[axis]));
+        most[axis] = larger(a[axis], larger(b[axis], c[axis]));
+    }
+    tips = highest_tips(least, most, over);
+    return lanes_of(tips > found);
+}
+
 template <typename Side>
-double on_vertex(const Side& side, const Vector3d& vertex, const Vector2d& xy)
+void look_at(Drop<Side>& drop, const Mesh& mesh, Eigen::Index t, std::uint8_t own)
 {
-    return vertex.z() - rise_at(side, (xy - vertex.head<2>()).squaredNorm());
+    const Eigen::Vector3i corners = mesh.triangles.col(t);
+    const auto z = [&](int k) { return mesh.vertices(2, corners[k]); };
+    if (!(std::max({z(0), z(1), z(2)}) > drop.highest.z)) return;
+    if (!drop.on_facet(mesh, t)) return;
+    for (int k = 0; k < 3; ++k) {
+        const Vector3d a = mesh.vertices.col(corners[k]);
+        if ((own & (1 << k)) != 0) drop.on_vertex(a);
+        if ((own & (8 << k)) != 0) drop.on_edge(a, mesh.vertices.col(corners[(k + 1) % 3]));
+    }
 }
 
-/// z of the tip that rests between the ends of an edge. Over the edge's line the contact is where z − rise is greatest:
-/// the least of −z + rise, the height of a sweep whose slope is the edge's, turned.
+/// The most promising part of the mesh first; what cannot be higher than what is found is left out.
 template <typename Side>
-double on_edge(const Cutter& cutter, const Vector3d& a, const Vector3d& b, const Vector2d& xy)
+Touch highest_touch(const BoxTree& tree, const Mesh& mesh, const Own& own, const Cutter& cutter, const Vector2d& xy)
 {
-    const double length = (b - a).head<2>().norm();
-    if (length == 0) return kNothing; // upright: its upper end counts
-    const Vector2d way = (b - a).head<2>() / length, q = xy - a.head<2>();
-    const double along = q.dot(way), across = way.x() * q.y() - way.y() * q.x(), slope = (b.z() - a.z()) / length;
-    if (std::abs(across) > cutter.radius || along < -cutter.radius || along > length + cutter.radius) return kNothing;
-    const Side side(cutter, -slope);
-    const double beside = slope == 0 ? 0 : side.lead(Double4{} + across)[0];
-    const double at = along + beside;
-    if (!(at >= 0 && at <= length)) return kNothing;
-    // the rim of a lead that ends there is within the cutter, but for rounding
-    const double square = std::min(beside * beside + across * across, cutter.radius * cutter.radius);
-    return a.z() + slope * at - rise_at(side, square);
+    Drop<Side> drop(cutter, xy);
+    const Over at = over(cutter, xy, tree);
+    const auto found = [&] { return static_cast<float>(drop.highest.z - tree.centre.z()) - at.rounding; };
+    Stack stack;
+    stack.push({-std::numeric_limits<float>::infinity(), static_cast<std::int32_t>(tree.levels.size()) - 1, 0});
+    while (stack.any()) {
+        const Waiting next = stack.pop();
+        if (!(-next.distance > found())) continue;
+        Float8 tips;
+        if (next.level >= 0) {
+            const Boxes8& boxes = tree.levels[static_cast<std::size_t>(next.level)].boxes[next.index];
+            const unsigned lanes = promising(boxes, at, found(), tips);
+            stack.push(lanes, -tips, next.level - 1, next.index);
+            continue;
+        }
+        for (Lanes left{promising(tree.leaves[next.index], at, found(), tips)}; left.any(); left.next()) {
+            const Eigen::Index t = tree.triangle(next.index, left.first());
+            if (tips[left.first()] > found()) look_at(drop, mesh, t, own[static_cast<std::size_t>(t)]);
+        }
+    }
+    return drop.highest;
 }
 
-/// z of the tip that rests on the inside of a facet, where the lower side has its slope; on a steeper one the rim.
-double on_facet(const Mesh& mesh, const Cutter& cutter, Eigen::Index triangle, const Vector2d& xy)
+Own ownership(const Mesh& mesh)
 {
-    const Eigen::Vector3i t = mesh.triangles.col(triangle);
-    const Vector3d a = mesh.vertices.col(t[0]);
-    Vector3d normal = (mesh.vertices.col(t[1]) - a).cross(mesh.vertices.col(t[2]) - a);
-    const double area = normal.norm();
-    if (normal.z() == 0 || area == 0) return kNothing;
-    normal *= (normal.z() > 0 ? 1 : -1) / area;
-    const double level = normal.head<2>().norm();
-    const bool has_cone = cutter.cone_from < cutter.radius;
-    const bool steep = has_cone && level > cutter.cone_slope * normal.z();
-    const double offset = steep ? cutter.radius : cutter.flat + cutter.corner * level;
-    const Vector2d outwards = level > 0 ? Vector2d(normal.head<2>() / level) : Vector2d(0, 0);
-    const auto z = FacetFromAbove(mesh, triangle).height(xy - offset * outwards);
-    if (!z) return kNothing;
-    return steep ? *z - rise(cutter, cutter.radius) : *z - cutter.corner * (1 - normal.z());
-}
-
-std::vector<std::uint8_t> ownership(const Mesh& mesh)
-{
-    std::vector<std::uint8_t> own(static_cast<std::size_t>(mesh.triangles.cols()), 0);
+    Own own(static_cast<std::size_t>(mesh.triangles.cols()), 0);
     std::vector<bool> seen(static_cast<std::size_t>(mesh.vertices.cols()), false);
     std::vector<std::tuple<int, int, std::size_t, int>> edges;
     for (std::size_t t = 0; t < own.size(); ++t)
@@ -93,48 +213,17 @@ std::vector<std::uint8_t> ownership(const Mesh& mesh)
 } // namespace
 
 DropCutter::DropCutter(const Mesh& mesh, const Cutter& cutter)
-    : mesh_(mesh), cutter_(cutter), grid_(mesh), own_(ownership(mesh))
+    : mesh_(mesh), cutter_(cutter), tree_(mesh), own_(ownership(mesh))
 {
-    for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
-        Eigen::Matrix3d corners;
-        for (int k = 0; k < 3; ++k) corners.col(k) = mesh.vertices.col(mesh.triangles(k, t));
-        boxes_.push_back({corners.topRows<2>().rowwise().minCoeff(), corners.topRows<2>().rowwise().maxCoeff(),
-                          corners.row(2).maxCoeff()});
-    }
 }
 
-template <typename Side>
-double DropCutter::drop(const Vector2d& xy) const
+std::optional<Touch> DropCutter::operator()(const Vector2d& xy) const
 {
-    double highest = kNothing;
-    const auto offer = [&highest](double z) { highest = z > highest ? z : highest; }; // never NaN
-    const Side level(cutter_, 0);
-    const Vector2d reach = Vector2d::Constant(cutter_.radius);
-    const auto look = [&](Eigen::Index t) {
-        const auto n = static_cast<std::size_t>(t);
-        // No point of it is higher than its top, nor nearer than its box.
-        const Box& box = boxes_[n];
-        if (box.top <= highest) return;
-        const double near = (box.low - xy.array()).max(xy.array() - box.high).max(0).matrix().squaredNorm();
-        if (near > cutter_.radius * cutter_.radius || box.top - rise_at(level, near) <= highest) return;
-        offer(on_facet(mesh_, cutter_, t, xy));
-        for (int k = 0; k < 3; ++k) {
-            const Vector3d a = mesh_.vertices.col(mesh_.triangles(k, t));
-            if ((own_[n] & (1 << k)) != 0) offer(on_vertex(level, a, xy));
-            if ((own_[n] & (8 << k)) != 0)
-                offer(on_edge<Side>(cutter_, a, mesh_.vertices.col(mesh_.triangles((k + 1) % 3, t)), xy));
-        }
-    };
-    grid_.visit(xy, xy, look); // what is high enough to rule out most of the rest is likely here
-    grid_.visit(xy - reach, xy + reach, look);
-    return highest;
-}
-
-std::optional<double> DropCutter::operator()(const Vector2d& xy) const
-{
-    const double z = with_side(cutter_, [&]<typename Side>() { return drop<Side>(xy); });
-    if (z == kNothing) return std::nullopt;
-    return z;
+    if (tree_.levels.empty() || !xy.allFinite()) return std::nullopt;
+    const Touch touch =
+        with_side(cutter_, [&]<typename Side>() { return highest_touch<Side>(tree_, mesh_, own_, cutter_, xy); });
+    if (touch.z == kNothing) return std::nullopt;
+    return touch;
 }
 
 } // namespace fettle

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "machining/cutter.h"
+#include "mesh/box_tree.h"
 #include "mesh/mesh.h"
-#include "sampling/triangle_grid.h"
 
 #include <Eigen/Core>
 
@@ -18,22 +18,17 @@ class DropCutter {
     /// The mesh must outlive it.
     DropCutter(const Mesh& mesh, const Cutter& cutter);
 
-    /// z of the tip over xy; nothing if the cutter meets nothing.
-    std::optional<double> operator()(const Eigen::Vector2d& xy) const;
+    struct Touch {
+        double z = 0;            ///< of the tip, mm
+        Eigen::Vector3d contact; ///< where the cutter touches; one of several such places
+    };
+    /// What happens over xy; nothing if the cutter meets nothing.
+    std::optional<Touch> operator()(const Eigen::Vector2d& xy) const;
 
   private:
-    template <typename Side>
-    double drop(const Eigen::Vector2d& xy) const;
-
     const Mesh& mesh_;
     Cutter cutter_;
-    TriangleGrid grid_;
-    /// A triangle seen from above, and its highest z.
-    struct Box {
-        Eigen::Array2d low, high;
-        double top;
-    };
-    std::vector<Box> boxes_;
+    BoxTree tree_;
     /// Which corners (bits 0 to 2) and edges, from a corner on, (bits 3 to 5) are looked at with a triangle: each with
     /// the first that has it.
     std::vector<std::uint8_t> own_;

@@ -100,9 +100,9 @@ void refine(Line& line, const DropCutter& drop, const Eigen::Vector3d& from, con
             double allowance)
 {
     const Eigen::Vector3d middle = (from + to) / 2;
-    const auto z = drop(middle.head<2>());
-    if (!z) return;
-    const Eigen::Vector3d tip(middle.x(), middle.y(), *z + allowance);
+    const auto touch = drop(middle.head<2>());
+    if (!touch) return;
+    const Eigen::Vector3d tip(middle.x(), middle.y(), touch->z + allowance);
     if (std::abs(tip.z() - middle.z()) <= kChord) return;
     if ((to - from).head<2>().norm() > kFinest) {
         refine(line, drop, from, tip, allowance);
@@ -139,9 +139,9 @@ std::vector<Line> touched_lines(const Mesh& design, const Cutter& cutter, const 
     const DropCutter drop(design, cutter);
     const auto tip = [&](double a, double b) -> std::optional<Eigen::Vector3d> {
         const Eigen::Vector2d xy = a * u + b * v;
-        const auto z = drop(xy);
-        if (!z) return std::nullopt;
-        return Eigen::Vector3d(xy.x(), xy.y(), *z + options.allowance);
+        const auto touch = drop(xy);
+        if (!touch) return std::nullopt;
+        return Eigen::Vector3d(xy.x(), xy.y(), touch->z + options.allowance);
     };
     std::vector<Line> lines(static_cast<std::size_t>(passes));
     tbb::parallel_for(std::size_t{0}, lines.size(), [&](std::size_t p) {

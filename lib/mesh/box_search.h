@@ -57,7 +57,7 @@ FETTLE_INLINE Float8 squared_distance(const Point8& a, const Point8& ab, Float8 
 {
     Float8 t = -dot(a, ab) / squared_length;
     t = t > 0 ? t : Float8{}; // NaN too
-    t = t < 1 ? t : all(1);
+    t = t < 1 ? t : all(1.0f);
     const Point8 foot = {a.x + t * ab.x, a.y + t * ab.y, a.z + t * ab.z};
     return dot(foot, foot);
 }
@@ -87,7 +87,7 @@ FETTLE_INLINE Bounds8 squared_distances(const Triangles8& triangles, const float
     // The distance d is off by less than k (d + longest), with k = kTriangleRoundings: its square by 3 k d² + k
     // longest².
     const Float8 off = kTriangleRoundings * (3 * nearest + longest2);
-    return {wide ? nearest - off : all(-1), nearest + off};
+    return {wide ? nearest - off : all(-1.0f), nearest + off};
 }
 
 /// A node or, at level -1, a leaf that waits to be visited.

@@ -108,13 +108,61 @@ TEST(DropCutter, AgainstBruteForce)
             double most = -std::numeric_limits<double>::infinity();
             for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t)
                 most = std::max(most, over_triangle(cutter, mesh.vertices.middleCols<3>(3 * t), xy));
-            const auto z = drop(xy);
-            ASSERT_EQ(z.has_value(), std::isfinite(most)) << name << " at " << xy.transpose();
-            if (!z) continue;
-            EXPECT_NEAR(*z, most, 1e-9) << name << " at " << xy.transpose();
+            const auto touch = drop(xy);
+            ASSERT_EQ(touch.has_value(), std::isfinite(most)) << name << " at " << xy.transpose();
+            if (!touch) continue;
+            EXPECT_NEAR(touch->z, most, 1e-9) << name << " at " << xy.transpose();
             ++met;
         }
         EXPECT_GT(met, 20) << name;
+    }
+}
+
+TEST(DropCutter, OfManyTrianglesIsTheHighestOfEach)
+{
+    // Walls, level steps and bumps far from the origin, some of the triangles needles; each triangle alone is the
+    // reference, so that what the search leaves out must be lower.
+    constexpr int kCells = 30;
+    Mesh mesh;
+    mesh.vertices.resize(3, (kCells + 1) * (kCells + 1));
+    for (int j = 0; j <= kCells; ++j)
+        for (int i = 0; i <= kCells; ++i) {
+            const double x = i % 7 == 0 ? i - 0.999 : i, z = j < 10 ? 2 * (i / 5 % 2) : std::sin(i) * std::cos(j / 2.0);
+            mesh.vertices.col(j * (kCells + 1) + i) << 700 + x, 900 + j, 300 + z;
+        }
+    std::vector<Eigen::Vector3i> triangles;
+    for (int j = 0; j < kCells; ++j)
+        for (int i = 0; i < kCells; ++i) {
+            const int a = j * (kCells + 1) + i;
+            triangles.emplace_back(a, a + 1, a + kCells + 2);
+            triangles.emplace_back(a, a + kCells + 2, a + kCells + 1);
+        }
+    mesh.triangles.resize(3, static_cast<Eigen::Index>(triangles.size()));
+    for (std::size_t t = 0; t < triangles.size(); ++t) mesh.triangles.col(static_cast<Eigen::Index>(t)) = triangles[t];
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> unit(0, 1);
+    for (const std::string& name : kCutters) {
+        const Cutter cutter = parse_cutter(name);
+        const DropCutter drop(mesh, cutter);
+        std::vector<Eigen::Vector2d> places;
+        for (int i = 0; i < 60; ++i) places.emplace_back(699 + 32 * unit(random), 899 + 32 * unit(random));
+        for (int i = 0; i < 20; ++i) places.emplace_back(700 + i, 900 + i); // over vertices and sides
+        std::vector<double> most(places.size(), -std::numeric_limits<double>::infinity());
+        for (const Eigen::Vector3i& triangle : triangles) {
+            const Mesh alone{mesh.vertices(Eigen::all, triangle), Eigen::Vector3i(0, 1, 2)};
+            const DropCutter on(alone, cutter);
+            for (std::size_t i = 0; i < places.size(); ++i)
+                if (const auto touch = on(places[i])) most[i] = std::max(most[i], touch->z);
+        }
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            const auto touch = drop(places[i]);
+            ASSERT_EQ(touch.has_value(), std::isfinite(most[i]));
+            if (!touch) continue;
+            EXPECT_NEAR(touch->z, most[i], 1e-9) << name << " at " << places[i].transpose();
+            // the cutter's lower side goes through its contact
+            const double beside = std::min((touch->contact.head<2>() - places[i]).norm(), cutter.radius);
+            EXPECT_NEAR(touch->contact.z(), touch->z + rise(cutter, beside), 1e-6) << name;
+        }
     }
 }
 
@@ -128,7 +176,9 @@ TEST(DropCutter, OnASlopeTouchesWhereItsContactIs)
     for (const char* name : {"ball:6", "flat:6", "bull:6,1", "taper:6,30,1"}) {
         const Cutter cutter = parse_cutter(name);
         const Eigen::Vector3d tip = tip_at_contact(cutter, contact, normal);
-        EXPECT_NEAR(*DropCutter(plane, cutter)(tip.head<2>()), tip.z(), 1e-12) << name;
+        const auto touch = DropCutter(plane, cutter)(tip.head<2>());
+        EXPECT_NEAR(touch->z, tip.z(), 1e-12) << name;
+        EXPECT_LT((touch->contact - contact).norm(), 1e-12) << name;
     }
     EXPECT_FALSE(DropCutter(plane, parse_cutter("ball:6"))({300, 0}).has_value());
 }
@@ -142,10 +192,10 @@ TEST(DropCutter, OnCornersAndEdges)
     roof.triangles.resize(3, 4);
     roof.triangles << 0, 2, 0, 1, 2, 3, 1, 5, 1, 1, 4, 4;
     for (const std::string& name : kCutters)
-        EXPECT_NEAR(*DropCutter(roof, parse_cutter(name))({0, 0}), 0, 1e-12) << name;
+        EXPECT_NEAR(DropCutter(roof, parse_cutter(name))({0, 0})->z, 0, 1e-12) << name;
     // A flat cutter beside the ridge still rests on it, to its rim.
-    EXPECT_NEAR(*DropCutter(roof, parse_cutter("flat:3"))({1.4, 0}), 0, 1e-12);
-    EXPECT_NEAR(*DropCutter(roof, parse_cutter("flat:3"))({2, 0}), -0.5, 1e-12);
+    EXPECT_NEAR(DropCutter(roof, parse_cutter("flat:3"))({1.4, 0})->z, 0, 1e-12);
+    EXPECT_NEAR(DropCutter(roof, parse_cutter("flat:3"))({2, 0})->z, -0.5, 1e-12);
 }
 
 } // namespace
