@@ -51,7 +51,7 @@ LDLIBS_ALL := -llzf -ltbb
 $(B)/lib/compare/canvas.o: override CPPFLAGS += $(addprefix -isystem ,$(wildcard /usr/include/opencv4))
 
 # Square roots of eight numbers at once are one instruction where nobody reads errno.
-$(B)/lib/mesh/mesh_index.o: override CXXFLAGS += -fno-math-errno
+$(B)/lib/mesh/mesh_index.o $(B)/lib/robot/workpiece.o: override CXXFLAGS += -fno-math-errno
 
 include tools/libraries.mk
 
@@ -81,6 +81,7 @@ $(B)/tests/%: $(B)/tests/lib/%.o $(B)/libfettle.a
 	$(CXX) $(LDFLAGS) -o $@ $^ $(LDLIBS) $(LDLIBS_ALL)
 
 $(B)/bench/%: LDLIBS = $(CERES) $(EMBREE) $(OPENCV) $(PNG) -lbenchmark_main -lbenchmark
+$(B)/bench/tool_hull_bench: LDLIBS += -lfcl -lccd
 $(B)/bench/%: $(B)/tests/bench/%.o $(B)/libfettle.a
 	@mkdir -p $(@D)
 	$(CXX) $(LDFLAGS) -o $@ $^ $(LDLIBS) $(LDLIBS_ALL)

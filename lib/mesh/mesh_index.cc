@@ -229,6 +229,7 @@ MeshIndex::MeshIndex(MeshIndex&&) noexcept = default;
 MeshIndex::~MeshIndex() = default;
 
 const Mesh& MeshIndex::mesh() const { return state_->mesh; }
+const BoxTree& MeshIndex::tree() const { return state_->tree; }
 
 std::optional<MeshIndex::Hit> MeshIndex::cast(const Eigen::Vector3d& origin,
                                               const Eigen::Vector3d& unit_direction) const

@@ -10,6 +10,8 @@
 
 namespace fettle {
 
+struct BoxTree;
+
 /// Rays and closest points against a mesh: exact, whatever the tree. Of equally good triangles the one with the lowest
 /// index wins. Thread-safe.
 class MeshIndex {
@@ -40,6 +42,8 @@ class MeshIndex {
     std::optional<Closest> closest(const Eigen::Vector3d& point, double radius, std::uint32_t leaf = 0) const;
 
     const Mesh& mesh() const;
+    /// For searches for something else than points.
+    const BoxTree& tree() const;
 
   private:
     struct State;

@@ -1,12 +1,14 @@
 #pragma once
 
 #include "mesh/triangle.h"
+#include "robot/round_solid.h"
 #include "robot/solid.h"
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
 #include <limits>
+#include <variant>
 
 namespace fettle {
 
@@ -15,6 +17,13 @@ namespace fettle {
 struct PointDistance {
     double value = 0;
     Eigen::Vector3d gradient = Eigen::Vector3d::Zero(); ///< unit; 0 at the core of a sphere or capsule
+};
+
+/// A box about the origin of its frame, mm.
+struct BoxSolid {
+    Eigen::Isometry3d T;
+    Eigen::Vector3d half; ///< of the sides
+    bool exact = true;    ///< or else it is only around a solid
 };
 
 /// A convex solid where it stands: all points within `radius` of a core.
@@ -31,11 +40,15 @@ class PlacedSolid {
     PointDistance distance(const Eigen::Vector3d& point) const;
     /// Of the solid, not of its core.
     Eigen::AlignedBox3d box() const;
+    /// The solid itself; around a hull or a triangle a box.
+    std::variant<RoundSolid, BoxSolid> outline() const;
+    bool is_sphere() const { return kind_ == Kind::segment && count_ == 1; }
 
   private:
     enum class Kind { segment, box, triangle, hull, frustum };
     void set_segment(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double radius);
     void set_frustum(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double radius_from, double radius_to);
+    RoundSolid round() const;
 
     Kind kind_ = Kind::segment;
     int count_ = 0;

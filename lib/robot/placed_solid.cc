@@ -40,29 +40,6 @@ PointDistance from_box(const Eigen::Isometry3d& T_cell_box, const Vector3d& half
     return {off.norm(), T_cell_box.linear() * sign.cwiseProduct(off).normalized()};
 }
 
-// In the plane of the axis and the point a frustum is a trapezoid: (distance from the axis, height).
-struct Flat {
-    Eigen::Vector2d gradient;
-    double value;
-};
-
-Flat from_trapezoid(double r0, double r1, double length, const Eigen::Vector2d& p)
-{
-    using Eigen::Vector2d;
-    const Vector2d out = Vector2d(length, r0 - r1).normalized(); // of the slanted side
-    const double below = -p.y(), above = p.y() - length, beside = (p.x() - r0) * out.x() + p.y() * out.y();
-    if (below <= 0 && above <= 0 && beside <= 0) {
-        if (beside >= below && beside >= above) return {out, beside};
-        return below >= above ? Flat{{0, -1}, below} : Flat{{0, 1}, above};
-    }
-    if (below > 0 && p.x() <= r0) return {{0, -1}, below};
-    if (above > 0 && p.x() <= r1) return {{0, 1}, above};
-    const Vector2d side(r1 - r0, length), from(p.x() - r0, p.y());
-    const Vector2d off = from - std::clamp(from.dot(side) / side.squaredNorm(), 0.0, 1.0) * side;
-    const double distance = off.norm();
-    return distance > 0 ? Flat{off / distance, distance} : Flat{out, 0};
-}
-
 } // namespace
 
 void PlacedSolid::set_segment(const Vector3d& from, const Vector3d& to, double radius)
@@ -147,12 +124,37 @@ PointDistance PlacedSolid::distance(const Vector3d& p) const
         const double height = (p - from_).dot(axis_);
         const Vector3d across = p - from_ - height * axis_;
         const double r = across.norm();
-        const Flat flat = from_trapezoid(radius_from_, radius_to_, length_, {r, height});
+        const ProfileDistance flat = fettle::distance({{}, radius_from_, radius_to_, length_, 0}, r, height);
         const Vector3d rim = r > 0 ? Vector3d(across / r) : axis_.unitOrthogonal();
-        return {flat.value, flat.gradient.x() * rim + flat.gradient.y() * axis_};
+        return {flat.value, flat.along_r * rim + flat.along_z * axis_};
     }
     const Clearance c = clearance(*this, PlacedSolid(Triangle(p.replicate<1, 3>())));
     return {c.distance, c.normal};
+}
+
+RoundSolid PlacedSolid::round() const
+{
+    const bool frustum = kind_ == Kind::frustum;
+    const Vector3d from = frustum ? from_ : few_.col(0), way = (frustum ? to_ : few_.col(count_ - 1)) - from;
+    RoundSolid solid = {Eigen::Isometry3d::Identity(), radius_from_, radius_to_, way.norm(), radius_};
+    if (solid.length > 0) {
+        const Vector3d axis = way / solid.length, across = axis.unitOrthogonal();
+        solid.T.linear() << across, axis.cross(across), axis;
+    }
+    solid.T.translation() = from;
+    return solid;
+}
+
+std::variant<RoundSolid, BoxSolid> PlacedSolid::outline() const
+{
+    if (kind_ == Kind::frustum || kind_ == Kind::segment) return round();
+    if (kind_ == Kind::box) return BoxSolid{T_, half_};
+    BoxSolid around{T_, {}, false};
+    const Eigen::Matrix3Xd corners = kind_ == Kind::hull ? *hull_ : Eigen::Matrix3Xd(few_.leftCols(count_));
+    const Vector3d least = corners.rowwise().minCoeff(), most = corners.rowwise().maxCoeff();
+    around.T.translate((least + most) / 2);
+    around.half = (most - least) / 2;
+    return around;
 }
 
 Eigen::AlignedBox3d PlacedSolid::box() const

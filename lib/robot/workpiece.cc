@@ -1,10 +1,16 @@
 #include "robot/workpiece.h"
 
+#include "core/simd.h"
+#include "mesh/box_search.h"
+#include "mesh/box_tree.h"
+#include "robot/wide_solid.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <utility>
+
+// The tree and a first look at triangles are in float; whatever a rounding might have hidden is looked at in double.
 
 namespace fettle {
 
@@ -12,20 +18,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::uint32_t kLeaf = 4; // triangles; a distance to one costs about as much as a few boxes
-
 // Distances are told to this, mm.
 constexpr double kDistanceTolerance = 1e-9;
-// Depths inside cylinders, cones, boxes and hulls are told to this, mm, a tenth of what machining asks for: where the
-// way out changes sides, every halving costs twice as many pieces.
+// Depths inside boxes and hulls are told to this, mm, a tenth of what machining asks for: where the way out changes
+// sides, every halving costs twice as many pieces.
 constexpr double kDepthTolerance = 1e-3;
-
-// No point of the box is nearer: the distance from a convex body lies above its tangent planes.
-double lower_bound(const PlacedSolid& body, const Eigen::AlignedBox3d& box)
-{
-    const PointDistance at = body.distance(box.center());
-    return at.value - at.gradient.cwiseAbs().dot(box.sizes()) / 2;
-}
 
 void take(const PlacedSolid& body, const Vector3d& point, Clearance& best, bool& nearer)
 {
@@ -65,6 +62,146 @@ void find_deepest(const PlacedSolid& body, const Triangle& whole, Clearance& bes
     }
 }
 
+Triangle triangle_of(const Mesh& mesh, Eigen::Index index)
+{
+    Triangle corners;
+    for (int k = 0; k < 3; ++k) corners.col(k) = mesh.vertices.col(mesh.triangles(k, index));
+    return corners;
+}
+
+void offer(const RoundSolid& solid, const PlacedSolid& body, const Triangle& t, Clearance& best, bool& nearer)
+{
+    if (body.is_sphere()) {
+        const Vector3d centre = solid.T.translation();
+        const TrianglePoint foot = closest_on_triangle(t, centre);
+        const double length = std::sqrt(foot.squared_distance), distance = length - solid.rounding;
+        if (distance < best.distance) {
+            const Vector3d normal = length > 0 ? Vector3d((foot.point - centre) / length) : Vector3d::UnitZ();
+            best = {distance, normal, centre + solid.rounding * normal, foot.point};
+            nearer = true;
+        }
+        if (foot.barycentric.minCoeff() > 0) return; // else it may be one of the two sides of a needle
+    }
+    if (const auto foot = nearest_of_triangle(solid, t, best.distance)) {
+        best = {foot->distance, foot->gradient, foot->point - foot->distance * foot->gradient, foot->point};
+        nearer = true;
+    }
+}
+
+void offer(const BoxSolid&, const PlacedSolid& body, const Triangle& t, Clearance& best, bool& nearer)
+{
+    if (lower_bound(body, t, best, nearer) >= best.distance - kDistanceTolerance) return;
+    const Clearance c = clearance(body, PlacedSolid(t), best.distance);
+    if (c.distance <= 0) {
+        find_deepest(body, t, best, nearer);
+    } else if (c.distance < best.distance) {
+        best = c;
+        nearer = true;
+    }
+}
+
+/// A triangle that may be the nearest.
+struct Candidate {
+    float lower; ///< no point of it is nearer, but for roundings
+    std::uint32_t leaf, lane;
+};
+
+/// A body on its way through the tree.
+template <typename Outline, typename Wide>
+struct Search {
+    Search(const Outline& of_body, const PlacedSolid& placed, const Mesh& of, const BoxTree& in,
+           Workpiece::Nearest& found)
+        : outline(of_body), body(placed), wide(of_body, in.centre), mesh(of), tree(in), best(found),
+          rounding(kRoundings * (in.rounding + kEpsilon * (wide.size + in.box.diagonal().norm())))
+    {
+        set_bound(best.clearance.distance);
+    }
+
+    const Outline& outline;
+    const PlacedSolid& body;
+    const Wide wide;
+    const Mesh& mesh;
+    const BoxTree& tree;
+    Workpiece::Nearest& best;
+    const double rounding;                           ///< of distances in float, mm
+    float bound = std::numeric_limits<float>::max(); ///< what is not nearer than this does not matter
+    std::array<Candidate, 64> candidates;            ///< hardly ever more than ten wait
+    std::size_t waiting = 0;
+
+    /// A point is known to be no farther than this.
+    void set_bound(double distance)
+    {
+        const auto far = static_cast<float>(distance + 2 * rounding);
+        if (far < bound) bound = far;
+    }
+
+    /// Measures the candidates that still matter, in double: the last ones, the nearest as a rule, first.
+    void settle()
+    {
+        while (waiting > 0) {
+            const Candidate& next = candidates[--waiting];
+            if (next.lower > bound) continue;
+            const Eigen::Index t = tree.triangle(next.leaf, next.lane);
+            bool nearer = false;
+            offer(outline, body, triangle_of(mesh, t), best.clearance, nearer);
+            if (!nearer) continue;
+            best.triangle = t;
+            best.leaf = next.leaf;
+            set_bound(best.clearance.distance);
+        }
+    }
+
+    FETTLE_INLINE void look_through(std::uint32_t leaf)
+    {
+        const Least8 least = least_of_triangles(wide, tree.leaves[leaf]);
+        if (wide.exact && lanes_of(least.upper < bound) != 0) set_bound(static_cast<double>(least_of(least.upper)));
+        for (Lanes lanes{lanes_of(least.lower <= bound)}; lanes.any(); lanes.next()) {
+            if (waiting == candidates.size()) settle();
+            candidates[waiting++] = {least.lower[lanes.first()], leaf, lanes.first()};
+        }
+    }
+
+    FETTLE_INLINE void go_through(Stack& stack)
+    {
+        while (stack.any()) {
+            const Waiting next = stack.pop();
+            if (next.distance > bound) continue;
+            if (next.level < 0) {
+                look_through(next.index);
+                continue;
+            }
+            const Float8 children = lower_bound(wide, tree.levels[static_cast<std::size_t>(next.level)], next.index);
+            stack.push(lanes_of(children <= bound), children, next.level - 1, next.index);
+        }
+    }
+
+    /// From a leaf that is probably near upwards: of most nodes above it no other child is near enough.
+    FETTLE_INLINE void begin_at(std::uint32_t leaf)
+    {
+        look_through(leaf);
+        settle();
+        Stack stack;
+        std::uint32_t child = leaf;
+        for (std::size_t level = 0; level < tree.levels.size(); ++level) {
+            const std::uint32_t node = child / 8;
+            const Float8 children = lower_bound(wide, tree.levels[level], node);
+            const unsigned others = lanes_of(children <= bound) & ~(1u << child % 8);
+            stack.push(others, children, static_cast<std::int32_t>(level) - 1, node);
+            go_through(stack);
+            child = node;
+        }
+        settle();
+    }
+};
+
+using SphereSearch = Search<RoundSolid, WideSphere>;
+using RoundSearch = Search<RoundSolid, WideRound>;
+using BoxSearch = Search<BoxSolid, WideBox>;
+
+FETTLE_CLONES void begin_at(SphereSearch& search, std::uint32_t leaf) { search.begin_at(leaf); }
+FETTLE_CLONES void begin_at(RoundSearch& search, std::uint32_t leaf) { search.begin_at(leaf); }
+FETTLE_CLONES void begin_at(BoxSearch& search, std::uint32_t leaf) { search.begin_at(leaf); }
+
 } // namespace
 
 bool is_closed(const Mesh& mesh)
@@ -79,115 +216,58 @@ bool is_closed(const Mesh& mesh)
     });
 }
 
-Workpiece::Workpiece(const Mesh& mesh) : mesh_(&mesh), closed_(is_closed(mesh)), rays_(mesh)
-{
-    const auto count = static_cast<std::uint32_t>(mesh.triangles.cols());
-    order_.resize(count);
-    std::iota(order_.begin(), order_.end(), 0u);
-    Eigen::Matrix3Xd centres(3, count);
-    for (std::uint32_t i = 0; i < count; ++i) centres.col(i) = corners(i).rowwise().mean();
-    nodes_.reserve(2 * (count / kLeaf + 1));
-    nodes_.emplace_back();
-    build(0, 0, count, centres);
-}
-
-Triangle Workpiece::corners(std::uint32_t place) const
-{
-    Triangle t;
-    for (int k = 0; k < 3; ++k) t.col(k) = mesh_->vertices.col(mesh_->triangles(k, order_[place]));
-    return t;
-}
-
-// Halves by the number of triangles, across the longest side of their centres' box.
-void Workpiece::build(std::uint32_t node, std::uint32_t first, std::uint32_t count, const Eigen::Matrix3Xd& centres)
-{
-    Eigen::AlignedBox3d box, of_centres;
-    for (std::uint32_t i = first; i < first + count; ++i) {
-        const Triangle t = corners(i);
-        for (int k = 0; k < 3; ++k) box.extend(t.col(k));
-        of_centres.extend(centres.col(order_[i]));
-    }
-    nodes_[node].box = box;
-    if (count <= kLeaf) {
-        nodes_[node].first = first;
-        nodes_[node].count = count;
-        return;
-    }
-    Eigen::Index axis = 0;
-    of_centres.sizes().maxCoeff(&axis);
-    const std::uint32_t half = count / 2;
-    std::nth_element(order_.begin() + first, order_.begin() + first + half, order_.begin() + first + count,
-                     [&](std::uint32_t a, std::uint32_t b) {
-                         return std::pair(centres(axis, a), a) < std::pair(centres(axis, b), b);
-                     });
-    const auto children = static_cast<std::uint32_t>(nodes_.size());
-    nodes_[node].first = children;
-    nodes_.resize(nodes_.size() + 2);
-    build(children, first, half, centres);
-    build(children + 1, first + half, count - half, centres);
-}
+Workpiece::Workpiece(const Mesh& mesh) : closed_(is_closed(mesh)), index_(mesh) {}
 
 // A ray out of a closed mesh first meets a triangle from behind. One that only grazes it is drawn again.
-bool Workpiece::holds(const Vector3d& point) const
+bool Workpiece::is_inside(const Nearest& nearest, const Vector3d& point) const
 {
+    if (nearest.triangle >= 0) {
+        // Nearest to the inner of a triangle, not to its rim: the side of that triangle tells.
+        constexpr double kInner = 1e-3; // barycentric
+        const Triangle t = triangle_of(mesh(), nearest.triangle);
+        const TrianglePoint foot = closest_on_triangle(t, nearest.clearance.on_b);
+        if (foot.barycentric.minCoeff() > kInner)
+            return (t.col(1) - t.col(0)).cross(t.col(2) - t.col(0)).dot(nearest.clearance.normal) > 0;
+    }
     constexpr double kGrazing = 1e-6;
     for (const Vector3d& direction : {Vector3d::UnitZ().eval(), Vector3d(0.8, 0, 0.6), Vector3d(-0.36, 0.48, 0.8)}) {
-        const auto hit = rays_.cast(point, direction);
+        const auto hit = index_.cast(point, direction);
         if (!hit) return false;
-        const Eigen::Vector3i t = mesh_->triangles.col(hit->triangle);
-        const Vector3d a = mesh_->vertices.col(t[0]), b = mesh_->vertices.col(t[1]), c = mesh_->vertices.col(t[2]);
-        const Vector3d normal = (b - a).cross(c - a);
+        const Triangle t = triangle_of(mesh(), hit->triangle);
+        const Vector3d normal = (t.col(1) - t.col(0)).cross(t.col(2) - t.col(0));
         const double along = normal.dot(direction);
         if (std::abs(along) > kGrazing * normal.norm()) return along > 0;
     }
     return false;
 }
 
-void Workpiece::look_at(const PlacedSolid& body, std::uint32_t place, Nearest& best) const
+Workpiece::Nearest Workpiece::nearest(const PlacedSolid& body, double beyond, std::uint32_t leaf) const
 {
-    const Triangle t = corners(place);
-    bool nearer = false;
-    const double bound = lower_bound(body, t, best.clearance, nearer);
-    if (bound < best.clearance.distance - kDistanceTolerance) {
-        // Outside the core the distance to the triangle is exact, also where the solid about the core overlaps it.
-        const bool beside_core = best.clearance.distance > -body.radius();
-        const Clearance c = beside_core ? clearance(body, PlacedSolid(t), best.clearance.distance) : Clearance{};
-        if (!beside_core || c.distance <= -body.radius()) {
-            find_deepest(body, t, best.clearance, nearer);
-        } else if (c.distance < best.clearance.distance) {
-            best.clearance = c;
-            nearer = true;
-        }
-    }
-    if (nearer) best.triangle = order_[place];
-}
-
-Workpiece::Nearest Workpiece::nearest(const PlacedSolid& body, double beyond) const
-{
+    const BoxTree& tree = index_.tree();
     Nearest best;
     best.clearance.distance = beyond;
-    const Eigen::AlignedBox3d around = body.box();
-    std::vector<std::pair<double, std::uint32_t>> waiting = {{lower_bound(body, nodes_[0].box), 0}};
-    while (!waiting.empty()) {
-        const auto [bound, index] = waiting.back();
-        waiting.pop_back();
-        if (bound >= best.clearance.distance) continue;
-        const Node& node = nodes_[index];
-        for (std::uint32_t i = node.first; i < node.first + node.count; ++i) look_at(body, i, best);
-        if (node.count > 0) continue;
-        std::pair<double, std::uint32_t> child[2];
-        for (std::uint32_t k = 0; k < 2; ++k)
-            child[k] = {lower_bound(body, nodes_[node.first + k].box), node.first + k};
-        if (child[0].first < child[1].first) std::swap(child[0], child[1]); // the nearer one is visited first
-        for (const auto& c : child)
-            if (c.first < best.clearance.distance) waiting.push_back(c);
-    }
-    if (closed_ && best.clearance.distance > 0 && nodes_[0].box.contains(around) &&
-        holds(body.farthest(Vector3d::UnitZ()))) {
-        if (best.triangle < 0) return nearest(body); // how far out it is must be told
-        best.inside = true;
-        best.clearance.distance = -best.clearance.distance;
-    }
+    if (tree.leaves.empty()) return best;
+    best.leaf = std::min<std::uint32_t>(leaf, static_cast<std::uint32_t>(tree.leaves.size()) - 1);
+    const auto outline = body.outline();
+    const auto search = [&](auto&& begun) { begin_at(begun, best.leaf); };
+    if (const auto* box = std::get_if<BoxSolid>(&outline))
+        search(BoxSearch(*box, body, mesh(), tree, best));
+    else if (body.is_sphere())
+        search(SphereSearch(std::get<RoundSolid>(outline), body, mesh(), tree, best));
+    else
+        search(RoundSearch(std::get<RoundSolid>(outline), body, mesh(), tree, best));
+    // A body that touches the surface is not wholly inside; of a ball its centre tells how deep.
+    const bool apart = best.triangle < 0 || best.clearance.distance > 0;
+    if (!closed_ || !(apart || body.is_sphere())) return best;
+    const Vector3d point = body.farthest(Vector3d::UnitZ());
+    if (!tree.box.contains(point) || !is_inside(best, point)) return best;
+    if (best.triangle < 0) return nearest(body); // how far out it is must be told
+    Clearance& c = best.clearance;
+    const double width = (body.farthest(c.normal) - body.farthest(-c.normal)).dot(c.normal) + 2 * body.radius();
+    best.inside = true;
+    c.distance = -c.distance - width;
+    c.normal = -c.normal;
+    c.on_a = c.on_b - c.distance * c.normal;
     return best;
 }
 

@@ -26,33 +26,28 @@ class Workpiece {
     struct Nearest {
         Clearance clearance;        ///< a is the body, b the triangle
         Eigen::Index triangle = -1; ///< -1: none within `beyond`, the distance is a bound
-        bool inside = false;        ///< the body lies wholly inside: the distance is that out of the surface, negative
+        bool inside = false;        ///< the body, or the centre of a ball, lies inside
+        std::uint32_t leaf = 0;     ///< of the tree: where to begin with a body that is moved a little
     };
     /// The least signed distance of the mesh's points from the body: apart, how far; overlapping, how deep the deepest
-    /// of them lies inside it, whatever the triangles' size, to 1e-3 mm (of spheres and capsules exactly). Of a closed
-    /// mesh a body that touches no triangle may lie inside.
+    /// of them lies inside it, whatever the triangles' size, to kClearanceTolerance (of boxes and hulls to 1e-3 mm). A
+    /// body that lies wholly inside a closed mesh, and a ball whose centre does, must go through the nearest point of
+    /// the surface to come out: the way to beyond its plane, negative.
     /// @param body  in the mesh's frame
     /// @param beyond  clearances beyond it need not be told apart
-    Nearest nearest(const PlacedSolid& body, double beyond = std::numeric_limits<double>::infinity()) const;
+    /// @param leaf  where to begin: Nearest::leaf of a body nearby. It changes nothing but the time, and the last
+    ///              digits
+    Nearest nearest(const PlacedSolid& body, double beyond = std::numeric_limits<double>::infinity(),
+                    std::uint32_t leaf = 0) const;
 
     bool closed() const { return closed_; }
-    const Mesh& mesh() const { return *mesh_; }
+    const Mesh& mesh() const { return index_.mesh(); }
 
   private:
-    struct Node {
-        Eigen::AlignedBox3d box;
-        std::uint32_t first = 0, count = 0; ///< triangles of a leaf; count 0: the children are `first` and `first` + 1
-    };
-    void build(std::uint32_t node, std::uint32_t first, std::uint32_t count, const Eigen::Matrix3Xd& centres);
-    Triangle corners(std::uint32_t place) const;
-    void look_at(const PlacedSolid& body, std::uint32_t place, Nearest& best) const;
-    bool holds(const Eigen::Vector3d& point) const;
+    bool is_inside(const Nearest& nearest, const Eigen::Vector3d& point) const;
 
-    const Mesh* mesh_;
     bool closed_;
-    MeshIndex rays_;
-    std::vector<std::uint32_t> order_;
-    std::vector<Node> nodes_;
+    MeshIndex index_;
 };
 
 } // namespace fettle

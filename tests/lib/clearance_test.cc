@@ -315,6 +315,47 @@ TEST(Clearance, PointsAndTangentPlanes)
     }
 }
 
+// The found point lies on the triangle, as far from the solid as told, and no other one is nearer: neither one of many
+// nor what steps from the best of these lead to. A third of the triangles are across the axis, along it or needles.
+TEST(RoundSolid, NoPointOfATriangleIsNearer)
+{
+    Draw draw(12);
+    int deep = 0;
+    for (int k = 0; k < 3000; ++k) {
+        Solid s = draw.solid();
+        while (s.index() > 3) s = draw.solid();
+        const PlacedSolid placed(s, kHere);
+        const RoundSolid round = std::get<RoundSolid>(placed.outline());
+        const double size = k % 2 == 0 ? 25 : 5;
+        Triangle t = triangle(draw.point(size), draw.point(size), draw.point(size));
+        if (k % 9 == 0)
+            t = (round.T.linear().leftCols<2>() * t.topRows<2>()).colwise() + Vector3d(round.T * Vector3d(0, 0, 1));
+        if (k % 9 == 1) t.col(2) = t.col(1) + round.T.linear().col(2) * draw.number(-5, 5);
+        if (k % 9 == 2) t.col(2) = t.col(0) + (t.col(1) - t.col(0)) * draw.number(0, 1);
+        const auto found = nearest_of_triangle(round, t, INFINITY);
+        ASSERT_TRUE(found);
+        EXPECT_NEAR(placed.distance(found->point).value, found->distance, 1e-9) << s.index();
+        EXPECT_LT(closest_on_triangle(t, found->point).squared_distance, 1e-18);
+        Vector3d best(1, 1, 1);
+        const auto at = [&](const Vector3d& weight) { return placed.distance(t * weight / weight.sum()).value; };
+        for (int i = 0; i <= 20; ++i)
+            for (int j = 0; j <= 20 - i; ++j)
+                if (const Vector3d w(i, j, 20 - i - j); at(w) < at(best)) best = w;
+        best /= best.sum();
+        for (double step = 0.05; step > 1e-9; step /= 2)
+            for (int turn = 0; turn < 6; ++turn)
+                if (const Vector3d w =
+                        (best + step * Vector3d::NullaryExpr([&] { return draw.number(-1, 1); })).cwiseMax(0);
+                    w.sum() > 0 && at(w) < at(best))
+                    best = w / w.sum();
+        EXPECT_LE(found->distance, at(best) + kFootTolerance) << s.index() << " " << k;
+        EXPECT_FALSE(nearest_of_triangle(round, t, found->distance));
+        if (found->distance < 0) ++deep;
+    }
+    EXPECT_GT(deep, 600);
+    EXPECT_LT(deep, 2400);
+}
+
 TEST(Clearance, BoxesHoldTheirSolids)
 {
     Draw draw(10);

@@ -115,8 +115,9 @@ TEST(Collision, BoundBetweenPosesHolds)
         const CheckedPath at_all = check_path(robot, nullptr, path_of(dense), options);
         double least = INFINITY;
         for (const CellClearance& c : at_all.pose) least = std::min(least, c.clearance);
-        if (checked.between[1].clearance >= -options.tolerance) // else it is the depth of a look
+        if (checked.between[1].clearance >= -options.tolerance) { // else it is the depth of a look
             EXPECT_LE(checked.between[1].clearance, least + options.resolution / 2 + 1e-4);
+        }
         if (least < -options.tolerance - options.resolution / 2) {
             ++near;
             EXPECT_LT(checked.between[1].clearance, -options.tolerance);

@@ -103,19 +103,22 @@ TEST(Workpiece, BallOnAPlane)
     const Workpiece workpiece(mesh);
     EXPECT_TRUE(workpiece.closed());
     const auto gap = [&](double z) {
-        const Solid ball = solid::Sphere{{10, 20, z}, 6};
+        const Solid ball = solid::Sphere{{10, 5, z}, 6};
         return workpiece.nearest(PlacedSolid(ball, Isometry3d::Identity()));
     };
     EXPECT_NEAR(gap(57).clearance.distance, 1, 1e-8);
     EXPECT_NEAR(gap(56).clearance.distance, 0, 1e-8);
     EXPECT_NEAR(gap(55.95).clearance.distance, -0.05, 1e-8);
-    EXPECT_NEAR((gap(57).clearance.on_b - Vector3d(10, 20, 50)).norm(), 0, 1e-6);
-    // wholly inside: no triangle is touched
+    EXPECT_NEAR((gap(57).clearance.on_b - Vector3d(10, 5, 50)).norm(), 0, 1e-6);
+    // wholly inside, no triangle is touched: out of it are 30 for the centre and the radius; so it is half-way in
     EXPECT_TRUE(gap(20).inside);
-    EXPECT_NEAR(gap(20).clearance.distance, -24, 1e-8);
+    EXPECT_NEAR(gap(20).clearance.distance, -36, 1e-8);
+    EXPECT_NEAR((gap(20).clearance.on_a - Vector3d(10, 5, 14)).norm(), 0, 1e-6);
+    EXPECT_NEAR(gap(51).clearance.distance, -5, 1e-8);
+    EXPECT_NEAR(gap(49).clearance.distance, -7, 1e-8);
     EXPECT_FALSE(gap(57).inside);
     const Solid ball = solid::Sphere{{10, 20, 20}, 6};
-    EXPECT_NEAR(workpiece.nearest(PlacedSolid(ball, Isometry3d::Identity()), 2).clearance.distance, -24, 1e-8);
+    EXPECT_NEAR(workpiece.nearest(PlacedSolid(ball, Isometry3d::Identity()), 2).clearance.distance, -36, 1e-8);
     // in a pocket of the box around the mesh, but outside the metal
     Mesh wedge = mesh;
     wedge.vertices(2, 6) = wedge.vertices(2, 7) = -49; // two corners of the top pressed down: a slope

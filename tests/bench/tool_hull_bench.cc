@@ -1,0 +1,329 @@
+// A ball-end tool against a boat's hull of 100,000 and of a million triangles, 50,000 poses of a raster: ball of radius
+// 6, shank of radius 5 and length 40 from its centre up, spindle of radius 45 and length 90 above. The ball is 0.02 mm
+// clear of the hull, but for one pose of 20 that gouges 0.05 mm; the axis leans a fifth of the way to the normal.
+//
+//   least     signed clearance of the tool: the ball's bounds that of the shank, and theirs that of the spindle
+//   each      signed clearance of every part by itself
+//   embree    does each part overlap a triangle? By rtcPointQuery around spheres along the axis, every triangle exactly
+//   fcl       the same by its oriented boxes, on every 19th pose
+//
+// One core, cpu time; rounds of all in turn, and the middle one of the ratios of each round. The counts of overlapping
+// poses must be the same. With arguments, the numbers of triangles.
+
+#include "robot/workpiece.h"
+
+#include <embree3/rtcore.h>
+#include <fcl/fcl.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <ctime>
+#include <limits>
+#include <memory>
+#include <vector>
+
+using namespace fettle;
+
+namespace {
+
+using Eigen::Isometry3d, Eigen::Vector2d, Eigen::Vector3d;
+
+constexpr int kPoses = 50000, kLines = 100, kRounds = 5, kFclEvery = 19;
+constexpr double kBall = 6, kShank = 5, kShankLength = 40, kSpindle = 45, kSpindleLength = 90;
+const std::array<Solid, 3> kTool = {
+    solid::Sphere{{0, 0, 0}, kBall}, solid::Cylinder{{0, 0, 0}, {0, 0, kShankLength}, kShank},
+    solid::Cylinder{{0, 0, kShankLength}, {0, 0, kShankLength + kSpindleLength}, kSpindle}};
+using Hits = std::array<int, 3>;
+
+double height(double x, double y)
+{
+    const double u = x / 150, w = std::abs(y) / 60;
+    return 100 * (1 - std::pow(w, 2.5)) * (1 - 0.85 * u * u * u * u) + 0.6 * std::sin(x / 9) * std::cos(y / 7);
+}
+
+Mesh hull(int triangles)
+{
+    const int across = static_cast<int>(std::sqrt(triangles / 2 * 0.4)), along = triangles / 2 / across;
+    Mesh mesh;
+    mesh.vertices.resize(3, (along + 1) * (across + 1));
+    mesh.triangles.resize(3, 2 * along * across);
+    Eigen::Index v = 0, t = 0;
+    for (int j = 0; j <= across; ++j)
+        for (int i = 0; i <= along; ++i) {
+            const double x = -150 + 300.0 * i / along, y = -60 + 120.0 * j / across;
+            mesh.vertices.col(v++) << x, y, height(x, y);
+        }
+    for (int j = 0; j < across; ++j)
+        for (int i = 0; i < along; ++i) {
+            const int a = j * (along + 1) + i, b = a + 1, c = a + along + 1, d = c + 1;
+            mesh.triangles.col(t++) << a, b, d;
+            mesh.triangles.col(t++) << a, d, c;
+        }
+    return mesh;
+}
+
+/// The origin is the ball's centre, z the tool's axis.
+std::vector<Isometry3d> poses()
+{
+    std::vector<Isometry3d> all;
+    constexpr int kPerLine = kPoses / kLines;
+    for (int k = 0; k < kPoses; ++k) {
+        const int line = k / kPerLine, i = line % 2 == 0 ? k % kPerLine : kPerLine - 1 - k % kPerLine;
+        const double x = -140 + 280 * (i + 0.5) / kPerLine, y = -54 + 108 * (line + 0.5) / kLines, e = 1e-4;
+        const Vector3d normal = Vector3d((height(x - e, y) - height(x + e, y)) / (2 * e),
+                                         (height(x, y - e) - height(x, y + e)) / (2 * e), 1)
+                                    .normalized();
+        const Vector3d axis = 0.2 * normal + 0.8 * Vector3d::UnitZ();
+        Isometry3d T = Isometry3d::Identity();
+        T.translation() = Vector3d(x, y, height(x, y)) + (kBall + (k % 20 == 7 ? -0.05 : 0.02)) * normal;
+        T.linear() = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), axis).toRotationMatrix();
+        all.push_back(T);
+    }
+    return all;
+}
+
+double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+struct Run {
+    double seconds = 0; ///< for all poses
+    Hits hits = {};
+};
+
+template <typename Look>
+Run timed(const std::vector<Isometry3d>& all, std::size_t every, const Look& look)
+{
+    Run run;
+    const double before = cpu_seconds();
+    for (std::size_t k = 0; k < all.size(); k += every) look(all[k], run.hits);
+    run.seconds = (cpu_seconds() - before) * static_cast<double>(every);
+    return run;
+}
+
+// --- fettle ----------------------------------------------------------------------------------------------------------
+
+/// @param together  the parts bound each other, and `hits` counts which part is least where one overlaps
+Run by_clearance(const Workpiece& workpiece, const std::vector<Isometry3d>& all, bool together)
+{
+    std::array<std::uint32_t, 3> leaf = {};
+    return timed(all, 1, [&](const Isometry3d& T, Hits& hits) {
+        double least = 50;
+        std::size_t who = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Workpiece::Nearest found =
+                workpiece.nearest(PlacedSolid(kTool[k], T), together ? least : 50, leaf[k]);
+            leaf[k] = found.leaf;
+            if (!together) hits[k] += found.clearance.distance < 0;
+            if (found.clearance.distance < least) {
+                least = found.clearance.distance;
+                who = k;
+            }
+        }
+        if (together) hits[who] += least < 0;
+    });
+}
+
+// --- Embree ----------------------------------------------------------------------------------------------------------
+
+/// A part of the tool between two heights of its axis; of the ball both are 0.
+struct Question {
+    const Mesh& mesh;
+    const Isometry3d& T;
+    double from, to, radius;
+    bool hit = false;
+};
+
+Triangle triangle_of(const Mesh& mesh, unsigned index)
+{
+    Triangle t;
+    for (int k = 0; k < 3; ++k) t.col(k) = mesh.vertices.col(mesh.triangles(k, index));
+    return t;
+}
+
+/// Is a point of the triangle between the two heights nearer to the z axis than the radius?
+bool overlaps(const Triangle& t, double from, double to, double radius)
+{
+    std::array<Vector3d, 9> in = {t.col(0), t.col(1), t.col(2)}, out;
+    std::size_t count = 3;
+    for (const auto& [sign, bound] : {std::pair(1.0, from), std::pair(-1.0, -to)}) {
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < count; ++i) {
+            const Vector3d &p = in[i], &q = in[(i + 1) % count];
+            const double above_p = sign * p.z() - bound, above_q = sign * q.z() - bound;
+            if (above_p >= 0) out[kept++] = p;
+            if ((above_p > 0 && above_q < 0) || (above_p < 0 && above_q > 0))
+                out[kept++] = p + above_p / (above_p - above_q) * (q - p);
+        }
+        in = out;
+        count = kept;
+        if (count == 0) return false;
+    }
+    bool left = false, right = false;
+    for (std::size_t i = 0; i < count; ++i) {
+        const Vector2d p = in[i].head<2>(), way = in[(i + 1) % count].head<2>() - p;
+        const double length2 = way.squaredNorm();
+        const double s = length2 > 0 ? std::clamp(-p.dot(way) / length2, 0.0, 1.0) : 0;
+        if ((p + s * way).squaredNorm() < radius * radius) return true;
+        const double side = p.x() * way.y() - p.y() * way.x();
+        left |= side > 0;
+        right |= side < 0;
+    }
+    return count > 2 && left != right;
+}
+
+bool look_at(RTCPointQueryFunctionArguments* found)
+{
+    Question& question = *static_cast<Question*>(found->userPtr);
+    if (question.hit) return false;
+    const Triangle t = triangle_of(question.mesh, found->primID);
+    const Vector3d centre = question.T.translation();
+    if (question.to == question.from) {
+        question.hit = closest_on_triangle(t, centre).squared_distance < question.radius * question.radius;
+    } else {
+        const Triangle local = question.T.linear().transpose() * (t.colwise() - centre);
+        question.hit = overlaps(local, question.from, question.to, question.radius);
+    }
+    if (question.hit) found->query->radius = 0;
+    return question.hit;
+}
+
+class Embree {
+  public:
+    explicit Embree(const Mesh& mesh) : mesh_(mesh), device_(rtcNewDevice("threads=1")), scene_(rtcNewScene(device_))
+    {
+        const RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+        const auto vertices = static_cast<std::size_t>(mesh.vertices.cols()),
+                   triangles = static_cast<std::size_t>(mesh.triangles.cols());
+        auto* points = static_cast<float*>(
+            rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, vertices));
+        Eigen::Matrix3Xf::Map(points, 3, mesh.vertices.cols()) = mesh.vertices.cast<float>();
+        void* corners = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, triangles);
+        std::memcpy(corners, mesh.triangles.data(), 12 * triangles);
+        rtcSetGeometryPointQueryFunction(geometry, look_at);
+        rtcCommitGeometry(geometry);
+        rtcAttachGeometry(scene_, geometry);
+        rtcReleaseGeometry(geometry);
+        rtcCommitScene(scene_);
+    }
+    ~Embree()
+    {
+        rtcReleaseScene(scene_);
+        rtcReleaseDevice(device_);
+    }
+    Embree(const Embree&) = delete;
+    Embree& operator=(const Embree&) = delete;
+
+    Run run(const std::vector<Isometry3d>& all) const
+    {
+        return timed(all, 1, [&](const Isometry3d& T, Hits& hits) {
+            hits[0] += overlap(T, 0, 0, kBall);
+            hits[1] += overlap(T, 0, kShankLength, kShank);
+            hits[2] += overlap(T, kShankLength, kShankLength + kSpindleLength, kSpindle);
+        });
+    }
+
+  private:
+    /// Asks around spheres along the part, each about a piece as long as it is wide.
+    bool overlap(const Isometry3d& T, double from, double to, double radius) const
+    {
+        const int pieces = std::max(1, static_cast<int>(std::ceil((to - from) / (2 * radius))));
+        const double piece = (to - from) / pieces;
+        bool hit = false;
+        for (int k = 0; k < pieces && !hit; ++k) {
+            Question question = {mesh_, T, from + k * piece, from + (k + 1) * piece, radius};
+            const Vector3d centre = T * Vector3d(0, 0, question.from + piece / 2);
+            RTCPointQuery query = {};
+            Eigen::Vector3f::Map(&query.x) = centre.cast<float>();
+            query.radius = static_cast<float>(std::hypot(radius, piece / 2) * (1 + 1e-5));
+            RTCPointQueryContext context;
+            rtcInitPointQueryContext(&context);
+            rtcPointQuery(scene_, &query, &context, nullptr, &question);
+            hit = question.hit;
+        }
+        return hit;
+    }
+
+    const Mesh& mesh_;
+    RTCDevice device_;
+    RTCScene scene_;
+};
+
+// --- FCL -------------------------------------------------------------------------------------------------------------
+
+class Fcl {
+  public:
+    explicit Fcl(const Mesh& mesh) : model_(std::make_shared<fcl::BVHModel<fcl::OBBRSSd>>())
+    {
+        model_->beginModel();
+        for (Eigen::Index i = 0; i < mesh.triangles.cols(); ++i) {
+            const Triangle t = triangle_of(mesh, static_cast<unsigned>(i));
+            model_->addTriangle(t.col(0), t.col(1), t.col(2));
+        }
+        model_->endModel();
+    }
+
+    Run run(const std::vector<Isometry3d>& all) const
+    {
+        fcl::CollisionObjectd hull(model_);
+        std::array<fcl::CollisionObjectd, 3> parts = {
+            fcl::CollisionObjectd(std::make_shared<fcl::Sphered>(kBall)),
+            fcl::CollisionObjectd(std::make_shared<fcl::Cylinderd>(kShank, kShankLength)),
+            fcl::CollisionObjectd(std::make_shared<fcl::Cylinderd>(kSpindle, kSpindleLength))};
+        const std::array<double, 3> middle = {0, kShankLength / 2, kShankLength + kSpindleLength / 2};
+        return timed(all, kFclEvery, [&](const Isometry3d& T, Hits& hits) {
+            for (std::size_t k = 0; k < 3; ++k) {
+                parts[k].setTransform(T.linear(), T * Vector3d(0, 0, middle[k]));
+                parts[k].computeAABB();
+                fcl::CollisionResultd result;
+                hits[k] += fcl::collide(&hull, &parts[k], fcl::CollisionRequestd(1, false), result) > 0;
+            }
+        });
+    }
+
+  private:
+    std::shared_ptr<fcl::BVHModel<fcl::OBBRSSd>> model_;
+};
+
+// --- the table -------------------------------------------------------------------------------------------------------
+
+double middle(std::vector<double> list)
+{
+    std::nth_element(list.begin(), list.begin() + static_cast<std::ptrdiff_t>(list.size() / 2), list.end());
+    return list[list.size() / 2];
+}
+
+void compare(int triangles)
+{
+    const Mesh mesh = hull(triangles);
+    const Workpiece workpiece(mesh);
+    const Embree embree(mesh);
+    const Fcl fcl(mesh);
+    const std::vector<Isometry3d> all = poses();
+    const std::array<const char*, 4> names = {"least", "each", "embree", "fcl"};
+    std::array<std::vector<double>, 4> seconds, ratios;
+    std::array<Run, 4> runs;
+    for (int round = 0; round < kRounds; ++round) {
+        runs = {by_clearance(workpiece, all, true), by_clearance(workpiece, all, false), embree.run(all), fcl.run(all)};
+        for (std::size_t k = 0; k < 4; ++k) {
+            seconds[k].push_back(runs[k].seconds);
+            ratios[k].push_back(runs[2].seconds / runs[k].seconds);
+        }
+    }
+    std::printf("%ld triangles           poses/s  x Embree  hits: ball shank spindle\n", mesh.triangles.cols());
+    for (std::size_t k = 0; k < 4; ++k)
+        std::printf("%-20s %15.0f %9.2f %11d %5d %7d\n", names[k], kPoses / middle(seconds[k]), middle(ratios[k]),
+                    runs[k].hits[0], runs[k].hits[1], runs[k].hits[2]);
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+    std::vector<int> sizes = {100000, 1000000};
+    if (argc > 1) sizes.clear();
+    for (int i = 1; i < argc; ++i) sizes.push_back(std::atoi(argv[i]));
+    for (const int triangles : sizes) compare(triangles);
+}
