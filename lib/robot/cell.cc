@@ -2,16 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <variant>
 
 namespace fettle {
 
 namespace {
 
 using Eigen::Isometry3d, Eigen::Vector3d;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// Between two looks the way is halved at most so often: 1 m to the hundredth of a micrometre.
-constexpr int kMostHalvings = 26;
 
 bool same_pair(const BodyPair& p, std::size_t a, std::size_t b) { return p.first == a && p.second == b; }
 
@@ -29,13 +27,6 @@ double margin_of(const Robot& robot, std::size_t a, std::size_t b)
     for (const Robot::Margin& margin : robot.margins)
         if (same_pair(margin.pair, a, b)) return margin.distance;
     return 0;
-}
-
-Eigen::Matrix3Xd box_corners(const Eigen::AlignedBox3d& box)
-{
-    Eigen::Matrix3Xd corners(3, 8);
-    for (int k = 0; k < 8; ++k) corners.col(k) = box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(k));
-    return corners;
 }
 
 Eigen::AlignedBox3d mesh_box(const Mesh& mesh)
@@ -62,125 +53,104 @@ std::vector<CellPair> checked_pairs(const Robot& robot)
     return pairs;
 }
 
-std::vector<Isometry3d> link_frames(const Robot& robot, const CellJoints& joints)
+std::array<Isometry3d, 10> link_frames(const Robot& robot, const Arm& arm, const CellJoints& joints)
 {
-    std::vector<Isometry3d> frames = {Isometry3d::Identity()};
+    std::array<Isometry3d, 10> frames;
+    frames[0].setIdentity();
     const Isometry3d base = cell_base(robot, joints[6]);
-    for (const Isometry3d& T : Arm(robot).frames(joints.head<6>())) frames.push_back(base * T);
-    frames.push_back(frames.back() * robot.T_flange_tool);
-    frames.push_back(cell_part(robot, joints[7]));
+    const std::array<Isometry3d, 7> links = arm.frames(joints.head<6>());
+    for (std::size_t k = 0; k < links.size(); ++k) frames[k + 1] = base * links[k];
+    frames[8] = frames[7] * robot.T_flange_tool;
+    frames[9] = cell_part(robot, joints[7]);
     return frames;
 }
 
-CellClearance least_of(const Stance& stance)
+Cell::Around Cell::around(const Eigen::AlignedBox3d& box)
 {
-    CellClearance least;
-    least.clearance = kInfinity;
-    for (const CellClearance& c : stance.pairs)
-        if (c.clearance < least.clearance) least = c;
-    return least;
+    const Vector3d farthest = box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs());
+    return {box.center(), box.diagonal().norm() / 2, farthest.norm()};
 }
 
 Cell::Cell(const Robot& robot, const Workpiece* workpiece, const CollisionOptions& options)
-    : robot_(robot), workpiece_(workpiece), options_(options), pairs_(checked_pairs(robot))
+    : robot_(robot), workpiece_(workpiece), options_(options), arm_(robot),
+      reach_(robot.T_flange_tool.translation().norm()), pairs_(checked_pairs(robot))
 {
+    for (const DhRow& row : robot.dh) reach_ += std::abs(row.a) + std::abs(row.d);
     for (std::size_t i = 0; i < pairs_.size(); ++i)
         if (workpiece != nullptr || pairs_[i].b < robot.bodies.size()) looked_at_.push_back(i);
-    for (const Body& body : robot.bodies)
-        corners_.push_back(box_corners(PlacedSolid(body.solid, Isometry3d::Identity()).box()));
-    if (workpiece != nullptr) corners_.push_back(box_corners(mesh_box(workpiece->mesh())));
+    for (const Body& body : robot.bodies) {
+        around_.push_back(around(PlacedSolid(body.solid, Isometry3d::Identity()).box()));
+        if (std::holds_alternative<solid::Sphere>(body.solid)) around_.back().radius = 0;
+    }
+    if (workpiece != nullptr) around_.push_back(around(mesh_box(workpiece->mesh())));
 }
 
 Stance Cell::stand(const CellJoints& joints) const
 {
-    const std::vector<Isometry3d> frames = link_frames(robot_, joints);
     Stance stance;
-    for (const Body& body : robot_.bodies)
-        stance.T_cell_body.push_back(frames[static_cast<std::size_t>(body.link + 1)]);
-    if (workpiece_ != nullptr) stance.T_cell_body.push_back(cell_part(robot_, joints[7]));
-    stance.pairs.resize(pairs_.size());
+    stand(joints, stance);
     return stance;
 }
 
-void Cell::look(Stance& stance, std::size_t index) const
+void Cell::stand(const CellJoints& joints, Stance& stance) const
+{
+    const std::array<Isometry3d, 10> frames = link_frames(robot_, arm_, joints);
+    stance.T_cell_body.resize(bodies());
+    for (std::size_t b = 0; b < robot_.bodies.size(); ++b)
+        stance.T_cell_body[b] = frames[static_cast<std::size_t>(robot_.bodies[b].link + 1)];
+    if (workpiece_ != nullptr) stance.T_cell_body.back() = frames[9];
+    stance.pairs.assign(pairs_.size(), CellClearance{});
+    stance.leaf.resize(pairs_.size());
+}
+
+double Cell::look(Stance& stance, std::size_t index, double beyond) const
 {
     const CellPair& pair = pairs_[index];
-    const double beyond = options_.beyond + pair.margin;
     const Isometry3d& T_a = stance.T_cell_body[pair.a];
     CellClearance& found = stance.pairs[index];
     found.pair = index;
+    Clearance c;
     if (pair.b == robot_.bodies.size()) {
         const Isometry3d& T_cell_part = stance.T_cell_body.back();
         const PlacedSolid a(robot_.bodies[pair.a].solid, T_cell_part.inverse() * T_a);
-        const Clearance c = workpiece_->nearest(a, beyond).clearance;
-        found.clearance = c.distance - pair.margin;
+        const Workpiece::Nearest nearest = workpiece_->nearest(a, beyond + pair.margin, stance.leaf[index]);
+        stance.leaf[index] = nearest.leaf;
+        c = nearest.clearance;
         found.point = T_cell_part * c.on_a;
     } else {
         const PlacedSolid a(robot_.bodies[pair.a].solid, T_a);
         const PlacedSolid b(robot_.bodies[pair.b].solid, stance.T_cell_body[pair.b]);
-        const Clearance c = clearance(a, b, beyond);
-        found.clearance = std::min(c.distance, beyond) - pair.margin;
+        c = clearance(a, b, beyond + pair.margin);
         found.point = c.on_a;
     }
+    found.clearance = std::min(c.distance - pair.margin, beyond);
+    return c.distance - pair.margin;
 }
 
-Stance Cell::look_at_all(const CellJoints& joints) const
+// By the centre's way and the turn: |R1 - R0| is the Frobenius norm over root 2.
+double Cell::chord(std::size_t body, const Stance& s0, const Stance& s1) const
 {
-    Stance stance = stand(joints);
-    for (const std::size_t i : looked_at_) look(stance, i);
-    return stance;
-}
-
-CellClearance Cell::between(const CellJoints& q0, const Stance& s0, const CellJoints& q1, const Stance& s1,
-                            const std::vector<std::size_t>& some, int halvings, std::size_t& looks) const
-{
-    CellClearance least;
-    least.clearance = kInfinity;
-    std::vector<std::size_t> unclear;
-    for (const std::size_t i : some) {
-        const double way = motion(pairs_[i].a, q0, s0, q1, s1) + motion(pairs_[i].b, q0, s0, q1, s1);
-        const CellClearance &c0 = s0.pairs[i], &c1 = s1.pairs[i];
-        const CellClearance& nearer = c1.clearance < c0.clearance ? c1 : c0;
-        const double bound = std::min((c0.clearance + c1.clearance - way) / 2, nearer.clearance);
-        const bool known = nearer.clearance < -options_.tolerance; // it collides at a look already
-        if (bound < -options_.tolerance && !known && way > options_.resolution && halvings < kMostHalvings) {
-            unclear.push_back(i);
-        } else if (bound < least.clearance) {
-            least = nearer;
-            // What cannot be resolved further is told as it was seen.
-            least.clearance = known || way <= options_.resolution ? nearer.clearance : bound;
-        }
-    }
-    if (unclear.empty()) return least;
-    const CellJoints middle = (q0 + q1) / 2;
-    Stance half = stand(middle);
-    for (const std::size_t i : unclear) look(half, i);
-    ++looks;
-    for (const CellClearance& c : {between(q0, s0, middle, half, unclear, halvings + 1, looks),
-                                   between(middle, half, q1, s1, unclear, halvings + 1, looks)})
-        if (c.clearance < least.clearance) least = c;
-    return least;
-}
-
-// No point of the body moves farther between two stances.
-double Cell::motion(std::size_t body, const CellJoints& q0, const Stance& s0, const CellJoints& q1,
-                    const Stance& s1) const
-{
-    const Eigen::Matrix3Xd& corners = corners_[body];
     const Isometry3d &T0 = s0.T_cell_body[body], &T1 = s1.T_cell_body[body];
-    const double chord = ((T1 * corners) - (T0 * corners)).colwise().norm().maxCoeff();
-    const int on = body == robot_.bodies.size() ? link::kTable : robot_.bodies[body].link;
-    const double extent = corners.colwise().norm().maxCoeff();
-    if (on == link::kTable) {
-        const double turn = robot_.table ? std::abs(q1[7] - q0[7]) : 0;
-        return chord + turn * turn * (extent + (robot_.table ? robot_.table->point.norm() : 0)) / 2;
+    const Eigen::Matrix3d turn = T1.linear() - T0.linear();
+    const Vector3d way = turn * around_[body].centre + (T1.translation() - T0.translation());
+    return way.norm() + around_[body].radius * turn.norm() * std::numbers::sqrt2 / 2;
+}
+
+std::vector<double> Cell::motions(const CellJoints& q0, const Stance& s0, const CellJoints& q1, const Stance& s1) const
+{
+    const CellJoints move = (q1 - q0).cwiseAbs();
+    double turns = move.head<6>().sum(); // of joint 3 with joint 2, if they are coupled, it is at most their sum
+    if (robot_.coupling == Coupling::parallelogram) turns += move[1];
+    std::vector<double> motions(bodies());
+    for (std::size_t b = 0; b < motions.size(); ++b) {
+        const int on = b == robot_.bodies.size() ? link::kTable : robot_.bodies[b].link;
+        double bend = 0; // what an arc is longer than its chord
+        if (on == link::kTable && robot_.table)
+            bend = move[7] * move[7] * (around_[b].extent + robot_.table->point.norm()) / 2;
+        if (on > link::kBase && on <= link::kTool) bend = turns * turns * (around_[b].extent + reach_) / 2;
+        motions[b] = chord(b, s0, s1) + bend;
     }
-    double turns = std::abs(q1[1] - q0[1]) + std::abs(q1[2] - q0[2]); // of the upper arm and, at most, the forearm
-    if (robot_.coupling == Coupling::parallelogram) turns += std::abs(q1[1] - q0[1]);
-    for (const Eigen::Index k : {0, 3, 4, 5}) turns += std::abs(q1[k] - q0[k]);
-    double reach = extent + robot_.T_flange_tool.translation().norm();
-    for (const DhRow& row : robot_.dh) reach += std::abs(row.a) + std::abs(row.d);
-    return on <= link::kBase ? chord : chord + turns * turns * reach / 2;
+    return motions;
 }
 
 } // namespace fettle

@@ -7,7 +7,9 @@
 
 #include <Eigen/Core>
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -40,16 +42,14 @@ struct CellClearance {
 };
 
 /// Where the frame of each link stands, by link + 1 (robot.h: cell, base, 1 to 6, tool, table).
-std::vector<Eigen::Isometry3d> link_frames(const Robot& robot, const CellJoints& joints);
+std::array<Eigen::Isometry3d, 10> link_frames(const Robot& robot, const Arm& arm, const CellJoints& joints);
 
 /// A cell as it stands with given joints.
 struct Stance {
     std::vector<Eigen::Isometry3d> T_cell_body; ///< the workpiece's after the bodies'
     std::vector<CellClearance> pairs;           ///< those that were asked for
+    std::vector<std::uint32_t> leaf;            ///< of the pairs: where in the workpiece to begin
 };
-
-/// Of all pairs that were looked at.
-CellClearance least_of(const Stance& stance);
 
 /// A robot's bodies and the workpiece, to be looked at with any joints. Thread-safe.
 class Cell {
@@ -57,36 +57,45 @@ class Cell {
     /// All three must outlive it. @param workpiece  nullptr: none
     Cell(const Robot& robot, const Workpiece* workpiece, const CollisionOptions& options);
 
+    const CollisionOptions& options() const { return options_; }
     const std::vector<CellPair>& pairs() const { return pairs_; }
     /// Numbers of the pairs: without a workpiece not all.
     const std::vector<std::size_t>& looked_at() const { return looked_at_; }
+    /// How many: the workpiece is the last one, if there is one.
+    std::size_t bodies() const { return around_.size(); }
 
     /// Nothing is looked at yet.
     Stance stand(const CellJoints& joints) const;
-    /// Looks at one pair.
-    void look(Stance& stance, std::size_t pair) const;
-    Stance look_at_all(const CellJoints& joints) const;
+    /// The same, where there is room already.
+    void stand(const CellJoints& joints, Stance& stance) const;
 
-    /// The least clearance on the way between two stances, joints moving evenly, for the pairs of `some`: see
-    /// check_path(). @param looks  is counted up
-    CellClearance between(const CellJoints& q0, const Stance& s0, const CellJoints& q1, const Stance& s1,
-                          const std::vector<std::size_t>& some, std::size_t& looks) const
-    {
-        return between(q0, s0, q1, s1, some, 0, looks);
-    }
+    /// Looks at one pair.
+    void look(Stance& stance, std::size_t pair) const { look(stance, pair, options_.beyond); }
+    /// The same, but clearances from `beyond` on need not be told apart. @return  a lower bound of the clearance
+    double look(Stance& stance, std::size_t pair, double beyond) const;
+
+    /// No point of the body is farther from where it was.
+    double chord(std::size_t body, const Stance& s0, const Stance& s1) const;
+    /// Of all bodies: no point moves farther on the way between two stances, joints moving evenly.
+    std::vector<double> motions(const CellJoints& q0, const Stance& s0, const CellJoints& q1, const Stance& s1) const;
 
   private:
-    CellClearance between(const CellJoints& q0, const Stance& s0, const CellJoints& q1, const Stance& s1,
-                          const std::vector<std::size_t>& some, int halvings, std::size_t& looks) const;
-    double motion(std::size_t body, const CellJoints& q0, const Stance& s0, const CellJoints& q1,
-                  const Stance& s1) const;
+    /// A ball around a body, in its own frame. One about the centre of a ball turns in its place.
+    struct Around {
+        Eigen::Vector3d centre;
+        double radius; ///< 0 of a ball
+        double extent; ///< from the frame's origin
+    };
+    static Around around(const Eigen::AlignedBox3d& box);
 
     const Robot& robot_;
     const Workpiece* workpiece_;
     const CollisionOptions& options_;
+    const Arm arm_;
+    double reach_; ///< of the links, joint by joint, and the tool
     std::vector<CellPair> pairs_;
     std::vector<std::size_t> looked_at_;
-    std::vector<Eigen::Matrix3Xd> corners_; ///< of boxes around the bodies, in their own frames
+    std::vector<Around> around_;
 };
 
 } // namespace fettle

@@ -1,5 +1,7 @@
 #include "robot/collision.h"
 
+#include "robot/walk.h"
+
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -21,22 +23,19 @@ CheckedPath check_path(const Robot& robot, const Workpiece* workpiece, const Cel
         const std::size_t blocks = (std::min(kTold, count - from) + kBlock - 1) / kBlock;
         tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t block) {
             const std::size_t first = from + block * kBlock, end = std::min(first + kBlock, count);
-            Stance before;
-            std::size_t mine = 0;
+            Walk walk(cell);
             for (std::size_t i = first == 0 ? 0 : first - 1; i < end; ++i) {
-                const auto column = static_cast<Eigen::Index>(i);
-                const CellJoints q = joints.col(column);
-                Stance here;
-                if (!q.hasNaN()) {
-                    here = cell.look_at_all(q);
-                    if (i >= first) checked.pose[i] = least_of(here);
-                    if (i >= first && i > 0 && !before.T_cell_body.empty())
-                        checked.between[i] =
-                            cell.between(joints.col(column - 1), before, q, here, cell.looked_at(), mine);
+                const CellJoints q = joints.col(static_cast<Eigen::Index>(i));
+                if (q.hasNaN()) {
+                    walk.leave();
+                    continue;
                 }
-                before = std::move(here);
+                const CellClearance least = walk.step(q);
+                if (i < first) continue;
+                checked.pose[i] = least;
+                if (walk.steps() > 1) checked.between[i] = walk.way();
             }
-            looks += mine;
+            looks += walk.looks();
         });
     }
     checked.looks = looks;

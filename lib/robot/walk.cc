@@ -1,0 +1,121 @@
+#include "robot/walk.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fettle {
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// Between two steps the way is halved at most so often: 1 m to the hundredth of a micrometre.
+constexpr std::size_t kMostHalvings = 26;
+// A pair is looked at as far ahead as it would move in so many steps: it is then left alone for about as many.
+constexpr double kStepsAhead = 16;
+
+} // namespace
+
+Walk::Walk(const Cell& cell)
+    : cell_(cell), middle_(kMostHalvings), gone_(cell.bodies()), apart_(cell.pairs().size()),
+      last_(cell.looked_at().empty() ? 0 : cell.looked_at().front())
+{
+}
+
+void Walk::leave() { steps_ = 0; }
+
+void Walk::look(Place& place, std::size_t pair, double beyond)
+{
+    beyond = std::min(beyond, cell_.options().beyond);
+    const double bound = cell_.look(place.stance, pair, beyond);
+    place.exact[pair] = bound < beyond || beyond == cell_.options().beyond;
+    if (&place != &here_) return;
+    const CellPair& p = cell_.pairs()[pair];
+    apart_[pair] = bound + gone_[p.a] + gone_[p.b];
+}
+
+CellClearance Walk::step(const CellJoints& joints)
+{
+    std::swap(before_, here_);
+    here_.joints = joints;
+    cell_.stand(joints, here_.stance);
+    here_.exact.assign(cell_.pairs().size(), 0);
+    std::vector<double> chords(cell_.bodies(), 0.0);
+    if (steps_++ == 0) {
+        std::fill(gone_.begin(), gone_.end(), 0.0);
+        std::fill(apart_.begin(), apart_.end(), -kInfinity);
+    } else {
+        here_.stance.leaf = before_.stance.leaf;
+        for (std::size_t b = 0; b < chords.size(); ++b) {
+            chords[b] = cell_.chord(b, before_.stance, here_.stance);
+            gone_[b] += chords[b];
+        }
+    }
+    CellClearance least;
+    least.clearance = kInfinity;
+    if (cell_.looked_at().empty()) return least;
+    look(here_, last_, kInfinity);
+    least = here_.stance.pairs[last_];
+    const double most = cell_.options().beyond;
+    for (const std::size_t i : cell_.looked_at()) {
+        if (i == last_) continue;
+        const CellPair& pair = cell_.pairs()[i];
+        const double way = chords[pair.a] + chords[pair.b], bound = apart_[i] - gone_[pair.a] - gone_[pair.b];
+        // A body may come to lie wholly inside the workpiece only where it touched it.
+        if (bound > 0 && bound >= std::min(least.clearance + way, most)) {
+            here_.stance.pairs[i].clearance = std::min(bound, most);
+            here_.stance.pairs[i].pair = i;
+            continue;
+        }
+        look(here_, i, steps_ == 1 ? most : std::max(least.clearance, 0.0) + kStepsAhead * way);
+        if (here_.stance.pairs[i].clearance < least.clearance) least = here_.stance.pairs[i];
+    }
+    last_ = least.pair;
+    return least;
+}
+
+CellClearance Walk::way() { return between(before_, here_, cell_.looked_at(), 0); }
+
+CellClearance Walk::between(Place& from, Place& to, const std::vector<std::size_t>& some, std::size_t halvings)
+{
+    const CollisionOptions& options = cell_.options();
+    const std::vector<double> motions = cell_.motions(from.joints, from.stance, to.joints, to.stance);
+    CellClearance least;
+    least.clearance = kInfinity;
+    std::vector<std::size_t> unclear;
+    for (const std::size_t i : some) {
+        const CellPair& pair = cell_.pairs()[i];
+        const double way = motions[pair.a] + motions[pair.b];
+        const CellClearance &c0 = from.stance.pairs[i], &c1 = to.stance.pairs[i];
+        const auto bound = [&] {
+            return std::min({(c0.clearance + c1.clearance - way) / 2, c0.clearance, c1.clearance});
+        };
+        if (bound() >= least.clearance) continue;
+        for (Place* place : {&from, &to})
+            if (!place->exact[i]) look(*place, i, kInfinity);
+        const CellClearance& nearer = c1.clearance < c0.clearance ? c1 : c0;
+        const bool known = nearer.clearance < -options.tolerance; // it collides at a look already
+        if (bound() < -options.tolerance && !known && way > options.resolution && halvings < kMostHalvings) {
+            unclear.push_back(i);
+        } else if (bound() < least.clearance) {
+            least = nearer;
+            // What cannot be resolved further is told as it was seen.
+            if (!known && way > options.resolution) least.clearance = bound();
+        }
+    }
+    if (unclear.empty()) return least;
+    Place& middle = middle_[halvings];
+    middle.joints = (from.joints + to.joints) / 2;
+    cell_.stand(middle.joints, middle.stance);
+    middle.stance.leaf = from.stance.leaf;
+    middle.exact.assign(cell_.pairs().size(), 0);
+    for (const std::size_t i : unclear) look(middle, i, kInfinity);
+    ++looks_;
+    for (const bool second : {false, true}) {
+        const CellClearance c =
+            second ? between(middle, to, unclear, halvings + 1) : between(from, middle, unclear, halvings + 1);
+        if (c.clearance < least.clearance) least = c;
+    }
+    return least;
+}
+
+} // namespace fettle
