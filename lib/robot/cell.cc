@@ -136,21 +136,18 @@ double Cell::chord(std::size_t body, const Stance& s0, const Stance& s1) const
     return way.norm() + around_[body].radius * turn.norm() * std::numbers::sqrt2 / 2;
 }
 
-std::vector<double> Cell::motions(const CellJoints& q0, const Stance& s0, const CellJoints& q1, const Stance& s1) const
+double Cell::motion(std::size_t body, const CellJoints& q0, const Stance& s0, const CellJoints& q1,
+                    const Stance& s1) const
 {
     const CellJoints move = (q1 - q0).cwiseAbs();
     double turns = move.head<6>().sum(); // of joint 3 with joint 2, if they are coupled, it is at most their sum
     if (robot_.coupling == Coupling::parallelogram) turns += move[1];
-    std::vector<double> motions(bodies());
-    for (std::size_t b = 0; b < motions.size(); ++b) {
-        const int on = b == robot_.bodies.size() ? link::kTable : robot_.bodies[b].link;
-        double bend = 0; // what an arc is longer than its chord
-        if (on == link::kTable && robot_.table)
-            bend = move[7] * move[7] * (around_[b].extent + robot_.table->point.norm()) / 2;
-        if (on > link::kBase && on <= link::kTool) bend = turns * turns * (around_[b].extent + reach_) / 2;
-        motions[b] = chord(b, s0, s1) + bend;
-    }
-    return motions;
+    const int on = body == robot_.bodies.size() ? link::kTable : robot_.bodies[body].link;
+    double bend = 0; // what an arc is longer than its chord
+    if (on == link::kTable && robot_.table)
+        bend = move[7] * move[7] * (around_[body].extent + robot_.table->point.norm()) / 2;
+    if (on > link::kBase && on <= link::kTool) bend = turns * turns * (around_[body].extent + reach_) / 2;
+    return chord(body, s0, s1) + bend;
 }
 
 } // namespace fettle

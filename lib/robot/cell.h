@@ -76,8 +76,9 @@ class Cell {
 
     /// No point of the body is farther from where it was.
     double chord(std::size_t body, const Stance& s0, const Stance& s1) const;
-    /// Of all bodies: no point moves farther on the way between two stances, joints moving evenly.
-    std::vector<double> motions(const CellJoints& q0, const Stance& s0, const CellJoints& q1, const Stance& s1) const;
+    /// No point of the body moves farther on the way between two stances, joints moving evenly.
+    double motion(std::size_t body, const CellJoints& q0, const Stance& s0, const CellJoints& q1,
+                  const Stance& s1) const;
 
   private:
     /// A ball around a body, in its own frame. One about the centre of a ball turns in its place.

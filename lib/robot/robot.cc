@@ -116,8 +116,12 @@ Table table_in(Reader reader, double mm)
 
 Eigen::Isometry3d dh_transform(double theta, double d, double a, double alpha)
 {
-    using Eigen::AngleAxisd, Eigen::Translation3d, Eigen::Vector3d;
-    return AngleAxisd(theta, Vector3d::UnitZ()) * Translation3d(a, 0, d) * AngleAxisd(alpha, Vector3d::UnitX());
+    const double c = std::cos(theta), s = std::sin(theta), c_alpha = std::cos(alpha), s_alpha = std::sin(alpha);
+    Eigen::Isometry3d A;
+    A.linear() << c, -s * c_alpha, s * s_alpha, s, c * c_alpha, -c * s_alpha, 0, s_alpha, c_alpha;
+    A.translation() << a * c, a * s, d;
+    A.makeAffine();
+    return A;
 }
 
 Robot read_robot(const std::string& path)

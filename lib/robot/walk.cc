@@ -75,24 +75,40 @@ CellClearance Walk::step(const CellJoints& joints)
 
 CellClearance Walk::way() { return between(before_, here_, cell_.looked_at(), 0); }
 
-CellClearance Walk::between(Place& from, Place& to, const std::vector<std::size_t>& some, std::size_t halvings)
+double Walk::motion(const Place& from, Place& to, std::size_t pair) const
+{
+    const auto of_body = [&](std::size_t b) {
+        double& known = to.motions[b];
+        if (std::isnan(known)) known = cell_.motion(b, from.joints, from.stance, to.joints, to.stance);
+        return known;
+    };
+    return of_body(cell_.pairs()[pair].a) + of_body(cell_.pairs()[pair].b);
+}
+
+CellClearance Walk::between(Place& from, Place& to, std::vector<std::size_t> some, std::size_t halvings)
 {
     const CollisionOptions& options = cell_.options();
-    const std::vector<double> motions = cell_.motions(from.joints, from.stance, to.joints, to.stance);
+    to.motions.assign(cell_.bodies(), std::numeric_limits<double>::quiet_NaN());
+    // The one that is probably least comes first: the others need then not be looked at so well.
+    const auto nearest = std::min_element(some.begin(), some.end(), [&](std::size_t i, std::size_t k) {
+        return to.stance.pairs[i].clearance < to.stance.pairs[k].clearance;
+    });
+    if (nearest != some.end()) std::swap(*nearest, some.front());
     CellClearance least;
     least.clearance = kInfinity;
+    double least_seen = kInfinity; // what is told will be no more
     std::vector<std::size_t> unclear;
     for (const std::size_t i : some) {
-        const CellPair& pair = cell_.pairs()[i];
-        const double way = motions[pair.a] + motions[pair.b];
+        const double way = motion(from, to, i);
         const CellClearance &c0 = from.stance.pairs[i], &c1 = to.stance.pairs[i];
         const auto bound = [&] {
             return std::min({(c0.clearance + c1.clearance - way) / 2, c0.clearance, c1.clearance});
         };
-        if (bound() >= least.clearance) continue;
+        if (bound() >= least_seen) continue;
         for (Place* place : {&from, &to})
             if (!place->exact[i]) look(*place, i, kInfinity);
         const CellClearance& nearer = c1.clearance < c0.clearance ? c1 : c0;
+        least_seen = std::min(least_seen, nearer.clearance);
         const bool known = nearer.clearance < -options.tolerance; // it collides at a look already
         if (bound() < -options.tolerance && !known && way > options.resolution && halvings < kMostHalvings) {
             unclear.push_back(i);

@@ -31,10 +31,12 @@ class Walk {
     struct Place {
         CellJoints joints = CellJoints::Zero();
         Stance stance;
-        std::vector<char> exact; ///< of the pairs: or else the clearance is a lower bound
+        std::vector<char> exact;     ///< of the pairs: or else the clearance is a lower bound
+        std::vector<double> motions; ///< of the bodies on the way here; NaN: not asked for yet
     };
     void look(Place& place, std::size_t pair, double beyond);
-    CellClearance between(Place& from, Place& to, const std::vector<std::size_t>& some, std::size_t halvings);
+    double motion(const Place& from, Place& to, std::size_t pair) const;
+    CellClearance between(Place& from, Place& to, std::vector<std::size_t> some, std::size_t halvings);
 
     const Cell& cell_;
     Place before_, here_;

@@ -10,6 +10,7 @@
 // One core, cpu time; rounds of all in turn, and the middle one of the ratios of each round. The counts of overlapping
 // poses must be the same. With arguments, the numbers of triangles.
 
+#include "boat_hull.h"
 #include "robot/workpiece.h"
 
 #include <embree3/rtcore.h>
@@ -32,59 +33,12 @@ namespace {
 
 using Eigen::Isometry3d, Eigen::Vector2d, Eigen::Vector3d;
 
-constexpr int kPoses = 50000, kLines = 100, kRounds = 5, kFclEvery = 19;
-constexpr double kBall = 6, kShank = 5, kShankLength = 40, kSpindle = 45, kSpindleLength = 90;
+constexpr int kPoses = 50000, kRounds = 5, kFclEvery = 19;
+constexpr double kBall = boat::kBall, kShank = 5, kShankLength = 40, kSpindle = 45, kSpindleLength = 90;
 const std::array<Solid, 3> kTool = {
     solid::Sphere{{0, 0, 0}, kBall}, solid::Cylinder{{0, 0, 0}, {0, 0, kShankLength}, kShank},
     solid::Cylinder{{0, 0, kShankLength}, {0, 0, kShankLength + kSpindleLength}, kSpindle}};
 using Hits = std::array<int, 3>;
-
-double height(double x, double y)
-{
-    const double u = x / 150, w = std::abs(y) / 60;
-    return 100 * (1 - std::pow(w, 2.5)) * (1 - 0.85 * u * u * u * u) + 0.6 * std::sin(x / 9) * std::cos(y / 7);
-}
-
-Mesh hull(int triangles)
-{
-    const int across = static_cast<int>(std::sqrt(triangles / 2 * 0.4)), along = triangles / 2 / across;
-    Mesh mesh;
-    mesh.vertices.resize(3, (along + 1) * (across + 1));
-    mesh.triangles.resize(3, 2 * along * across);
-    Eigen::Index v = 0, t = 0;
-    for (int j = 0; j <= across; ++j)
-        for (int i = 0; i <= along; ++i) {
-            const double x = -150 + 300.0 * i / along, y = -60 + 120.0 * j / across;
-            mesh.vertices.col(v++) << x, y, height(x, y);
-        }
-    for (int j = 0; j < across; ++j)
-        for (int i = 0; i < along; ++i) {
-            const int a = j * (along + 1) + i, b = a + 1, c = a + along + 1, d = c + 1;
-            mesh.triangles.col(t++) << a, b, d;
-            mesh.triangles.col(t++) << a, d, c;
-        }
-    return mesh;
-}
-
-/// The origin is the ball's centre, z the tool's axis.
-std::vector<Isometry3d> poses()
-{
-    std::vector<Isometry3d> all;
-    constexpr int kPerLine = kPoses / kLines;
-    for (int k = 0; k < kPoses; ++k) {
-        const int line = k / kPerLine, i = line % 2 == 0 ? k % kPerLine : kPerLine - 1 - k % kPerLine;
-        const double x = -140 + 280 * (i + 0.5) / kPerLine, y = -54 + 108 * (line + 0.5) / kLines, e = 1e-4;
-        const Vector3d normal = Vector3d((height(x - e, y) - height(x + e, y)) / (2 * e),
-                                         (height(x, y - e) - height(x, y + e)) / (2 * e), 1)
-                                    .normalized();
-        const Vector3d axis = 0.2 * normal + 0.8 * Vector3d::UnitZ();
-        Isometry3d T = Isometry3d::Identity();
-        T.translation() = Vector3d(x, y, height(x, y)) + (kBall + (k % 20 == 7 ? -0.05 : 0.02)) * normal;
-        T.linear() = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), axis).toRotationMatrix();
-        all.push_back(T);
-    }
-    return all;
-}
 
 double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
@@ -297,11 +251,11 @@ double middle(std::vector<double> list)
 
 void compare(int triangles)
 {
-    const Mesh mesh = hull(triangles);
+    const Mesh mesh = boat::hull(triangles);
     const Workpiece workpiece(mesh);
     const Embree embree(mesh);
     const Fcl fcl(mesh);
-    const std::vector<Isometry3d> all = poses();
+    const std::vector<Isometry3d> all = boat::poses(kPoses);
     const std::array<const char*, 4> names = {"least", "each", "embree", "fcl"};
     std::array<std::vector<double>, 4> seconds, ratios;
     std::array<Run, 4> runs;
