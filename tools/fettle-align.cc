@@ -43,17 +43,6 @@ Eigen::Matrix4d matrix_of(const Eigen::Isometry3d& motion, double mm)
     return matrix;
 }
 
-// With the file's name before what the library has against it.
-template <typename Work>
-auto named(const std::string& path, const Work& work)
-{
-    try {
-        return work();
-    } catch (const InputError& error) {
-        throw InputError(display_name(path), error.what());
-    }
-}
-
 } // namespace
 
 int main(int argc, char** argv)
@@ -102,11 +91,11 @@ int main(int argc, char** argv)
         Eigen::Matrix4d matrix = in.empty() ? Eigen::Matrix4d::Identity() : read_transform(in);
         if (!in.empty() || near || iterations == 0) options.start = start_of(matrix, mm);
 
-        const auto reference = named(reference_path, [&] {
+        const auto reference = named(display_name(reference_path), [&] {
             return std::visit([](const auto& shape) { return std::make_unique<AlignReference>(shape); }, target.shape);
         });
         const OrientedPoints points = std::visit([](const auto& shape) { return oriented_points(shape); }, scan.shape);
-        const Alignment alignment = named(scan_path, [&] { return align(points, *reference, options); });
+        const Alignment alignment = named(display_name(scan_path), [&] { return align(points, *reference, options); });
         if (iterations > 0) matrix = matrix_of(alignment.fit.T_reference_scan, mm);
 
         json::Value& report = t.report();

@@ -42,18 +42,6 @@ void write_reach(Tool& t, const Robot& robot, const std::string& box, double ste
     write_pcd(t.output(), cloud, units, encoding);
 }
 
-// With the file's name before what the library has against it, but for options, which name themselves.
-template <typename Work>
-auto named(const std::string& path, const Work& work)
-{
-    try {
-        return work();
-    } catch (const InputError& error) {
-        if (std::string(error.what()).starts_with("--")) throw;
-        throw InputError(display_name(path), error.what());
-    }
-}
-
 // Every solution of every pose, a point each: fields pose and branch.
 void write_all(Tool& t, const Cloud& cloud, const Robot& robot, const SolvedPath& solved, const Units& units,
                PcdEncoding encoding)
@@ -147,8 +135,9 @@ int main(int argc, char** argv)
         Cloud& cloud = file.cloud;
         const double mm = file.units.mm();
         const PathWishes wishes = {track, table, start, jump};
-        const SolvedPath solved = named(
-            points, [&] { return to_pose ? given_path(robot, cloud, jump) : solve_path(robot, cloud, wishes, mm); });
+        const SolvedPath solved = named(display_name(points), [&] {
+            return to_pose ? given_path(robot, cloud, jump) : solve_path(robot, cloud, wishes, mm);
+        });
         const FollowedPath& path = solved.path;
         if (to_pose) {
             set_path(cloud, solved.poses);

@@ -11,20 +11,6 @@
 
 using namespace fettle;
 
-namespace {
-
-template <typename Work>
-auto named(const std::string& name, const Work& work)
-{
-    try {
-        return work();
-    } catch (const InputError& error) {
-        throw InputError(name, error.what());
-    }
-}
-
-} // namespace
-
 int main(int argc, char** argv)
 {
     const std::string description = "Plans a zig-zag finishing path over a design, as G-code.\n"

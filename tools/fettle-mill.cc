@@ -6,8 +6,8 @@
 #include "machining/discretization.h"
 #include "machining/milling.h"
 #include "machining/milling_summary.h"
-#include "machining/nc_program.h"
 #include "machining/number_list.h"
+#include "machining/tool_path.h"
 #include "machining/workpiece.h"
 #include "mesh/mesh_file.h"
 #include "sampling/scan.h"
@@ -18,17 +18,6 @@
 using namespace fettle;
 
 namespace {
-
-// With an option's or a file's name before what the library has against its value.
-template <typename Work>
-auto named(const std::string& name, const Work& work)
-{
-    try {
-        return work();
-    } catch (const InputError& error) {
-        throw InputError(name, error.what());
-    }
-}
 
 Holder parse_holder(const std::string& text)
 {
@@ -82,7 +71,7 @@ void report(json::Value& out, const MillingSummary& sum, const NcProgram& progra
         .set("rapid_cuts", to_json(sum.rapid_cuts))
         .set("holder_collisions", to_json(sum.holder))
         .set("moves", program.moves.size())
-        .set("unplaced_rapids", program.unplaced)
+        .set("unplaced_rapids", program.unplaced.size())
         .set("chorded_arcs", program.chorded)
         .set("arc_chord_error", kArcChord)
         .set("words_without_motion", words)
@@ -142,14 +131,9 @@ int main(int argc, char** argv)
         const Cutter cutter = named("--cutter", [&] { return parse_cutter(cutter_text); });
         MillingOptions options;
         if (!holder.empty()) options.holder = named("--holder", [&] { return parse_holder(holder); });
-        const std::string bytes = read_whole(path), source = display_name(path);
-        NcProgram program;
-        if (looks_like_nc_program(bytes)) {
-            if (points == "cc") throw InputError("--points", "a program has no contact points");
-            program = parse_nc_program(bytes, source);
-        } else {
-            program.moves = moves_through(parse_cloud(bytes, source).cloud, cutter, points == "cc", feed, source);
-        }
+        const std::string source = display_name(path);
+        const ToolPath tool_path = parse_tool_path(read_whole(path), source, cutter, {points == "cc", feed});
+        const NcProgram& program = tool_path.program;
         const DesignShape shape = design.empty() ? DesignShape{} : named(display_name(design), [&] {
             return shape_of(read_mesh(design, design_units.value_or(Units::Length::mm)));
         });
@@ -168,7 +152,7 @@ int main(int argc, char** argv)
             write_stl(t.output(), piece.stock);
         report(t.report(), sum, program, piece.stock);
         if (tolerance) t.report().set("discretization", to_json(spacing, shape));
-        const std::string unit = looks_like_nc_program(bytes) ? "line " : "point ";
+        const std::string unit = tool_path.points ? "point " : "line ";
         const auto warn = [&](const Clash& clash, const std::string& what) {
             if (clash.moves > 0)
                 t.warn(source + ": " + what + ": " + std::to_string(clash.moves) + ", the first to " + unit +

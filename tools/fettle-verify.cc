@@ -3,8 +3,10 @@
 #include "compare/signed_distance.h"
 #include "core/file.h"
 #include "core/text.h"
+#include "machining/correction.h"
 #include "machining/patch_error.h"
 #include "machining/patch_report.h"
+#include "machining/tool_path.h"
 #include "machining/workpiece.h"
 #include "mesh/mesh_file.h"
 #include "sampling/scan.h"
@@ -20,12 +22,10 @@ Mesh read_machined(const std::string& path, std::optional<Units::Length> unit, c
 {
     Mesh mesh = read_mesh(path, unit.value_or(Units::Length::mm));
     if (!step) return mesh;
-    try {
+    return named("--step", [&] {
         const HeightField field = scanned_workpiece(Scan(std::move(mesh)), *step).stock;
         return surface_between(field, 0, field.rows() - 1);
-    } catch (const InputError& error) {
-        throw InputError("--step", error.what());
-    }
+    });
 }
 
 Cloud z_errors(const Mesh& machined, const Eigen::VectorXd& errors)
@@ -34,6 +34,17 @@ Cloud z_errors(const Mesh& machined, const Eigen::VectorXd& errors)
     cloud.xyz = machined.vertices;
     set_field(cloud, "error", errors);
     return cloud;
+}
+
+json::Value to_json(const CorrectedPath& path)
+{
+    return json::Value()
+        .set("moves", path.moves.size())
+        .set("shifted", path.shifted)
+        .set("held", path.held)
+        .set("in_air", path.in_air)
+        .set("unknown", path.unknown)
+        .set("greatest_shift", path.greatest_shift);
 }
 
 } // namespace
@@ -48,9 +59,11 @@ int main(int argc, char** argv)
         "the design is vertical or not hit, or the machined triangle does not face up, it is undefined: counted and "
         "listed. Out: a point for each patch, coloured bright red, dark red (over-cut), grey, violet, dark blue "
         "(material "
-        "left). Lengths in mm. Exit 1 if a patch is over-cut beyond the tolerance, or none is defined.";
+        "left). With --correct also a path that takes the errors back. Lengths in mm. Exit 1 if a patch is over-cut "
+        "beyond the tolerance, or none is defined.";
     return tool_main(argc, argv, description, [](Tool& t) {
-        const std::string& path = t.input("MACHINED", "Triangles that face up (fettle-mill): STL, PLY, OBJ or OFF");
+        const std::string& machined_path =
+            t.input("MACHINED", "Triangles that face up (fettle-mill): STL, PLY, OBJ or OFF");
         const auto& unit = t.length_unit("--file-units", "Unit of MACHINED, if it is not mm");
         const std::string& design_path = t.required_text("--design", "FILE", "The design: STL, PLY, OBJ or OFF");
         const auto& design_unit = t.length_unit("--design-units", "Unit of the design, if it is not mm");
@@ -68,6 +81,13 @@ int main(int argc, char** argv)
             "--step", "MM", "Sample the machined surface from above on such a grid, too", Range::positive());
         const std::string& csv = t.text("--csv", "", "FILE", "Data sheet: triangle, centre, d, mu, class");
         const std::string& z_file = t.text("--z-errors", "", "FILE", "Errors along Z at the machined vertices, PCD");
+        const std::string& path_file =
+            t.text("--correct", "", "PATH", "What fettle-mill machined along: to be corrected by the errors");
+        const std::string& corrected_file = t.text(
+            "--corrected", "", "FILE", "The corrected path: of a program a program, of points a PCD of the tips");
+        const std::string& cutter_text = t.text("--cutter", "", "CUTTER", "The cutter that machined along PATH");
+        const std::string& points = t.choice("--points", "cl", {"cl", "cc"}, "What points of PATH are (fettle-mill)");
+        const double& feed = t.number("--feed", 10, "MM/S", "Feed of points without one", Range::positive());
         const bool& ascii = t.flag("--ascii", "Write PCDs as text");
         t.example(
             "fettle-mill programs/pocket.nc --stock box:0,0,-12,80,60,0 --cutter ball:6 --step 0.25 | fettle-verify "
@@ -77,8 +97,17 @@ int main(int argc, char** argv)
         t.reference("Guan & Xiong, Virtual machining accuracy verification by triangular patch comparison: eq. 4 to 6");
         t.parse();
 
-        const Mesh machined = read_machined(path, unit, step);
+        const bool corrects = !path_file.empty();
+        if (corrects == corrected_file.empty() || corrects == cutter_text.empty())
+            throw InputError("--correct, --corrected and --cutter belong together");
+        const Mesh machined = read_machined(machined_path, unit, step);
         const Mesh design = read_mesh(design_path, design_unit.value_or(Units::Length::mm));
+        Cutter cutter;
+        ToolPath path;
+        if (corrects) {
+            cutter = named("--cutter", [&] { return parse_cutter(cutter_text); });
+            path = parse_tool_path(read_whole(path_file), display_name(path_file), cutter, {points == "cc", feed});
+        }
         PatchVerdict verdict;
         verdict.tolerances = {inner.value_or(tolerance), outer.value_or(tolerance), neutral};
         verdict.patches = patch_errors(machined, design);
@@ -91,9 +120,19 @@ int main(int argc, char** argv)
             write_pcd(t.output_file(z_file), z_errors(machined, verdict.patches.z_error), Units{}, encoding);
         write_pcd(t.output(), to_cloud(verdict), Units{}, encoding);
         t.report() = to_json(verdict);
+        if (corrects) {
+            const CorrectedPath corrected =
+                correct(path.program.moves, cutter, machined, design, verdict.patches, verdict.tolerances.outer);
+            t.report().set("correction", to_json(corrected));
+            if (path.points)
+                write_pcd(t.output_file(corrected_file), corrected_points(path, corrected, points == "cc"), Units{},
+                          encoding);
+            else
+                write_corrected(t.output_file(corrected_file), path, corrected);
+        }
         const auto undefined = verdict.error().array().isNaN().count();
         if (undefined > 0)
-            t.warn(display_name(path) + ": " + std::to_string(undefined) + " of " +
+            t.warn(display_name(machined_path) + ": " + std::to_string(undefined) + " of " +
                    std::to_string(verdict.error().size()) + " patches have no error: see \"undefined_by_patch\"");
         return over_cut(verdict) == 0 && undefined < verdict.error().size() ? Verdict::yes : Verdict::no;
     });

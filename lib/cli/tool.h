@@ -85,6 +85,19 @@ class Tool {
     std::unique_ptr<State> state_;
 };
 
+/// What work returns; an option's or a file's name goes before what the library has against its value, unless an option
+/// is named already.
+template <typename Work>
+auto named(const std::string& name, const Work& work)
+{
+    try {
+        return work();
+    } catch (const InputError& error) {
+        if (std::string(error.what()).starts_with("--")) throw;
+        throw InputError(name, error.what());
+    }
+}
+
 /// Runs a tool: catches what the library throws, prints "fettle-NAME: message" in one line and returns the exit status:
 /// 0 or 1 by the verdict, 2 for bad input, usage, or a failed write.
 int tool_main(int argc, char** argv, const std::string& description, const std::function<Verdict(Tool&)>& body);

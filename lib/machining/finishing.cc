@@ -1,9 +1,10 @@
 #include "machining/finishing.h"
 
 #include "core/error.h"
-#include "core/fixed_text.h"
 #include "core/text.h"
 #include "machining/drop_cutter.h"
+#include "machining/nc_writer.h"
+#include "machining/straight_way.h"
 
 #include <tbb/parallel_for.h>
 
@@ -11,6 +12,7 @@
 #include <cmath>
 #include <optional>
 #include <ostream>
+#include <span>
 
 namespace fettle {
 namespace {
@@ -22,22 +24,7 @@ constexpr double kMostPoints = 1e8;
 constexpr double kChord = 0.005;
 /// Points are no nearer to each other than half of this, mm: a tenth of the finest cells in use.
 constexpr double kFinest = 0.01;
-/// Points that are thinned at a time; straight moves are no longer.
-constexpr std::size_t kMostThinned = 1000;
-
 using Line = std::vector<std::optional<Eigen::Vector3d>>; ///< of tips; nothing where the cutter meets nothing
-
-bool straight(const Line& line, std::size_t from, std::size_t to)
-{
-    const Eigen::Vector3d way = *line[to] - *line[from];
-    const double length = way.norm();
-    for (std::size_t i = from + 1; i < to; ++i) {
-        const Eigen::Vector3d off = *line[i] - *line[from];
-        const double share = length > 0 ? std::clamp(off.dot(way) / (length * length), 0.0, 1.0) : 0;
-        if ((off - share * way).norm() > kThinning) return false;
-    }
-    return true;
-}
 
 class Path {
   public:
@@ -46,32 +33,15 @@ class Path {
     /// Goes along a line, through the air where there is nothing.
     void follow(const Line& line)
     {
-        for (std::size_t i = 0; i < line.size();) {
-            if (!line[i]) {
-                lift();
-                ++i;
-                continue;
+        for (std::size_t i = 0; i < line.size(); ++i) {
+            std::vector<Eigen::Vector3d> touched;
+            for (; i < line.size() && line[i]; ++i) touched.push_back(*line[i]);
+            for (std::size_t k = 0; k < touched.size(); ++k) {
+                reach(touched[k]);
+                if (k + 1 == touched.size()) break;
+                k += straight_to(std::span(touched).subspan(k)) - 1;
             }
-            reach(*line[i]);
-            std::size_t to = i + 1;
-            if (to == line.size() || !line[to]) {
-                i = to;
-                continue;
-            }
-            // doubling, then halving: few looks at long straight ways
-            std::size_t step = 1;
-            const auto fits = [&](std::size_t end) {
-                for (std::size_t k = to; k <= end; ++k)
-                    if (!line[k]) return false;
-                return straight(line, i, end);
-            };
-            while (step < kMostThinned && to + step < line.size() && fits(to + step)) {
-                to += step;
-                step *= 2;
-            }
-            for (; step > 0; step /= 2)
-                if (to + step < line.size() && to + step - i <= kMostThinned && fits(to + step)) to += step;
-            i = to;
+            if (i < line.size()) lift();
         }
     }
     void lift()
@@ -205,24 +175,9 @@ Cloud to_cloud(const std::vector<TipPoint>& path)
 
 void write_gcode(std::ostream& out, const std::vector<TipPoint>& path, const std::string& title)
 {
-    constexpr double kSecondsPerMinute = 60;
-    constexpr const char* kNames = "XYZ";
-    const auto number = [](double value) { return to_fixed_text(value, 5); }; // finer than any drive
     out << "%\n(" << title << ")\nG21 G90 G17 G94\n";
-    double feed = 0;
-    bool rapid = false;
-    for (std::size_t i = 0; i < path.size(); ++i) {
-        const TipPoint& to = path[i];
-        std::string line;
-        if (i == 0 || (to.feed == 0) != rapid) line = to.feed == 0 ? "G0" : "G1";
-        rapid = to.feed == 0;
-        for (int k = 0; k < 3; ++k) {
-            const std::string word = number(to.tip[k]);
-            if (i == 0 || word != number(path[i - 1].tip[k])) line += (line.empty() ? "" : " ") + (kNames[k] + word);
-        }
-        if (!rapid && to.feed != feed) line += " F" + number((feed = to.feed) * kSecondsPerMinute);
-        if (!line.empty()) out << line << '\n';
-    }
+    NcWriter writer(out);
+    for (const TipPoint& point : path) writer.go(point.tip, point.feed);
     out << "M30\n%\n";
 }
 

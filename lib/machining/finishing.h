@@ -39,10 +39,9 @@ double overhang_for(const Cutter& cutter, const DesignShape& shape);
 
 /// A zig-zag over the design's box: the cutter touches the design at every point (drop_cutter.h), a third of the
 /// step-over apart or, where the middle of a straight move would be off by more than 0.005 mm, nearer; at walls it goes
-/// upright. Points within kThinning of a straight move are left out. Passes are joined over the design where the cutter
-/// touches all the way, else above it.
+/// upright. Points that a straight move passes are left out (straight_way.h). Passes are joined over the design where
+/// the cutter touches all the way, else above it.
 /// @throws InputError if the cutter touches nothing, or for more than 10^8 points
-inline constexpr double kThinning = 1e-4; // mm
 std::vector<TipPoint> finishing_path(const Mesh& design, const Cutter& cutter, const FinishingOptions& options);
 
 /// Points with field `feed`.

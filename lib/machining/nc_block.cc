@@ -15,7 +15,9 @@ namespace {
 const std::vector<std::vector<int>> kGroups = {{0, 1, 2, 3, 80},         {17, 18, 19}, {20, 21}, {40}, {43, 49},
                                                {54, 55, 56, 57, 58, 59}, {64},         {90, 91}, {94}};
 constexpr std::string_view kLetters = "FHIJKNPRSTXYZ"; // besides G and M
-constexpr double kGreatest = 1e6;                      // no coordinate is a kilometre away, no number as large
+constexpr std::string_view kOfMoves = "NXYZIJKRF";
+constexpr std::array kMotions = {0, 1, 2, 3, 17, 18, 19, 90, 91};
+constexpr double kGreatest = 1e6; // no coordinate is a kilometre away, no number as large
 
 int group_of(int g)
 {
@@ -135,6 +137,29 @@ NcBlock parse_nc_block(std::string_view line)
     }
     require_sense(block);
     return block;
+}
+
+std::string without_moves(std::string_view line)
+{
+    constexpr std::string_view kNumbers = "+-.0123456789";
+    std::string rest;
+    for (std::size_t i = 0, end = 0; i < line.size(); i = end) {
+        end = i + 1;
+        if (line[i] == ';') end = line.size();
+        if (line[i] == '(') end = line.find(')', i) + 1;
+        const char letter = static_cast<char>(std::toupper(static_cast<unsigned char>(line[i])));
+        if (letter >= 'A' && letter <= 'Z') {
+            const std::size_t begin = std::min(line.find_first_not_of(" \t", i + 1), line.size());
+            end = std::min(line.find_first_not_of(kNumbers, begin), line.size());
+            if (kOfMoves.find(letter) != std::string_view::npos) continue;
+            const double value = parse_number(line.substr(begin, end - begin)).value_or(-1);
+            if (letter == 'G' && std::find(kMotions.begin(), kMotions.end(), value) != kMotions.end()) continue;
+        }
+        const bool blank = line[i] == ' ' || line[i] == '\t';
+        if (!blank || (!rest.empty() && rest.back() != ' ')) rest += line.substr(i, end - i);
+    }
+    while (!rest.empty() && rest.back() == ' ') rest.pop_back();
+    return rest;
 }
 
 } // namespace fettle

@@ -29,4 +29,8 @@ struct NcBlock {
 /// than G or M given twice, two G words of one group, or words that are not accepted
 NcBlock parse_nc_block(std::string_view line);
 
+/// A line that parse_nc_block() takes, without what says where and how to move: the words N, X to Z, I to K, R, F, and
+/// G0 to G3, G17 to G19, G90, G91. Comments stay.
+std::string without_moves(std::string_view line);
+
 } // namespace fettle

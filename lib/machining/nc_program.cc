@@ -64,7 +64,7 @@ class Interpreter {
         const Eigen::Vector3d to = target(block);
         if (motion_ == 0 && !(at_.allFinite() && to.allFinite())) {
             if (to.allFinite()) add({placed(to)}, 0); // stands there: it must be free of material
-            if (!to.allFinite()) ++program.unplaced;
+            if (!to.allFinite()) program.unplaced.push_back({to, line_});
             at_ = to;
             return;
         }

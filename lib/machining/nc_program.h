@@ -17,8 +17,13 @@ inline constexpr double kArcChord = 1e-4;
 struct NcProgram {
     std::vector<CutterMove> moves; ///< the first stands at the first place that is known; rapids go straight
     std::map<std::string, std::size_t> without_motion; ///< words accepted as such ("M3", "S", "G54"), and how often
-    std::size_t unplaced = 0; ///< rapids while some coordinate was not known yet: not simulated
-    std::size_t chorded = 0;  ///< arcs that were cut into chords
+    /// Rapids while some coordinate was not known yet: not simulated.
+    struct Unplaced {
+        Eigen::Vector3d to; ///< NaN: not known
+        std::size_t place;  ///< line
+    };
+    std::vector<Unplaced> unplaced;
+    std::size_t chorded = 0; ///< arcs that were cut into chords
 };
 
 /// Reads G-code (ISO 6983, as NIST's RS274/NGC has it): G0 to G3 with centres (I J K, relative to the start) or radius

@@ -16,3 +16,10 @@ refused '--neutral' fettle-verify ok.off --design ok.off --neutral 2
 refused '--method' fettle-verify ok.off --design ok.off --method nearest
 refused '--step: a cell of' fettle-verify ok.off --design ok.off --step 1e-9
 refused '/missing/sheet.csv' fettle-verify ok.off --design ok.off --csv /missing/sheet.csv
+printf 'G0 X0 Y0 Z5\nG1 Z1 F10\n' > path.nc
+refused '--correct, --corrected and --cutter belong together' fettle-verify ok.off --design ok.off --correct path.nc
+refused '--correct, --corrected and --cutter belong together' fettle-verify ok.off --design ok.off --cutter ball:6
+refused '--cutter: expected ball:D' fettle-verify ok.off --design ok.off --correct path.nc --corrected c.nc --cutter drill:6
+refused 'path.nc: a program has no contact points' fettle-verify ok.off --design ok.off --correct path.nc --corrected c.nc --cutter ball:6 --points cc
+refused 'ok.off' fettle-verify ok.off --design ok.off --correct ok.off --corrected c.nc --cutter ball:6
+[ ! -e c.nc ]

@@ -45,7 +45,7 @@ TEST(NcProgram, MotionFeedAndPlaces)
     EXPECT_EQ(program.moves[2].to, V(4, 3, -1));
     EXPECT_EQ(program.moves[2].feed, 5); // G1 and F hold
     EXPECT_TRUE(program.moves[3].rapid());
-    EXPECT_EQ(program.unplaced, 0u);
+    EXPECT_TRUE(program.unplaced.empty());
 }
 
 TEST(NcProgram, UnitsAndDistances)
@@ -147,7 +147,7 @@ TEST(NcProgram, WordsWithoutMotionAreCounted)
         EXPECT_EQ(program.without_motion.at(word), 1u) << word;
     EXPECT_EQ(program.without_motion.at("G64"), 2u);
     EXPECT_EQ(program.without_motion.size(), 22u);
-    EXPECT_EQ(program.unplaced, 1u); // X0 Y0 before any Z
+    EXPECT_EQ(program.unplaced.size(), 1u); // X0 Y0 before any Z
     ASSERT_EQ(program.moves.size(), 2u);
     EXPECT_EQ(program.moves[1].to, V(1, 0, 10));
 }
