@@ -138,18 +138,20 @@ int main(int argc, char** argv)
         const TestPoints test = whole_test ? test_points(whole_test->shape, whole_test->units)
                                            : open_test_points(test_path, units_of(test_unit, options.job));
         const Units units = options.job ? options.job->units : test.units;
-        ShapeFile shape = read_shape(reference_path, units_of(reference_unit, options.job));
         if (max_distance) options.distance.max_distance = *max_distance * units.mm();
         if (tolerance || options.job) options.tolerance = tolerance ? *tolerance * units.mm() : options.job->tolerance;
+        Survey of_test = survey(test, options);
+        ShapeFile shape = read_shape(reference_path, units_of(reference_unit, options.job));
         if (options.job)
             if (const std::string doubt = implausible_box(bounding_box(places_of(shape.shape)), *options.job);
                 !doubt.empty())
                 t.warn(display_name(reference_path) + ": " + doubt);
 
-        const auto run = [&](const TestPoints& points, const Reference& reference, std::ostream& out) {
+        const auto run = [&](const TestPoints& points, Survey& of_points, const Reference& reference,
+                             std::ostream& out) {
             CloudWriter writer(out, written, units, points.points.points);
             const auto write = [&](const Cloud& part) { writer.write(part); };
-            Comparison result = compare(points, reference, options, write, t.progress("compare"));
+            Comparison result = compare(points, of_points, reference, options, write, t.progress("compare"));
             writer.finish();
             return result;
         };
@@ -158,12 +160,13 @@ int main(int argc, char** argv)
             back_out ? std::optional(test_points(shape.shape, shape.units)) : std::nullopt;
         const bool of_mesh = std::holds_alternative<Mesh>(shape.shape);
         const Reference reference = make_reference(std::move(shape.shape), options.distance);
-        std::vector<Comparison> comparisons = {run(test, reference, t.output())};
+        std::vector<Comparison> comparisons = {run(test, of_test, reference, t.output())};
         t.report() = to_json(comparisons.front(), units);
         if (of_mesh) t.report().set("reference", to_json(reference.repair(), shape.repair, units));
         if (back) {
             options.reversed = true;
-            comparisons.push_back(run(*back, make_reference(whole_test->shape, options.distance), *back_out));
+            Survey of_back = survey(*back, options);
+            comparisons.push_back(run(*back, of_back, make_reference(whole_test->shape, options.distance), *back_out));
             t.report().set("reverse", to_json(comparisons.back(), units));
         }
         if (!csv.empty()) write_csv(t.output_file(csv), comparisons, units);

@@ -7,6 +7,9 @@
 #include "core/file.h"
 #include "core/lines.h"
 
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
 
@@ -69,6 +72,17 @@ PointSource binary_source(const PcdHeader& header, std::shared_ptr<const InputFi
 }
 
 } // namespace
+
+void for_each_block(const PointSource& points, const std::function<void(std::size_t, const PointBlock&)>& use)
+{
+    tbb::enumerable_thread_specific<PointBlock> rooms;
+    tbb::parallel_for(std::size_t{0}, points.blocks(), [&](std::size_t b) {
+        PointBlock& block = rooms.local();
+        const std::size_t first = b * points.block;
+        points.read(first, std::min(points.block, points.points - first), block);
+        use(b, block);
+    });
+}
 
 PointSource point_source(std::shared_ptr<const Cloud> cloud)
 {

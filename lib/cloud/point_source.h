@@ -26,7 +26,12 @@ struct PointSource {
     bool has_roles = false;
     /// Reads `count` points from the first-th on.
     std::function<void(std::size_t first, std::size_t count, PointBlock& into)> read;
+
+    std::size_t blocks() const { return (points + block - 1) / block; }
 };
+
+/// Calls `use` with the number of each block, from 0, and its points: several at once, in any order.
+void for_each_block(const PointSource& points, const std::function<void(std::size_t, const PointBlock&)>& use);
 
 /// The points of a cloud in memory. It holds the cloud.
 PointSource point_source(std::shared_ptr<const Cloud> cloud);

@@ -1,9 +1,9 @@
 #include "compare/areas.h"
 
 #include <Eigen/Dense>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -32,11 +32,8 @@ struct Lattice {
 template <typename Told, typename Tell>
 std::vector<Told> of_blocks(const PointSource& points, const Tell& tell)
 {
-    std::vector<Told> told((points.points + points.block - 1) / points.block);
-    tbb::parallel_for(std::size_t{0}, told.size(), [&](std::size_t b) {
-        PointBlock block;
-        const std::size_t first = b * points.block;
-        points.read(first, std::min(points.block, points.points - first), block);
+    std::vector<Told> told(points.blocks());
+    for_each_block(points, [&](std::size_t b, const PointBlock& block) {
         for (const auto& point : block.xyz.colwise())
             if (point.allFinite()) tell(told[b], Eigen::Vector2d(point.head<2>()));
     });
@@ -170,12 +167,12 @@ PlanAreas::PlanAreas(const PointSource& points)
     if (!(side_.minCoeff() > 0)) return; // all on one line: no area
     bins_ = (sizes / side_).cast<Eigen::Index>() + 1;
     counts_.assign(static_cast<std::size_t>(bins_.prod()), 0);
-    PointBlock block;
-    for (std::size_t first = 0; first < points.points; first += points.block) {
-        points.read(first, std::min(points.block, points.points - first), block);
+    for_each_block(points, [&](std::size_t, const PointBlock& block) {
         for (const auto& point : block.xyz.colwise())
-            if (point.allFinite()) ++counts_[static_cast<std::size_t>(bin(point.head<2>()))];
-    }
+            if (point.allFinite())
+                std::atomic_ref(counts_[static_cast<std::size_t>(bin(point.head<2>()))])
+                    .fetch_add(1, std::memory_order_relaxed);
+    });
 }
 
 Eigen::Index PlanAreas::bin(const Eigen::Vector2d& xy) const

@@ -16,8 +16,6 @@ namespace {
 
 // Points that are measured at a time. So many along a Hilbert curve are close to each other, and take some 20 MiB.
 constexpr std::size_t kBlock = 1 << 17;
-// Points whose errors set the colours: their 99th percentile is then good to a tenth of the percent beyond it.
-constexpr std::size_t kSample = 1 << 14;
 
 struct Block {
     Cloud cloud;
@@ -26,24 +24,11 @@ struct Block {
     std::vector<Region> regions;
 };
 
+bool scaled_by_tolerance(const ComparisonOptions& options) { return options.tolerance && *options.tolerance > 0; }
+
 void turn(ErrorMap& map)
 {
     map.error = (0 - map.error.array()).matrix(); // no negative zeros
-}
-
-/// Every so-many-th point of the test.
-Eigen::Matrix3Xd sample(const PointSource& points)
-{
-    const std::size_t step = (points.points + kSample - 1) / kSample;
-    Eigen::Matrix3Xd some(3, static_cast<Eigen::Index>(step == 0 ? 0 : (points.points + step - 1) / step));
-    PointBlock block;
-    Eigen::Index filled = 0;
-    for (std::size_t first = 0; first < points.points; first += points.block) {
-        points.read(first, std::min(points.block, points.points - first), block);
-        for (std::size_t i = (step - first % step) % step; i < static_cast<std::size_t>(block.xyz.cols()); i += step)
-            some.col(filled++) = block.xyz.col(static_cast<Eigen::Index>(i));
-    }
-    return some;
 }
 
 void set_whole_numbers(Cloud& cloud, const std::string& name, const Eigen::VectorXi& numbers)
@@ -131,15 +116,18 @@ class Collected {
 
 } // namespace
 
-Comparison compare(const TestPoints& test, const Reference& reference, const ComparisonOptions& options,
+Survey survey(const TestPoints& test, const ComparisonOptions& options)
+{
+    return Survey(test, options.distance, !scaled_by_tolerance(options));
+}
+
+Comparison compare(const TestPoints& test, Survey& survey, const Reference& reference, const ComparisonOptions& options,
                    const std::function<void(const Cloud&)>& use, const Progress& progress)
 {
     const std::size_t count = test.points.points;
-    const ColourScale scale = options.tolerance && *options.tolerance > 0
-                                  ? colour_scale(Eigen::VectorXd(), *options.tolerance)
-                                  : colour_scale(reference(sample(test.points)).error, 0);
-    const std::optional<PlanAreas> plan = test.mesh ? std::nullopt : std::optional<PlanAreas>(test.points);
-    const Eigen::VectorXd of_vertices = test.mesh ? volume_areas(*test.mesh, options.distance) : Eigen::VectorXd();
+    const auto& [sample, plan, of_vertices] = survey.found();
+    const ColourScale scale = scaled_by_tolerance(options) ? colour_scale(Eigen::VectorXd(), *options.tolerance)
+                                                           : colour_scale(reference(sample).error, 0);
     Collected collected(options, scale.limit);
 
     const auto read = [&](std::size_t first) {

@@ -4,6 +4,7 @@
 #include "compare/shape_file.h"
 #include "compare/signed_distance.h"
 #include "compare/statistics.h"
+#include "compare/survey.h"
 #include "core/progress.h"
 #include "job/job.h"
 
@@ -43,10 +44,14 @@ struct Comparison {
     const Statistics& judged() const { return regions.empty() ? all : regions.front().second; }
 };
 
+/// Begins to find out what compare() must know of all points. @param test  must outlive it
+Survey survey(const TestPoints& test, const ComparisonOptions& options);
+
 /// Compares points to a reference, block by block: neither points nor map are held.
+/// @param survey  of the points, with the same options
 /// @param use  gets the blocks in their order: the test's fields, the reference's normal, error, what else is wanted,
 /// rgb
-Comparison compare(const TestPoints& test, const Reference& reference, const ComparisonOptions& options,
+Comparison compare(const TestPoints& test, Survey& survey, const Reference& reference, const ComparisonOptions& options,
                    const std::function<void(const Cloud&)>& use, const Progress& progress = {});
 
 } // namespace fettle

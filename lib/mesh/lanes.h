@@ -34,13 +34,13 @@ FETTLE_INLINE Float8 root(Float8 a)
 
 /// Of all lanes, always in the same order.
 FETTLE_INLINE float sum_of(Float8 a) { return ((a[0] + a[4]) + (a[1] + a[5])) + ((a[2] + a[6]) + (a[3] + a[7])); }
-FETTLE_INLINE float most_of(Float8 a)
+FETTLE_INLINE float least_of(Float8 a)
 {
-    float most = a[0];
-    for (int k = 1; k < 8; ++k) most = most < a[k] ? a[k] : most;
-    return most;
+    a = smaller(a, __builtin_shuffle(a, Mask8{4, 5, 6, 7, 0, 1, 2, 3}));
+    a = smaller(a, __builtin_shuffle(a, Mask8{2, 3, 0, 1, 6, 7, 4, 5}));
+    return a[0] < a[1] ? a[0] : a[1];
 }
-FETTLE_INLINE float least_of(Float8 a) { return -most_of(-a); }
+FETTLE_INLINE float most_of(Float8 a) { return -least_of(-a); }
 
 struct Point8 {
     Float8 x, y, z;
