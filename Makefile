@@ -45,6 +45,7 @@ EMBREE := -lembree3
 OPENCV := -lopencv_imgproc -lopencv_core
 PNG    := -lpng
 MD     := -lmd
+FCL    := -lfcl -lccd
 LDLIBS_ALL := -llzf -ltbb
 
 # The one file that sees OpenCV.
@@ -76,12 +77,13 @@ $(B)/study/%: $(B)/pipelines/programs/%.o $(B)/libfettle.a
 
 $(B)/tests/%: LDLIBS = $(CERES) $(OPENCV) $(PNG) $(MD) -lgtest_main -lgtest
 $(B)/tests/cloud_test: LDLIBS += -lpcl_io -lpcl_common
+$(B)/tests/fcl_test: LDLIBS += $(FCL)
 $(B)/tests/%: $(B)/tests/lib/%.o $(B)/libfettle.a
 	@mkdir -p $(@D)
 	$(CXX) $(LDFLAGS) -o $@ $^ $(LDLIBS) $(LDLIBS_ALL)
 
 $(B)/bench/%: LDLIBS = $(CERES) $(EMBREE) $(OPENCV) $(PNG) -lbenchmark_main -lbenchmark
-$(B)/bench/tool_hull_bench: LDLIBS += -lfcl -lccd
+$(B)/bench/tool_hull_bench: LDLIBS += $(FCL)
 $(B)/bench/%: $(B)/tests/bench/%.o $(B)/libfettle.a
 	@mkdir -p $(@D)
 	$(CXX) $(LDFLAGS) -o $@ $^ $(LDLIBS) $(LDLIBS_ALL)

@@ -160,7 +160,9 @@ template <typename Wide>
 FETTLE_INLINE Float8 lower_bound(const Wide& solid, const Level& level, std::size_t node)
 {
     const Float8 of_boxes = lower_bound(solid, level.boxes[node]);
-    return level.discs.empty() ? of_boxes : larger(of_boxes, lower_bound(solid, level.discs[node]));
+    if (level.discs.empty()) return of_boxes;
+    const Float8 of_discs = lower_bound(solid, level.discs[node]);
+    return of_discs > of_boxes ? of_discs : of_boxes; // NaN if the box is
 }
 
 /// Between these lie the least distances of eight triangles.

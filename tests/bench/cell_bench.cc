@@ -1,7 +1,7 @@
 // The cell of samples/robots/irb1400.json (arm, track, tool, fixture: 15 bodies) along 50,000 poses over a boat's hull
 // of 100,000 triangles: all pairs at the poses, and between them. One core. The hull hangs over the bench.
 
-#include "boat_hull.h"
+#include "../lib/boat_hull.h"
 #include "robot/collision.h"
 #include "robot/follow.h"
 #include "robot/walk.h"

@@ -8,9 +8,11 @@
 //   fcl       the same by its oriented boxes, on every 19th pose
 //
 // One core, cpu time; rounds of all in turn, and the middle one of the ratios of each round. The counts of overlapping
-// poses must be the same. With arguments, the numbers of triangles.
+// poses must be the same. With arguments, the numbers of triangles. With `brute` before them instead: the verdicts of
+// all parts at all poses, deeper than 0.01 mm or not, against every triangle one by one; minutes.
 
-#include "boat_hull.h"
+#include "../lib/boat_hull.h"
+#include "../lib/brute_force.h"
 #include "robot/workpiece.h"
 
 #include <embree3/rtcore.h>
@@ -25,13 +27,14 @@
 #include <ctime>
 #include <limits>
 #include <memory>
+#include <string_view>
 #include <vector>
 
 using namespace fettle;
 
 namespace {
 
-using Eigen::Isometry3d, Eigen::Vector2d, Eigen::Vector3d;
+using Eigen::Isometry3d, Eigen::Vector3d;
 
 constexpr int kPoses = 50000, kRounds = 5, kFclEvery = 19;
 constexpr double kBall = boat::kBall, kShank = 5, kShankLength = 40, kSpindle = 45, kSpindleLength = 90;
@@ -90,44 +93,6 @@ struct Question {
     bool hit = false;
 };
 
-Triangle triangle_of(const Mesh& mesh, unsigned index)
-{
-    Triangle t;
-    for (int k = 0; k < 3; ++k) t.col(k) = mesh.vertices.col(mesh.triangles(k, index));
-    return t;
-}
-
-/// Is a point of the triangle between the two heights nearer to the z axis than the radius?
-bool overlaps(const Triangle& t, double from, double to, double radius)
-{
-    std::array<Vector3d, 9> in = {t.col(0), t.col(1), t.col(2)}, out;
-    std::size_t count = 3;
-    for (const auto& [sign, bound] : {std::pair(1.0, from), std::pair(-1.0, -to)}) {
-        std::size_t kept = 0;
-        for (std::size_t i = 0; i < count; ++i) {
-            const Vector3d &p = in[i], &q = in[(i + 1) % count];
-            const double above_p = sign * p.z() - bound, above_q = sign * q.z() - bound;
-            if (above_p >= 0) out[kept++] = p;
-            if ((above_p > 0 && above_q < 0) || (above_p < 0 && above_q > 0))
-                out[kept++] = p + above_p / (above_p - above_q) * (q - p);
-        }
-        in = out;
-        count = kept;
-        if (count == 0) return false;
-    }
-    bool left = false, right = false;
-    for (std::size_t i = 0; i < count; ++i) {
-        const Vector2d p = in[i].head<2>(), way = in[(i + 1) % count].head<2>() - p;
-        const double length2 = way.squaredNorm();
-        const double s = length2 > 0 ? std::clamp(-p.dot(way) / length2, 0.0, 1.0) : 0;
-        if ((p + s * way).squaredNorm() < radius * radius) return true;
-        const double side = p.x() * way.y() - p.y() * way.x();
-        left |= side > 0;
-        right |= side < 0;
-    }
-    return count > 2 && left != right;
-}
-
 bool look_at(RTCPointQueryFunctionArguments* found)
 {
     Question& question = *static_cast<Question*>(found->userPtr);
@@ -138,7 +103,7 @@ bool look_at(RTCPointQueryFunctionArguments* found)
         question.hit = closest_on_triangle(t, centre).squared_distance < question.radius * question.radius;
     } else {
         const Triangle local = question.T.linear().transpose() * (t.colwise() - centre);
-        question.hit = overlaps(local, question.from, question.to, question.radius);
+        question.hit = reaches_into_cylinder(local, question.from, question.to, question.radius);
     }
     if (question.hit) found->query->radius = 0;
     return question.hit;
@@ -213,7 +178,7 @@ class Fcl {
     {
         model_->beginModel();
         for (Eigen::Index i = 0; i < mesh.triangles.cols(); ++i) {
-            const Triangle t = triangle_of(mesh, static_cast<unsigned>(i));
+            const Triangle t = triangle_of(mesh, i);
             model_->addTriangle(t.col(0), t.col(1), t.col(2));
         }
         model_->endModel();
@@ -272,12 +237,34 @@ void compare(int triangles)
                     runs[k].hits[0], runs[k].hits[1], runs[k].hits[2]);
 }
 
+void compare_with_brute_force(int triangles)
+{
+    constexpr double kTolerance = 0.01, kUndecided = 1e-5;
+    const Mesh mesh = boat::hull(triangles);
+    const Workpiece workpiece(mesh);
+    const std::vector<Isometry3d> all = boat::poses(kPoses);
+    Hits deeper = {}, wrong = {}, undecided = {};
+    for (std::size_t k = 0; k < 3; ++k)
+        for (const Isometry3d& T : all) {
+            const double clearance = workpiece.nearest(PlacedSolid(kTool[k], T), 50).clearance.distance;
+            const bool deep = any_deeper(mesh, kTool[k], T, kTolerance);
+            deeper[k] += deep;
+            wrong[k] += deep != (clearance < -kTolerance);
+            undecided[k] += std::abs(clearance + kTolerance) < kUndecided;
+        }
+    std::printf("%ld triangles, %d poses: ball, shank, spindle deeper than %g mm %d %d %d; verdicts wrong %d %d %d; "
+                "within %g mm of the tolerance %d %d %d\n",
+                mesh.triangles.cols(), kPoses, kTolerance, deeper[0], deeper[1], deeper[2], wrong[0], wrong[1],
+                wrong[2], kUndecided, undecided[0], undecided[1], undecided[2]);
+}
+
 } // namespace
 
 int main(int argc, char** argv)
 {
+    const bool brute = argc > 1 && std::string_view(argv[1]) == "brute";
     std::vector<int> sizes = {100000, 1000000};
-    if (argc > 1) sizes.clear();
-    for (int i = 1; i < argc; ++i) sizes.push_back(std::atoi(argv[i]));
-    for (const int triangles : sizes) compare(triangles);
+    if (argc > 1 + brute) sizes.clear();
+    for (int i = 1 + brute; i < argc; ++i) sizes.push_back(std::atoi(argv[i]));
+    for (const int triangles : sizes) brute ? compare_with_brute_force(triangles) : compare(triangles);
 }

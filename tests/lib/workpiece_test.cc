@@ -1,3 +1,5 @@
+#include "boat_hull.h"
+#include "brute_force.h"
 #include "robot/workpiece.h"
 
 #include <gtest/gtest.h>
@@ -95,6 +97,46 @@ TEST(Workpiece, NearestAsByBruteForce)
     }
     EXPECT_GT(touching, 100);
     EXPECT_LT(touching, 500);
+}
+
+// A tool along a raster over a hull, its ball just clear or 0.05 mm too deep, its spindle now and then in the hull.
+// Reference: each triangle clipped by each part. tool_hull_bench does the same with 50,000 poses and 100,000 triangles.
+TEST(Workpiece, VerdictsAsByBruteForce)
+{
+    constexpr double kTolerance = 0.01;
+    const Mesh mesh = boat::hull(20000);
+    const Workpiece workpiece(mesh);
+    const Solid tool[] = {solid::Sphere{{0, 0, 0}, 6}, solid::Cylinder{{0, 0, 0}, {0, 0, 40}, 5},
+                          solid::Cylinder{{0, 0, 40}, {0, 0, 130}, 45}};
+    int deeper = 0, clear = 0;
+    for (const Isometry3d& T : boat::poses(1500))
+        for (const Solid& part : tool) {
+            const double clearance = workpiece.nearest(PlacedSolid(part, T), 50).clearance.distance;
+            const bool deep = any_deeper(mesh, part, T, kTolerance);
+            if (std::abs(clearance + kTolerance) > kClearanceTolerance) {
+                EXPECT_EQ(clearance < -kTolerance, deep);
+            }
+            ++(deep ? deeper : clear);
+        }
+    EXPECT_GT(deeper, 100);
+    EXPECT_GT(clear, 1000);
+}
+
+// Where a search begins changes nothing.
+TEST(Workpiece, BeginsAnywhere)
+{
+    const Mesh mesh = sheet(40, 100);
+    const Workpiece workpiece(mesh);
+    std::mt19937 random(13);
+    for (int k = 0; k < 300; ++k) {
+        const Vector3d at = Vector3d::NullaryExpr([&] { return std::uniform_real_distribution(-40.0, 40.0)(random); });
+        const Solid solid = k % 2 == 0 ? Solid(solid::Cylinder{at, at + Vector3d(3, 8, 20), 7})
+                                       : Solid(solid::Box{Isometry3d(Eigen::Translation3d(at)), {9, 6, 4}});
+        const PlacedSolid body(solid, Isometry3d::Identity());
+        const double least = workpiece.nearest(body).clearance.distance;
+        for (const std::uint32_t leaf : {7u, 211u, 399u, 100000u})
+            EXPECT_NEAR(workpiece.nearest(body, 1000, leaf).clearance.distance, least, k % 2 == 0 ? 1e-6 : 1e-3);
+    }
 }
 
 TEST(Workpiece, BallOnAPlane)

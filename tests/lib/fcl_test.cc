@@ -1,0 +1,115 @@
+// Random pairs of solids and of solids and triangles against FCL.
+
+#include "boat_hull.h"
+#include "robot/clearance.h"
+#include "robot/workpiece.h"
+
+#include <fcl/fcl.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <random>
+
+namespace fettle {
+namespace {
+
+using Eigen::Isometry3d, Eigen::Vector3d;
+
+/// A solid for both, about the origin, z its axis.
+struct Shape {
+    Solid ours;
+    std::shared_ptr<fcl::CollisionGeometryd> theirs;
+};
+
+class Draw {
+  public:
+    explicit Draw(unsigned seed) : random_(seed) {}
+    double number(double least, double most) { return std::uniform_real_distribution<double>(least, most)(random_); }
+    Isometry3d placement(double size)
+    {
+        std::normal_distribution<double> normal;
+        const Eigen::Vector4d q = Eigen::Vector4d::NullaryExpr([&] { return normal(random_); }).normalized();
+        const Vector3d at = Vector3d::NullaryExpr([&] { return number(-size, size); });
+        return Eigen::Translation3d(at) * Eigen::Quaterniond(q);
+    }
+    Shape shape(unsigned kind)
+    {
+        const double radius = number(2, 12), length = number(4, 40);
+        const Vector3d from(0, 0, -length / 2), to(0, 0, length / 2), half(radius, number(2, 12), length / 2);
+        switch (kind) {
+        case 0:
+            return {solid::Sphere{Vector3d::Zero(), radius}, std::make_shared<fcl::Sphered>(radius)};
+        case 1:
+            return {solid::Capsule{from, to, radius}, std::make_shared<fcl::Capsuled>(radius, length)};
+        case 2:
+            return {solid::Cylinder{from, to, radius}, std::make_shared<fcl::Cylinderd>(radius, length)};
+        case 3:
+            return {solid::Cone{from, to, radius, 0}, std::make_shared<fcl::Coned>(radius, length)};
+        default:
+            return {solid::Box{Isometry3d::Identity(), half}, std::make_shared<fcl::Boxd>(2 * half)};
+        }
+    }
+
+  private:
+    std::mt19937 random_;
+};
+
+// FCL tells overlaps, but not how deep.
+TEST(Fcl, RandomPairs)
+{
+    constexpr double kAccuracy = 1e-3;
+    Draw draw(21);
+    int apart = 0, overlapping = 0;
+    for (unsigned k = 0; k < 4000; ++k) {
+        const Shape a = draw.shape(k % 5), b = draw.shape(k / 5 % 5);
+        const double size = k % 3 == 0 ? 25 : 12;
+        const Isometry3d T_a = draw.placement(size), T_b = draw.placement(size);
+        const double ours = clearance(PlacedSolid(a.ours, T_a), PlacedSolid(b.ours, T_b)).distance;
+        fcl::CollisionObjectd at_a(a.theirs, T_a), at_b(b.theirs, T_b);
+        fcl::CollisionResultd collision;
+        const bool overlap = fcl::collide(&at_a, &at_b, fcl::CollisionRequestd(1, false), collision) > 0;
+        if (std::abs(ours) > kAccuracy) {
+            EXPECT_EQ(overlap, ours < 0) << k << " " << ours;
+        }
+        ++(ours < 0 ? overlapping : apart);
+        if (ours < kAccuracy) continue;
+        fcl::DistanceRequestd request(true);
+        fcl::DistanceResultd distance;
+        EXPECT_NEAR(fcl::distance(&at_a, &at_b, request, distance), ours, kAccuracy) << k;
+    }
+    EXPECT_GT(apart, 1000);
+    EXPECT_GT(overlapping, 1000);
+}
+
+TEST(Fcl, RandomSolidsAgainstAMesh)
+{
+    constexpr double kAccuracy = 1e-3;
+    Draw draw(22);
+    const Mesh mesh = boat::hull(4000);
+    const Workpiece workpiece(mesh);
+    const auto model = std::make_shared<fcl::BVHModel<fcl::OBBRSSd>>();
+    model->beginModel();
+    for (const auto t : mesh.triangles.colwise())
+        model->addTriangle(mesh.vertices.col(t[0]), mesh.vertices.col(t[1]), mesh.vertices.col(t[2]));
+    model->endModel();
+    fcl::CollisionObjectd hull(model);
+    int apart = 0, overlapping = 0;
+    for (unsigned k = 0; k < 3000; ++k) {
+        const Shape a = draw.shape(k % 5);
+        const Isometry3d T = Eigen::Translation3d(0, 0, 50) * draw.placement(90);
+        const double ours = workpiece.nearest(PlacedSolid(a.ours, T)).clearance.distance;
+        fcl::CollisionObjectd at_a(a.theirs, T);
+        fcl::CollisionResultd collision;
+        const bool overlap = fcl::collide(&hull, &at_a, fcl::CollisionRequestd(1, false), collision) > 0;
+        if (std::abs(ours) > kAccuracy) {
+            EXPECT_EQ(overlap, ours < 0) << k << " " << ours;
+        }
+        ++(ours < 0 ? overlapping : apart);
+    }
+    EXPECT_GT(apart, 500);
+    EXPECT_GT(overlapping, 500);
+}
+
+} // namespace
+} // namespace fettle
