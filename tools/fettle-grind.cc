@@ -1,6 +1,7 @@
 #include "cli/tool.h"
 #include "cloud/pcd.h"
 #include "core/file.h"
+#include "gantry/dynamic.h"
 #include "gantry/quasi_static.h"
 #include "job/plausible.h"
 #include "plan/plan.h"
@@ -9,6 +10,7 @@
 #include "strategy/run.h"
 
 #include <chrono>
+#include <memory>
 #include <ostream>
 
 using namespace fettle;
@@ -36,7 +38,7 @@ Cloud to_cloud(const std::vector<TraceRow>& trace)
     return cloud;
 }
 
-void report(json::Value& out, const GrindRun& run, const QuasiStaticGantry& gantry, const Units& units)
+void report(json::Value& out, const GrindRun& run, const VirtualGantry& gantry, const Units& units)
 {
     const double mm = units.mm();
     const GrindTotals& totals = gantry.totals();
@@ -58,6 +60,15 @@ void report(json::Value& out, const GrindRun& run, const QuasiStaticGantry& gant
         .set("wheel_radius", run.wheel_radius / mm);
 }
 
+std::unique_ptr<VirtualGantry> make_gantry(const std::string& machine_file, const HeightField& stock, const Job& job,
+                                           std::uint64_t seed)
+{
+    if (machine_file.empty()) return std::make_unique<QuasiStaticGantry>(stock, job);
+    DynamicOptions options;
+    options.seed = seed;
+    return std::make_unique<DynamicGantry>(stock, job, read_machine(machine_file), options);
+}
+
 } // namespace
 
 int main(int argc, char** argv)
@@ -66,16 +77,24 @@ int main(int argc, char** argv)
         const std::string& plan_file = t.input("PLAN", "What to do, JSON (fettle-plan)");
         const std::string& stock_file = t.required_text("--stock", "PART", "The part as it is: STL, PLY, OBJ or PCD");
         const auto& stock_units = t.length_unit("--stock-units", "Unit of PART, if it is not the job's");
-        t.choice("--gantry", "virtual", {"virtual"}, "The machine: a simulated gantry in equilibrium at every moment");
+        const std::string& kind =
+            t.choice("--gantry", "virtual", {"virtual", "virtual:dynamic"},
+                     "The machine: a simulated gantry in equilibrium at every moment, or one with "
+                     "drives, inertia and sensors");
+        const std::string& machine = t.text("--machine", "", "FILE", "The machine of virtual:dynamic, JSON");
         const auto& cell = t.number_if_given(
             "--cell", "LENGTH", "Side of a cell of the stock; default: 1/64 of the wheel's width", Range::positive());
         const std::string& trace = t.text("--trace", "", "FILE", "What the machine did and why, PCD");
         const bool& ascii = t.flag("--ascii", "Write PCDs as text");
         t.example("fettle-sample jobs/wang1.json | fettle-fit jobs/wang1.json | fettle-plan jobs/wang1.json | "
-                  "fettle-grind --stock <(fettle-part parts/wang1.json) --trace trace.pcd > ground.pcd",
-                  "Wang's part 1 from the job to the ground part");
-        t.reference("Wang 2007, 5.3.2 and figure 5-7: the layer-based path planning strategy");
+                  "fettle-grind --stock <(fettle-part parts/wang1.json) --gantry virtual:dynamic "
+                  "--machine machines/full_scale.json --trace trace.pcd > ground.pcd",
+                  "Wang's part 1 from the job to the ground part, on a machine with inertia");
+        t.reference("Wang 2007, 5.3.2 and figure 5-7: the layer-based path planning strategy; 6.1.2, eq. 6-1 to 6-8: "
+                    "the machine");
         t.parse();
+        if ((kind == "virtual:dynamic") == machine.empty())
+            throw InputError("--machine", "goes with --gantry virtual:dynamic, and that with it");
 
         const auto begun = Clock::now();
         const Plan plan = read_plan(plan_file);
@@ -87,16 +106,16 @@ int main(int argc, char** argv)
             height_field(scan, plan.job, cell ? *cell * units.mm() : plan.job.wheel.width / kCellsPerWidth,
                          display_name(stock_file));
         std::ostream* trace_out = trace.empty() ? nullptr : &t.output_file(trace); // a wrong name shows before the work
-        QuasiStaticGantry gantry(stock, plan.job);
-        const GrindRun run = fettle::run(plan, gantry, {}, t.progress("grinding"));
+        const std::unique_ptr<VirtualGantry> gantry = make_gantry(machine, stock, plan.job, t.seed());
+        const GrindRun run = fettle::run(plan, *gantry, {}, t.progress("grinding"));
 
         const PcdEncoding encoding = ascii ? PcdEncoding::ascii : PcdEncoding::binary;
-        write_pcd(t.output(), to_cloud(stock, gantry.stock()), units, encoding);
+        write_pcd(t.output(), to_cloud(stock, gantry->stock()), units, encoding);
         if (trace_out != nullptr) write_pcd(*trace_out, to_cloud(run.trace), units, encoding);
-        report(t.report(), run, gantry, units);
+        report(t.report(), run, *gantry, units);
         const double computing = std::chrono::duration<double>(Clock::now() - begun).count();
-        t.note("machine time " + std::to_string(gantry.status().time) + " s, computing time " +
-               std::to_string(computing) + " s, ratio " + std::to_string(gantry.status().time / computing));
+        t.note("machine time " + std::to_string(gantry->status().time) + " s, computing time " +
+               std::to_string(computing) + " s, ratio " + std::to_string(gantry->status().time / computing));
         if (!run.finished) t.warn(display_name(plan_file) + ": " + run.failure);
         return run.finished ? Verdict::yes : Verdict::no;
     });

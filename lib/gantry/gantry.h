@@ -2,7 +2,15 @@
 
 #include <Eigen/Core>
 
+#include <stdexcept>
+
 namespace fettle {
+
+/// The machine has stopped for good: a drive cannot follow, the spindle stalls, the driver has died. One line.
+class GantryFault : public std::runtime_error {
+  public:
+    using std::runtime_error::runtime_error;
+};
 
 /// What the machine knows: positions in the machine frame M, mm, N, s.
 struct GantryStatus {
@@ -14,7 +22,8 @@ struct GantryStatus {
 };
 
 /// A machine that carries the wheel. The tool point is the lowest point of the wheel, at the middle of its width.
-/// strategy/ speaks to this interface and knows no machine; a gantry knows no strategy.
+/// strategy/ speaks to this interface and knows no machine; a gantry knows no strategy. Whatever moves may throw
+/// GantryFault.
 class Gantry {
   public:
     virtual ~Gantry() = default;

@@ -1,20 +1,11 @@
 #include "gantry/quasi_static.h"
 
-#include "core/error.h"
-#include "core/text.h"
-
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 namespace fettle {
 namespace {
-
-void check(double value, const char* name)
-{
-    if (!(value > 0)) throw InputError("gantry", std::string(name) + " must be positive, not " + to_text(value));
-}
 
 /// A length that is a whole number of steps but for rounding gets no step more.
 constexpr double kWholeStep = 1e-6;
@@ -41,18 +32,10 @@ std::vector<double> aligned_steps(double x0, double x1, double step)
 } // namespace
 
 QuasiStaticGantry::QuasiStaticGantry(HeightField stock, const Job& job, const QuasiStaticOptions& options)
-    : stock_(std::move(stock)), wheel_(stock_, job.wheel.width), spring_{job.force.preload, job.force.stiffness},
-      options_(options), R_working_machine_(rotation_working_machine(job.theta)), removal_(job.removal),
-      new_radius_(job.wheel.radius), width_(job.wheel.width), safe_height_(job.safe_height), most_force_(job.force.max),
-      radius_(new_radius_), known_radius_(new_radius_)
+    : VirtualGantry(std::move(stock), job, options, {}), rapid_(options.rapid), lift_speed_(options.lift_speed)
 {
-    check(options_.rapid, "rapid speed");
-    check(options_.lift_speed, "lift speed");
-    check(options_.touch_off_resolution, "touch-off resolution");
-    check(options_.grinding_ratio, "grinding ratio");
-    check(options_.substep, "step");
-    const Eigen::Vector2d middle = (stock_.centre(0, 0) + stock_.centre(stock_.columns() - 1, stock_.rows() - 1)) / 2;
-    status_.commanded << R_working_machine_.transpose() * middle, safe_height_;
+    check_positive(rapid_, "rapid speed");
+    check_positive(lift_speed_, "lift speed");
 }
 
 GantryStatus QuasiStaticGantry::travel(const Eigen::Vector3d& tool_point)
@@ -60,7 +43,7 @@ GantryStatus QuasiStaticGantry::travel(const Eigen::Vector3d& tool_point)
     begin_move();
     go_to_safe_height();
     const double across = (tool_point - status_.commanded).head<2>().norm();
-    spend(across / options_.rapid, totals_.travel_time);
+    spend(across / rapid_, totals_.travel_time);
     status_.commanded.head<2>() = tool_point.head<2>();
     if (tool_point.z() > status_.commanded.z()) raise_to(tool_point.z());
     lower_to(tool_point.z());
@@ -69,7 +52,7 @@ GantryStatus QuasiStaticGantry::travel(const Eigen::Vector3d& tool_point)
 
 GantryStatus QuasiStaticGantry::grind(const Eigen::Vector3d& tool_point, double feed)
 {
-    check(feed, "feed");
+    check_positive(feed, "feed");
     begin_move();
     const Eigen::Vector3d start = status_.commanded, way = tool_point - start;
     const double length = way.norm();
@@ -107,27 +90,6 @@ GantryStatus QuasiStaticGantry::lift(double commanded_z)
     return status_;
 }
 
-double QuasiStaticGantry::touch_off()
-{
-    begin_move();
-    go_to_safe_height();
-    spend(options_.touch_off_time, totals_.service_time);
-    ++totals_.touch_offs;
-    known_radius_ = std::round(radius_ / options_.touch_off_resolution) * options_.touch_off_resolution;
-    return known_radius_;
-}
-
-void QuasiStaticGantry::change_wheel()
-{
-    begin_move();
-    go_to_safe_height();
-    spend(options_.wheel_change_time, totals_.service_time);
-    ++totals_.wheel_changes;
-    radius_ = known_radius_ = new_radius_;
-}
-
-void QuasiStaticGantry::begin_move() { status_.peak_force = status_.force; }
-
 void QuasiStaticGantry::go_to_safe_height()
 {
     if (safe_height_ > status_.commanded.z()) raise_to(safe_height_);
@@ -140,11 +102,11 @@ void QuasiStaticGantry::raise_to(double z)
     while (status_.force > 0 && status_.commanded.z() < z) {
         Eigen::Vector3d next = status_.commanded;
         next.z() = std::min(next.z() + step, z);
-        const double duration = (next.z() - status_.commanded.z()) / options_.lift_speed;
+        const double duration = (next.z() - status_.commanded.z()) / lift_speed_;
         press_for(next, duration);
         spend(duration, totals_.travel_time);
     }
-    spend((z - status_.commanded.z()) / options_.lift_speed, totals_.travel_time);
+    spend((z - status_.commanded.z()) / lift_speed_, totals_.travel_time);
     status_.commanded.z() = z;
 }
 
@@ -154,14 +116,14 @@ void QuasiStaticGantry::lower_to(double z)
     const Eigen::Vector2d xy = R_working_machine_ * status_.commanded.head<2>();
     wheel_.place(xy, radius_, z + loss());
     const double free = std::clamp(wheel_.touch() - loss(), z, std::max(z, status_.commanded.z()));
-    spend((status_.commanded.z() - free) / options_.lift_speed, totals_.travel_time);
+    spend((status_.commanded.z() - free) / lift_speed_, totals_.travel_time);
     status_.commanded.z() = free;
 
     const double step = options_.substep * stock_.cell;
     while (status_.commanded.z() > z && status_.force < most_force_) {
         Eigen::Vector3d next = status_.commanded;
         next.z() = std::max(next.z() - step, z);
-        const double duration = (status_.commanded.z() - next.z()) / options_.lift_speed;
+        const double duration = (status_.commanded.z() - next.z()) / lift_speed_;
         press_for(next, duration);
         spend(duration, totals_.travel_time);
     }
@@ -181,22 +143,6 @@ void QuasiStaticGantry::press_for(const Eigen::Vector3d& commanded, double durat
     status_.force = balance.force;
     status_.peak_force = std::max(status_.peak_force, balance.force);
     wear(balance.volume);
-}
-
-/// The rim loses its share: dV_wheel = 2πR w dR.
-void QuasiStaticGantry::wear(double removed_volume)
-{
-    totals_.removed_volume += removed_volume;
-    radius_ -= removed_volume / options_.grinding_ratio / (2 * std::numbers::pi * radius_ * width_);
-    if (!(radius_ > 0))
-        throw InputError("gantry", "the wheel is worn away after " + to_text(totals_.removed_volume) +
-                                       " mm³; it was not changed in time");
-}
-
-void QuasiStaticGantry::spend(double duration, double& account)
-{
-    account += duration;
-    status_.time += duration;
 }
 
 } // namespace fettle

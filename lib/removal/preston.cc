@@ -16,19 +16,21 @@ constexpr int kMostSteps = 200;
 
 Balance press(const WheelInStock& wheel, const Spring& spring, double z_stop, double c_dt, double guess)
 {
-    if (!(wheel.touch() > z_stop)) return {z_stop, 0, 0};
+    if (!(wheel.touch() > z_stop)) return {z_stop, 0, 0, 0};
 
-    // g(z) = overlap(z) − c dt F(z) is convex and falls: from its left Newton's method climbs to the root without
+    // g(z) = lift(z) − c dt F(z) is convex and falls: from its left Newton's method climbs to the root without
     // passing it, from its right the first step lands on the left or at the stop.
     const double rounding = kRounding * (std::abs(z_stop) + std::abs(wheel.touch()) + 1);
     double z = std::clamp(guess, z_stop, wheel.touch());
     for (int step = 0;; ++step) {
         const WheelInStock::Overlap overlap = wheel.overlap(z);
         const double wanted = c_dt * spring.force(z - z_stop);
-        const double g = overlap.volume - wanted;
-        if (z <= z_stop && g <= 0) return {z_stop, overlap.volume / c_dt, overlap.volume};
+        const double g = overlap.lift - wanted;
+        const double push = overlap.push / c_dt;
+        if (z <= z_stop && g <= 0) return {z_stop, overlap.lift / c_dt, overlap.volume, push};
         const double next = std::max(z + g / (overlap.area + c_dt * spring.stiffness), z_stop);
-        if (std::abs(next - z) <= rounding || step == kMostSteps) return {z, spring.force(z - z_stop), overlap.volume};
+        if (std::abs(next - z) <= rounding || step == kMostSteps)
+            return {z, spring.force(z - z_stop), overlap.volume, push};
         z = next;
     }
 }

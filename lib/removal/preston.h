@@ -18,14 +18,14 @@ struct Balance {
     double z_tip = 0;
     double force = 0;  ///< N
     double volume = 0; ///< that it removes, mm³
+    double push = 0;   ///< on the wheel, along Y_w, N
 };
 
 /// The head pressed on the stock for a short while. By Preston's law summed over the contact the volume removed is
 /// c · F · dt (Wang 2007, 6.1.2: deeper with more force, shallower with more feed), and it is the stock above the
-/// wheel's rim: overlap(z) = c dt F(z). The left side falls with z, the right side grows: one solution. If the wheel
-/// removes less even at its stop, it stays there and the force is what that took, at most the preload.
-///
-/// F is the force along the spring, vertical; on a slope its part normal to the stock is F cos.
+/// wheel's rim. F is normal to the rim, the spring carries its vertical part (RimForce): overlap(z).lift = c dt F(z).
+/// The left side falls with z, the right side grows: one solution. If the wheel removes less even at its stop, it stays
+/// there and the force is what that took, at most the preload.
 /// @param z_stop  z_tip without deflection
 /// @param c_dt    removal coefficient · duration, mm³/N
 /// @param guess   of z_tip

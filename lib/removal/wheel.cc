@@ -22,6 +22,11 @@ struct Sums {
     std::int64_t cells = 0;
 };
 
+/// The same of many rows, each by its share in the force.
+struct Shares {
+    double height = 0, lift = 0, area = 0, push = 0;
+};
+
 inline Sums row_above(const double* z, Eigen::Index count, double limit)
 {
     Double4 height{};
@@ -68,15 +73,17 @@ inline double row_top(const double* z, Eigen::Index count)
 }
 
 /// @param rows  of the wheel; z_tip + profile is its rim there
-FETTLE_CLONES Sums above(const std::vector<WheelInStock::Row>& rows, Eigen::Index columns, double z_tip)
+FETTLE_CLONES Shares above(const std::vector<WheelInStock::Row>& rows, Eigen::Index columns, double z_tip)
 {
-    Sums sums;
+    Shares sums;
     for (const WheelInStock::Row& row : rows) {
         const double limit = z_tip + row.profile;
         if (!(*row.top > limit)) continue;
         const Sums more = row_above(row.z, columns, limit);
         sums.height += more.height;
-        sums.cells += more.cells;
+        sums.lift += row.lift * more.height;
+        sums.area += row.lift * static_cast<double>(more.cells);
+        sums.push += row.push * more.height;
     }
     return sums;
 }
@@ -123,8 +130,8 @@ FETTLE_CLONES std::ptrdiff_t rows_above(const double* tops, Eigen::Index first, 
 
 } // namespace
 
-WheelInStock::WheelInStock(HeightField& stock, double width)
-    : stock_(stock), width_(width), tops_(static_cast<std::size_t>(stock.rows()) + kLanes, kNothing),
+WheelInStock::WheelInStock(HeightField& stock, double width, const RimForce& rim)
+    : stock_(stock), width_(width), rim_(rim), tops_(static_cast<std::size_t>(stock.rows()) + kLanes, kNothing),
       near_(tops_.size())
 {
     find_tops(stock.z.data(), stock.columns(), stock.columns(), stock.rows(), tops_.data());
@@ -175,18 +182,23 @@ void WheelInStock::place(const Eigen::Vector2d& xy, double radius, double lowest
         const Eigen::Index j = near_[static_cast<std::size_t>(n)];
         double& top = tops_[static_cast<std::size_t>(j)];
         const double y = (static_cast<double>(j) + 0.5 - at.y()) * stock_.cell;
-        const double profile = y * y / (radius + std::sqrt(std::max(radius * radius - y * y, 0.0)));
+        const double level = std::sqrt(std::max(radius * radius - y * y, 0.0));
+        const double profile = y * y / (radius + level);
         if (!(top - profile > lowest)) continue;
         touch_ = std::max(touch_, top - profile);
-        rows_.push_back({&stock_.z(first_column_, j), &top, profile});
+        const double sine = y / radius, cosine = level / radius; // of the slope
+        // A rim that is dragged into a wall carries no weight there; it does not pull the head down.
+        const double lift = rim_.by_slope ? std::max(cosine + rim_.tangential * sine, 0.0) : 1;
+        const double push = rim_.by_slope ? rim_.tangential * cosine - sine : 0;
+        rows_.push_back({&stock_.z(first_column_, j), &top, profile, lift, push});
     }
 }
 
 WheelInStock::Overlap WheelInStock::overlap(double z_tip) const
 {
-    const Sums sums = above(rows_, columns_, z_tip);
+    const Shares sums = above(rows_, columns_, z_tip);
     const double cell_area = stock_.cell * stock_.cell;
-    return {sums.height * cell_area, static_cast<double>(sums.cells) * cell_area};
+    return {sums.height * cell_area, sums.lift * cell_area, sums.area * cell_area, sums.push * cell_area};
 }
 
 void WheelInStock::cut(double z_tip) { cut_down(rows_, columns_, z_tip); }

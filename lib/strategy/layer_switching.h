@@ -23,6 +23,7 @@ enum class Event {
     bound = 9,         ///< a bound was reached: the work ends unfinished
     touch_off = 10,    ///< the wheel's radius was measured at P0 (run.h)
     wheel_change = 11, ///< a new wheel (run.h)
+    fault = 12,        ///< the machine stopped (run.h)
 };
 
 /// A point of the staircase: index of the pass, index of its point.

@@ -25,17 +25,16 @@ class Runner {
     GrindRun run(const Progress& progress)
     {
         Action action = strategy_.first();
-        while (action.kind != Action::Kind::finish && action.kind != Action::Kind::fail) {
-            measure_wheel_if_due(action);
-            const GantryStatus status = perform(action);
-            if (strategy_.counts().steps % kStepsPerTell == 0)
-                tell(progress, double(action.to.pass) / double(path_.passes().size()));
-            action = strategy_.next(
-                {status.force + plan_.job.force.stiffness * short_of_, status.deflection + short_of_, status.time});
+        try {
+            grind_on(action, progress);
+            result_.failure = strategy_.failure();
+        } catch (const GantryFault& fault) {
+            action.kind = Action::Kind::fail;
+            action.event = Event::fault;
+            result_.failure = fault.what();
         }
         record(action, gantry_.status(), 0);
         result_.finished = action.kind == Action::Kind::finish;
-        result_.failure = strategy_.failure();
         result_.counts = strategy_.counts();
         return std::move(result_);
     }
@@ -45,6 +44,19 @@ class Runner {
     const Eigen::Vector3d& reference(const Place& place) const
     {
         return path_.passes()[place.pass].points[place.point];
+    }
+
+    // Until the strategy is done. `action`: the last one.
+    void grind_on(Action& action, const Progress& progress)
+    {
+        while (action.kind != Action::Kind::finish && action.kind != Action::Kind::fail) {
+            measure_wheel_if_due(action);
+            const GantryStatus status = perform(action);
+            if (strategy_.counts().steps % kStepsPerTell == 0)
+                tell(progress, double(action.to.pass) / double(path_.passes().size()));
+            action = strategy_.next(
+                {status.force + plan_.job.force.stiffness * short_of_, status.deflection + short_of_, status.time});
+        }
     }
 
     GantryStatus perform(const Action& action)

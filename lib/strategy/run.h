@@ -31,7 +31,7 @@ struct RunOptions {
 /// How a run ended.
 struct GrindRun {
     bool finished = false;
-    std::string failure; ///< the bound that was reached, and the state
+    std::string failure; ///< the bound that was reached, and the state; or the machine's fault
     StrategyCounts counts;
     double peak_force = 0;   ///< N
     double wheel_radius = 0; ///< last measured, mm
@@ -40,7 +40,8 @@ struct GrindRun {
     std::vector<TraceRow> trace;
 };
 
-/// Grinds: lets the strategy decide, compensates the wheel, moves the gantry, measures, until the strategy is done.
+/// Grinds: lets the strategy decide, compensates the wheel, moves the gantry, measures, until the strategy is done or
+/// the machine has stopped.
 /// @throws InputError if the surface is not defined under a pass, or a new wheel is smaller than the smallest radius
 GrindRun run(const Plan& plan, Gantry& gantry, const RunOptions& options = {}, const Progress& progress = {});
 

@@ -36,3 +36,18 @@ refused fettle-grind plan.json --stock stock.stl --cell 1e-9
 refused fettle-grind plan.json --stock stock.stl --gantry real
 refused fettle-grind plan.json --stock stock.stl --trace missing/trace.pcd
 refused fettle-grind plan.json --stock stock.stl --stock stock.stl
+refused fettle-grind plan.json --stock stock.stl --gantry virtual:dynamic
+refused fettle-grind plan.json --stock stock.stl --machine "$SAMPLES/machines/full_scale.json"
+refused fettle-grind plan.json --stock stock.stl --gantry virtual:dynamic --machine job.json
+machine() { # FILTER: the sample, changed
+    jq "$1" "$SAMPLES/machines/prototype.json" > machine.json
+    refused fettle-grind plan.json --stock stock.stl --gantry virtual:dynamic --machine machine.json
+}
+machine '.servo_rate = 500'
+machine '.axes.x.acceleration = 1e5'
+machine '.axes.z.speed = 30'
+machine '.axes.y.max = -2'
+machine '.axes.y.min = 5'
+machine '.axes.c.pitch_deg = 6'
+machine '.spindle.tangential = 2'
+machine 'del(.head.lvdt)'

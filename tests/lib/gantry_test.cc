@@ -1,52 +1,18 @@
 // The quasi-static gantry against closed forms and identities.
 
+#include "gantry_stock.h"
+
 #include "core/error.h"
 #include "gantry/quasi_static.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
 #include <numbers>
 
 using namespace fettle;
 
 namespace {
-
-constexpr double kTop = 10; // z of the flat stock
-
-Job small_job()
-{
-    Job job;
-    job.wheel = {.radius = 25.4, .width = 6.4, .min_radius = 12.7};
-    job.force = {.min = 20, .down = 40, .max = 60, .stiffness = 35, .preload = 0};
-    job.removal = 7.4;
-    job.safe_height = 30;
-    return job;
-}
-
-/// 16 mm along X_w, 140 mm along Y_w. @param height  over W
-HeightField stock(const std::function<double(double, double)>& height, double cell = 0.1, double theta = 0,
-                  const Eigen::Vector2d& shift = {0, 0})
-{
-    Eigen::Matrix2d box;
-    box << -8, 8, -70, 70;
-    HeightField field = empty_height_field(box.colwise() + shift, {0, 0}, theta, cell);
-    for (Eigen::Index j = 0; j < field.rows(); ++j)
-        for (Eigen::Index i = 0; i < field.columns(); ++i) {
-            const Eigen::Vector2d at = field.centre(i, j) - shift;
-            field.z(i, j) = height(at.x(), at.y());
-        }
-    return field;
-}
-
-HeightField flat(double cell = 0.1)
-{
-    return stock([](double, double) { return kTop; }, cell);
-}
-
-/// A ramp and a bump, smooth.
-double hills(double x, double y) { return 8 + 2 * std::exp(-(x * x + y * y) / 200) + 0.02 * y; }
 
 QuasiStaticOptions no_wear()
 {

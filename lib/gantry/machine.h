@@ -1,0 +1,57 @@
+#pragma once
+
+#include <array>
+#include <string>
+
+namespace fettle {
+
+/// A drive as its nut feels it: motor, gears and screw of Wang 2007, eq. 6-1, 6-2 and 6-5, multiplied by K_b / K so
+/// that all is in mm and N (a rotary axis: rad and N mm). The motor's angle is that of the screw, θ = K_b p with
+/// K_b = 2π / pitch; a force f at the nut is a torque K f + C with K = 1 / (η K_b), or power would come from nothing.
+struct Drive {
+    double mass = 0;    ///< η K_b² J, N s²/mm
+    double damping = 0; ///< η K_b² B, N s/mm; B holds the motor's own brake, its electromotive force: N² K_m² / R_m
+    double gain = 0;    ///< η K_b N K_m / R_m, N/V
+    double load = 0;    ///< η K_b C, N: constant, in the direction of −p
+    double voltage = 0; ///< ±, of the amplifier, V
+    double current = 0; ///< what the amplifier's largest current drops over R_m, V
+    double emf = 0;     ///< electromotive force per speed, K_m N K_b, V s/mm
+    double encoder = 0; ///< one count, mm
+    double speed = 0, acceleration = 0; ///< the largest that are asked of it
+    double least = 0, most = 0;         ///< its range
+    double following_error = 0;         ///< farther from its command it is switched off
+};
+
+/// The head: a spring (the job says which) and a damper carry the grinder, which can only move up from its stop.
+struct Head {
+    double damping = 0;   ///< b, N s/mm
+    double travel = 0;    ///< largest deflection, mm
+    double lvdt = 0;      ///< resolution of the transducer that measures the deflection, mm
+    double noise = 0;     ///< its standard deviation, mm
+    double stiffness = 0; ///< of machine and head against forces across the spring, in the wheel's plane, N/mm
+};
+
+/// Force ratios to the normal force (Wang 2007, fig. 6-3) and what the spindle can give.
+struct Spindle {
+    double speed = 0;      ///< rad/s
+    double power = 0;      ///< N mm/s
+    double inertia = 0;    ///< of rotor and wheel, N mm s²
+    double tangential = 0; ///< F_t / F_n
+    double side = 0;       ///< F_a / F_n while the wheel moves along its axis
+};
+
+/// A gantry grinder with servo drives ("kind": "machine").
+struct Machine {
+    std::string source = "machine"; ///< the file's name, for messages
+    std::array<Drive, 3> axes;      ///< X, Y, Z; Z upwards
+    Drive c;                        ///< turns the head about Z, rad
+    Head head;
+    Spindle spindle;
+    double period = 1e-3; ///< of the servo loops, s
+};
+
+/// Reads a machine file.
+/// @throws InputError with the key's path: also for a drive that cannot reach its speed or acceleration
+Machine read_machine(const std::string& path);
+
+} // namespace fettle

@@ -1,0 +1,117 @@
+#include "gantry/servo.h"
+
+#include "core/error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+namespace fettle {
+namespace {
+
+constexpr int kFrequencies = 200; // of the response, spaced evenly in logarithm
+constexpr double kLowest = 1e-3;  // of them, times the highest, π / period
+/// The search for ω: from slow to fast, in steps that matter to nobody.
+constexpr double kSlowest = 5, kFastest = 2000, kStep = 1.04; // rad/s
+constexpr double kQuiet = 0.1;                                // of the voltage, by one count
+
+ServoGains triple_pole(const Drive& drive, double omega)
+{
+    // m s³ + (d + g K_d) s² + g K_p s + g K_i = m (s + ω)³
+    const double m = drive.mass / drive.gain;
+    ServoGains gains;
+    gains.kp = 3 * omega * omega * m;
+    gains.ki = omega * omega * omega * m;
+    gains.kd = std::max(3 * omega * m - drive.damping / drive.gain, 0.0);
+    gains.kv = drive.damping / drive.gain;
+    gains.ka = m;
+    gains.v0 = drive.load / drive.gain;
+    gains.bandwidth = omega;
+    return gains;
+}
+
+} // namespace
+
+double sensitivity_peak(const ServoGains& gains, double drive_gain, const Oscillator& load, double period)
+{
+    using Complex = std::complex<double>;
+    const ExactStep step(load, period);
+    const double *p = step.position_row(), *v = step.velocity_row();
+    double peak = 0;
+    for (int n = 0; n <= kFrequencies; ++n) {
+        const double angle = std::numbers::pi * std::pow(kLowest, 1 - static_cast<double>(n) / kFrequencies);
+        const Complex z = std::polar(1.0, angle);
+        const Complex det = (z - p[0]) * (z - v[1]) - p[1] * v[0];
+        const Complex plant = drive_gain * ((z - v[1]) * p[2] + p[1] * v[2]) / det;
+        const Complex controller = gains.kp + gains.ki * period * z / (z - 1.0) + gains.kd / period * (z - 1.0) / z;
+        peak = std::max(peak, 1 / std::abs(1.0 + plant * controller));
+    }
+    return peak;
+}
+
+ServoGains tune(const Drive& drive, double k, double b, double period)
+{
+    const Oscillator free{drive.mass, drive.damping, 0}, sprung{drive.mass, drive.damping + b, k};
+    const auto good = [&](const ServoGains& gains) {
+        const double kick = (gains.kp + gains.kd / period) * drive.encoder;
+        return kick <= kQuiet * std::min(drive.voltage, drive.current) &&
+               sensitivity_peak(gains, drive.gain, free, period) <= kMostSensitivity &&
+               sensitivity_peak(gains, drive.gain, sprung, period) <= kMostSensitivity;
+    };
+    ServoGains best;
+    for (double omega = kSlowest; omega < kFastest; omega *= kStep) {
+        const ServoGains gains = triple_pole(drive, omega);
+        if (!good(gains)) break;
+        best = gains;
+    }
+    if (best.bandwidth == 0)
+        throw InputError("gantry",
+                         "no controller holds a drive's margins: its encoder is too coarse, or it is too weak "
+                         "for the head's spring");
+    return best;
+}
+
+ServoAxis::ServoAxis(const Drive& drive, double k, double b, double period, double at)
+    : drive_(drive), k_(k), b_(b), period_(period), gains_(tune(drive, k, b, period)),
+      free_({drive.mass, drive.damping, 0}, period), sprung_({drive.mass, drive.damping + b, k}, period), motion_{at, 0}
+{
+    measure();
+    voltage_ = gains_.v0;
+}
+
+void ServoAxis::step(const Reference& reference, double force)
+{
+    voltage_ = control(reference);
+    motion_ = free_(motion_, drive_.gain * voltage_ - drive_.load + force, 0);
+    measure();
+}
+
+void ServoAxis::step_with_spring(const Reference& reference, double preload, double end, double rate)
+{
+    voltage_ = control(reference);
+    const double constant = drive_.gain * voltage_ - drive_.load + preload;
+    motion_ = sprung_(motion_, constant + k_ * end + b_ * rate, k_ * rate);
+    measure();
+}
+
+double ServoAxis::control(const Reference& reference)
+{
+    const double error = reference.p - measured_;
+    // In the middle of the period the drive runs as fast as the feed-forward has to.
+    const double ahead = gains_.kv * (reference.v + reference.a * period_ / 2) + gains_.ka * reference.a + gains_.v0;
+    const double wanted = gains_.kp * error + gains_.kd * (error - last_error_) / period_ + ahead;
+    last_error_ = error;
+    const double emf = drive_.emf * motion_.v;
+    const double most = std::min(drive_.voltage, emf + drive_.current);
+    const double least = std::max(-drive_.voltage, emf - drive_.current);
+    // An amplifier at its limit winds nothing up.
+    const double integral = integral_ + gains_.ki * error * period_;
+    const double whole = wanted + integral;
+    if ((whole <= most || integral < integral_) && (whole >= least || integral > integral_)) integral_ = integral;
+    return std::clamp(wanted + integral_, least, most);
+}
+
+void ServoAxis::measure() { measured_ = std::round(motion_.p / drive_.encoder) * drive_.encoder; }
+
+} // namespace fettle

@@ -1,0 +1,65 @@
+#include "gantry/virtual_gantry.h"
+
+#include "core/error.h"
+#include "core/text.h"
+
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace fettle {
+
+void check_positive(double value, const char* name)
+{
+    if (!(value > 0)) throw InputError("gantry", std::string(name) + " must be positive, not " + to_text(value));
+}
+
+VirtualGantry::VirtualGantry(HeightField stock, const Job& job, const VirtualOptions& options, const RimForce& rim)
+    : stock_(std::move(stock)), wheel_(stock_, job.wheel.width, rim), spring_{job.force.preload, job.force.stiffness},
+      options_(options), R_working_machine_(rotation_working_machine(job.theta)), removal_(job.removal),
+      new_radius_(job.wheel.radius), width_(job.wheel.width), safe_height_(job.safe_height), most_force_(job.force.max),
+      radius_(new_radius_), known_radius_(new_radius_)
+{
+    check_positive(options_.touch_off_resolution, "touch-off resolution");
+    check_positive(options_.grinding_ratio, "grinding ratio");
+    check_positive(options_.substep, "step");
+    const Eigen::Vector2d middle = (stock_.centre(0, 0) + stock_.centre(stock_.columns() - 1, stock_.rows() - 1)) / 2;
+    status_.commanded << R_working_machine_.transpose() * middle, safe_height_;
+}
+
+double VirtualGantry::touch_off()
+{
+    begin_move();
+    go_to_safe_height();
+    spend(options_.touch_off_time, totals_.service_time);
+    ++totals_.touch_offs;
+    known_radius_ = std::round(radius_ / options_.touch_off_resolution) * options_.touch_off_resolution;
+    return known_radius_;
+}
+
+void VirtualGantry::change_wheel()
+{
+    begin_move();
+    go_to_safe_height();
+    spend(options_.wheel_change_time, totals_.service_time);
+    ++totals_.wheel_changes;
+    radius_ = known_radius_ = new_radius_;
+}
+
+// dV_wheel = 2πR w dR
+void VirtualGantry::wear(double removed_volume)
+{
+    totals_.removed_volume += removed_volume;
+    radius_ -= removed_volume / options_.grinding_ratio / (2 * std::numbers::pi * radius_ * width_);
+    if (!(radius_ > 0))
+        throw InputError("gantry", "the wheel is worn away after " + to_text(totals_.removed_volume) +
+                                       " mm³; it was not changed in time");
+}
+
+void VirtualGantry::spend(double duration, double& account)
+{
+    account += duration;
+    status_.time += duration;
+}
+
+} // namespace fettle
