@@ -1,6 +1,7 @@
 #include "robot/follow.h"
 
 #include "robot/arm.h"
+#include "robot/layered_search.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,13 +14,10 @@ namespace {
 constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-// One way to reach a pose, and the best way to it.
+// One way to reach a pose.
 struct Station {
     Joints joints;
     int branch;
-    std::size_t from = 0; // number of the station before
-    int jumps = 0;        // on the way
-    double motion = 0;    // sum of squares on the way, rad²
 };
 
 // All whole turns of the joints that stay in range, joint by joint from the first.
@@ -43,58 +41,34 @@ class PathSearch {
     /// @return  is there a way to this pose?
     bool add(const ArmSolutions& solutions, bool gap)
     {
-        const std::size_t first = stations_.size();
-        for (const ArmSolution& solution : solutions) add_turns(robot_, solution, 0, stations_);
-        if (stations_.size() == first) return false;
-        for (std::size_t i = first; i < stations_.size(); ++i) connect(i, gap);
-        before_ = first;
-        end_before_ = stations_.size();
+        std::vector<Station> here;
+        for (const ArmSolution& solution : solutions) add_turns(robot_, solution, 0, here);
+        if (here.empty()) return false;
+        search_.add(here.size(), [&](std::size_t from, std::size_t to) -> LayeredSearch::Length {
+            if (layers_.empty()) return {0, (here[to].joints - options_.start).squaredNorm()};
+            const Joints move = here[to].joints - layers_.back()[from].joints;
+            return {!gap && move.cwiseAbs().maxCoeff() > options_.jump ? 1 : 0, move.squaredNorm()};
+        });
+        layers_.push_back(std::move(here));
         return true;
     }
 
     /// Joints of the best way so far.
-    const Joints& near() const { return before_ == end_before_ ? options_.start : stations_[best()].joints; }
+    const Joints& near() const { return layers_.empty() ? options_.start : layers_.back()[search_.best()].joints; }
 
-    std::size_t best() const
+    /// Of each pose that was added.
+    std::vector<Station> path() const
     {
-        std::size_t best = before_;
-        for (std::size_t i = before_; i < end_before_; ++i)
-            if (shorter(stations_[i], stations_[best])) best = i;
-        return best;
+        std::vector<Station> way;
+        for (const std::size_t number : search_.path()) way.push_back(layers_[way.size()][number]);
+        return way;
     }
-
-    const Station& station(std::size_t i) const { return stations_[i]; }
 
   private:
-    static bool shorter(const Station& a, const Station& b)
-    {
-        return a.jumps != b.jumps ? a.jumps < b.jumps : a.motion < b.motion;
-    }
-
-    void connect(std::size_t i, bool gap)
-    {
-        Station& here = stations_[i];
-        if (before_ == end_before_) {
-            here.motion = (here.joints - options_.start).squaredNorm();
-            return;
-        }
-        Station best = here;
-        best.jumps = std::numeric_limits<int>::max();
-        for (std::size_t from = before_; from < end_before_; ++from) {
-            const Joints move = here.joints - stations_[from].joints;
-            Station way = here;
-            way.from = from;
-            way.jumps = stations_[from].jumps + (!gap && move.cwiseAbs().maxCoeff() > options_.jump ? 1 : 0);
-            way.motion = stations_[from].motion + move.squaredNorm();
-            if (shorter(way, best)) best = way;
-        }
-        here = best;
-    }
-
     const Robot& robot_;
     const FollowOptions& options_;
-    std::vector<Station> stations_;           // of all poses
-    std::size_t before_ = 0, end_before_ = 0; // those of the last pose that has any
+    LayeredSearch search_;
+    std::vector<std::vector<Station>> layers_; // of the poses that have any
 };
 
 // The joint that is farthest out of its range in the solution that is least far out.
@@ -183,15 +157,14 @@ FollowedPath follow(const Robot& robot, const PosePath& poses, const Eigen::Matr
             state = PoseState::unreachable;
         }
     }
-    if (last < 0) return path;
-    std::size_t at = search.best();
-    for (Eigen::Index i = last; i >= 0; --i) {
+    const std::vector<Station> way = search.path();
+    std::size_t reached = 0;
+    for (Eigen::Index i = 0; i < count; ++i) {
         if (path.state[static_cast<std::size_t>(i)] != PoseState::reached) continue;
-        const Station& station = search.station(at);
+        const Station& station = way[reached++];
         path.joints.col(i) << station.joints, externals.col(i);
         path.branch[static_cast<std::size_t>(i)] = station.branch;
         path.singularity[i] = arm.singularity(station.joints).least();
-        at = station.from;
     }
     path.jumps = jumps_of(path.joints, options.jump);
     return path;
