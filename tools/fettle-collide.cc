@@ -3,6 +3,7 @@
 #include "core/file.h"
 #include "mesh/mesh_file.h"
 #include "robot/arm_report.h"
+#include "robot/avoid_report.h"
 #include "robot/collision_report.h"
 #include "robot/path_cloud.h"
 #include "robot/solve_path.h"
@@ -10,6 +11,8 @@
 using namespace fettle;
 
 namespace {
+
+constexpr double kRadPerDegree = std::numbers::pi / 180;
 
 // With the file's name before what the library has against it, but for options, which name themselves.
 SolvedPath path_in(const Robot& robot, const std::string& file, const Cloud& cloud, const PathWishes& wishes, double mm)
@@ -40,7 +43,14 @@ int main(int argc, char** argv)
         "from the pose before, a lower bound), body and other (who: numbers in the robot file from 0, the workpiece's "
         "after the last), foot_x foot_y foot_z (where, in the cell). Exit 1 if something collides, a pose is not "
         "reached "
-        "or the path jumps.";
+        "or the path jumps.\n"
+        "With --avoid such poses are tilted about the centre of the ball at the tip, so that the point of contact "
+        "stays "
+        "(about the tip if there is no ball), on cones 5 degrees apart up to --most-tilt, the first that is clear and "
+        "reached without a jump; where that does not help, the tool draws back by steps of 0.1 mm, along the normal if "
+        "the path has normals, else along its axis. smooth finds the tilts of all poses together, so that they change "
+        "as little as possible from pose to pose. Track and table stay. Added: avoided, tilt, tilt_towards, retreat; "
+        "then all else is about the changed path.";
     return tool_main(argc, argv, description, [](Tool& t) {
         const std::string& robot_file = t.file("ROBOT", "The robot, JSON");
         const std::string& points = t.input("PATH", "path or joints, PCD");
@@ -59,6 +69,13 @@ int main(int argc, char** argv)
         const std::string& table = t.text("--table", wishes.table, "RULE", "As of fettle-arm");
         const std::string& start = t.text("--start", wishes.start, "DEG,…", "As of fettle-arm");
         const double& jump = t.number("--jump", wishes.jump_deg, "DEG", "As of fettle-arm", Range::positive());
+        const auto& avoiding = t.choice_if_given("--avoid", {"pose", "smooth"},
+                                                 "Lead the path around collisions, pose by pose or smoothly [pose]");
+        AvoidOptions avoidance;
+        const double& most_tilt =
+            t.number("--most-tilt", 45, "DEG", "With --avoid: the tool leans no farther", Range::between(0, 90));
+        const auto& most_retreat = t.number_if_given(
+            "--most-retreat", "LENGTH", "With --avoid: it draws back no farther [1 mm]", Range::at_least(0));
         const bool& ascii = t.flag("--ascii", "Text instead of binary");
         t.example("fettle-part parts/keel.json | fettle-collide robots/irb1400.json paths/keel.pcd --workpiece - "
                   "--report clear.json > checked.pcd",
@@ -75,7 +92,9 @@ int main(int argc, char** argv)
         if (tolerance) options.tolerance = *tolerance * mm;
         if (beyond) options.beyond = *beyond * mm;
         if (resolution) options.resolution = *resolution * mm;
-        const SolvedPath solved = path_in(robot, points, cloud, wishes, mm);
+        avoidance = {avoiding == "smooth", most_tilt * kRadPerDegree, most_retreat.value_or(1 / mm) * mm,
+                     jump * kRadPerDegree};
+        SolvedPath solved = path_in(robot, points, cloud, wishes, mm);
         Mesh mesh;
         std::optional<Workpiece> workpiece;
         if (!part.empty()) {
@@ -84,12 +103,22 @@ int main(int argc, char** argv)
             if (!workpiece->closed())
                 t.warn(display_name(part) + ": is not closed: a body wholly inside it would not be noticed");
         }
-        const CheckedPath checked =
-            check_path(robot, workpiece ? &*workpiece : nullptr, solved.path.joints, options, t.progress("poses"));
+        const Workpiece* const part_or_none = workpiece ? &*workpiece : nullptr;
+        CheckedPath checked = check_path(robot, part_or_none, solved.path.joints, options, t.progress("poses"));
+        std::optional<AvoidedPath> avoided;
+        if (!avoiding.empty()) {
+            avoided = avoid(robot, part_or_none, solved, checked, retreat_directions(cloud, solved.poses), avoidance,
+                            options);
+            add_report(t.report(), robot, *avoided, checked, avoidance, options, file.units);
+            solved.poses = avoided->poses;
+            solved.path = avoided->path;
+            checked = avoided->checked;
+        }
         set_path(cloud, solved.poses);
         set_joints(cloud, robot, solved.path.joints);
         set_states(cloud, solved.path);
         set_clearances(cloud, robot, checked);
+        if (avoided) set_changes(cloud, *avoided, options.tolerance);
         std::optional<Eigen::VectorXd> times;
         if (has_field(cloud, "t")) times = field(cloud, "t");
         const bool run = add_report(t.report(), robot, solved.path, 0, times, file.units);

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <set>
 #include <string>
 #include <vector>
@@ -63,6 +64,23 @@ void check_options(const CLI::App& app, int argc, char** argv)
         if (!value) throw InputError("option " + name + ": value missing");
         ++i;
     }
+}
+
+std::vector<std::string> with_values(int argc, char** argv,
+                                     const std::map<std::string, std::vector<std::string>>& alone)
+{
+    std::vector<std::string> words;
+    bool options = true; // until --
+    for (int i = 0; i < argc; ++i) {
+        const std::string word = words.emplace_back(argv[i]);
+        options = options && word != "--";
+        const auto found = alone.find(word);
+        if (!options || found == alone.end()) continue;
+        const std::vector<std::string>& choices = found->second;
+        const bool chosen = i + 1 < argc && std::find(choices.begin(), choices.end(), argv[i + 1]) != choices.end();
+        words.back() += "=" + (chosen ? std::string(argv[++i]) : choices.front());
+    }
+    return words;
 }
 
 } // namespace fettle

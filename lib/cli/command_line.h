@@ -1,5 +1,9 @@
 #pragma once
 
+#include <map>
+#include <string>
+#include <vector>
+
 namespace CLI {
 class App;
 }
@@ -10,5 +14,10 @@ namespace fettle {
 /// sees them: its own messages speak of its own matters. Says nothing if help is asked for.
 /// @throws InputError
 void check_options(const CLI::App& app, int argc, char** argv);
+
+/// All words; an option that may stand alone has its value attached: the next word if it is one of its choices, else
+/// the first choice. @param alone  names of such options, and their choices
+std::vector<std::string> with_values(int argc, char** argv,
+                                     const std::map<std::string, std::vector<std::string>>& alone);
 
 } // namespace fettle

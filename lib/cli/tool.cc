@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <deque>
 #include <iostream>
+#include <map>
 #include <unistd.h>
 
 namespace fettle {
@@ -46,6 +47,7 @@ struct Tool::State {
     std::deque<int> counts;
     std::deque<std::string> texts;
     std::deque<std::optional<Units::Length>> units;
+    std::map<std::string, std::vector<std::string>> alone; ///< options that need no value, and what it may be
     std::string example;
     std::string reference;
 
@@ -167,6 +169,13 @@ const std::string& Tool::choice(const std::string& names, const std::string& oth
     return value;
 }
 
+const std::string& Tool::choice_if_given(const std::string& name, const std::vector<std::string>& choices,
+                                         const std::string& help)
+{
+    state_->alone[name] = choices;
+    return choice(name, "", choices, help);
+}
+
 const std::optional<Units::Length>& Tool::length_unit(const std::string& names, const std::string& help)
 {
     std::optional<Units::Length>& value = state_->units.emplace_back();
@@ -203,8 +212,11 @@ void Tool::parse()
     s.app.add_flag("-v,--verbose", s.verbose, "Say what is done")->multi_option_policy(CLI::MultiOptionPolicy::Throw);
     s.app.footer(s.example + (s.reference.empty() ? "" : "\n\n" + s.reference));
     s.app.get_formatter()->column_width(32);
-    check_options(s.app, s.argc, s.argv);
-    s.app.parse(s.argc, s.argv);
+    std::vector<std::string> words = with_values(s.argc, s.argv, s.alone);
+    std::vector<char*> argv;
+    for (std::string& word : words) argv.push_back(word.data());
+    check_options(s.app, static_cast<int>(argv.size()), argv.data());
+    s.app.parse(static_cast<int>(argv.size()), argv.data());
     s.output_names = {s.output};
     if (s.threads > 0)
         s.thread_limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,

@@ -46,6 +46,9 @@ class Tool {
     const std::string& required_text(const std::string& names, const std::string& placeholder, const std::string& help);
     const std::string& choice(const std::string& names, const std::string& otherwise,
                               const std::vector<std::string>& choices, const std::string& help);
+    /// May stand alone, which is the first of the choices, or before one of them; empty: it is not given.
+    const std::string& choice_if_given(const std::string& name, const std::vector<std::string>& choices,
+                                       const std::string& help);
     /// mm, in or m: the unit of a file; nothing if not given.
     const std::optional<Units::Length>& length_unit(const std::string& names, const std::string& help);
 

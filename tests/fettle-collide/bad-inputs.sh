@@ -27,3 +27,7 @@ fettle-collide robot.json far.pcd --report r.json --ascii >far.out || status=$?
 test $status -eq 1
 jq -e '.reached == 60 and .looked_at == 60 and .unreachable == 1' r.json >/dev/null
 tail -n 1 far.out | grep -q nan
+refuses "--avoid: 'smoot' is none of pose, smooth; did you mean 'smooth'" fettle-collide robot.json path.pcd --avoid=smoot
+refuses '--most-tilt' fettle-collide robot.json path.pcd --avoid --most-tilt 91
+refuses '--most-retreat' fettle-collide robot.json path.pcd --avoid --most-retreat -1
+refuses 'twice' fettle-collide robot.json path.pcd --avoid --avoid smooth
