@@ -66,31 +66,58 @@ struct FlatSide {
 };
 
 /// A ball swept along a circle. Of its points, at c sin α from the way, the one that counts is where both are equally
-/// steep: c sin α + r sin β = across, tan β = κ tan α, with κ = slope/√(1 + slope²). In S = sin α this is an equation
-/// of degree four whose left side is convex and grows: Newton's method, begun anywhere, comes down to its root.
+/// steep: c sin α + r sin β = across, tan β = κ tan α, with κ = slope/√(1 + slope²). In X = sin α the left side is
+/// p X + q X/√(m + n X²) with p = c, q = r κ, m = 1, n = κ² - 1, which bends where α nears a right angle, as sharply as
+/// κ is small; in X = sin β it is the same with p = r, q = c, m = κ², n = 1 - κ², which bends where β is small. So
+/// before the knee, tan α = 1/√κ, the equation is solved for α, beyond it for β. The one is convex, the other concave:
+/// Newton's method comes monotonously to the root, down to α, up to β.
 struct BullSide {
-    double r, c, sign, kappa, less;
-    mutable Double4 S = all(1.0); // begins where the last cells' search ended, which are near
+    double r, c, up, sign, kappa, less, knee_alpha, knee_beta, knee;
 
     BullSide(const Cutter& cutter, double slope)
-        : r(cutter.corner), c(cutter.flat), sign(slope > 0 ? -1 : 1),
-          kappa(std::abs(slope) / std::sqrt(1 + slope * slope)), less((1 - kappa) * (1 + kappa))
+        : r(cutter.corner), c(cutter.flat), up(slope), sign(slope > 0 ? -1 : 1),
+          kappa(std::abs(slope) / std::sqrt(1 + slope * slope)), less((1 - kappa) * (1 + kappa)),
+          knee_alpha(std::sqrt(1 / (1 + kappa))), knee_beta(std::sqrt(kappa / (1 + kappa))),
+          knee(c * knee_alpha + r * knee_beta)
     {
     }
     FETTLE_INLINE Double4 lead(const Double4& side) const
     {
-        constexpr int kMost = 100;       // a step gains a factor 3 at worst, then doubles the digits
+        constexpr int kMost = 100;       // never met: steps at least double the digits beside the knee
         constexpr double kEnough = 1e-9; // the next step would be its square; so is the height's error
         const Double4 across = smaller(larger(side, -side), all(c + r));
+        const Mask4 beyond = across > knee;
+        const Double4 p = beyond ? all(r) : all(c), q = beyond ? all(c) : all(r * kappa);
+        const Double4 m = beyond ? all(kappa * kappa) : all(1.0), n = beyond ? all(less) : all(-less);
+        // from beneath β, and from above α: q X/√(m + n X²) is no more than q/√n, and no less than q X
+        Double4 X = beyond ? larger(all(knee_beta), (across - c / std::sqrt(less)) / r)
+                           : smaller(all(knee_alpha), across / (c + r * kappa));
         for (int i = 0; i < kMost; ++i) {
-            const Double4 inverse = 1 / root(1 - less * S * S), tangent = r * kappa * inverse;
-            const Double4 step = (c * S + tangent * S - across) / (c + tangent * inverse * inverse);
-            S = smaller(larger(S - step, Double4{}), all(1.0));
+            const Double4 inverse = 1 / root(m + n * X * X), slope = q * inverse;
+            const Double4 step = (p * X + slope * X - across) / (p + slope * m * inverse * inverse);
+            X = smaller(larger(X - step, Double4{}), all(1.0));
             const Mask4 far = (step > kEnough) | (step < -kEnough);
             if (((far[0] | far[1]) | (far[2] | far[3])) == 0) break;
         }
-        const Double4 beside = across - c * S;
-        return sign * (c * root(1 - S * S) + kappa * root(larger(all(r * r) - beside * beside, Double4{})));
+        const Double4 other = 1 - X * X; // cos² of the angle solved for
+        const Double4 cosine = beyond ? kappa * root(other / (kappa * kappa + less * X * X)) : root(other); // of α
+        const Double4 beside = beyond ? r * X : across - c * X;
+        return sign * (c * cosine + kappa * root(larger(all(r * r) - beside * beside, Double4{})));
+    }
+    /// along + lead, within a way: most cells beside a short way are nearest to one of its ends, which needs no search.
+    FETTLE_INLINE Double4 axis(const Double4& along, const Double4& across, double length) const
+    {
+        const Mask4 before = rises(along, across) > 0.0, after = rises(along - length, across) < 0.0;
+        const Mask4 within = ~(before | after);
+        const Double4 end = before ? Double4{} : all(length);
+        if (((within[0] | within[1]) | (within[2] | within[3])) == 0) return end;
+        return within ? smaller(larger(along + lead(across), Double4{}), all(length)) : end;
+    }
+    /// Has the sign of how the height over a cell changes as the axis moves on; the cell is `ahead` of it.
+    FETTLE_INLINE Double4 rises(const Double4& ahead, const Double4& across) const
+    {
+        const Double4 distance = root(ahead * ahead + across * across), from_disc = larger(distance - c, Double4{});
+        return up * distance * root(larger(r * r - from_disc * from_disc, Double4{})) - from_disc * ahead;
     }
     FETTLE_INLINE Double4 rise(const Double4& square) const
     {

@@ -24,8 +24,12 @@ struct Straight {
         const Double4 along = sweep.way.x() * dx + sweep.way.y() * dy;
         const Double4 across = sweep.way.x() * dy - sweep.way.y() * dx;
         Double4 axis = along;
-        if constexpr (!level) axis += side.lead(across);
-        axis = smaller(larger(axis, Double4{}), all(sweep.length));
+        if constexpr (std::is_same_v<Side, BullSide> && !level)
+            axis = side.axis(along, across, sweep.length);
+        else {
+            if constexpr (!level) axis += side.lead(across);
+            axis = smaller(larger(axis, Double4{}), all(sweep.length));
+        }
         const Double4 before = along - axis;
         const Double4 rise = side.rise(before * before + across * across);
         if constexpr (level)

@@ -5,12 +5,14 @@
 #include "mesh/stl.h"
 
 #include <tbb/parallel_for.h>
+#include <tbb/task_group.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <memory>
 #include <ostream>
+#include <utility>
 #include <vector>
 
 namespace fettle {
@@ -32,6 +34,42 @@ std::size_t count_triangles(const HeightField& field)
         }
     return count;
 }
+
+/// Parts of an STL that are made while others are written.
+class StlParts {
+  public:
+    StlParts(const HeightField& field, Eigen::Index parts)
+        : field_(&field), parts_(parts), bytes_(static_cast<std::size_t>(std::min(kPartsAtOnce, parts)))
+    {
+        // made once: fresh memory costs more than the triangles
+        const std::size_t most = kStlTriangle * 2 * static_cast<std::size_t>(field.columns() * kRowsOfPart);
+        for (Bytes& part : bytes_) part.data = std::make_unique_for_overwrite<char[]>(most);
+    }
+    void make(Eigen::Index begin)
+    {
+        tbb::parallel_for(std::size_t{0}, bytes_.size(), [&](std::size_t k) {
+            bytes_[k].size = 0;
+            const Eigen::Index part = begin + static_cast<Eigen::Index>(k), first = part * kRowsOfPart;
+            if (part >= parts_) return;
+            const Mesh mesh = surface_between(*field_, first, std::min(first + kRowsOfPart, field_->rows() - 1));
+            bytes_[k].size = kStlTriangle * static_cast<std::size_t>(mesh.triangles.cols());
+            put_stl_triangles(mesh, Units::Length::mm, bytes_[k].data.get());
+        });
+    }
+    void write(std::ostream& out) const
+    {
+        for (const Bytes& part : bytes_) out.write(part.data.get(), static_cast<std::streamsize>(part.size));
+    }
+
+  private:
+    struct Bytes {
+        std::unique_ptr<char[]> data;
+        std::size_t size = 0;
+    };
+    const HeightField* field_;
+    Eigen::Index parts_;
+    std::vector<Bytes> bytes_;
+};
 
 } // namespace
 
@@ -87,20 +125,14 @@ std::size_t write_stl(std::ostream& out, const HeightField& field)
     if (triangles > UINT32_MAX) throw InputError("too many triangles for an STL");
     out << stl_header(triangles, Units::Length::mm);
     const Eigen::Index parts = (std::max<Eigen::Index>(field.rows(), 1) - 1 + kRowsOfPart - 1) / kRowsOfPart;
-    struct Bytes {
-        std::unique_ptr<char[]> data;
-        std::size_t size = 0;
-    };
+    StlParts made(field, parts), next(field, parts);
+    made.make(0);
     for (Eigen::Index begin = 0; begin < parts; begin += kPartsAtOnce) {
-        std::vector<Bytes> bytes(static_cast<std::size_t>(std::min(kPartsAtOnce, parts - begin)));
-        tbb::parallel_for(std::size_t{0}, bytes.size(), [&](std::size_t k) {
-            const Eigen::Index first = (begin + static_cast<Eigen::Index>(k)) * kRowsOfPart;
-            const Mesh part = surface_between(field, first, std::min(first + kRowsOfPart, field.rows() - 1));
-            bytes[k].size = kStlTriangle * static_cast<std::size_t>(part.triangles.cols());
-            bytes[k].data = std::make_unique_for_overwrite<char[]>(bytes[k].size);
-            put_stl_triangles(part, Units::Length::mm, bytes[k].data.get());
-        });
-        for (const Bytes& part : bytes) out.write(part.data.get(), static_cast<std::streamsize>(part.size));
+        tbb::task_group making;
+        making.run([&] { next.make(begin + kPartsAtOnce); });
+        made.write(out);
+        making.wait();
+        std::swap(made, next);
     }
     return triangles;
 }
