@@ -12,7 +12,6 @@
 #include "mesh/mesh_file.h"
 #include "sampling/scan.h"
 
-#include <numbers>
 #include <ostream>
 
 using namespace fettle;
@@ -36,41 +35,11 @@ Workpiece read_stock(const std::string& stock, std::optional<Units::Length> unit
     });
 }
 
-json::Value to_json(const Clash& clash)
-{
-    return json::Value().set("moves", clash.moves).set("first_place", clash.first_place).set("depth", clash.depth);
-}
-
-json::Value to_json(const Spacing& spacing, const DesignShape& shape)
-{
-    return json::Value()
-        .set("shape", to_string(spacing.kind))
-        .set("convex_radius", shape.convex_radius) // null: none
-        .set("concave_radius", shape.concave_radius)
-        .set("slope_deg", shape.slope * 180 / std::numbers::pi)
-        .set("surface_error", spacing.surface_error)
-        .set("sampling_error", spacing.sampling_error)
-        .set("predicted_error", spacing.predicted_error);
-}
-
-void report(json::Value& out, const MillingSummary& sum, const NcProgram& program, const HeightField& left)
+void report(json::Value& out, const NcProgram& program, const HeightField& left)
 {
     json::Value words;
     for (const auto& [word, count] : program.without_motion) words.set(word, count);
-    out.set("removed_volume", sum.volume)
-        .set("time", sum.feed_time + sum.rapid_time)
-        .set("feed_time", sum.feed_time)
-        .set("rapid_time", sum.rapid_time)
-        .set("cutting_time", sum.cutting_time)
-        .set("feed_length", sum.feed_length)
-        .set("rapid_length", sum.rapid_length)
-        .set("deepest_cut", sum.deepest_cut)
-        .set("mean_removal_rate", sum.mean_rate)
-        .set("peak_removal_rate", sum.peak_rate)
-        .set("rapid_volume", sum.rapid_volume)
-        .set("rapid_cuts", to_json(sum.rapid_cuts))
-        .set("holder_collisions", to_json(sum.holder))
-        .set("moves", program.moves.size())
+    out.set("moves", program.moves.size())
         .set("unplaced_rapids", program.unplaced.size())
         .set("chorded_arcs", program.chorded)
         .set("arc_chord_error", kArcChord)
@@ -115,7 +84,10 @@ int main(int argc, char** argv)
         const std::string& holder = t.text("--holder", "", "D,HEIGHT",
                                            "A cylinder above the cutter, this high over the tip, that must not touch");
         const bool& pcd = t.flag("--pcd", "Write a point for each cell, field removed, instead of triangles");
-        const bool& ascii = t.flag("--ascii", "With --pcd: as text");
+        const std::string& trace = t.text("--trace", "", "FILE",
+                                          "Every move: where it ends, when, and what it met (fields t, feed, removed, "
+                                          "volume, holder, place), PCD");
+        const bool& ascii = t.flag("--ascii", "PCDs as text");
         t.example(
             "fettle-mill programs/pocket.nc --stock box:0,0,-12,80,60,0 --cutter ball:6 --step 0.2 --holder 40,30 "
             "--report mill.json > machined.stl",
@@ -127,7 +99,7 @@ int main(int argc, char** argv)
         if (step.has_value() == tolerance.has_value()) throw InputError("give either --step or --tolerance");
         if (step && (!design.empty() || published))
             throw InputError("--design and --as-published belong to --tolerance");
-        if (ascii && !pcd) throw InputError("--ascii", "belongs to --pcd");
+        if (ascii && !pcd && trace.empty()) throw InputError("--ascii", "belongs to --pcd and --trace");
         const Cutter cutter = named("--cutter", [&] { return parse_cutter(cutter_text); });
         MillingOptions options;
         if (!holder.empty()) options.holder = named("--holder", [&] { return parse_holder(holder); });
@@ -144,13 +116,16 @@ int main(int argc, char** argv)
 
         std::optional<HeightField> before;
         if (pcd) before = piece.stock;
-        const MillingSummary sum = summarise(program.moves, mill(piece.stock, cutter, program.moves, options), rapid);
+        const auto bites = mill(piece.stock, cutter, program.moves, options);
+        const MillingSummary sum = summarise(program.moves, bites, rapid);
+        const PcdEncoding encoding = ascii ? PcdEncoding::ascii : PcdEncoding::binary;
         if (pcd)
-            write_pcd(t.output(), to_cloud(*before, piece.stock), Units{},
-                      ascii ? PcdEncoding::ascii : PcdEncoding::binary);
+            write_pcd(t.output(), to_cloud(*before, piece.stock), Units{}, encoding);
         else
             write_stl(t.output(), piece.stock);
-        report(t.report(), sum, program, piece.stock);
+        if (!trace.empty()) write_pcd(t.output_file(trace), trace_of(program.moves, bites, rapid), Units{}, encoding);
+        t.report() = to_json(sum);
+        report(t.report(), program, piece.stock);
         if (tolerance) t.report().set("discretization", to_json(spacing, shape));
         const std::string unit = tool_path.points ? "point " : "line ";
         const auto warn = [&](const Clash& clash, const std::string& what) {

@@ -167,4 +167,16 @@ Spacing spacing_for(double tolerance, double radius, const DesignShape& shape, b
     return spacing;
 }
 
+json::Value to_json(const Spacing& spacing, const DesignShape& shape)
+{
+    return json::Value()
+        .set("shape", to_string(spacing.kind))
+        .set("convex_radius", shape.convex_radius)
+        .set("concave_radius", shape.concave_radius)
+        .set("slope_deg", shape.slope / kDegree)
+        .set("surface_error", spacing.surface_error)
+        .set("sampling_error", spacing.sampling_error)
+        .set("predicted_error", spacing.predicted_error);
+}
+
 } // namespace fettle

@@ -2,6 +2,7 @@
 
 #include "machining/cutter.h"
 #include "mesh/mesh.h"
+#include "json/document.h"
 
 #include <limits>
 #include <string>
@@ -45,5 +46,8 @@ double sampling_radius(const Cutter& cutter);
 /// @param as_published  with eq. 2's approximation, and without regard to slopes
 /// @param tolerance  mm, positive
 Spacing spacing_for(double tolerance, double radius, const DesignShape& shape, bool as_published = false);
+
+/// As fettle-mill reports it; a radius that is not there is null.
+json::Value to_json(const Spacing& spacing, const DesignShape& shape);
 
 } // namespace fettle

@@ -1,7 +1,9 @@
 #pragma once
 
+#include "cloud/cloud.h"
 #include "machining/cutter_path.h"
 #include "machining/milling.h"
+#include "json/document.h"
 
 #include <cstddef>
 #include <vector>
@@ -29,5 +31,11 @@ struct MillingSummary {
 
 /// @param rapid_rate  mm/s, positive
 MillingSummary summarise(const std::vector<CutterMove>& moves, const std::vector<Bite>& bites, double rapid_rate);
+
+json::Value to_json(const MillingSummary& summary);
+
+/// A point where each move ends: when it is there (t, s), the feed there, the greatest height removed at one place, the
+/// volume removed, how deep the holder was in material (mm, mm³), and the place in the program.
+Cloud trace_of(const std::vector<CutterMove>& moves, const std::vector<Bite>& bites, double rapid_rate);
 
 } // namespace fettle
