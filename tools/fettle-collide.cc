@@ -1,9 +1,11 @@
 #include "cli/tool.h"
 #include "cloud/pcd.h"
+#include "core/direction.h"
 #include "core/file.h"
 #include "mesh/mesh_file.h"
 #include "robot/arm_report.h"
 #include "robot/avoid_report.h"
+#include "robot/cell_picture.h"
 #include "robot/collision_report.h"
 #include "robot/path_cloud.h"
 #include "robot/solve_path.h"
@@ -24,6 +26,23 @@ SolvedPath path_in(const Robot& robot, const std::string& file, const Cloud& clo
         if (std::string(error.what()).starts_with("--")) throw;
         throw InputError(display_name(file), error.what());
     }
+}
+
+// Numbers with commas between, or the pose of the least clearance.
+std::vector<std::size_t> poses_in(const std::string& text, const CheckedPath& checked)
+{
+    if (text.empty()) {
+        const Eigen::Index least = least_of(checked.pose);
+        if (least < 0) throw InputError("--picture", "no pose is reached");
+        return {static_cast<std::size_t>(least)};
+    }
+    std::vector<std::size_t> poses;
+    for (const double number : numbers_in(text)) {
+        if (!(number >= 0 && number < 1e9 && number == std::floor(number)))
+            throw InputError("--at", "expected whole numbers with commas between, got '" + text + "'");
+        poses.push_back(static_cast<std::size_t>(number));
+    }
+    return poses;
 }
 
 } // namespace
@@ -76,6 +95,10 @@ int main(int argc, char** argv)
             t.number("--most-tilt", 45, "DEG", "With --avoid: the tool leans no farther", Range::between(0, 90));
         const auto& most_retreat = t.number_if_given(
             "--most-retreat", "LENGTH", "With --avoid: it draws back no farther [1 mm]", Range::at_least(0));
+        const auto& picture = t.text("--picture", "", "FILE", "Draw the cell at some poses, PNG");
+        const auto& at = t.text("--at", "", "N,…", "Numbers of these poses, from 0 [that of the least clearance]");
+        const auto& from = t.text("--from", "1,-1,0.8", "X,Y,Z", "Of the picture: towards the eye, in the cell");
+        const auto& chart = t.text("--chart", "", "FILE", "Draw the clearances along the path, PNG");
         const bool& ascii = t.flag("--ascii", "Text instead of binary");
         t.example("fettle-part parts/keel.json | fettle-collide robots/irb1400.json paths/keel.pcd --workpiece - "
                   "--report clear.json > checked.pcd",
@@ -105,6 +128,7 @@ int main(int argc, char** argv)
         }
         const Workpiece* const part_or_none = workpiece ? &*workpiece : nullptr;
         CheckedPath checked = check_path(robot, part_or_none, solved.path.joints, options, t.progress("poses"));
+        const CheckedPath before = checked;
         std::optional<AvoidedPath> avoided;
         if (!avoiding.empty()) {
             avoided = avoid(robot, part_or_none, solved, checked, retreat_directions(cloud, solved.poses), avoidance,
@@ -119,6 +143,15 @@ int main(int argc, char** argv)
         set_states(cloud, solved.path);
         set_clearances(cloud, robot, checked);
         if (avoided) set_changes(cloud, *avoided, options.tolerance);
+        if (!picture.empty()) {
+            const CellPictureOptions look = {poses_in(at, checked), parse_direction(from, "--from"), options.tolerance,
+                                             file.units};
+            t.output_file(picture) << cell_picture(robot, workpiece ? &mesh : nullptr, solved.path.joints, checked,
+                                                   look);
+        }
+        if (!chart.empty())
+            t.output_file(chart) << clearance_chart(checked, avoided ? &before : nullptr,
+                                                    avoided ? &avoided->changes : nullptr, file.units);
         std::optional<Eigen::VectorXd> times;
         if (has_field(cloud, "t")) times = field(cloud, "t");
         const bool run = add_report(t.report(), robot, solved.path, 0, times, file.units);

@@ -20,17 +20,6 @@ std::vector<Value> names_of(const Robot& robot, const CellPair& pair)
     return {name_of(robot, pair.a), name_of(robot, pair.b)};
 }
 
-// The least of a list, and where it is; -1 if all are NaN.
-Eigen::Index least_of(const std::vector<CellClearance>& list)
-{
-    Eigen::Index least = -1;
-    for (std::size_t i = 0; i < list.size(); ++i)
-        if (!std::isnan(list[i].clearance) &&
-            (least < 0 || list[i].clearance < list[static_cast<std::size_t>(least)].clearance))
-            least = static_cast<Eigen::Index>(i);
-    return least;
-}
-
 Value least_to_json(const Robot& robot, const std::vector<CellClearance>& list,
                     const std::optional<Eigen::VectorXd>& times, double mm)
 {
@@ -47,6 +36,16 @@ Value least_to_json(const Robot& robot, const std::vector<CellClearance>& list,
 }
 
 } // namespace
+
+Eigen::Index least_of(const std::vector<CellClearance>& list)
+{
+    Eigen::Index least = -1;
+    for (std::size_t i = 0; i < list.size(); ++i)
+        if (!std::isnan(list[i].clearance) &&
+            (least < 0 || list[i].clearance < list[static_cast<std::size_t>(least)].clearance))
+            least = static_cast<Eigen::Index>(i);
+    return least;
+}
 
 void set_clearances(Cloud& cloud, const Robot& robot, const CheckedPath& checked)
 {

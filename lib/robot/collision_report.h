@@ -11,6 +11,9 @@
 
 namespace fettle {
 
+/// Where the least of a list is, the first of several; -1 if all are NaN.
+Eigen::Index least_of(const std::vector<CellClearance>& list);
+
 /// Fields clearance and clearance_between (mm), and of the least clearance of the pose body, other (numbers of the
 /// bodies in the robot file, from 0; the workpiece's is their number) and foot_x foot_y foot_z, the point on body (in
 /// the cell). NaN where nothing was looked at.

@@ -1,0 +1,109 @@
+// Pictures of a cell. References: volumes, distances, and what lies before what by construction.
+#include "core/error.h"
+#include "irb1400.h"
+#include "robot/cell_picture.h"
+#include "robot/cell_scene.h"
+#include "robot/clearance.h"
+#include "robot/collision.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+namespace fettle {
+
+namespace {
+
+using Eigen::Isometry3d, Eigen::Vector3d;
+
+double volume(const Mesh& mesh)
+{
+    double sum = 0;
+    for (const auto t : mesh.triangles.colwise()) {
+        const Vector3d a = mesh.vertices.col(t[0]), b = mesh.vertices.col(t[1]), c = mesh.vertices.col(t[2]);
+        sum += a.dot(b.cross(c)) / 6;
+    }
+    return sum;
+}
+
+TEST(CellScene, MeshesOfSolidsHaveTheirVolumes)
+{
+    const double pi = std::numbers::pi;
+    Isometry3d turned(Eigen::AngleAxisd(0.7, Vector3d(1, 2, 3).normalized()));
+    turned.translation() << 5, -3, 2;
+    Eigen::Matrix3Xd corners(3, 4);
+    corners << 0, 6, 0, 0, 0, 0, 6, 0, 0, 0, 0, 6;
+    const std::vector<std::pair<Solid, double>> solids = {
+        {solid::Sphere{{1, 2, 3}, 10}, 4000 * pi / 3},
+        {solid::Capsule{{0, 0, 0}, {0, 30, 0}, 10}, 4000 * pi / 3 + 3000 * pi},
+        {solid::Cylinder{{0, 0, 0}, {0, 12, 16}, 10}, 2000 * pi},
+        {solid::Cone{{0, 0, 0}, {30, 0, 0}, 10, 4}, 10 * pi * (100 + 40 + 16)},
+        {solid::Box{turned, {5, 10, 15}}, 6000},
+        {solid::Hull{corners}, 36}};
+    for (const auto& [solid, expected] : solids) {
+        const Mesh mesh = solid_mesh(solid);
+        EXPECT_NEAR(volume(mesh), expected, 4e-3 * expected) << solid.index();
+        const PlacedSolid placed(solid, Isometry3d::Identity());
+        for (const auto& p : mesh.vertices.colwise()) EXPECT_NEAR(placed.distance(p).value, 0, 1e-9);
+    }
+}
+
+// A small box before a large one, looked at along -x.
+TEST(CellScene, WhatIsNearerIsSeen)
+{
+    Robot robot = irb1400();
+    const auto box = [](const Vector3d& at, double half) {
+        return solid::Box{Isometry3d(Eigen::Translation3d(at)), Vector3d::Constant(half)};
+    };
+    robot.bodies = {{"behind", link::kCell, box({0, 0, 0}, 50)}, {"before", link::kCell, box({100, 0, 0}, 10)}};
+    const CellScene scene = cell_scene(robot, nullptr, CellJoints::Zero(), 0);
+    const View view{{-75, -75}, 1, 150, 150};
+    Eigen::ArrayXXd depth;
+    const Eigen::ArrayXXi seen = seen_triangles(scene, view_rotation(Vector3d::UnitX()), view, depth);
+    int pixels[3] = {0, 0, 0};
+    for (int i = 0; i < seen.size(); ++i) ++pixels[seen(i) < 0 ? 2 : scene.body[static_cast<std::size_t>(seen(i))]];
+    EXPECT_EQ(pixels[1], 20 * 20);
+    EXPECT_EQ(pixels[0], 100 * 100 - 20 * 20);
+    EXPECT_EQ(pixels[2], 150 * 150 - 100 * 100);
+    EXPECT_NEAR(depth(75, 75), 110, 1e-9);
+    EXPECT_NEAR(depth(45, 45), 50, 1e-9);
+}
+
+TEST(CellScene, TheWorkpieceTurnsWithTheTable)
+{
+    Robot robot = irb1400();
+    robot.table = Table{{100, 0, 0}, Vector3d::UnitZ(), {-4, 4}, {}, ""};
+    Mesh part;
+    part.vertices.resize(3, 3);
+    part.vertices << 110, 120, 110, 0, 0, 5, 7, 7, 7;
+    part.triangles = Eigen::Vector3i(0, 1, 2);
+    CellJoints q = CellJoints::Zero();
+    q[7] = std::numbers::pi / 2;
+    const CellScene scene = cell_scene(robot, &part, q, 0);
+    Eigen::Matrix3d expected;
+    expected << 100, 100, 95, 10, 20, 10, 7, 7, 7;
+    EXPECT_LT((scene.mesh.vertices - expected).cwiseAbs().maxCoeff(), 1e-12);
+    EXPECT_EQ(scene.body, std::vector<std::size_t>{0}); // it has no bodies: the workpiece is number 0
+}
+
+TEST(CellPicture, RefusesPosesThatAreNotThere)
+{
+    Robot robot = irb1400();
+    robot.bodies = {{"ball", link::kTool, solid::Sphere{{0, 0, 6}, 6}}};
+    CellJointsPath joints = CellJointsPath::Zero(8, 2);
+    joints.col(1).setConstant(std::numeric_limits<double>::quiet_NaN());
+    const CheckedPath checked = check_path(robot, nullptr, joints, {});
+    CellPictureOptions options;
+    options.at = {0};
+    const std::string png = cell_picture(robot, nullptr, joints, checked, options);
+    EXPECT_EQ(png.substr(1, 3), "PNG");
+    EXPECT_EQ(cell_picture(robot, nullptr, joints, checked, options), png);
+    options.at = {1};
+    EXPECT_THROW(cell_picture(robot, nullptr, joints, checked, options), InputError);
+    options.at = {2};
+    EXPECT_THROW(cell_picture(robot, nullptr, joints, checked, options), InputError);
+}
+
+} // namespace
+
+} // namespace fettle
