@@ -14,8 +14,8 @@ namespace fettle {
 
 namespace {
 
-// Points that are measured at a time. So many along a Hilbert curve are close to each other, and take some 20 MiB.
-constexpr std::size_t kBlock = 1 << 17;
+// Points that are measured at a time. So many along a Hilbert curve are close to each other, and take some 10 MiB.
+constexpr std::size_t kBlock = 1 << 16;
 
 struct Block {
     Cloud cloud;
@@ -144,10 +144,13 @@ Comparison compare(const TestPoints& test, Survey& survey, const Reference& refe
             block.areas = of_vertices.segment(static_cast<Eigen::Index>(first), block.cloud.size());
         if (options.job) block.regions = regions(*options.job, block.cloud.xyz);
         set_fields(block, options, scale);
+        block.map.normal.resize(3, 0); // fields of the cloud now
+        block.map.foot.resize(3, 0);
+        block.map.facet.resize(0);
         return block;
     };
     // While one block is measured another is read, measured or written.
-    constexpr std::size_t kUnderWay = 2;
+    constexpr std::size_t kUnderWay = 3;
     std::size_t next = 0, done = 0;
     bool begun = false; // a cloud without points is one empty block
     using Numbered = std::pair<std::size_t, std::shared_ptr<Block>>;
@@ -165,13 +168,16 @@ Comparison compare(const TestPoints& test, Survey& survey, const Reference& refe
         *in.second = measure(in.first, std::move(*in.second));
         return in;
     });
-    const auto sink = tbb::make_filter<Numbered, void>(tbb::filter_mode::serial_in_order, [&](const Numbered& in) {
+    const auto tally = tbb::make_filter<Numbered, Numbered>(tbb::filter_mode::serial_in_order, [&](const Numbered& in) {
         collected.add(*in.second);
+        return in;
+    });
+    const auto write = tbb::make_filter<Numbered, void>(tbb::filter_mode::serial_in_order, [&](const Numbered& in) {
         use(in.second->cloud);
         done += static_cast<std::size_t>(in.second->cloud.size());
         if (count > 0) tell(progress, static_cast<double>(done) / static_cast<double>(count));
     });
-    tbb::parallel_pipeline(kUnderWay, source & work & sink);
+    tbb::parallel_pipeline(kUnderWay, source & work & tally & write);
     return collected.comparison();
 }
 

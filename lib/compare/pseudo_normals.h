@@ -1,6 +1,7 @@
 #pragma once
 
 #include "compare/reference_mesh.h"
+#include "core/large_array.h"
 #include "mesh/mesh_index.h"
 
 #include <Eigen/Core>
@@ -48,8 +49,8 @@ class PseudoNormals {
 
     const ReferenceMesh& reference_;
     const Eigen::Matrix3Xi& facets_;
-    std::vector<std::uint32_t> first_;     ///< vertex -> its first entry in at_vertex_
-    std::vector<std::uint32_t> at_vertex_; ///< facets at the vertices
+    LargeArray<std::uint32_t> first_;     ///< vertex -> its first entry in at_vertex_
+    LargeArray<std::uint32_t> at_vertex_; ///< facets at the vertices
 };
 
 } // namespace fettle

@@ -3,6 +3,9 @@
 #include "compare/weld.h"
 #include "compare/winding.h"
 
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
+
 #include <algorithm>
 #include <array>
 #include <utility>
@@ -37,16 +40,26 @@ std::vector<bool> open_vertices(const Eigen::Matrix3Xi& facets, Eigen::Index ver
     return open;
 }
 
-/// The same from the numbers of open facets only: those with an open corner.
-std::vector<std::uint32_t> open_facets(const Eigen::Matrix3Xi& facets, const std::vector<bool>& open, int corners)
+int open_corners(const Gaps& gaps, const Eigen::Vector3i& facet)
 {
-    std::vector<std::uint32_t> found;
-    for (Eigen::Index t = 0; t < facets.cols(); ++t) {
-        int count = 0;
-        for (const int v : facets.col(t)) count += open[static_cast<std::size_t>(v)];
-        if (count >= corners) found.push_back(static_cast<std::uint32_t>(t));
-    }
-    return found;
+    int count = 0;
+    for (const int v : facet) count += gaps.open[static_cast<std::size_t>(v)];
+    return count;
+}
+
+Gaps gaps_of(const ReferenceMesh& reference)
+{
+    const Eigen::Matrix3Xi& facets = reference.facets();
+    Gaps gaps{open_vertices(facets, reference.mesh.vertices.cols()), {}};
+    constexpr Eigen::Index kPiece = 1 << 16;
+    std::vector<std::vector<std::uint32_t>> pieces(static_cast<std::size_t>((facets.cols() + kPiece - 1) / kPiece));
+    tbb::parallel_for(std::size_t{0}, pieces.size(), [&](std::size_t p) {
+        const Eigen::Index first = static_cast<Eigen::Index>(p) * kPiece;
+        for (Eigen::Index t = first; t < std::min(first + kPiece, facets.cols()); ++t)
+            if (open_corners(gaps, facets.col(t)) >= 2) pieces[p].push_back(static_cast<std::uint32_t>(t));
+    });
+    for (const auto& piece : pieces) gaps.facets.insert(gaps.facets.end(), piece.begin(), piece.end());
+    return gaps;
 }
 
 void weld_open(ReferenceMesh& reference, const std::vector<bool>& open)
@@ -67,12 +80,13 @@ void weld_open(ReferenceMesh& reference, const std::vector<bool>& open)
 
 /// Leaves out facets that have the corners of an earlier one and face the same way: thousands of them would each be
 /// looked at for every point. All corners of such a facet are open.
-void drop_repeated(ReferenceMesh& reference, const std::vector<bool>& open)
+void drop_repeated(ReferenceMesh& reference, const Gaps& gaps)
 {
     using Corners = std::array<int, 3>;
     std::vector<std::pair<Corners, std::uint32_t>> order;
-    for (const std::uint32_t t : open_facets(reference.facets(), open, 3)) {
+    for (const std::uint32_t t : gaps.facets) {
         const Eigen::Vector3i f = reference.facets().col(t); // begun at any corner it is the same
+        if (open_corners(gaps, f) < 3) continue;
         order.emplace_back(std::min({Corners{f[0], f[1], f[2]}, Corners{f[1], f[2], f[0]}, Corners{f[2], f[0], f[1]}}),
                            t);
     }
@@ -102,14 +116,14 @@ ReferenceMesh reference_mesh(Mesh mesh, Winding winding)
 {
     ReferenceMesh reference;
     reference.mesh = std::move(mesh);
-    reference.size = typical_coordinate(reference.mesh.vertices);
+    Gaps gaps;
+    tbb::parallel_invoke([&] { reference.size = typical_coordinate(reference.mesh.vertices); },
+                         [&] { gaps = gaps_of(reference); });
     reference.repair.weld_tolerance = float_rounding(reference.size);
-    const auto open = [&] { return open_vertices(reference.facets(), reference.mesh.vertices.cols()); };
-    std::vector<bool> gaps = open();
-    weld_open(reference, gaps);
-    if (reference.repair.welded_vertices > 0) gaps = open();
+    weld_open(reference, gaps.open);
+    if (reference.repair.welded_vertices > 0) gaps = gaps_of(reference);
     drop_repeated(reference, gaps);
-    if (reference.repair.repeated_facets > 0) gaps = open();
+    if (reference.repair.repeated_facets > 0) gaps = gaps_of(reference);
     if (winding == Winding::keep) return reference;
     const std::vector<std::uint32_t> wrong = wrongly_wound(reference.mesh.vertices, reference.facets(), gaps);
     if (wrong.empty() && winding == Winding::mend) return reference;

@@ -4,6 +4,7 @@
 #include "job/boundary.h"
 
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <array>
@@ -111,13 +112,13 @@ Statistics Tally::statistics() const
     if (tolerance_) s.within = static_cast<double>(within_) / n;
     const Numbers numbers = numbers_in(errors_);
     Sum deviation;
-    numbers([&](std::span<const double> some) {
+    const auto add_deviations = [&](std::span<const double> some) {
         double sum = 0;
         for (const double error : some) sum += (error - s.mean) * (error - s.mean);
         deviation.add(sum);
-    });
+    };
+    tbb::parallel_invoke([&] { numbers(add_deviations); }, [&] { set_percentiles(s, numbers); });
     s.sd = std::sqrt(deviation.value() / n);
-    set_percentiles(s, numbers);
     return s;
 }
 

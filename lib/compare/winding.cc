@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <numeric>
 #include <tuple>
+#include <utility>
 
 namespace fettle {
 
@@ -64,21 +65,23 @@ struct Edge {
     bool same(const Edge& other) const { return low == other.low && high == other.high; }
 };
 
-/// The sides of facets, those of one edge one after the other. @param chosen  of an edge's two ends
-template <typename Chosen>
-std::vector<Edge> sorted_edges(const Eigen::Matrix3Xi& facets, const Chosen& chosen)
+/// Puts the sides of one edge one after the other.
+std::vector<Edge> sorted(std::vector<Edge> edges)
 {
-    std::vector<Edge> edges;
-    for (Eigen::Index t = 0; t < facets.cols(); ++t)
-        for (int k = 0; k < 3; ++k) {
-            const int a = facets(k, t), b = facets((k + 1) % 3, t);
-            if (a != b && chosen(a, b))
-                edges.push_back({std::min(a, b), std::max(a, b), static_cast<std::uint32_t>(t), a < b});
-        }
     tbb::parallel_sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
         return std::tie(a.low, a.high, a.facet) < std::tie(b.low, b.high, b.facet);
     });
     return edges;
+}
+
+/// Adds the sides of a facet. @param chosen  of an edge's two ends
+template <typename Chosen>
+void add_edges(const Eigen::Matrix3Xi& facets, std::uint32_t facet, const Chosen& chosen, std::vector<Edge>& edges)
+{
+    for (int k = 0; k < 3; ++k) {
+        const int a = facets(k, facet), b = facets((k + 1) % 3, facet);
+        if (a != b && chosen(a, b)) edges.push_back({std::min(a, b), std::max(a, b), facet, a < b});
+    }
 }
 
 /// Calls `use` with the first side of every edge and their number.
@@ -92,13 +95,15 @@ void for_each_edge(const std::vector<Edge>& edges, const Use& use)
 }
 
 /// Do any two facets that share an edge run along it the same way? Then both of its ends are open.
-bool any_disagree(const Eigen::Matrix3Xi& facets, const std::vector<bool>& open)
+bool any_disagree(const Eigen::Matrix3Xi& facets, const Gaps& gaps)
 {
     const auto both = [&](int a, int b) {
-        return open[static_cast<std::size_t>(a)] && open[static_cast<std::size_t>(b)];
+        return gaps.open[static_cast<std::size_t>(a)] && gaps.open[static_cast<std::size_t>(b)];
     };
+    std::vector<Edge> edges;
+    for (const std::uint32_t facet : gaps.facets) add_edges(facets, facet, both, edges);
     bool disagree = false;
-    for_each_edge(sorted_edges(facets, both), [&](const Edge* side, std::size_t count) {
+    for_each_edge(sorted(std::move(edges)), [&](const Edge* side, std::size_t count) {
         disagree |= count == 2 && side[0].upward == side[1].upward;
     });
     return disagree;
@@ -107,8 +112,13 @@ bool any_disagree(const Eigen::Matrix3Xi& facets, const std::vector<bool>& open)
 /// Joins facets over the edges that two of them share. @return  those that have another kind of edge
 std::vector<std::uint32_t> join_over_edges(const Eigen::Matrix3Xi& facets, Pieces& pieces)
 {
+    std::vector<Edge> edges;
+    edges.reserve(static_cast<std::size_t>(facets.size()));
+    for (Eigen::Index t = 0; t < facets.cols(); ++t)
+        add_edges(
+            facets, static_cast<std::uint32_t>(t), [](int, int) { return true; }, edges);
     std::vector<std::uint32_t> at_border;
-    for_each_edge(sorted_edges(facets, [](int, int) { return true; }), [&](const Edge* side, std::size_t count) {
+    for_each_edge(sorted(std::move(edges)), [&](const Edge* side, std::size_t count) {
         if (count == 2)
             pieces.join(side[0].facet, side[1].facet, side[0].upward == side[1].upward);
         else
@@ -142,10 +152,10 @@ struct Piece {
 } // namespace
 
 std::vector<std::uint32_t> wrongly_wound(const Eigen::Matrix3Xd& vertices, const Eigen::Matrix3Xi& facets,
-                                         const std::vector<bool>& open)
+                                         const Gaps& gaps)
 {
-    const bool closed = std::find(open.begin(), open.end(), true) == open.end();
-    if (!closed && !any_disagree(facets, open)) return {};
+    const bool closed = std::find(gaps.open.begin(), gaps.open.end(), true) == gaps.open.end();
+    if (!closed && !any_disagree(facets, gaps)) return {};
     Pieces pieces(static_cast<std::size_t>(facets.cols()));
     std::vector<std::uint32_t> at_border;
     if (closed)

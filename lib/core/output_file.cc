@@ -47,7 +47,10 @@ class Held : public std::streambuf {
     int_type overflow(int_type c) override
     {
         if (!is_spilled()) keep_at(scratch_path());
+        const off_t from = lseek(file_.get(), 0, SEEK_CUR);
         spill();
+        // What goes to the disk already, commit() need not wait for.
+        sync_file_range(file_.get(), from, static_cast<off_t>(kRoom), SYNC_FILE_RANGE_WRITE);
         return traits_type::eq_int_type(c, traits_type::eof()) ? traits_type::not_eof(c)
                                                                : sputc(traits_type::to_char_type(c));
     }

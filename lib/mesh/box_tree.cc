@@ -125,7 +125,7 @@ Eigen::AlignedBox3d box_of(const Mesh& mesh)
 
 /// Nodes over `children`, eight to each.
 template <typename Child>
-Level level_over(const std::vector<Child>& children)
+Level level_over(const LargeArray<Child>& children)
 {
     Level level;
     level.boxes.resize((children.size() + kWide - 1) / kWide);
@@ -141,6 +141,7 @@ void add_discs(Level& level, std::span<const Triangles8> leaves, std::size_t eac
 {
     level.discs.resize(level.boxes.size());
     tbb::parallel_for(std::size_t{0}, level.discs.size(), [&](std::size_t i) {
+        level.discs[i] = Discs8{};
         for (std::size_t k = 0; k < kWide; ++k) {
             const std::size_t first = std::min((kWide * i + k) * each, leaves.size());
             const std::size_t count = std::min(each, leaves.size() - first);
@@ -225,9 +226,9 @@ void arrange(std::span<Middle> range)
 }
 
 /// The triangles in the order of the leaves.
-std::vector<std::uint32_t> order_of(const Mesh& mesh, const Eigen::Vector3d& centre)
+LargeArray<std::uint32_t> order_of(const Mesh& mesh, const Eigen::Vector3d& centre)
 {
-    std::vector<Middle> middles(static_cast<std::size_t>(mesh.triangles.cols()));
+    LargeArray<Middle> middles(static_cast<std::size_t>(mesh.triangles.cols()));
     tbb::parallel_for(std::size_t{0}, middles.size(), [&](std::size_t t) {
         const Eigen::Vector3i corners = mesh.triangles.col(static_cast<Eigen::Index>(t));
         const Eigen::Vector3d sum =
@@ -236,8 +237,8 @@ std::vector<std::uint32_t> order_of(const Mesh& mesh, const Eigen::Vector3d& cen
         middles[t].triangle = static_cast<std::uint32_t>(t);
     });
     arrange(middles);
-    std::vector<std::uint32_t> order(middles.size());
-    std::transform(middles.begin(), middles.end(), order.begin(), [](const Middle& middle) { return middle.triangle; });
+    LargeArray<std::uint32_t> order(middles.size());
+    tbb::parallel_for(std::size_t{0}, order.size(), [&](std::size_t i) { order[i] = middles[i].triangle; });
     return order;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/large_array.h"
 #include "mesh/lanes.h"
 #include "mesh/mesh.h"
 
@@ -33,8 +34,8 @@ struct Discs8 {
 
 /// Nodes that are equally far from the leaves.
 struct Level {
-    std::vector<Boxes8> boxes;
-    std::vector<Discs8> discs; ///< none where the children are too large to be flat
+    LargeArray<Boxes8> boxes;
+    LargeArray<Discs8> discs; ///< none where the children are too large to be flat
 };
 
 /// Eight triangles: coordinates of their corners.
@@ -58,8 +59,8 @@ struct BoxTree {
     Eigen::AlignedBox3d box;                          ///< of the mesh
     Eigen::Vector3d centre = Eigen::Vector3d::Zero(); ///< of the box
     double rounding = 0;                              ///< of a coordinate, mm
-    std::vector<std::uint32_t> order; ///< of the mesh's triangles; triangle k of leaf l is order[8 l + k]
-    std::vector<Triangles8> leaves;   ///< where there is none, the last triangle stands again
+    LargeArray<std::uint32_t> order; ///< of the mesh's triangles; triangle k of leaf l is order[8 l + k]
+    LargeArray<Triangles8> leaves;   ///< where there is none, the last triangle stands again
     std::vector<Level> levels;
 };
 

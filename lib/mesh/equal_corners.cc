@@ -1,5 +1,7 @@
 #include "mesh/equal_corners.h"
 
+#include "core/large_array.h"
+
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
@@ -145,7 +147,7 @@ std::vector<Piece<T>> pieces_of(std::size_t facets, const CornerSource<T>& corne
 /// The corners of all pieces, part by part, each part in the order of the pieces.
 template <typename T>
 struct Parts {
-    std::unique_ptr<Dealt<T>[]> corners;
+    LargeArray<Dealt<T>> corners;
     std::array<std::size_t, kParts + 1> first{}; ///< of each part
 };
 
@@ -168,7 +170,7 @@ Parts<T> deal_out(std::vector<Piece<T>>& pieces)
         }
     }
     parts.first[kParts] = count;
-    parts.corners = std::make_unique_for_overwrite<Dealt<T>[]>(count);
+    parts.corners.resize(count);
     tbb::parallel_for(std::size_t{0}, pieces.size(), [&](std::size_t p) {
         std::uint32_t number = pieces[p].first;
         for (const Corner<T>& corner : pieces[p].corners)
@@ -179,12 +181,12 @@ Parts<T> deal_out(std::vector<Piece<T>>& pieces)
 
 /// Of each corner of the pieces the number of the first one that equals it.
 template <typename T>
-std::unique_ptr<std::uint32_t[]> first_equal(const Parts<T>& parts)
+LargeArray<std::uint32_t> first_equal(const Parts<T>& parts)
 {
-    auto first = std::make_unique_for_overwrite<std::uint32_t[]>(parts.first[kParts]);
+    LargeArray<std::uint32_t> first(parts.first[kParts]);
     tbb::enumerable_thread_specific<Table<std::uint32_t>> tables;
     tbb::parallel_for(std::size_t{0}, kParts, [&](std::size_t p) {
-        const Dealt<T>* const part = parts.corners.get() + parts.first[p];
+        const Dealt<T>* const part = parts.corners.data() + parts.first[p];
         const auto count = static_cast<std::uint32_t>(parts.first[p + 1] - parts.first[p]);
         Table<std::uint32_t>& table = tables.local();
         table.clear(count);
@@ -246,10 +248,10 @@ Mesh welded(std::size_t facets, const CornerSource<T>& corners, MeshRepair& repa
     Mesh mesh;
     mesh.triangles.resize(3, static_cast<Eigen::Index>(facets));
     std::vector<Piece<T>> pieces = pieces_of(facets, corners, mesh.triangles);
-    const std::unique_ptr<std::uint32_t[]> first = first_equal(deal_out(pieces));
-    mesh.vertices = make_vertices(pieces, first.get());
+    LargeArray<std::uint32_t> first = first_equal(deal_out(pieces));
+    mesh.vertices = make_vertices(pieces, first.data());
     tbb::parallel_for(std::size_t{0}, pieces.size(), [&](std::size_t p) {
-        name_vertices(pieces[p], first.get(), mesh.triangles.data() + 3 * p * kPiece);
+        name_vertices(pieces[p], first.data(), mesh.triangles.data() + 3 * p * kPiece);
     });
     std::size_t kept = 0;
     for (std::size_t p = 0; p < pieces.size(); ++p) { // what was left out leaves a gap behind its piece
