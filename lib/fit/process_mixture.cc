@@ -15,28 +15,35 @@ using Eigen::MatrixXd;
 using Eigen::Vector2d;
 using Eigen::VectorXd;
 
+// The spline's prefilter 1 / (1 - 2/3 s), s = sin²(ω/2), as 1 + 2/3 s + 4/9 s².
+constexpr std::array<double, 5> kFilter = {1 / 36.0, -10 / 36.0, 54 / 36.0, -10 / 36.0, 1 / 36.0};
+constexpr Index kBeyond = 2; // nodes beyond each end
+
 } // namespace
 
 ControlHeights::ControlHeights(const Bspline& grid)
     : rows_(grid.heights.rows()), columns_(grid.heights.cols()), cell_(grid.cell),
-      nodes_(2, (rows_ + 2) * (columns_ + 2))
+      nodes_(2, (rows_ + 2 * kBeyond) * (columns_ + 2 * kBeyond))
 {
     const Eigen::Rotation2Dd turn(grid.angle);
-    for (Index j = 0; j < columns_ + 2; ++j)
-        for (Index i = 0; i < rows_ + 2; ++i)
-            nodes_.col(j * (rows_ + 2) + i) =
-                grid.origin +
-                turn * cell_.cwiseProduct(Vector2d(static_cast<double>(i - 2), static_cast<double>(j - 2)));
+    const auto place = [](Index i) { return static_cast<double>(i - kBeyond - 1); };
+    for (Index j = 0; j < columns_ + 2 * kBeyond; ++j)
+        for (Index i = 0; i < rows_ + 2 * kBeyond; ++i)
+            nodes_.col(j * (rows_ + 2 * kBeyond) + i) =
+                grid.origin + turn * cell_.cwiseProduct(Vector2d(place(i), place(j)));
 }
 
 MatrixXd ControlHeights::from(const MatrixXd& values) const
 {
-    MatrixXd result(size(), values.cols());
+    MatrixXd result(size(), values.cols()), along(rows_, columns_ + 2 * kBeyond);
     for (Index k = 0; k < values.cols(); ++k) {
-        const auto f = values.col(k).reshaped(rows_ + 2, columns_ + 2);
-        const MatrixXd along = (8 * f.middleRows(1, rows_) - f.topRows(rows_) - f.bottomRows(rows_)) / 6;
-        result.col(k) =
-            ((8 * along.middleCols(1, columns_) - along.leftCols(columns_) - along.rightCols(columns_)) / 6).reshaped();
+        const auto f = values.col(k).reshaped(rows_ + 2 * kBeyond, columns_ + 2 * kBeyond);
+        along.setZero();
+        for (Index p = 0; p <= 2 * kBeyond; ++p) along += kFilter[static_cast<std::size_t>(p)] * f.middleRows(p, rows_);
+        auto controls = result.col(k).reshaped(rows_, columns_);
+        controls.setZero();
+        for (Index p = 0; p <= 2 * kBeyond; ++p)
+            controls += kFilter[static_cast<std::size_t>(p)] * along.middleCols(p, columns_);
     }
     return result;
 }
@@ -44,20 +51,21 @@ MatrixXd ControlHeights::from(const MatrixXd& values) const
 // Σ w_p w_q (correlation of nodes p rows and q columns farther), w the interpolant's weights folded with themselves.
 MatrixXd ControlHeights::correlation_between(const Correlation& correlation) const
 {
-    constexpr std::array<double, 5> kFolded = {1 / 36.0, -16 / 36.0, 66 / 36.0, -16 / 36.0, 1 / 36.0};
-    const Eigen::ArrayXd u = Eigen::ArrayXd::LinSpaced(rows_ + 2, 0, static_cast<double>(rows_ + 1)) * cell_.x();
-    MatrixXd near(rows_ + 2, columns_ + 2), along(rows_, columns_ + 2), between = MatrixXd::Zero(rows_, columns_);
-    for (Index j = 0; j < near.cols(); ++j)
+    constexpr Index kFar = 2 * kBeyond;
+    std::array<double, 2 * kFar + 1> folded{};
+    for (std::size_t p = 0; p < kFilter.size(); ++p)
+        for (std::size_t q = 0; q < kFilter.size(); ++q) folded[p + q] += kFilter[p] * kFilter[q];
+    const Index rows = rows_ + kFar, columns = columns_ + kFar;
+    const Eigen::ArrayXd u = Eigen::ArrayXd::LinSpaced(rows, 0, static_cast<double>(rows - 1)) * cell_.x();
+    MatrixXd near(rows, columns), along = MatrixXd::Zero(rows_, columns), between = MatrixXd::Zero(rows_, columns_);
+    for (Index j = 0; j < columns; ++j)
         near.col(j) = at(correlation, u.square() + std::pow(static_cast<double>(j) * cell_.y(), 2));
-    along.setZero();
-    for (Index p = 0; p < 5; ++p) {
-        const double weight = kFolded[static_cast<std::size_t>(p)];
-        for (Index i = 0; i < rows_; ++i) along.row(i) += weight * near.row(std::abs(i + p - 2));
-    }
-    for (Index p = 0; p < 5; ++p) {
-        const double weight = kFolded[static_cast<std::size_t>(p)];
-        for (Index j = 0; j < columns_; ++j) between.col(j) += weight * along.col(std::abs(j + p - 2));
-    }
+    for (Index p = -kFar; p <= kFar; ++p)
+        for (Index i = 0; i < rows_; ++i)
+            along.row(i) += folded[static_cast<std::size_t>(p + kFar)] * near.row(std::abs(i + p));
+    for (Index p = -kFar; p <= kFar; ++p)
+        for (Index j = 0; j < columns_; ++j)
+            between.col(j) += folded[static_cast<std::size_t>(p + kFar)] * along.col(std::abs(j + p));
     return between;
 }
 

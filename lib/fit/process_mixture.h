@@ -11,8 +11,9 @@
 
 namespace fettle {
 
-/// Functions of x and y by their control heights on a grid: c_i = (-f_{i-1} + 8 f_i - f_{i+1}) / 6 from their values at
-/// the Greville abscissae and one beyond each end is exact for cubics (quasi-interpolant: de Boor 2001, XII).
+/// Functions of x and y by their control heights on a grid: c_i = (f_{i-2} - 10 f_{i-1} + 54 f_i - 10 f_{i+1} +
+/// f_{i+2}) / 36 from their values at the Greville abscissae and two beyond each end is exact for cubics
+/// (quasi-interpolant: de Boor 2001, XII) and nearly the interpolant for what bends within four cells.
 class ControlHeights {
   public:
     explicit ControlHeights(const Bspline& grid);
