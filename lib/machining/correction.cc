@@ -70,15 +70,22 @@ class Correction {
         if (tip.fate == Fate::shifted) tip.shift = -mu * normal;
     }
 
-    /// Lifts a shifted tip out of the design.
+    /// Lifts a shifted tip out of the design. Where that would be far it is a wall or a narrow corner that the shift
+    /// runs into, and the tip goes straight up or down instead, until the cutter touches.
     void hold(Tip& tip) const
     {
         if (tip.shift.isZero(0)) return;
         const Vector3d wanted = tip.at + tip.shift;
         const auto rests = drop_(wanted.head<2>());
         if (!rests || rests->z <= wanted.z()) return;
-        tip.shift.z() += rests->z - wanted.z();
-        if (rests->z - wanted.z() > reach_) tip.fate = Fate::held;
+        if (rests->z - wanted.z() <= reach_) {
+            tip.shift.z() += rests->z - wanted.z();
+            return;
+        }
+        tip.fate = Fate::held;
+        const auto below = drop_(tip.at.head<2>());
+        const double upright = tip.shift.z() == 0 ? 0 : tip.shift.squaredNorm() / tip.shift.z(); // -mu/N·Z
+        tip.shift = Vector3d(0, 0, below ? std::max(upright, below->z - tip.at.z()) : 0);
     }
 
   private:
@@ -170,6 +177,26 @@ std::vector<std::vector<Tip>> shifted_tips(const std::vector<CutterMove>& moves,
     return tips;
 }
 
+/// How the beginning of the first and the ends of all moves shift. What goes straight up or down into the air stays so:
+/// its upper end goes beside as far as its lower one.
+std::vector<Vector3d> shifts_of_ends(const std::vector<CutterMove>& moves, const std::vector<std::vector<Tip>>& tips)
+{
+    std::vector<Vector3d> shifts(moves.size() + 1, Vector3d::Zero());
+    for (std::size_t m = 0; m < moves.size(); ++m) {
+        if (tips[m].empty()) continue;
+        shifts[m] = tips[m].front().shift;
+        shifts[m + 1] = tips[m].back().shift;
+    }
+    for (std::size_t m = 0; m < moves.size(); ++m) {
+        const CutterMove& move = moves[m];
+        if (move.sweep != 0 || move.from.head<2>() != move.to.head<2>()) continue;
+        const bool down = move.to.z() < move.from.z();
+        Vector3d& upper = shifts[down ? m : m + 1];
+        if (upper.isZero(0)) upper.head<2>() = shifts[down ? m + 1 : m].head<2>();
+    }
+    return shifts;
+}
+
 void count(CorrectedPath& path, const Tip& tip)
 {
     path.shifted += !tip.shift.isZero(0);
@@ -199,23 +226,20 @@ CorrectedPath correct(const std::vector<CutterMove>& moves, const Cutter& cutter
     const Correction correction(cutter, machined, design, errors, reach);
     const double grid = grid_of(machined);
     const auto tips = shifted_tips(moves, grid, correction);
-    const auto first_of = [&](std::size_t m) { return tips[m].front().at + tips[m].front().shift; };
+    const std::vector<Vector3d> ends = shifts_of_ends(moves, tips);
     CorrectedPath path;
-    Vector3d at = tips.front().empty() ? moves.front().from : first_of(0); // where the corrected path is
     for (std::size_t m = 0; m < moves.size(); ++m) {
-        std::vector<Vector3d> way = {at};
-        bool changed = at != moves[m].from;
+        std::vector<Vector3d> way = {moves[m].from + ends[m]};
+        bool changed = !ends[m].isZero(0) || !ends[m + 1].isZero(0);
         for (std::size_t k = 1; k < tips[m].size(); ++k) {
             const Tip& tip = tips[m][k];
+            count(path, tip);
+            if (k + 1 == tips[m].size()) break;
             way.push_back(tip.at + tip.shift);
             changed = changed || !tip.shift.isZero(0);
-            count(path, tip);
         }
-        // a rapid move goes to where the next feed move begins
-        if (tips[m].empty())
-            way.push_back(m + 1 < moves.size() && !tips[m + 1].empty() ? first_of(m + 1) : moves[m].to);
-        at = way.back();
-        if (changed || at != moves[m].to)
+        way.push_back(moves[m].to + ends[m + 1]);
+        if (changed)
             append(path.moves, moves[m], way);
         else
             path.moves.push_back(moves[m]);

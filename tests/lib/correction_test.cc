@@ -108,6 +108,28 @@ TEST(Correction, TipsOfUnknownErrorGoAsTheirNeighbours)
     EXPECT_LT((path.moves.back().to - moves_on(cutter, 0, {{0, 0}, {9, 0}})[0].to).norm(), 1e-9);
 }
 
+TEST(Correction, StraightUpStaysStraightUp)
+{
+    const Cutter cutter = parse_cutter("ball:6");
+    const Mesh design = slope(30, 3, 0), machined = slope(20, 40, 0.5);
+    auto moves = moves_on(cutter, 0.5, {{-8, -3}, {2, 5}});
+    CutterMove plunge = moves[0], lift = moves[0];
+    plunge.to = moves[0].from;
+    plunge.from = plunge.to + Eigen::Vector3d(0, 0, 30);
+    lift.from = moves[0].to;
+    lift.to = lift.from + Eigen::Vector3d(0, 0, 30);
+    lift.feed = 0;
+    moves = {plunge, moves[0], lift};
+    const auto path = correct(moves, cutter, machined, design, patch_errors(machined, design), 0.01);
+    ASSERT_EQ(path.moves.size(), 3u);
+    for (const std::size_t m : {0u, 2u}) {
+        EXPECT_EQ(path.moves[m].from.head<2>(), path.moves[m].to.head<2>());
+        EXPECT_GT((path.moves[m].to - moves[m].to).head<2>().norm(), 0.1);
+    }
+    EXPECT_EQ(path.moves[0].from.z(), plunge.from.z());
+    EXPECT_EQ(path.moves[2].to.z(), lift.to.z());
+}
+
 TEST(Correction, KeepsWhatAProgramSaysBesideItsMoves)
 {
     const std::string text =

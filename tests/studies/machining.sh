@@ -2,7 +2,7 @@
 root=$HERE/../..
 build=$(dirname "$(dirname "$(command -v fettle-mill)")")
 unset MAKEFLAGS MFLAGS MAKELEVEL
-study() { make --no-print-directory -C "$root" -f pipelines/machining.mk B="$build" MACHINING="$PWD/out" SCALLOP=2 GRID=2 TOLERANCE=4 -s; }
+study() { make --no-print-directory -C "$root" -f pipelines/machining.mk B="$build" MACHINING="$PWD/out" PASSES='--scallop 2' GRID=2 TOLERANCE=4 -s; }
 study >table
 grep -q '^over-cut beyond 4 mm: none' table
 grep -q 'rapid moves through material: 0' table
