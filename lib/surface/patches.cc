@@ -20,16 +20,10 @@ constexpr int kMostNewtonSteps = 50;
 // When the steps in u and v are at rounding, and how far outside the domain rounding may put them; relative to the
 // domain.
 constexpr double kRounding = 1e-12;
-
-/// Domain of u (row 0) and v (row 1): least, most.
-Eigen::Matrix2d domain(const Patch& patch)
-{
-    const auto most = [](const Eigen::VectorXd& knots, int degree) { return knots[knots.size() - degree - 1]; };
-    Eigen::Matrix2d result;
-    result << patch.knots_u[patch.degree_u], most(patch.knots_u, patch.degree_u), patch.knots_v[patch.degree_v],
-        most(patch.knots_v, patch.degree_v);
-    return result;
-}
+// Chords of a span of a trimming curve: a quarter of a circle bends off its chords by (π/2/64)²/8 of the radius.
+constexpr int kChords = 64;
+// How far apart the ends of a closed curve may be, relative to the domain: what six digits in a file leave open.
+constexpr double kClosed = 1e-5;
 
 Eigen::VectorXd read_knots(json::Reader& reader, const std::string& key, int degree, Eigen::Index control)
 {
@@ -51,6 +45,40 @@ Eigen::VectorXd read_knots(json::Reader& reader, const std::string& key, int deg
     return knots;
 }
 
+Eigen::Vector2d point(const TrimCurve& curve, double t)
+{
+    const Basis at = basis(curve.knots, curve.degree, t);
+    Eigen::VectorXd weights = at.value;
+    if (curve.weights.size() > 0) weights.array() *= curve.weights.segment(at.first, weights.size()).array();
+    return curve.control.middleCols(at.first, weights.size()) * weights / weights.sum();
+}
+
+TrimCurve read_trim(json::Reader reader, const Patch& patch)
+{
+    TrimCurve curve;
+    curve.degree = reader.integer("degree", 1, kHighestDegree);
+    curve.control = reader.matrix("control", 2).transpose();
+    curve.knots = read_knots(reader, "knots", curve.degree, curve.control.cols());
+    if (!reader.is_null("weights")) {
+        curve.weights = reader.vector("weights", static_cast<int>(curve.control.cols()));
+        if (curve.weights.minCoeff() <= 0) reader.refuse("weights", "must be positive");
+    }
+    const Eigen::Matrix2d limits = domain(patch);
+    const Eigen::Vector2d size = limits.col(1) - limits.col(0);
+    for (Eigen::Index i = 0; i < curve.control.cols(); ++i) {
+        const Eigen::Vector2d uv = curve.control.col(i);
+        if (((limits.col(0) - uv).cwiseMax(uv - limits.col(1)).array() > kRounding * size.array()).any())
+            reader.refuse("control[" + std::to_string(i) + "]", "lies outside the knots of u or v");
+        curve.control.col(i) = uv.cwiseMax(limits.col(0)).cwiseMin(limits.col(1));
+    }
+    const Eigen::Index last = curve.knots.size() - curve.degree - 1;
+    const Eigen::Vector2d gap = point(curve, curve.knots[last]) - point(curve, curve.knots[curve.degree]);
+    if ((gap.cwiseQuotient(size).cwiseAbs().array() > kClosed).any())
+        reader.refuse("control", "is not closed: it ends elsewhere than it begins");
+    reader.done();
+    return curve;
+}
+
 Patch read_patch(json::Reader reader, double mm)
 {
     Patch patch;
@@ -69,15 +97,14 @@ Patch read_patch(json::Reader reader, double mm)
         if (patch.weights.rows() != control[0].rows()) reader.refuse("weights", "one row for each row of control");
         if (patch.weights.minCoeff() <= 0) reader.refuse("weights", "must be positive");
     }
+    if (!reader.is_null("trim"))
+        for (json::Reader& curve : reader.objects("trim")) patch.trim.push_back(read_trim(std::move(curve), patch));
     reader.done();
     return patch;
 }
 
-} // namespace
-
-std::vector<Patch> read_patches(const std::string& path)
+std::vector<Patch> read_patches(json::Reader reader)
 {
-    json::Reader reader = json::Reader::open(path);
     reader.expect_kind("patches");
     json::Reader units = reader.object("units");
     const double mm = mm_per(parse_length_unit(units.choice("length", {"mm", "in", "m"})));
@@ -87,6 +114,62 @@ std::vector<Patch> read_patches(const std::string& path)
     if (patches.empty()) reader.refuse("patches", "there is none");
     reader.done();
     return patches;
+}
+
+} // namespace
+
+std::vector<Patch> read_patches(const std::string& path) { return read_patches(json::Reader::open(path)); }
+
+std::vector<Patch> parse_patches(std::string_view text, const std::string& source)
+{
+    return read_patches(json::Reader::parse(text, source));
+}
+
+Eigen::Matrix2d domain(const Patch& patch)
+{
+    const auto most = [](const Eigen::VectorXd& knots, int degree) { return knots[knots.size() - degree - 1]; };
+    Eigen::Matrix2d result;
+    result << patch.knots_u[patch.degree_u], most(patch.knots_u, patch.degree_u), patch.knots_v[patch.degree_v],
+        most(patch.knots_v, patch.degree_v);
+    return result;
+}
+
+std::vector<Eigen::Matrix2Xd> outlines(const Patch& patch)
+{
+    if (patch.trim.empty()) {
+        const Eigen::Matrix2d limits = domain(patch);
+        Eigen::Matrix2Xd sides(2, 5);
+        sides.row(0) << limits(0, 0), limits(0, 1), limits(0, 1), limits(0, 0), limits(0, 0);
+        sides.row(1) << limits(1, 0), limits(1, 0), limits(1, 1), limits(1, 1), limits(1, 0);
+        return {sides};
+    }
+    std::vector<Eigen::Matrix2Xd> polygons;
+    for (const TrimCurve& curve : patch.trim) {
+        std::vector<Eigen::Vector2d> points;
+        for (Eigen::Index k = curve.degree; k + curve.degree + 1 < curve.knots.size(); ++k) {
+            const double from = curve.knots[k], to = curve.knots[k + 1];
+            const int chords = curve.degree == 1 && curve.weights.size() == 0 ? 1 : kChords;
+            for (int i = 0; i < chords && from < to; ++i)
+                points.push_back(point(curve, from + (to - from) * i / chords));
+        }
+        Eigen::Matrix2Xd polygon(2, points.size() + 1);
+        for (std::size_t i = 0; i <= points.size(); ++i)
+            polygon.col(static_cast<Eigen::Index>(i)) = points[i % points.size()];
+        polygons.push_back(std::move(polygon));
+    }
+    return polygons;
+}
+
+bool inside(const std::vector<Eigen::Matrix2Xd>& outlines, const Eigen::Vector2d& uv)
+{
+    bool odd = false;
+    for (const Eigen::Matrix2Xd& polygon : outlines)
+        for (Eigen::Index i = 1; i < polygon.cols(); ++i) {
+            const Eigen::Vector2d a = polygon.col(i - 1), b = polygon.col(i);
+            if ((a.y() > uv.y()) == (b.y() > uv.y())) continue;
+            if (uv.x() < a.x() + (b.x() - a.x()) * (uv.y() - a.y()) / (b.y() - a.y())) odd = !odd;
+        }
+    return odd;
 }
 
 Eigen::Matrix3d point_and_tangents(const Patch& patch, const Eigen::Vector2d& uv)
@@ -131,6 +214,7 @@ double height(const Patch& patch, const Eigen::Vector2d& xy)
         uv = next;
         if (!settled) continue;
         if (beyond.maxCoeff() > kRounding) return outside;
+        if (!patch.trim.empty() && !inside(outlines(patch), uv)) return outside;
         return point_and_tangents(patch, uv.cwiseMax(limits.col(0)).cwiseMin(limits.col(1)))(2, 0);
     }
     return outside;
