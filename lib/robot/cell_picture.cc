@@ -23,9 +23,13 @@ constexpr int kWhole = 700, kNear = 520, kHeight = 520;
 // Points of the scene to a pixel, each way: the mean of nine has smooth edges.
 constexpr int kFine = 3;
 
+// So many poses before and behind are drawn as path: all of those that cover a part would hide it.
+constexpr Eigen::Index kPathAround = 400;
+
 constexpr double kFloor = 500;      // mm
 constexpr double kAroundTool = 1.3; // of the tool's length, the picture beside reaches from the tip's height
 constexpr double kLeastAround = 60; // mm
+constexpr double kMargin = 0.02;    // of the whole cell, about it
 
 constexpr Rgb kSky = {246, 247, 249}, kLightFloor = {236, 236, 232}, kDarkFloor = {224, 224, 220};
 constexpr Rgb kArm = {232, 140, 60}, kTool = {90, 125, 165}, kFixture = {150, 152, 156}, kPart = {198, 176, 130};
@@ -170,13 +174,14 @@ Eigen::Isometry3d tool_in_cell(const Robot& robot, const CellJoints& q)
     return cell_base(robot, q[6]) * Arm(robot).flange(q.head<6>()) * robot.T_flange_tool;
 }
 
-// Places in the part where the tips are, as they lie in the cell at one pose.
-Eigen::Matrix3Xd tips_in_cell(const Robot& robot, const CellJointsPath& joints, double table)
+// Places in the part where the tips are about a pose, as they lie in the cell at that pose.
+Eigen::Matrix3Xd tips_in_cell(const Robot& robot, const CellJointsPath& joints, Eigen::Index pose)
 {
-    Eigen::Matrix3Xd tips(3, joints.cols());
-    const Eigen::Isometry3d T_cell_part = cell_part(robot, table);
-    for (Eigen::Index i = 0; i < joints.cols(); ++i) {
-        const CellJoints q = joints.col(i);
+    const Eigen::Index first = std::max<Eigen::Index>(0, pose - kPathAround);
+    Eigen::Matrix3Xd tips(3, std::min(joints.cols(), pose + kPathAround + 1) - first);
+    const Eigen::Isometry3d T_cell_part = cell_part(robot, joints(7, pose));
+    for (Eigen::Index i = 0; i < tips.cols(); ++i) {
+        const CellJoints q = joints.col(first + i);
         tips.col(i).setConstant(NAN);
         if (!q.hasNaN())
             tips.col(i) = T_cell_part * (cell_part(robot, q[7]).inverse() * tool_in_cell(robot, q).translation());
@@ -205,7 +210,8 @@ void draw_key(Sheet& sheet, const Vector2d& at)
 View whole_view(const Shot& shot)
 {
     const Eigen::Matrix2Xd seen = (shot.rotation_view_cell * shot.scene.mesh.vertices).topRows<2>();
-    return view_of(seen.rowwise().minCoeff(), seen.rowwise().maxCoeff(), kWhole, kHeight);
+    const Vector2d least = seen.rowwise().minCoeff(), most = seen.rowwise().maxCoeff();
+    return view_of(least - kMargin * (most - least), most + kMargin * (most - least), kWhole, kHeight);
 }
 
 View near_view(const Robot& robot, const Shot& shot, const CellJoints& q)
@@ -227,9 +233,11 @@ void draw_pose(Sheet& sheet, const Vector2d& corner, const Robot& robot, const M
     std::vector<std::size_t> red;
     if (collides) red = {pairs[c.pair].a, pairs[c.pair].b};
     const Shot shot = take_shot(robot, workpiece, q, options.from, red);
-    const Eigen::Matrix3Xd tips = tips_in_cell(robot, joints, q[7]);
-    sheet.text("Pose " + std::to_string(pose), corner + Vector2d(0, 12), kLabel + 1, Sheet::kInk, Align::left, true);
-    sheet.text(caption(robot, pairs, c, options.tolerance, options.units), corner + Vector2d(110, 12), kLabel,
+    const Eigen::Matrix3Xd tips = tips_in_cell(robot, joints, static_cast<Eigen::Index>(pose));
+    const std::string title = "Pose " + std::to_string(pose);
+    sheet.text(title, corner + Vector2d(0, 12), kLabel + 1, Sheet::kInk, Align::left, true);
+    const Vector2d beside(sheet.text_width(title, kLabel + 1, true) + 2 * kGap, 12);
+    sheet.text(caption(robot, pairs, c, options.tolerance, options.units), corner + beside, kLabel,
                collides ? kCollides : Sheet::kInk);
     for (const bool close : {false, true}) {
         const View view = close ? near_view(robot, shot, q) : whole_view(shot);

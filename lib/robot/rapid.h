@@ -21,9 +21,11 @@ struct RapidOptions {
 void write_rapid(std::ostream& out, const Robot& robot, const PosePath& poses, const FollowedPath& path,
                  const RapidOptions& options);
 
-/// RAPID's confdata: the quadrants of joints 1, 4 and 6 (0: 0 to 90 degrees, -1: -90 to 0, …), and for serial arms
-/// which of eight ways the pose is reached: 4 if the wrist centre lies behind axis 1, + 2 if it lies behind the lower
-/// arm, + 1 if joint 5 is negative; 0 with a parallelogram, which controllers know by its quadrants.
+/// RAPID's confdata (ABB, RAPID reference manual, "confdata"; its table of cfx is repeated in AXIS_CONFIGURATION.md of
+/// github.com/CEAD-group/py-opw-kinematics): the quadrants of joints 1, 4 and 6 (0: 0 to 90 degrees, -1: -90 to 0, …),
+/// and for serial arms which of eight ways the pose is reached: 4 if the wrist centre lies behind axis 1, + 2 if it
+/// lies behind the lower arm, + 1 if joint 5 is negative; 0 with a parallelogram, which controllers know by its
+/// quadrants.
 Eigen::Vector4i rapid_configuration(const Robot& robot, const Joints& joints);
 
 } // namespace fettle
