@@ -53,6 +53,8 @@ $(B)/lib/compare/canvas.o: override CPPFLAGS += $(addprefix -isystem ,$(wildcard
 
 # Square roots of eight numbers at once are one instruction where nobody reads errno.
 $(B)/lib/mesh/mesh_index.o $(B)/lib/robot/workpiece.o: override CXXFLAGS += -fno-math-errno
+# What this one computes in float only bounds what double measures elsewhere: products and sums may be fused.
+$(B)/lib/mesh/mesh_index.o: override CXXFLAGS += -ffp-contract=fast
 
 include tools/libraries.mk
 

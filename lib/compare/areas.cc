@@ -40,87 +40,94 @@ std::vector<Told> of_blocks(const PointSource& points, const Tell& tell)
     return told;
 }
 
+/// The first finite point.
+std::optional<Eigen::Vector2d> first_point(const PointSource& points)
+{
+    PointBlock block;
+    for (std::size_t first = 0; first < points.points; first += points.block) {
+        points.read(first, std::min(points.block, points.points - first), block);
+        for (const auto& point : block.xyz.colwise())
+            if (point.allFinite()) return point.head<2>();
+    }
+    return std::nullopt;
+}
+
+/// A step from one point to another; zero: none yet.
+void shorten(Eigen::Vector2d& best, const Eigen::Vector2d& step)
+{
+    if (step.isZero(0)) return;
+    if (best.isZero(0) || step.squaredNorm() < best.squaredNorm()) best = step;
+}
+
 struct Extent {
     Eigen::AlignedBox2d box;
     std::size_t finite = 0;
-    Eigen::Vector2d first = {0, 0};
-
-    void add(const Eigen::Vector2d& p)
-    {
-        if (finite++ == 0) first = p;
-        box.extend(p);
-    }
-    void add(const Extent& other)
-    {
-        if (finite == 0) first = other.first;
-        finite += other.finite;
-        box.extend(other.box);
-    }
+    Eigen::Vector2d step = {0, 0}; ///< the shortest from the first point to another
 };
 
-Extent extent_of(const PointSource& points)
+Extent extent_of(const PointSource& points, const Eigen::Vector2d& first)
 {
     Extent all;
-    for (const Extent& part : of_blocks<Extent>(points, [](Extent&e, const Eigen::Vector2d&p) { e.add(p); }))
-        all.add(part);
+    for (const Extent& part : of_blocks<Extent>(points, [&](Extent&extent, const Eigen::Vector2d&p) {
+             ++extent.finite;
+             extent.box.extend(p);
+             shorten(extent.step, p - first);
+         })) {
+        all.finite += part.finite;
+        all.box.extend(part.box);
+        shorten(all.step, part.step);
+    }
     return all;
 }
 
-/// The shortest step from `from` to another point that `allowed` lets pass; none: zero.
-template <typename Allowed>
-Eigen::Vector2d shortest_step(const PointSource& points, const Eigen::Vector2d& from, const Allowed& allowed)
+/// The shortest step from `from` to another point that is across `a`; none: zero.
+Eigen::Vector2d shortest_across(const PointSource& points, const Eigen::Vector2d& from, const Eigen::Vector2d& a)
 {
-    const auto shorter = [](Eigen::Vector2d& best, const Eigen::Vector2d& step) {
-        if (best.isZero(0) || step.squaredNorm() < best.squaredNorm()) best = step;
-    };
     struct Step {
         Eigen::Vector2d step = {0, 0};
     };
     Eigen::Vector2d best = {0, 0};
-    for (const Step& part : of_blocks<Step>(points, [&](Step&s, const Eigen::Vector2d&p) {
+    for (const Step& part : of_blocks<Step>(points, [&](Step&shortest, const Eigen::Vector2d&p) {
              const Eigen::Vector2d step = p - from;
-             if (!step.isZero(0) && allowed(step)) shorter(s.step, step);
+             if (std::abs(step.dot(a)) < kOffLattice * a.norm() * step.norm()) shorten(shortest.step, step);
          }))
-        if (!part.step.isZero(0)) shorter(best, part.step);
+        shorten(best, part.step);
     return best;
 }
 
 // The shortest step from the first point to another, and the shortest one across it.
-std::optional<Lattice> guess(const PointSource& points, const Eigen::Vector2d& first)
+std::optional<Lattice> guess(const PointSource& points, const Eigen::Vector2d& first, const Eigen::Vector2d& step)
 {
-    const Eigen::Vector2d a = shortest_step(points, first, [](const Eigen::Vector2d&) { return true; });
-    if (a.isZero(0)) return std::nullopt;
-    const Eigen::Vector2d b = shortest_step(points, first, [&](const Eigen::Vector2d& step) {
-        return std::abs(step.dot(a)) < kOffLattice * a.norm() * step.norm();
-    });
-    if (b.isZero(0)) return std::nullopt;
-    return Lattice{first, a, b};
+    if (step.isZero(0)) return std::nullopt;
+    const Eigen::Vector2d across = shortest_across(points, first, step);
+    if (across.isZero(0)) return std::nullopt;
+    return Lattice{first, step, across};
 }
 
 /// Normal equations of a lattice, of the points that lie on it.
 struct LatticeSums {
     Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
     Eigen::Matrix<double, 3, 2> B = Eigen::Matrix<double, 3, 2>::Zero();
-    bool off = false; ///< is one of the points off its place?
 };
 
 // Least squares of the points within `reach` cells; nothing if one of them is off its place.
 std::optional<Lattice> refine(const PointSource& points, const Lattice& lattice, double reach)
 {
     const Eigen::Matrix2d to_cells = lattice.cell().inverse();
+    std::atomic<bool> off = false; // then all others need not look
     const auto parts = of_blocks<LatticeSums>(points, [&](LatticeSums& sums, const Eigen::Vector2d& p) {
-        if (sums.off) return;
+        if (off.load(std::memory_order_relaxed)) return;
         const Eigen::Vector2d cells = to_cells * (p - lattice.origin);
         if (cells.cwiseAbs().maxCoeff() > reach) return;
         const Eigen::Vector2d place = cells.array().round();
-        sums.off = (cells - place).cwiseAbs().maxCoeff() > kOffLattice;
+        if ((cells - place).cwiseAbs().maxCoeff() > kOffLattice) off = true;
         const Eigen::Vector3d row(1, place.x(), place.y());
         sums.A += row * row.transpose();
         sums.B += row * (p - lattice.origin).transpose();
     });
+    if (off) return std::nullopt;
     LatticeSums all;
     for (const LatticeSums& part : parts) {
-        if (part.off) return std::nullopt;
         all.A += part.A;
         all.B += part.B;
     }
@@ -149,9 +156,11 @@ Eigen::VectorXd vertex_areas(const Mesh& mesh) { return vertex_areas(mesh, Eigen
 
 PlanAreas::PlanAreas(const PointSource& points)
 {
-    const Extent extent = extent_of(points);
+    const std::optional<Eigen::Vector2d> first = first_point(points);
+    if (!first) return;
+    const Extent extent = extent_of(points, *first);
     if (extent.finite < 2) return;
-    std::optional<Lattice> lattice = extent.finite < 4 ? std::nullopt : guess(points, extent.first);
+    std::optional<Lattice> lattice = extent.finite < 4 ? std::nullopt : guess(points, *first, extent.step);
     for (const double reach : {kFirstReach, std::numeric_limits<double>::infinity()})
         if (lattice) lattice = refine(points, *lattice, reach);
     if (lattice) {

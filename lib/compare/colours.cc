@@ -36,7 +36,7 @@ Rgb ColourScale::operator()(double error) const
     for (std::size_t i = 0; i < mixed.size(); ++i) {
         const double low = kRedBlue[static_cast<std::size_t>(below)][i];
         const double high = kRedBlue[static_cast<std::size_t>(below) + 1][i];
-        mixed[i] = static_cast<std::uint8_t>(std::lround(low + (place - below) * (high - low)));
+        mixed[i] = static_cast<std::uint8_t>(low + (place - below) * (high - low) + 0.5);
     }
     return mixed;
 }
