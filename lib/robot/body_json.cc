@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <set>
 
 namespace fettle {
 
@@ -107,6 +108,22 @@ BodyPair pair_of(Reader& reader, const std::string& key_a, const Robot& robot, c
     return pair;
 }
 
+// The robot may stand otherwise than stated: what it carries against what it does not has that margin, unless another
+// is given.
+void add_calibration_error(Robot& robot, double error)
+{
+    const auto on_robot = [&](std::size_t body) {
+        if (body == robot.bodies.size()) return false;
+        const int on = robot.bodies[body].link;
+        return on >= link::kBase && on <= link::kTool;
+    };
+    std::set<BodyPair> given;
+    for (const Robot::Margin& margin : robot.margins) given.insert(margin.pair);
+    for (std::size_t a = 0; a < robot.bodies.size(); ++a)
+        for (std::size_t b = a + 1; b <= robot.bodies.size(); ++b)
+            if (on_robot(a) != on_robot(b) && !given.contains({a, b})) robot.margins.push_back({{a, b}, error});
+}
+
 } // namespace
 
 double length_in(Reader& reader, const std::string& key, double mm)
@@ -171,6 +188,8 @@ void parse_bodies(Reader& reader, const std::string& path, double mm, Robot& rob
             robot.margins.push_back({pair, mm * margin.number("distance", Range::between(0, kLongest / mm))});
             margin.done();
         }
+    const double error = mm * reader.number_or("calibration_error", 0, Range::between(0, kLongest / mm));
+    if (error > 0) add_calibration_error(robot, error);
 }
 
 } // namespace fettle

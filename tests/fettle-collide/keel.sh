@@ -27,3 +27,11 @@ jq '.margins = [{a: "spindle", b: "workpiece", distance: 60}]' "$robot" >margin.
 fettle-collide margin.json joints.pcd --workpiece keel.stl --report m.json --beyond 100 -q -o /dev/null || test $? -eq 1
 fettle-collide "$robot" joints.pcd --beyond 100 --report none.json -q -o /dev/null
 jq -e '.least.pair == ["spindle", "workpiece"]' m.json >/dev/null
+# a calibration error takes as much from the clearances of the robot to all else, but not of a pair that has its margin
+least() { fettle-collide "$1" joints.pcd --workpiece keel.stl --report l.json -q -o /dev/null "${@:2}" || test $? -eq 1; jq -c '[.least.clearance, .least.pair]' l.json; }
+jq '.calibration_error = 0.5' "$robot" >error.json
+jq '.margins = [{a: "ball", b: "workpiece", distance: 0}]' error.json >but.json
+jq '.allowed += [["ball", "workpiece"], ["shank", "workpiece"]]' "$robot" >free.json
+jq '.calibration_error = 0.5' free.json >free_error.json
+jq -e -n --argjson a "$(least "$robot")" --argjson b "$(least error.json)" --argjson c "$(least but.json)" --argjson d "$(least free.json)" --argjson e "$(least free_error.json)" \
+    '($a[0] - $b[0] - 0.5 | fabs) < 1e-9 and $a == $c and ($d[0] - $e[0] - 0.5 | fabs) < 1e-9 and $d[1] == $e[1]' >/dev/null
