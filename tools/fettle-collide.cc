@@ -95,6 +95,11 @@ int main(int argc, char** argv)
             t.number("--most-tilt", 45, "DEG", "With --avoid: the tool leans no farther", Range::between(0, 90));
         const auto& most_retreat = t.number_if_given(
             "--most-retreat", "LENGTH", "With --avoid: it draws back no farther [1 mm]", Range::at_least(0));
+        const std::string& method =
+            t.choice("--method", "exact", {"exact", "grid", "paper"},
+                     "Workpiece as all triangles; as those under the tool, elsewhere cuboids over a grid; or so by the "
+                     "formulas that Chen & Wei print");
+        const auto& cell = t.number_if_given("--cell", "LENGTH", "Of grids: side of a cell [1 mm]", Range::positive());
         const auto& picture = t.text("--picture", "", "FILE", "Draw the cell at some poses, PNG");
         const auto& at = t.text("--at", "", "N,…", "Numbers of these poses, from 0 [that of the least clearance]");
         const auto& from = t.text("--from", "1,-1,0.8", "X,Y,Z", "Of the picture: towards the eye, in the cell");
@@ -103,7 +108,7 @@ int main(int argc, char** argv)
         t.example("fettle-part parts/keel.json | fettle-collide robots/irb1400.json paths/keel.pcd --workpiece - "
                   "--report clear.json > checked.pcd",
                   "does the robot touch anything but the keel along which its ball runs?");
-        t.reference("Chen & Wei, 5 and algorithm 1; Gilbert, Johnson & Keerthi 1988; van den Bergen 2001");
+        t.reference("Chen & Wei, 4, 5 and algorithm 1; Gilbert, Johnson & Keerthi 1988; van den Bergen 2001");
         t.parse();
 
         wishes = {track, table, start, jump};
@@ -127,6 +132,15 @@ int main(int argc, char** argv)
                 t.warn(display_name(part) + ": is not closed: a body wholly inside it would not be noticed");
         }
         const Workpiece* const part_or_none = workpiece ? &*workpiece : nullptr;
+        std::optional<Heterogeneous> model;
+        if (method != "exact") {
+            if (!workpiece) throw InputError("--method: " + method + " needs a --workpiece");
+            model.emplace(*workpiece, tool_directions(solved.poses),
+                          HeterogeneousOptions{cell.value_or(1 / mm) * mm,
+                                               method == "paper" ? Formulas::published : Formulas::right,
+                                               options.tolerance});
+            options.model = &*model;
+        }
         CheckedPath checked = check_path(robot, part_or_none, solved.path.joints, options, t.progress("poses"));
         const CheckedPath before = checked;
         std::optional<AvoidedPath> avoided;

@@ -101,6 +101,8 @@ void Cell::stand(const CellJoints& joints, Stance& stance) const
     if (workpiece_ != nullptr) stance.T_cell_body.back() = frames[9];
     stance.pairs.assign(pairs_.size(), CellClearance{});
     stance.leaf.resize(pairs_.size());
+    if (workpiece_ != nullptr && options_.model != nullptr)
+        stance.zone = options_.model->zone(robot_, frames[9].inverse() * frames[8]);
 }
 
 double Cell::look(Stance& stance, std::size_t index, double beyond) const
@@ -112,8 +114,12 @@ double Cell::look(Stance& stance, std::size_t index, double beyond) const
     Clearance c;
     if (pair.b == robot_.bodies.size()) {
         const Isometry3d& T_cell_part = stance.T_cell_body.back();
-        const PlacedSolid a(robot_.bodies[pair.a].solid, T_cell_part.inverse() * T_a);
-        const Workpiece::Nearest nearest = workpiece_->nearest(a, beyond + pair.margin, stance.leaf[index]);
+        const Solid& solid = robot_.bodies[pair.a].solid;
+        const Isometry3d T_part_a = T_cell_part.inverse() * T_a;
+        const Workpiece::Nearest nearest =
+            options_.model != nullptr
+                ? options_.model->nearest(solid, T_part_a, stance.zone, beyond + pair.margin)
+                : workpiece_->nearest(PlacedSolid(solid, T_part_a), beyond + pair.margin, stance.leaf[index]);
         stance.leaf[index] = nearest.leaf;
         c = nearest.clearance;
         found.point = T_cell_part * c.on_a;

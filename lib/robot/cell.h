@@ -2,6 +2,7 @@
 
 #include "robot/arm.h"
 #include "robot/externals.h"
+#include "robot/heterogeneous.h"
 #include "robot/robot.h"
 #include "robot/workpiece.h"
 
@@ -31,6 +32,7 @@ struct CollisionOptions {
     double beyond = 50; ///< clearances are told up to here, mm
     double resolution =
         0.1; ///< between poses the bodies move no farther from one look to the next, mm, where it matters
+    const Heterogeneous* model = nullptr; ///< how the workpiece is seen; else by all of its triangles
 };
 
 /// The least clearance of a cell, its margin taken off.
@@ -49,6 +51,7 @@ struct Stance {
     std::vector<Eigen::Isometry3d> T_cell_body; ///< the workpiece's after the bodies'
     std::vector<CellClearance> pairs;           ///< those that were asked for
     std::vector<std::uint32_t> leaf;            ///< of the pairs: where in the workpiece to begin
+    ToolZone zone;                              ///< if the workpiece is seen by a model
 };
 
 /// A robot's bodies and the workpiece, to be looked at with any joints. Thread-safe.

@@ -97,6 +97,10 @@ bool add_report(Value& report, const Robot& robot, const CheckedPath& checked, c
         .set("least", least_to_json(robot, checked.pose, times, mm))
         .set("least_between", least_to_json(robot, checked.between, times, mm))
         .set("colliding", colliding);
+    if (options.model != nullptr)
+        report.set("grids", options.model->grids())
+            .set("cell", options.model->cell() / mm)
+            .set("cuboids_too_near", options.model->accuracy() / mm);
     return poses == 0 && ways == 0;
 }
 

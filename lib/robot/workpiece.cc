@@ -110,8 +110,8 @@ struct Candidate {
 template <typename Outline, typename Wide>
 struct Search {
     Search(const Outline& of_body, const PlacedSolid& placed, const Mesh& of, const BoxTree& in,
-           Workpiece::Nearest& found)
-        : outline(of_body), body(placed), wide(of_body, in.centre), mesh(of), tree(in), best(found),
+           const std::function<bool(Eigen::Index)>* only, Workpiece::Nearest& found)
+        : outline(of_body), body(placed), wide(of_body, in.centre), mesh(of), tree(in), wanted(only), best(found),
           rounding(kRoundings * (in.rounding + kEpsilon * (wide.size + in.box.diagonal().norm())))
     {
         set_bound(best.clearance.distance);
@@ -122,6 +122,7 @@ struct Search {
     const Wide wide;
     const Mesh& mesh;
     const BoxTree& tree;
+    const std::function<bool(Eigen::Index)>* wanted; ///< nullptr: all
     Workpiece::Nearest& best;
     const double rounding;                           ///< of distances in float, mm
     float bound = std::numeric_limits<float>::max(); ///< what is not nearer than this does not matter
@@ -142,6 +143,7 @@ struct Search {
             const Candidate& next = candidates[--waiting];
             if (next.lower > bound) continue;
             const Eigen::Index t = tree.triangle(next.leaf, next.lane);
+            if (wanted != nullptr && !(*wanted)(t)) continue;
             bool nearer = false;
             offer(outline, body, triangle_of(mesh, t), best.clearance, nearer);
             if (!nearer) continue;
@@ -154,7 +156,8 @@ struct Search {
     FETTLE_INLINE void look_through(std::uint32_t leaf)
     {
         const Least8 least = least_of_triangles(wide, tree.leaves[leaf]);
-        if (wide.exact && lanes_of(least.upper < bound) != 0) set_bound(static_cast<double>(least_of(least.upper)));
+        if (wide.exact && wanted == nullptr && lanes_of(least.upper < bound) != 0)
+            set_bound(static_cast<double>(least_of(least.upper)));
         for (Lanes lanes{lanes_of(least.lower <= bound)}; lanes.any(); lanes.next()) {
             if (waiting == candidates.size()) settle();
             candidates[waiting++] = {least.lower[lanes.first()], leaf, lanes.first()};
@@ -241,26 +244,46 @@ bool Workpiece::is_inside(const Nearest& nearest, const Vector3d& point) const
     return false;
 }
 
-Workpiece::Nearest Workpiece::nearest(const PlacedSolid& body, double beyond, std::uint32_t leaf) const
+void Workpiece::find(const PlacedSolid& body, const std::function<bool(Eigen::Index)>* wanted, Nearest& best) const
 {
     const BoxTree& tree = index_.tree();
-    Nearest best;
-    best.clearance.distance = beyond;
-    if (tree.leaves.empty()) return best;
-    best.leaf = std::min<std::uint32_t>(leaf, static_cast<std::uint32_t>(tree.leaves.size()) - 1);
+    if (tree.leaves.empty()) return;
+    best.leaf = std::min<std::uint32_t>(best.leaf, static_cast<std::uint32_t>(tree.leaves.size()) - 1);
     const auto outline = body.outline();
     const auto search = [&](auto&& begun) { begin_at(begun, best.leaf); };
     if (const auto* box = std::get_if<BoxSolid>(&outline))
-        search(BoxSearch(*box, body, mesh(), tree, best));
+        search(BoxSearch(*box, body, mesh(), tree, wanted, best));
     else if (body.is_sphere())
-        search(SphereSearch(std::get<RoundSolid>(outline), body, mesh(), tree, best));
+        search(SphereSearch(std::get<RoundSolid>(outline), body, mesh(), tree, wanted, best));
     else
-        search(RoundSearch(std::get<RoundSolid>(outline), body, mesh(), tree, best));
+        search(RoundSearch(std::get<RoundSolid>(outline), body, mesh(), tree, wanted, best));
+}
+
+bool Workpiece::holds(const Vector3d& point) const
+{
+    return closed_ && index_.tree().box.contains(point) && is_inside({}, point);
+}
+
+Workpiece::Nearest Workpiece::nearest_of(const PlacedSolid& body, double beyond,
+                                         const std::function<bool(Eigen::Index)>& wanted) const
+{
+    Nearest best;
+    best.clearance.distance = beyond;
+    find(body, &wanted, best);
+    return best;
+}
+
+Workpiece::Nearest Workpiece::nearest(const PlacedSolid& body, double beyond, std::uint32_t leaf) const
+{
+    Nearest best;
+    best.clearance.distance = beyond;
+    best.leaf = leaf;
+    find(body, nullptr, best);
     // A body that touches the surface is not wholly inside; of a ball its centre tells how deep.
     const bool apart = best.triangle < 0 || best.clearance.distance > 0;
     if (!closed_ || !(apart || body.is_sphere())) return best;
     const Vector3d point = body.farthest(Vector3d::UnitZ());
-    if (!tree.box.contains(point) || !is_inside(best, point)) return best;
+    if (!index_.tree().box.contains(point) || !is_inside(best, point)) return best;
     if (best.triangle < 0) return nearest(body); // how far out it is must be told
     Clearance& c = best.clearance;
     const double width = (body.farthest(c.normal) - body.farthest(-c.normal)).dot(c.normal) + 2 * body.radius();

@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <vector>
 
@@ -40,10 +41,18 @@ class Workpiece {
     Nearest nearest(const PlacedSolid& body, double beyond = std::numeric_limits<double>::infinity(),
                     std::uint32_t leaf = 0) const;
 
+    /// Of those triangles alone that are asked for, as far as they lie outside the body or pierce it: nothing is
+    /// inside.
+    Nearest nearest_of(const PlacedSolid& body, double beyond, const std::function<bool(Eigen::Index)>& wanted) const;
+
+    /// Does the point lie inside a closed mesh?
+    bool holds(const Eigen::Vector3d& point) const;
+
     bool closed() const { return closed_; }
     const Mesh& mesh() const { return index_.mesh(); }
 
   private:
+    void find(const PlacedSolid& body, const std::function<bool(Eigen::Index)>* wanted, Nearest& best) const;
     bool is_inside(const Nearest& nearest, const Eigen::Vector3d& point) const;
 
     bool closed_;

@@ -1,0 +1,223 @@
+#include "boat_hull.h"
+#include "robot/heterogeneous.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+namespace fettle {
+namespace {
+
+using Eigen::Isometry3d, Eigen::Vector2d, Eigen::Vector3d;
+
+const Isometry3d kHere = Isometry3d::Identity();
+
+Mesh mesh_of(const std::vector<Triangle>& triangles)
+{
+    Mesh mesh;
+    const auto count = static_cast<Eigen::Index>(triangles.size());
+    mesh.vertices.resize(3, 3 * count);
+    mesh.triangles.resize(3, count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+        mesh.vertices.middleCols<3>(3 * i) = triangles[static_cast<std::size_t>(i)];
+        mesh.triangles.col(i) << static_cast<int>(3 * i), static_cast<int>(3 * i + 1), static_cast<int>(3 * i + 2);
+    }
+    return mesh;
+}
+
+Triangle triangle(const Vector3d& a, const Vector3d& b, const Vector3d& c)
+{
+    Triangle t;
+    t << a, b, c;
+    return t;
+}
+
+// Does no line across x, y or a side of the triangle part it from the cell?
+bool meets(const Triangle& t, const Vector2d& least, double cell)
+{
+    std::vector<Vector2d> axes = {Vector2d::UnitX(), Vector2d::UnitY()};
+    for (int k = 0; k < 3; ++k) axes.push_back((t.col((k + 1) % 3) - t.col(k)).head<2>().unitOrthogonal());
+    for (const Vector2d& axis : axes) {
+        const Eigen::RowVector3d on = axis.transpose() * t.topRows<2>();
+        const double middle = axis.dot(least) + cell * axis.sum() / 2, half = cell * axis.cwiseAbs().sum() / 2;
+        if (on.minCoeff() > middle + half || on.maxCoeff() < middle - half) return false;
+    }
+    return true;
+}
+
+// Reference: separating axes, for the cells; points of the triangles, for the heights.
+TEST(HeightGrid, EveryCellThatATriangleTouches)
+{
+    std::mt19937 random(31);
+    std::vector<Triangle> triangles;
+    for (int k = 0; k < 200; ++k)
+        triangles.push_back(
+            Triangle::NullaryExpr([&] { return std::uniform_real_distribution<double>(0, 30)(random); }));
+    for (int k = 0; k < 50; ++k) triangles[k].col(2) = triangles[k].col(1) + Vector3d(1e-3, 2e-3, 5); // needles
+    const Mesh mesh = mesh_of(triangles);
+    const HeightGrid grid(mesh, Vector3d::UnitZ(), 1.3, Formulas::right);
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+        Triangle t;
+        for (int k = 0; k < 3; ++k) t.col(k) = grid.T_grid_part * Vector3d(triangles[i].col(k));
+        std::vector<std::uint32_t> expected;
+        for (Eigen::Index row = 0; row < grid.rows; ++row)
+            for (Eigen::Index column = 0; column < grid.columns; ++column)
+                if (meets(t, grid.cell * Vector2d(column, row), grid.cell))
+                    expected.push_back(static_cast<std::uint32_t>(grid.index(column, row)));
+        std::vector<std::uint32_t> found = grid.cells_of[i];
+        std::sort(found.begin(), found.end());
+        EXPECT_EQ(found, expected);
+        for (int a = 0; a <= 20; ++a)
+            for (int b = 0; b <= 20 - a; ++b) {
+                const Vector3d p = t * Vector3d(a, b, 20 - a - b) / 20;
+                const auto column = static_cast<Eigen::Index>(p.x() / grid.cell),
+                           row = static_cast<Eigen::Index>(p.y() / grid.cell);
+                EXPECT_GE(grid.heights[grid.index(column, row)], p.z() - 1e-9);
+            }
+    }
+}
+
+// Across any direction: a point's height is its way along that direction from the lowest.
+TEST(HeightGrid, AcrossAnyDirection)
+{
+    const Mesh mesh = boat::hull(2000);
+    const Vector3d up = Vector3d(0.3, -0.5, 0.6).normalized();
+    const HeightGrid grid(mesh, up, 2, Formulas::right);
+    const double lowest = (up.transpose() * mesh.vertices).minCoeff();
+    for (const auto p : mesh.vertices.colwise())
+        EXPECT_NEAR((grid.T_grid_part * Vector3d(p)).z(), up.dot(p) - lowest, 1e-9);
+}
+
+// Eq. 12 gives a triangle that holds a corner of one cell none of the cells that only its edges cross: between y = 2.1
+// and 2.9 the tip of this one holds no corner, and a body there goes through it unnoticed.
+TEST(HeightGrid, Equation12MissesCellsThatOnlyEdgesCross)
+{
+    const Mesh mesh =
+        mesh_of({triangle({0, 0, 0}, {30, 0, 0}, {0, 30, 0}), triangle({4.5, 1.5, 9}, {7.5, 1.5, 9}, {6.5, 2.9, 9})});
+    const HeightGrid right(mesh, Vector3d::UnitZ(), 1, Formulas::right),
+        published(mesh, Vector3d::UnitZ(), 1, Formulas::published);
+    EXPECT_EQ(right.heights[right.index(6, 2)], 9);
+    EXPECT_LT(published.heights[published.index(4, 1)], 9); // its lower left corner lies beside the triangle
+    EXPECT_EQ(right.heights[right.index(4, 1)], 9);
+    const Workpiece workpiece(mesh);
+    const std::vector<Vector3d> ups = {Vector3d::UnitZ()};
+    const Solid arm = solid::Sphere{{4.4, 1.4, 9}, 0.3};
+    const auto distance = [&](Formulas formulas) {
+        const Heterogeneous model(workpiece, ups, {1, formulas, 0.01});
+        return model.nearest(arm, kHere, {0, std::vector<char>(right.heights.size(), 0)}, 50).clearance.distance;
+    };
+    EXPECT_LT(distance(Formulas::right), -0.01);
+    EXPECT_GT(distance(Formulas::published), 0.01);
+    EXPECT_LT(workpiece.nearest(PlacedSolid(arm, kHere)).clearance.distance, -0.01);
+}
+
+// Eq. 20 rounds to the nearest number: gaps deeper than the tolerance, and no sphere at all for a disc.
+TEST(HeightGrid, Equation20LeavesGaps)
+{
+    constexpr double kTolerance = 0.01;
+    const auto gap = [&](const solid::Cylinder& cylinder, Formulas formulas) { // of its side, half-way between two
+        const auto row = sphere_row(cylinder, kTolerance, formulas);
+        const double half = (row[1].centre - row[0].centre).norm() / 2;
+        return cylinder.radius - std::sqrt(cylinder.radius * cylinder.radius - half * half);
+    };
+    const double spacing = sphere_spacing(45, kTolerance);
+    EXPECT_NEAR(45 - std::sqrt(45 * 45 - spacing * spacing / 4), kTolerance,
+                1e-12); // eq. 19
+    const solid::Cylinder spindle = {{0, 0, 0}, {0, 0, 47.4 * spacing}, 45};
+    EXPECT_GT(gap(spindle, Formulas::published), kTolerance + 1e-4);
+    EXPECT_LE(gap(spindle, Formulas::right), kTolerance);
+    const solid::Cylinder disc = {{0, 0, 0}, {0, 0, 0.45 * spacing}, 45};
+    EXPECT_TRUE(sphere_row(disc, kTolerance, Formulas::published).empty());
+    EXPECT_EQ(sphere_row(disc, kTolerance, Formulas::right).size(), 1u);
+    // a spike that reaches into the disc
+    const Mesh spike =
+        mesh_of({triangle({0, 0, 0}, {90, 0, 0}, {0, 90, 0}), triangle({0, -1, 30}, {0, 1, 30}, {40, 0, 60})});
+    const Workpiece workpiece(spike);
+    const std::vector<Vector3d> ups = {Vector3d::UnitZ()};
+    const Isometry3d T(Eigen::Translation3d(0, 0, 59));
+    const auto distance = [&](Formulas formulas) {
+        const Heterogeneous model(workpiece, ups, {1, formulas, kTolerance});
+        const HeightGrid grid(spike, Vector3d::UnitZ(), 1, formulas);
+        return model.nearest(disc, T, {0, std::vector<char>(grid.heights.size(), 1)}, 50).clearance.distance;
+    };
+    EXPECT_LT(distance(Formulas::right), -0.1);
+    EXPECT_EQ(distance(Formulas::published), 50);
+}
+
+// Reference: the farthest points of the cylinder. By eq. 22 what lies under its end is not chosen.
+TEST(HeightGrid, Equation22IsTooShort)
+{
+    const Mesh floor = mesh_of({triangle({-50, -50, 0}, {250, -50, 0}, {-50, 250, 0})});
+    const HeightGrid grid(floor, Vector3d::UnitZ(), 1, Formulas::right);
+    const double tilt = std::numbers::pi / 6, length = 124, radius = 45;
+    const solid::Cylinder spindle = {{0, 0, 0}, {0, 0, length}, radius};
+    const Isometry3d T(Eigen::AngleAxisd(tilt, Vector3d::UnitY()));
+    const Footprint right = grid.footprint(spindle, T, Formulas::right),
+                    published = grid.footprint(spindle, T, Formulas::published);
+    EXPECT_NEAR(2 * right.half_along, length * std::sin(tilt) + 2 * radius * std::cos(tilt), 1e-9);
+    EXPECT_NEAR(2 * right.half_across, 2 * radius, 1e-9);
+    EXPECT_NEAR(2 * published.half_along, (length + radius) * std::sin(tilt), 1e-9);
+    // a wall under the upper rim: z 82 there is inside the spindle
+    const Mesh wall = mesh_of({triangle({-50, -50, -200}, {250, -50, -200}, {-50, 250, -200}),
+                               triangle({95, -2, 82}, {97, 2, 82}, {96, 0, 20})});
+    const Workpiece workpiece(wall);
+    Robot robot;
+    robot.bodies = {{"spindle", link::kTool, spindle}};
+    const auto distance = [&](Formulas formulas) {
+        const Heterogeneous model(workpiece, std::vector<Vector3d>{Vector3d::UnitZ()}, {1, formulas, 0.01});
+        const ToolZone zone = model.zone(robot, T);
+        const HeightGrid heights(wall, Vector3d::UnitZ(), 1, formulas);
+        const Vector3d foot = heights.T_grid_part * Vector3d(96, 0, 82);
+        return std::pair(
+            model.nearest(spindle, T, zone, 50).clearance.distance,
+            zone.cells[heights.index(static_cast<Eigen::Index>(foot.x()), static_cast<Eigen::Index>(foot.y()))]);
+    };
+    EXPECT_LT(workpiece.nearest(PlacedSolid(spindle, T)).clearance.distance, -1);
+    EXPECT_NEAR(distance(Formulas::right).first, workpiece.nearest(PlacedSolid(spindle, T)).clearance.distance, 1e-6);
+    EXPECT_EQ(distance(Formulas::right).second, 1);
+    EXPECT_EQ(distance(Formulas::published).second, 0);
+}
+
+// A ball-end tool over a hull: the verdicts of the tool are those of the triangles, and no clearance is larger than by
+// these, nor smaller by more than what is stated. Leaning poses need more grids than one.
+TEST(Heterogeneous, AsTheTrianglesTell)
+{
+    const Mesh mesh = boat::hull(8000);
+    const Workpiece workpiece(mesh);
+    Robot robot;
+    robot.bodies = {{"ball", link::kTool, solid::Sphere{{0, 0, 0}, 6}},
+                    {"shank", link::kTool, solid::Cylinder{{0, 0, 0}, {0, 0, 40}, 5}},
+                    {"spindle", link::kTool, solid::Cylinder{{0, 0, 40}, {0, 0, 130}, 45}},
+                    {"arm", 6, solid::Capsule{{40, 0, 60}, {200, 0, 80}, 30}}};
+    std::vector<Isometry3d> poses = boat::poses(1500);
+    std::vector<Vector3d> ups;
+    for (std::size_t k = 0; k < poses.size(); ++k) {
+        poses[k] = poses[k] * Eigen::AngleAxisd(0.7 * std::sin(0.01 * static_cast<double>(k)), Vector3d::UnitX());
+        ups.push_back(poses[k].linear().col(2));
+    }
+    const Heterogeneous model(workpiece, ups, {2, Formulas::right, 0.01});
+    EXPECT_GT(model.grids(), 1u);
+    EXPECT_LE(model.grids(), 9u);
+    int deep = 0;
+    for (std::size_t k = 0; k < poses.size(); k += 5) {
+        const ToolZone zone = model.zone(robot, poses[k]);
+        for (const Body& body : robot.bodies) {
+            const double exact = workpiece.nearest(PlacedSolid(body.solid, poses[k]), 50).clearance.distance;
+            const double seen = model.nearest(body.solid, poses[k], zone, 50).clearance.distance;
+            EXPECT_LE(seen, exact + 1e-6);
+            if (body.link != link::kTool) continue;
+            EXPECT_EQ(seen < -0.01, exact < -0.01) << body.name << " " << k << " " << seen << " " << exact;
+            if (exact < 0) {
+                ++deep;
+                EXPECT_NEAR(seen, exact, 1e-6);
+            }
+        }
+    }
+    EXPECT_GT(deep, 20);
+}
+
+} // namespace
+} // namespace fettle
