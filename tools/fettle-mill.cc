@@ -7,6 +7,7 @@
 #include "machining/milling.h"
 #include "machining/milling_summary.h"
 #include "machining/number_list.h"
+#include "machining/refinement.h"
 #include "machining/tool_path.h"
 #include "machining/workpiece.h"
 #include "mesh/mesh_file.h"
@@ -83,6 +84,9 @@ int main(int argc, char** argv)
         const double& rapid = t.number("--rapid", 200, "MM/S", "Rate of rapid moves", Range::positive());
         const std::string& holder = t.text("--holder", "", "D,HEIGHT",
                                            "A cylinder above the cutter, this high over the tip, that must not touch");
+        const int& refine = t.count(
+            "--refine", 0,
+            "Where the machined surface is steeper than 60 degrees: halve the way between cells so often", 0, 5);
         const bool& pcd = t.flag("--pcd", "Write a point for each cell, field removed, instead of triangles");
         const std::string& trace = t.text("--trace", "", "FILE",
                                           "Every move: where it ends, when, and what it met (fields t, feed, removed, "
@@ -96,6 +100,7 @@ int main(int argc, char** argv)
                     "eq. 1 to 3");
         t.parse();
 
+        if (refine > 0 && pcd) throw InputError("--refine", "belongs to triangles, not to --pcd");
         if (step.has_value() == tolerance.has_value()) throw InputError("give either --step or --tolerance");
         if (step && (!design.empty() || published))
             throw InputError("--design and --as-published belong to --tolerance");
@@ -114,6 +119,7 @@ int main(int argc, char** argv)
         Workpiece piece = read_stock(stock, stock_units, spacing.step);
         options.floor = piece.floor;
 
+        std::size_t refined = 0;
         std::optional<HeightField> before;
         if (pcd) before = piece.stock;
         const auto bites = mill(piece.stock, cutter, program.moves, options);
@@ -121,11 +127,16 @@ int main(int argc, char** argv)
         const PcdEncoding encoding = ascii ? PcdEncoding::ascii : PcdEncoding::binary;
         if (pcd)
             write_pcd(t.output(), to_cloud(*before, piece.stock), Units{}, encoding);
-        else
-            write_stl(t.output(), piece.stock);
+        else {
+            std::optional<Refinement> refinement;
+            if (refine > 0) refinement.emplace(piece, piece.stock, cutter, program.moves, 1 << refine);
+            write_stl(t.output(), piece.stock, refinement ? &*refinement : nullptr);
+            if (refinement) refined = refinement->count();
+        }
         if (!trace.empty()) write_pcd(t.output_file(trace), trace_of(program.moves, bites, rapid), Units{}, encoding);
         t.report() = to_json(sum);
         report(t.report(), program, piece.stock);
+        t.report().set("refined_squares", refined);
         if (tolerance) t.report().set("discretization", to_json(spacing, shape));
         const std::string unit = tool_path.points ? "point " : "line ";
         const auto warn = [&](const Clash& clash, const std::string& what) {

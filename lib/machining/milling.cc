@@ -48,6 +48,12 @@ Sweep sweep_of_holder(const Holder& holder, CutterMove move)
     return sweep_of({holder.radius, holder.radius, 0, holder.radius, 0}, move, true, nullptr);
 }
 
+void clear_floor(Eigen::Ref<Eigen::ArrayXXd> z, double floor)
+{
+    if (!std::isfinite(floor)) return;
+    z = (z <= floor).select(std::numeric_limits<double>::quiet_NaN(), z);
+}
+
 class Milling {
   public:
     Milling(HeightField& stock, const Cutter& cutter, const std::vector<CutterMove>& moves,
@@ -108,9 +114,7 @@ class Milling {
             const auto [from, to] = within(held);
             if (from < to) visit.holder_depth = over_disc(stock_, held, from, to).depth;
         }
-        if (!std::isfinite(options_.floor)) return;
-        for (double& z : stock_.z.middleCols(begin, end - begin).reshaped())
-            if (z <= options_.floor) z = std::numeric_limits<double>::quiet_NaN();
+        clear_floor(stock_.z.middleCols(begin, end - begin), options_.floor);
     }
 
     HeightField& stock_;
@@ -126,6 +130,23 @@ std::vector<Bite> mill(HeightField& stock, const Cutter& cutter, const std::vect
                        const MillingOptions& options)
 {
     return Milling(stock, cutter, moves, options).cut();
+}
+
+void mill_each(std::vector<HeightField>& fields, const Cutter& cutter, const std::vector<CutterMove>& moves,
+               double floor)
+{
+    std::vector<Sweep> sweeps;
+    for (std::size_t m = 0; m < moves.size(); ++m) sweeps.push_back(sweep_of_cutter(cutter, moves, m));
+    tbb::parallel_for(std::size_t{0}, fields.size(), [&](std::size_t f) {
+        HeightField& field = fields[f];
+        const double least = field.origin.x(), most = least + field.cell * static_cast<double>(field.columns());
+        for (const Sweep& sweep : sweeps) {
+            if (sweep.low.x() > most || sweep.high.x() < least) continue;
+            const auto [first, end] = rows_of(field, sweep);
+            if (first < end) lower(field, sweep, first, end, floor);
+        }
+        clear_floor(field.z, floor);
+    });
 }
 
 } // namespace fettle

@@ -38,4 +38,8 @@ struct Bite {
 std::vector<Bite> mill(HeightField& stock, const Cutter& cutter, const std::vector<CutterMove>& moves,
                        const MillingOptions& options = {});
 
+/// Cuts other maps of the same stock, without an account.
+void mill_each(std::vector<HeightField>& fields, const Cutter& cutter, const std::vector<CutterMove>& moves,
+               double floor);
+
 } // namespace fettle

@@ -4,16 +4,20 @@
 #include "removal/height_field.h"
 #include "sampling/scan.h"
 
+#include <functional>
 #include <iosfwd>
 #include <limits>
 #include <string>
 
 namespace fettle {
 
+class Refinement; // refinement.h
+
 /// What is milled: heights over cells that lie along M.
 struct Workpiece {
     HeightField stock;
     double floor = -std::numeric_limits<double>::infinity(); ///< there is no material below it, mm
+    std::function<void(HeightField&)> lay = {};              ///< puts its heights into any map
 };
 
 /// A box: "x0,y0,z0,x1,y1,z1", mm; floor z0. A cell has material if its centre lies in the box.
@@ -22,13 +26,16 @@ Workpiece box_workpiece(const std::string& corners, double cell);
 
 /// A mesh or a cloud as it is seen from above; below its surface everything is material.
 /// @throws InputError if the cells are too many
-Workpiece scanned_workpiece(const Scan& scan, double cell);
+Workpiece scanned_workpiece(Scan scan, double cell);
 
 /// The surface as triangles between the centres of neighbouring cells of rows first to last, where they have material:
 /// the vertices lie on the grid; those without material are NaN.
-Mesh surface_between(const HeightField& field, Eigen::Index first, Eigen::Index last);
+/// @param refinement  of this map, if there is one: its squares are made of smaller triangles, those beside them of a
+/// fan about their middle, so that all meet
+Mesh surface_between(const HeightField& field, Eigen::Index first, Eigen::Index last,
+                     const Refinement* refinement = nullptr);
 
 /// All of these triangles as binary STL, mm. @return  how many
-std::size_t write_stl(std::ostream& out, const HeightField& field);
+std::size_t write_stl(std::ostream& out, const HeightField& field, const Refinement* refinement = nullptr);
 
 } // namespace fettle
