@@ -111,12 +111,15 @@ FollowedPath no_path(Eigen::Index count)
     return path;
 }
 
+// Of all that turns: a table that follows the tip may have to turn back at an end of its range.
 std::vector<Eigen::Index> jumps_of(const CellJointsPath& joints, double jump)
 {
     std::vector<Eigen::Index> jumps;
-    for (Eigen::Index i = 1; i < joints.cols(); ++i)
-        if ((joints.col(i) - joints.col(i - 1)).head<6>().cwiseAbs().maxCoeff<Eigen::PropagateNaN>() > jump)
-            jumps.push_back(i);
+    for (Eigen::Index i = 1; i < joints.cols(); ++i) {
+        CellJoints turn = (joints.col(i) - joints.col(i - 1)).cwiseAbs();
+        turn[6] *= 0; // mm; still NaN where there is no pose
+        if (turn.maxCoeff<Eigen::PropagateNaN>() > jump) jumps.push_back(i);
+    }
     return jumps;
 }
 

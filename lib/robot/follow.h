@@ -28,7 +28,7 @@ struct FollowedPath {
     std::vector<PoseState> state;              ///< N
     std::vector<int> branch;                   ///< N, as ArmSolution; -1 where the pose is not reached
     Eigen::VectorXd singularity;               ///< N, distance from one (Singularity::least)
-    std::vector<Eigen::Index> jumps;           ///< poses that lie a jump from the one before
+    std::vector<Eigen::Index> jumps;           ///< poses that lie a jump of a joint or the table from the one before
     Eigen::Matrix<Eigen::Index, 8, 1> blocked; ///< of the poses out of range: which joint is in the way, how often
 };
 

@@ -134,6 +134,20 @@ TEST(Follow, LooksAheadOverWholeTurns)
     EXPECT_EQ(spin(640).jumps.size(), 1u);
 }
 
+// A table within 10 to 350 degrees that follows a tip all around must once turn back by 340 degrees; the track is none
+// of what turns.
+TEST(Follow, ATableThatTurnsBackJumps)
+{
+    Robot robot = irb1400();
+    robot.table = Table{{1000, 0, 0}, Eigen::Vector3d::UnitZ(), {10 * kDegree, 350 * kDegree}, {}, ""};
+    CellJointsPath joints = CellJointsPath::Zero(8, 4);
+    joints.row(7) << 340 * kDegree, 349 * kDegree, 11 * kDegree, 20 * kDegree;
+    EXPECT_EQ(judge(robot, joints, 30 * kDegree).jumps, std::vector<Eigen::Index>{2});
+    joints.row(7).setConstant(kDegree);
+    joints.row(6) << 0, 500, 1000, 1500;
+    EXPECT_TRUE(judge(robot, joints, 30 * kDegree).jumps.empty());
+}
+
 TEST(Follow, StatesTellWhatIsWrong)
 {
     const Robot robot = irb1400();
