@@ -50,6 +50,7 @@ void report(json::Value& out, const GrindRun& run, const VirtualGantry& gantry, 
         .set("service_time", totals.service_time)
         .set("layers", run.counts.highest_layer)
         .set("coverings", run.counts.coverings)
+        .set("strokes", run.counts.strokes)
         .set("re_cuts", run.counts.re_cuts)
         .set("raises", run.counts.raises)
         .set("passes", run.counts.passes)
@@ -61,10 +62,15 @@ void report(json::Value& out, const GrindRun& run, const VirtualGantry& gantry, 
 }
 
 std::unique_ptr<VirtualGantry> make_gantry(const std::string& machine_file, const HeightField& stock, const Job& job,
-                                           std::uint64_t seed)
+                                           double removal_factor, std::uint64_t seed)
 {
-    if (machine_file.empty()) return std::make_unique<QuasiStaticGantry>(stock, job);
+    if (machine_file.empty()) {
+        QuasiStaticOptions options;
+        options.removal_factor = removal_factor;
+        return std::make_unique<QuasiStaticGantry>(stock, job, options);
+    }
     DynamicOptions options;
+    options.removal_factor = removal_factor;
     options.seed = seed;
     return std::make_unique<DynamicGantry>(stock, job, read_machine(machine_file), options);
 }
@@ -82,6 +88,12 @@ int main(int argc, char** argv)
                      "The machine: a simulated gantry in equilibrium at every moment, or one with "
                      "drives, inertia and sensors");
         const std::string& machine = t.text("--machine", "", "FILE", "The machine of virtual:dynamic, JSON");
+        const std::string& layer_1 =
+            t.choice("--layer-1", "constant", {"constant", "feed"},
+                     "Layer 1 at the job's feed, covering after covering; or with controlled feed, pass after pass");
+        const double& removal =
+            t.number("--removal-factor", 1, "FACTOR", "The virtual stock yields so many times as fast as the job says",
+                     Range::positive());
         const auto& cell = t.number_if_given(
             "--cell", "LENGTH", "Side of a cell of the stock; default: 1/64 of the wheel's width", Range::positive());
         const std::string& trace = t.text("--trace", "", "FILE", "What the machine did and why, PCD");
@@ -106,8 +118,10 @@ int main(int argc, char** argv)
             height_field(scan, plan.job, cell ? *cell * units.mm() : plan.job.wheel.width / kCellsPerWidth,
                          display_name(stock_file));
         std::ostream* trace_out = trace.empty() ? nullptr : &t.output_file(trace); // a wrong name shows before the work
-        const std::unique_ptr<VirtualGantry> gantry = make_gantry(machine, stock, plan.job, t.seed());
-        const GrindRun run = fettle::run(plan, *gantry, {}, t.progress("grinding"));
+        const std::unique_ptr<VirtualGantry> gantry = make_gantry(machine, stock, plan.job, removal, t.seed());
+        RunOptions options;
+        options.layer_1 = layer_1 == "feed" ? Layer1::feed : Layer1::constant;
+        const GrindRun run = fettle::run(plan, *gantry, options, t.progress("grinding"));
 
         const PcdEncoding encoding = ascii ? PcdEncoding::ascii : PcdEncoding::binary;
         write_pcd(t.output(), to_cloud(stock, gantry->stock()), units, encoding);

@@ -16,14 +16,16 @@ constexpr double kLowest = 1e-3;  // of them, times the highest, π / period
 constexpr double kSlowest = 5, kFastest = 2000, kStep = 1.04; // rad/s
 constexpr double kQuiet = 0.1;                                // of the voltage, by one count
 
-ServoGains triple_pole(const Drive& drive, double omega)
+ServoGains place_poles(const Drive& drive, double omega)
 {
-    // m s³ + (d + g K_d) s² + g K_p s + g K_i = m (s + ω)³
-    const double m = drive.mass / drive.gain;
+    // m s³ + (d + g K_d) s² + g K_p s + g K_i = m (s + ω)² (s + p): p = ω, or, where the drive's own brake is more than
+    // that takes, what it gives without K_d.
+    const double m = drive.mass / drive.gain, d = drive.damping / drive.gain;
+    const double p = std::max(omega, d / m - 2 * omega);
     ServoGains gains;
-    gains.kp = 3 * omega * omega * m;
-    gains.ki = omega * omega * omega * m;
-    gains.kd = std::max(3 * omega * m - drive.damping / drive.gain, 0.0);
+    gains.kp = omega * (omega + 2 * p) * m;
+    gains.ki = omega * omega * p * m;
+    gains.kd = std::max((2 * omega + p) * m - d, 0.0);
     gains.kv = drive.damping / drive.gain;
     gains.ka = m;
     gains.v0 = drive.load / drive.gain;
@@ -61,7 +63,7 @@ ServoGains tune(const Drive& drive, double k, double b, double period)
     };
     ServoGains best;
     for (double omega = kSlowest; omega < kFastest; omega *= kStep) {
-        const ServoGains gains = triple_pole(drive, omega);
+        const ServoGains gains = place_poles(drive, omega);
         if (!good(gains)) break;
         best = gains;
     }

@@ -14,7 +14,7 @@ struct Reference {
 struct ServoGains {
     double kp = 0, ki = 0, kd = 0;
     double kv = 0, ka = 0, v0 = 0;
-    double bandwidth = 0; ///< ω of the triple pole, rad/s
+    double bandwidth = 0; ///< ω of the slowest poles, rad/s
 };
 
 /// Largest |1 / (1 + L)| of the sampled loop over all frequencies. M means a gain margin of at least M / (M − 1) and a
@@ -24,9 +24,10 @@ double sensitivity_peak(const ServoGains& gains, double drive_gain, const Oscill
 /// The stated margin of every loop: gain 3, phase 38.9°.
 inline constexpr double kMostSensitivity = 1.5;
 
-/// Places a triple pole at −ω, ω as large as two conditions allow: the sensitivity peak of the sampled loop, free and
-/// with the spring (k, b) at work, stays within kMostSensitivity; one count of the encoder moves the voltage by no
-/// more than a tenth of what the amplifier has. Feed-forward is the inverse of the drive.
+/// Places the poles at −ω (and a third one farther out where the drive brakes itself more), ω as large as two
+/// conditions allow: the sensitivity peak of the sampled loop, free and with the spring (k, b) at work, stays within
+/// kMostSensitivity; one count of the encoder moves the voltage by no more than a tenth of what the amplifier has.
+/// Feed-forward is the inverse of the drive.
 /// @throws InputError if there is none
 ServoGains tune(const Drive& drive, double k, double b, double period);
 

@@ -16,12 +16,13 @@ void check_positive(double value, const char* name)
 
 VirtualGantry::VirtualGantry(HeightField stock, const Job& job, const VirtualOptions& options, const RimForce& rim)
     : stock_(std::move(stock)), wheel_(stock_, job.wheel.width, rim), spring_{job.force.preload, job.force.stiffness},
-      options_(options), R_working_machine_(rotation_working_machine(job.theta)), removal_(job.removal),
-      new_radius_(job.wheel.radius), width_(job.wheel.width), safe_height_(job.safe_height), most_force_(job.force.max),
-      radius_(new_radius_), known_radius_(new_radius_)
+      options_(options), R_working_machine_(rotation_working_machine(job.theta)),
+      removal_(job.removal * options.removal_factor), new_radius_(job.wheel.radius), width_(job.wheel.width),
+      safe_height_(job.safe_height), most_force_(job.force.max), radius_(new_radius_), known_radius_(new_radius_)
 {
     check_positive(options_.touch_off_resolution, "touch-off resolution");
     check_positive(options_.grinding_ratio, "grinding ratio");
+    check_positive(options_.removal_factor, "removal factor");
     check_positive(options_.substep, "step");
     const Eigen::Vector2d middle = (stock_.centre(0, 0) + stock_.centre(stock_.columns() - 1, stock_.rows() - 1)) / 2;
     status_.commanded << R_working_machine_.transpose() * middle, safe_height_;

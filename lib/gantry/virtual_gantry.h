@@ -16,6 +16,8 @@ struct VirtualOptions {
     double touch_off_resolution = 0.005;
     /// Volume of stock ground off per volume of wheel (G ratio). Common wheels reach 20 to 80 on steel and iron.
     double grinding_ratio = 60;
+    /// The stock's removal coefficient over the one that the job states.
+    double removal_factor = 1;
     /// Length of a simulation step in cells. Between two steps the rim leaves a ridge of step² / 8R: 0.0002 mm for
     /// 0.2 mm and R = 25.4 mm.
     double substep = 2;

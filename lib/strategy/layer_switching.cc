@@ -31,8 +31,7 @@ Action LayerSwitching::next(const Measurement& measurement)
     if (cut_ended_) return end_cut();
     if (measurement.force > settings_.force_max) return go_up();
     if (layer() > 1) return go_on_above(measurement.force);
-    worst_remaining_ = std::max(worst_remaining_, measurement.remaining);
-    return go_on_in_layer_1();
+    return go_on_in_layer_1(measurement.remaining);
 }
 
 Action LayerSwitching::fail(const std::string& bound)
@@ -56,9 +55,13 @@ Action LayerSwitching::go_up()
 }
 
 // Rule 2.
-Action LayerSwitching::go_on_in_layer_1()
+Action LayerSwitching::go_on_in_layer_1(double remaining)
 {
     Level& level = levels_.back();
+    if (!settings_.finish_passes)
+        worst_remaining_ = std::max(worst_remaining_, remaining);
+    else if (turn_back(remaining) && strokes_ > settings_.bounds.re_cuts)
+        return fail("strokes of a pass " + std::to_string(settings_.bounds.re_cuts));
     const ToolPass& pass = passes_[level.at.pass];
     const int point = level.at.point + level.direction;
     if (point >= 0 && point < int(pass.along.size())) {
@@ -68,7 +71,9 @@ Action LayerSwitching::go_on_in_layer_1()
     }
     if (level.at.pass + 1 < int(passes_.size())) {
         const int next = level.at.pass + 1;
-        return step_over_to(next, level.direction > 0 ? int(passes_[next].along.size()) - 1 : 0, true);
+        const Action action = step_over_to(next, level.direction > 0 ? int(passes_[next].along.size()) - 1 : 0, true);
+        begin_pass();
+        return action;
     }
     const bool within = worst_remaining_ <= settings_.remaining;
     if (!within && counts_.coverings + 1 >= settings_.bounds.coverings)
@@ -103,6 +108,46 @@ Action LayerSwitching::go_on_above(double force)
     return act(Action::Kind::stay, Event::cut_end);
 }
 
+// At the end of a stroke, where too much was left on it: back over that stretch and a point around it, to its farther
+// end. Where nothing was: on to the nearer end of the pass.
+bool LayerSwitching::turn_back(double remaining)
+{
+    const int here = levels_.back().at.point, last = last_point();
+    const bool high = remaining > settings_.remaining;
+    if (high) {
+        high_first_ = std::min(high_first_, here);
+        high_last_ = std::max(high_last_, here);
+    }
+    if (here != stroke_end_) return false;
+    if (high_last_ < 0) {
+        if (here != 0 && here != last) start_stroke(here > last - here ? last : 0);
+        return false;
+    }
+    const int first = std::max(high_first_ - 1, 0), end = std::min(high_last_ + 1, last);
+    start_stroke(std::abs(here - first) >= std::abs(end - here) ? first : end);
+    if (high) high_first_ = high_last_ = here; // it is not on the new stroke
+    ++strokes_;
+    ++counts_.strokes;
+    return true;
+}
+
+void LayerSwitching::begin_pass()
+{
+    strokes_ = 0;
+    start_stroke(levels_.back().at.point == 0 ? last_point() : 0);
+}
+
+void LayerSwitching::start_stroke(int end)
+{
+    Level& level = levels_.back();
+    stroke_end_ = end;
+    if (end != level.at.point) level.direction = end > level.at.point ? +1 : -1;
+    high_first_ = last_point() + 1;
+    high_last_ = -1;
+}
+
+int LayerSwitching::last_point() const { return int(passes_[levels_.back().at.pass].along.size()) - 1; }
+
 Action LayerSwitching::end_cut()
 {
     cut_ended_ = false;
@@ -129,6 +174,7 @@ Action LayerSwitching::start_covering(Event event)
     const Place start{};
     levels_.back() = {start, +1, start, +1, true, along(start), 0, 0};
     worst_remaining_ = 0;
+    begin_pass();
     ++counts_.passes;
     return act(Action::Kind::travel, event);
 }

@@ -62,7 +62,8 @@ struct StrategyCounts {
     int coverings = 0; ///< of layer 1, complete
     int re_cuts = 0;
     int raises = 0;
-    int passes = 0; ///< begun, in any layer
+    int passes = 0;  ///< begun, in any layer
+    int strokes = 0; ///< back over a pass of layer 1
     int steps = 0;
 };
 
@@ -71,7 +72,8 @@ struct StrategyCounts {
 ///
 /// 1. F > F_max: up one layer in place, again until the force is in range. Where the lower layer was left is kept; the
 ///    layers nest.
-/// 2. Layer 1 covers all of B. At its end, within tolerance: done; else once more from the start.
+/// 2. Layer 1 covers all of B. At its end, within tolerance: done; else once more from the start. Or, with
+///    `finish_passes`, each pass goes to and fro over the stretch where more is left, until none is, before the next.
 /// 3. Above layer 1, F < F_min ends a pass: step over, reverse. F < F_min at the beginning of a pass ends the cut. Its
 ///    largest force F_a > F_down: cut again from where this layer was entered; else down one layer, to the point where
 ///    that was left, and on in the direction it had.
@@ -85,6 +87,7 @@ class LayerSwitching {
         double force_min = 0, force_down = 0, force_max = 0; ///< N
         double step_over = 0;                                ///< mm
         double remaining = 0;                                ///< largest that may be left at the end of a covering, mm
+        bool finish_passes = false;                          ///< in layer 1, one by one
         Bounds bounds;
     };
 
@@ -116,7 +119,11 @@ class LayerSwitching {
     Action act(Action::Kind kind, Event event) const { return {kind, event, levels_.back().at, layer()}; }
     Action fail(const std::string& bound);
     Action go_up();
-    Action go_on_in_layer_1();
+    Action go_on_in_layer_1(double remaining);
+    bool turn_back(double remaining);
+    void begin_pass();
+    void start_stroke(int end);
+    int last_point() const; ///< of the current pass
     Action go_on_above(double force);
     Action end_cut();
     Action start_covering(Event event);
@@ -131,8 +138,10 @@ class LayerSwitching {
     Settings settings_;
     std::vector<Level> levels_; ///< of layers 1, 2, …; the last is the current one
     bool cut_ended_ = false;
-    bool fed_ = false;           ///< the last action was grinding
     double worst_remaining_ = 0; ///< in this covering
+    /// Layer 1, finish_passes: of the current stroke, the first and the last point where too much is left, and where it
+    /// ends; strokes of this pass.
+    int high_first_ = 0, high_last_ = -1, stroke_end_ = -1, strokes_ = 0;
     StrategyCounts counts_;
     std::string failure_;
 };

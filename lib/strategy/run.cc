@@ -3,6 +3,8 @@
 #include "core/error.h"
 #include "core/text.h"
 #include "plan/tool_path.h"
+#include "strategy/feed_control.h"
+#include "strategy/wheel_wear.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,11 +16,19 @@ namespace {
 // Progress is told once in so many steps.
 constexpr int kStepsPerTell = 256;
 
+LayerSwitching::Settings settings_of(const Plan& plan, const RunOptions& options)
+{
+    LayerSwitching::Settings settings = strategy_settings(plan);
+    settings.finish_passes = options.layer_1 == Layer1::feed;
+    return settings;
+}
+
 class Runner {
   public:
     Runner(const Plan& plan, Gantry& gantry, const RunOptions& options)
         : plan_(plan), gantry_(gantry), options_(options), path_(plan.job, plan.surface, plan.passes, plan.step),
-          strategy_(path_.passes(), strategy_settings(plan))
+          strategy_(path_.passes(), settings_of(plan, options)), control_(plan.job, strategy_settings(plan).remaining),
+          wear_(plan.job, strategy_settings(plan).remaining)
     {
     }
 
@@ -40,6 +50,7 @@ class Runner {
     }
 
   private:
+    bool one_covering() const { return options_.layer_1 == Layer1::feed; }
     double raised(int layer) const { return reference_offset(plan_.layers, layer); }
     const Eigen::Vector3d& reference(const Place& place) const
     {
@@ -69,7 +80,7 @@ class Runner {
             status = travel(reference(action.to), action.layer);
             break;
         case Action::Kind::lift:
-            status = gantry_.lift(standing_.z() + raised(action.layer));
+            status = gantry_.lift(tool_point(action.layer).z());
             break;
         case Action::Kind::grind:
             if (from.pass != action.to.pass) return cross(action);
@@ -79,20 +90,49 @@ class Runner {
             break;
         }
         noticed(status, action.layer);
-        record(action, status, action.kind == Action::Kind::grind ? plan_.job.feed.rate : 0);
+        record(action, status, action.kind == Action::Kind::grind ? feed_ : 0);
         return status;
+    }
+
+    // Where the tool stands in this layer.
+    Eigen::Vector3d tool_point(int layer) const
+    {
+        return standing_ + (raised(layer) - lost_) * Eigen::Vector3d::UnitZ();
     }
 
     GantryStatus travel(const Eigen::Vector3d& reference, int layer)
     {
         standing_ = reference;
-        return gantry_.travel(reference + raised(layer) * Eigen::Vector3d::UnitZ());
+        return gantry_.travel(tool_point(layer));
     }
 
     GantryStatus grind(const Eigen::Vector3d& reference, int layer)
     {
+        if (layer == 1 && one_covering()) return grind_controlled(reference);
         standing_ = reference;
-        return gantry_.grind(reference + raised(layer) * Eigen::Vector3d::UnitZ(), plan_.job.feed.rate);
+        feed_ = plan_.job.feed.rate;
+        return gantry_.grind(tool_point(layer), feed_);
+    }
+
+    // In layer 1, period by period of the feed-rate control.
+    GantryStatus grind_controlled(const Eigen::Vector3d& reference)
+    {
+        const Eigen::Vector3d from = standing_, way = reference - from;
+        const double length = way.norm();
+        GantryStatus status = gantry_.status();
+        const double begun = status.time;
+        double peak = 0;
+        for (double gone = 0; gone < length && status.force <= plan_.job.force.max;) {
+            gone = std::min(gone + control_.feed() * control_.period(), length);
+            standing_ = from + way * (gone / length);
+            const GantryStatus next = gantry_.grind(tool_point(1), control_.feed());
+            control_.update(status.deflection, next.deflection, next.time - status.time);
+            status = next;
+            peak = std::max(peak, status.peak_force);
+            feed_ = gone / (status.time - begun);
+        }
+        status.peak_force = std::max(status.peak_force, peak);
+        return status;
     }
 
     // To the next pass in pieces of a step, over the surface between the two. It ends early, above the place that was
@@ -115,7 +155,7 @@ class Runner {
             noticed(status, action.layer);
             Action piece = action;
             if (i > 1) piece.event = Event::none;
-            record(piece, status, plan_.job.feed.rate);
+            record(piece, status, feed_);
             if (status.force > plan_.job.force.max) break;
         }
         return status;
@@ -124,7 +164,7 @@ class Runner {
     // A guarded way down may have stopped above the reference surface.
     void noticed(const GantryStatus& status, int layer)
     {
-        short_of_ = std::max(0.0, status.commanded.z() - standing_.z() - raised(layer));
+        short_of_ = std::max(0.0, status.commanded.z() - tool_point(layer).z());
         result_.peak_force = std::max({result_.peak_force, status.force, status.peak_force});
     }
 
@@ -132,7 +172,10 @@ class Runner {
     {
         result_.trace.push_back({status.time, status.commanded + status.deflection * Eigen::Vector3d::UnitZ(),
                                  action.layer, action.to.pass + 1, action.event, status.force, feed});
-        grinding_time_ += feed > 0 ? status.time - last_time_ : 0;
+        const double ground = feed > 0 ? status.time - last_time_ : 0;
+        grinding_time_ += ground;
+        wear_.ground(status.force, ground);
+        if (one_covering()) lost_ = wear_.loss();
         last_time_ = status.time;
     }
 
@@ -140,7 +183,8 @@ class Runner {
     {
         const bool covering = action.event == Event::start || action.event == Event::covering_done;
         const bool in_pass = action.kind == Action::Kind::grind && action.event == Event::none;
-        const bool due = grinding_time_ - measured_at_ >= options_.touch_off_period;
+        const bool due = grinding_time_ - measured_at_ >= options_.touch_off_period ||
+                         (one_covering() && action.layer == 1 && wear_.due());
         if (!covering && !(due && (in_pass || action.kind == Action::Kind::travel))) return;
         measure_wheel(action);
         if (in_pass) travel(reference(at_), action.layer); // back to where it was
@@ -152,6 +196,7 @@ class Runner {
         double radius = touch_off(action);
         if (radius < least) {
             gantry_.change_wheel();
+            wear_.renewed();
             ++result_.wheel_changes;
             action.event = Event::wheel_change;
             record(action, gantry_.status(), 0);
@@ -169,6 +214,8 @@ class Runner {
     {
         const double radius = gantry_.touch_off();
         ++result_.touch_offs;
+        wear_.measured(radius);
+        lost_ = 0;
         action.event = Event::touch_off;
         record(action, gantry_.status(), 0);
         return radius;
@@ -179,10 +226,14 @@ class Runner {
     RunOptions options_;
     ToolPath path_;
     LayerSwitching strategy_;
+    FeedControl control_;
+    WheelWear wear_;
     GrindRun result_;
     Place at_;
     Eigen::Vector3d standing_ = Eigen::Vector3d::Zero(); ///< tool point in layer 1 where the tool stands
-    double short_of_ = 0;                                ///< how far above its reference, mm
+    double lost_ = 0;     ///< by the wheel since it was measured, mm; only where one covering has to be enough
+    double feed_ = 0;     ///< of the last step, mm/s
+    double short_of_ = 0; ///< how far above its reference, mm
     double grinding_time_ = 0, measured_at_ = 0, last_time_ = 0;
 };
 

@@ -23,7 +23,12 @@ struct TraceRow {
     double feed = 0; ///< 0: not grinding
 };
 
+/// How layer 1 is ground: at the job's feed, covering after covering until all is within tolerance; or pass after pass
+/// until each is, the last stroke by feed-rate control (feed_control.h).
+enum class Layer1 { constant, feed };
+
 struct RunOptions {
+    Layer1 layer_1 = Layer1::constant;
     /// Grinding time between two measurements of the wheel at P0, s. It is measured at the start of each covering, too.
     double touch_off_period = 120;
 };

@@ -1,0 +1,157 @@
+// Layer 1 in one covering: strokes of a pass, the feed-rate controller, the wheel's wear between two measurements.
+
+#include "strategy/feed_control.h"
+#include "strategy/layer_switching.h"
+#include "strategy/wheel_wear.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <set>
+
+using namespace fettle;
+
+namespace {
+
+constexpr double kRemaining = 0.1;
+
+LayerSwitching::Settings settings()
+{
+    LayerSwitching::Settings s;
+    s.force_min = 5, s.force_down = 10, s.force_max = 15;
+    s.step_over = 1;
+    s.remaining = kRemaining;
+    s.finish_passes = true;
+    s.bounds = {.layers = 5, .re_cuts = 40, .coverings = 1, .time = 1e6, .steps = 100000};
+    return s;
+}
+
+std::vector<ToolPass> square(int count, int points)
+{
+    std::vector<ToolPass> passes(static_cast<std::size_t>(count));
+    for (int p = 0; p < count; ++p) {
+        passes[static_cast<std::size_t>(p)].line = p;
+        passes[static_cast<std::size_t>(p)].starts = {0};
+        for (int i = 0; i < points; ++i) passes[static_cast<std::size_t>(p)].along.push_back(i);
+    }
+    return passes;
+}
+
+TEST(Strokes, LeaveNoPlaceTooHighAndMoveByNeighbours)
+{
+    // Random stock, of which each visit leaves 0.4. At the end no place is too high; every place was visited, each move
+    // was to a neighbour or to the same end of the next pass, and no place was visited more often than two of its
+    // neighbourhood needed.
+    std::mt19937 random(5);
+    for (int run = 0; run < 200; ++run) {
+        const int count = 1 + int(random() % 4), points = 2 + int(random() % 9);
+        std::vector<std::vector<double>> z(std::size_t(count), std::vector<double>(std::size_t(points), 0));
+        for (auto& pass : z)
+            for (double& height : pass) height = random() % 3 == 0 ? double(random() % 1000) / 200 : 0;
+        const auto passes = square(count, points);
+        LayerSwitching strategy(passes, settings());
+        std::set<std::pair<int, int>> visited;
+        Action action = strategy.first();
+        double time = 0;
+        while (action.kind != Action::Kind::finish) {
+            ASSERT_NE(action.kind, Action::Kind::fail) << strategy.failure();
+            double& height = z[std::size_t(action.to.pass)][std::size_t(action.to.point)];
+            visited.insert({action.to.pass, action.to.point});
+            const Place before = action.to;
+            const double remaining = height;
+            height *= 0.4;
+            action = strategy.next({0, remaining, ++time});
+            if (action.kind != Action::Kind::grind) continue;
+            if (action.to.pass == before.pass) {
+                ASSERT_EQ(std::abs(action.to.point - before.point), 1);
+            } else {
+                ASSERT_EQ(action.to.pass, before.pass + 1);
+                ASSERT_EQ(action.to.point, before.point);
+                ASSERT_TRUE(before.point == 0 || before.point == points - 1);
+            }
+        }
+        EXPECT_EQ(int(visited.size()), count * points);
+        EXPECT_EQ(strategy.counts().coverings, 1);
+        for (const auto& pass : z)
+            for (const double height : pass) ASSERT_LE(height, 0.4 * kRemaining);
+    }
+}
+
+TEST(Strokes, GoOnlyWhereTooMuchIsLeft)
+{
+    // Of 20 places two in the middle need a second visit: back from the far end to one beyond them, and on to the
+    // nearer end.
+    const auto passes = square(1, 20);
+    LayerSwitching strategy(passes, settings());
+    std::vector<double> z(20, 0);
+    z[6] = z[7] = 0.2;
+    Action action = strategy.first();
+    std::string way;
+    for (double time = 0; action.kind != Action::Kind::finish; ++time) {
+        way += std::to_string(action.to.point) + " ";
+        const double remaining = z[std::size_t(action.to.point)];
+        z[std::size_t(action.to.point)] *= 0.4;
+        action = strategy.next({0, remaining, time});
+    }
+    EXPECT_EQ(way, "0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 18 17 16 15 14 13 12 11 10 9 8 7 6 5 4 3 2 1 0 ");
+    EXPECT_EQ(strategy.counts().strokes, 1);
+}
+
+TEST(FeedControl, HoldsTheTargetWhateverTheMetalYields)
+{
+    // The wheel climbs by s v and sinks by c F / A, steps of 1 ms; s such that the job's feed leaves 1.2 times the
+    // limit. At rest what is left is the target, three quarters of the limit, for metal of half to twice the job's c /
+    // A.
+    Job job;
+    for (const double yields : {0.25, 0.5, 0.9}) {
+        const double limit = 0.05, contact = std::sqrt(2 * job.wheel.radius * 0.75 * limit);
+        const double rate = yields * job.removal / (contact * job.wheel.width), k = job.force.stiffness;
+        const double s = rate * k * 1.2 * limit / job.feed.rate;
+        FeedControl control(job, limit);
+        EXPECT_EQ(control.feed(), job.feed.rate);
+        double z = 0;
+        for (int n = 0; n < 400; ++n) {
+            const double before = z;
+            for (int i = 0; i < 20; ++i) z += (s * control.feed() - rate * k * z) * 1e-3;
+            control.update(before, z, 0.02);
+        }
+        EXPECT_NEAR(z, 0.75 * limit, 0.002 * limit) << yields;
+        EXPECT_NEAR(control.feed(), job.feed.rate * 0.75 / 1.2, 0.01 * job.feed.rate);
+    }
+}
+
+TEST(FeedControl, KeepsTheFeedWhereAnotherStrokeIsDue)
+{
+    Job job;
+    FeedControl control(job, 0.05);
+    control.update(1, 1, 0.02); // 20 times the limit
+    EXPECT_EQ(control.feed(), job.feed.rate);
+    control.update(0, 0, 0.02); // air
+    EXPECT_EQ(control.feed(), job.feed.rate);
+}
+
+TEST(WheelWear, LearnsAndStaysCautious)
+{
+    Job job;
+    WheelWear wear(job, 0.05);
+    wear.measured(25);
+    wear.ground(20, 10);
+    EXPECT_EQ(wear.loss(), 0); // nothing learned yet
+    wear.measured(24.98);      // 0.02 mm by 200 N s
+    wear.ground(10, 10);
+    EXPECT_GT(wear.loss(), 0.5 * 0.01);
+    EXPECT_LT(wear.loss(), 0.01);
+    EXPECT_FALSE(wear.due());
+    wear.ground(10, 40); // 0.05 mm by now: what the prediction may miss is more than a quarter of 0.05 mm
+    EXPECT_TRUE(wear.due());
+    wear.measured(24.93);
+    EXPECT_FALSE(wear.due());
+    EXPECT_EQ(wear.loss(), 0);
+    wear.renewed();
+    wear.measured(30); // a new wheel has not grown
+    wear.ground(10, 10);
+    EXPECT_NEAR(wear.loss(), 0.7 * 0.01, 1e-9);
+}
+
+} // namespace
