@@ -48,8 +48,8 @@ MD     := -lmd
 FCL    := -lfcl -lccd
 LDLIBS_ALL := -llzf -ltbb
 
-# The one file that sees OpenCV.
-$(B)/lib/compare/canvas.o: override CPPFLAGS += $(addprefix -isystem ,$(wildcard /usr/include/opencv4))
+# The files that see OpenCV.
+$(B)/lib/compare/canvas.o $(B)/lib/belt/convolution.o: override CPPFLAGS += $(addprefix -isystem ,$(wildcard /usr/include/opencv4))
 
 # Square roots of eight numbers at once are one instruction where nobody reads errno.
 $(B)/lib/mesh/mesh_index.o $(B)/lib/robot/workpiece.o: override CXXFLAGS += -fno-math-errno

@@ -4,3 +4,5 @@ $(B)/bin/fettle-fit:     LDLIBS = $(CERES)
 $(B)/bin/fettle-sample:  LDLIBS = $(CERES)
 $(B)/bin/fettle-render:  LDLIBS = $(OPENCV) $(PNG)
 $(B)/bin/fettle-report:  LDLIBS = $(OPENCV) $(PNG) $(MD)
+$(B)/bin/fettle-contact: LDLIBS = -lopencv_core
+$(B)/bin/fettle-belt:    LDLIBS = -lopencv_core

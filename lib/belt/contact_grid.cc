@@ -1,0 +1,188 @@
+#include "belt/contact_grid.h"
+
+#include <Eigen/Cholesky>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace fettle {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::Vector2d;
+
+constexpr Index kNearest = 8;
+
+/// A point and its squared distance.
+using Near = std::pair<double, Index>;
+
+/// Points in square buckets, about two in each.
+class Buckets {
+  public:
+    explicit Buckets(const Eigen::Matrix3Xd& points) : points_(points)
+    {
+        least_ = points.topRows<2>().rowwise().minCoeff();
+        const Vector2d size = points.topRows<2>().rowwise().maxCoeff() - least_;
+        const auto n = static_cast<double>(points.cols());
+        side_ = std::max(std::sqrt(2 * size.prod() / n), std::max(2 * size.maxCoeff() / n, 1e-9));
+        counts_ = (size / side_).array().floor().cast<Index>() + 1;
+        begin_.assign(static_cast<std::size_t>(counts_.prod()) + 1, 0);
+        for (Index i = 0; i < points.cols(); ++i) ++begin_[bucket_of(i) + 1];
+        for (std::size_t b = 1; b < begin_.size(); ++b) begin_[b] += begin_[b - 1];
+        order_.resize(static_cast<std::size_t>(points.cols()));
+        std::vector<Index> next(begin_.begin(), begin_.end() - 1);
+        for (Index i = 0; i < points.cols(); ++i) order_[static_cast<std::size_t>(next[bucket_of(i)]++)] = i;
+    }
+
+    /// The mean distance between neighbours that are spread evenly.
+    double spacing() const { return side_ / std::sqrt(2.0); }
+
+    /// Up to kNearest points within `reach`, nearest first.
+    void nearest(const Vector2d& place, double reach, std::vector<Near>& result) const
+    {
+        result.clear();
+        const Eigen::Array2d at = (place - least_) / side_;
+        const Eigen::Array<Index, 2, 1> middle = at.floor().cast<Index>();
+        const auto rings = static_cast<Index>(std::ceil(reach / side_));
+        for (Index ring = 0; ring <= rings; ++ring) {
+            // Whatever lies in this ring is at least that far.
+            const double least = (static_cast<double>(ring) - 1) * side_;
+            if (static_cast<Index>(result.size()) == kNearest && ring > 0 && least * least > result.back().first)
+                return;
+            for (Index v = middle.y() - ring; v <= middle.y() + ring; ++v) {
+                const bool edge = std::abs(v - middle.y()) == ring;
+                for (Index u = middle.x() - ring; u <= middle.x() + ring; u += edge || ring == 0 ? 1 : 2 * ring)
+                    look_into(u, v, place, reach, result);
+            }
+        }
+    }
+
+  private:
+    std::size_t bucket_of(Index i) const
+    {
+        const Eigen::Array2d at = (points_.col(i).head<2>() - least_) / side_;
+        const Eigen::Array<Index, 2, 1> b = at.floor().cast<Index>().min(counts_ - 1);
+        return static_cast<std::size_t>(b.y() * counts_.x() + b.x());
+    }
+
+    void look_into(Index u, Index v, const Vector2d& place, double reach, std::vector<Near>& result) const
+    {
+        if (u < 0 || v < 0 || u >= counts_.x() || v >= counts_.y()) return;
+        const auto b = static_cast<std::size_t>(v * counts_.x() + u);
+        for (Index k = begin_[b]; k < begin_[b + 1]; ++k) {
+            const Index i = order_[static_cast<std::size_t>(k)];
+            const Near near((points_.col(i).head<2>() - place).squaredNorm(), i);
+            if (near.first > reach * reach) continue;
+            if (static_cast<Index>(result.size()) == kNearest) {
+                if (!(near < result.back())) continue;
+                result.pop_back();
+            }
+            result.insert(std::upper_bound(result.begin(), result.end(), near), near);
+        }
+    }
+
+    const Eigen::Matrix3Xd& points_;
+    Vector2d least_;
+    double side_;
+    Eigen::Array<Index, 2, 1> counts_;
+    std::vector<Index> begin_, order_;
+};
+
+double shepard(const std::vector<Near>& near, const Eigen::Matrix3Xd& points)
+{
+    double sum = 0, weights = 0;
+    for (const auto& [square, i] : near) {
+        if (square == 0) return points(2, i);
+        sum += points(2, i) / square;
+        weights += 1 / square;
+    }
+    return sum / weights;
+}
+
+/// With the covariance 2 (greatest distance) - d in place of the variogram: the same weights, by Cholesky.
+double kriging(const std::vector<Near>& near, const Eigen::Matrix3Xd& points)
+{
+    using System = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kNearest, kNearest>;
+    using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kNearest, 1>;
+    using Columns = Eigen::Matrix<double, Eigen::Dynamic, 2, 0, kNearest, 2>;
+    Eigen::Matrix<double, 3, kNearest> apart; // two heights at one place have no weights: the first stands for both
+    Column distance(kNearest);
+    Index n = 0;
+    for (const auto& [square, i] : near) {
+        const auto same = (apart.leftCols(n).topRows<2>().colwise() - points.col(i).head<2>()).colwise().squaredNorm();
+        if (n > 0 && same.minCoeff() == 0) continue;
+        distance[n] = std::sqrt(square);
+        apart.col(n++) = points.col(i);
+    }
+    System A(n, n);
+    for (Index k = 0; k < n; ++k)
+        A.col(k) = (apart.leftCols(n).topRows<2>().colwise() - apart.col(k).head<2>()).colwise().norm().transpose();
+    const double shift = 2 * std::max(A.maxCoeff(), distance.head(n).maxCoeff());
+    A = shift - A.array();
+    const Column b = shift - distance.head(n).array();
+    Columns right(n, 2);
+    right << apart.leftCols(n).row(2).transpose(), Column::Ones(n);
+    const Columns solved = A.llt().solve(right);
+    return b.dot(solved.col(0)) + (1 - b.dot(solved.col(1))) * solved.col(0).sum() / solved.col(1).sum();
+}
+
+} // namespace
+
+Eigen::Matrix3Xd facing(const Surfels& surfels, std::vector<Index>& which, const Eigen::Isometry3d& T_part_tool,
+                        const ContactCells& cells, double deepest)
+{
+    const Eigen::Isometry3d T_tool_part = T_part_tool.inverse();
+    const Eigen::Vector3d up = T_part_tool.linear().col(2);
+    constexpr double kBeside = 1.2; // of the cells: neighbours for those at the border
+    const Vector2d half = kBeside * cells.half();
+    Eigen::Matrix3Xd points(3, static_cast<Index>(which.size()));
+    std::size_t count = 0;
+    for (const Index i : which) {
+        if (!(surfels.normal.col(i).dot(up) > 0)) continue;
+        const Eigen::Vector3d at =
+            T_tool_part * (surfels.position.col(i) + surfels.displacement[i] * surfels.normal.col(i));
+        if (!(std::abs(at.x()) <= half.x() && std::abs(at.y()) <= half.y() && at.z() >= -deepest)) continue;
+        points.col(static_cast<Index>(count)) = at;
+        which[count++] = i;
+    }
+    which.resize(count);
+    return points.leftCols(static_cast<Index>(count));
+}
+
+double between(const ContactCells& cells, const Eigen::MatrixXd& field, const Vector2d& place)
+{
+    const Eigen::Array2d at = (place + cells.half()).array() / cells.cell.array() - 0.5;
+    const Eigen::Array2d low = at.floor(), part = at - low;
+    const auto value = [&](Index row, Index column) {
+        return row < 0 || column < 0 || row >= cells.rows || column >= cells.columns ? 0 : field(row, column);
+    };
+    const auto i = static_cast<Index>(low.x()), j = static_cast<Index>(low.y());
+    return (1 - part.y()) * ((1 - part.x()) * value(i, j) + part.x() * value(i + 1, j)) +
+           part.y() * ((1 - part.x()) * value(i, j + 1) + part.x() * value(i + 1, j + 1));
+}
+
+Eigen::MatrixXd heights_on(const ContactCells& cells, const Eigen::Matrix3Xd& points, Gridding gridding)
+{
+    Eigen::MatrixXd heights =
+        Eigen::MatrixXd::Constant(cells.rows, cells.columns, std::numeric_limits<double>::quiet_NaN());
+    if (points.cols() == 0) return heights;
+    const Buckets buckets(points);
+    constexpr double kNear = 2; // spacings
+    tbb::parallel_for(Index{0}, cells.columns, [&](Index column) {
+        std::vector<Near> near;
+        for (Index row = 0; row < cells.rows; ++row) {
+            const Vector2d place = cells.middle(row, column);
+            buckets.nearest(place, 3 * buckets.spacing(), near);
+            if (near.empty() || std::sqrt(near.front().first) > kNear * buckets.spacing()) continue;
+            heights(row, column) = gridding == Gridding::shepard ? shepard(near, points) : kriging(near, points);
+        }
+    });
+    return heights;
+}
+
+} // namespace fettle

@@ -1,0 +1,146 @@
+#include "belt/press.h"
+
+#include "core/error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace fettle {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::Vector2d;
+
+constexpr Index kCoarse = 24;  // cells to find the contact's extent
+constexpr double kMost = 0.99; // of the radius: the wheel's profile is steep there
+
+/// As long as the wheel dips into a plane by a tenth of its layer, and as wide as it is.
+Vector2d first_half(const ContactWheel& wheel)
+{
+    return {std::min(std::sqrt(2 * wheel.radius * wheel.layer.thickness / 10), kMost * wheel.radius), wheel.width / 2};
+}
+
+} // namespace
+
+WheelPress::WheelPress(const Surfels& surfels, const ContactWheel& wheel, const PressOptions& options)
+    : surfels_(surfels), wheel_(wheel), options_(options), index_(surfels, first_half(wheel).minCoeff() / 2)
+{
+}
+
+void WheelPress::set_grid(const Vector2d& half, Index count)
+{
+    press_.cells = {2 * half / static_cast<double>(count), count, count};
+    layer_.emplace(wheel_.layer, press_.cells.cell, count, count);
+    lift();
+}
+
+void WheelPress::lift()
+{
+    press_.contact.pressure.resize(0, 0);
+    last_.resize(0, 0);
+}
+
+void WheelPress::press_on(const Eigen::Isometry3d& T_part_tool, const Pressing& pressing, Gridding gridding,
+                          double tolerance)
+{
+    const ContactCells& cells = press_.cells;
+    index_.near(T_part_tool.translation(), cells.half_diagonal() + wheel_.layer.thickness, under_);
+    places_ = facing(surfels_, under_, T_part_tool, cells, wheel_.layer.thickness);
+    press_.height = heights_on(cells, places_, gridding);
+    gap_.resize(cells.rows, cells.columns);
+    for (Index j = 0; j < cells.columns; ++j)
+        for (Index i = 0; i < cells.rows; ++i) {
+            const Vector2d at = cells.middle(i, j);
+            const double height = press_.height(i, j);
+            gap_(i, j) =
+                std::isnan(height) ? std::numeric_limits<double>::infinity() : profile(wheel_, at.x(), at.y()) - height;
+        }
+    if (!gap_.array().isFinite().any()) throw InputError("there is nothing under the wheel");
+    MatrixXd start = press_.contact.pressure;
+    if (last_.size() > 0) start = (2 * start - last_).eval();
+    last_ = press_.contact.pressure;
+    press_.contact = pressing.by_force ? layer_->by_force(gap_, pressing.amount, tolerance, start)
+                                       : layer_->by_depth(gap_, pressing.amount, tolerance, start);
+    if (!press_.contact.converged) throw InputError("the contact was not found to the tolerance");
+}
+
+/// Farthest edges of cells that touch, along x and y, mm.
+Vector2d WheelPress::reach() const
+{
+    Vector2d farthest = Vector2d::Zero();
+    for (Index j = 0; j < press_.cells.columns; ++j)
+        for (Index i = 0; i < press_.cells.rows; ++i)
+            if (press_.contact.pressure(i, j) > 0)
+                farthest = farthest.cwiseMax(press_.cells.middle(i, j).cwiseAbs() + press_.cells.cell / 2);
+    return farthest;
+}
+
+/// Could the contact go on beyond the grid?
+bool WheelPress::is_at_border() const
+{
+    const Eigen::Array2d half = press_.cells.half().array(), farthest = reach().array();
+    const Eigen::Array2d most(kMost * wheel_.radius, wheel_.width / 2);
+    return (farthest > half - 1.5 * press_.cells.cell.array() && half < 0.999 * most).any();
+}
+
+void WheelPress::find_grid(const Eigen::Isometry3d& T_part_tool, const Pressing& pressing)
+{
+    constexpr double kAround = 1.3;
+    constexpr double kRough = 1e-3;
+    const Vector2d most(kMost * wheel_.radius, wheel_.width / 2);
+    Vector2d half = layer_ ? Vector2d(1.5 * press_.cells.half()) : first_half(wheel_);
+    for (;; half *= 2) {
+        half = half.cwiseMin(most);
+        set_grid(half, kCoarse);
+        press_on(T_part_tool, pressing, Gridding::shepard, kRough);
+        if (!is_at_border()) break;
+    }
+    set_grid((kAround * reach() + press_.cells.cell).cwiseMin(most), options_.cells);
+}
+
+const Press& WheelPress::at(const Eigen::Isometry3d& T_part_tool, const Pressing& pressing)
+{
+    if (!layer_) find_grid(T_part_tool, pressing);
+    press_on(T_part_tool, pressing, options_.gridding, options_.tolerance);
+    if (is_at_border()) {
+        find_grid(T_part_tool, pressing);
+        press_on(T_part_tool, pressing, options_.gridding, options_.tolerance);
+    }
+    constexpr double kEdge = 1.5; // thicknesses
+    press_.is_near_edge = reach().y() > wheel_.width / 2 - kEdge * wheel_.layer.thickness;
+    return press_;
+}
+
+MatrixXd WheelPress::gap_left() { return layer_->gap_left(gap_, press_.contact); }
+
+double Press::area() const { return static_cast<double>((contact.pressure.array() > 0).count()) * cells.cell.prod(); }
+
+Cloud to_cloud(const Press& press, const MatrixXd& gap_left, const Eigen::Isometry3d& T_part_tool)
+{
+    std::vector<Eigen::Vector3d> points;
+    std::vector<double> pressure, gap;
+    for (Index j = 0; j < press.cells.columns; ++j)
+        for (Index i = 0; i < press.cells.rows; ++i) {
+            if (std::isnan(press.height(i, j))) continue;
+            const Vector2d at = press.cells.middle(i, j);
+            points.push_back(T_part_tool * Eigen::Vector3d(at.x(), at.y(), press.height(i, j)));
+            pressure.push_back(press.contact.pressure(i, j));
+            gap.push_back(gap_left(i, j));
+        }
+    Cloud cloud;
+    cloud.comment = "frame: part";
+    cloud.xyz.resize(3, static_cast<Index>(points.size()));
+    for (std::size_t i = 0; i < points.size(); ++i) cloud.xyz.col(static_cast<Index>(i)) = points[i];
+    const auto values = [](const std::vector<double>& all) {
+        return Eigen::VectorXd(Eigen::VectorXd::Map(all.data(), static_cast<Index>(all.size())));
+    };
+    set_field(cloud, "pressure", values(pressure));
+    set_field(cloud, "gap", values(gap));
+    return cloud;
+}
+
+} // namespace fettle

@@ -1,0 +1,74 @@
+#pragma once
+
+#include "belt/contact_grid.h"
+#include "belt/contact_wheel.h"
+#include "belt/layer_contact.h"
+#include "belt/surfel_index.h"
+
+#include <optional>
+
+namespace fettle {
+
+/// How the contact is reckoned.
+struct PressOptions {
+    Gridding gridding = Gridding::kriging;
+    Eigen::Index cells = 64; ///< along each side of the grid
+    double tolerance = 1e-6; ///< of the contact (layer_contact.h)
+};
+
+/// How the wheel is pressed on: with a force, or to a depth of its lowest point below the contact point.
+struct Pressing {
+    bool by_force = true;
+    double amount = 0; ///< N or mm, > 0
+};
+
+/// A contact situation: what lies under the wheel, and how it is pressed.
+struct Press {
+    ContactCells cells;
+    Eigen::MatrixXd height; ///< over the plane through the contact point, mm; NaN: nothing is there
+    Contact contact;
+    /// Nearer than 1.5 thicknesses to the layer's free edge, where it is softer than reckoned.
+    bool is_near_edge = false;
+    double area() const; ///< that touches, mm²
+};
+
+/// Presses a wheel on surfels at one pose after the other: +z out of the part, the wheel's axis along y. The grid is as
+/// large as the contact and a little more; it grows when a contact comes to its border. Each contact begins with what
+/// the two before it lead to expect.
+class WheelPress {
+  public:
+    /// All are kept by reference, but for the options.
+    WheelPress(const Surfels& surfels, const ContactWheel& wheel, const PressOptions& options);
+
+    /// @throws InputError if there is nothing under the wheel, or the contact is not found to tolerance
+    const Press& at(const Eigen::Isometry3d& T_part_tool, const Pressing& pressing);
+    /// The surfels that the last grid was made from, and where they are in the tool frame.
+    const std::vector<Eigen::Index>& under() const { return under_; }
+    const Eigen::Matrix3Xd& places() const { return places_; }
+    /// What is left between wheel and surfels, mm.
+    Eigen::MatrixXd gap_left();
+    /// The next contact has nothing to do with the last.
+    void lift();
+
+  private:
+    void set_grid(const Eigen::Vector2d& half, Eigen::Index count);
+    void find_grid(const Eigen::Isometry3d& T_part_tool, const Pressing& pressing);
+    void press_on(const Eigen::Isometry3d& T_part_tool, const Pressing& pressing, Gridding gridding, double tolerance);
+    Eigen::Vector2d reach() const;
+    bool is_at_border() const;
+
+    const Surfels& surfels_;
+    const ContactWheel& wheel_;
+    PressOptions options_;
+    SurfelIndex index_;
+    std::optional<LayerContact> layer_; ///< none: the grid is not known
+    std::vector<Eigen::Index> under_;
+    Eigen::Matrix3Xd places_;
+    Eigen::MatrixXd gap_, last_;
+    Press press_;
+};
+
+/// A point for each cell that something is under, in the part frame, with fields pressure (MPa) and gap (mm).
+Cloud to_cloud(const Press& press, const Eigen::MatrixXd& gap_left, const Eigen::Isometry3d& T_part_tool);
+
+} // namespace fettle

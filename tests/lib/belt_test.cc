@@ -1,0 +1,188 @@
+// Grinding along a path: the law's integral, refinement, and what must not change.
+
+#include "belt/belt_grinding.h"
+#include "core/error.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+using namespace fettle;
+
+namespace {
+
+using Eigen::Index;
+
+constexpr double kSpacing = 0.5, kLength = 80, kWidth = 30; // mm
+constexpr double kForce = 20, kFeed = 40;
+
+/// A plate in z = 0; its stock's surface is tilted by `slope` along y about x.
+Surfels plate(double slope = 0)
+{
+    const auto rows = static_cast<Index>(kLength / kSpacing), columns = static_cast<Index>(kWidth / kSpacing);
+    Surfels surfels;
+    surfels.position.resize(3, rows * columns);
+    surfels.normal.resize(3, rows * columns);
+    for (Index j = 0; j < columns; ++j)
+        for (Index i = 0; i < rows; ++i) {
+            const Index k = j * rows + i;
+            surfels.position.col(k) << (double(i) + 0.5) * kSpacing - kLength / 2,
+                (double(j) + 0.5) * kSpacing - kWidth / 2, 0;
+            surfels.normal.col(k) = Eigen::Vector3d(0, -slope, 1).normalized();
+        }
+    surfels.radius.setConstant(surfels.size(), kSpacing);
+    surfels.displacement.setConstant(surfels.size(), 0.2);
+    surfels.uv.setZero(2, surfels.size());
+    surfels.patch.setZero(surfels.size());
+    return surfels;
+}
+
+ContactWheel crowned()
+{
+    ContactWheel wheel;
+    wheel.radius = 100;
+    wheel.width = 50;
+    wheel.crown_radius = 60;
+    wheel.layer = {10, 5, 0.45};
+    wheel.belt_speed = 15000;
+    wheel.law.coefficient = 1e-7;
+    return wheel;
+}
+
+/// Along x through the middle, from -20 to 20 mm.
+std::vector<BeltPoint> line(double step)
+{
+    std::vector<BeltPoint> path;
+    const int count = static_cast<int>(std::lround(40 / step));
+    for (int k = 0; k <= count; ++k) {
+        BeltPoint point{Eigen::Isometry3d::Identity(), {true, kForce}, kFeed, 0};
+        point.T_part_tool.translation() << -20 + step * k, 0.13, 0;
+        path.push_back(point);
+    }
+    return path;
+}
+
+double volume(const Eigen::VectorXd& removed) { return removed.sum() * kSpacing * kSpacing; }
+
+TEST(Belt, RemovesWhatTheLawSays)
+{
+    Surfels surfels = plate();
+    const Surfels before = surfels;
+    const ContactWheel wheel = crowned();
+    const BeltRun run = grind(surfels, wheel, line(0.5), {});
+    // Preston's law is linear in p: C V_b F t, whatever the pressure's shape.
+    const double law = wheel.law.coefficient * wheel.belt_speed * kForce * 40 / kFeed;
+    EXPECT_NEAR(run.trace.back().time, 40 / kFeed, 1e-9);
+    EXPECT_NEAR(run.removed_volume, law, 1e-5 * law);
+    EXPECT_NEAR(volume(run.removed), law, 1e-3 * law);
+    EXPECT_LE((before.displacement - surfels.displacement - run.removed).cwiseAbs().maxCoeff(), 1e-12);
+    EXPECT_GE(run.removed.minCoeff(), 0);
+    // Beyond the contact's width nothing changes.
+    for (Index i = 0; i < surfels.size(); ++i)
+        if (std::abs(surfels.position(1, i)) > 12) {
+            EXPECT_EQ(surfels.displacement[i], 0.2);
+        }
+}
+
+TEST(Belt, DependsNotOnThePathsSpacing)
+{
+    const ContactWheel wheel = crowned();
+    const auto ground = [&](double step) {
+        Surfels surfels = plate();
+        return grind(surfels, wheel, line(step), {}).removed;
+    };
+    const Eigen::VectorXd coarse = ground(1), fine = ground(0.5);
+    const Surfels where = plate();
+    double most = 0, deepest = 0;
+    for (Index i = 0; i < where.size(); ++i) {
+        if (std::abs(where.position(0, i)) > 8) continue; // away from the path's ends
+        most = std::max(most, std::abs(coarse[i] - fine[i]));
+        deepest = std::max(deepest, fine[i]);
+    }
+    EXPECT_LE(most, 0.005 * deepest);
+}
+
+// The depth is normal to the tangent plane: a surfel whose normal leans loses its cosine of it.
+TEST(Belt, TakesTheCosineFromLeaningNormals)
+{
+    const ContactWheel wheel = crowned();
+    Surfels level = plate(), leaning = plate(0.1);
+    level.displacement.setZero();
+    leaning.displacement.setZero();
+    const BeltRun a = grind(level, wheel, line(1), {}), b = grind(leaning, wheel, line(1), {});
+    EXPECT_NEAR(volume(b.removed) / volume(a.removed), 1 / std::sqrt(1.01), 1e-3);
+}
+
+// A break ends a run: no way is counted across it, and the next contact begins anew.
+TEST(Belt, LiftsAtABreak)
+{
+    const ContactWheel wheel = crowned();
+    std::vector<BeltPoint> path = line(1);
+    const std::size_t n = path.size();
+    BeltPoint off = path.front();
+    off.T_part_tool.translation().setConstant(std::numeric_limits<double>::quiet_NaN());
+    path.push_back(off);
+    for (std::size_t k = 0; k < n; ++k) path.push_back(path[k]);
+    Surfels surfels = plate();
+    const BeltRun run = grind(surfels, wheel, path, {});
+    EXPECT_NEAR(run.trace.back().time, 2 * 40 / kFeed, 1e-9);
+    EXPECT_TRUE(std::isnan(run.trace[n].force));
+    EXPECT_NEAR(run.removed_volume, 2 * wheel.law.coefficient * wheel.belt_speed * kForce * 40 / kFeed, 1e-6);
+}
+
+TEST(Belt, DwellsAndWears)
+{
+    ContactWheel wheel = crowned();
+    std::vector<BeltPoint> path = line(1);
+    path.resize(1);
+    path[0].dwell = 0.5;
+    Surfels surfels = plate();
+    const double fresh = grind(surfels, wheel, path, {}).removed_volume;
+    EXPECT_NEAR(fresh, wheel.law.coefficient * wheel.belt_speed * kForce * 0.5, 1e-6);
+    wheel.law.wear_volume = 10;
+    EXPECT_NEAR(grind(surfels, wheel, path, {}, 10).removed_volume, fresh / std::exp(1), 1e-6);
+}
+
+TEST(Belt, FollowsThePowerLaw)
+{
+    BeltLaw law;
+    law.coefficient = 2;
+    law.pressure = 1.5;
+    law.speed = 0.5;
+    law.feed = -1;
+    law.threshold = 0.1;
+    EXPECT_EQ(removed_depth(law, 0.1, 9, 4, 3, 0), 0);
+    EXPECT_NEAR(removed_depth(law, 0.35, 9, 4, 3, 0), 2 * 0.125 * 3 / 4.0 * 3, 1e-12);
+}
+
+// The deeper the hub, the more force; each point says what it took.
+TEST(Belt, PressesToADepth)
+{
+    const ContactWheel wheel = crowned();
+    std::vector<BeltPoint> path = line(10);
+    for (std::size_t k = 0; k < path.size(); ++k) {
+        path[k].pressing = {false, 0.1 + 0.1 * static_cast<double>(k)};
+        path[k].T_part_tool.translation().z() = 0.2;
+    }
+    Surfels surfels = plate();
+    const BeltRun run = grind(surfels, wheel, path, {});
+    for (std::size_t k = 1; k < path.size(); ++k) EXPECT_GT(run.trace[k].force, run.trace[k - 1].force);
+    EXPECT_NEAR(run.trace[2].indentation, 0.3, 1e-12);
+}
+
+TEST(Belt, NamesThePointWithNothingUnderIt)
+{
+    const ContactWheel wheel = crowned();
+    std::vector<BeltPoint> path = line(10);
+    path[2].T_part_tool.translation().y() = 500;
+    Surfels surfels = plate();
+    try {
+        grind(surfels, wheel, path, {});
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_STREQ(error.what(), "point 2: there is nothing under the wheel");
+    }
+}
+
+} // namespace

@@ -1,0 +1,218 @@
+// Contact of an elastic layer: Hertz where the layer is thick, Winkler where it is thin, the integral equation of the
+// layer between, and what must hold for any contact.
+
+#include "belt/layer_contact.h"
+#include "core/error.h"
+
+#include <boost/math/quadrature/gauss.hpp>
+#include <Eigen/LU>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+using namespace fettle;
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using std::numbers::pi;
+
+constexpr double kTight = 1e-8;
+
+/// Of a paraboloid on the plane, in the middle of the grid.
+MatrixXd paraboloid(Index rows, Index columns, const Eigen::Vector2d& cell, double radius_x, double radius_y)
+{
+    MatrixXd gap(rows, columns);
+    for (Index j = 0; j < columns; ++j)
+        for (Index i = 0; i < rows; ++i) {
+            const double x = (static_cast<double>(2 * i - rows + 1) / 2) * cell.x();
+            const double y = (static_cast<double>(2 * j - columns + 1) / 2) * cell.y();
+            gap(i, j) = x * x / (2 * radius_x) + y * y / (2 * radius_y);
+        }
+    return gap;
+}
+
+double contact_radius(const Contact& contact, double cell)
+{
+    return std::sqrt(static_cast<double>((contact.pressure.array() > 0).count()) / pi) * cell;
+}
+
+void expect_complementary(LayerContact& layer, const MatrixXd& gap, const Contact& contact)
+{
+    EXPECT_TRUE(contact.converged);
+    EXPECT_GE(contact.pressure.minCoeff(), 0);
+    const MatrixXd left = layer.gap_left(gap, contact);
+    EXPECT_GE(left.minCoeff(), 0);
+    EXPECT_LE((contact.pressure.array() > 0).select(contact.pressure.array() * left.array(), 0).maxCoeff(),
+              kTight * contact.pressure.maxCoeff() * contact.indentation);
+}
+
+// Sphere of 8 mm on a half-space, 60 π N: a = 1.0096 mm, p0 = 88.29 MPa, δ = 0.1274 mm (Hertz 1881).
+TEST(LayerContact, AgreesWithHertzOnAThickLayer)
+{
+    const double a = 1.0096, force = 60 * pi, young = 1000, poisson = 0.3;
+    const ElasticLayer layer{1000 * a, young, poisson};
+    for (const Index n : {64, 128}) {
+        const double cell = 3 * a / static_cast<double>(n);
+        LayerContact pressed(layer, {cell, cell}, n, n);
+        const MatrixXd gap = paraboloid(n, n, {cell, cell}, 8, 8);
+        const Contact contact = pressed.by_force(gap, force, kTight);
+        expect_complementary(pressed, gap, contact);
+        EXPECT_NEAR(contact.force, force, 1e-9 * force);
+        EXPECT_NEAR(contact.pressure.maxCoeff(), 88.29, 0.01 * 88.29);
+        EXPECT_NEAR(contact.indentation, 0.1274, 0.01 * 0.1274);
+        if (n == 128) {
+            EXPECT_NEAR(contact_radius(contact, cell), a, 0.01 * a);
+        }
+    }
+}
+
+// A cylinder of 20 mm along y: b = √(4F′R/πE*), p0 = 2F′/πb in the middle of a line much longer than b.
+TEST(LayerContact, AgreesWithHertzOnALine)
+{
+    const double young = 1000, poisson = 0.3, modulus = young / (1 - poisson * poisson), per_length = 40;
+    const double b = std::sqrt(4 * per_length * 20 / (pi * modulus)), p0 = 2 * per_length / (pi * b);
+    constexpr Index kRows = 64, kColumns = 128;
+    const Eigen::Vector2d cell(3 * b / kRows, b);
+    const double infinite = std::numeric_limits<double>::infinity();
+    const Contact contact =
+        LayerContact({infinite, young, poisson}, cell, kRows, kColumns)
+            .by_force(paraboloid(kRows, kColumns, cell, 20, infinite), per_length * kColumns * cell.y(), 1e-6);
+    const VectorXd middle = contact.pressure.col(kColumns / 2);
+    const double here = middle.sum() * cell.x(); // the ends carry more than their share: 0.91 of the mean
+    EXPECT_NEAR(middle.maxCoeff(), p0 * std::sqrt(here / per_length), 0.01 * p0);
+    EXPECT_NEAR(static_cast<double>((middle.array() > 0).count()) * cell.x(), 2 * b * std::sqrt(here / per_length),
+                2 * cell.x());
+}
+
+/// A rigid paraboloid on a bonded layer, contact radius a, by the integral equation for φ with pressure p(r) = -∫ φ'(t)
+/// / √(t² - r²) dt over r … a (Sneddon 1966; Dhaliwal 1970):
+///     φ(t) - 1/π ∫ φ(s) (N(t+s) + N(t-s)) ds = E*/π (δ - t²/R),   N(x) = ∫ (1 - f(qh)) cos qx dq,   φ(a) = 0.
+struct LayerTheory {
+    double indentation, force, peak;
+};
+
+LayerTheory layer_theory(const ElasticLayer& layer, double a, double R)
+{
+    using Gauss = boost::math::quadrature::gauss<double, 30>;
+    const double nu = layer.poisson, modulus = layer.young / (1 - nu * nu), h = layer.thickness;
+    const auto compliance = [&](double s) { // over the half-space's
+        return ((3 - 4 * nu) * std::sinh(2 * s) - 2 * s) /
+               ((3 - 4 * nu) * std::cosh(2 * s) + 2 * s * s + 5 - 12 * nu + 8 * nu * nu);
+    };
+    const auto N = [&](double x) {
+        double sum = 0;
+        for (int k = 0; k < 20; ++k)
+            sum += Gauss::integrate([&](double s) { return (1 - compliance(s)) * std::cos(s * x / h); }, k, k + 1);
+        return sum / h;
+    };
+    constexpr Index kNodes = 30;
+    VectorXd t(kNodes + 1), w(kNodes + 1);
+    for (std::size_t k = 0; k < Gauss::abscissa().size(); ++k)
+        for (const int sign : {0, 1}) {
+            const auto i = static_cast<Index>(2 * k) + sign;
+            t[i] = a / 2 * (1 + (sign == 0 ? -1 : 1) * Gauss::abscissa()[k]);
+            w[i] = a / 2 * Gauss::weights()[k];
+        }
+    t[kNodes] = a;
+    w[kNodes] = 0;
+    MatrixXd A = MatrixXd::Identity(kNodes + 1, kNodes + 1), b(kNodes + 1, 2);
+    for (Index i = 0; i <= kNodes; ++i) {
+        for (Index j = 0; j <= kNodes; ++j)
+            if (w[j] > 0) A(i, j) -= w[j] / pi * (N(t[i] + t[j]) + N(t[i] - t[j]));
+        b.row(i) << modulus / pi, -modulus / pi * t[i] * t[i] / R;
+    }
+    const MatrixXd x = A.partialPivLu().solve(b);
+    const double depth = -x(kNodes, 1) / x(kNodes, 0);
+    const VectorXd phi = x.col(0) * depth + x.col(1);
+    // φ is even: a polynomial in t² through the nodes gives φ'(t)/t.
+    constexpr Index kTerms = 8;
+    MatrixXd powers(kNodes + 1, kTerms);
+    for (Index k = 0; k < kTerms; ++k) powers.col(k) = (t / a).array().pow(2 * static_cast<double>(k));
+    const VectorXd c = (powers.transpose() * powers).partialPivLu().solve(powers.transpose() * phi);
+    double peak = 0;
+    for (Index k = 1; k < kTerms; ++k) // -∫ φ'(t)/t dt
+        peak -= c[k] * 2 * static_cast<double>(k) / (2 * static_cast<double>(k) - 1) / a;
+    return {depth, 2 * pi * w.dot(phi), peak};
+}
+
+TEST(LayerContact, TheoryIsHertzWithoutAHub)
+{
+    const LayerTheory theory = layer_theory({1e6, 1000, 0.3}, 1.0096, 8);
+    EXPECT_NEAR(theory.force, 60 * pi, 0.001 * 60 * pi);
+    EXPECT_NEAR(theory.indentation, 0.1274, 1e-4);
+    EXPECT_NEAR(theory.peak, 88.29, 0.05);
+}
+
+TEST(LayerContact, AgreesWithLayerTheory)
+{
+    constexpr Index kCells = 96;
+    const double a = 4, R = 60, cell = 3 * a / kCells;
+    for (const double poisson : {0.0, 0.3, 0.45, 0.49})
+        for (const double thickness : {1.0, 2.0, 4.0, 10.0}) {
+            const ElasticLayer layer{thickness * a, 5, poisson};
+            const LayerTheory theory = layer_theory(layer, a, R);
+            const Contact contact = LayerContact(layer, {cell, cell}, kCells, kCells)
+                                        .by_force(paraboloid(kCells, kCells, {cell, cell}, R, R), theory.force, 1e-6);
+            EXPECT_NEAR(contact.indentation, theory.indentation, 0.02 * theory.indentation);
+            EXPECT_NEAR(contact.pressure.maxCoeff(), theory.peak, 0.02 * theory.peak);
+            EXPECT_NEAR(contact_radius(contact, cell), a, 0.02 * a);
+        }
+}
+
+// p = E(1-ν) / ((1+ν)(1-2ν)) w/h where the contact is much wider than the layer is thick.
+TEST(LayerContact, AgreesWithWinklerOnAThinLayer)
+{
+    constexpr Index kCells = 96;
+    const double a = 20, R = 400, cell = 2.5 * a / kCells, depth = a * a / (2 * R);
+    for (const double poisson : {0.0, 0.3})
+        for (const double thickness : {a / 10, a / 30, a / 1000}) {
+            const ElasticLayer layer{thickness, 5, poisson};
+            const double stiffness = 1 / even_compliance(layer);
+            LayerContact pressed(layer, {cell, cell}, kCells, kCells);
+            const MatrixXd gap = paraboloid(kCells, kCells, {cell, cell}, R, R);
+            const Contact contact = pressed.by_depth(gap, depth, kTight);
+            expect_complementary(pressed, gap, contact);
+            EXPECT_NEAR(contact.pressure.maxCoeff(), stiffness * depth, 0.02 * stiffness * depth);
+        }
+}
+
+// Whatever the ground looks like: scattered peaks, a step, cells where there is nothing.
+TEST(LayerContact, IsComplementary)
+{
+    constexpr Index kCells = 48;
+    MatrixXd gap = paraboloid(kCells, kCells, {0.5, 0.5}, 100, 300);
+    for (Index j = 0; j < kCells; ++j)
+        for (Index i = 0; i < kCells; ++i) gap(i, j) += 0.2 * std::sin(1.7 * double(i)) * std::cos(0.9 * double(j));
+    gap.rightCols(kCells / 2).array() += 0.3;
+    gap.topRows(20).setConstant(std::numeric_limits<double>::infinity());
+    for (const double poisson : {0.0, 0.49})
+        for (const double thickness : {1.0, 15.0}) {
+            LayerContact contact({thickness, 5, poisson}, {0.5, 0.5}, kCells, kCells);
+            const Contact pressed = contact.by_force(gap, 40, kTight);
+            expect_complementary(contact, gap, pressed);
+            EXPECT_EQ(pressed.pressure.topRows(20).maxCoeff(), 0);
+            // To the same depth the same force; from the start of another the same contact.
+            const Contact deep = contact.by_depth(gap, pressed.indentation, kTight);
+            EXPECT_NEAR(deep.force, 40, 1e-5 * 40);
+            const Contact again = contact.by_force(gap, 40, kTight, contact.by_force(gap, 10, 1e-3).pressure);
+            EXPECT_LE((again.pressure - pressed.pressure).cwiseAbs().maxCoeff(), 1e-5 * pressed.pressure.maxCoeff());
+        }
+}
+
+TEST(LayerContact, KnowsWhenNothingTouches)
+{
+    LayerContact contact({10, 5, 0.45}, {1, 1}, 16, 16);
+    const MatrixXd gap = MatrixXd::Constant(16, 16, 2.0);
+    EXPECT_EQ(contact.by_depth(gap, 1.5, kTight).force, 0);
+    EXPECT_EQ(contact.gap_left(gap, contact.by_depth(gap, 1.5, kTight))(3, 4), 0.5);
+    EXPECT_THROW(contact.by_force(gap / 0.0, 1, kTight), InputError);
+    EXPECT_THROW(influence({10, 5, 0.6}, {1, 1}, 4, 4), InputError);
+}
+
+} // namespace

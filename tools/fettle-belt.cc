@@ -1,0 +1,155 @@
+#include "belt/belt_grinding.h"
+#include "cli/tool.h"
+#include "cloud/pcd.h"
+#include "core/file.h"
+#include "robot/path_cloud.h"
+
+#include <cmath>
+#include <ostream>
+
+using namespace fettle;
+
+namespace {
+
+/// What holds for points of the path that do not say it themselves.
+struct Otherwise {
+    std::optional<double> force, depth; ///< N, mm
+    double feed = 0, dwell = 0;         ///< mm/s, s
+};
+
+std::vector<BeltPoint> belt_path(const Cloud& cloud, const Otherwise& otherwise)
+{
+    const auto values = [&](const char* name, double other) -> Eigen::VectorXd {
+        return has_field(cloud, name) ? field(cloud, name) : Eigen::VectorXd::Constant(cloud.size(), other);
+    };
+    const bool by_depth = otherwise.depth || (!otherwise.force && has_field(cloud, "depth"));
+    if (!by_depth && !otherwise.force && !has_field(cloud, "force"))
+        throw InputError("no field force or depth, and neither --force nor --depth");
+    const Eigen::VectorXd amount = by_depth ? otherwise.depth ? values("", *otherwise.depth) : field(cloud, "depth")
+                                   : otherwise.force ? values("", *otherwise.force)
+                                                     : field(cloud, "force");
+    const Eigen::VectorXd feed = values("feed", otherwise.feed), dwell = values("dwell", 0);
+    const PosePath poses = path_poses(cloud);
+    std::vector<BeltPoint> path;
+    for (Eigen::Index i = 0; i < cloud.size(); ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        const auto on = [&](std::size_t n) { return n < poses.size() && poses[n].translation().allFinite(); };
+        path.push_back({poses[k], {!by_depth, amount[i]}, feed[i], dwell[i]});
+        if (!on(k)) {
+            path[k].T_part_tool.matrix().setConstant(NAN);
+            continue;
+        }
+        if (k == 0 || !on(k - 1) || !on(k + 1)) path[k].dwell += otherwise.dwell;
+        if (!(amount[i] > 0)) throw InputError("point " + std::to_string(i) + ": the force or depth is not positive");
+        if (!(feed[i] > 0)) throw InputError("point " + std::to_string(i) + ": the feed is not positive");
+        if (!(dwell[i] >= 0)) throw InputError("point " + std::to_string(i) + ": the dwell is negative");
+    }
+    return path;
+}
+
+void set_trace(Cloud& cloud, const BeltRun& run)
+{
+    const auto add = [&](const char* name, double BeltTrace::*member) {
+        Eigen::VectorXd values(cloud.size());
+        for (Eigen::Index i = 0; i < cloud.size(); ++i) values[i] = run.trace[static_cast<std::size_t>(i)].*member;
+        set_field(cloud, name, values, 8);
+    };
+    add("t", &BeltTrace::time);
+    add("force", &BeltTrace::force);
+    add("indentation", &BeltTrace::indentation);
+    add("pressure", &BeltTrace::peak_pressure);
+    add("area", &BeltTrace::area);
+    add("removed_volume", &BeltTrace::removed);
+}
+
+void report(json::Value& out, const BeltRun& run, const Surfels& surfels, double mm)
+{
+    double force = 0, peak = 0, area = 0;
+    for (const BeltTrace& at : run.trace)
+        if (!std::isnan(at.force)) {
+            force = std::max(force, at.force);
+            peak = std::max(peak, at.peak_pressure);
+            area = std::max(area, at.area);
+        }
+    out.set("points", run.trace.size())
+        .set("time", run.trace.empty() ? 0 : run.trace.back().time)
+        .set("removed_volume", run.removed_volume / (mm * mm * mm))
+        .set("touched", static_cast<std::size_t>((run.removed.array() > 0).count()))
+        .set("surfels", static_cast<std::size_t>(surfels.size()))
+        .set("deepest", run.removed.maxCoeff() / mm)
+        .set("max_force", force)
+        .set("peak_pressure", peak)
+        .set("max_area", area / (mm * mm))
+        .set("near_edge", static_cast<std::size_t>(run.near_edge));
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+    const std::string description =
+        "Grind surfels along a path with a belt over an elastic contact wheel.\n"
+        "At each point of the path the wheel is pressed on, by its force or its depth (fields of the path, or options "
+        "that hold for all points), the pressure follows from the contact (fettle-contact), and the surfels that touch "
+        "lose depth by the wheel's law, in the time that half the ways to the next points take. The others stay as "
+        "they "
+        "are. A point of NaN ends a run: the wheel is off the part. Out: the surfels with their new displacement, and "
+        "removed, which is added up from belt to belt.";
+    return tool_main(argc, argv, description, [](Tool& t) {
+        const std::string& points = t.input("SURFELS", "points with normals (fettle-surfel), PCD or PLY");
+        const std::string& path_file =
+            t.required_text("--path", "FILE", "Contact points with poses, PCD (fettle-path)");
+        const std::string& wheel_file = t.required_text("--wheel", "FILE", "The wheel, JSON");
+        const auto& unit = t.length_unit("--file-units", "Unit of SURFELS, and of lengths here [its header, or mm]");
+        const auto& force = t.number_if_given("--force", "FORCE", "At all points, N", Range::positive());
+        const auto& depth = t.number_if_given("--depth", "LENGTH", "Indentation at all points", Range::positive());
+        const auto& feed =
+            t.number_if_given("--feed", "LENGTH/S", "Where the path has no field feed [20 mm/s]", Range::positive());
+        const double& dwell = t.number("--dwell", 0, "S", "At both ends of each run, besides", Range::at_least(0));
+        const auto& worn =
+            t.number_if_given("--worn", "VOLUME", "What the belt has removed before", Range::at_least(0));
+        const std::string& gridding = t.choice("--gridding", "kriging", {"kriging", "shepard"}, "As of fettle-contact");
+        const int& cells = t.count("--cells", 32, "As of fettle-contact", 8, 512);
+        const double& tolerance = t.number("--tolerance", 1e-4, "SHARE", "As of fettle-contact", {1e-9, 1e-2});
+        const std::string& trace = t.text("--trace", "", "FILE", "The path with what happened at each point, PCD");
+        const bool& ascii = t.flag("--ascii", "Write PCDs as text");
+        t.example(
+            "fettle-surfel <(fettle-part parts/keel.json) --spacing 1 | fettle-belt --path paths/keel.pcd --wheel "
+            "wheels/rubber.json --force 20 --report belt.json > ground.pcd",
+            "20 N along the keel");
+        t.reference("Ren et al. 2006, eq. 5");
+        t.parse();
+
+        if (force && depth) throw InputError("--force", "and --depth: one of them says how the wheel is pressed on");
+        CloudFile file = read_cloud(points, unit ? std::optional(Units{*unit, Units::Force::N}) : std::nullopt);
+        const double mm = file.units.mm();
+        Surfels surfels = surfels_of(file.cloud, display_name(points));
+        const ContactWheel wheel = read_contact_wheel(wheel_file);
+        CloudFile path_cloud = read_cloud(path_file);
+        Otherwise otherwise{force, depth ? std::optional(*depth * mm) : std::nullopt, feed ? *feed * mm : 20, dwell};
+        std::vector<BeltPoint> path;
+        BeltRun run;
+        try {
+            path = belt_path(path_cloud.cloud, otherwise);
+            run = grind(surfels, wheel, path,
+                        {gridding == "shepard" ? Gridding::shepard : Gridding::kriging, cells, tolerance},
+                        worn ? *worn * mm * mm * mm : 0, t.progress("grinding"));
+        } catch (const InputError& error) {
+            throw InputError(display_name(path_file), error.what());
+        }
+        const PcdEncoding encoding = ascii ? PcdEncoding::ascii : PcdEncoding::binary;
+        if (!trace.empty()) {
+            set_trace(path_cloud.cloud, run);
+            write_pcd(t.output_file(trace), path_cloud.cloud, path_cloud.units, encoding);
+        }
+        if (has_field(file.cloud, "removed")) run.removed += field(file.cloud, "removed");
+        set_field(file.cloud, "displacement", surfels.displacement, 8);
+        set_field(file.cloud, "removed", run.removed, 8);
+        report(t.report(), run, surfels, mm);
+        if (run.near_edge > 0)
+            t.warn(std::to_string(run.near_edge) + " contacts are nearer to the wheel's edge than 1.5 thicknesses of "
+                                                   "its layer, where it is softer than reckoned");
+        write_pcd(t.output(), file.cloud, file.units, encoding);
+        return Verdict::yes;
+    });
+}
