@@ -58,7 +58,7 @@ int main(int argc, char** argv)
         const bool& ascii = t.flag("--ascii", "Text instead of binary");
         t.example(
             "fettle-surfel <(fettle-part parts/keel.json) --spacing 1 | fettle-contact --wheel wheels/rubber.json "
-            "--at 0,0,0,1,0,0,0 --force 20 --report press.json > pressure.pcd",
+            "--at 1000,1000,500,0.7071,0,0,0.7071 --force 20 --report press.json > pressure.pcd",
             "20 N on the keel's middle");
         t.reference("Ren et al. 2006, 3; Johnson 1985, 5.8; Polonsky & Keer 1999");
         t.parse();

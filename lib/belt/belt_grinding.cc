@@ -58,11 +58,13 @@ BeltRun grind(Surfels& surfels, const ContactWheel& wheel, const std::vector<Bel
         const Eigen::MatrixXd depth = contact.pressure.unaryExpr([&](double p) {
             return removed_depth(wheel.law, p, wheel.belt_speed, point.feed, duration, worn + run.removed_volume);
         });
+        // A surfel stands for the square about it.
+        const SquareMeans lost_on(cells, depth, spacing_of(press.places()));
         const Eigen::Vector3d up = point.T_part_tool.linear().col(2);
         for (std::size_t i = 0; i < press.under().size(); ++i) {
             const Index surfel = press.under()[i];
-            const double lost = between(cells, depth, press.places().col(static_cast<Index>(i)).head<2>()) *
-                                surfels.normal.col(surfel).dot(up);
+            const double lost =
+                lost_on.about(press.places().col(static_cast<Index>(i)).head<2>()) * surfels.normal.col(surfel).dot(up);
             surfels.displacement[surfel] -= lost;
             run.removed[surfel] += lost;
         }

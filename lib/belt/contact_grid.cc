@@ -29,6 +29,8 @@ class Buckets {
         least_ = points.topRows<2>().rowwise().minCoeff();
         const Vector2d size = points.topRows<2>().rowwise().maxCoeff() - least_;
         const auto n = static_cast<double>(points.cols());
+        // A lattice of m x m points is m - 1 spacings wide; few points, or points on a line, have no better one.
+        spacing_ = std::max(std::sqrt(size.prod()) / std::max(std::sqrt(n) - 1, 1.0), size.maxCoeff() / n);
         side_ = std::max(std::sqrt(2 * size.prod() / n), std::max(2 * size.maxCoeff() / n, 1e-9));
         counts_ = (size / side_).array().floor().cast<Index>() + 1;
         begin_.assign(static_cast<std::size_t>(counts_.prod()) + 1, 0);
@@ -40,7 +42,7 @@ class Buckets {
     }
 
     /// The mean distance between neighbours that are spread evenly.
-    double spacing() const { return side_ / std::sqrt(2.0); }
+    double spacing() const { return spacing_; }
 
     /// Up to kNearest points within `reach`, nearest first.
     void nearest(const Vector2d& place, double reach, std::vector<Near>& result) const
@@ -88,7 +90,7 @@ class Buckets {
 
     const Eigen::Matrix3Xd& points_;
     Vector2d least_;
-    double side_;
+    double spacing_, side_;
     Eigen::Array<Index, 2, 1> counts_;
     std::vector<Index> begin_, order_;
 };
@@ -154,17 +156,41 @@ Eigen::Matrix3Xd facing(const Surfels& surfels, std::vector<Index>& which, const
     return points.leftCols(static_cast<Index>(count));
 }
 
-double between(const ContactCells& cells, const Eigen::MatrixXd& field, const Vector2d& place)
+SquareMeans::SquareMeans(const ContactCells& cells, const Eigen::MatrixXd& field, double side)
+    : cells_(cells), side_(side), sums_(Eigen::MatrixXd::Zero(cells.rows + 1, cells.columns + 1))
 {
-    const Eigen::Array2d at = (place + cells.half()).array() / cells.cell.array() - 0.5;
-    const Eigen::Array2d low = at.floor(), part = at - low;
-    const auto value = [&](Index row, Index column) {
-        return row < 0 || column < 0 || row >= cells.rows || column >= cells.columns ? 0 : field(row, column);
-    };
-    const auto i = static_cast<Index>(low.x()), j = static_cast<Index>(low.y());
-    return (1 - part.y()) * ((1 - part.x()) * value(i, j) + part.x() * value(i + 1, j)) +
-           part.y() * ((1 - part.x()) * value(i, j + 1) + part.x() * value(i + 1, j + 1));
+    for (Index j = 0; j < cells.columns; ++j) {
+        double column = 0;
+        for (Index i = 0; i < cells.rows; ++i) {
+            column += field(i, j);
+            sums_(i + 1, j + 1) = sums_(i + 1, j) + column;
+        }
+    }
 }
+
+/// The sum of the cells, and parts of cells, before a place, in cells from the first corner.
+double SquareMeans::until(double x, double y) const
+{
+    const double u = std::clamp(x, 0.0, static_cast<double>(cells_.rows));
+    const double v = std::clamp(y, 0.0, static_cast<double>(cells_.columns));
+    const Index i = std::min(static_cast<Index>(u), cells_.rows - 1);
+    const Index j = std::min(static_cast<Index>(v), cells_.columns - 1);
+    const double p = u - static_cast<double>(i), q = v - static_cast<double>(j);
+    return (1 - q) * ((1 - p) * sums_(i, j) + p * sums_(i + 1, j)) +
+           q * ((1 - p) * sums_(i, j + 1) + p * sums_(i + 1, j + 1));
+}
+
+double SquareMeans::about(const Vector2d& place) const
+{
+    const Eigen::Array2d half = side_ / 2 / cells_.cell.array();
+    const Eigen::Array2d middle = (place + cells_.half()).array() / cells_.cell.array();
+    const Eigen::Array2d low = middle - half, high = middle + half;
+    const double sum =
+        until(high.x(), high.y()) - until(low.x(), high.y()) - until(high.x(), low.y()) + until(low.x(), low.y());
+    return std::max(sum, 0.0) / (4 * half.prod()); // rounding may leave less than nothing
+}
+
+double spacing_of(const Eigen::Matrix3Xd& points) { return Buckets(points).spacing(); }
 
 Eigen::MatrixXd heights_on(const ContactCells& cells, const Eigen::Matrix3Xd& points, Gridding gridding)
 {

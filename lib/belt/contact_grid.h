@@ -42,7 +42,23 @@ Eigen::Matrix3Xd facing(const Surfels& surfels, std::vector<Eigen::Index>& which
 /// @param points  x, y, height
 Eigen::MatrixXd heights_on(const ContactCells& cells, const Eigen::Matrix3Xd& points, Gridding gridding);
 
-/// A field on the cells, between their middles by bilinear interpolation; 0 beyond them.
-double between(const ContactCells& cells, const Eigen::MatrixXd& field, const Eigen::Vector2d& place);
+/// The mean distance between neighbours of points that are spread evenly, mm.
+double spacing_of(const Eigen::Matrix3Xd& points);
+
+/// Means of a field over squares, the field the same all over a cell and 0 beyond them all: squares that share out the
+/// plane share out the field's integral, however small the cells are.
+class SquareMeans {
+  public:
+    /// @param side  of the squares, mm; along the tool frame's axes
+    SquareMeans(const ContactCells& cells, const Eigen::MatrixXd& field, double side);
+    double about(const Eigen::Vector2d& place) const;
+
+  private:
+    double until(double x, double y) const;
+
+    ContactCells cells_;
+    double side_;
+    Eigen::MatrixXd sums_; ///< of all cells before each corner
+};
 
 } // namespace fettle

@@ -134,9 +134,12 @@ bool LayerContact::iterate(const MatrixXd& gap, const Window& window, double tol
     return false;
 }
 
-Contact LayerContact::solve(const MatrixXd& gap, Contact contact, double tolerance, const MatrixXd& start,
+Contact LayerContact::solve(const MatrixXd& from_the_plane, Contact contact, double tolerance, const MatrixXd& start,
                             bool is_force_known)
 {
+    const double first = from_the_plane.minCoeff(); // where the hub stands when it first touches
+    const MatrixXd gap = from_the_plane.array() - first;
+    contact.indentation -= first;
     contact.pressure = start.size() > 0 ? start.cwiseMax(0).eval() : guess(gap, contact, is_force_known);
     contact.pressure = gap.array().isFinite().select(contact.pressure, 0);
     if (is_force_known) {
@@ -162,6 +165,7 @@ Contact LayerContact::solve(const MatrixXd& gap, Contact contact, double toleran
         if (!crossed.any()) break;
         touched = touched || crossed;
     }
+    contact.indentation += first;
     contact.force = contact.pressure.sum() * cell_area_;
     return contact;
 }

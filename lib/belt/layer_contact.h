@@ -28,8 +28,8 @@ class LayerContact {
     /// @throws InputError as influence() does
     LayerContact(const ElasticLayer& layer, const Eigen::Vector2d& cell, Eigen::Index rows, Eigen::Index columns);
 
-    /// Until pressure · gap is below `tolerance` · peak pressure · indentation, and no gap below -tolerance ·
-    /// indentation.
+    /// Until pressure · gap is below `tolerance` · peak pressure · approach, and no gap below -tolerance · approach,
+    /// the way of the hub since it first touched.
     /// @param gap  before deformation, the hub at indentation 0, mm; infinite where there is nothing to touch
     /// @param start  pressure to begin with, such as that of the contact point before; empty: none is known
     Contact by_depth(const Eigen::MatrixXd& gap, double indentation, double tolerance,

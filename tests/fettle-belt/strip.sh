@@ -1,0 +1,35 @@
+# A run over a plate: Preston's law says what goes (C V_b F t), the surfels have lost it, a second belt adds to removed, and
+# the trace tells of each point. To half the spacing the same depth; the same bytes with one thread and two.
+# Reference: the law; volume of a plate whose surfels stand 0.5 mm apart.
+# shellcheck source=tests/fettle-contact/plate.bash
+. "$HERE/../fettle-contact/plate.bash"
+plate > plate.pcd
+wheel 10 0.45 > wheel.json
+path() { # SPACING: 10 mm along x on the stock
+    awk -v d="$1" 'BEGIN {
+        n = 10 / d + 1
+        printf "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z qw qx qy qz\nSIZE 4 4 4 4 4 4 4\nTYPE F F F F F F F\nCOUNT 1 1 1 1 1 1 1\n"
+        printf "WIDTH %d\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS %d\nDATA ascii\n", n, n
+        for (i = 0; i < n; ++i) printf "%g 0 5.25 1 0 0 0\n", i * d - 5 }'
+}
+path 1 > coarse.pcd
+path 0.5 > fine.pcd
+grind() { fettle-belt plate.pcd --wheel wheel.json --force 10 --feed 5 --ascii --path "$@"; }
+grind fine.pcd --report fine.json --trace trace.pcd --threads 1 > fine.out
+grind fine.pcd --threads 2 | cmp - fine.out
+grind coarse.pcd > coarse.out
+jq -e '(1e-8 * 15000 * 10 * 2) as $law | (.removed_volume / $law - 1 | fabs) < 1e-4 and (.time - 2 | fabs) < 1e-9 and .points == 21 and
+       .surfels == 6561 and .touched < 2000 and (.max_force - 10 | fabs) < 1e-6' fine.json > ok
+lost() { sed '1,/^DATA/d' "$1" | awk '{ v += $8; if ($7 + $8 != 0.25 && ($7 + $8 - 0.25) ^ 2 > 1e-12) exit 1 } END { print v / 4 }'; }
+lost fine.out > fine.lost
+lost coarse.out > coarse.lost
+awk 'NR == 1 { a = $1 } NR == 2 { exit !(a / 0.003 > 0.999 && a / 0.003 < 1.001 && $1 / a > 0.995 && $1 / a < 1.005) }' fine.lost coarse.lost
+fettle-belt fine.out --wheel wheel.json --force 10 --feed 5 --ascii --path fine.pcd > twice.out
+lost twice.out > twice.lost
+awk 'NR == 1 { a = $1 } NR == 2 { exit !($1 / a > 1.999 && $1 / a < 2.001) }' fine.lost twice.lost
+sed '1,/^DATA/d' trace.pcd | awk 'NR == 1 || NR == 21 { if (($9 - 10) ^ 2 > 1e-9) exit 1 } END { exit !(NR == 21 && ($8 - 2) ^ 2 < 1e-18) }'
+# Deeper by option, force and feed by fields.
+fettle-belt plate.pcd --wheel wheel.json --depth 0.2 --feed 5 --path fine.pcd --report depth.json > depth.out
+jq -e '.max_force > 0 and .removed_volume > 0' depth.json > ok
+sed 's/^FIELDS.*/& force feed/; s/^SIZE.*/& 4 4/; s/^TYPE.*/& F F/; s/^COUNT.*/& 1 1/; /^-*[0-9].* 0 0 0$/s/$/ 10 5/' fine.pcd > fields.pcd
+fettle-belt plate.pcd --wheel wheel.json --ascii --path fields.pcd | cmp - fine.out
