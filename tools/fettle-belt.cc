@@ -114,8 +114,8 @@ int main(int argc, char** argv)
         const std::string& trace = t.text("--trace", "", "FILE", "The path with what happened at each point, PCD");
         const bool& ascii = t.flag("--ascii", "Write PCDs as text");
         t.example(
-            "fettle-surfel <(fettle-part parts/keel.json) --spacing 1 | fettle-belt --path paths/keel.pcd --wheel "
-            "wheels/rubber.json --force 20 --report belt.json > ground.pcd",
+            "fettle-part parts/keel.json -o keel.stl && fettle-surfel keel.stl --stock keel.stl --spacing 1 | "
+            "fettle-belt --path paths/keel.pcd --wheel wheels/rubber.json --force 20 --report belt.json > ground.pcd",
             "20 N along the keel");
         t.reference("Ren et al. 2006, eq. 5");
         t.parse();

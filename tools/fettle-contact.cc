@@ -56,10 +56,10 @@ int main(int argc, char** argv)
         const double& tolerance = t.number("--tolerance", 1e-6, "SHARE",
                                            "Of peak pressure times indentation: most pressure times gap", {1e-9, 1e-2});
         const bool& ascii = t.flag("--ascii", "Text instead of binary");
-        t.example(
-            "fettle-surfel <(fettle-part parts/keel.json) --spacing 1 | fettle-contact --wheel wheels/rubber.json "
-            "--at 1000,1000,500,0.7071,0,0,0.7071 --force 20 --report press.json > pressure.pcd",
-            "20 N on the keel's middle");
+        t.example("fettle-part parts/keel.json -o keel.stl && fettle-surfel keel.stl --stock keel.stl --spacing 1 | "
+                  "fettle-contact --wheel wheels/rubber.json --at 1000,1000,500,0.7071,0,0,0.7071 --force 20 --report "
+                  "press.json > pressure.pcd",
+                  "20 N on the keel's middle");
         t.reference("Ren et al. 2006, 3; Johnson 1985, 5.8; Polonsky & Keer 1999");
         t.parse();
 
