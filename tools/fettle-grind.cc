@@ -42,7 +42,11 @@ void report(json::Value& out, const GrindRun& run, const VirtualGantry& gantry, 
 {
     const double mm = units.mm();
     const GrindTotals& totals = gantry.totals();
-    out.set("finished", run.finished)
+    json::Value unit;
+    unit.set("length", to_string(units.length)).set("force", to_string(units.force));
+    out.set("kind", "grinding")
+        .set("units", unit)
+        .set("finished", run.finished)
         .set("removed_volume", totals.removed_volume / (mm * mm * mm))
         .set("machine_time", gantry.status().time)
         .set("grinding_time", totals.grinding_time)

@@ -13,7 +13,6 @@ int main(int argc, char** argv)
         "Self-contained HTML, for the screen and for A4. Sections without their files are left out.";
     return tool_main(argc, argv, description, [](Tool& t) {
         const std::string& title = t.text("--title", "", "TEXT", "Headline");
-        RunFileNames names;
         const std::string& job = t.text("--job", "", "FILE", "Job, JSON [the plan's]");
         const std::string& samples = t.text("--samples", "", "FILE", "Touches, PCD [the surface's]");
         const std::string& surface = t.text("--surface", "", "FILE", "Desired surface, JSON [the plan's]");
@@ -34,9 +33,19 @@ int main(int argc, char** argv)
             "an anomaly that was not ground yet: out of tolerance");
         t.parse();
 
-        names = {job,   samples, surface,    plan,      grinding, trace,       before,
-                 after, errors,  comparison, alignment, form,     before_units};
-        const RunFiles run = read_run(names);
+        const RunFiles run = read_run({.job = job,
+                                       .samples = samples,
+                                       .surface = surface,
+                                       .plan = plan,
+                                       .grinding = grinding,
+                                       .trace = trace,
+                                       .before = before,
+                                       .after = after,
+                                       .errors = errors,
+                                       .comparison = comparison,
+                                       .alignment = alignment,
+                                       .form = form,
+                                       .before_units = before_units});
         for (const std::string& doubt : run.doubts) t.warn(doubt);
         t.output() << report_page(run, title, FETTLE_VERSION);
         return Verdict::yes;

@@ -65,20 +65,28 @@ std::vector<std::pair<std::string, Statistics>> rows_of(const std::vector<Compar
     return rows;
 }
 
+void set_members(json::Value& value, const Statistics& s, const Units& units)
+{
+    value.set("count", static_cast<std::size_t>(s.count)).set("undefined", static_cast<std::size_t>(s.undefined));
+    for (const Member& member : kMembers) value.set(member.name, in_units(s, member, units));
+    for (const Place& place : kPlaces) value.set(place.name, Eigen::VectorXd(s.*place.value / units.mm()));
+}
+
 } // namespace
 
 json::Value to_json(const Statistics& s, const Units& units)
 {
     json::Value value;
-    value.set("count", static_cast<std::size_t>(s.count)).set("undefined", static_cast<std::size_t>(s.undefined));
-    for (const Member& member : kMembers) value.set(member.name, in_units(s, member, units));
-    for (const Place& place : kPlaces) value.set(place.name, Eigen::VectorXd(s.*place.value / units.mm()));
+    set_members(value, s, units);
     return value;
 }
 
 json::Value to_json(const Comparison& comparison, const Units& units)
 {
-    json::Value report = to_json(comparison.all, units);
+    json::Value unit, report;
+    unit.set("length", to_string(units.length));
+    report.set("kind", "comparison").set("units", unit);
+    set_members(report, comparison.all, units);
     json::Value regions;
     for (const auto& [name, statistics] : comparison.regions) regions.set(name, to_json(statistics, units));
     if (!comparison.regions.empty()) report.set("regions", regions);

@@ -12,7 +12,7 @@
 namespace fettle {
 
 /// Where the judged errors lie between the tolerances: the whole range, the middle 98 %, the mean.
-Html error_gauge(const Numbers& judged, double tolerance, const std::string& unit);
+Html error_gauge(const Figures& judged, double tolerance, const std::string& unit);
 
 /// How many errors lie where. @param limit  the bins are of equal width from -limit to limit; no fewer than one bin
 /// @param tolerance  0: none

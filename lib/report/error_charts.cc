@@ -34,7 +34,7 @@ std::vector<double> joined(const std::vector<double>& counts)
 
 } // namespace
 
-Html error_gauge(const Numbers& judged, double tolerance, const std::string& unit)
+Html error_gauge(const Figures& judged, double tolerance, const std::string& unit)
 {
     constexpr double kHeight = 96, kTop = 26, kBar = 26, kMargin = 24, kBeyond = 1.25;
     const double least = judged.at("min"), most = judged.at("max");

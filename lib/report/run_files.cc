@@ -45,9 +45,9 @@ double number_or_nan(json::Reader& reader, const std::string& key)
     return reader.has(key) && reader.is_null(key) ? kNaN : reader.number(key);
 }
 
-Numbers statistics_of(json::Reader& reader)
+Figures statistics_of(json::Reader& reader)
 {
-    Numbers numbers;
+    Figures numbers;
     for (const char* key :
          {"count", "undefined", "mean", "mean_abs", "rms", "sd", "min", "max", "band", "p01", "p05", "p50", "p95",
           "p99", "within", "over_cut_area", "under_cut_area", "over_cut_volume", "under_cut_volume"})
@@ -55,7 +55,7 @@ Numbers statistics_of(json::Reader& reader)
     return numbers;
 }
 
-ComparisonReport comparison_of(json::Reader reader)
+ComparisonReport comparison_of(json::Reader& reader)
 {
     ComparisonReport report;
     report.regions.emplace_back("all", statistics_of(reader));
@@ -80,16 +80,9 @@ ComparisonReport comparison_of(json::Reader reader)
     return report;
 }
 
-/// The length in which a report is.
-Units::Length unit_of(json::Reader& reader)
-{
-    return parse_length_unit(reader.object("units").choice("length", {"mm", "in", "m"}));
-}
-
 AlignmentReport alignment_of(json::Reader& reader)
 {
     AlignmentReport report;
-    reader.expect_kind("alignment");
     for (const char* key : {"count", "overlap", "max_distance", "median", "p95", "rms", "determined"})
         report.numbers[key] = number_or_nan(reader, key);
     const Eigen::MatrixXd rows = reader.matrix("transform", 4);
@@ -101,7 +94,6 @@ AlignmentReport alignment_of(json::Reader& reader)
 FormReport form_of(json::Reader& reader)
 {
     FormReport report;
-    reader.expect_kind("form");
     report.form = reader.text("form");
     report.parameter = reader.text_or("parameter", "");
     for (const char* key : {"count", "dropped", "outliers", "least_squares", "minimum_zone"})
@@ -109,7 +101,7 @@ FormReport form_of(json::Reader& reader)
     return report;
 }
 
-GrindReport grinding_of(json::Reader reader)
+GrindReport grinding_of(json::Reader& reader)
 {
     GrindReport report;
     if (!reader.has("finished")) reader.refuse("finished", "missing");
@@ -165,7 +157,7 @@ std::vector<std::string> doubts(const RunFiles& run, const RunFileNames& names)
 
 } // namespace
 
-const Numbers& ComparisonReport::region(const std::string& name) const
+const Figures& ComparisonReport::region(const std::string& name) const
 {
     for (const auto& [known, numbers] : regions)
         if (known == name) return numbers;
@@ -198,6 +190,16 @@ RunFiles read_run(const RunFileNames& names)
         if (looks_like_cloud(content.bytes)) return parse_cloud(content.bytes, content.source, own).cloud;
         return parse_mesh(content.bytes, content.source, own.value_or(Units{}).length);
     };
+    const auto report = [&](const std::string& what, const std::string& kind, const std::string& path,
+                            const auto& content) {
+        json::Reader reader = files.json(what, path);
+        reader.expect_kind(kind);
+        json::Reader stated = reader.object("units");
+        agree({parse_length_unit(stated.choice("length", {"mm", "in", "m"})),
+               stated.has("force") ? parse_force_unit(stated.choice("force", {"N", "lbf"})) : Units{}.force},
+              path);
+        return content(reader);
+    };
     if (!names.job.empty()) {
         run.job = parse_job(files.json("job", names.job));
         units = run.job->units;
@@ -214,23 +216,15 @@ RunFiles read_run(const RunFileNames& names)
     if (run.plan && !run.job) run.job = run.plan->job;
     if (run.plan && !run.surface) run.surface = run.plan->surface;
     if (!names.samples.empty()) run.samples = cloud("touches", names.samples, {});
-    if (!names.grinding.empty()) run.grinding = grinding_of(files.json("grinding", names.grinding));
+    if (!names.grinding.empty()) run.grinding = report("grinding", "grinding", names.grinding, grinding_of);
     if (!names.trace.empty()) {
         run.trace = cloud("trace", names.trace, {"t", "layer", "event", "force", "feed"});
         check_trace(*run.trace, display_name(names.trace));
     }
     if (!names.errors.empty()) run.errors = cloud("error map", names.errors, {"error"});
-    if (!names.comparison.empty()) run.comparison = comparison_of(files.json("comparison", names.comparison));
-    if (!names.alignment.empty()) {
-        json::Reader reader = files.json("registration", names.alignment);
-        agree({unit_of(reader), run.units.force}, names.alignment);
-        run.alignment = alignment_of(reader);
-    }
-    if (!names.form.empty()) {
-        json::Reader reader = files.json("form", names.form);
-        agree({unit_of(reader), run.units.force}, names.form);
-        run.form = form_of(reader);
-    }
+    if (!names.comparison.empty()) run.comparison = report("comparison", "comparison", names.comparison, comparison_of);
+    if (!names.alignment.empty()) run.alignment = report("registration", "alignment", names.alignment, alignment_of);
+    if (!names.form.empty()) run.form = report("form", "form", names.form, form_of);
     if (!names.before.empty()) run.before = part("part before", names.before, names.before_units);
     if (!names.after.empty()) run.after = part("part after", names.after, std::nullopt);
     run.units = units.value_or(Units{});

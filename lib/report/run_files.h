@@ -16,12 +16,12 @@
 
 namespace fettle {
 
-/// The flat numbers of a report, as they stand there: in the units of its file. What was null is NaN.
-using Numbers = std::map<std::string, double>;
+/// Numbers of a report by their keys, as they stand there: in the units of its file. What was null is NaN.
+using Figures = std::map<std::string, double>;
 
 /// What fettle-compare reports.
 struct ComparisonReport {
-    std::vector<std::pair<std::string, Numbers>> regions; ///< "all" first, then those of the job
+    std::vector<std::pair<std::string, Figures>> regions; ///< "all" first, then those of the job
     std::string judged;                                   ///< the region; empty: no tolerance, no verdict
     bool reversed = false;                                ///< the verdict is about both directions
     bool within = false;
@@ -30,25 +30,25 @@ struct ComparisonReport {
     std::vector<double> counts;
     double below = 0, above = 0;
 
-    const Numbers& region(const std::string& name) const;
+    const Figures& region(const std::string& name) const;
 };
 
 /// What fettle-grind reports.
 struct GrindReport {
     bool finished = false;
-    Numbers numbers;
+    Figures numbers;
 };
 
 /// What fettle-align reports.
 struct AlignmentReport {
-    Numbers numbers; ///< lengths in the run's units
+    Figures numbers; ///< lengths in the run's units
     Eigen::Matrix4d transform;
 };
 
 /// What fettle-form measures.
 struct FormReport {
     std::string form, parameter; ///< "flatness", "FLTt"; the second may be empty
-    Numbers numbers;
+    Figures numbers;
 };
 
 /// Where something was read.
@@ -83,8 +83,8 @@ struct RunFileNames {
     std::optional<Units::Length> before_units; ///< if not the run's
 };
 
-/// Reads them. The units are those of the job, else of the plan, the surface, the first point file that states some,
-/// else mm.
+/// Reads them. The units are those of the job, else of the plan, the surface, the first point file or report that
+/// states some, else mm.
 /// @throws InputError for a file that is not what it is named as (a trace without its fields, an error map without
 ///         `error`), units that disagree, or if none is named
 RunFiles read_run(const RunFileNames& names);

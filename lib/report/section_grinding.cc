@@ -71,7 +71,7 @@ Html layer_table(const RunFiles& run)
                  names, rows, 1);
 }
 
-Html time_shares(const Numbers& n)
+Html time_shares(const Figures& n)
 {
     const double whole = n.at("machine_time");
     Html bar, key;
@@ -92,7 +92,7 @@ Html time_shares(const Numbers& n)
 
 Html totals(const RunFiles& run)
 {
-    const Numbers& n = run.grinding->numbers;
+    const Figures& n = run.grinding->numbers;
     const std::string length = to_string(run.units.length), force = to_string(run.units.force);
     const auto number = [&](const char* key) {
         return figure("grinding." + std::string(key), n.at(key), short_text(n.at(key)));

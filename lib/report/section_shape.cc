@@ -6,7 +6,7 @@ namespace fettle {
 Html registration_section(const RunFiles& run)
 {
     if (!run.alignment) return {};
-    const Numbers& n = run.alignment->numbers;
+    const Figures& n = run.alignment->numbers;
     const std::string unit = " " + to_string(run.units.length);
     const auto shown = [&](const std::string& key, const std::string& text) {
         return figure("alignment." + key, n.at(key), text);
@@ -34,7 +34,7 @@ Html registration_section(const RunFiles& run)
 Html form_section(const RunFiles& run)
 {
     if (!run.form) return {};
-    const Numbers& n = run.form->numbers;
+    const Figures& n = run.form->numbers;
     const std::string unit = " " + to_string(run.units.length);
     const auto shown = [&](const std::string& key, const std::string& text) {
         return figure("form." + key, n.at(key), text);

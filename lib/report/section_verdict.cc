@@ -27,7 +27,7 @@ std::string where(const ComparisonReport& comparison)
 
 Html judged_card(const ComparisonReport& c, const std::string& unit)
 {
-    const Numbers& numbers = c.region(c.judged);
+    const Figures& numbers = c.region(c.judged);
     const int decimals = decimals_for(std::max(c.tolerance, c.worst));
     const auto length = [&](const char* key, double value) {
         return figure(key, value, fixed_text(value, decimals)) + " " + unit;
@@ -53,7 +53,7 @@ Html tiles(const RunFiles& run)
         const ComparisonReport& c = *run.comparison;
         const std::string name = c.judged.empty() ? "all" : c.judged;
         const std::string key = name == "all" ? "comparison." : "comparison.regions." + name + ".";
-        const Numbers& n = c.region(name);
+        const Figures& n = c.region(name);
         const int decimals = decimals_for(std::max(-n.at("min"), n.at("max")));
         items += tile(figure(key + "mean_abs", n.at("mean_abs"), fixed_text(n.at("mean_abs"), decimals)) + " " + length,
                       "mean size of the error");
@@ -63,7 +63,7 @@ Html tiles(const RunFiles& run)
                       "most material left");
     }
     if (run.grinding) {
-        const Numbers& n = run.grinding->numbers;
+        const Figures& n = run.grinding->numbers;
         items += tile(figure("grinding.removed_volume", n.at("removed_volume"), short_text(n.at("removed_volume"))) +
                           " " + length + "\u00B3",
                       "removed");

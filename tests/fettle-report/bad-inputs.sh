@@ -4,7 +4,12 @@ job=$SAMPLES/jobs/wang1.json
 "$refuses" 'nothing to report: name at least one file of the run' fettle-report
 "$refuses" 'nowhere.json: cannot open' fettle-report --job nowhere.json
 echo '{"count": 3}' >short.json
+"$refuses" 'short.json: kind: missing' fettle-report --comparison short.json
+echo '{"kind": "comparison", "units": {"length": "mm"}, "count": 3}' >short.json
 "$refuses" 'short.json: undefined: missing' fettle-report --comparison short.json
+"$refuses" 'short.json: in mm, but the run is in in' fettle-report --job "$job" --comparison short.json
+"$refuses" 'short.json: kind: expected "grinding", got "comparison"' fettle-report --grinding short.json
+echo '{"kind": "grinding", "units": {"length": "in", "force": "lbf"}}' >short.json
 "$refuses" 'short.json: finished: missing' fettle-report --grinding short.json
 "$refuses" 'wang1.json: kind: expected "plan", got "job"' fettle-report --plan "$job"
 "$refuses" 'wang1.json: ' fettle-report --alignment "$job"

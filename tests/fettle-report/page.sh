@@ -13,6 +13,9 @@ for file in part.stl samples.pcd errors.json; do grep -q "$(sha256sum $file | cu
 fettle-report --comparison errors.json -o numbers.html
 xmllint --noout --nonet numbers.html
 test "$(grep -o '<section id="[a-z]*"' numbers.html | tr '\n' ' ')" = '<section id="verdict" <section id="statistics" <section id="provenance" '
+# in the units of the report, whatever else is named
+grep -q 'mean size of the error' numbers.html
+grep -qE 'data-key="comparison.regions.inside.mean_abs"[^<]*</span> in<' numbers.html
 # out of tolerance, and without any
 fettle-compare ground.pcd --to truth.stl --within "$job" --tolerance 0.0001 --report tight.json -o /dev/null || test $? -eq 1
 fettle-report --job "$job" --comparison tight.json | grep -q 'data-verdict="Out of tolerance"'
