@@ -112,11 +112,12 @@ CellClearance Walk::between(Place& from, Place& to, std::vector<std::size_t> som
         const bool known = nearer.clearance < -options.tolerance; // it collides at a look already
         if (bound() < -options.tolerance && !known && way > options.resolution && halvings < kMostHalvings) {
             unclear.push_back(i);
-        } else if (bound() < least.clearance) {
-            least = nearer;
-            // What cannot be resolved further is told as it was seen.
-            if (!known && way > options.resolution) least.clearance = bound();
+            continue;
         }
+        // What cannot be resolved further is told as it was seen.
+        CellClearance told = nearer;
+        if (!known && way > options.resolution) told.clearance = bound();
+        if (told.clearance < least.clearance) least = told;
     }
     if (unclear.empty()) return least;
     Place& middle = middle_[halvings];

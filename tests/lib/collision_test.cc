@@ -1,3 +1,4 @@
+#include "boat_hull.h"
 #include "irb1400.h"
 #include "robot/collision.h"
 
@@ -127,6 +128,49 @@ TEST(Collision, BoundBetweenPosesHolds)
         }
     }
     EXPECT_GT(near, 3);
+}
+
+// Along a path most pairs are not looked at. Reference: all of them at every pose, from scratch. The arm wanders among
+// a fixture and a hull, by small steps and now and then a large one, and sinks into both.
+TEST(Collision, AWalkTellsWhatLookingAtAllPairsTells)
+{
+    Mesh mesh = boat::hull(3000);
+    mesh.vertices.colwise() += Vector3d(1150, -100, 850);
+    const Workpiece workpiece(mesh);
+    std::mt19937 random(15);
+    std::normal_distribution<double> normal;
+    int deep = 0, near = 0;
+    for (int k = 0; k < 12; ++k) {
+        const Robot robot = cell({1000, 250, 1000}, 100);
+        std::vector<Joints> joints = {degrees(5, 20, 20, 0, 60, 0)};
+        while (joints.size() < 150) {
+            const double step = joints.size() % 40 == 0 ? 0.2 : 0.01;
+            const Joints next = joints.back() + step * Joints::NullaryExpr([&] { return normal(random); });
+            joints.push_back(0.98 * next + 0.02 * joints.front());
+        }
+        const CollisionOptions options = {0.01, k % 3 == 0 ? 500.0 : 50.0, 0.1};
+        const CellJointsPath path = path_of(joints);
+        const CheckedPath checked = check_path(robot, &workpiece, path, options);
+        const Cell all(robot, &workpiece, options);
+        for (Eigen::Index i = 0; i < path.cols(); ++i) {
+            Stance stance = all.stand(path.col(i));
+            double least = INFINITY;
+            for (const std::size_t pair : all.looked_at()) {
+                all.look(stance, pair);
+                least = std::min(least, stance.pairs[pair].clearance);
+            }
+            const CellClearance& told = checked.pose[static_cast<std::size_t>(i)];
+            EXPECT_NEAR(told.clearance, least, kClearanceTolerance);
+            EXPECT_NEAR(stance.pairs[told.pair].clearance, least, kClearanceTolerance);
+            if (i > 0) {
+                EXPECT_LE(checked.between[static_cast<std::size_t>(i)].clearance, least + kClearanceTolerance);
+            }
+            deep += least < -1;
+            near += least > 0 && least < 20;
+        }
+    }
+    EXPECT_GT(deep, 50);
+    EXPECT_GT(near, 50);
 }
 
 // The workpiece turns with the table: what touches at 0 degrees does not at 180.
