@@ -21,8 +21,7 @@ inline constexpr double kLargestBend = 0.1;
 /// By perturbation (Blinn 1978; Ren et al. 2006, eq. 4):
 ///     N' = P_u × P_v + D_u (n × P_v) + D_v (P_u × n)
 /// with P the design over (u, v), D the displacement, n the unit normal. As printed there the last product has its
-/// factors the other way round, which turns the slope along v over. The derivatives are those of a quadratic through
-/// the surfel and, by least squares, its neighbours on the patch: on a regular lattice, central differences.
+/// factors the other way round, which turns the slope along v over. The derivatives are those of local_fit().
 DisplacedNormals displaced_normals(const Surfels& surfels);
 
 } // namespace fettle

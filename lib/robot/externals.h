@@ -1,5 +1,6 @@
 #pragma once
 
+#include "cloud/poses.h"
 #include "robot/robot.h"
 
 #include <Eigen/Core>
@@ -14,9 +15,6 @@ namespace fettle {
 /// Joints 1 to 6 (rad), the track (mm), the table (rad); 0 for one that the robot lacks.
 using CellJoints = Eigen::Matrix<double, 8, 1>;
 using CellJointsPath = Eigen::Matrix<double, 8, Eigen::Dynamic>;
-
-/// Poses of the path's tool frame in the part's; a NaN translation: no pose.
-using PosePath = std::vector<Eigen::Isometry3d>;
 
 /// How an axis beyond the arm's six is led along a path: it stands at `value`, or it follows the tip. The track then
 /// keeps the base `value` mm behind the tip along its axis, as far as it reaches; the table turns the tip to the

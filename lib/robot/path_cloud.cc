@@ -12,7 +12,6 @@ namespace fettle {
 namespace {
 
 constexpr double kRadPerDegree = std::numbers::pi / 180;
-const char* const kQuaternion[] = {"qw", "qx", "qy", "qz"};
 
 bool has_joint(const Robot& robot, Eigen::Index joint)
 {
@@ -23,41 +22,6 @@ std::string joint_name(Eigen::Index joint) { return "joint" + std::to_string(joi
 double joint_unit(Eigen::Index joint) { return joint == 6 ? 1 : kRadPerDegree; }
 
 } // namespace
-
-PosePath path_poses(const Cloud& cloud)
-{
-    Eigen::Matrix4Xd q(4, cloud.size());
-    for (Eigen::Index k = 0; k < 4; ++k) q.row(k) = field(cloud, kQuaternion[k]);
-    PosePath poses(static_cast<std::size_t>(cloud.size()));
-    for (Eigen::Index i = 0; i < cloud.size(); ++i) {
-        Eigen::Isometry3d& pose = poses[static_cast<std::size_t>(i)];
-        pose.setIdentity();
-        pose.translation() = cloud.xyz.col(i);
-        const double norm = q.col(i).stableNorm();
-        if (norm == 0) throw InputError("point " + std::to_string(i) + ": the quaternion qw qx qy qz is 0");
-        if (!std::isfinite(norm) || !cloud.xyz.col(i).allFinite()) {
-            pose.translation().setConstant(NAN);
-            continue;
-        }
-        const Eigen::Vector4d unit = q.col(i) / norm;
-        pose.linear() = Eigen::Quaterniond(unit[0], unit[1], unit[2], unit[3]).toRotationMatrix();
-    }
-    return poses;
-}
-
-void set_path(Cloud& cloud, const PosePath& poses)
-{
-    Eigen::Matrix4Xd q(4, cloud.size());
-    for (Eigen::Index i = 0; i < cloud.size(); ++i) {
-        const Eigen::Isometry3d& pose = poses[static_cast<std::size_t>(i)];
-        cloud.xyz.col(i) = pose.translation();
-        const Eigen::Quaterniond turn(pose.linear());
-        const double sign = turn.w() < 0 ? -1 : 1; // one of two signs
-        q.col(i) << sign * turn.w(), sign * turn.x(), sign * turn.y(), sign * turn.z();
-        if (pose.translation().hasNaN()) q.col(i).setConstant(NAN);
-    }
-    for (Eigen::Index k = 0; k < 4; ++k) set_field(cloud, kQuaternion[k], q.row(k), 8);
-}
 
 CellJointsPath path_joints(const Cloud& cloud, const Robot& robot)
 {

@@ -1,0 +1,270 @@
+#include "belt/contact_path.h"
+
+#include "belt/local_fit.h"
+#include "cloud/neighbours.h"
+#include "core/error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <string>
+
+namespace fettle {
+namespace {
+
+// So many surfels tell how fast a patch's parameters run.
+constexpr Eigen::Index kProbes = 2000;
+// A width that is a whole number of steps but for what fits at the border are off, in steps.
+constexpr double kWhole = 1e-3;
+
+/// One patch as a surface over (u, v).
+class PatchSurface {
+  public:
+    PatchSurface(const Surfels& surfels, const ContactPathOptions& options) : patch_(options.patch)
+    {
+        std::vector<Eigen::Index> own;
+        for (Eigen::Index i = 0; i < surfels.size(); ++i)
+            if (surfels.patch[i] == patch_ && (!options.on_stock || !std::isnan(surfels.displacement[i])))
+                own.push_back(i);
+        if (own.empty()) throw InputError("there is no surfel of patch " + std::to_string(patch_));
+        surfels_.position = surfels.position(Eigen::all, own);
+        surfels_.normal = surfels.normal(Eigen::all, own);
+        surfels_.radius = surfels.radius(own);
+        surfels_.uv = surfels.uv(Eigen::all, own);
+        surfels_.patch = surfels.patch(own);
+        surfels_.displacement = surfels.displacement(own);
+        if (!options.on_stock) surfels_.displacement.setZero();
+        reach_ = surfels_.radius.maxCoeff();
+        measure();
+        Eigen::Matrix3Xd flat = Eigen::Matrix3Xd::Zero(3, surfels_.size());
+        flat.topRows<2>() = speed_.asDiagonal() * surfels_.uv;
+        neighbours_.emplace(flat);
+    }
+
+    Eigen::Vector2d least() const { return surfels_.uv.rowwise().minCoeff(); }
+    Eigen::Vector2d most() const { return surfels_.uv.rowwise().maxCoeff(); }
+    /// The largest lengths of P_u and P_v.
+    const Eigen::Vector2d& speed() const { return speed_; }
+
+    /// Nothing where the patch is not.
+    std::optional<LocalFit> at(const Eigen::Vector2d& uv) const
+    {
+        const Eigen::Vector2d flat = speed_.cwiseProduct(uv);
+        const std::vector<Eigen::Index> near = neighbours_->nearest({flat.x(), flat.y(), 0}, kFitCandidates);
+        const std::optional<LocalFit> fit = local_fit(surfels_, patch_, uv, near);
+        if (!fit) return std::nullopt;
+        const bool there = std::any_of(near.begin(), near.end(), [&](Eigen::Index i) {
+            return (surfels_.position.col(i) - fit->P).norm() <= reach_ * (1 + kCorner);
+        });
+        return there ? fit : std::nullopt;
+    }
+
+  private:
+    // The corner of a lattice's cell is just within the radius of its middle.
+    static constexpr double kCorner = 0.01;
+
+    void measure()
+    {
+        const Neighbours neighbours(surfels_.position);
+        const Eigen::Index step = std::max<Eigen::Index>(1, surfels_.size() / kProbes);
+        for (Eigen::Index i = 0; i < surfels_.size(); i += step) {
+            const auto fit = local_fit(surfels_, patch_, surfels_.uv.col(i),
+                                       neighbours.nearest(surfels_.position.col(i), kFitCandidates));
+            if (fit) speed_ = speed_.cwiseMax(Eigen::Vector2d(fit->P_u.norm(), fit->P_v.norm()));
+        }
+        if (!(speed_.minCoeff() > 0))
+            throw InputError("too few surfels on patch " + std::to_string(patch_) + " for a path");
+    }
+
+    int patch_;
+    Surfels surfels_;
+    double reach_ = 0;
+    Eigen::Vector2d speed_ = Eigen::Vector2d::Zero();
+    std::optional<Neighbours> neighbours_;
+};
+
+/// Adds poses along straight legs in u and v.
+class PathBuilder {
+  public:
+    PathBuilder(const PatchSurface& surface, const ContactPathOptions& options) : surface_(surface), options_(options)
+    {
+    }
+
+    void leg(const Eigen::Vector2d& from, const Eigen::Vector2d& to)
+    {
+        const double length = surface_.speed().cwiseProduct(to - from).norm();
+        const int steps = std::max(1, static_cast<int>(std::ceil(length / options_.spacing - 1e-9)));
+        for (int k = 0; k <= steps; ++k) {
+            const Eigen::Vector2d uv = from + (to - from) * (double(k) / steps);
+            if (const std::optional<LocalFit> fit = surface_.at(uv))
+                add(*fit, to - from);
+            else
+                end_pass();
+        }
+    }
+
+    void end_pass()
+    {
+        if (open_) ++pass_;
+        open_ = false;
+    }
+
+    ContactPath path;
+
+  private:
+    void add(const LocalFit& fit, const Eigen::Vector2d& way)
+    {
+        const Eigen::Vector3d z = fit.n.normalized();
+        const Eigen::Vector3d feed = way[0] * fit.P_u + way[1] * fit.P_v;
+        const Eigen::Vector3d x = (feed - feed.dot(z) * z).normalized();
+        Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+        pose.linear() << x, z.cross(x), z;
+        pose.translation() = fit.P + (options_.on_stock ? fit.D : 0) * z;
+        path.poses.push_back(pose);
+        path.pass.push_back(pass_);
+        open_ = true;
+    }
+
+    const PatchSurface& surface_;
+    const ContactPathOptions& options_;
+    int pass_ = 0;
+    bool open_ = false;
+};
+
+/// (along, across) as (u, v).
+Eigen::Vector2d uv_of(const Eigen::Vector2d& place, bool along_v)
+{
+    return along_v ? Eigen::Vector2d(place.y(), place.x()) : place;
+}
+
+void add_rows(PathBuilder& builder, const Eigen::Vector2d& least, const Eigen::Vector2d& most, double step,
+              const ContactPathOptions& options)
+{
+    const int count = std::max(1, static_cast<int>(std::ceil((most.y() - least.y()) / step - kWhole)));
+    for (int k = 0; k < count; ++k) {
+        // In the middles of equal strips: each row works half a step to either side.
+        const double across = least.y() + (most.y() - least.y()) * (k + 0.5) / count;
+        const Eigen::Vector2d a(least.x(), across), b(most.x(), across);
+        const bool back = k % 2 == 1 && !options.one_way;
+        builder.leg(uv_of(back ? b : a, options.along_v), uv_of(back ? a : b, options.along_v));
+        builder.end_pass();
+    }
+}
+
+void add_spiral(PathBuilder& builder, Eigen::Vector2d least, Eigen::Vector2d most, const Eigen::Vector2d& step,
+                const ContactPathOptions& options)
+{
+    // Turns in the middles of equal frames, as rows.
+    least += step / 2;
+    most -= step / 2;
+    Eigen::Vector2d at = least;
+    const auto go = [&](const Eigen::Vector2d& to) {
+        builder.leg(uv_of(at, options.along_v), uv_of(to, options.along_v));
+        at = to;
+    };
+    while (most.x() >= least.x() && most.y() >= least.y()) {
+        go({most.x(), at.y()});
+        least.y() += step.y();
+        if (most.y() < least.y()) break;
+        go({at.x(), most.y()});
+        most.x() -= step.x();
+        if (most.x() < least.x()) break;
+        go({least.x(), at.y()});
+        most.y() -= step.y();
+        if (most.y() < least.y()) break;
+        go({at.x(), least.y()});
+        least.x() += step.x();
+    }
+}
+
+} // namespace
+
+ContactPath contact_path(const Surfels& surfels, const ContactPathOptions& options)
+{
+    const PatchSurface surface(surfels, options);
+    PathBuilder builder(surface, options);
+    const Eigen::Vector2d least = uv_of(surface.least(), options.along_v);
+    const Eigen::Vector2d most = uv_of(surface.most(), options.along_v);
+    const Eigen::Vector2d step = options.step_over * uv_of(surface.speed().cwiseInverse(), options.along_v);
+    if (options.pattern == PathPattern::rows)
+        add_rows(builder, least, most, step.y(), options);
+    else
+        add_spiral(builder, least, most, step, options);
+    return std::move(builder.path);
+}
+
+Eigen::Quaterniond slerp(const Eigen::Quaterniond& from, const Eigen::Quaterniond& to, double share)
+{
+    // Below this angle sines of it and of its parts are in the ratio of the angles, to rounding.
+    constexpr double kSmallAngle = 1e-8;
+    const double cosine = from.dot(to);
+    const double way = cosine < 0 ? -1 : 1; // q and -q are one orientation
+    // The sine from the chord is exact where the cosine is near 1.
+    const double angle = 2 * std::asin(std::min(1.0, (from.coeffs() - way * to.coeffs()).norm() / 2));
+    double a = 1 - share, b = share;
+    if (angle > kSmallAngle) {
+        a = std::sin((1 - share) * angle) / std::sin(angle);
+        b = std::sin(share * angle) / std::sin(angle);
+    }
+    return Eigen::Quaterniond((a * from.coeffs() + way * b * to.coeffs()).eval()).normalized();
+}
+
+Cloud interpolated(const Cloud& path, double spacing)
+{
+    const PosePath poses = path_poses(path);
+    const Eigen::VectorXd pass =
+        has_field(path, "pass") ? field(path, "pass") : Eigen::VectorXd(Eigen::VectorXd::Zero(path.size()));
+    std::vector<Eigen::Index> from; // the point at or before each of the new ones
+    std::vector<double> shares;
+    for (Eigen::Index i = 0; i < path.size(); ++i) {
+        double parts = 1;
+        if (i + 1 < path.size() && pass[i] == pass[i + 1]) {
+            const double length = (path.xyz.col(i + 1) - path.xyz.col(i)).norm();
+            if (std::isfinite(length)) parts = std::max(1.0, std::ceil(length / spacing - 1e-6));
+            if (parts > 1e8) throw InputError("a spacing so fine makes more than 100 million points");
+        }
+        for (double k = 0; k < parts; ++k) {
+            from.push_back(i);
+            shares.push_back(k / parts);
+        }
+    }
+    Cloud dense = select(path, from);
+    dense.comment = path.comment;
+    PosePath between(from.size());
+    for (std::size_t k = 0; k < from.size(); ++k) {
+        const auto i = static_cast<std::size_t>(from[k]);
+        between[k] = poses[i];
+        if (shares[k] == 0) continue;
+        between[k].translation() = (1 - shares[k]) * poses[i].translation() + shares[k] * poses[i + 1].translation();
+        between[k].linear() =
+            slerp(Eigen::Quaterniond(poses[i].linear()), Eigen::Quaterniond(poses[i + 1].linear()), shares[k])
+                .toRotationMatrix();
+    }
+    for (const Field& given : path.fields) {
+        if (given.count != 1 || given.type != 'F') continue;
+        const Eigen::VectorXd values = field(path, given.name);
+        Eigen::VectorXd lerped(dense.size());
+        for (std::size_t k = 0; k < from.size(); ++k) {
+            const double here = values[from[k]];
+            lerped[static_cast<Eigen::Index>(k)] =
+                shares[k] == 0 ? here : (1 - shares[k]) * here + shares[k] * values[from[k] + 1];
+        }
+        set_field(dense, given.name, lerped, given.size);
+    }
+    set_path(dense, between);
+    return dense;
+}
+
+PosePath held_part(const PosePath& T_part_contact, const Eigen::Isometry3d& T_cell_wheel)
+{
+    const Eigen::AngleAxisd half(std::numbers::pi, Eigen::Vector3d::UnitX());
+    PosePath T_cell_tool = T_part_contact;
+    for (Eigen::Isometry3d& pose : T_cell_tool) {
+        if (pose.translation().hasNaN()) continue;
+        pose = T_cell_wheel * pose.inverse() * half;
+    }
+    return T_cell_tool;
+}
+
+} // namespace fettle

@@ -1,0 +1,19 @@
+# What is neither surfels nor a path, a patch that is not there, and half of --held end with status 2 and one line.
+# shellcheck source=tests/fettle-surfel/box.bash
+. "$HERE/../fettle-surfel/box.bash"
+refused() { "$HERE/../refuses" "$@"; }
+box 0 0 0 2 2 2 > box.off
+fettle-surfel box.off --stock box.off -q > work.pcd
+fettle-surfel box.off --stock box.off --spacing 5 -q > coarse.pcd
+printf '1 2 3\n4 5 6\n' > points.xyz
+: > empty.pcd
+refused 'empty.pcd' fettle-path empty.pcd
+refused 'points.xyz: no fields normal_x' fettle-path points.xyz
+refused 'work.pcd: there is no surfel of patch 6' fettle-path work.pcd --patch 6
+refused 'coarse.pcd: too few surfels on patch 0' fettle-path coarse.pcd
+refused '--held part and --wheel' fettle-path work.pcd --held part
+refused '--held part and --wheel' fettle-path work.pcd --wheel 0,0,0,1,0,0,0
+refused '--wheel: expected x,y,z,qw,qx,qy,qz, got' fettle-path work.pcd --held part --wheel 0,0,0,1
+refused '--wheel: expected x,y,z,qw,qx,qy,qz, got' fettle-path work.pcd --held part --wheel 0,0,0,0,0,0,0
+refused '--spacing: must be positive' fettle-path work.pcd --spacing 0
+refused '--pattern' fettle-path work.pcd --pattern circle
