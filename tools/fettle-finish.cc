@@ -1,9 +1,11 @@
 #include "cli/tool.h"
 #include "cloud/pcd.h"
+#include "core/direction.h"
 #include "core/file.h"
 #include "machining/cutter.h"
 #include "machining/discretization.h"
 #include "machining/finishing.h"
+#include "machining/tilt.h"
 #include "mesh/mesh_file.h"
 
 #include <numbers>
@@ -31,6 +33,8 @@ int main(int argc, char** argv)
             "Of the passes beyond the design's box; else as far as the tip is from the contact on slopes",
             Range::at_least(0));
         const double& angle = t.number("--angle", 0, "DEG", "Of the passes, counter-clockwise from X");
+        const std::string& axis_text =
+            t.text("--axis", "0,0,1", "X,Y,Z", "Of the tool, from tip to holder (fettle-mill)");
         const double& feed = t.number("--feed", 10, "MM/S", "Feed", Range::positive());
         const double& clearance =
             t.number("--clearance", 5, "MM", "Of rapid moves over the highest point", Range::positive());
@@ -48,7 +52,8 @@ int main(int argc, char** argv)
         if (scallop.has_value() == step_over.has_value()) throw InputError("give either --scallop or --step-over");
         if (ascii && !pcd) throw InputError("--ascii", "belongs to --pcd");
         const Cutter cutter = named("--cutter", [&] { return parse_cutter(cutter_text); });
-        const Mesh design = read_mesh(path, unit.value_or(Units::Length::mm));
+        const Eigen::Matrix3d R_tilted_machine = rotation_tilted_machine(parse_direction(axis_text, "--axis"));
+        const Mesh design = turned(read_mesh(path, unit.value_or(Units::Length::mm)), R_tilted_machine);
         FinishingOptions options;
         options.angle = angle * std::numbers::pi / 180;
         options.feed = feed;
@@ -61,7 +66,8 @@ int main(int argc, char** argv)
             return finishing_path(design, cutter, options);
         });
         if (pcd)
-            write_pcd(t.output(), to_cloud(points), Units{}, ascii ? PcdEncoding::ascii : PcdEncoding::binary);
+            write_pcd(t.output(), turned(to_cloud(points), R_tilted_machine.transpose()), Units{},
+                      ascii ? PcdEncoding::ascii : PcdEncoding::binary);
         else
             write_gcode(t.output(), points, "fettle-finish: " + cutter_text + ", tool tip");
         t.report().set("points", points.size()).set("step_over", options.step_over).set("overhang", options.overhang);

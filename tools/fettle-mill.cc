@@ -1,5 +1,7 @@
 #include "cli/tool.h"
 #include "cloud/pcd.h"
+#include "compare/shape_file.h"
+#include "core/direction.h"
 #include "core/file.h"
 #include "core/text.h"
 #include "machining/cutter.h"
@@ -8,6 +10,7 @@
 #include "machining/milling_summary.h"
 #include "machining/number_list.h"
 #include "machining/refinement.h"
+#include "machining/tilt.h"
 #include "machining/tool_path.h"
 #include "machining/workpiece.h"
 #include "mesh/mesh_file.h"
@@ -26,13 +29,19 @@ Holder parse_holder(const std::string& text)
     return {numbers[0] / 2, numbers[1]};
 }
 
-Workpiece read_stock(const std::string& stock, std::optional<Units::Length> unit, double cell)
+Workpiece read_stock(const std::string& stock, std::optional<Units::Length> unit, double cell,
+                     const Eigen::Matrix3d& R_tilted_machine)
 {
     constexpr std::string_view kBox = "box:";
     return named("--stock", [&] {
-        if (!stock.starts_with(kBox)) return scanned_workpiece(read_scan(stock, Units{}, unit), cell);
+        if (!stock.starts_with(kBox)) {
+            const Units::Length length = unit.value_or(Units::Length::mm);
+            return std::visit(
+                [&](auto shape) { return scanned_workpiece(Scan(turned(std::move(shape), R_tilted_machine)), cell); },
+                read_shape(stock, Units{length}).shape);
+        }
         if (unit) throw InputError("a box is in mm; --stock-units belongs to a file");
-        return box_workpiece(stock.substr(kBox.size()), cell);
+        return box_workpiece(stock.substr(kBox.size()), cell, R_tilted_machine);
     });
 }
 
@@ -56,7 +65,8 @@ void report(json::Value& out, const NcProgram& program, const HeightField& left)
 int main(int argc, char** argv)
 {
     const std::string description =
-        "Machines a stock virtually: cuts a map of heights with a cutter along a path of three axes.\n"
+        "Machines a stock virtually: cuts a map of heights with a cutter along a path of three axes, upright or "
+        "tilted.\n"
         "Every cell's centre comes to the lowest height at which the cutter passes over it, computed from whole moves. "
         "Lengths in mm, feeds in mm/s; a program states its own (F in length a minute). Exit 1 if a rapid move went "
         "through material or the holder collides.";
@@ -80,6 +90,9 @@ int main(int argc, char** argv)
         const bool& published = t.flag("--as-published", "With --tolerance: without regard to slopes");
         const std::string& points = t.choice(
             "--points", "cl", {"cl", "cc"}, "Are points those of the tip, or where the cutter touches (with normals)?");
+        const std::string& axis_text = t.text("--axis", "0,0,1", "X,Y,Z",
+                                              "Of the tool, from tip to holder (3+2 axes); a program is then in the "
+                                              "frame that is turned the shortest way so that this points up");
         const double& feed = t.number("--feed", 10, "MM/S", "Feed of points without one", Range::positive());
         const double& rapid = t.number("--rapid", 200, "MM/S", "Rate of rapid moves", Range::positive());
         const std::string& holder = t.text("--holder", "", "D,HEIGHT",
@@ -108,15 +121,17 @@ int main(int argc, char** argv)
         const Cutter cutter = named("--cutter", [&] { return parse_cutter(cutter_text); });
         MillingOptions options;
         if (!holder.empty()) options.holder = named("--holder", [&] { return parse_holder(holder); });
+        const Eigen::Vector3d axis = parse_direction(axis_text, "--axis");
+        const Eigen::Matrix3d R_tilted_machine = rotation_tilted_machine(axis);
         const std::string source = display_name(path);
-        const ToolPath tool_path = parse_tool_path(read_whole(path), source, cutter, {points == "cc", feed});
+        const ToolPath tool_path = parse_tool_path(read_whole(path), source, cutter, {points == "cc", feed, axis});
         const NcProgram& program = tool_path.program;
         const DesignShape shape = design.empty() ? DesignShape{} : named(display_name(design), [&] {
-            return shape_of(read_mesh(design, design_units.value_or(Units::Length::mm)));
+            return shape_of(turned(read_mesh(design, design_units.value_or(Units::Length::mm)), R_tilted_machine));
         });
         const Spacing spacing =
             step ? Spacing{*step} : spacing_for(*tolerance, sampling_radius(cutter), shape, published);
-        Workpiece piece = read_stock(stock, stock_units, spacing.step);
+        Workpiece piece = read_stock(stock, stock_units, spacing.step, R_tilted_machine);
         options.floor = piece.floor;
 
         std::size_t refined = 0;
@@ -126,14 +141,17 @@ int main(int argc, char** argv)
         const MillingSummary sum = summarise(program.moves, bites, rapid);
         const PcdEncoding encoding = ascii ? PcdEncoding::ascii : PcdEncoding::binary;
         if (pcd)
-            write_pcd(t.output(), to_cloud(*before, piece.stock), Units{}, encoding);
+            write_pcd(t.output(), turned(to_cloud(*before, piece.stock), R_tilted_machine.transpose()), Units{},
+                      encoding);
         else {
             std::optional<Refinement> refinement;
             if (refine > 0) refinement.emplace(piece, piece.stock, cutter, program.moves, 1 << refine);
-            write_stl(t.output(), piece.stock, refinement ? &*refinement : nullptr);
+            write_stl(t.output(), piece.stock, refinement ? &*refinement : nullptr, R_tilted_machine);
             if (refinement) refined = refinement->count();
         }
-        if (!trace.empty()) write_pcd(t.output_file(trace), trace_of(program.moves, bites, rapid), Units{}, encoding);
+        if (!trace.empty())
+            write_pcd(t.output_file(trace), turned(trace_of(program.moves, bites, rapid), R_tilted_machine.transpose()),
+                      Units{}, encoding);
         t.report() = to_json(sum);
         report(t.report(), program, piece.stock);
         t.report().set("refined_squares", refined);

@@ -1,11 +1,13 @@
 #include "cli/tool.h"
 #include "cloud/pcd.h"
 #include "compare/signed_distance.h"
+#include "core/direction.h"
 #include "core/file.h"
 #include "core/text.h"
 #include "machining/correction.h"
 #include "machining/patch_error.h"
 #include "machining/patch_report.h"
+#include "machining/tilt.h"
 #include "machining/tool_path.h"
 #include "machining/workpiece.h"
 #include "mesh/mesh_file.h"
@@ -18,9 +20,10 @@ using namespace fettle;
 namespace {
 
 /// The machined mesh, or its upper side on a grid.
-Mesh read_machined(const std::string& path, std::optional<Units::Length> unit, const std::optional<double>& step)
+Mesh read_machined(const std::string& path, std::optional<Units::Length> unit, const std::optional<double>& step,
+                   const Eigen::Matrix3d& R_tilted_machine)
 {
-    Mesh mesh = read_mesh(path, unit.value_or(Units::Length::mm));
+    Mesh mesh = turned(read_mesh(path, unit.value_or(Units::Length::mm)), R_tilted_machine);
     if (!step) return mesh;
     return named("--step", [&] {
         const HeightField field = scanned_workpiece(Scan(std::move(mesh)), *step).stock;
@@ -79,6 +82,9 @@ int main(int argc, char** argv)
                                              "point of the design; the report says how far the two are apart");
         const auto& step = t.number_if_given(
             "--step", "MM", "Sample the machined surface from above on such a grid, too", Range::positive());
+        const std::string& axis_text =
+            t.text("--axis", "0,0,1", "X,Y,Z",
+                   "Of the tool that machined (fettle-mill): what is said of Z above goes along it");
         const std::string& csv = t.text("--csv", "", "FILE", "Data sheet: triangle, centre, d, mu, class");
         const std::string& z_file = t.text("--z-errors", "", "FILE", "Errors along Z at the machined vertices, PCD");
         const std::string& path_file =
@@ -100,14 +106,11 @@ int main(int argc, char** argv)
         const bool corrects = !path_file.empty();
         if (corrects == corrected_file.empty() || corrects == cutter_text.empty())
             throw InputError("--correct, --corrected and --cutter belong together");
-        const Mesh machined = read_machined(machined_path, unit, step);
-        const Mesh design = read_mesh(design_path, design_unit.value_or(Units::Length::mm));
-        Cutter cutter;
-        ToolPath path;
-        if (corrects) {
-            cutter = named("--cutter", [&] { return parse_cutter(cutter_text); });
-            path = parse_tool_path(read_whole(path_file), display_name(path_file), cutter, {points == "cc", feed});
-        }
+        const Eigen::Vector3d axis = parse_direction(axis_text, "--axis");
+        const Eigen::Matrix3d R_tilted_machine = rotation_tilted_machine(axis);
+        const Eigen::Matrix3d back = R_tilted_machine.transpose();
+        const Mesh machined = read_machined(machined_path, unit, step, R_tilted_machine);
+        const Mesh design = turned(read_mesh(design_path, design_unit.value_or(Units::Length::mm)), R_tilted_machine);
         PatchVerdict verdict;
         verdict.tolerances = {inner.value_or(tolerance), outer.value_or(tolerance), neutral};
         verdict.patches = patch_errors(machined, design);
@@ -115,21 +118,25 @@ int main(int argc, char** argv)
         if (verdict.by_closest) verdict.closest = signed_distance(verdict.patches.centre, design).error;
 
         const PcdEncoding encoding = ascii ? PcdEncoding::ascii : PcdEncoding::binary;
-        if (!csv.empty()) write_csv(t.output_file(csv), verdict);
-        if (!z_file.empty())
-            write_pcd(t.output_file(z_file), z_errors(machined, verdict.patches.z_error), Units{}, encoding);
-        write_pcd(t.output(), to_cloud(verdict), Units{}, encoding);
-        t.report() = to_json(verdict);
+        const auto write = [&](std::ostream& out, const Cloud& cloud) { write_pcd(out, cloud, Units{}, encoding); };
+        std::optional<CorrectedPath> corrected;
         if (corrects) {
-            const CorrectedPath corrected =
+            const Cutter cutter = named("--cutter", [&] { return parse_cutter(cutter_text); });
+            const ToolPath path =
+                parse_tool_path(read_whole(path_file), display_name(path_file), cutter, {points == "cc", feed, axis});
+            corrected =
                 correct(path.program.moves, cutter, machined, design, verdict.patches, verdict.tolerances.outer);
-            t.report().set("correction", to_json(corrected));
             if (path.points)
-                write_pcd(t.output_file(corrected_file), corrected_points(path, corrected, points == "cc"), Units{},
-                          encoding);
+                write(t.output_file(corrected_file), turned(corrected_points(path, *corrected, points == "cc"), back));
             else
-                write_corrected(t.output_file(corrected_file), path, corrected);
+                write_corrected(t.output_file(corrected_file), path, *corrected);
         }
+        if (!z_file.empty()) write(t.output_file(z_file), turned(z_errors(machined, verdict.patches.z_error), back));
+        verdict.patches = turned(std::move(verdict.patches), back);
+        if (!csv.empty()) write_csv(t.output_file(csv), verdict);
+        write(t.output(), to_cloud(verdict));
+        t.report() = to_json(verdict);
+        if (corrected) t.report().set("correction", to_json(*corrected));
         const auto undefined = verdict.error().array().isNaN().count();
         if (undefined > 0)
             t.warn(display_name(machined_path) + ": " + std::to_string(undefined) + " of " +

@@ -3,22 +3,32 @@
 #include "core/error.h"
 #include "core/text.h"
 
+#include <Eigen/Geometry>
+
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace fettle {
 namespace {
 
-/// The map of heights is upright, so the cutter must be, too: q turns +z into +z.
-void require_upright(const Cloud& points, const std::string& source)
+/// The map of heights is looked at along one axis: every pose must turn +z into it.
+void require_axis(const Cloud& points, const Eigen::Vector3d& axis, const std::string& source)
 {
-    if (!has_field(points, "qx") || !has_field(points, "qy")) return;
-    constexpr double kUpright = 1e-6; // rounding of floats
-    const Eigen::VectorXd qx = field(points, "qx"), qy = field(points, "qy");
-    for (Eigen::Index i = 0; i < points.size(); ++i)
-        if (!(std::hypot(qx[i], qy[i]) <= kUpright))
-            throw InputError(source, "point " + std::to_string(i + 1) + ": the cutter's axis is tilted (qx " +
-                                         to_short_text(qx[i]) + ", qy " + to_short_text(qy[i]) +
-                                         "), expected an upright one");
+    const char* const kParts[] = {"qw", "qx", "qy", "qz"};
+    if (std::none_of(std::begin(kParts), std::end(kParts), [&](const char* part) { return has_field(points, part); }))
+        return;
+    constexpr double kSame = 1e-6; // rounding of floats
+    const Eigen::VectorXd w = field(points, "qw"), x = field(points, "qx"), y = field(points, "qy"),
+                          z = field(points, "qz");
+    for (Eigen::Index i = 0; i < points.size(); ++i) {
+        const Eigen::Vector3d of = Eigen::Quaterniond(w[i], x[i], y[i], z[i]).normalized() * Eigen::Vector3d::UnitZ();
+        if (!((of - axis).norm() <= kSame))
+            throw InputError(source, "point " + std::to_string(i + 1) + ": the cutter's axis is " +
+                                         to_short_text(of.x()) + ", " + to_short_text(of.y()) + ", " +
+                                         to_short_text(of.z()) + ", expected " + to_short_text(axis.x()) + ", " +
+                                         to_short_text(axis.y()) + ", " + to_short_text(axis.z()));
+    }
 }
 
 Eigen::Matrix3Xd tips_at(const Cloud& points, const Cutter& cutter, const std::string& source)
@@ -45,9 +55,9 @@ double length(const CutterMove& move)
 }
 
 std::vector<CutterMove> moves_through(const Cloud& points, const Cutter& cutter, bool contacts, double feed,
-                                      const std::string& source)
+                                      const std::string& source, const Eigen::Vector3d& axis)
 {
-    require_upright(points, source);
+    require_axis(points, axis, source);
     const Eigen::Matrix3Xd tips = contacts ? tips_at(points, cutter, source) : points.xyz;
     Eigen::VectorXd feeds = Eigen::VectorXd::Constant(points.size(), feed);
     if (has_field(points, "feed")) feeds = field(points, "feed");

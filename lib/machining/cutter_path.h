@@ -29,9 +29,11 @@ double length(const CutterMove& move);
 /// else all have `feed`.
 /// @param contacts  are the points where the cutter touches (CC), with normals, rather than where its tip is (CL)?
 /// @param source    the cloud's name for messages
-/// @throws InputError, with the point's number, for NaN, a feed that is negative, a tilted axis (qw qx qy qz), or a
-/// contact that the cutter cannot have
+/// @param axis      that of all poses (qw qx qy qz), if the points have them, unit
+/// @throws InputError, with the point's number, for NaN, a feed that is negative, another axis, or a contact that the
+/// cutter cannot have
 std::vector<CutterMove> moves_through(const Cloud& points, const Cutter& cutter, bool contacts, double feed,
-                                      const std::string& source);
+                                      const std::string& source,
+                                      const Eigen::Vector3d& axis = Eigen::Vector3d::UnitZ());
 
 } // namespace fettle

@@ -1,5 +1,6 @@
 #include "machining/patch_error.h"
 
+#include "machining/tilt.h"
 #include "machining/walls.h"
 #include "mesh/mesh_index.h"
 
@@ -8,6 +9,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace fettle {
 namespace {
@@ -79,6 +81,16 @@ PatchErrors patch_errors(const Mesh& machined, const Mesh& design)
     errors.area.resize(count);
     errors.state.resize(static_cast<std::size_t>(count), PatchState::defined);
     tbb::parallel_for(Eigen::Index{0}, count, [&](Eigen::Index t) { set_patch(errors, t, machined, walls); });
+    return errors;
+}
+
+PatchErrors turned(PatchErrors errors, const Eigen::Matrix3d& rotation)
+{
+    if (rotation.isIdentity(0)) return errors;
+    errors.design = turned(std::move(errors.design), rotation);
+    errors.centre = (rotation * errors.centre).eval();
+    errors.normal = (rotation * errors.normal).eval();
+    errors.up = (rotation * errors.up).eval();
     return errors;
 }
 

@@ -29,9 +29,13 @@ struct PatchErrors {
     Eigen::VectorXd mu;      ///< (N·Z)/|N| d, mm (eq. 6): + material left
     Eigen::VectorXd area;    ///< of the design's triangles, mm²: mu · area is a volume
     std::vector<PatchState> state;
+    Eigen::Vector3d up = Eigen::Vector3d::UnitZ(); ///< what is Z above
 };
 
 PatchErrors patch_errors(const Mesh& machined, const Mesh& design);
+
+/// All places and directions turned: out of a tilted frame (tilt.h).
+PatchErrors turned(PatchErrors errors, const Eigen::Matrix3d& rotation);
 
 /// Classes of errors, by two tolerances; in a neutral band about 0 a patch counts as right.
 enum class ErrorClass : std::int8_t {

@@ -56,7 +56,7 @@ json::Value difference_on(const PatchVerdict& verdict, bool steep)
     Eigen::Vector3d place = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
     for (Eigen::Index t = 0; t < verdict.closest.size(); ++t) {
         const double off = std::abs(verdict.patches.mu[t] - verdict.closest[t]);
-        if (std::isnan(off) || (verdict.patches.normal(2, t) < kSteep) != steep) continue;
+        if (std::isnan(off) || (verdict.patches.normal.col(t).dot(verdict.patches.up) < kSteep) != steep) continue;
         ++count;
         sum += off;
         if (!(off > most)) continue;

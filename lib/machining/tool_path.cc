@@ -2,6 +2,7 @@
 
 #include "cloud/pcd.h"
 #include "core/error.h"
+#include "machining/tilt.h"
 
 #include <utility>
 
@@ -17,8 +18,8 @@ ToolPath parse_tool_path(std::string bytes, const std::string& source, const Cut
         path.text = std::move(bytes);
         return path;
     }
-    path.points = parse_cloud(bytes, source).cloud;
-    path.program.moves = moves_through(*path.points, cutter, meaning.contacts, meaning.feed, source);
+    path.points = turned(parse_cloud(bytes, source).cloud, rotation_tilted_machine(meaning.axis));
+    path.program.moves = moves_through(*path.points, cutter, meaning.contacts, meaning.feed, source, meaning.axis);
     return path;
 }
 

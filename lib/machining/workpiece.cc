@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "machining/number_list.h"
 #include "machining/refinement.h"
+#include "machining/tilt.h"
 #include "mesh/stl.h"
 
 #include <tbb/parallel_for.h>
@@ -23,6 +24,21 @@ namespace {
 constexpr Eigen::Index kRowsOfPart = 16;
 /// Parts in the making, whatever the number of threads.
 constexpr Eigen::Index kPartsAtOnce = 16;
+
+/// The sides of a box, outwards. @param numbers  least corner, greatest corner
+Mesh box_mesh(const std::vector<double>& numbers)
+{
+    Mesh mesh;
+    mesh.vertices.resize(3, 8);
+    for (int k = 0; k < 8; ++k) // bits 0 to 2 of the number: greatest x, y, z
+        for (int axis = 0; axis < 3; ++axis)
+            mesh.vertices(axis, k) = numbers[static_cast<std::size_t>(axis + 3 * (k >> axis & 1))];
+    mesh.triangles.resize(3, 12);
+    mesh.triangles << 0, 0, 4, 4, 0, 0, 2, 2, 0, 0, 1, 1, //
+        2, 3, 5, 7, 1, 5, 6, 7, 4, 6, 3, 7,               //
+        3, 1, 7, 6, 5, 4, 7, 3, 6, 2, 7, 5;
+    return mesh;
+}
 
 /// Corners of a triangle.
 using Corners = Eigen::Matrix3d;
@@ -104,8 +120,8 @@ std::size_t count_triangles(const HeightField& field, const Refinement* refineme
 /// Parts of an STL that are made while others are written.
 class StlParts {
   public:
-    StlParts(const HeightField& field, const Refinement* refinement, Eigen::Index parts)
-        : field_(&field), refinement_(refinement), parts_(parts),
+    StlParts(const HeightField& field, const Refinement* refinement, const Eigen::Matrix3d& tilted, Eigen::Index parts)
+        : field_(&field), refinement_(refinement), R_machine_tilted_(tilted.transpose()), parts_(parts),
           bytes_(static_cast<std::size_t>(std::min(kPartsAtOnce, parts)))
     {
     }
@@ -116,7 +132,8 @@ class StlParts {
             const Eigen::Index part = begin + static_cast<Eigen::Index>(k), first = part * kRowsOfPart;
             if (part >= parts_) return;
             const Mesh mesh =
-                surface_between(*field_, first, std::min(first + kRowsOfPart, field_->rows() - 1), refinement_);
+                turned(surface_between(*field_, first, std::min(first + kRowsOfPart, field_->rows() - 1), refinement_),
+                       R_machine_tilted_);
             bytes_[k].size = kStlTriangle * static_cast<std::size_t>(mesh.triangles.cols());
             if (bytes_[k].room < bytes_[k].size) { // seldom: fresh memory costs more than the triangles
                 bytes_[k].room = bytes_[k].size;
@@ -137,19 +154,22 @@ class StlParts {
     };
     const HeightField* field_;
     const Refinement* refinement_;
+    Eigen::Matrix3d R_machine_tilted_;
     Eigen::Index parts_;
     std::vector<Bytes> bytes_;
 };
 
 } // namespace
 
-Workpiece box_workpiece(const std::string& corners, double cell)
+Workpiece box_workpiece(const std::string& corners, double cell, const Eigen::Matrix3d& rotation_tilted_machine)
 {
     const auto numbers = numbers_of(corners, {"x0", "y0", "z0", "x1", "y1", "z1"});
     Eigen::Matrix2d box;
     box << numbers[0], numbers[3], numbers[1], numbers[4];
     if (!((box.col(1) - box.col(0)).minCoeff() > 0 && numbers[5] > numbers[2]))
         throw InputError("a box needs x0 < x1, y0 < y1 and z0 < z1, got " + corners);
+    if (!rotation_tilted_machine.isIdentity(0))
+        return scanned_workpiece(Scan(turned(box_mesh(numbers), rotation_tilted_machine)), cell);
     Workpiece piece{empty_height_field(box, {0, 0}, 0, cell), numbers[2]};
     piece.lay = [box, top = numbers[5]](HeightField& field) {
         for (Eigen::Index j = 0; j < field.rows(); ++j)
@@ -207,13 +227,14 @@ Mesh surface_between(const HeightField& field, Eigen::Index first, Eigen::Index 
     return mesh;
 }
 
-std::size_t write_stl(std::ostream& out, const HeightField& field, const Refinement* refinement)
+std::size_t write_stl(std::ostream& out, const HeightField& field, const Refinement* refinement,
+                      const Eigen::Matrix3d& tilted)
 {
     const std::size_t triangles = count_triangles(field, refinement);
     if (triangles > UINT32_MAX) throw InputError("too many triangles for an STL");
     out << stl_header(triangles, Units::Length::mm);
     const Eigen::Index parts = (std::max<Eigen::Index>(field.rows(), 1) - 1 + kRowsOfPart - 1) / kRowsOfPart;
-    StlParts made(field, refinement, parts), next(field, refinement, parts);
+    StlParts made(field, refinement, tilted, parts), next(field, refinement, tilted, parts);
     made.make(0);
     for (Eigen::Index begin = 0; begin < parts; begin += kPartsAtOnce) {
         tbb::task_group making;
