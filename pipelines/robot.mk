@@ -7,8 +7,8 @@
 #   make -f pipelines/robot.mk reach CELL=20    finer cells, mm
 #
 # ROBOT/keel holds the sheet, joints, program, clearances, their picture and report. ROBOT/small and ROBOT/large hold a hull each, its path, the
-# path led around pose by pose and smoothly (pose.pcd, smooth.pcd) with reports and pictures, and the robot's program of
-# the latter. ROBOT/reach/HEIGHT.png is a layer, one cell
+# path led around pose by pose and smoothly (pose.pcd, smooth.pcd) with reports and pictures, the robot's program of
+# the latter, and the hull as triangles under the tool and cuboids elsewhere (model.png). ROBOT/reach/HEIGHT.png is a layer, one cell
 # thick; ROBOT/reach/cell.json counts all cells of 100 mm.
 
 B       ?= build
@@ -57,6 +57,8 @@ $(ROBOT)/large/%: WAYS  := --track 700 --table 0
 # Commas are no part of a step's command.
 $(ROBOT)/small/%: FROM  := 1,-1,0.8
 $(ROBOT)/large/%: FROM  := -0.3,-1,0.4
+$(ROBOT)/small/%: NEAR  := 1,-1,0.5
+$(ROBOT)/large/%: NEAR  := -1,-0.6,0.3
 COLLIDE = $(B)/bin/fettle-collide $(CELL_OF) $(@D)/path.pcd --workpiece $(@D)/hull.stl $(WAYS)
 AVOID = $(COLLIDE) --report $(basename $@).json --picture $(basename $@).png --from $(FROM) --chart $(basename $@)-clearance.png --avoid
 
@@ -68,7 +70,7 @@ times: $(foreach hull,$(HULLS),$(ROBOT)/$(hull)/pose.time $(ROBOT)/$(hull)/smoot
 $(foreach hull,$(HULLS),$(ROBOT)/$(hull)/pose.time $(ROBOT)/$(hull)/smooth.time): $(ROBOT)/%.time: $(ROBOT)/small/path.pcd $(ROBOT)/large/path.pcd $(ROBOT)/small/hull.stl $(ROBOT)/large/hull.stl
 	@bash -c "TIMEFORMAT='%R s, of processors %U s'; time ($(COLLIDE) --avoid $(notdir $*) -q -o /dev/null || test \$$? = 1)" 2> $@
 
-hulls: $(HULLS:%=$(ROBOT)/%/checked.pcd) $(HULLS:%=$(ROBOT)/%/pose.pcd) $(HULLS:%=$(ROBOT)/%/smooth.pcd) $(HULLS:%=$(ROBOT)/%/hull.mod)
+hulls: $(HULLS:%=$(ROBOT)/%/model.png) $(HULLS:%=$(ROBOT)/%/checked.pcd) $(HULLS:%=$(ROBOT)/%/pose.pcd) $(HULLS:%=$(ROBOT)/%/smooth.pcd) $(HULLS:%=$(ROBOT)/%/hull.mod)
 	@pipelines/robot-table $(HULLS:%=$(ROBOT)/%)
 
 $(ROBOT)/%/lying.stl: samples/designs/bestboat.stl pipelines/robot-hull
@@ -91,6 +93,10 @@ $(ROBOT)/%/pose.pcd: $(ROBOT)/%/path.pcd $(ROBOT)/%/hull.stl $(B)/bin/fettle-col
 
 $(ROBOT)/%/smooth.pcd: $(ROBOT)/%/path.pcd $(ROBOT)/%/hull.stl $(B)/bin/fettle-collide $(wildcard samples/robots/*.json)
 	$(call step,$(AVOID) smooth -q -o $@.part || test $$? = 1)
+
+# The workpiece as Chen & Wei's figure 6 has it, at one pose.
+$(ROBOT)/%/model.png: $(ROBOT)/%/path.pcd $(ROBOT)/%/hull.stl $(B)/bin/fettle-collide $(wildcard samples/robots/*.json)
+	$(call step,pipelines/robot-hull pick 30000 < $< | $(B)/bin/fettle-collide $(CELL_OF) --workpiece $(@D)/hull.stl $(WAYS) --method grid --cell 5 --picture $@.part --from $(NEAR) -q -o /dev/null || test $$? = 1)
 
 $(ROBOT)/%/hull.mod: $(ROBOT)/%/smooth.pcd $(B)/bin/fettle-arm
 	$(call step,$(B)/bin/fettle-arm $(CELL_OF) --inverse $< $(WAYS) --feed 50 --rapid $@.part -q -o /dev/null)

@@ -100,7 +100,8 @@ int main(int argc, char** argv)
                      "Workpiece as all triangles; as those under the tool, elsewhere cuboids over a grid; or so by the "
                      "formulas that Chen & Wei print");
         const auto& cell = t.number_if_given("--cell", "LENGTH", "Of grids: side of a cell [1 mm]", Range::positive());
-        const auto& picture = t.text("--picture", "", "FILE", "Draw the cell at some poses, PNG");
+        const auto& picture =
+            t.text("--picture", "", "FILE", "Draw the cell at some poses, PNG; the workpiece as --method sees it");
         const auto& at = t.text("--at", "", "N,…", "Numbers of these poses, from 0 [that of the least clearance]");
         const auto& from = t.text("--from", "1,-1,0.8", "X,Y,Z", "Of the picture: towards the eye, in the cell");
         const auto& chart = t.text("--chart", "", "FILE", "Draw the clearances along the path, PNG");
@@ -159,7 +160,7 @@ int main(int argc, char** argv)
         if (avoided) set_changes(cloud, *avoided, options.tolerance);
         if (!picture.empty()) {
             const CellPictureOptions look = {poses_in(at, checked), parse_direction(from, "--from"), options.tolerance,
-                                             file.units};
+                                             file.units, model ? &*model : nullptr};
             t.output_file(picture) << cell_picture(robot, workpiece ? &mesh : nullptr, solved.path.joints, checked,
                                                    look);
         }

@@ -115,7 +115,9 @@ CellJoints Trials::look(Eigen::Index i, const PoseChange& change, const CellJoin
         const CellPair& pair = cell_.pairs()[k];
         const double depth = -stance.pairs[k].clearance - options_.tolerance;
         if (!(depth > 0)) continue;
-        blocked.add(change, depth, lever_[on_tool(robot_, pair.a) ? pair.a : pair.b]);
+        // With the tool another part of a model turns into triangles: what is known of one tilt says nothing of others.
+        if (options_.model == nullptr || pair.b < robot_.bodies.size())
+            blocked.add(change, depth, lever_[on_tool(robot_, pair.a) ? pair.a : pair.b]);
         return CellJoints::Constant(kNaN);
     }
     return clear_of_arm(q) ? q : CellJoints::Constant(kNaN);

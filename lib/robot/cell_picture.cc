@@ -32,11 +32,13 @@ constexpr double kLeastAround = 60; // mm
 constexpr double kMargin = 0.02;    // of the whole cell, about it
 
 constexpr Rgb kSky = {246, 247, 249}, kLightFloor = {236, 236, 232}, kDarkFloor = {224, 224, 220};
-constexpr Rgb kArm = {232, 140, 60}, kTool = {90, 125, 165}, kFixture = {150, 152, 156}, kPart = {198, 176, 130};
+constexpr Rgb kArm = {232, 140, 60}, kTool = {90, 125, 165}, kFixture = {150, 152, 156}, kPart = {198, 176, 130},
+              kCuboids = {226, 218, 196};
 constexpr Rgb kCollides = {200, 30, 40}, kPathColour = {0, 95, 200}, kMark = {20, 20, 20};
 
 Rgb colour_of(const Robot& robot, std::size_t body)
 {
+    if (body == cuboids_body(robot)) return kCuboids;
     if (body > robot.bodies.size()) return body == floor_body(robot) ? kLightFloor : kDarkFloor;
     if (body == robot.bodies.size()) return kPart;
     const int on = robot.bodies[body].link;
@@ -63,17 +65,18 @@ Rgb shaded(const Rgb& colour, const Vector3d& normal)
     return result;
 }
 
-Shot take_shot(const Robot& robot, const Mesh* workpiece, const CellJoints& joints, const Vector3d& from,
-               const std::vector<std::size_t>& colliding)
+Shot take_shot(const Robot& robot, const Mesh* workpiece, const Mesh* cuboids, const CellJoints& joints,
+               const Vector3d& from, const std::vector<std::size_t>& colliding)
 {
-    Shot shot{cell_scene(robot, workpiece, joints, kFloor), {}, view_rotation(from)};
+    Shot shot{cell_scene(robot, workpiece, cuboids, joints, kFloor), {}, view_rotation(from)};
     for (std::size_t i = 0; i < shot.scene.body.size(); ++i) {
         const std::size_t body = shot.scene.body[i];
         const bool red = std::find(colliding.begin(), colliding.end(), body) != colliding.end();
         const Rgb colour = red ? kCollides : colour_of(robot, body);
         // The floor is paper.
-        shot.colours.push_back(
-            body > robot.bodies.size() ? colour : shaded(colour, shot.rotation_view_cell * shot.scene.normal[i]));
+        const bool floor = body == floor_body(robot) || body == floor_body(robot) + 1;
+        const Vector3d normal = shot.rotation_view_cell * shot.scene.normal[i];
+        shot.colours.push_back(floor ? colour : shaded(colour, normal));
     }
     return shot;
 }
@@ -192,10 +195,11 @@ Eigen::Matrix3Xd tips_in_cell(const Robot& robot, const CellJointsPath& joints, 
 void draw_key(Sheet& sheet, const Vector2d& at)
 {
     constexpr double kSample = 14, kStep = 96;
-    const std::array<std::pair<const char*, Rgb>, 6> entries = {{{"arm", kArm},
+    const std::array<std::pair<const char*, Rgb>, 7> entries = {{{"arm", kArm},
                                                                  {"tool", kTool},
                                                                  {"fixtures", kFixture},
                                                                  {"part", kPart},
+                                                                 {"cuboids", kCuboids},
                                                                  {"collides", kCollides},
                                                                  {"path", kPathColour}}};
     Vector2d place = at;
@@ -232,7 +236,13 @@ void draw_pose(Sheet& sheet, const Vector2d& corner, const Robot& robot, const M
     const bool collides = c.clearance < -options.tolerance;
     std::vector<std::size_t> red;
     if (collides) red = {pairs[c.pair].a, pairs[c.pair].b};
-    const Shot shot = take_shot(robot, workpiece, q, options.from, red);
+    Heterogeneous::Parts parts;
+    if (options.model != nullptr)
+        parts =
+            options.model->parts(options.model->zone(robot, cell_part(robot, q[7]).inverse() * tool_in_cell(robot, q)));
+    const Shot shot = options.model == nullptr
+                          ? take_shot(robot, workpiece, nullptr, q, options.from, red)
+                          : take_shot(robot, &parts.triangles, &parts.cuboids, q, options.from, red);
     const Eigen::Matrix3Xd tips = tips_in_cell(robot, joints, static_cast<Eigen::Index>(pose));
     const std::string title = "Pose " + std::to_string(pose);
     sheet.text(title, corner + Vector2d(0, 12), kLabel + 1, Sheet::kInk, Align::left, true);

@@ -20,6 +20,7 @@ struct CellPictureOptions {
     Eigen::Vector3d from = Eigen::Vector3d(1, -1, 0.8).normalized(); ///< unit, cell frame: towards the eye
     double tolerance = 0.01;                                         ///< as CollisionOptions
     Units units;                                                     ///< of the numbers in the picture
+    const Heterogeneous* model = nullptr; ///< the workpiece is drawn as it counts: triangles beneath the tool, cuboids
 };
 
 /// The cell with arm, tool, fixtures and part as it stands at some poses: beside each the surroundings of the tool,

@@ -85,7 +85,8 @@ Mesh solid_mesh(const Solid& solid)
     return mesh;
 }
 
-CellScene cell_scene(const Robot& robot, const Mesh* workpiece, const CellJoints& joints, double floor)
+CellScene cell_scene(const Robot& robot, const Mesh* workpiece, const Mesh* cuboids, const CellJoints& joints,
+                     double floor)
 {
     const auto frames = link_frames(robot, Arm(robot), joints);
     Pieces pieces;
@@ -94,6 +95,7 @@ CellScene cell_scene(const Robot& robot, const Mesh* workpiece, const CellJoints
         pieces.add(solid_mesh(body.solid), frames[static_cast<std::size_t>(body.link + 1)], i);
     }
     if (workpiece != nullptr) pieces.add(*workpiece, frames.back(), robot.bodies.size());
+    if (cuboids != nullptr) pieces.add(*cuboids, frames.back(), cuboids_body(robot));
     if (floor > 0) add_floor(pieces, floor, floor_body(robot));
     return scene_of(pieces);
 }

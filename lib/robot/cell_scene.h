@@ -23,12 +23,14 @@ struct CellScene {
 /// ones to a thousandth of their radius. In the body's frame.
 Mesh solid_mesh(const Solid& solid);
 
-/// @param workpiece  in the part's frame; nullptr: none
+/// @param workpiece, cuboids  in the part's frame; nullptr: none
 /// @param floor  side of the squares of a chequered floor at z = 0 beneath everything, mm; 0: none
-CellScene cell_scene(const Robot& robot, const Mesh* workpiece, const CellJoints& joints, double floor);
+CellScene cell_scene(const Robot& robot, const Mesh* workpiece, const Mesh* cuboids, const CellJoints& joints,
+                     double floor);
 
-/// The number of a floor's lighter squares; the darker ones have the next.
+/// Numbers that follow the workpiece's: a floor's lighter squares, its darker ones, and cuboids.
 inline std::size_t floor_body(const Robot& robot) { return robot.bodies.size() + 1; }
+inline std::size_t cuboids_body(const Robot& robot) { return robot.bodies.size() + 3; }
 
 /// Which triangle is seen at each pixel; -1: none.
 /// @param depth  of it, z of the view, mm

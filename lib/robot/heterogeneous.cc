@@ -17,6 +17,11 @@ using Eigen::Isometry3d, Eigen::Vector3d;
 // degrees a footprint is half a tool's length.
 constexpr double kMostLean = std::numbers::pi / 6;
 
+Mesh some_of(const Mesh& mesh, const std::vector<Eigen::Index>& triangles)
+{
+    return {mesh.vertices, mesh.triangles(Eigen::all, triangles)};
+}
+
 } // namespace
 
 std::vector<Vector3d> tool_directions(const PosePath& poses)
@@ -102,6 +107,20 @@ Workpiece::Nearest Heterogeneous::nearest(const Solid& solid, const Isometry3d& 
     if (other.triangle < 0) return best;
     other.triangle = -1; // it is none of the mesh's
     return other;
+}
+
+Heterogeneous::Parts Heterogeneous::parts(const ToolZone& zone) const
+{
+    const Grid& grid = grids_[zone.grid];
+    std::vector<Eigen::Index> triangles, sides;
+    for (std::size_t t = 0; t < grid.heights.cells_of.size(); ++t) {
+        const auto& cells = grid.heights.cells_of[t];
+        if (std::any_of(cells.begin(), cells.end(), [&](std::uint32_t c) { return zone.cells[c] != 0; }))
+            triangles.push_back(static_cast<Eigen::Index>(t));
+    }
+    for (Eigen::Index side = 0; side < grid.cuboids->triangles.cols(); ++side)
+        if (zone.cells[grid.occupied[static_cast<std::size_t>(side / 12)]] == 0) sides.push_back(side);
+    return {some_of(workpiece_.mesh(), triangles), some_of(*grid.cuboids, sides)};
 }
 
 } // namespace fettle

@@ -47,6 +47,13 @@ class Heterogeneous {
     Workpiece::Nearest nearest(const Solid& solid, const Eigen::Isometry3d& T_part_body, const ToolZone& zone,
                                double beyond) const;
 
+    /// What counts with the tool there, in the part's frame: to be drawn (Chen & Wei, figure 6).
+    struct Parts {
+        Mesh triangles; ///< of the workpiece
+        Mesh cuboids;
+    };
+    Parts parts(const ToolZone& zone) const;
+
     std::size_t grids() const { return grids_.size(); }
     double cell() const { return options_.cell; }
     double accuracy() const; ///< the worst of all grids, mm

@@ -5,6 +5,7 @@
 #include "robot/cell_scene.h"
 #include "robot/clearance.h"
 #include "robot/collision.h"
+#include "robot/heterogeneous.h"
 
 #include <gtest/gtest.h>
 
@@ -56,7 +57,7 @@ TEST(CellScene, WhatIsNearerIsSeen)
         return solid::Box{Isometry3d(Eigen::Translation3d(at)), Vector3d::Constant(half)};
     };
     robot.bodies = {{"behind", link::kCell, box({0, 0, 0}, 50)}, {"before", link::kCell, box({100, 0, 0}, 10)}};
-    const CellScene scene = cell_scene(robot, nullptr, CellJoints::Zero(), 0);
+    const CellScene scene = cell_scene(robot, nullptr, nullptr, CellJoints::Zero(), 0);
     const View view{{-75, -75}, 1, 150, 150};
     Eigen::ArrayXXd depth;
     const Eigen::ArrayXXi seen = seen_triangles(scene, view_rotation(Vector3d::UnitX()), view, depth);
@@ -79,11 +80,42 @@ TEST(CellScene, TheWorkpieceTurnsWithTheTable)
     part.triangles = Eigen::Vector3i(0, 1, 2);
     CellJoints q = CellJoints::Zero();
     q[7] = std::numbers::pi / 2;
-    const CellScene scene = cell_scene(robot, &part, q, 0);
+    const CellScene scene = cell_scene(robot, &part, nullptr, q, 0);
     Eigen::Matrix3d expected;
     expected << 100, 100, 95, 10, 20, 10, 7, 7, 7;
     EXPECT_LT((scene.mesh.vertices - expected).cwiseAbs().maxCoeff(), 1e-12);
     EXPECT_EQ(scene.body, std::vector<std::size_t>{0}); // it has no bodies: the workpiece is number 0
+}
+
+// Two triangles over 3 x 2 cells: what the tool stands over counts by its triangles, all else by cuboids.
+TEST(CellScene, AModelIsDrawnAsItCounts)
+{
+    Mesh roof;
+    roof.vertices.resize(3, 4);
+    roof.vertices << 0, 29, 29, 0, 0, 0, 19, 19, 5, 8, 8, 5;
+    roof.triangles.resize(3, 2);
+    roof.triangles << 0, 0, 1, 2, 2, 3;
+    const Workpiece workpiece(roof);
+    const std::vector<Vector3d> up = {Vector3d::UnitZ()};
+    const Heterogeneous model(workpiece, up, {.cell = 10});
+    ToolZone zone{0, std::vector<char>(6, 0)};
+    Heterogeneous::Parts parts = model.parts(zone);
+    EXPECT_EQ(parts.triangles.triangles.cols(), 0);
+    ASSERT_EQ(parts.cuboids.triangles.cols(), 6 * 12);
+    // They stand on the lowest point, and each is as high as the roof is over it: 5 + 3 (x / 29) at its far side.
+    double expected = 0;
+    constexpr double kTouched = 1e-6; // cells reach a nanometre beyond their sides, over 600 mm²
+    for (const double far : {10.0, 20.0, 29.0}) expected += 2 * 100 * 3 * far / 29;
+    EXPECT_NEAR(volume(parts.cuboids), expected, kTouched);
+    zone.cells[2] = 1; // the corner at x 29, y 0, where only the first triangle lies
+    parts = model.parts(zone);
+    EXPECT_EQ(parts.triangles.triangles, Eigen::Matrix3Xi(roof.triangles.leftCols(1)));
+    EXPECT_EQ(parts.cuboids.triangles.cols(), 5 * 12);
+    EXPECT_NEAR(volume(parts.cuboids), expected - 300, kTouched);
+    std::fill(zone.cells.begin(), zone.cells.end(), char{1});
+    parts = model.parts(zone);
+    EXPECT_EQ(parts.triangles.triangles, roof.triangles);
+    EXPECT_EQ(parts.cuboids.triangles.cols(), 0);
 }
 
 TEST(CellPicture, RefusesPosesThatAreNotThere)
