@@ -4,12 +4,10 @@
 #include "job/boundary.h"
 
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <span>
 
 namespace fettle {
 
@@ -17,22 +15,34 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-constexpr std::size_t kBlock = 1 << 15; // errors that are taken out of a spool at once
+constexpr std::size_t kBlock = 1 << 15; // numbers that are taken out of a spool at once
 
-/// The errors in a spool, again and again.
-Numbers numbers_in(const Spool& spool)
+/// The numbers in a spool.
+NumberBlocks numbers_in(const Spool& spool)
 {
-    return [&spool](const std::function<void(std::span<const double>)>& use) {
-        std::vector<double> block(std::min(kBlock, spool.size() / sizeof(double)));
-        for (std::size_t at = 0; at < spool.size(); at += block.size() * sizeof(double)) {
-            block.resize(std::min(kBlock, (spool.size() - at) / sizeof(double)));
-            spool.read(at, reinterpret_cast<char*>(block.data()), block.size() * sizeof(double));
-            use(block);
-        }
-    };
+    const std::size_t count = spool.size() / sizeof(double);
+    return {(count + kBlock - 1) / kBlock, [&spool, count](std::size_t block, std::vector<double>& into) {
+                into.resize(std::min(kBlock, count - block * kBlock));
+                spool.read(block * kBlock * sizeof(double), reinterpret_cast<char*>(into.data()),
+                           into.size() * sizeof(double));
+            }};
 }
 
-void set_percentiles(Statistics& s, const Numbers& numbers)
+/// Their squared deviations from the mean, summed: those of each block plainly.
+double squared_deviations(const NumberBlocks& numbers, double mean)
+{
+    std::vector<double> of_block(numbers.blocks, 0);
+    tbb::parallel_for(std::size_t{0}, numbers.blocks, [&](std::size_t b) {
+        std::vector<double> block;
+        numbers.read(b, block);
+        for (const double number : block) of_block[b] += (number - mean) * (number - mean);
+    });
+    Sum sum;
+    for (const double part : of_block) sum.add(part);
+    return sum.value();
+}
+
+void set_percentiles(Statistics& s, const NumberBlocks& numbers)
 {
     const std::array shares = {0.01, 0.05, 0.50, 0.95, 0.99};
     const std::array to = {&s.p01, &s.p05, &s.p50, &s.p95, &s.p99};
@@ -110,15 +120,9 @@ Statistics Tally::statistics() const
     s.rms = std::sqrt(sum_squares_.value() / n);
     s.band = s.min < 0 && s.max > 0 ? s.max - s.min : std::max(std::abs(s.min), std::abs(s.max));
     if (tolerance_) s.within = static_cast<double>(within_) / n;
-    const Numbers numbers = numbers_in(errors_);
-    Sum deviation;
-    const auto add_deviations = [&](std::span<const double> some) {
-        double sum = 0;
-        for (const double error : some) sum += (error - s.mean) * (error - s.mean);
-        deviation.add(sum);
-    };
-    tbb::parallel_invoke([&] { numbers(add_deviations); }, [&] { set_percentiles(s, numbers); });
-    s.sd = std::sqrt(deviation.value() / n);
+    const NumberBlocks numbers = numbers_in(errors_);
+    s.sd = std::sqrt(squared_deviations(numbers, s.mean) / n);
+    set_percentiles(s, numbers);
     return s;
 }
 
