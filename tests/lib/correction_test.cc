@@ -3,6 +3,7 @@
 #include "machining/correction.h"
 
 #include "cloud/cloud.h"
+#include "height_surface.h"
 
 #include <gtest/gtest.h>
 
@@ -20,22 +21,7 @@ const Eigen::Vector3d kNormal(-0.6, 0, 0.8);
 /// z = 3/4 x, lifted along its normal.
 Mesh slope(double half, int cells, double lift)
 {
-    Mesh mesh;
-    const int side = cells + 1;
-    mesh.vertices.resize(3, side * side);
-    for (int j = 0; j < side; ++j)
-        for (int i = 0; i < side; ++i) {
-            const double x = half * (2.0 * i / cells - 1), y = half * (2.0 * j / cells - 1);
-            mesh.vertices.col(j * side + i) << x, y, 0.75 * x + lift / kNormal.z();
-        }
-    mesh.triangles.resize(3, 2 * cells * cells);
-    for (int j = 0, t = 0; j < cells; ++j)
-        for (int i = 0; i < cells; ++i) {
-            const int a = j * side + i;
-            mesh.triangles.col(t++) << a, a + 1, a + side + 1;
-            mesh.triangles.col(t++) << a, a + side + 1, a + side;
-        }
-    return mesh;
+    return height_surface(-half, half, cells, [&](double x, double) { return 0.75 * x + lift / kNormal.z(); });
 }
 
 /// Moves of a tip whose cutter touches the slope, lifted, at places given by x and y.

@@ -2,6 +2,7 @@
 // the predicted ones.
 
 #include "core/error.h"
+#include "height_surface.h"
 #include "machining/discretization.h"
 
 #include <gtest/gtest.h>
@@ -19,27 +20,6 @@ using namespace fettle;
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-using Height = std::function<double(double, double)>;
-
-Mesh surface(double half, int cells, const Height& z)
-{
-    Mesh mesh;
-    const int side = cells + 1;
-    mesh.vertices.resize(3, side * side);
-    for (int j = 0; j < side; ++j)
-        for (int i = 0; i < side; ++i) {
-            const double x = half * (2.0 * i / cells - 1), y = half * (2.0 * j / cells - 1);
-            mesh.vertices.col(j * side + i) << x, y, z(x, y);
-        }
-    mesh.triangles.resize(3, 2 * cells * cells);
-    for (int j = 0, t = 0; j < cells; ++j)
-        for (int i = 0; i < cells; ++i) {
-            const int a = j * side + i;
-            mesh.triangles.col(t++) << a, a + 1, a + side + 1;
-            mesh.triangles.col(t++) << a, a + side + 1, a + side;
-        }
-    return mesh;
-}
 
 TEST(Spacing, IsThatOfTheEquations)
 {
@@ -71,22 +51,24 @@ TEST(DesignShape, OfKnownSurfaces)
     const auto cap = [](double R) {
         return [R](double x, double y) { return std::copysign(std::sqrt(R * R - x * x - y * y), R); };
     };
-    const DesignShape bulge = shape_of(surface(12, 60, cap(25))), hollow = shape_of(surface(12, 60, cap(-25)));
+    const DesignShape bulge = shape_of(height_surface(-12, 12, 60, cap(25))),
+                      hollow = shape_of(height_surface(-12, 12, 60, cap(-25)));
     EXPECT_NEAR(bulge.convex_radius, 25, 1.5);
     EXPECT_EQ(bulge.concave_radius, kInfinite);
     EXPECT_NEAR(hollow.concave_radius, 25, 1.5);
     EXPECT_EQ(hollow.convex_radius, kInfinite);
     EXPECT_NEAR(bulge.slope, std::asin(std::hypot(12, 12) / 25), 0.12); // but for the corners' hundredth
-    const DesignShape wave = shape_of(surface(20, 100, [](double x, double) { return 4 * std::cos(x / 5); }));
+    const DesignShape wave =
+        shape_of(height_surface(-20, 20, 100, [](double x, double) { return 4 * std::cos(x / 5); }));
     EXPECT_NEAR(wave.convex_radius, 25.0 / 4, 0.3);
     EXPECT_NEAR(wave.concave_radius, 25.0 / 4, 0.3);
     EXPECT_NEAR(wave.slope, std::atan(0.8), 0.02);
     EXPECT_EQ(kind_of(wave), ShapeKind::mixed);
     const DesignShape roof =
-        shape_of(surface(5, 10, [](double x, double) { return -std::abs(x); })); // an edge, no bulge
+        shape_of(height_surface(-5, 5, 10, [](double x, double) { return -std::abs(x); })); // an edge, no bulge
     EXPECT_EQ(roof.convex_radius, kInfinite);
     EXPECT_NEAR(roof.slope, std::numbers::pi / 4, 1e-12);
-    Mesh down = surface(5, 2, [](double, double) { return 0; });
+    Mesh down = height_surface(-5, 5, 2, [](double, double) { return 0; });
     down.triangles.row(0).swap(down.triangles.row(1));
     EXPECT_THROW(shape_of(down), InputError);
 }

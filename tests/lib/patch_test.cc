@@ -1,6 +1,7 @@
 // Triangle patches against the numbers of a hand, planes, identities and the closest point.
 
 #include "compare/signed_distance.h"
+#include "height_surface.h"
 #include "machining/patch_error.h"
 #include "machining/walls.h"
 #include "mesh/mesh.h"
@@ -8,35 +9,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
 #include <vector>
 
 using namespace fettle;
 
 namespace {
-
-using Height = std::function<double(double, double)>;
-
-/// A surface over a square of some cells a side, two triangles each, facing up.
-Mesh surface(double from, double to, int cells, const Height& z)
-{
-    Mesh mesh;
-    const int side = cells + 1;
-    mesh.vertices.resize(3, side * side);
-    for (int j = 0; j < side; ++j)
-        for (int i = 0; i < side; ++i) {
-            const double x = from + (to - from) * i / cells, y = from + (to - from) * j / cells;
-            mesh.vertices.col(j * side + i) << x, y, z(x, y);
-        }
-    mesh.triangles.resize(3, 2 * cells * cells);
-    for (int j = 0, t = 0; j < cells; ++j)
-        for (int i = 0; i < cells; ++i) {
-            const int a = j * side + i;
-            mesh.triangles.col(t++) << a, a + 1, a + side + 1;
-            mesh.triangles.col(t++) << a, a + side + 1, a + side;
-        }
-    return mesh;
-}
 
 TEST(Patch, ByHand)
 {
@@ -45,7 +22,8 @@ TEST(Patch, ByHand)
     machined.vertices.resize(3, 3);
     machined.vertices << 0, 4, 0, 0, 0, 1, 0.1, 3.2, 0.6;
     machined.triangles = Eigen::Vector3i(0, 1, 2);
-    const PatchErrors errors = patch_errors(machined, surface(-5, 5, 1, [](double x, double) { return 0.75 * x; }));
+    const PatchErrors errors =
+        patch_errors(machined, height_surface(-5, 5, 1, [](double x, double) { return 0.75 * x; }));
     EXPECT_NEAR(errors.z_error[1], 0.2, 1e-14);
     EXPECT_NEAR(errors.d[0], 0.3, 1e-14);
     EXPECT_NEAR(errors.mu[0], 0.24, 1e-14);
@@ -60,8 +38,9 @@ TEST(Patch, OfAPlaneIsItsNormalDistance)
         for (const double off : {0.2, -0.01}) {
             const auto plane = [&](double x, double y) { return slope * x + 0.3 * y; };
             const double lift = off * std::sqrt(1 + slope * slope + 0.09);
-            const PatchErrors errors = patch_errors(
-                surface(0, 10, 23, [&](double x, double y) { return plane(x, y) + lift; }), surface(-1, 11, 7, plane));
+            const PatchErrors errors =
+                patch_errors(height_surface(0, 10, 23, [&](double x, double y) { return plane(x, y) + lift; }),
+                             height_surface(-1, 11, 7, plane));
             EXPECT_LT((errors.mu.array() - off).abs().maxCoeff(), 1e-12);
         }
 }
@@ -70,8 +49,8 @@ TEST(Patch, ErrorsTimesAreasAreTheVolumeBetween)
 {
     const auto design = [](double x, double y) { return std::sin(x) + 0.2 * x * y; };
     const auto machined = [&](double x, double y) { return design(x, y) + 0.1 * std::cos(3 * x + y); };
-    const Mesh fine = surface(0, 3, 30, machined);
-    const PatchErrors errors = patch_errors(fine, surface(0, 3, 30, design));
+    const Mesh fine = height_surface(0, 3, 30, machined);
+    const PatchErrors errors = patch_errors(fine, height_surface(0, 3, 30, design));
     // On equal grids the prisms under the patches hold d times the area seen from above.
     double volume = 0;
     for (Eigen::Index t = 0; t < fine.triangles.cols(); ++t) volume += errors.d[t] * 0.1 * 0.1 / 2;
@@ -82,13 +61,13 @@ TEST(Patch, UndefinedIsNeverZero)
 {
     // A step from 0 to 1 at x = 5.05, with a wall; the machined surface reaches beyond the design, and one of its
     // triangles is turned over.
-    Mesh design = surface(0, 10, 1, [](double, double) { return 0; });
+    Mesh design = height_surface(0, 10, 1, [](double, double) { return 0; });
     design.vertices.resize(3, 8);
     design.vertices << 0, 5.05, 5.05, 0, 5.05, 10, 10, 5.05, /**/ 0, 0, 10, 10, 0, 0, 10, 10, /**/ 0, 0, 0, 0, 1, 1, 1,
         1;
     design.triangles.resize(3, 6);
     design.triangles << 0, 0, 4, 4, 1, 1, /**/ 1, 2, 5, 6, 7, 2, /**/ 2, 3, 6, 7, 4, 7;
-    Mesh machined = surface(0.5, 11.5, 11, [](double x, double) { return x < 5.05 ? 0 : 1; });
+    Mesh machined = height_surface(0.5, 11.5, 11, [](double x, double) { return x < 5.05 ? 0 : 1; });
     machined.triangles.col(0).reverseInPlace();
     const PatchErrors errors = patch_errors(machined, design);
     int counts[4] = {};
@@ -121,8 +100,8 @@ TEST(Patch, AgreesWithTheClosestPointOnTheReSampledDesign)
         const auto machined = [&](double x, double y) {
             return design(x, y) + kTolerance * std::sin(x / 5) * std::cos(y / 7);
         };
-        const Mesh part = surface(0, size, static_cast<int>(size / step) + 1, machined);
-        const PatchErrors errors = patch_errors(part, surface(-5, size + 5, 400, design));
+        const Mesh part = height_surface(0, size, static_cast<int>(size / step) + 1, machined);
+        const PatchErrors errors = patch_errors(part, height_surface(-5, size + 5, 400, design));
         const Eigen::VectorXd closest = signed_distance(errors.centre, errors.design).error;
         for (Eigen::Index t = 0; t < closest.size(); ++t) {
             const Eigen::Vector2d at = errors.centre.col(t).head<2>();
@@ -166,7 +145,8 @@ TEST(Walls, AreMetWhereTheyStand)
     EXPECT_TRUE(met(3, 2, 4, 2, 3, 3));             // its end at a corner
     EXPECT_FALSE(met(1, 1.1, 2, 1.7, 1, 1.7));      // beside, boxes overlap
     EXPECT_FALSE(met(3.1, 2.05, 4, 2.5, 3.1, 2.5)); // beyond its end
-    EXPECT_FALSE(Walls(surface(0, 1, 1, [](double x, double) { return 50 * x; }), 1).meet(mesh.vertices.topRows<2>()));
+    EXPECT_FALSE(
+        Walls(height_surface(0, 1, 1, [](double x, double) { return 50 * x; }), 1).meet(mesh.vertices.topRows<2>()));
 }
 
 } // namespace
