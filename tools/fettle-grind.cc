@@ -1,15 +1,17 @@
 #include "cli/tool.h"
 #include "cloud/pcd.h"
 #include "core/file.h"
-#include "gantry/dynamic.h"
-#include "gantry/quasi_static.h"
+#include "gantry/driver.h"
+#include "gantry/make_virtual.h"
 #include "job/plausible.h"
 #include "plan/plan.h"
 #include "removal/height_field.h"
 #include "sampling/scan.h"
 #include "strategy/run.h"
+#include "strategy/trace.h"
 
 #include <chrono>
+#include <cmath>
 #include <memory>
 #include <ostream>
 
@@ -19,39 +21,25 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kCellsPerWidth = 64; // of the wheel: 0.1 mm for one of 1/4 in
+// What --gantry says: a driver's command line, or a simulated machine, with drives or without.
+const std::string kDriver = "exec:", kVirtual = "virtual", kDynamic = "virtual:dynamic";
 
-Cloud to_cloud(const std::vector<TraceRow>& trace)
+void check_gantry(const std::string& gantry, const std::string& machine)
 {
-    const Eigen::Index n = Eigen::Index(trace.size());
-    Cloud cloud;
-    cloud.xyz.resize(3, n);
-    Eigen::MatrixXd rows(n, 6);
-    for (Eigen::Index i = 0; i < n; ++i) {
-        const TraceRow& row = trace[std::size_t(i)];
-        cloud.xyz.col(i) = row.tool;
-        rows.row(i) << row.time, row.layer, row.pass, int(row.event), row.force, row.feed;
-    }
-    set_field(cloud, "t", rows.col(0), 8); // a float resolves a day's run to 8 ms only
-    const char* names[] = {"layer", "pass", "event", "force", "feed"};
-    for (int k = 0; k < 5; ++k) set_field(cloud, names[k], rows.col(k + 1));
-    return cloud;
+    if (gantry != kVirtual && gantry != kDynamic && (gantry.rfind(kDriver, 0) != 0 || gantry == kDriver))
+        throw InputError("--gantry: '" + gantry + "' is none of virtual, virtual:dynamic, exec:COMMAND");
+    if ((gantry == kDynamic) == machine.empty())
+        throw InputError("--machine", "goes with --gantry virtual:dynamic, and that with it");
 }
 
-void report(json::Value& out, const GrindRun& run, const VirtualGantry& gantry, const Units& units)
+void report_run(json::Value& out, const GrindRun& run, double machine_time, const Units& units)
 {
-    const double mm = units.mm();
-    const GrindTotals& totals = gantry.totals();
     json::Value unit;
     unit.set("length", to_string(units.length)).set("force", to_string(units.force));
     out.set("kind", "grinding")
         .set("units", unit)
         .set("finished", run.finished)
-        .set("removed_volume", totals.removed_volume / (mm * mm * mm))
-        .set("machine_time", gantry.status().time)
-        .set("grinding_time", totals.grinding_time)
-        .set("travel_time", totals.travel_time)
-        .set("service_time", totals.service_time)
+        .set("machine_time", machine_time)
         .set("layers", run.counts.highest_layer)
         .set("coverings", run.counts.coverings)
         .set("strokes", run.counts.strokes)
@@ -62,21 +50,14 @@ void report(json::Value& out, const GrindRun& run, const VirtualGantry& gantry, 
         .set("peak_force", run.peak_force / units.newton())
         .set("touch_offs", run.touch_offs)
         .set("wheel_changes", run.wheel_changes)
-        .set("wheel_radius", run.wheel_radius / mm);
+        .set("wheel_radius", run.wheel_radius / units.mm());
 }
 
-std::unique_ptr<VirtualGantry> make_gantry(const std::string& machine_file, const HeightField& stock, const Job& job,
-                                           double removal_factor, std::uint64_t seed)
+void report_totals(json::Value& out, const GrindTotals& totals)
 {
-    if (machine_file.empty()) {
-        QuasiStaticOptions options;
-        options.removal_factor = removal_factor;
-        return std::make_unique<QuasiStaticGantry>(stock, job, options);
-    }
-    DynamicOptions options;
-    options.removal_factor = removal_factor;
-    options.seed = seed;
-    return std::make_unique<DynamicGantry>(stock, job, read_machine(machine_file), options);
+    out.set("grinding_time", totals.grinding_time)
+        .set("travel_time", totals.travel_time)
+        .set("service_time", totals.service_time);
 }
 
 } // namespace
@@ -87,11 +68,12 @@ int main(int argc, char** argv)
         const std::string& plan_file = t.input("PLAN", "What to do, JSON (fettle-plan)");
         const std::string& stock_file = t.required_text("--stock", "PART", "The part as it is: STL, PLY, OBJ or PCD");
         const auto& stock_units = t.length_unit("--stock-units", "Unit of PART, if it is not the job's");
-        const std::string& kind =
-            t.choice("--gantry", "virtual", {"virtual", "virtual:dynamic"},
-                     "The machine: a simulated gantry in equilibrium at every moment, or one with "
-                     "drives, inertia and sensors");
+        const std::string& kind = t.text("--gantry", kVirtual, "virtual|virtual:dynamic|exec:COMMAND",
+                                         "The machine: a simulated gantry in equilibrium at every moment, one with "
+                                         "drives, inertia and sensors, or a driver (docs/driver.md)");
         const std::string& machine = t.text("--machine", "", "FILE", "The machine of virtual:dynamic, JSON");
+        const double& patience = t.number("--patience", 10, "SECONDS",
+                                          "A driver may answer so much later than the move takes", Range::positive());
         const std::string& layer_1 =
             t.choice("--layer-1", "constant", {"constant", "feed"},
                      "Layer 1 at the job's feed, covering after covering; or with controlled feed, pass after pass");
@@ -109,8 +91,7 @@ int main(int argc, char** argv)
         t.reference("Wang 2007, 5.3.2 and figure 5-7: the layer-based path planning strategy; 6.1.2, eq. 6-1 to 6-8: "
                     "the machine");
         t.parse();
-        if ((kind == "virtual:dynamic") == machine.empty())
-            throw InputError("--machine", "goes with --gantry virtual:dynamic, and that with it");
+        check_gantry(kind, machine);
 
         const auto begun = Clock::now();
         const Plan plan = read_plan(plan_file);
@@ -119,21 +100,31 @@ int main(int argc, char** argv)
         if (const std::string doubt = implausible_box(scan.bounds(), plan.job); !doubt.empty())
             t.warn(display_name(stock_file) + ": " + doubt);
         const HeightField stock =
-            height_field(scan, plan.job, cell ? *cell * units.mm() : plan.job.wheel.width / kCellsPerWidth,
-                         display_name(stock_file));
+            height_field(scan, plan.job, cell_of(plan.job, cell ? *cell * units.mm() : 0), display_name(stock_file));
         std::ostream* trace_out = trace.empty() ? nullptr : &t.output_file(trace); // a wrong name shows before the work
-        const std::unique_ptr<VirtualGantry> gantry = make_gantry(machine, stock, plan.job, removal, t.seed());
         RunOptions options;
         options.layer_1 = layer_1 == "feed" ? Layer1::feed : Layer1::constant;
-        const GrindRun run = fettle::run(plan, *gantry, options, t.progress("grinding"));
+
+        std::unique_ptr<VirtualGantry> simulated;
+        std::unique_ptr<DriverGantry> driver;
+        if (kind.rfind(kDriver, 0) == 0)
+            driver = std::make_unique<DriverGantry>(kind.substr(kDriver.size()), plan.job, patience);
+        else
+            simulated = make_virtual(stock, plan.job, {machine, removal, t.seed()});
+        Gantry& gantry = driver ? static_cast<Gantry&>(*driver) : *simulated;
+        const GrindRun run = fettle::run(plan, gantry, options, t.progress("grinding"));
+        const HeightField ground = simulated ? simulated->stock() : ground_by(run.trace, plan.job, stock);
 
         const PcdEncoding encoding = ascii ? PcdEncoding::ascii : PcdEncoding::binary;
-        write_pcd(t.output(), to_cloud(stock, gantry->stock()), units, encoding);
+        write_pcd(t.output(), to_cloud(stock, ground), units, encoding);
         if (trace_out != nullptr) write_pcd(*trace_out, to_cloud(run.trace), units, encoding);
-        report(t.report(), run, *gantry, units);
+        const double time = gantry.status().time;
+        report_run(t.report(), run, time, units);
+        t.report().set("removed_volume", volume_between(stock, ground) / std::pow(units.mm(), 3));
+        if (simulated) report_totals(t.report(), simulated->totals());
         const double computing = std::chrono::duration<double>(Clock::now() - begun).count();
-        t.note("machine time " + std::to_string(gantry->status().time) + " s, computing time " +
-               std::to_string(computing) + " s, ratio " + std::to_string(gantry->status().time / computing));
+        t.note("machine time " + std::to_string(time) + " s, computing time " + std::to_string(computing) +
+               " s, ratio " + std::to_string(time / computing));
         if (!run.finished) t.warn(display_name(plan_file) + ": " + run.failure);
         return run.finished ? Verdict::yes : Verdict::no;
     });

@@ -127,6 +127,15 @@ GantryStatus DynamicGantry::grind(const Eigen::Vector3d& tool_point, double feed
     return status_;
 }
 
+protocol::Limits DynamicGantry::limits() const
+{
+    const auto& [x, y, z] = machine_.axes;
+    return {{x.least, y.least, z.least},
+            {x.most, y.most, z.most},
+            Eigen::Vector3d(x.speed, y.speed, z.speed).norm(),
+            spring_.force(machine_.head.travel)};
+}
+
 void DynamicGantry::check_range(const Eigen::Vector3d& tool_point) const
 {
     for (int k = 0; k < 3; ++k) {

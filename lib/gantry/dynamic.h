@@ -36,6 +36,7 @@ class DynamicGantry final : public VirtualGantry {
     GantryStatus travel(const Eigen::Vector3d& tool_point) override;
     GantryStatus grind(const Eigen::Vector3d& tool_point, double feed) override;
     GantryStatus lift(double commanded_z) override;
+    protocol::Limits limits() const override;
 
     const ServoAxis& axis(int k) const { return axes_[static_cast<std::size_t>(k)]; }
     const Eigen::Vector2d& side_load() const { return push_; } ///< of the stock on X and Y, N

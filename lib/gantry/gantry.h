@@ -1,15 +1,15 @@
 #pragma once
 
-#include <Eigen/Core>
+#include "core/error.h"
 
-#include <stdexcept>
+#include <Eigen/Core>
 
 namespace fettle {
 
 /// The machine has stopped for good: a drive cannot follow, the spindle stalls, the driver has died. One line.
-class GantryFault : public std::runtime_error {
+class GantryFault : public InputError {
   public:
-    using std::runtime_error::runtime_error;
+    using InputError::InputError;
 };
 
 /// What the machine knows: positions in the machine frame M, mm, N, s.

@@ -90,6 +90,12 @@ GantryStatus QuasiStaticGantry::lift(double commanded_z)
     return status_;
 }
 
+protocol::Limits QuasiStaticGantry::limits() const
+{
+    constexpr double kFar = 1e6;
+    return {Eigen::Vector3d::Constant(-kFar), Eigen::Vector3d::Constant(kFar), kFar, kFar};
+}
+
 void QuasiStaticGantry::go_to_safe_height()
 {
     if (safe_height_ > status_.commanded.z()) raise_to(safe_height_);

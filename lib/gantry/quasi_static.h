@@ -25,6 +25,8 @@ class QuasiStaticGantry final : public VirtualGantry {
     /// @throws InputError for a feed that is not positive, or if the wheel is worn away
     GantryStatus grind(const Eigen::Vector3d& tool_point, double feed) override;
     GantryStatus lift(double commanded_z) override;
+    /// It has none; what is told stands for far, fast and strong.
+    protocol::Limits limits() const override;
 
   private:
     std::vector<double> sub_steps(const Eigen::Vector3d& start, const Eigen::Vector3d& end) const;

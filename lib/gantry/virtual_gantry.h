@@ -1,6 +1,7 @@
 #pragma once
 
 #include "gantry/gantry.h"
+#include "gantry/protocol.h"
 #include "job/job.h"
 #include "removal/height_field.h"
 #include "removal/preston.h"
@@ -48,6 +49,7 @@ class VirtualGantry : public Gantry {
     void change_wheel() override;
     GantryStatus status() const override { return status_; }
 
+    virtual protocol::Limits limits() const = 0;
     const HeightField& stock() const { return stock_; }
     const GrindTotals& totals() const { return totals_; }
     double true_radius() const { return radius_; } ///< what the drives do not know, mm

@@ -1,0 +1,111 @@
+#include "gantry/serve.h"
+
+#include "core/error.h"
+#include "core/text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace fettle {
+namespace {
+
+/// The same angle but for the rounding of its text.
+constexpr double kSameAngle = 1e-9;
+
+class Server {
+  public:
+    Server(Gantry& gantry, const protocol::Limits& limits, const Job& job) : gantry_(gantry), limits_(limits), job_(job)
+    {
+    }
+
+    /// @return  the answer, without number
+    std::string answer(std::string_view line)
+    {
+        try {
+            return "ok " + obey(protocol::next_word(line), line);
+        } catch (const std::runtime_error& error) { // a fault of the machine, or a command that is none
+            return std::string("error ") + error.what();
+        }
+    }
+    bool over() const { return over_; }
+    void let_go() { gantry_.lift(std::max(job_.safe_height, gantry_.status().commanded.z())); }
+
+  private:
+    std::string obey(std::string_view command, std::string_view rest)
+    {
+        const auto number = [&] { return protocol::number_in(protocol::next_word(rest)); };
+        const auto point = [&] {
+            const double x = number(), y = number(), z = number();
+            return Eigen::Vector3d(x, y, z);
+        };
+        if (command == "connect" && rest == protocol::kVersion)
+            return std::string(protocol::kVersion) + " " + protocol::text_of(limits_);
+        if (command == "limit") return limit(number());
+        if (command == "home") return home(number());
+        if (command == "status") return protocol::text_of(gantry_.status());
+        if (command == "travel") return protocol::text_of(gantry_.travel(point()));
+        if (command == "lift") return protocol::text_of(gantry_.lift(number()));
+        if (command == "move") {
+            const Eigen::Vector3d to = point();
+            return protocol::text_of(gantry_.grind(to, number()));
+        }
+        if (command == "touch_off") {
+            const double radius = gantry_.touch_off();
+            return to_text(radius) + " " + protocol::text_of(gantry_.status());
+        }
+        if (command == "change_wheel") {
+            gantry_.change_wheel();
+            return protocol::text_of(gantry_.status());
+        }
+        if (command == "stop" || command == "quit") {
+            over_ = true;
+            let_go();
+            return protocol::text_of(gantry_.status());
+        }
+        throw GantryFault("no such command: " + std::string(command));
+    }
+
+    std::string limit(double force) const
+    {
+        if (force != job_.force.max) throw GantryFault("F_max is " + to_text(job_.force.max) + " N here");
+        return to_text(force);
+    }
+
+    std::string home(double theta) const
+    {
+        if (std::abs(theta - job_.theta) > kSameAngle)
+            throw GantryFault("the head stands at " + to_text(job_.theta) + " rad");
+        return protocol::text_of(gantry_.status());
+    }
+
+    Gantry& gantry_;
+    const protocol::Limits& limits_;
+    const Job& job_;
+    bool over_ = false;
+};
+
+} // namespace
+
+void serve(Gantry& gantry, const protocol::Limits& limits, const Job& job, const Descriptor& in, const Descriptor& out)
+{
+    Server server(gantry, limits, job);
+    std::string pending;
+    char some[4096];
+    while (!server.over()) {
+        const std::size_t end = pending.find('\n');
+        if (end == std::string::npos) {
+            const ssize_t n = read_some(in, some, sizeof some);
+            if (n <= 0) return server.let_go(); // nobody speaks any more
+            pending.append(some, static_cast<std::size_t>(n));
+            continue;
+        }
+        const std::string line = pending.substr(0, end);
+        pending.erase(0, end + 1);
+        std::string_view rest = line;
+        const std::string number(protocol::next_word(rest));
+        if (!write_all(out, number + " " + server.answer(rest) + "\n")) throw InputError("stdout", "cannot be written");
+    }
+}
+
+} // namespace fettle

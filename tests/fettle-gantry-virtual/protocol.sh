@@ -1,0 +1,32 @@
+# A conversation by hand, line by line: what the machine can do, a way down on a flat part, a step, an unknown command, and the
+# end. References: the protocol; the part's height, 5 mm.
+# shellcheck source=tests/fettle-grind/stock.bash
+. "$HERE/../fettle-grind/stock.bash"
+make_job 0
+make_stock 0.01
+answers=$(fettle-gantry-virtual plan.json --stock stock.stl --cell 0.2 --machine "$SAMPLES/machines/full_scale.json" --ground ground.pcd << END
+1 connect fettle-gantry 1
+2 limit 15
+3 home 0
+4 travel -5 -5 4.9
+5 move -5 -4 4.9 20
+6 dance
+7 lift 8
+8 touch_off
+9 quit
+END
+)
+awk 'NR == 1 && !($1 == 1 && $2 == "ok" && $3 " " $4 == "fettle-gantry 1" && NF == 12 && $5 < $6) { exit 1 }
+    NR == 2 && $0 != "2 ok 15" { exit 1 }
+    (NR == 4 || NR == 5) && !(NF == 9 && $6 > 4.89 && $6 < 4.91 && $8 > 0.1 && $8 <= $9) { exit 1 }
+    NR == 5 && !(($5 + 4) ^ 2 < 0.01) { exit 1 }
+    NR == 6 && $0 != "6 error no such command: dance" { exit 1 }
+    NR == 7 && !($6 > 7.99 && $6 < 8.01 && $8 < 0.5 && $9 > 0.7) { exit 1 }
+    NR == 8 && !(NF == 10 && $3 > 9.99 && $3 < 10.01) { exit 1 }
+    $1 != NR { exit 1 }
+    END { exit NR != 9 }' <<< "$answers"
+grep -q '^FIELDS x y z' <(head -c 500 ground.pcd)
+
+# A client that is gone: the driver ends by itself.
+fettle-gantry-virtual plan.json --stock stock.stl --cell 0.2 <<< '1 status' > out
+[ "$(wc -l < out)" = 1 ]
