@@ -13,8 +13,9 @@
 namespace fettle {
 namespace {
 
-// So many surfels tell how fast a patch's parameters run.
-constexpr Eigen::Index kProbes = 2000;
+// So many surfels tell how fast a patch's parameters run, in so many equal pieces of either.
+constexpr Eigen::Index kProbes = 10000;
+constexpr int kPieces = 64;
 // A width that is a whole number of steps but for what fits at the border are off, in steps.
 constexpr double kWhole = 1e-3;
 
@@ -42,8 +43,17 @@ class PatchSurface {
         neighbours_.emplace(flat);
     }
 
-    Eigen::Vector2d least() const { return surfels_.uv.rowwise().minCoeff(); }
-    Eigen::Vector2d most() const { return surfels_.uv.rowwise().maxCoeff(); }
+    /// How wide the patch is along u (axis 0) or v (1), mm: no curve of that parameter is longer.
+    double width(int axis) const { return lengths_[axis][kPieces]; }
+    /// The parameter so far from its least value, mm.
+    double parameter(int axis, double length) const
+    {
+        const Eigen::VectorXd& lengths = lengths_[axis];
+        int piece = 0;
+        while (piece + 1 < kPieces && lengths[piece + 1] < length) ++piece;
+        const double share = (length - lengths[piece]) / (lengths[piece + 1] - lengths[piece]);
+        return least_[axis] + (most_[axis] - least_[axis]) * (piece + std::clamp(share, 0.0, 1.0)) / kPieces;
+    }
     /// The largest lengths of P_u and P_v.
     const Eigen::Vector2d& speed() const { return speed_; }
 
@@ -66,21 +76,44 @@ class PatchSurface {
 
     void measure()
     {
+        least_ = surfels_.uv.rowwise().minCoeff();
+        most_ = surfels_.uv.rowwise().maxCoeff();
         const Neighbours neighbours(surfels_.position);
         const Eigen::Index step = std::max<Eigen::Index>(1, surfels_.size() / kProbes);
+        Eigen::Matrix2Xd speeds = Eigen::Matrix2Xd::Zero(2, kPieces);
         for (Eigen::Index i = 0; i < surfels_.size(); i += step) {
             const auto fit = local_fit(surfels_, patch_, surfels_.uv.col(i),
                                        neighbours.nearest(surfels_.position.col(i), kFitCandidates));
-            if (fit) speed_ = speed_.cwiseMax(Eigen::Vector2d(fit->P_u.norm(), fit->P_v.norm()));
+            if (!fit) continue;
+            const Eigen::Vector2d speed(fit->P_u.norm(), fit->P_v.norm());
+            const Eigen::Vector2d share = (surfels_.uv.col(i) - least_).cwiseQuotient(most_ - least_);
+            for (int axis = 0; axis < 2; ++axis) {
+                double& here = speeds(axis, std::clamp(static_cast<int>(share[axis] * kPieces), 0, kPieces - 1));
+                here = std::max(here, speed[axis]);
+            }
         }
+        speed_ = speeds.rowwise().maxCoeff();
         if (!(speed_.minCoeff() > 0))
             throw InputError("too few surfels on patch " + std::to_string(patch_) + " for a path");
+        for (int axis = 0; axis < 2; ++axis) {
+            lengths_[axis] = Eigen::VectorXd::Zero(kPieces + 1);
+            for (int k = 0; k < kPieces; ++k) {
+                // Between probes the greatest speed may be a neighbouring piece's; without any it is taken for the
+                // most.
+                const int from = std::max(k - 1, 0), to = std::min(k + 1, kPieces - 1);
+                const double found = speeds.row(axis).segment(from, to - from + 1).maxCoeff();
+                const double speed = found > 0 ? found : speed_[axis];
+                lengths_[axis][k + 1] = lengths_[axis][k] + speed * (most_[axis] - least_[axis]) / kPieces;
+            }
+        }
     }
 
     int patch_;
     Surfels surfels_;
     double reach_ = 0;
+    Eigen::Vector2d least_, most_; ///< u, v
     Eigen::Vector2d speed_ = Eigen::Vector2d::Zero();
+    Eigen::VectorXd lengths_[2]; ///< of u and v, up to the ends of their pieces
     std::optional<Neighbours> neighbours_;
 };
 
@@ -132,49 +165,56 @@ class PathBuilder {
     bool open_ = false;
 };
 
-/// (along, across) as (u, v).
-Eigen::Vector2d uv_of(const Eigen::Vector2d& place, bool along_v)
-{
-    return along_v ? Eigen::Vector2d(place.y(), place.x()) : place;
-}
+/// Where on a patch, from lengths (mm) along the rows and across them.
+struct Rows {
+    const PatchSurface& surface;
+    int along, across; ///< axes
 
-void add_rows(PathBuilder& builder, const Eigen::Vector2d& least, const Eigen::Vector2d& most, double step,
-              const ContactPathOptions& options)
+    Eigen::Vector2d width() const { return {surface.width(along), surface.width(across)}; }
+    Eigen::Vector2d uv(const Eigen::Vector2d& place) const
+    {
+        Eigen::Vector2d uv;
+        uv[along] = surface.parameter(along, place.x());
+        uv[across] = surface.parameter(across, place.y());
+        return uv;
+    }
+};
+
+void add_rows(PathBuilder& builder, const Rows& rows, const ContactPathOptions& options)
 {
-    const int count = std::max(1, static_cast<int>(std::ceil((most.y() - least.y()) / step - kWhole)));
+    const Eigen::Vector2d width = rows.width();
+    const int count = std::max(1, static_cast<int>(std::ceil(width.y() / options.step_over - kWhole)));
     for (int k = 0; k < count; ++k) {
         // In the middles of equal strips: each row works half a step to either side.
-        const double across = least.y() + (most.y() - least.y()) * (k + 0.5) / count;
-        const Eigen::Vector2d a(least.x(), across), b(most.x(), across);
+        const double across = width.y() * (k + 0.5) / count;
+        const Eigen::Vector2d a = rows.uv({0, across}), b = rows.uv({width.x(), across});
         const bool back = k % 2 == 1 && !options.one_way;
-        builder.leg(uv_of(back ? b : a, options.along_v), uv_of(back ? a : b, options.along_v));
+        builder.leg(back ? b : a, back ? a : b);
         builder.end_pass();
     }
 }
 
-void add_spiral(PathBuilder& builder, Eigen::Vector2d least, Eigen::Vector2d most, const Eigen::Vector2d& step,
-                const ContactPathOptions& options)
+void add_spiral(PathBuilder& builder, const Rows& rows, double step)
 {
     // Turns in the middles of equal frames, as rows.
-    least += step / 2;
-    most -= step / 2;
+    Eigen::Vector2d least = Eigen::Vector2d::Constant(step / 2), most = rows.width() - least;
     Eigen::Vector2d at = least;
     const auto go = [&](const Eigen::Vector2d& to) {
-        builder.leg(uv_of(at, options.along_v), uv_of(to, options.along_v));
+        builder.leg(rows.uv(at), rows.uv(to));
         at = to;
     };
     while (most.x() >= least.x() && most.y() >= least.y()) {
         go({most.x(), at.y()});
-        least.y() += step.y();
+        least.y() += step;
         if (most.y() < least.y()) break;
         go({at.x(), most.y()});
-        most.x() -= step.x();
+        most.x() -= step;
         if (most.x() < least.x()) break;
         go({least.x(), at.y()});
-        most.y() -= step.y();
+        most.y() -= step;
         if (most.y() < least.y()) break;
         go({at.x(), least.y()});
-        least.x() += step.x();
+        least.x() += step;
     }
 }
 
@@ -184,13 +224,11 @@ ContactPath contact_path(const Surfels& surfels, const ContactPathOptions& optio
 {
     const PatchSurface surface(surfels, options);
     PathBuilder builder(surface, options);
-    const Eigen::Vector2d least = uv_of(surface.least(), options.along_v);
-    const Eigen::Vector2d most = uv_of(surface.most(), options.along_v);
-    const Eigen::Vector2d step = options.step_over * uv_of(surface.speed().cwiseInverse(), options.along_v);
+    const Rows rows = {surface, options.along_v ? 1 : 0, options.along_v ? 0 : 1};
     if (options.pattern == PathPattern::rows)
-        add_rows(builder, least, most, step.y(), options);
+        add_rows(builder, rows, options);
     else
-        add_spiral(builder, least, most, step, options);
+        add_spiral(builder, rows, options.step_over);
     return std::move(builder.path);
 }
 

@@ -10,7 +10,7 @@ grep -q '^blade ' table
 for file in work.pcd errors.pcd surface.pcd rows.pcd errors.png; do test -s out/blade/$file; done
 jq -e '.gouge == 0 and .within == 0 and .undercut == .count' out/blade/errors.json > ok
 # rows no more than 2 mm apart over 60 mm, each around the blade, 70 mm
-jq -e '.passes >= 30 and .length > 30 * 65 and .longest_step <= 0.5' out/blade/rows.json > ok
+jq -e '.passes >= 30 and .passes <= 33 and .length > 30 * 65 and .longest_step <= 0.5' out/blade/rows.json > ok
 jq '.min = 0.1' out/blade/work.json > worse.json
 mv worse.json out/blade/work.json
 status=0
