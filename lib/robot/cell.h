@@ -57,7 +57,7 @@ struct Stance {
 /// A robot's bodies and the workpiece, to be looked at with any joints. Thread-safe.
 class Cell {
   public:
-    /// All three must outlive it. @param workpiece  nullptr: none
+    /// Robot, workpiece and model must outlive it. @param workpiece  nullptr: none
     Cell(const Robot& robot, const Workpiece* workpiece, const CollisionOptions& options);
 
     const CollisionOptions& options() const { return options_; }
@@ -94,7 +94,7 @@ class Cell {
 
     const Robot& robot_;
     const Workpiece* workpiece_;
-    const CollisionOptions& options_;
+    CollisionOptions options_;
     const Arm arm_;
     double reach_; ///< of the links, joint by joint, and the tool
     std::vector<CellPair> pairs_;
