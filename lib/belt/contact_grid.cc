@@ -29,8 +29,6 @@ class Buckets {
         least_ = points.topRows<2>().rowwise().minCoeff();
         const Vector2d size = points.topRows<2>().rowwise().maxCoeff() - least_;
         const auto n = static_cast<double>(points.cols());
-        // A lattice of m x m points is m - 1 spacings wide; few points, or points on a line, have no better one.
-        spacing_ = std::max(std::sqrt(size.prod()) / std::max(std::sqrt(n) - 1, 1.0), size.maxCoeff() / n);
         side_ = std::max(std::sqrt(2 * size.prod() / n), std::max(2 * size.maxCoeff() / n, 1e-9));
         counts_ = (size / side_).array().floor().cast<Index>() + 1;
         begin_.assign(static_cast<std::size_t>(counts_.prod()) + 1, 0);
@@ -40,9 +38,6 @@ class Buckets {
         std::vector<Index> next(begin_.begin(), begin_.end() - 1);
         for (Index i = 0; i < points.cols(); ++i) order_[static_cast<std::size_t>(next[bucket_of(i)]++)] = i;
     }
-
-    /// The mean distance between neighbours that are spread evenly.
-    double spacing() const { return spacing_; }
 
     /// Up to kNearest points within `reach`, nearest first.
     void nearest(const Vector2d& place, double reach, std::vector<Near>& result) const
@@ -90,7 +85,7 @@ class Buckets {
 
     const Eigen::Matrix3Xd& points_;
     Vector2d least_;
-    double spacing_, side_;
+    double side_;
     Eigen::Array<Index, 2, 1> counts_;
     std::vector<Index> begin_, order_;
 };
@@ -190,7 +185,13 @@ double SquareMeans::about(const Vector2d& place) const
     return std::max(sum, 0.0) / (4 * half.prod()); // rounding may leave less than nothing
 }
 
-double spacing_of(const Eigen::Matrix3Xd& points) { return Buckets(points).spacing(); }
+double spacing_of(const Eigen::Matrix3Xd& points)
+{
+    const Vector2d size = points.topRows<2>().rowwise().maxCoeff() - points.topRows<2>().rowwise().minCoeff();
+    const auto n = static_cast<double>(points.cols());
+    // A lattice of m x m points is m - 1 spacings wide; few points, or points on a line, have no better one.
+    return std::max(std::sqrt(size.prod()) / std::max(std::sqrt(n) - 1, 1.0), size.maxCoeff() / n);
+}
 
 Eigen::MatrixXd heights_on(const ContactCells& cells, const Eigen::Matrix3Xd& points, Gridding gridding)
 {
@@ -198,13 +199,14 @@ Eigen::MatrixXd heights_on(const ContactCells& cells, const Eigen::Matrix3Xd& po
         Eigen::MatrixXd::Constant(cells.rows, cells.columns, std::numeric_limits<double>::quiet_NaN());
     if (points.cols() == 0) return heights;
     const Buckets buckets(points);
+    const double spacing = spacing_of(points);
     constexpr double kNear = 2; // spacings
     tbb::parallel_for(Index{0}, cells.columns, [&](Index column) {
         std::vector<Near> near;
         for (Index row = 0; row < cells.rows; ++row) {
             const Vector2d place = cells.middle(row, column);
-            buckets.nearest(place, 3 * buckets.spacing(), near);
-            if (near.empty() || std::sqrt(near.front().first) > kNear * buckets.spacing()) continue;
+            buckets.nearest(place, 3 * spacing, near);
+            if (near.empty() || std::sqrt(near.front().first) > kNear * spacing) continue;
             heights(row, column) = gridding == Gridding::shepard ? shepard(near, points) : kriging(near, points);
         }
     });
