@@ -59,12 +59,15 @@ BeltRun grind(Surfels& surfels, const ContactWheel& wheel, const std::vector<Bel
             return removed_depth(wheel.law, p, wheel.belt_speed, point.feed, duration, worn + run.removed_volume);
         });
         // A surfel stands for the square about it.
-        const SquareMeans lost_on(cells, depth, spacing_of(press.places()));
+        const double side = spacing_of(press.places());
+        const SquareMeans lost_on(cells, depth, side);
+        const Eigen::Vector2d touched = press.reach().array() + side / 2;
         const Eigen::Vector3d up = point.T_part_tool.linear().col(2);
         for (std::size_t i = 0; i < press.under().size(); ++i) {
+            const Eigen::Vector2d place = press.places().col(static_cast<Index>(i)).head<2>();
+            if ((place.cwiseAbs().array() > touched.array()).any()) continue;
             const Index surfel = press.under()[i];
-            const double lost =
-                lost_on.about(press.places().col(static_cast<Index>(i)).head<2>()) * surfels.normal.col(surfel).dot(up);
+            const double lost = lost_on.about(place) * surfels.normal.col(surfel).dot(up);
             surfels.displacement[surfel] -= lost;
             run.removed[surfel] += lost;
         }

@@ -133,16 +133,17 @@ double kriging(const std::vector<Near>& near, const Eigen::Matrix3Xd& points)
 Eigen::Matrix3Xd facing(const Surfels& surfels, std::vector<Index>& which, const Eigen::Isometry3d& T_part_tool,
                         const ContactCells& cells, double deepest)
 {
-    const Eigen::Isometry3d T_tool_part = T_part_tool.inverse();
-    const Eigen::Vector3d up = T_part_tool.linear().col(2);
-    constexpr double kBeside = 1.2; // of the cells: neighbours for those at the border
+    const Eigen::Matrix3d to_tool = T_part_tool.linear().transpose();
+    const Eigen::Vector3d middle = T_part_tool.translation(), up = to_tool.row(2);
     const Vector2d half = kBeside * cells.half();
     Eigen::Matrix3Xd points(3, static_cast<Index>(which.size()));
     std::size_t count = 0;
     for (const Index i : which) {
+        Eigen::Vector3d at = to_tool * (surfels.position.col(i) - middle);
+        const double displacement = surfels.displacement[i], aside = std::abs(displacement);
+        if (std::abs(at.x()) > half.x() + aside || std::abs(at.y()) > half.y() + aside) continue;
         if (!(surfels.normal.col(i).dot(up) > 0)) continue;
-        const Eigen::Vector3d at =
-            T_tool_part * (surfels.position.col(i) + surfels.displacement[i] * surfels.normal.col(i));
+        at += displacement * (to_tool * surfels.normal.col(i));
         if (!(std::abs(at.x()) <= half.x() && std::abs(at.y()) <= half.y() && at.z() >= -deepest)) continue;
         points.col(static_cast<Index>(count)) = at;
         which[count++] = i;

@@ -18,7 +18,6 @@ struct ContactCells {
     {
         return cell.cwiseProduct(Eigen::Vector2d(static_cast<double>(rows), static_cast<double>(columns))) / 2;
     }
-    double half_diagonal() const { return half().norm(); }
     Eigen::Vector2d middle(Eigen::Index row, Eigen::Index column) const
     {
         return {(static_cast<double>(2 * row + 1 - rows) / 2) * cell.x(),
@@ -30,6 +29,9 @@ struct ContactCells {
 /// (Shepard 1968), or ordinary kriging with the variogram γ(d) = d, which also sees how they lie about the place
 /// (Cressie 1993, 3.2).
 enum class Gridding { shepard, kriging };
+
+/// How far the surfels looked at go, over the cells: neighbours for the cells at the border.
+constexpr double kBeside = 1.2;
 
 /// Where surfels are in the tool frame: x, y, and their height over the plane through the contact point, mm. Only those
 /// that face the tool, are over the cells or near, and not deeper than `deepest` below the plane.

@@ -27,7 +27,8 @@ Vector2d first_half(const ContactWheel& wheel)
 } // namespace
 
 WheelPress::WheelPress(const Surfels& surfels, const ContactWheel& wheel, const PressOptions& options)
-    : surfels_(surfels), wheel_(wheel), options_(options), index_(surfels, first_half(wheel).minCoeff() / 2)
+    : surfels_(surfels), wheel_(wheel), options_(options), index_(surfels, first_half(wheel).minCoeff() / 4),
+      farthest_(surfels.displacement.array().isNaN().select(0, surfels.displacement.array().abs()).maxCoeff())
 {
 }
 
@@ -48,8 +49,9 @@ void WheelPress::press_on(const Eigen::Isometry3d& T_part_tool, const Pressing& 
                           double tolerance)
 {
     const ContactCells& cells = press_.cells;
-    index_.near(T_part_tool.translation(), cells.half_diagonal() + wheel_.layer.thickness, under_);
-    places_ = facing(surfels_, under_, T_part_tool, cells, wheel_.layer.thickness);
+    const double deepest = wheel_.layer.thickness;
+    index_.near(T_part_tool.translation(), std::hypot(kBeside * cells.half().norm(), deepest) + farthest_, under_);
+    places_ = facing(surfels_, under_, T_part_tool, cells, deepest);
     press_.height = heights_on(cells, places_, gridding);
     gap_.resize(cells.rows, cells.columns);
     for (Index j = 0; j < cells.columns; ++j)
@@ -68,7 +70,6 @@ void WheelPress::press_on(const Eigen::Isometry3d& T_part_tool, const Pressing& 
     if (!press_.contact.converged) throw InputError("the contact was not found to the tolerance");
 }
 
-/// Farthest edges of cells that touch, along x and y, mm.
 Vector2d WheelPress::reach() const
 {
     Vector2d farthest = Vector2d::Zero();

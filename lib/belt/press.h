@@ -45,6 +45,8 @@ class WheelPress {
     /// The surfels that the last grid was made from, and where they are in the tool frame.
     const std::vector<Eigen::Index>& under() const { return under_; }
     const Eigen::Matrix3Xd& places() const { return places_; }
+    /// Farthest edges of cells that touch, along x and y, mm.
+    Eigen::Vector2d reach() const;
     /// What is left between wheel and surfels, mm.
     Eigen::MatrixXd gap_left();
     /// The next contact has nothing to do with the last.
@@ -54,13 +56,13 @@ class WheelPress {
     void set_grid(const Eigen::Vector2d& half, Eigen::Index count);
     void find_grid(const Eigen::Isometry3d& T_part_tool, const Pressing& pressing);
     void press_on(const Eigen::Isometry3d& T_part_tool, const Pressing& pressing, Gridding gridding, double tolerance);
-    Eigen::Vector2d reach() const;
     bool is_at_border() const;
 
     const Surfels& surfels_;
     const ContactWheel& wheel_;
     PressOptions options_;
     SurfelIndex index_;
+    double farthest_;                   ///< stock from its surfel, mm
     std::optional<LayerContact> layer_; ///< none: the grid is not known
     std::vector<Eigen::Index> under_;
     Eigen::Matrix3Xd places_;
