@@ -99,6 +99,7 @@ int main(int argc, char** argv)
             t.choice("--method", "exact", {"exact", "grid", "paper"},
                      "Workpiece as all triangles; as those under the tool, elsewhere cuboids over a grid; or so by the "
                      "formulas that Chen & Wei print");
+        const bool& exact = t.flag("--exact", "All triangles, everywhere: --method exact");
         const auto& cell = t.number_if_given("--cell", "LENGTH", "Of grids: side of a cell [1 mm]", Range::positive());
         const auto& picture =
             t.text("--picture", "", "FILE", "Draw the cell at some poses, PNG; the workpiece as --method sees it");
@@ -134,6 +135,7 @@ int main(int argc, char** argv)
         }
         const Workpiece* const part_or_none = workpiece ? &*workpiece : nullptr;
         std::optional<Heterogeneous> model;
+        if (exact && method != "exact") throw InputError("--exact: and --method " + method + ": one of them");
         if (method != "exact") {
             if (!workpiece) throw InputError("--method: " + method + " needs a --workpiece");
             model.emplace(*workpiece, tool_directions(solved.poses),

@@ -19,6 +19,8 @@ jq -es '.[0].collisions == 61 and .[0].least.pair == ["ball", "workpiece"] and .
 # the same bytes whatever the threads
 fettle-collide "$robot" joints.pcd --workpiece keel.stl --method grid --threads 1 -q --ascii | cmp - grid.pcd
 refuses() { "$HERE/../refuses" "$@" </dev/null; }
+fettle-collide "$robot" joints.pcd --workpiece keel.stl --exact -q --ascii | cmp - exact.pcd
+refuses '--exact: and --method grid' fettle-collide "$robot" joints.pcd --workpiece keel.stl --exact --method grid
 refuses '--method' fettle-collide "$robot" joints.pcd --method grid
 refuses '--method' fettle-collide "$robot" joints.pcd --workpiece keel.stl --method other
 refuses '--cell' fettle-collide "$robot" joints.pcd --workpiece keel.stl --method grid --cell 0
