@@ -29,7 +29,8 @@ class Buckets {
         least_ = points.topRows<2>().rowwise().minCoeff();
         const Vector2d size = points.topRows<2>().rowwise().maxCoeff() - least_;
         const auto n = static_cast<double>(points.cols());
-        side_ = std::max(std::sqrt(2 * size.prod() / n), std::max(2 * size.maxCoeff() / n, 1e-9));
+        constexpr double kLeast = 1e-9; // mm: all points at one place
+        side_ = std::max(std::sqrt(2 * size.prod() / n), std::max(2 * size.maxCoeff() / n, kLeast));
         counts_ = (size / side_).array().floor().cast<Index>() + 1;
         begin_.assign(static_cast<std::size_t>(counts_.prod()) + 1, 0);
         for (Index i = 0; i < points.cols(); ++i) ++begin_[bucket_of(i) + 1];
