@@ -34,7 +34,8 @@ int main(int argc, char** argv)
     return tool_main(argc, argv, "Plan the layers, the start and the zig-zag passes over an anomaly.", [](Tool& t) {
         const std::string& job_file = t.file("JOB", "The operator's job, JSON");
         const std::string& surface_file = t.input("SURFACE", "the desired surface, JSON (fettle-margin)");
-        const std::string& gcode = t.text("--gcode", "", "FILE", "Write layer 1 as G-code, too");
+        const std::string& gcode = t.choice("--gcode", "", {"linuxcnc", "grbl"},
+                                            "Write layer 1 alone as G-code for this controller, instead of the plan");
         t.example(
             "fettle-sample jobs/wang1.json | fettle-fit jobs/wang1.json | fettle-plan jobs/wang1.json > plan.json",
             "layers and passes for Wang's part 1, whose job holds the touches");
@@ -42,9 +43,11 @@ int main(int argc, char** argv)
         t.parse();
 
         const Plan plan = make_plan(read_job(job_file), read_surface(surface_file));
-        if (!gcode.empty())
-            write_gcode(t.output_file(gcode), plan, ToolPath(plan.job, plan.surface, plan.passes, plan.step));
-        t.output() << to_json(plan);
+        if (gcode.empty())
+            t.output() << to_json(plan);
+        else
+            write_gcode(t.output(), plan, ToolPath(plan.job, plan.surface, plan.passes, plan.step),
+                        gcode == "grbl" ? GcodeDialect::grbl : GcodeDialect::linuxcnc);
         report(t.report(), plan);
         return Verdict::yes;
     });

@@ -3,6 +3,7 @@
 #include "core/fixed_text.h"
 
 #include <cmath>
+#include <numbers>
 #include <ostream>
 
 namespace fettle {
@@ -42,18 +43,33 @@ std::vector<int> thinned(const std::vector<Eigen::Vector3d>& points, int first, 
     return ends;
 }
 
+// Units, feed and modes on lines of their own: in one line with G20 or G21 an F would still count in the old unit.
+void write_header(std::ostream& out, const Plan& plan, GcodeDialect dialect, double chord_error)
+{
+    const Job& job = plan.job;
+    const double mm = job.units.mm();
+    const std::string theta = fixed(job.theta * 180 / std::numbers::pi);
+    out << "(fettle-plan: layer 1, tool points: the wheel's lowest line at mid-width)\n"
+        << "(wheel radius " << fixed(job.wheel.radius / mm) << ", width " << fixed(job.wheel.width / mm)
+        << ", chord error " << fixed(chord_error / mm) << ")\n"
+        << "(machine frame: no offset in G54)\n"
+        << (job.units.length == Units::Length::in ? "G20\n" : "G21\n") << "G17 G40 G49 G54 G80 G90 G94\n";
+    if (dialect == GcodeDialect::linuxcnc) out << "G64 P" << fixed(chord_error / mm) << "\n";
+    out << "F" << fixed(job.feed.rate * 60 / mm) << "\n"
+        << "G0 Z" << fixed(job.safe_height / mm) << "\n";
+    if (dialect == GcodeDialect::linuxcnc)
+        out << "G0 C" << theta << "\n";
+    else if (job.theta != 0)
+        out << "(turn the wheel's axis to " << theta << " degrees from X, then resume)\nM0\n";
+}
+
 } // namespace
 
-void write_gcode(std::ostream& out, const Plan& plan, const ToolPath& path, double chord_error)
+void write_gcode(std::ostream& out, const Plan& plan, const ToolPath& path, GcodeDialect dialect, double chord_error)
 {
     const double mm = plan.job.units.mm();
     const std::string safe = fixed(plan.job.safe_height / mm);
-    out << "(fettle-plan: layer 1, tool points: the wheel's lowest line at mid-width)\n"
-        << "(wheel radius " << fixed(plan.job.wheel.radius / mm) << ", width " << fixed(plan.job.wheel.width / mm)
-        << ", chord error " << fixed(chord_error / mm) << ")\n"
-        << (plan.job.units.length == Units::Length::in ? "G20\n" : "G21\n") << "G90\nG17\nG94\n"
-        << "F" << fixed(plan.job.feed.rate * 60 / mm) << "\n"
-        << "G0 Z" << safe << "\n";
+    write_header(out, plan, dialect, chord_error);
     bool forwards = true;
     for (const ToolPass& pass : path.passes()) {
         const int intervals = int(pass.starts.size());

@@ -23,5 +23,5 @@ refused fettle-plan plane.json plane.json
 refused fettle-plan "$job" high.json
 refused fettle-plan wide.json plane.json
 refused fettle-plan "$job" missing.json
-refused fettle-plan "$job" plane.json --gcode /missing/layer1.ngc
+refused fettle-plan "$job" plane.json --gcode grbl -o /missing/layer1.ngc
 refused fettle-plan
