@@ -7,7 +7,7 @@ fettle-plan turned.json plane.json > plan.json
 fettle-plan turned.json plane.json --gcode linuxcnc > layer1.ngc
 printf 'T1 P1 D0 Z0\n' > tool.tbl
 rs274 -t tool.tbl -g layer1.ngc > canon 2> messages
-! grep -i error messages canon || exit 1
+! grep -i error messages || exit 1
 grep -q 'USE_LENGTH_UNITS(CANON_UNITS_INCHES)' canon
 grep -q 'SET_FEED_RATE(60.0*)' canon
 # X Y Z A B C of a feed
