@@ -2,7 +2,6 @@
 #include "cli/tool.h"
 #include "cloud/pcd.h"
 #include "core/file.h"
-#include "robot/path_cloud.h"
 
 #include <cmath>
 #include <ostream>
@@ -10,42 +9,6 @@
 using namespace fettle;
 
 namespace {
-
-/// What holds for points of the path that do not say it themselves.
-struct Otherwise {
-    std::optional<double> force, depth; ///< N, mm
-    double feed = 0, dwell = 0;         ///< mm/s, s
-};
-
-std::vector<BeltPoint> belt_path(const Cloud& cloud, const Otherwise& otherwise)
-{
-    const auto values = [&](const char* name, double other) -> Eigen::VectorXd {
-        return has_field(cloud, name) ? field(cloud, name) : Eigen::VectorXd::Constant(cloud.size(), other);
-    };
-    const bool by_depth = otherwise.depth || (!otherwise.force && has_field(cloud, "depth"));
-    if (!by_depth && !otherwise.force && !has_field(cloud, "force"))
-        throw InputError("no field force or depth, and neither --force nor --depth");
-    const Eigen::VectorXd amount = by_depth ? otherwise.depth ? values("", *otherwise.depth) : field(cloud, "depth")
-                                   : otherwise.force ? values("", *otherwise.force)
-                                                     : field(cloud, "force");
-    const Eigen::VectorXd feed = values("feed", otherwise.feed), dwell = values("dwell", 0);
-    const PosePath poses = path_poses(cloud);
-    std::vector<BeltPoint> path;
-    for (Eigen::Index i = 0; i < cloud.size(); ++i) {
-        const auto k = static_cast<std::size_t>(i);
-        const auto on = [&](std::size_t n) { return n < poses.size() && poses[n].translation().allFinite(); };
-        path.push_back({poses[k], {!by_depth, amount[i]}, feed[i], dwell[i]});
-        if (!on(k)) {
-            path[k].T_part_tool.matrix().setConstant(NAN);
-            continue;
-        }
-        if (k == 0 || !on(k - 1) || !on(k + 1)) path[k].dwell += otherwise.dwell;
-        if (!(amount[i] > 0)) throw InputError("point " + std::to_string(i) + ": the force or depth is not positive");
-        if (!(feed[i] > 0)) throw InputError("point " + std::to_string(i) + ": the feed is not positive");
-        if (!(dwell[i] >= 0)) throw InputError("point " + std::to_string(i) + ": the dwell is negative");
-    }
-    return path;
-}
 
 void set_trace(Cloud& cloud, const BeltRun& run)
 {
@@ -74,6 +37,7 @@ void report(json::Value& out, const BeltRun& run, const Surfels& surfels, double
     out.set("points", run.trace.size())
         .set("time", run.trace.empty() ? 0 : run.trace.back().time)
         .set("removed_volume", run.removed_volume / (mm * mm * mm))
+        .set("work", run.work / kJoule)
         .set("touched", static_cast<std::size_t>((run.removed.array() > 0).count()))
         .set("surfels", static_cast<std::size_t>(surfels.size()))
         .set("deepest", run.removed.maxCoeff() / mm)
@@ -91,9 +55,9 @@ int main(int argc, char** argv)
         "Grind surfels along a path with a belt over an elastic contact wheel.\n"
         "At each point of the path the wheel is pressed on, by its force or its depth (fields of the path, or options "
         "that hold for all points), the pressure follows from the contact (fettle-contact), and the surfels that touch "
-        "lose depth by the wheel's law, in the time that half the ways to the next points take. The others stay as "
-        "they "
-        "are. A point of NaN ends a run: the wheel is off the part. Out: the surfels with their new displacement, and "
+        "lose depth by the wheel's law, in the time that half the ways to the next points of the same run "
+        "take. The others stay as they are. A point of NaN, or another pass, ends a run: the wheel is off the part. "
+        "Out: the surfels with their new displacement, and "
         "removed, which is added up from belt to belt.";
     return tool_main(argc, argv, description, [](Tool& t) {
         const std::string& points = t.input("SURFELS", "points with normals (fettle-surfel), PCD or PLY");
@@ -106,8 +70,11 @@ int main(int argc, char** argv)
         const auto& feed =
             t.number_if_given("--feed", "LENGTH/S", "Where the path has no field feed [20 mm/s]", Range::positive());
         const double& dwell = t.number("--dwell", 0, "S", "At both ends of each run, besides", Range::at_least(0));
-        const auto& worn =
-            t.number_if_given("--worn", "VOLUME", "What the belt has removed before", Range::at_least(0));
+        const double& worn =
+            t.number("--worn", 0, "J", "Work that the belt has done before (report: work)", Range::at_least(0));
+        const std::string& model =
+            t.choice("--model", "local", {"local", "global"},
+                     "The force acts as the contact's pressure, or evenly over the contact's rectangle (Hammann 1998)");
         const std::string& gridding = t.choice("--gridding", "kriging", {"kriging", "shepard"}, "As of fettle-contact");
         const int& cells = t.count("--cells", 32, "As of fettle-contact", 8, 512);
         const double& tolerance = t.number("--tolerance", 1e-4, "SHARE", "As of fettle-contact", {1e-9, 1e-2});
@@ -117,7 +84,7 @@ int main(int argc, char** argv)
             "fettle-part parts/keel.json -o keel.stl && fettle-surfel keel.stl --stock keel.stl --spacing 1 | "
             "fettle-belt --path paths/keel.pcd --wheel wheels/rubber.json --force 20 --report belt.json > ground.pcd",
             "20 N along the keel");
-        t.reference("Ren et al. 2006, eq. 5");
+        t.reference("Ren et al. 2006, eq. 5; Hammann 1998");
         t.parse();
 
         if (force && depth) throw InputError("--force", "and --depth: one of them says how the wheel is pressed on");
@@ -126,14 +93,14 @@ int main(int argc, char** argv)
         Surfels surfels = surfels_of(file.cloud, display_name(points));
         const ContactWheel wheel = read_contact_wheel(wheel_file);
         CloudFile path_cloud = read_cloud(path_file);
-        Otherwise otherwise{force, depth ? std::optional(*depth * mm) : std::nullopt, feed ? *feed * mm : 20, dwell};
-        std::vector<BeltPoint> path;
+        BeltSettings settings{force, depth ? std::optional(*depth * mm) : std::nullopt, feed ? *feed * mm : 20, dwell};
+        BeltOptions options;
+        options.press = {gridding == "shepard" ? Gridding::shepard : Gridding::kriging, cells, tolerance};
+        options.model = model == "global" ? BeltModel::global : BeltModel::local;
+        options.worn = worn * kJoule;
         BeltRun run;
         try {
-            path = belt_path(path_cloud.cloud, otherwise);
-            run = grind(surfels, wheel, path,
-                        {gridding == "shepard" ? Gridding::shepard : Gridding::kriging, cells, tolerance},
-                        worn ? *worn * mm * mm * mm : 0, t.progress("grinding"));
+            run = grind(surfels, wheel, belt_path(path_cloud.cloud, settings), options, t.progress("grinding"));
         } catch (const InputError& error) {
             throw InputError(display_name(path_file), error.what());
         }

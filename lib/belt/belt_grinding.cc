@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -11,39 +12,60 @@ namespace fettle {
 namespace {
 
 using Eigen::Index;
+using Eigen::MatrixXd;
 
-bool is_on(const BeltPoint& point) { return point.T_part_tool.matrix().allFinite(); }
-
-/// Half the ways to both neighbours, at the feed; and the dwell.
-double duration_at(const std::vector<BeltPoint>& path, std::size_t k)
+/// The pressure's force evenly over the rectangle about the cells that touch.
+MatrixXd evened(const MatrixXd& pressure)
 {
-    const auto way = [&](std::size_t a, std::size_t b) {
-        return is_on(path[a]) && is_on(path[b])
-                   ? (path[a].T_part_tool.translation() - path[b].T_part_tool.translation()).norm()
-                   : 0;
-    };
-    double half = 0;
-    if (k > 0) half += way(k - 1, k) / 2;
-    if (k + 1 < path.size()) half += way(k, k + 1) / 2;
-    return half / path[k].feed + path[k].dwell;
+    Index first_row = pressure.rows(), last_row = -1, first_column = pressure.cols(), last_column = -1;
+    for (Index j = 0; j < pressure.cols(); ++j)
+        for (Index i = 0; i < pressure.rows(); ++i)
+            if (pressure(i, j) > 0) {
+                first_row = std::min(first_row, i);
+                last_row = std::max(last_row, i);
+                first_column = std::min(first_column, j);
+                last_column = std::max(last_column, j);
+            }
+    MatrixXd even = MatrixXd::Zero(pressure.rows(), pressure.cols());
+    if (last_row < 0) return even;
+    auto box = even.block(first_row, first_column, last_row - first_row + 1, last_column - first_column + 1);
+    box.setConstant(pressure.sum() / static_cast<double>(box.size()));
+    return even;
+}
+
+/// Of the surfels under the wheel. @param depth  over the cells of the last contact, mm
+void add_losses(const WheelPress& press, const ContactCells& cells, const MatrixXd& depth, const Surfels& surfels,
+                const Eigen::Vector3d& up, std::size_t point, std::vector<BeltLoss>& losses)
+{
+    // A surfel stands for the square about it.
+    const double side = spacing_of(press.places());
+    const SquareMeans lost_on(cells, depth, side);
+    const Eigen::Vector2d touched = press.reach().array() + side / 2;
+    for (std::size_t i = 0; i < press.under().size(); ++i) {
+        const Eigen::Vector2d place = press.places().col(static_cast<Index>(i)).head<2>();
+        if ((place.cwiseAbs().array() > touched.array()).any()) continue;
+        const Index surfel = press.under()[i];
+        losses.push_back({surfel, point, lost_on.about(place) * surfels.normal.col(surfel).dot(up)});
+    }
 }
 
 } // namespace
 
 BeltRun grind(Surfels& surfels, const ContactWheel& wheel, const std::vector<BeltPoint>& path,
-              const PressOptions& options, double worn, const Progress& progress)
+              const BeltOptions& options, const Progress& progress)
 {
     BeltRun run;
     run.removed.setZero(surfels.size());
-    WheelPress press(surfels, wheel, options);
+    WheelPress press(surfels, wheel, options.press);
+    const Eigen::VectorXd way = ways(path);
     double time = 0;
     for (std::size_t k = 0; k < path.size(); ++k) {
         tell(progress, static_cast<double>(k) / static_cast<double>(path.size()));
         const BeltPoint& point = path[k];
-        if (!is_on(point)) {
+        if (point.begins_run) press.lift();
+        if (!point.is_on()) {
             constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
             run.trace.push_back({time, kNan, kNan, kNan, kNan, kNan, kNan});
-            press.lift();
             continue;
         }
         const Press* pressed = nullptr;
@@ -53,31 +75,29 @@ BeltRun grind(Surfels& surfels, const ContactWheel& wheel, const std::vector<Bel
             throw InputError("point " + std::to_string(k), error.what());
         }
         const Contact& contact = pressed->contact;
-        const ContactCells& cells = pressed->cells;
-        const double duration = duration_at(path, k);
-        const Eigen::MatrixXd depth = contact.pressure.unaryExpr([&](double p) {
-            return removed_depth(wheel.law, p, wheel.belt_speed, point.feed, duration, worn + run.removed_volume);
-        });
-        // A surfel stands for the square about it.
-        const double side = spacing_of(press.places());
-        const SquareMeans lost_on(cells, depth, side);
-        const Eigen::Vector2d touched = press.reach().array() + side / 2;
-        const Eigen::Vector3d up = point.T_part_tool.linear().col(2);
-        for (std::size_t i = 0; i < press.under().size(); ++i) {
-            const Eigen::Vector2d place = press.places().col(static_cast<Index>(i)).head<2>();
-            if ((place.cwiseAbs().array() > touched.array()).any()) continue;
-            const Index surfel = press.under()[i];
-            const double lost = lost_on.about(place) * surfels.normal.col(surfel).dot(up);
-            surfels.displacement[surfel] -= lost;
-            run.removed[surfel] += lost;
+        const double moving = way[static_cast<Index>(k)] / point.feed;
+        const double cutting = moving + std::pow(point.dwell, wheel.law.dwell);
+        const auto depth_of = [&](double p) {
+            return removed_depth(wheel.law, p, wheel.belt_speed, point.feed, cutting, options.worn + run.work);
+        };
+        const MatrixXd depth = options.model == BeltModel::local ? contact.pressure.unaryExpr(depth_of)
+                                                                 : evened(contact.pressure).unaryExpr(depth_of);
+        if (!options.keeps_losses) run.losses.clear();
+        const std::size_t first = run.losses.size();
+        add_losses(press, pressed->cells, depth, surfels, point.T_part_tool.linear().col(2), k, run.losses);
+        for (std::size_t i = first; i < run.losses.size(); ++i) {
+            surfels.displacement[run.losses[i].surfel] -= run.losses[i].depth;
+            run.removed[run.losses[i].surfel] += run.losses[i].depth;
         }
-        const double volume = depth.sum() * cells.cell.prod();
+        const double volume = depth.sum() * pressed->cells.cell.prod(), duration = moving + point.dwell;
         time += duration;
         run.removed_volume += volume;
+        run.work += contact.force * wheel.belt_speed * duration;
         run.near_edge += pressed->is_near_edge ? 1 : 0;
         run.trace.push_back(
             {time, duration, contact.force, contact.indentation, contact.pressure.maxCoeff(), pressed->area(), volume});
     }
+    if (!options.keeps_losses) run.losses.clear();
     return run;
 }
 

@@ -1,18 +1,24 @@
 #pragma once
 
+#include "belt/belt_path.h"
 #include "belt/press.h"
 #include "core/progress.h"
+
+#include <Eigen/Core>
 
 #include <vector>
 
 namespace fettle {
 
-/// A contact point of a belt path.
-struct BeltPoint {
-    Eigen::Isometry3d T_part_tool; ///< NaN: the wheel is off the part; the next point begins another run
-    Pressing pressing;
-    double feed = 0;  ///< V_w, mm/s
-    double dwell = 0; ///< time that it stands there, besides, s
+/// Where the force acts: the pressure of the contact everywhere (Ren et al. 2006), or evenly over the rectangle about
+/// the contact, which is Hammann's linear global model (1998): r = C_A K_A k_t V_b / (V_w L_w) F over the width L_w.
+enum class BeltModel { local, global };
+
+struct BeltOptions {
+    PressOptions press;
+    BeltModel model = BeltModel::local;
+    double worn = 0;           ///< work of the belt before, N mm
+    bool keeps_losses = false; ///< in BeltRun
 };
 
 /// What happened at a contact point; NaN where the wheel is off the part.
@@ -22,20 +28,29 @@ struct BeltTrace {
     double removed = 0; ///< mm³, by the law over the contact
 };
 
+/// What a surfel lost at one point of the path, mm along its normal.
+struct BeltLoss {
+    Eigen::Index surfel;
+    std::size_t point;
+    double depth;
+};
+
 /// The account of a run.
 struct BeltRun {
     std::vector<BeltTrace> trace;
-    Eigen::VectorXd removed;    ///< of each surfel, mm along its normal
-    double removed_volume = 0;  ///< mm³
-    Eigen::Index near_edge = 0; ///< points whose contact is near the layer's free edge
+    Eigen::VectorXd removed;      ///< of each surfel, mm along its normal
+    double removed_volume = 0;    ///< mm³
+    double work = 0;              ///< of the belt in this run, N mm (BeltLaw)
+    Eigen::Index near_edge = 0;   ///< points whose contact is near the layer's free edge
+    std::vector<BeltLoss> losses; ///< point by point; empty unless they are kept
 };
 
 /// Grinds along a path. At each point the surfels that touch lose depth along their normals by the wheel's law, in the
-/// time that half the ways to its neighbours take; the others stay as they are. The law gives the depth normal to the
-/// tangent plane, so that the pressure's sum is the force's work whatever the surfels' normals (Ren et al. 2006, 4).
-/// @param worn  what the belt has removed before, mm³
+/// time that half the ways to its neighbours take, and in the dwell; the others stay as they are. The law gives the
+/// depth normal to the tangent plane, so that the pressure's sum is the force's work whatever the surfels' normals (Ren
+/// et al. 2006, 4).
 /// @throws InputError naming the point if nothing is under the wheel, or the contact is not found
 BeltRun grind(Surfels& surfels, const ContactWheel& wheel, const std::vector<BeltPoint>& path,
-              const PressOptions& options, double worn = 0, const Progress& progress = {});
+              const BeltOptions& options, const Progress& progress = {});
 
 } // namespace fettle

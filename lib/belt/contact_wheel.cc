@@ -47,10 +47,11 @@ BeltLaw law_in(Reader reader, double mm)
         law.pressure = reader.number("pressure_exponent", Range::between(0, 5));
         law.speed = reader.number("speed_exponent", Range::between(-5, 5));
         law.feed = reader.number_or("feed_exponent", 0, Range::between(-5, 5));
+        law.dwell = reader.number_or("dwell_exponent", 1, Range::between(0, 5));
         law.threshold = reader.number_or("threshold", 0, Range::at_least(0));
         law.coefficient *= std::pow(mm, 1 - law.speed - law.feed);
     }
-    law.wear_volume = reader.number_or("wear_volume", 0, Range::at_least(0)) * mm * mm * mm;
+    law.wear_work = kJoule * reader.number_or("wear_work", 0, Range::at_least(0));
     reader.done();
     return law;
 }
@@ -60,7 +61,7 @@ BeltLaw law_in(Reader reader, double mm)
 double removed_depth(const BeltLaw& law, double p, double belt_speed, double feed, double duration, double worn)
 {
     if (!(p > law.threshold)) return 0;
-    const double sharpness = law.wear_volume > 0 ? std::exp(-worn / law.wear_volume) : 1;
+    const double sharpness = law.wear_work > 0 ? std::exp(-worn / law.wear_work) : 1;
     return law.coefficient * std::pow(p - law.threshold, law.pressure) * std::pow(belt_speed, law.speed) *
            std::pow(feed, law.feed) * sharpness * duration;
 }

@@ -8,18 +8,21 @@
 
 namespace fettle {
 
+constexpr double kJoule = 1000; ///< N mm
+
 /// How fast a belt removes metal: depth per time = coefficient · (p - threshold)^pressure · V_b^speed · V_w^feed, in
-/// MPa, mm/s and s, as long as the belt is new; it falls to 1/e when the belt has removed `wear_volume`. With the
-/// exponents 1, 1 and 0 it is Preston's law (1927), the local form of Hammann's (Ren et al. 2006, eq. 5): C_A K_A =
-/// coefficient, k_t = the belt's wear.
+/// MPa, mm/s and s, as long as the belt is new; it falls to 1/e when the belt has done `wear_work`. Work is force · V_b
+/// · time, what friction does over its coefficient. With all exponents as they stand here it is Preston's law (1927),
+/// the local form of Hammann's (Ren et al. 2006, eq. 5): C_A K_A = coefficient, k_t = the belt's wear.
 struct BeltLaw {
     double coefficient = 0; ///< (mm/s) / (MPa^pressure (mm/s)^(speed + feed))
     double pressure = 1, speed = 1, feed = 0;
-    double threshold = 0;   ///< MPa; less does not cut
-    double wear_volume = 0; ///< mm³; 0: the belt does not wear
+    double dwell = 1;     ///< of the time, in s, that the wheel stands at a place
+    double threshold = 0; ///< MPa; less does not cut
+    double wear_work = 0; ///< N mm; 0: the belt does not wear
 };
 
-/// Depth that pressure p removes in `duration`, mm. @param worn  what the belt has removed before, mm³
+/// Depth that pressure p removes in `duration`, mm. @param worn  work of the belt before, N mm
 double removed_depth(const BeltLaw& law, double p, double belt_speed, double feed, double duration, double worn);
 
 /// A contact wheel under a grinding belt: an elastic layer on a rigid hub. Its axis is the tool frame's y, its lowest

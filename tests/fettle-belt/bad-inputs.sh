@@ -17,6 +17,7 @@ refused 'one of them' fettle-belt plate.pcd --wheel wheel.json --path path.pcd -
 refused 'away.pcd: point 1: there is nothing under the wheel' fettle-belt plate.pcd --wheel wheel.json --path away.pcd --force 1
 refused 'turned.pcd: point 0' fettle-belt plate.pcd --wheel wheel.json --path turned.pcd --force 1
 refused '--feed' fettle-belt plate.pcd --wheel wheel.json --path path.pcd --force 1 --feed 0
+refused '--model' fettle-belt plate.pcd --wheel wheel.json --path path.pcd --force 1 --model none
 refused '--path' fettle-belt plate.pcd --wheel wheel.json --force 1
 refused 'missing/trace.pcd' fettle-belt plate.pcd --wheel wheel.json --path path.pcd --force 1 --trace /missing/trace.pcd
 sed 's/"preston"/"power"/' wheel.json > power.json

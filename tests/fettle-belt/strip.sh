@@ -28,6 +28,13 @@ fettle-belt fine.out --wheel wheel.json --force 10 --feed 5 --ascii --path fine.
 lost twice.out > twice.lost
 awk 'NR == 1 { a = $1 } NR == 2 { exit !($1 / a > 1.999 && $1 / a < 2.001) }' fine.lost twice.lost
 sed '1,/^DATA/d' trace.pcd | awk 'NR == 1 || NR == 21 { if (($9 - 10) ^ 2 > 1e-9) exit 1 } END { exit !(NR == 21 && ($8 - 2) ^ 2 < 1e-18) }'
+# Hammann's global model takes the same volume; the belt's work is force * V_b * time, and a belt worn by wear_work cuts 1/e of it.
+grind fine.pcd --model global --report global.json > global.out
+jq -e '(.removed_volume / 3e-3 - 1 | fabs) < 1e-4 and (.work / 300 - 1 | fabs) < 1e-6' global.json > ok
+! cmp -s global.out fine.out || exit 1
+sed 's/1e-8}/1e-8, "wear_work": 1e9}/' wheel.json > wearing.json
+fettle-belt plate.pcd --wheel wearing.json --force 10 --feed 5 --path fine.pcd --worn 1e9 --report worn.json > worn.out
+jq -e '.removed_volume / 3e-3 | . > 0.3678 and . < 0.3680' worn.json > ok
 # Deeper by option, force and feed by fields.
 fettle-belt plate.pcd --wheel wheel.json --depth 0.2 --feed 5 --path fine.pcd --report depth.json > depth.out
 jq -e '.max_force > 0 and .removed_volume > 0' depth.json > ok

@@ -1,6 +1,7 @@
 // Grinding along a path: the law's integral, refinement, and what must not change.
 
 #include "belt/belt_grinding.h"
+#include "cloud/poses.h"
 #include "core/error.h"
 
 #include <gtest/gtest.h>
@@ -140,8 +141,55 @@ TEST(Belt, DwellsAndWears)
     Surfels surfels = plate();
     const double fresh = grind(surfels, wheel, path, {}).removed_volume;
     EXPECT_NEAR(fresh, wheel.law.coefficient * wheel.belt_speed * kForce * 0.5, 1e-6);
-    wheel.law.wear_volume = 10;
-    EXPECT_NEAR(grind(surfels, wheel, path, {}, 10).removed_volume, fresh / std::exp(1), 1e-6);
+    BeltOptions worn;
+    worn.worn = wheel.law.wear_work = 1e6;
+    EXPECT_NEAR(grind(surfels, wheel, path, worn).removed_volume, fresh / std::exp(1), 1e-6);
+    wheel.law.dwell = 2;
+    EXPECT_NEAR(grind(surfels, wheel, path, {}).removed_volume, fresh / 2, 1e-6);
+}
+
+// The belt's work is F V_b t, and it cuts exp(-work / wear_work) as fast: the volume is the integral of that.
+TEST(Belt, WearsAlongThePath)
+{
+    ContactWheel wheel = crowned();
+    const double work = kForce * wheel.belt_speed * 40 / kFeed;
+    wheel.law.wear_work = work / 2;
+    Surfels surfels = plate();
+    const BeltRun run = grind(surfels, wheel, line(0.25), {});
+    EXPECT_NEAR(run.work, work, 1e-9 * work);
+    const double law = wheel.law.coefficient * wheel.law.wear_work * (1 - std::exp(-2));
+    EXPECT_NEAR(run.removed_volume, law, 0.01 * law); // steps of 1/160 of the path
+}
+
+// Hammann's model removes the same volume, evenly over a rectangle.
+TEST(Belt, SpreadsTheForceInTheGlobalModel)
+{
+    const ContactWheel wheel = crowned();
+    Surfels local = plate(), global = plate();
+    BeltOptions options;
+    const BeltRun by_pressure = grind(local, wheel, line(0.5), options);
+    options.model = BeltModel::global;
+    options.keeps_losses = true;
+    const BeltRun even = grind(global, wheel, line(0.5), options);
+    EXPECT_NEAR(even.removed_volume, by_pressure.removed_volume, 1e-6 * by_pressure.removed_volume);
+    EXPECT_NEAR(volume(even.removed), even.removed_volume, 1e-3 * even.removed_volume);
+    EXPECT_LT(even.removed.maxCoeff(), 0.8 * by_pressure.removed.maxCoeff());
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(global.size());
+    std::vector<double> deepest(81, 0);
+    for (const BeltLoss& loss : even.losses) {
+        sum[loss.surfel] += loss.depth;
+        deepest[loss.point] = std::max(deepest[loss.point], loss.depth);
+    }
+    EXPECT_LE((sum - even.removed).cwiseAbs().maxCoeff(), 1e-12);
+    // r = C V_b F / (V_w L_w) in the middle, where each place is passed from end to end
+    double middle = 0, least = 1;
+    for (Index i = 0; i < global.size(); ++i)
+        if (global.position.col(i).cwiseAbs().head<2>().maxCoeff() < 3) {
+            middle = std::max(middle, even.removed[i]);
+            least = std::min(least, even.removed[i]);
+        }
+    EXPECT_LE(middle - least, 0.02 * middle);
+    EXPECT_TRUE(by_pressure.losses.empty());
 }
 
 TEST(Belt, FollowsThePowerLaw)
@@ -154,6 +202,29 @@ TEST(Belt, FollowsThePowerLaw)
     law.threshold = 0.1;
     EXPECT_EQ(removed_depth(law, 0.1, 9, 4, 3, 0), 0);
     EXPECT_NEAR(removed_depth(law, 0.35, 9, 4, 3, 0), 2 * 0.125 * 3 / 4.0 * 3, 1e-12);
+}
+
+// Two passes 10 mm apart: the way between them is none of the wheel's, and each end dwells.
+TEST(Belt, BeginsARunWithEachPass)
+{
+    Cloud cloud;
+    PosePath poses(4, Eigen::Isometry3d::Identity());
+    poses[1].translation().x() = 2;
+    poses[2].translation() << 2, 10, 0;
+    poses[3].translation().y() = 10;
+    cloud.xyz.setZero(3, 4);
+    set_path(cloud, poses);
+    BeltSettings settings;
+    settings.force = 5;
+    settings.dwell = 0.5;
+    EXPECT_NEAR(ways(belt_path(cloud, settings)).sum(), 14, 1e-6);
+    EXPECT_EQ(belt_path(cloud, settings)[1].dwell, 0);
+    set_field(cloud, "pass", Eigen::Vector4d(0, 0, 1, 1));
+    const std::vector<BeltPoint> path = belt_path(cloud, settings);
+    EXPECT_NEAR(ways(path).sum(), 4, 1e-6);
+    for (const BeltPoint& point : path) EXPECT_EQ(point.dwell, 0.5);
+    set_field(cloud, "feed", Eigen::Vector4d(1, 1, 0, 1));
+    EXPECT_THROW(belt_path(cloud, settings), InputError);
 }
 
 // The deeper the hub, the more force; each point says what it took.
