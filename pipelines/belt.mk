@@ -2,6 +2,7 @@
 #
 #   make -f pipelines/belt.mk                                      the blade that the project makes itself
 #   make -f pipelines/belt.mk PARTS='blade nasa handle' DATA=DIR   and DIR/nasa_blade_a.stl and DIR/handle.off
+#   make -f pipelines/belt.mk law                                  the removal law from measured trials; exit 1 if a figure is missed
 #
 # BELT/PART/stock.stl is the design with an allowance of 0.2 to 0.6 mm that varies over it, work.pcd the surfels, errors.pcd what
 # would be left without grinding, surface.pcd the stock's surface with its normals, rows.pcd a path; errors.png the picture.
@@ -31,6 +32,23 @@ $(BELT)/handle/design: $(DATA)/handle.off
 	@mkdir -p $(@D)
 	awk 'FNR > 2 && NF == 3 && !faces { print $$1 * 100, $$2 * 100, $$3 * 100; next } FNR > 2 && NF > 3 { faces = 1 } { print }' $< > $@
 $(BELT)/nasa/%: UNITS = --file-units m
+
+# --- the removal law from measured trials ----------------------------------------------------------------------------------
+TRIALS ?= samples/removal
+# Of the contact, mm², and of the belt in a revolution, mm, which is not published: of the fitted law it scales coefficient and wear_work.
+AREA   ?= 50
+TRAVEL ?= 100
+
+.PHONY: law
+law: $(BELT)/law/wheel.json $(BELT)/law/moving.json
+	@pipelines/law-table $(BELT)/law
+
+$(BELT)/law/%.json: $(TRIALS)/%.csv $(B)/study/belt-law
+	@mkdir -p $(@D)
+	$(B)/study/belt-law $< --area $(AREA) --travel $(TRAVEL) -o $@
+
+$(BELT)/law/wheel.json: $(BELT)/law/static.json samples/wheels/rubber.json
+	jq --slurpfile fit $< '.law = $$fit[0].law' samples/wheels/rubber.json > $@
 
 # --- stages ---------------------------------------------------------------------------------------------------------------
 $(BELT)/%/stock.stl: $(BELT)/%/design $(B)/study/stock

@@ -1,0 +1,158 @@
+// The removal law of a belt from measured trials, and how well it tells trials that it was not fitted to.
+
+#include "belt/contact_wheel.h"
+#include "belt/removal_fit.h"
+#include "cli/tool.h"
+#include "core/error.h"
+#include "core/file.h"
+#include "core/lines.h"
+#include "core/text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <ostream>
+#include <string>
+#include <vector>
+
+using namespace fettle;
+
+namespace {
+
+using Row = std::map<std::string, double>; ///< by column; words are NaN
+
+std::vector<std::string> cells_of(std::string_view line)
+{
+    std::vector<std::string> cells(1);
+    for (const char c : line)
+        if (c == ',')
+            cells.emplace_back();
+        else
+            cells.back() += c;
+    return cells;
+}
+
+std::vector<Row> rows_of(const std::string& text, const std::string& source)
+{
+    std::vector<Row> rows;
+    std::vector<std::string> names;
+    for (Lines lines(text); lines.next();) {
+        if (lines.line().empty() || lines.line().front() == '#') continue;
+        const std::vector<std::string> cells = cells_of(lines.line());
+        if (names.empty()) {
+            names = cells;
+            continue;
+        }
+        if (cells.size() != names.size())
+            throw InputError(source, lines.place() + ": " + std::to_string(cells.size()) + " values, not " +
+                                         std::to_string(names.size()));
+        Row& row = rows.emplace_back();
+        for (std::size_t i = 0; i < names.size(); ++i) row[names[i]] = parse_number(cells[i]).value_or(NAN);
+    }
+    return rows;
+}
+
+double value_or_nan(const Row& row, const std::string& name)
+{
+    const auto found = row.find(name);
+    return found == row.end() ? NAN : found->second;
+}
+
+RemovalTrial trial_of(const Row& row)
+{
+    return {value_or_nan(row, "avg_force_N"),        value_or_nan(row, "avg_rpm"),
+            value_or_nan(row, "feed_rate_setpoint"), value_or_nan(row, "grind_time_s"),
+            value_or_nan(row, "initial_wear"),       value_or_nan(row, "removed_mm3")};
+}
+
+/// Is the recorded work a state that trials hand on? How many trials there are with one that begins where they end,
+/// within `kSlack` of their own work, and how many by chance: where no belt ever ends.
+json::Value work_carried(const std::vector<RemovalTrial>& trials)
+{
+    constexpr double kSlack = 0.02; // work was summed with set values; force, speed and duration are means
+    const auto followed = [&](double share) {
+        std::size_t count = 0;
+        for (const RemovalTrial& trial : trials) {
+            const double own = trial.force * trial.speed * trial.duration;
+            const auto follows = [&](const RemovalTrial& other) {
+                return std::abs((other.worn - trial.worn) / own - share) <= kSlack;
+            };
+            count += std::any_of(trials.begin(), trials.end(), follows) ? 1 : 0;
+        }
+        return count;
+    };
+    return json::Value().set("handed_on", followed(1)).set("by_chance", followed(0.9)).set("trials", trials.size());
+}
+
+json::Value score_of(const char* name, const std::vector<RemovalTrial>& trials, const RemovalTerms& terms)
+{
+    const RemovalScore score = score_removal(trials, terms);
+    const RemovalLaw& law = score.law;
+    return json::Value()
+        .set("name", name)
+        .set("r2", score.r2)
+        .set("left_out_r2", score.left_out_r2)
+        .set("worst_factor", score.worst_factor)
+        .set("coefficient", std::exp(law.log_coefficient))
+        .set("force", law.force)
+        .set("speed", law.speed)
+        .set("feed", law.feed)
+        .set("duration", law.duration)
+        .set("threshold", law.threshold)
+        .set("wear_work", law.wear > 0 ? 1 / law.wear : 0);
+}
+
+/// As a wheel's file has it: pressure is force over `area`, mm²; the belt goes `travel` mm in a unit of the trials'
+/// speed and a second.
+json::Value wheels_law(const RemovalLaw& law, double area, double travel)
+{
+    return json::Value()
+        .set("type", "power")
+        .set("coefficient",
+             std::exp(law.log_coefficient) * std::pow(area, law.force - 1) * std::pow(travel, -law.speed))
+        .set("pressure_exponent", law.force)
+        .set("speed_exponent", law.speed)
+        .set("dwell_exponent", law.duration)
+        .set("wear_work", law.wear > 0 ? travel / law.wear / kJoule : 0);
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+    const std::string description =
+        "Fit the removal law of a belt to measured trials, JSON.\n"
+        "TRIALS has a row of names and the columns avg_force_N, initial_wear, removed_mm3 and grind_time_s and "
+        "avg_rpm, or "
+        "feed_rate_setpoint; with a column exact, rows where it is not 1 say bounds and are left out.";
+    return tool_main(argc, argv, description, [](Tool& t) {
+        const std::string& path = t.input("TRIALS", "CSV");
+        const double& area = t.number("--area", 50, "MM2", "Of the contact while the wheel stands", Range::positive());
+        const double& travel = t.number("--travel", 100, "MM", "Of the belt in a revolution", Range::positive());
+        t.parse();
+        const std::string name = display_name(path);
+        std::vector<RemovalTrial> exact, all;
+        for (const Row& row : rows_of(read_whole(path), name)) {
+            all.push_back(trial_of(row));
+            const double is_exact = value_or_nan(row, "exact");
+            if (std::isnan(is_exact) || is_exact == 1) exact.push_back(all.back());
+        }
+        const std::vector<json::Value> laws = named(name, [&] {
+            return std::vector<json::Value>{score_of("Preston", exact, {false, false, false}),
+                                            score_of("Preston, wear", exact, {false, true, false}),
+                                            score_of("exponents", exact, {true, false, false}),
+                                            score_of("exponents, wear", exact, {true, true, false}),
+                                            score_of("exponents, wear, threshold", exact, {true, true, true})};
+        });
+        json::Value out;
+        out.set("rows", all.size()).set("trials", exact.size()).set("laws", laws);
+        const bool is_static = !exact.empty() && !std::isnan(exact.front().duration);
+        if (is_static) {
+            constexpr double kSeconds = 60; // in a minute
+            out.set("work", work_carried(all))
+                .set("law", wheels_law(fit_removal(exact, {true, true, false}), area, travel / kSeconds));
+        }
+        t.output() << out;
+        return Verdict::yes;
+    });
+}
