@@ -16,7 +16,8 @@ using namespace fettle;
 int main(int argc, char** argv)
 {
     return tool_main(argc, argv, "Drive a simulated gantry by the protocol of a real one.", [](Tool& t) {
-        const std::string& plan_file = t.file("PLAN", "The plan whose job the machine is set up for, JSON");
+        const std::string& plan_file =
+            t.file("PLAN", "The plan whose job the machine is set up for, or a job without a plan, to be probed, JSON");
         const std::string& stock_file = t.required_text("--stock", "PART", "The part as it is: STL, PLY, OBJ or PCD");
         const auto& stock_units = t.length_unit("--stock-units", "Unit of PART, if it is not the job's");
         const std::string& machine =
@@ -32,10 +33,11 @@ int main(int argc, char** argv)
         t.reference("docs/driver.md: the protocol");
         t.parse();
 
-        const Job job = read_plan(plan_file).job;
+        const auto [job, planned] = read_work(plan_file);
         const Units& units = job.units;
-        const HeightField stock = height_field(read_scan(stock_file, units, stock_units), job,
-                                               cell_of(job, cell ? *cell * units.mm() : 0), display_name(stock_file));
+        const HeightField stock =
+            height_field(read_scan(stock_file, units, stock_units), job, cell_of(job, cell ? *cell * units.mm() : 0),
+                         display_name(stock_file), planned ? Extent::anomaly : Extent::sampling);
         std::ostream* out = ground.empty() ? nullptr : &t.output_file(ground);
         const std::unique_ptr<VirtualGantry> gantry = make_virtual(stock, job, {machine, removal, t.seed()});
         serve(*gantry, gantry->limits(), job, Descriptor(::dup(STDIN_FILENO)), Descriptor(::dup(STDOUT_FILENO)));

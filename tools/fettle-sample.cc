@@ -2,9 +2,8 @@
 #include "cloud/pcd.h"
 #include "core/file.h"
 #include "core/text.h"
+#include "gantry/touch.h"
 #include "job/boundary.h"
-#include "job/plausible.h"
-#include "margin/adaptive.h"
 #include "margin/best_touches.h"
 #include "sampling/freeform.h"
 #include "sampling/order.h"
@@ -26,13 +25,11 @@ Eigen::Matrix3Xd untouched(const TouchPlan& plan)
     return places;
 }
 
-Eigen::Matrix3Xd probe_part(const Tool& t, const std::string& part, const Scan& scan, const Job& job,
-                            const TouchPlan& plan, const TouchNoise& noise)
+Eigen::Matrix3Xd probe_part(const Tool& t, const TouchedPart& part, const Job& job, const TouchPlan& plan)
 {
-    const Eigen::Matrix3Xd touches = probe(scan, job, plan, noise, t.seed());
-    const std::string doubt = implausible_box(scan.bounds(), job);
-    check_touched(touches, job, plan, display_name(part), doubt);
-    if (!doubt.empty()) t.warn(display_name(part) + ": " + doubt);
+    const Eigen::Matrix3Xd touches = part.touch(plan);
+    check_touched(touches, job, plan, part.name, part.doubt);
+    if (!part.doubt.empty()) t.warn(part.name + ": " + part.doubt);
     return touches;
 }
 
@@ -52,13 +49,13 @@ void check_climb(const std::string& source, const Job& job, int lines, bool surf
     if (!surface_known) throw InputError(source, "--strategy hillclimb needs the surface: --on SURFACE");
 }
 
-TouchPlan climb(Tool& t, const std::string& part, const Scan& surface, const Job& job, const ClimbOptions& options)
+TouchPlan climb(Tool& t, const TouchedPart& part, const Job& job, const ClimbOptions& options)
 {
     const double mm = job.units.mm();
     TouchSearch search = {options.touches, options.spacing * mm, options.method, options.mutations, {}, t.seed()};
     if (options.sharpness) search.sharpness = *options.sharpness / mm;
     try {
-        BestTouches best = best_touches(surface, job, search);
+        BestTouches best = best_touches(*part.scan, job, search);
         t.report()
             .set("candidates", static_cast<std::size_t>(best.candidates))
             .set("evaluations", best.found.evaluations)
@@ -66,21 +63,19 @@ TouchPlan climb(Tool& t, const std::string& part, const Scan& surface, const Job
             .set("band", best.found.error / mm);
         return std::move(best.plan);
     } catch (const InputError& error) {
-        throw InputError(display_name(part), error.what());
+        throw InputError(part.name, error.what());
     }
 }
 
 // Touches where the fit learns most, and warns of places where nothing was found.
-AdaptiveTouches adapt(Tool& t, const std::string& part, const Scan& scan, const Job& job, const TouchNoise& noise,
-                      int most)
+AdaptiveTouches adapt(Tool& t, const TouchedPart& part, const Job& job, int most)
 {
     AdaptiveLimits limits;
     limits.most_touches = most;
     limits.band = job.tolerance;
-    const auto touch = [&](const TouchPlan& plan) { return probe(scan, job, plan, noise, t.seed()); };
-    AdaptiveTouches found = touch_adaptively(job, limits, touch);
+    AdaptiveTouches found = touch_adaptively(job, limits, part.touch);
     for (const Eigen::Vector2d& xy : found.unreachable)
-        t.warn(display_name(part) + ": no surface at " + place(xy, job.units) + "; touched elsewhere");
+        t.warn(part.name + ": no surface at " + place(xy, job.units) + "; touched elsewhere");
     const double band = found.band[found.band.size() - 1] / job.units.mm();
     t.report().set("predicted_band", band).set("within_tolerance", found.enough);
     if (!found.enough)
@@ -102,8 +97,10 @@ int main(int argc, char** argv)
 {
     return tool_main(argc, argv, "Choose the touch points of a job and probe them on a part.", [](Tool& t) {
         const std::string& job_file = t.file("JOB", "The job, JSON");
-        const std::string& part =
-            t.text("--on", "", "SURFACE", "Part to touch: mesh (STL, PLY, OBJ, OFF) or cloud (PCD, PLY, XYZ)");
+        const std::string& on =
+            t.text("--on", "", "SURFACE|gantry:exec:COMMAND",
+                   "Part to touch: mesh (STL, PLY, OBJ, OFF), cloud (PCD, PLY, XYZ), or what stands on a machine, "
+                   "through its driver (docs/driver.md)");
         const auto& part_unit = t.length_unit("--on-units", "Unit of that file, if it is not the job's");
         const std::string& noise_text =
             t.text("--noise", "", "uniform:A|normal:A",
@@ -134,6 +131,8 @@ int main(int argc, char** argv)
                               "Hillclimb: a discard that widens the band by d is accepted with exp(-K d) "
                               "[ln 100 / the probe's accuracy]",
                               Range::at_least(0))};
+        const double& patience = t.number("--patience", 10, "SECONDS",
+                                          "A driver may answer so much later than the touch takes", Range::positive());
         const bool& plan_only = t.flag("--plan-only", "Choose only: x and y, no z but where the job gives it");
         const bool& ascii = t.flag("--ascii", "Text instead of binary");
         t.example("fettle-sample jobs/hammer.json --on scans/hammer.stl --noise normal:0.1 --seed 7 > samples.pcd",
@@ -144,20 +143,21 @@ int main(int argc, char** argv)
         Job job = read_job(job_file);
         const double mm = job.units.mm();
         if (tip) job.probe.tip_radius = *tip * mm;
-        const TouchNoise noise = parse_noise(noise_text, mm);
+        parse_noise(noise_text, mm); // a wrong one shows, touched or not
         if (lines > 0 && job.surface != SurfaceType::freeform)
             throw InputError(display_name(job_file), "--lines is for free-form jobs");
-        std::optional<Scan> scan;
-        if (!part.empty() && (!plan_only || strategy != "wang")) scan.emplace(read_scan(part, job.units, part_unit));
+        std::optional<TouchedPart> part;
+        if (!on.empty() && (!plan_only || strategy != "wang"))
+            part = touched_part(on, job, {part_unit, noise_text, t.seed(), patience});
         TouchPlan plan;
         std::optional<AdaptiveTouches> adapted;
         if (strategy == "adaptive") {
-            if (!scan || plan_only) throw InputError("--strategy adaptive needs a part to touch: --on SURFACE");
-            adapted = adapt(t, part, *scan, job, noise, most_touches);
+            if (!part || plan_only) throw InputError("--strategy adaptive needs a part to touch: --on SURFACE");
+            adapted = adapt(t, *part, job, most_touches);
             plan = adapted->plan;
         } else if (strategy == "hillclimb") {
-            check_climb(display_name(job_file), job, lines, scan.has_value());
-            plan = climb(t, part, *scan, job, climbing);
+            check_climb(display_name(job_file), job, lines, part && part->scan);
+            plan = climb(t, *part, job, climbing);
         } else {
             if (climbing.touches > 0 || climbing.spacing > 0 || climbing.sharpness)
                 throw InputError("--touches, --candidates, --sharpness: only for --strategy hillclimb");
@@ -166,8 +166,8 @@ int main(int argc, char** argv)
         Eigen::Matrix3Xd touches = untouched(plan);
         if (adapted) {
             touches = adapted->touches;
-        } else if (scan && !plan_only) {
-            touches = probe_part(t, part, *scan, job, plan, noise);
+        } else if (part && !plan_only) {
+            touches = probe_part(t, *part, job, plan);
         } else if (!plan_only && touches.row(2).hasNaN()) {
             throw InputError(display_name(job_file), "touch points without z: name the part to touch, --on SURFACE");
         }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace fettle {
 namespace {
@@ -75,18 +76,22 @@ GantryStatus DriverGantry::lift(double commanded_z)
 double DriverGantry::touch_off()
 {
     const Eigen::Vector3d place = status_.commanded;
-    const std::string told = ask("touch_off", kServiceTime);
-    std::string_view rest = told;
-    double radius = 0;
-    try {
-        radius = protocol::number_in(protocol::next_word(rest));
-        accept(protocol::status_in(rest));
-    } catch (const GantryFault& fault) {
-        fail(fault.what());
-    }
+    const double radius = measure("touch_off", kServiceTime);
     back_over(place, "touch_off");
     if (!(radius > 0)) fail("measures a wheel of " + to_text(radius) + " mm");
     return radius;
+}
+
+double DriverGantry::probe(const Eigen::Vector2d& xy, double lowest)
+{
+    const Eigen::Vector3d end(xy.x(), xy.y(), lowest);
+    check_range(end);
+    const std::string command = "probe " + words(end);
+    const double z = measure(command, kServiceTime + (end - status_.commanded).norm() / limits_.speed);
+    back_over(end, command);
+    if (z < lowest - kCorner || z > status_.commanded.z() + kCorner)
+        fail("touches at z " + to_text(z) + " after '" + command + "'");
+    return z;
 }
 
 void DriverGantry::change_wheel()
@@ -120,6 +125,22 @@ std::string DriverGantry::ask(const std::string& command, double duration)
     if (verdict != "ok") fail("makes no sense: '" + line.substr(0, 60) + "'");
     if (answered != number) fail("answers number " + std::string(answered) + " instead of " + number);
     return std::string(rest);
+}
+
+/// A command whose answer is a number, or "none" (NaN), and a status.
+double DriverGantry::measure(const std::string& command, double duration)
+{
+    const std::string told = ask(command, duration);
+    std::string_view rest = told;
+    const std::string_view measured = protocol::next_word(rest);
+    double number = std::numeric_limits<double>::quiet_NaN();
+    try {
+        if (measured != "none") number = protocol::number_in(measured);
+        accept(protocol::status_in(rest));
+    } catch (const GantryFault& fault) {
+        fail(fault.what());
+    }
+    return number;
 }
 
 const GantryStatus& DriverGantry::obey(const std::string& command, double duration)

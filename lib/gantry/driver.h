@@ -30,10 +30,12 @@ class DriverGantry final : public Gantry {
     GantryStatus lift(double commanded_z) override;
     double touch_off() override;
     void change_wheel() override;
+    double probe(const Eigen::Vector2d& xy, double lowest) override;
     GantryStatus status() const override { return status_; }
 
   private:
     std::string ask(const std::string& command, double duration);
+    double measure(const std::string& command, double duration);
     const GantryStatus& obey(const std::string& command, double duration);
     const GantryStatus& move(const std::string& command, const Eigen::Vector3d& target, double duration, bool guarded);
     void accept(const GantryStatus& status); ///< @throws GantryFault with the problem alone

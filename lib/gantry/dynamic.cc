@@ -46,7 +46,7 @@ DynamicGantry::DynamicGantry(HeightField stock, const Job& job, const Machine& m
       account_(&totals_.travel_time)
 {
     reference_.p = status_.commanded;
-    options_.touch_off_resolution = machine.axes[2].encoder;
+    options_.touch_resolution = machine.axes[2].encoder;
     check_range(status_.commanded);
     turn_head(job.theta);
 }

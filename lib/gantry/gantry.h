@@ -41,6 +41,11 @@ class Gantry {
     virtual double touch_off() = 0;
     /// Puts on a new wheel; comes back over its place, at the safe height. Costs time.
     virtual void change_wheel() = 0;
+    /// Touches the part with the probe, whose tip stands at the tool point: up to the safe height, across, down in
+    /// search of the surface, fast and then slowly, and back up to the safe height. Costs time.
+    /// @param lowest  z, it goes no deeper
+    /// @return  z of the tip's lowest point at the touch; NaN if it met nothing
+    virtual double probe(const Eigen::Vector2d& xy, double lowest) = 0;
     virtual GantryStatus status() const = 0;
 };
 

@@ -54,6 +54,11 @@ class Server {
             const double radius = gantry_.touch_off();
             return to_text(radius) + " " + protocol::text_of(gantry_.status());
         }
+        if (command == "probe") {
+            const Eigen::Vector3d to = point();
+            const double z = gantry_.probe(to.head<2>(), to.z());
+            return (std::isnan(z) ? "none" : to_text(z)) + " " + protocol::text_of(gantry_.status());
+        }
         if (command == "change_wheel") {
             gantry_.change_wheel();
             return protocol::text_of(gantry_.status());

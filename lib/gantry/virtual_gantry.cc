@@ -3,7 +3,9 @@
 #include "core/error.h"
 #include "core/text.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -18,9 +20,10 @@ VirtualGantry::VirtualGantry(HeightField stock, const Job& job, const VirtualOpt
     : stock_(std::move(stock)), wheel_(stock_, job.wheel.width, rim), spring_{job.force.preload, job.force.stiffness},
       options_(options), R_working_machine_(rotation_working_machine(job.theta)),
       removal_(job.removal * options.removal_factor), new_radius_(job.wheel.radius), width_(job.wheel.width),
-      safe_height_(job.safe_height), most_force_(job.force.max), radius_(new_radius_), known_radius_(new_radius_)
+      safe_height_(job.safe_height), tip_radius_(job.probe.tip_radius), most_force_(job.force.max),
+      radius_(new_radius_), known_radius_(new_radius_)
 {
-    check_positive(options_.touch_off_resolution, "touch-off resolution");
+    check_positive(options_.touch_resolution, "resolution of a touch");
     check_positive(options_.grinding_ratio, "grinding ratio");
     check_positive(options_.removal_factor, "removal factor");
     check_positive(options_.substep, "step");
@@ -34,8 +37,24 @@ double VirtualGantry::touch_off()
     go_to_safe_height();
     spend(options_.touch_off_time, totals_.service_time);
     ++totals_.touch_offs;
-    known_radius_ = std::round(radius_ / options_.touch_off_resolution) * options_.touch_off_resolution;
+    known_radius_ = counted(radius_);
     return known_radius_;
+}
+
+double VirtualGantry::probe(const Eigen::Vector2d& xy, double lowest)
+{
+    travel({xy.x(), xy.y(), safe_height_});
+    const double height = height_under_ball(stock_, R_working_machine_ * xy, tip_radius_);
+    const bool touched = height >= lowest;
+    const ProbingMachine& speeds = options_.probing;
+    const double depth = safe_height_ - (touched ? height : lowest);
+    spend(depth / speeds.approach + depth / speeds.travel + speeds.settle, totals_.service_time);
+    return touched ? counted(height) : std::numeric_limits<double>::quiet_NaN();
+}
+
+double VirtualGantry::counted(double length) const
+{
+    return std::round(length / options_.touch_resolution) * options_.touch_resolution;
 }
 
 void VirtualGantry::change_wheel()

@@ -6,6 +6,7 @@
 #include "removal/height_field.h"
 #include "removal/preston.h"
 #include "removal/wheel.h"
+#include "sampling/order.h"
 
 namespace fettle {
 
@@ -13,8 +14,9 @@ namespace fettle {
 struct VirtualOptions {
     double touch_off_time = 10;     ///< to P0 beside the work and back, two slow touches, s
     double wheel_change_time = 120; ///< by hand, s
-    /// A touch at P0 tells the radius to one count of the Z drive's encoder, mm.
-    double touch_off_resolution = 0.005;
+    /// A touch tells a height, or the radius at P0, to one count of the Z drive's encoder, mm.
+    double touch_resolution = 0.005;
+    ProbingMachine probing; ///< its speeds: in search of the surface `approach`, all the way from the safe height
     /// Volume of stock ground off per volume of wheel (G ratio). Common wheels reach 20 to 80 on steel and iron.
     double grinding_ratio = 60;
     /// The stock's removal coefficient over the one that the job states.
@@ -47,6 +49,7 @@ class VirtualGantry : public Gantry {
 
     double touch_off() override;
     void change_wheel() override;
+    double probe(const Eigen::Vector2d& xy, double lowest) override;
     GantryStatus status() const override { return status_; }
 
     virtual protocol::Limits limits() const = 0;
@@ -64,6 +67,7 @@ class VirtualGantry : public Gantry {
     /// The rim loses its share. @throws InputError if nothing is left of it
     void wear(double removed_volume);
     void spend(double duration, double& account);
+    double counted(double length) const;                    ///< by the Z drive's encoder
     double loss() const { return known_radius_ - radius_; } ///< the rim's height over the drives' belief
 
     HeightField stock_;
@@ -75,6 +79,7 @@ class VirtualGantry : public Gantry {
     double new_radius_;   ///< of a new wheel, mm
     double width_;        ///< mm
     double safe_height_;  ///< z, mm
+    double tip_radius_;   ///< of the probe, mm
     double most_force_;   ///< F_max, guards the way down, N
     double radius_;       ///< now, mm
     double known_radius_; ///< at the last touch-off, mm

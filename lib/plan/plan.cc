@@ -145,6 +145,13 @@ Plan make_plan(const Job& job, const Surface& surface)
 
 Plan read_plan(const std::string& path) { return parse_plan(json::Reader::open(path)); }
 
+Work read_work(const std::string& path)
+{
+    json::Reader reader = json::Reader::open(path);
+    if (reader.choice("kind", {"job", "plan"}) == "job") return {parse_job(reader), false};
+    return {parse_plan(reader).job, true};
+}
+
 Plan parse_plan(json::Reader reader)
 {
     reader.expect_kind("plan");

@@ -41,6 +41,14 @@ Plan make_plan(const Job& job, const Surface& surface);
 
 Plan read_plan(const std::string& path);
 Plan parse_plan(json::Reader reader);
+
+/// What a machine is set up for: a plan's job, or a job for which there is no plan yet.
+struct Work {
+    Job job;
+    bool planned = false;
+};
+/// Reads a plan or a job.
+Work read_work(const std::string& path);
 json::Value to_json(const Plan& plan);
 
 } // namespace fettle

@@ -41,6 +41,33 @@ HeightField empty_height_field(const Eigen::Matrix2d& box, const Eigen::Vector2d
     return field;
 }
 
+double height_under_ball(const HeightField& stock, const Eigen::Vector2d& xy, double radius)
+{
+    const Eigen::Array2d at = (xy - stock.origin).array() / stock.cell - 0.5; // in cells, from the first centre
+    const Eigen::Array2d count(static_cast<double>(stock.columns()), static_cast<double>(stock.rows()));
+    double height = std::numeric_limits<double>::quiet_NaN();
+    if (!((at > -1).all() && (at < count).all())) return height;
+    const Eigen::Array2d last = count - 1, low = at.floor().max(0).min((last - 1).max(0));
+    if (radius == 0) {
+        const Eigen::Array2d s = (at - low).max(0).min(1), least = low, most = (low + 1).min(last);
+        const auto z = [&](double i, double j) {
+            return stock.z(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+        };
+        return (1 - s.y()) * ((1 - s.x()) * z(least.x(), least.y()) + s.x() * z(most.x(), least.y())) +
+               s.y() * ((1 - s.x()) * z(least.x(), most.y()) + s.x() * z(most.x(), most.y()));
+    }
+    const double reach = radius / stock.cell;
+    const Eigen::Array2<Eigen::Index> first = (at - reach).ceil().max(0).cast<Eigen::Index>(),
+                                      end = ((at + reach).floor() + 1).min(count).cast<Eigen::Index>();
+    for (Eigen::Index j = first.y(); j < end.y(); ++j)
+        for (Eigen::Index i = first.x(); i < end.x(); ++i) {
+            const double rise = radius * radius - (stock.centre(i, j) - xy).squaredNorm();
+            const double z = stock.z(i, j) - radius + std::sqrt(std::max(rise, 0.0));
+            if (!(height >= z)) height = z; // no material never counts
+        }
+    return height;
+}
+
 double volume_between(const HeightField& before, const HeightField& after)
 {
     const Eigen::ArrayXXd depth = before.z - after.z;

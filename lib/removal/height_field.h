@@ -36,11 +36,20 @@ HeightField empty_height_field(const Eigen::Matrix2d& box, const Eigen::Vector2d
 /// touch of a cloud finds there. Other cells stay.
 void lay(HeightField& field, const Scan& scan);
 
-/// The stock over the anomaly B and as far around it as the wheel reaches: its radius along Y_w, half its width along
-/// X_w.
+/// What a stock lies under: B, which is ground, or all of S, which is touched.
+enum class Extent { anomaly, sampling };
+
+/// The stock over the anomaly B, or over S if the job has it, and as far around as the wheel reaches: its radius along
+/// Y_w, half its width along X_w.
 /// @param source  the scan's name for messages
 /// @throws InputError as above, or if the scan has a hole inside B
-HeightField height_field(const Scan& scan, const Job& job, double cell, const std::string& source = "stock");
+HeightField height_field(const Scan& scan, const Job& job, double cell, const std::string& source = "stock",
+                         Extent extent = Extent::anomaly);
+
+/// z of the lowest point of a ball that came down on the stock; a ball of radius 0 meets the surface that is bilinear
+/// between the cells' centres.
+/// @param xy  of its centre, W   @return  NaN if there is no material
+double height_under_ball(const HeightField& stock, const Eigen::Vector2d& xy, double radius);
 
 /// ∫ (before − after), mm³. The grids must be the same.
 double volume_between(const HeightField& before, const HeightField& after);

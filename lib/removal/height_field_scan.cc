@@ -144,10 +144,10 @@ void require_material(const HeightField& field, const Polygon& B, const Units& u
                                  " % of the anomaly, first at x " + number(place.x()) + ", y " + number(place.y()));
 }
 
-HeightField field_around(const Polygon& B, const Job& job, double cell)
+HeightField field_around(const Polygon& region, const Job& job, double cell)
 try {
     Eigen::Matrix2d box;
-    box << B.rowwise().minCoeff(), B.rowwise().maxCoeff();
+    box << region.rowwise().minCoeff(), region.rowwise().maxCoeff();
     return empty_height_field(box, {job.wheel.width / 2, job.wheel.radius}, job.theta, cell);
 } catch (const InputError& error) {
     throw InputError(job.source, error.what());
@@ -163,10 +163,10 @@ void lay(HeightField& field, const Scan& scan)
         lay_cloud(field, scan);
 }
 
-HeightField height_field(const Scan& scan, const Job& job, double cell, const std::string& source)
+HeightField height_field(const Scan& scan, const Job& job, double cell, const std::string& source, Extent extent)
 {
-    const Polygon B = boundaries(job).anomaly;
-    HeightField field = field_around(B, job, cell);
+    const auto [B, S] = boundaries(job);
+    HeightField field = field_around(extent == Extent::sampling && S.size() > 0 ? S : B, job, cell);
     lay(field, scan);
     require_material(field, B, job.units, source);
     return field;

@@ -1,5 +1,5 @@
-# A conversation by hand, line by line: what the machine can do, a way down on a flat part, a step, an unknown command, and the
-# end. References: the protocol; the part's height, 5 mm.
+# A conversation by hand, line by line: what the machine can do, a way down on a flat part, a step, an unknown command, a touch
+# on the hill of 0.01 mm and one that meets nothing, and the end. References: the protocol; the part's height, 5 mm.
 # shellcheck source=tests/fettle-grind/stock.bash
 . "$HERE/../fettle-grind/stock.bash"
 make_job 0
@@ -13,7 +13,9 @@ answers=$(fettle-gantry-virtual plan.json --stock stock.stl --cell 0.2 --machine
 6 dance
 7 lift 8
 8 touch_off
-9 quit
+9 probe 0.5 -0.5 2
+10 probe 0 0 8
+11 quit
 END
 )
 awk 'NR == 1 && !($1 == 1 && $2 == "ok" && $3 " " $4 == "fettle-gantry 1" && NF == 12 && $5 < $6) { exit 1 }
@@ -23,8 +25,10 @@ awk 'NR == 1 && !($1 == 1 && $2 == "ok" && $3 " " $4 == "fettle-gantry 1" && NF 
     NR == 6 && $0 != "6 error no such command: dance" { exit 1 }
     NR == 7 && !($6 > 7.99 && $6 < 8.01 && $8 < 0.5 && $9 > 0.7) { exit 1 }
     NR == 8 && !(NF == 10 && $3 > 9.99 && $3 < 10.01) { exit 1 }
+    NR == 9 && !(NF == 10 && $3 > 5.009 && $3 < 5.011 && $7 > 19.99) { exit 1 }
+    NR == 10 && $3 != "none" { exit 1 }
     $1 != NR { exit 1 }
-    END { exit NR != 9 }' <<< "$answers"
+    END { exit NR != 11 }' <<< "$answers"
 grep -q '^FIELDS x y z' <(head -c 500 ground.pcd)
 
 # A client that is gone: the driver ends by itself.

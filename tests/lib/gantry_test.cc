@@ -222,7 +222,7 @@ TEST(QuasiStatic, WheelWearsByTheGrindingRatio)
     EXPECT_NEAR(std::numbers::pi * 6.4 * (25.4 * 25.4 - r * r), lost, 1e-4 * lost);
 
     const double measured = gantry.touch_off();
-    EXPECT_LE(std::abs(measured - r), options.touch_off_resolution / 2 + 1e-12);
+    EXPECT_LE(std::abs(measured - r), options.touch_resolution / 2 + 1e-12);
     EXPECT_EQ(gantry.totals().touch_offs, 1);
     gantry.change_wheel();
     EXPECT_EQ(gantry.true_radius(), 25.4);
