@@ -2,6 +2,9 @@
 
 #include "core/error.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -41,12 +44,22 @@ void add_losses(const WheelPress& press, const ContactCells& cells, const Matrix
     const double side = spacing_of(press.places());
     const SquareMeans lost_on(cells, depth, side);
     const Eigen::Vector2d touched = press.reach().array() + side / 2;
-    for (std::size_t i = 0; i < press.under().size(); ++i) {
-        const Eigen::Vector2d place = press.places().col(static_cast<Index>(i)).head<2>();
-        if ((place.cwiseAbs().array() > touched.array()).any()) continue;
-        const Index surfel = press.under()[i];
-        losses.push_back({surfel, point, lost_on.about(place) * surfels.normal.col(surfel).dot(up)});
+    const std::size_t first = losses.size();
+    std::vector<Index> under;
+    for (Index i = 0; i < press.places().cols(); ++i) {
+        if ((press.places().col(i).head<2>().cwiseAbs().array() > touched.array()).any()) continue;
+        losses.push_back({press.under()[static_cast<std::size_t>(i)], point, 0});
+        under.push_back(i);
     }
+    constexpr std::size_t kTogether = 1024; // a share of work worth a thread
+    using Range = tbb::blocked_range<std::size_t>;
+    tbb::parallel_for(Range(0, under.size(), kTogether), [&](const Range& range) {
+        for (std::size_t k = range.begin(); k < range.end(); ++k) {
+            BeltLoss& loss = losses[first + k];
+            loss.depth =
+                lost_on.about(press.places().col(under[k]).head<2>()) * surfels.normal.col(loss.surfel).dot(up);
+        }
+    });
 }
 
 } // namespace

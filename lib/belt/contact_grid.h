@@ -25,11 +25,6 @@ struct ContactCells {
     }
 };
 
-/// How heights between surfels are estimated from the nearest ones: weights by the inverse square of the distance
-/// (Shepard 1968), or ordinary kriging with the variogram γ(d) = d, which also sees how they lie about the place
-/// (Cressie 1993, 3.2).
-enum class Gridding { shepard, kriging };
-
 /// How far the surfels looked at go, over the cells: neighbours for the cells at the border.
 constexpr double kBeside = 1.2;
 
@@ -39,10 +34,8 @@ constexpr double kBeside = 1.2;
 Eigen::Matrix3Xd facing(const Surfels& surfels, std::vector<Eigen::Index>& which, const Eigen::Isometry3d& T_part_tool,
                         const ContactCells& cells, double deepest);
 
-/// Heights at the middles of the cells, mm; NaN where no point is near: nearer than twice the mean distance between
-/// neighbours.
-/// @param points  x, y, height
-Eigen::MatrixXd heights_on(const ContactCells& cells, const Eigen::Matrix3Xd& points, Gridding gridding);
+/// The least box around points, as seen along z.
+Eigen::AlignedBox2d box_over(const Eigen::Matrix3Xd& points);
 
 /// The mean distance between neighbours of points that are spread evenly, mm.
 double spacing_of(const Eigen::Matrix3Xd& points);
@@ -56,11 +49,16 @@ class SquareMeans {
     double about(const Eigen::Vector2d& place) const;
 
   private:
-    double until(double x, double y) const;
+    /// A place along one axis: in which cell, and the part of it that is before the place.
+    struct Along {
+        Eigen::Index cell;
+        double part;
+    };
+    double until(const Along& x, const Along& y) const;
 
     ContactCells cells_;
-    double side_;
-    Eigen::MatrixXd sums_; ///< of all cells before each corner
+    Eigen::Array2d cells_each_, middle_, half_; ///< cells a mm; half of the grid and of a square, in cells
+    Eigen::MatrixXd sums_;                      ///< of all cells before each corner
 };
 
 } // namespace fettle

@@ -50,7 +50,12 @@ void WheelPress::press_on(const Eigen::Isometry3d& T_part_tool, const Pressing& 
 {
     const ContactCells& cells = press_.cells;
     const double deepest = wheel_.layer.thickness;
-    index_.near(T_part_tool.translation(), std::hypot(kBeside * cells.half().norm(), deepest) + farthest_, under_);
+    Eigen::Vector3d beside;
+    beside << kBeside * cells.half(), std::hypot(kBeside * cells.half().norm(), deepest);
+    Eigen::Vector3d below(-beside);
+    below.z() = -deepest;
+    const Eigen::Vector3d stock = Eigen::Vector3d::Constant(farthest_);
+    index_.in_box(T_part_tool, {below - stock, beside + stock}, under_);
     places_ = facing(surfels_, under_, T_part_tool, cells, deepest);
     press_.height = heights_on(cells, places_, gridding);
     gap_.resize(cells.rows, cells.columns);

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "belt/contact_grid.h"
 #include "belt/contact_wheel.h"
+#include "belt/gridding.h"
 #include "belt/layer_contact.h"
 #include "belt/surfel_index.h"
 

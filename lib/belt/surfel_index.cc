@@ -27,14 +27,22 @@ SurfelIndex::SurfelIndex(const Surfels& surfels, double side) : side_(side)
     }
 }
 
-void SurfelIndex::near(const Eigen::Vector3d& place, double reach, std::vector<Index>& result) const
+void SurfelIndex::in_box(const Eigen::Isometry3d& T_part_frame, const Eigen::AlignedBox3d& box,
+                         std::vector<Index>& result) const
 {
     result.clear();
-    const Cube first = cube_of(place.array() - reach), last = cube_of(place.array() + reach);
+    const Eigen::Matrix3d turned = T_part_frame.linear().cwiseAbs();
+    const Eigen::Vector3d middle = T_part_frame * box.center(), around = turned * box.sizes() / 2;
+    // A cube's middle is no farther from the box's than this where they meet: seen along the box's sides.
+    const Eigen::Vector3d most = box.sizes() / 2 + turned.transpose() * Eigen::Vector3d::Constant(side_ / 2);
+    const Eigen::Matrix3d to_frame = T_part_frame.linear().transpose();
+    const Cube first = cube_of(middle - around), last = cube_of(middle + around);
     Cube cube;
     for (cube.x() = first.x(); cube.x() <= last.x(); ++cube.x())
         for (cube.y() = first.y(); cube.y() <= last.y(); ++cube.y())
             for (cube.z() = first.z(); cube.z() <= last.z(); ++cube.z()) {
+                const Eigen::Vector3d at = (cube.cast<double>().array() + 0.5) * side_;
+                if (((to_frame * (at - middle)).cwiseAbs().array() > most.array()).any()) continue;
                 const auto found = range_.find(key(cube));
                 if (found == range_.end()) continue;
                 result.insert(result.end(), order_.begin() + static_cast<std::ptrdiff_t>(found->second.first),

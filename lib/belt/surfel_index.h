@@ -3,6 +3,7 @@
 #include "belt/surfel.h"
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include <cstdint>
 #include <unordered_map>
@@ -17,8 +18,9 @@ class SurfelIndex {
     /// @param side  of the cubes, mm: about the size of what will be asked for
     SurfelIndex(const Surfels& surfels, double side);
 
-    /// All surfels within `reach` of a place, and others near, in the order of the cubes.
-    void near(const Eigen::Vector3d& place, double reach, std::vector<Eigen::Index>& result) const;
+    /// All surfels in a box that is given in a frame, and others near, in the order of the cubes.
+    void in_box(const Eigen::Isometry3d& T_part_frame, const Eigen::AlignedBox3d& box,
+                std::vector<Eigen::Index>& result) const;
 
   private:
     using Cube = Eigen::Matrix<std::int64_t, 3, 1>;

@@ -2,7 +2,7 @@
 // begun from the two before it (to 1e-6 and 1e-4) or from nothing. And heights between surfels of a wavy ground, by
 // Shepard's weights and by kriging: time, and the rms error in micrometres.
 
-#include "belt/contact_grid.h"
+#include "belt/gridding.h"
 #include "belt/layer_contact.h"
 
 #include <benchmark/benchmark.h>
