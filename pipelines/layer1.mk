@@ -1,4 +1,4 @@
-# How layer 1 is ground: at the job's feed, or by feed-rate control (Wang 2007, 6.1.4.2). Wang's three parts on the full-scale
+# How layer 1 is ground: at the job's feed, by feed-rate control or by force control (Wang 2007, 6.1.4.2). Wang's three parts on the full-scale
 # machine, in stock that yields half, once and one and a half times as fast as the job says.
 #
 #   make -f pipelines/layer1.mk -j2                      the table; exit 1 if a figure is missed
@@ -10,7 +10,7 @@ B       ?= build
 PARTS   ?= 1 2 3
 FACTORS ?= 0.5 1 1.5
 LAYER1  ?= $(B)/layer1
-CONTROLS := constant feed
+CONTROLS := constant feed force
 JOB      = samples/jobs/wang$(1).json
 
 .PHONY: layer1

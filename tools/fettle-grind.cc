@@ -1,7 +1,9 @@
 #include "cli/tool.h"
 #include "cloud/pcd.h"
 #include "core/file.h"
+#include "core/text.h"
 #include "gantry/driver.h"
+#include "gantry/loops.h"
 #include "gantry/make_virtual.h"
 #include "job/plausible.h"
 #include "plan/plan.h"
@@ -13,6 +15,7 @@
 #include <chrono>
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <ostream>
 
 using namespace fettle;
@@ -60,6 +63,23 @@ void report_totals(json::Value& out, const GrindTotals& totals)
         .set("service_time", totals.service_time);
 }
 
+// How the machine's controllers were tuned: on stderr with -v, and in the report.
+void tell_loops(Tool& t, const std::vector<Loop>& loops)
+{
+    std::vector<json::Value> list;
+    for (const Loop& loop : loops) {
+        const double phase = loop.margins.phase * 180 / std::numbers::pi;
+        t.note("loop " + loop.name + ": bandwidth " + to_short_text(loop.bandwidth) + " rad/s, gain margin " +
+               to_short_text(loop.margins.gain) + ", phase margin " + to_short_text(phase) + "\u00B0");
+        list.push_back(json::Value()
+                           .set("loop", loop.name)
+                           .set("bandwidth", loop.bandwidth)
+                           .set("gain_margin", loop.margins.gain)
+                           .set("phase_margin_deg", phase));
+    }
+    t.report().set("loops", list);
+}
+
 } // namespace
 
 int main(int argc, char** argv)
@@ -75,8 +95,9 @@ int main(int argc, char** argv)
         const double& patience = t.number("--patience", 10, "SECONDS",
                                           "A driver may answer so much later than the move takes", Range::positive());
         const std::string& layer_1 =
-            t.choice("--layer-1", "constant", {"constant", "feed"},
-                     "Layer 1 at the job's feed, covering after covering; or with controlled feed, pass after pass");
+            t.choice("--layer-1", "constant", {"constant", "feed", "force"},
+                     "Layer 1 at the job's feed, covering after covering; or pass after pass, with controlled feed or "
+                     "controlled force");
         const double& removal =
             t.number("--removal-factor", 1, "FACTOR", "The virtual stock yields so many times as fast as the job says",
                      Range::positive());
@@ -103,7 +124,7 @@ int main(int argc, char** argv)
             height_field(scan, plan.job, cell_of(plan.job, cell ? *cell * units.mm() : 0), display_name(stock_file));
         std::ostream* trace_out = trace.empty() ? nullptr : &t.output_file(trace); // a wrong name shows before the work
         RunOptions options;
-        options.layer_1 = layer_1 == "feed" ? Layer1::feed : Layer1::constant;
+        options.layer_1 = layer_1 == "feed" ? Layer1::feed : layer_1 == "force" ? Layer1::force : Layer1::constant;
 
         std::unique_ptr<VirtualGantry> simulated;
         std::unique_ptr<DriverGantry> driver;
@@ -122,6 +143,7 @@ int main(int argc, char** argv)
         report_run(t.report(), run, time, units);
         t.report().set("removed_volume", volume_between(stock, ground) / std::pow(units.mm(), 3));
         if (simulated) report_totals(t.report(), simulated->totals());
+        if (!machine.empty()) tell_loops(t, loops_of(read_machine(machine), plan.job));
         const double computing = std::chrono::duration<double>(Clock::now() - begun).count();
         t.note("machine time " + std::to_string(time) + " s, computing time " + std::to_string(computing) +
                " s, ratio " + std::to_string(time / computing));

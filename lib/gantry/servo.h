@@ -3,6 +3,10 @@
 #include "gantry/exact_step.h"
 #include "gantry/machine.h"
 
+#include <complex>
+#include <functional>
+#include <numbers>
+
 namespace fettle {
 
 /// What a drive is asked to do at the beginning of a period: the acceleration is kept for the whole of it.
@@ -20,6 +24,16 @@ struct ServoGains {
 /// Largest |1 / (1 + L)| of the sampled loop over all frequencies. M means a gain margin of at least M / (M − 1) and a
 /// phase margin of at least 2 asin(1 / 2M) (Åström and Murray 2008, 9.3).
 double sensitivity_peak(const ServoGains& gains, double drive_gain, const Oscillator& load, double period);
+
+/// What a loop bears before it swings without end.
+struct Margins {
+    double gain = 1e6;               ///< factor on its gain, upwards
+    double phase = std::numbers::pi; ///< rad
+    double sensitivity = 0;          ///< the peak
+};
+/// @param open_loop  L(z), stable when closed
+Margins margins(const std::function<std::complex<double>(std::complex<double>)>& open_loop);
+Margins margins(const ServoGains& gains, double drive_gain, const Oscillator& load, double period);
 
 /// The stated margin of every loop: gain 3, phase 38.9°.
 inline constexpr double kMostSensitivity = 1.5;

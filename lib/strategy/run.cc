@@ -4,6 +4,7 @@
 #include "core/text.h"
 #include "plan/tool_path.h"
 #include "strategy/feed_control.h"
+#include "strategy/force_control.h"
 #include "strategy/wheel_wear.h"
 
 #include <algorithm>
@@ -19,7 +20,7 @@ constexpr int kStepsPerTell = 256;
 LayerSwitching::Settings settings_of(const Plan& plan, const RunOptions& options)
 {
     LayerSwitching::Settings settings = strategy_settings(plan);
-    settings.finish_passes = options.layer_1 == Layer1::feed;
+    settings.finish_passes = options.layer_1 != Layer1::constant;
     return settings;
 }
 
@@ -27,7 +28,9 @@ class Runner {
   public:
     Runner(const Plan& plan, Gantry& gantry, const RunOptions& options)
         : plan_(plan), gantry_(gantry), options_(options), path_(plan.job, plan.surface, plan.passes, plan.step),
-          strategy_(path_.passes(), settings_of(plan, options)), control_(plan.job, strategy_settings(plan).remaining),
+          strategy_(path_.passes(), settings_of(plan, options)),
+          feed_control_(plan.job, strategy_settings(plan).remaining),
+          force_control_(plan.job, strategy_settings(plan).remaining),
           wear_(plan.job, strategy_settings(plan).remaining)
     {
     }
@@ -50,7 +53,8 @@ class Runner {
     }
 
   private:
-    bool one_covering() const { return options_.layer_1 == Layer1::feed; }
+    bool one_covering() const { return options_.layer_1 != Layer1::constant; }
+    bool by_force(int layer) const { return layer == 1 && options_.layer_1 == Layer1::force; }
     double raised(int layer) const { return reference_offset(plan_.layers, layer); }
     const Eigen::Vector3d& reference(const Place& place) const
     {
@@ -65,8 +69,8 @@ class Runner {
             const GantryStatus status = perform(action);
             if (strategy_.counts().steps % kStepsPerTell == 0)
                 tell(progress, double(action.to.pass) / double(path_.passes().size()));
-            action = strategy_.next(
-                {status.force + plan_.job.force.stiffness * short_of_, status.deflection + short_of_, status.time});
+            action =
+                strategy_.next({status.force + plan_.job.force.stiffness * short_of_, remaining(status), status.time});
         }
     }
 
@@ -80,35 +84,50 @@ class Runner {
             status = travel(reference(action.to), action.layer);
             break;
         case Action::Kind::lift:
+            pressed_ = 0;
             status = gantry_.lift(tool_point(action.layer).z());
             break;
         case Action::Kind::grind:
             if (from.pass != action.to.pass) return cross(action);
+            if (by_force(action.layer)) pressed_ = force_control_.press(action.to.point, strategy_.direction());
             status = grind(reference(action.to), action.layer);
             break;
         default:
             break;
         }
         noticed(status, action.layer);
+        if (by_force(action.layer)) learn(action, status);
         record(action, status, action.kind == Action::Kind::grind ? feed_ : 0);
         return status;
     }
 
+    void learn(const Action& action, const GantryStatus& status)
+    {
+        if (action.event != Event::none) force_control_.begin_pass(path_.passes()[action.to.pass].along);
+        if (action.kind != Action::Kind::grind) return force_control_.set_down();
+        const double impulse = (last_force_ + status.force) / 2 * (status.time - last_time_);
+        force_control_.arrived(action.to.point, remaining(status), impulse);
+    }
+
+    // Of the stock over the reference surface.
+    double remaining(const GantryStatus& status) const { return status.deflection + short_of_ - pressed_; }
+
     // Where the tool stands in this layer.
     Eigen::Vector3d tool_point(int layer) const
     {
-        return standing_ + (raised(layer) - lost_) * Eigen::Vector3d::UnitZ();
+        return standing_ + (raised(layer) - lost_ - pressed_) * Eigen::Vector3d::UnitZ();
     }
 
     GantryStatus travel(const Eigen::Vector3d& reference, int layer)
     {
+        pressed_ = 0;
         standing_ = reference;
         return gantry_.travel(tool_point(layer));
     }
 
     GantryStatus grind(const Eigen::Vector3d& reference, int layer)
     {
-        if (layer == 1 && one_covering()) return grind_controlled(reference);
+        if (layer == 1 && options_.layer_1 == Layer1::feed) return grind_controlled(reference);
         standing_ = reference;
         feed_ = plan_.job.feed.rate;
         return gantry_.grind(tool_point(layer), feed_);
@@ -123,10 +142,10 @@ class Runner {
         const double begun = status.time;
         double peak = 0;
         for (double gone = 0; gone < length && status.force <= plan_.job.force.max;) {
-            gone = std::min(gone + control_.feed() * control_.period(), length);
+            gone = std::min(gone + feed_control_.feed() * feed_control_.period(), length);
             standing_ = from + way * (gone / length);
-            const GantryStatus next = gantry_.grind(tool_point(1), control_.feed());
-            control_.update(status.deflection, next.deflection, next.time - status.time);
+            const GantryStatus next = gantry_.grind(tool_point(1), feed_control_.feed());
+            feed_control_.update(status.deflection, next.deflection, next.time - status.time);
             status = next;
             peak = std::max(peak, status.peak_force);
             feed_ = gone / (status.time - begun);
@@ -141,6 +160,8 @@ class Runner {
     {
         const Eigen::Vector3d a = standing_, b = reference(action.to);
         const int pieces = std::max(1, int(std::ceil((b - a).head<2>().norm() / plan_.step)));
+        pressed_ = 0;
+        force_control_.begin_pass(path_.passes()[action.to.pass].along);
         // The path between is a parabola through the tool point half-way: a straight line would cut into a crown.
         double crown = 0;
         if (pieces > 1) {
@@ -177,6 +198,7 @@ class Runner {
         wear_.ground(status.force, ground);
         if (one_covering()) lost_ = wear_.loss();
         last_time_ = status.time;
+        last_force_ = status.force;
     }
 
     void measure_wheel_if_due(const Action& action)
@@ -226,15 +248,17 @@ class Runner {
     RunOptions options_;
     ToolPath path_;
     LayerSwitching strategy_;
-    FeedControl control_;
+    FeedControl feed_control_;
+    ForceControl force_control_;
     WheelWear wear_;
     GrindRun result_;
     Place at_;
     Eigen::Vector3d standing_ = Eigen::Vector3d::Zero(); ///< tool point in layer 1 where the tool stands
     double lost_ = 0;     ///< by the wheel since it was measured, mm; only where one covering has to be enough
+    double pressed_ = 0;  ///< how far the drives are below the reference for the force that is wanted, mm
     double feed_ = 0;     ///< of the last step, mm/s
     double short_of_ = 0; ///< how far above its reference, mm
-    double grinding_time_ = 0, measured_at_ = 0, last_time_ = 0;
+    double grinding_time_ = 0, measured_at_ = 0, last_time_ = 0, last_force_ = 0;
 };
 
 } // namespace

@@ -24,8 +24,9 @@ struct TraceRow {
 };
 
 /// How layer 1 is ground: at the job's feed, covering after covering until all is within tolerance; or pass after pass
-/// until each is, the last stroke by feed-rate control (feed_control.h).
-enum class Layer1 { constant, feed };
+/// until each is, the last stroke by feed-rate control (feed_control.h), or every stroke but the first by force control
+/// (force_control.h).
+enum class Layer1 { constant, feed, force };
 
 struct RunOptions {
     Layer1 layer_1 = Layer1::constant;

@@ -190,6 +190,12 @@ TEST(Tuning, HoldsItsMargins)
                 EXPECT_LE(sensitivity_peak(gains, of.gain, load, 1e-3), kMostSensitivity);
                 EXPECT_TRUE(stable(of, gains, load, 2.99, 1e-3));
                 EXPECT_TRUE(stable(of, gains, load, 0.61, 1e-3));
+                const Margins told = margins(gains, of.gain, load, 1e-3);
+                EXPECT_NEAR(told.sensitivity, sensitivity_peak(gains, of.gain, load, 1e-3), 1e-3);
+                EXPECT_GE(told.gain, 3);
+                EXPECT_GE(told.phase, 2 * std::asin(1 / (2 * kMostSensitivity)));
+                EXPECT_TRUE(stable(of, gains, load, 0.97 * told.gain, 1e-3));
+                EXPECT_FALSE(stable(of, gains, load, 1.03 * told.gain, 1e-3));
             }
             EXPECT_FALSE(stable(of, gains, free, 400, 1e-3));
         }

@@ -1,6 +1,7 @@
-// Layer 1 in one covering: strokes of a pass, the feed-rate controller, the wheel's wear between two measurements.
+// Layer 1 in one covering: strokes of a pass, feed-rate and force control, the wheel's wear between two measurements.
 
 #include "strategy/feed_control.h"
+#include "strategy/force_control.h"
 #include "strategy/layer_switching.h"
 #include "strategy/wheel_wear.h"
 
@@ -129,6 +130,70 @@ TEST(FeedControl, KeepsTheFeedWhereAnotherStrokeIsDue)
     EXPECT_EQ(control.feed(), job.feed.rate);
     control.update(0, 0, 0.02); // air
     EXPECT_EQ(control.feed(), job.feed.rate);
+}
+
+/// Strokes to and fro over a flat stock that stands `high` over the reference until no more than `limit` is left in the
+/// middle. Each
+/// step is a balance of Preston's law and the spring: (stock − r) v = q k (r + u). Returns how many, and the lowest r.
+std::pair<int, double> strokes_by_force(const Job& job, double q, double high, double limit, bool pressed)
+{
+    ForceControl control(job, limit);
+    std::vector<double> along(100), z(100, high);
+    for (std::size_t n = 0; n < along.size(); ++n) along[n] = 0.5 * double(n);
+    control.begin_pass(along);
+    const double k = job.force.stiffness, v = job.feed.rate;
+    double lowest = high;
+    for (int stroke = 1; stroke < 100; ++stroke) {
+        double most = 0;
+        for (int i = 0; i < 100; ++i) {
+            const int n = stroke % 2 == 1 ? i : 99 - i;
+            const double u = pressed ? control.press(n, stroke % 2 == 1 ? 1 : -1) : 0;
+            double& stock = z[std::size_t(n)];
+            const double r = std::max((stock * v - q * k * u) / (v + q * k), -u);
+            stock = std::min(stock, r);
+            if (pressed) control.arrived(n, r, std::max(k * (r + u), 0.0) * 0.5 / v);
+            if (n >= 30 && n < 70) most = std::max(most, r); // at the ends of a stroke the press begins and ends
+            lowest = std::min(lowest, r);
+        }
+        if (most <= limit) return {stroke, lowest};
+    }
+    return {100, lowest};
+}
+
+TEST(ForceControl, TakesFewerStrokesThanTheSpringAndNeverGrindsTooDeep)
+{
+    // In stock a tenth to four times as soft as the job says, low and high.
+    Job job;
+    for (const double yields : {0.1, 0.5, 1.0, 4.0})
+        for (const double high : {0.2, 1.0}) {
+            const double q = yields * job.removal / job.wheel.width, limit = 0.05;
+            const auto [with, lowest] = strokes_by_force(job, q, high, limit, true);
+            const auto [without, spring] = strokes_by_force(job, q, high, limit, false);
+            EXPECT_GE(lowest, 0) << yields << " " << high;
+            EXPECT_GE(spring, 0);
+            EXPECT_LE(with, without);
+            if (without > 3) {
+                EXPECT_LT(with, without) << yields << " " << high;
+            }
+        }
+}
+
+TEST(ForceControl, PressesByWhatItKnows)
+{
+    Job job;
+    const double limit = 0.05, q = job.removal / job.wheel.width;
+    ForceControl control(job, limit);
+    control.begin_pass({0, 0.5, 1, 1.5});
+    EXPECT_EQ(control.press(0, 1), 0); // nothing is known
+    for (const int n : {0, 1, 2, 3}) control.arrived(n, 0.4, 1);
+    EXPECT_EQ(control.press(2, -1), 0); // of q, nothing
+    for (const int n : {2, 1, 0}) control.arrived(n, 0.3, 0.1 * 0.5 / q);
+    // Forth again: not more than by the share of q that is sure, and growing no faster than the wheel follows.
+    const double u = control.press(1, 1);
+    EXPECT_GT(u, 0);
+    EXPECT_LE(u, 0.5 * limit / std::sqrt(2 * job.wheel.radius * limit) + 1e-12);
+    control.begin_pass({0, 0.5, 1, 1.5});
+    EXPECT_EQ(control.press(1, 1), 0);
 }
 
 TEST(WheelWear, LearnsAndStaysCautious)
