@@ -1,4 +1,5 @@
-#include "belt/belt_grinding.h"
+#include "belt/belt_journal.h"
+#include "belt/belt_watch.h"
 #include "cli/tool.h"
 #include "cloud/pcd.h"
 #include "core/file.h"
@@ -79,6 +80,17 @@ int main(int argc, char** argv)
         const int& cells = t.count("--cells", 32, "As of fettle-contact", 8, 512);
         const double& tolerance = t.number("--tolerance", 1e-4, "SHARE", "As of fettle-contact", {1e-9, 1e-2});
         const std::string& trace = t.text("--trace", "", "FILE", "The path with what happened at each point, PCD");
+        const std::string& watch =
+            t.text("--watch", "", "FILE",
+                   "The errors after each point, CSV, line by line as they come; with --lower and --upper");
+        const auto& lower = t.number_if_given("--lower", "LENGTH", "For --watch: less is left on gouged surfels");
+        const auto& upper = t.number_if_given("--upper", "LENGTH", "For --watch: more is left on undercut ones");
+        BeltJournal journal;
+        const std::string& journal_file =
+            t.text("--journal", "", "FILE",
+                   "Kept up while grinding; where it is there already, from a run that was killed, the run goes on");
+        const double& every =
+            t.number("--journal-every", journal.every, "S", "Work that may be lost", Range::at_least(0));
         const bool& ascii = t.flag("--ascii", "Write PCDs as text");
         t.example(
             "fettle-part parts/keel.json -o keel.stl && fettle-surfel keel.stl --stock keel.stl --spacing 1 | "
@@ -88,6 +100,10 @@ int main(int argc, char** argv)
         t.parse();
 
         if (force && depth) throw InputError("--force", "and --depth: one of them says how the wheel is pressed on");
+        if (lower.has_value() == watch.empty() || upper.has_value() == watch.empty())
+            throw InputError("--watch", "goes with --lower and --upper");
+        if (lower && !(*lower <= *upper)) throw InputError("--lower", "is more than --upper");
+        journal = {journal_file, every};
         CloudFile file = read_cloud(points, unit ? std::optional(Units{*unit, Units::Force::N}) : std::nullopt);
         const double mm = file.units.mm();
         Surfels surfels = surfels_of(file.cloud, display_name(points));
@@ -98,10 +114,21 @@ int main(int argc, char** argv)
         options.press = {gridding == "shepard" ? Gridding::shepard : Gridding::kriging, cells, tolerance};
         options.model = model == "global" ? BeltModel::global : BeltModel::local;
         options.worn = worn * kJoule;
+        std::optional<BeltWatch> watched;
+        if (lower) {
+            options.range = {*lower * mm, *upper * mm};
+            watched.emplace(watch, mm);
+        }
+        const auto listener = [&](const BeltRun& run) {
+            if (watched) watched->write(run);
+        };
+        const std::vector<BeltPoint> path =
+            named(display_name(path_file), [&] { return belt_path(path_cloud.cloud, settings); });
         BeltRun run;
         try {
-            run = grind(surfels, wheel, belt_path(path_cloud.cloud, settings), options, t.progress("grinding"));
+            run = grind(surfels, wheel, path, options, journal, listener, t.progress("grinding"));
         } catch (const InputError& error) {
+            if (!std::string(error.what()).starts_with("point ")) throw;
             throw InputError(display_name(path_file), error.what());
         }
         const PcdEncoding encoding = ascii ? PcdEncoding::ascii : PcdEncoding::binary;

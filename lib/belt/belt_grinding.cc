@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 
 namespace fettle {
 
@@ -64,52 +65,94 @@ void add_losses(const WheelPress& press, const ContactCells& cells, const Matrix
 
 } // namespace
 
-BeltRun grind(Surfels& surfels, const ContactWheel& wheel, const std::vector<BeltPoint>& path,
-              const BeltOptions& options, const Progress& progress)
+BeltGrinding::BeltGrinding(Surfels& surfels, const ContactWheel& wheel, const std::vector<BeltPoint>& path,
+                           const BeltOptions& options)
+    : surfels_(surfels), wheel_(wheel), path_(path), options_(options), way_(ways(path)),
+      press_(surfels, wheel, options.press)
 {
-    BeltRun run;
-    run.removed.setZero(surfels.size());
-    WheelPress press(surfels, wheel, options.press);
-    const Eigen::VectorXd way = ways(path);
-    double time = 0;
-    for (std::size_t k = 0; k < path.size(); ++k) {
-        tell(progress, static_cast<double>(k) / static_cast<double>(path.size()));
-        const BeltPoint& point = path[k];
-        if (point.begins_run) press.lift();
-        if (!point.is_on()) {
-            constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-            run.trace.push_back({time, kNan, kNan, kNan, kNan, kNan, kNan});
-            continue;
-        }
+    state_.run.removed.setZero(surfels.size());
+    if (options.range) state_.error = running_error(surfels.displacement, *options.range);
+}
+
+BeltState BeltGrinding::state() const
+{
+    BeltState state = state_;
+    state.press = press_.memory();
+    return state;
+}
+
+void BeltGrinding::go_on(BeltState state)
+{
+    state_ = std::move(state);
+    press_.remember(state_.press);
+}
+
+/// What the surfels lose, and the account of it.
+void BeltGrinding::take(const Press& pressed, const MatrixXd& depth, double duration)
+{
+    BeltRun& run = state_.run;
+    if (!options_.keeps_losses) run.losses.clear();
+    const std::size_t first = run.losses.size();
+    const Eigen::Vector3d up = path_[state_.next].T_part_tool.linear().col(2);
+    add_losses(press_, pressed.cells, depth, surfels_, up, state_.next, run.losses);
+    for (std::size_t i = first; i < run.losses.size(); ++i) {
+        const BeltLoss& loss = run.losses[i];
+        const double before = surfels_.displacement[loss.surfel];
+        surfels_.displacement[loss.surfel] -= loss.depth;
+        run.removed[loss.surfel] += loss.depth;
+        if (state_.error) change(*state_.error, before, surfels_.displacement[loss.surfel]);
+    }
+    const Contact& contact = pressed.contact;
+    const double volume = depth.sum() * pressed.cells.cell.prod();
+    run.removed_volume += volume;
+    run.work += contact.force * wheel_.belt_speed * duration;
+    run.near_edge += pressed.is_near_edge ? 1 : 0;
+    const double time = (run.trace.empty() ? 0 : run.trace.back().time) + duration;
+    run.trace.push_back(
+        {time, duration, contact.force, contact.indentation, contact.pressure.maxCoeff(), pressed.area(), volume});
+}
+
+void BeltGrinding::step()
+{
+    const std::size_t k = state_.next;
+    const BeltPoint& point = path_[k];
+    BeltRun& run = state_.run;
+    if (point.begins_run) press_.lift();
+    if (point.is_on()) {
         const Press* pressed = nullptr;
         try {
-            pressed = &press.at(point.T_part_tool, point.pressing);
+            pressed = &press_.at(point.T_part_tool, point.pressing);
         } catch (const InputError& error) {
             throw InputError("point " + std::to_string(k), error.what());
         }
-        const Contact& contact = pressed->contact;
-        const double moving = way[static_cast<Index>(k)] / point.feed;
-        const double cutting = moving + std::pow(point.dwell, wheel.law.dwell);
+        const double moving = way_[static_cast<Index>(k)] / point.feed;
+        const double cutting = moving + std::pow(point.dwell, wheel_.law.dwell);
         const auto depth_of = [&](double p) {
-            return removed_depth(wheel.law, p, wheel.belt_speed, point.feed, cutting, options.worn + run.work);
+            return removed_depth(wheel_.law, p, wheel_.belt_speed, point.feed, cutting, options_.worn + run.work);
         };
-        const MatrixXd depth = options.model == BeltModel::local ? contact.pressure.unaryExpr(depth_of)
-                                                                 : evened(contact.pressure).unaryExpr(depth_of);
-        if (!options.keeps_losses) run.losses.clear();
-        const std::size_t first = run.losses.size();
-        add_losses(press, pressed->cells, depth, surfels, point.T_part_tool.linear().col(2), k, run.losses);
-        for (std::size_t i = first; i < run.losses.size(); ++i) {
-            surfels.displacement[run.losses[i].surfel] -= run.losses[i].depth;
-            run.removed[run.losses[i].surfel] += run.losses[i].depth;
-        }
-        const double volume = depth.sum() * pressed->cells.cell.prod(), duration = moving + point.dwell;
-        time += duration;
-        run.removed_volume += volume;
-        run.work += contact.force * wheel.belt_speed * duration;
-        run.near_edge += pressed->is_near_edge ? 1 : 0;
-        run.trace.push_back(
-            {time, duration, contact.force, contact.indentation, contact.pressure.maxCoeff(), pressed->area(), volume});
+        const MatrixXd& pressure = pressed->contact.pressure;
+        take(*pressed,
+             options_.model == BeltModel::local ? pressure.unaryExpr(depth_of) : evened(pressure).unaryExpr(depth_of),
+             moving + point.dwell);
+    } else {
+        constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+        run.trace.push_back({run.trace.empty() ? 0 : run.trace.back().time, kNan, kNan, kNan, kNan, kNan, kNan});
     }
+    if (const auto& error = state_.error)
+        run.errors.push_back({error->counts.gouge, error->counts.within, error->counts.undercut, error->mean(),
+                              error->rms(), error->least});
+    ++state_.next;
+}
+
+BeltRun grind(Surfels& surfels, const ContactWheel& wheel, const std::vector<BeltPoint>& path,
+              const BeltOptions& options, const Progress& progress)
+{
+    BeltGrinding grinding(surfels, wheel, path, options);
+    while (!grinding.is_done()) {
+        tell(progress, static_cast<double>(grinding.run().trace.size()) / static_cast<double>(path.size()));
+        grinding.step();
+    }
+    BeltRun run = grinding.run();
     if (!options.keeps_losses) run.losses.clear();
     return run;
 }

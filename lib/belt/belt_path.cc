@@ -14,6 +14,7 @@ namespace {
 void check(const BeltPoint& point, std::size_t k)
 {
     const std::string place = "point " + std::to_string(k) + ": ";
+    if (std::isnan(point.pressing.amount)) throw InputError(place + "neither force nor depth is given");
     if (!(point.pressing.amount > 0)) throw InputError(place + "the force or depth is not positive");
     if (!(point.feed > 0)) throw InputError(place + "the feed is not positive");
     if (!(point.dwell >= 0)) throw InputError(place + "the dwell is negative");
@@ -23,20 +24,25 @@ void check(const BeltPoint& point, std::size_t k)
 
 std::vector<BeltPoint> belt_path(const Cloud& path, const BeltSettings& settings)
 {
-    const auto values = [&](const char* name, double otherwise) -> Eigen::VectorXd {
-        return has_field(path, name) ? field(path, name) : Eigen::VectorXd::Constant(path.size(), otherwise);
+    const auto constant = [&](double value) -> Eigen::VectorXd {
+        return Eigen::VectorXd::Constant(path.size(), value);
     };
-    const bool by_depth = settings.depth || (!settings.force && has_field(path, "depth"));
-    const std::optional<double> amount = by_depth ? settings.depth : settings.force;
-    const char* const name = by_depth ? "depth" : "force";
-    if (!amount && !has_field(path, name)) throw InputError("no field force or depth, and neither --force nor --depth");
-    const Eigen::VectorXd amounts = amount ? Eigen::VectorXd::Constant(path.size(), *amount) : field(path, name);
+    const auto values = [&](const char* name, double otherwise) {
+        return has_field(path, name) ? field(path, name) : constant(otherwise);
+    };
+    const bool is_told = settings.depth || settings.force;
+    if (!is_told && !has_field(path, "depth") && !has_field(path, "force"))
+        throw InputError("no field force or depth, and neither --force nor --depth");
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    const Eigen::VectorXd depth = is_told ? constant(settings.depth.value_or(kNone)) : values("depth", kNone);
+    const Eigen::VectorXd force = is_told ? constant(settings.force.value_or(kNone)) : values("force", kNone);
     const Eigen::VectorXd feed = values("feed", settings.feed), dwell = values("dwell", 0), pass = values("pass", 0);
     const PosePath poses = path_poses(path);
     std::vector<BeltPoint> points;
     for (Eigen::Index i = 0; i < path.size(); ++i) {
         const auto k = static_cast<std::size_t>(i);
-        points.push_back({poses[k], {!by_depth, amounts[i]}, feed[i], dwell[i], false});
+        const bool by_force = std::isnan(depth[i]);
+        points.push_back({poses[k], {by_force, by_force ? force[i] : depth[i]}, feed[i], dwell[i], false});
         if (!poses[k].translation().allFinite())
             points[k].T_part_tool.matrix().setConstant(std::numeric_limits<double>::quiet_NaN());
         else

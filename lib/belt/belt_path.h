@@ -28,7 +28,8 @@ struct BeltSettings {
     double dwell = 0;                   ///< at both ends of each run, besides, s
 };
 
-/// From poses and the fields force or depth, feed, dwell and pass: another pass is another run.
+/// From poses and the fields force, depth, feed, dwell and pass: another pass is another run. Where there is a depth it
+/// holds, else the force: one of them may be NaN.
 /// @throws InputError if nothing says how the wheel is pressed on, or a value is not positive
 std::vector<BeltPoint> belt_path(const Cloud& path, const BeltSettings& settings);
 

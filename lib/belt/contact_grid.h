@@ -11,7 +11,7 @@ namespace fettle {
 
 /// A rectangle of cells about the origin of the tool frame, along its x (rows) and y (columns).
 struct ContactCells {
-    Eigen::Vector2d cell; ///< sides, mm
+    Eigen::Vector2d cell = Eigen::Vector2d::Zero(); ///< sides, mm
     Eigen::Index rows = 0, columns = 0;
 
     Eigen::Vector2d half() const

@@ -45,6 +45,17 @@ void WheelPress::lift()
     last_.resize(0, 0);
 }
 
+PressMemory WheelPress::memory() const { return {press_.cells, press_.contact.pressure, last_}; }
+
+void WheelPress::remember(const PressMemory& memory)
+{
+    press_.cells = memory.cells;
+    layer_.reset();
+    if (memory.cells.rows > 0) layer_.emplace(wheel_.layer, memory.cells.cell, memory.cells.rows, memory.cells.columns);
+    press_.contact.pressure = memory.pressure;
+    last_ = memory.last;
+}
+
 void WheelPress::press_on(const Eigen::Isometry3d& T_part_tool, const Pressing& pressing, Gridding gridding,
                           double tolerance)
 {

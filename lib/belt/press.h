@@ -32,6 +32,12 @@ struct Press {
     double area() const; ///< that touches, mm²
 };
 
+/// What the next contact begins with.
+struct PressMemory {
+    ContactCells cells;             ///< none: the grid is not known
+    Eigen::MatrixXd pressure, last; ///< of the last contact and the one before it; empty: not known
+};
+
 /// Presses a wheel on surfels at one pose after the other: +z out of the part, the wheel's axis along y. The grid is as
 /// large as the contact and a little more; it grows when a contact comes to its border. Each contact begins with what
 /// the two before it lead to expect.
@@ -51,6 +57,9 @@ class WheelPress {
     Eigen::MatrixXd gap_left();
     /// The next contact has nothing to do with the last.
     void lift();
+    PressMemory memory() const;
+    /// The next contact comes out as it would have done then, to the last digit.
+    void remember(const PressMemory& memory);
 
   private:
     void set_grid(const Eigen::Vector2d& half, Eigen::Index count);

@@ -40,3 +40,11 @@ fettle-belt plate.pcd --wheel wheel.json --depth 0.2 --feed 5 --path fine.pcd --
 jq -e '.max_force > 0 and .removed_volume > 0' depth.json > ok
 sed 's/^FIELDS.*/& force feed/; s/^SIZE.*/& 4 4/; s/^TYPE.*/& F F/; s/^COUNT.*/& 1 1/; /^-*[0-9].* 0 0 0$/s/$/ 10 5/' fine.pcd > fields.pcd
 fettle-belt plate.pcd --wheel wheel.json --ascii --path fields.pcd | cmp - fine.out
+# With both fields the depth holds where there is one.
+sed 's/^FIELDS.*/& depth force feed/; s/^SIZE.*/& 4 4 4/; s/^TYPE.*/& F F F/; s/^COUNT.*/& 1 1 1/; /^-*[0-9].* 0 0 0$/s/$/ nan 10 5/' fine.pcd > both.pcd
+fettle-belt plate.pcd --wheel wheel.json --ascii --path both.pcd | cmp - fine.out
+sed '$s/nan 10/0.2 10/' both.pcd > last.pcd
+fettle-belt plate.pcd --wheel wheel.json --path last.pcd --ascii --trace last.trace > last.out
+sed '1,/^DATA/d' last.trace | awk 'NR < 21 && ($9 - 10) ^ 2 > 1e-9 || NR == 21 && ($12 - 0.2) ^ 2 > 1e-12 { exit 1 } END { exit NR != 21 }'
+sed 's/nan 10/nan nan/' both.pcd > neither.pcd
+"$HERE/../refuses" 'neither.pcd: point 0: neither force nor depth' fettle-belt plate.pcd --wheel wheel.json --path neither.pcd

@@ -256,4 +256,47 @@ TEST(Belt, NamesThePointWithNothingUnderIt)
     }
 }
 
+// A run that is stopped and goes on elsewhere ends as one that was not, to the last digit.
+TEST(Belt, GoesOnWhereItWasStopped)
+{
+    const ContactWheel wheel = crowned();
+    const std::vector<BeltPoint> path = line(1);
+    BeltOptions options;
+    options.range = ToleranceRange{0.19, 0.1999};
+    Surfels whole = plate(), begun = plate();
+    const BeltRun run = grind(whole, wheel, path, options);
+    BeltGrinding first(begun, wheel, path, options);
+    for (int k = 0; k < 17; ++k) first.step();
+    Surfels later = begun;
+    BeltGrinding second(later, wheel, path, options);
+    second.go_on(first.state());
+    while (!second.is_done()) second.step();
+    EXPECT_EQ(later.displacement, whole.displacement);
+    EXPECT_EQ(second.run().removed, run.removed);
+    EXPECT_EQ(second.run().trace.back().indentation, run.trace.back().indentation);
+    EXPECT_EQ(second.run().errors.back().rms, run.errors.back().rms);
+}
+
+// What changes from point to point adds up to what a look at all surfels finds.
+TEST(Belt, KeepsTheErrorsUpToDate)
+{
+    const ContactWheel wheel = crowned();
+    Surfels surfels = plate();
+    surfels.displacement[3] = std::numeric_limits<double>::quiet_NaN();
+    BeltOptions options;
+    options.range = ToleranceRange{0.19, 0.1999};
+    const BeltRun run = grind(surfels, wheel, line(1), options);
+    const RunningError all = running_error(surfels.displacement, *options.range);
+    const BeltError& last = run.errors.back();
+    ASSERT_EQ(run.errors.size(), run.trace.size());
+    EXPECT_EQ(last.gouge, all.counts.gouge);
+    EXPECT_EQ(last.within, all.counts.within);
+    EXPECT_EQ(last.undercut, all.counts.undercut);
+    EXPECT_EQ(all.counts.undefined, 1);
+    EXPECT_GT(last.within, run.errors.front().within);
+    EXPECT_NEAR(last.mean, all.mean(), 1e-12);
+    EXPECT_NEAR(last.rms, all.rms(), 1e-12);
+    EXPECT_EQ(last.least, all.least);
+}
+
 } // namespace

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "belt/belt_grinding.h"
+
+#include <fstream>
+#include <string>
+
+namespace fettle {
+
+/// A table of the errors after each contact point, as CSV: a line appears as soon as its point is done.
+class BeltWatch {
+  public:
+    /// @param mm  of the lengths' unit
+    /// @throws InputError if it cannot be written
+    BeltWatch(const std::string& path, double mm);
+
+    /// The lines of points that are not there yet.
+    /// @throws InputError if they cannot be written
+    void write(const BeltRun& run);
+
+  private:
+    void check() const;
+
+    std::string path_;
+    double mm_;
+    std::ofstream file_;
+    std::size_t lines_ = 0;
+};
+
+} // namespace fettle
