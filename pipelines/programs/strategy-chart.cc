@@ -1,0 +1,178 @@
+// Figure 5-8 of Wang 2007: how an anomaly goes, stage by stage, with the paths of the wheel in each layer; below,
+// layer, force and feed over the time.
+
+#include "cli/tool.h"
+#include "cloud/pcd.h"
+#include "compare/canvas.h"
+#include "compare/chart.h"
+#include "job/boundary.h"
+#include "plan/plan.h"
+#include "removal/height_field.h"
+#include "strategy/trace.h"
+
+#include <cmath>
+#include <ostream>
+
+using namespace fettle;
+
+namespace {
+
+using Eigen::Vector2d;
+
+constexpr int kStages = 6, kColumns = 3;
+const Vector2d kPanel(380, 350), kTimes(1140, 240); // pixels
+constexpr double kHead = 56, kGap = 12;
+constexpr double kRim = 4; // cells around B
+// The trace is replayed in so many pieces to find the stages.
+constexpr std::size_t kPieces = 120;
+
+std::vector<TraceRow> rows_of(const Cloud& cloud)
+{
+    std::vector<TraceRow> rows(std::size_t(cloud.size()));
+    const Eigen::VectorXd t = field(cloud, "t"), layer = field(cloud, "layer"), pass = field(cloud, "pass"),
+                          force = field(cloud, "force"), feed = field(cloud, "feed");
+    for (Eigen::Index i = 0; i < cloud.size(); ++i)
+        rows[std::size_t(i)] = {t[i], cloud.xyz.col(i), int(layer[i]), int(pass[i]), Event::none, force[i], feed[i]};
+    return rows;
+}
+
+/// Rows first … end of the trace, and the stock after them.
+struct Stage {
+    std::size_t first, end;
+    HeightField stock;
+};
+
+/// The beginning, and ends of equal shares of the removed volume.
+std::vector<Stage> stages(const std::vector<TraceRow>& rows, const Job& job, const HeightField& stock)
+{
+    const double whole = volume_between(stock, ground_by(rows, job, stock));
+    std::vector<Stage> result = {{0, 0, stock}};
+    HeightField now = stock;
+    const std::size_t piece = std::max<std::size_t>(rows.size() / kPieces, 1);
+    for (std::size_t i = 0; i + 1 < rows.size(); i += piece) {
+        const std::size_t end = std::min(i + piece, rows.size() - 1);
+        now = ground_by({rows.begin() + std::ptrdiff_t(i), rows.begin() + std::ptrdiff_t(end + 1)}, job, now);
+        const double due = whole * double(result.size()) / (kStages - 1);
+        const bool last = end + 1 == rows.size();
+        if (last || (std::ssize(result) < kStages - 1 && volume_between(stock, now) >= due))
+            result.push_back({result.back().end, end + 1, now});
+    }
+    return result;
+}
+
+/// Places of W on a panel: the cells around B.
+struct Map {
+    Vector2d corner, size, origin; ///< pixels; mm
+    double scale;                  ///< pixels per mm
+    Eigen::Index first_column, columns, first_row, rows;
+
+    Map(const Vector2d& where, const HeightField& stock, const Polygon& anomaly) : corner(where)
+    {
+        const Vector2d least = (anomaly.rowwise().minCoeff() - stock.origin) / stock.cell;
+        const Vector2d most = (anomaly.rowwise().maxCoeff() - stock.origin) / stock.cell;
+        first_column = Eigen::Index(std::max(least.x() - kRim, 0.0));
+        first_row = Eigen::Index(std::max(least.y() - kRim, 0.0));
+        columns = std::min(Eigen::Index(most.x() + kRim), stock.columns()) - first_column;
+        rows = std::min(Eigen::Index(most.y() + kRim), stock.rows()) - first_row;
+        origin = stock.origin + stock.cell * Vector2d(double(first_column), double(first_row));
+        const Vector2d extent = stock.cell * Vector2d(double(columns), double(rows));
+        scale = ((kPanel - Vector2d(kGap, 2 * kGap + 10)).array() / extent.array()).minCoeff();
+        size = extent * scale;
+    }
+    Vector2d operator()(const Vector2d& at) const
+    {
+        const Vector2d d = (at - origin) * scale;
+        return corner + Vector2d(d.x(), size.y() - d.y());
+    }
+};
+
+void draw_heights(Canvas& sheet, const Map& map, const HeightField& stock, const Eigen::ArrayXXd& desired, double most)
+{
+    std::vector<std::uint8_t> rgb;
+    for (Eigen::Index j = map.first_row + map.rows - 1; j >= map.first_row; --j)
+        for (Eigen::Index i = map.first_column; i < map.first_column + map.columns; ++i) {
+            const double over = (stock.z(i, j) - desired(i, j)) / most;
+            const double grey = std::isfinite(over) ? 250 - 170 * std::clamp(over, 0.0, 1.0) : 250;
+            rgb.insert(rgb.end(), 3, std::uint8_t(grey));
+        }
+    sheet.image(map.corner, map.size, int(map.columns), rgb);
+}
+
+void draw_paths(Canvas& sheet, const Map& map, const std::vector<TraceRow>& rows, const Stage& stage,
+                const Eigen::Matrix2d& R_working_machine)
+{
+    for (std::size_t i = std::max<std::size_t>(stage.first, 1); i < stage.end; ++i) {
+        if (!(rows[i].feed > 0)) continue;
+        Eigen::Matrix2Xd line(2, 2);
+        line.col(0) = map(R_working_machine * rows[i - 1].tool.head<2>());
+        line.col(1) = map(R_working_machine * rows[i].tool.head<2>());
+        sheet.line(line, curve_colour(std::size_t(rows[i].layer - 1)), rows[i].layer > 1 ? 2 : 1);
+    }
+}
+
+Chart over_time(const std::vector<TraceRow>& rows, const Units& units)
+{
+    Chart chart;
+    chart.title = "force (" + to_string(units.force) + "), feed (" + to_string(units.length) + "/s) and layer";
+    chart.x_label = "time, s";
+    const auto add = [&](const std::string& name, const auto& value) {
+        Curve curve{name, Eigen::Matrix2Xd(2, std::ssize(rows)), curve_colour(chart.curves.size()), false};
+        for (std::size_t i = 0; i < rows.size(); ++i) curve.points.col(Eigen::Index(i)) << rows[i].time, value(rows[i]);
+        chart.curves.push_back(curve);
+    };
+    add("force", [&](const TraceRow& row) { return row.force / units.newton(); });
+    add("layer", [](const TraceRow& row) { return double(row.layer); });
+    add("feed", [&](const TraceRow& row) { return row.feed / units.mm(); });
+    return chart;
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+    return tool_main(argc, argv, "How an anomaly goes, stage by stage.", [](Tool& t) {
+        const std::string& plan_file = t.input("PLAN", "What fettle-plan wrote");
+        const std::string& stock_file = t.required_text("--stock", "PART", "The part as it was");
+        const std::string& trace_file = t.required_text("--trace", "FILE", "What fettle-grind did");
+        const std::string& title = t.text("--title", "", "TEXT", "Name of the part");
+        t.reference("Wang 2007, figure 5-8");
+        t.parse();
+
+        const Plan plan = read_plan(plan_file);
+        const HeightField stock =
+            height_field(read_scan(stock_file, plan.job.units, {}), plan.job, plan.job.wheel.width / 32, stock_file);
+        const std::vector<TraceRow> rows = rows_of(read_cloud(trace_file, plan.job.units).cloud);
+        const Eigen::Matrix2d R_working_machine = rotation_working_machine(plan.job.theta);
+        Eigen::ArrayXXd desired(stock.columns(), stock.rows());
+        for (Eigen::Index j = 0; j < stock.rows(); ++j)
+            for (Eigen::Index i = 0; i < stock.columns(); ++i)
+                desired(i, j) = height(plan.surface, R_working_machine.transpose() * stock.centre(i, j));
+        const Eigen::ArrayXXd over = stock.z - desired;
+        const double most = over.isFinite().select(over, 0).maxCoeff();
+        const Polygon anomaly = boundaries(plan.job).anomaly;
+
+        const std::vector<Stage> shown = stages(rows, plan.job, stock);
+        Canvas sheet(int(kTimes.x() + 2 * kGap), int(kHead + 2 * kPanel.y() + kTimes.y()));
+        sheet.text("Wang 2007, figure 5-8: " + title + ", layer by layer", {kGap, 18}, 14, Canvas::kInk,
+                   Canvas::Align::left, true);
+        int highest = 1;
+        for (const TraceRow& row : rows) highest = std::max(highest, row.layer);
+        for (int layer = 1; layer <= highest; ++layer)
+            sheet.text("layer " + std::to_string(layer), {kGap + 80 * (layer - 1), 42}, 11,
+                       curve_colour(std::size_t(layer - 1)));
+        for (std::size_t k = 0; k < shown.size(); ++k) {
+            const Vector2d corner(kGap + double(k % kColumns) * kPanel.x(), kHead + double(k / kColumns) * kPanel.y());
+            const double time = shown[k].end ? rows[shown[k].end - 1].time : 0;
+            sheet.text(k ? "after " + std::to_string(std::lround(time)) + " s" : "before", corner + Vector2d(0, 8), 11);
+            const Map map(corner + Vector2d(0, 20), stock, anomaly);
+            draw_heights(sheet, map, shown[k].stock, desired, most);
+            draw_paths(sheet, map, rows, shown[k], R_working_machine);
+            Eigen::Matrix2Xd outline = anomaly;
+            for (Eigen::Index i = 0; i < outline.cols(); ++i) outline.col(i) = map(anomaly.col(i));
+            sheet.line(outline, Canvas::kInk, 1.5, true);
+        }
+        draw_chart(sheet, {kGap, kHead + 2 * kPanel.y()}, kTimes, over_time(rows, plan.job.units));
+        t.output() << sheet.png();
+        return Verdict::yes;
+    });
+}
