@@ -51,6 +51,12 @@ class Transducer final : public Gantry {
         machine_.change_wheel();
         read(machine_.status());
     }
+    double probe(const Eigen::Vector2d& xy, double lowest) override
+    {
+        const double z = machine_.probe(xy, lowest);
+        read(machine_.status());
+        return z;
+    }
     GantryStatus status() const override { return last_; }
 
   private:
