@@ -4,7 +4,8 @@
 #   make test       build and run the tests   make figures   the chain's figures beside their targets
 #   make test TOOL=fettle-fit                 make bench     benchmarks
 #   make bless TOOL=fettle-fit                make docs      pages of docs/tools from --help
-#   make lint       format and scripts        make install PREFIX=/usr/local DESTDIR=
+#   make lint       format and scripts        make includes   every file by its own includes
+#   make install PREFIX=/usr/local DESTDIR=
 #
 # `make test` and `make demo` need nothing but git and make beforehand: they install what packages.txt names.
 # B is the build folder.
@@ -26,13 +27,20 @@ OBJECTS  := $(patsubst %.cc,$(B)/%.o,$(wildcard lib/*/*.cc))
 # -ffp-contract=off: the same digits on every processor. No -march: Debian's PCL is built without it, and Eigen's
 # alignment must agree with PCL's.
 override CXXFLAGS += -std=c++20 -Wall -Wextra -Wshadow -ffp-contract=off
+# A compiler that may keep 800 MB does not stop to collect: a tenth faster.
+override CXXFLAGS += $(if $(findstring clang,$(CXX)),,--param ggc-min-heapsize=800000)
 override CPPFLAGS += -Ilib $(addprefix -isystem ,$(wildcard /usr/include/pcl-1.*) /usr/include/eigen3) \
                      -DFETTLE_VERSION='"$(shell sed -n 's/^## \([0-9.]*\).*/\1/p' CHANGELOG.md | head -n 1)"'
-override LDFLAGS  += -Wl,--as-needed
+# gold links in half the time.
+override LDFLAGS  += -Wl,--as-needed -fuse-ld=gold
+
+# What most files include is read once: a third of the compile time. `make PRECOMPILED=` builds without, each file from
+# its own includes alone.
+PRECOMPILED ?= $(B)/lib/precompiled.h.gch $(B)/tests/lib/precompiled.h.gch
 
 .DELETE_ON_ERROR:
 .SECONDARY:
-.PHONY: all build deps test tests-built run-cases demo figures bench bless docs lint install clean
+.PHONY: all build deps test tests-built run-cases demo figures bench bless docs lint includes install clean
 
 all: deps
 	@$(MAKE) --no-print-directory -j$(JOBS) build
@@ -59,9 +67,17 @@ $(B)/lib/mesh/mesh_index.o: override CXXFLAGS += -ffp-contract=fast
 include tools/libraries.mk
 
 # --- rules ----------------------------------------------------------------------------------------------------------
-$(B)/%.o: %.cc
+precompiled = $(filter $(B)/$(if $(filter tests/lib/%,$(1)),tests/)lib/%,$(PRECOMPILED))
+
+$(B)/%.o: %.cc | $(PRECOMPILED)
 	@mkdir -p $(@D)
-	$(CXX) $(CPPFLAGS) $(CXXFLAGS) -MMD -MP -c $< -o $@
+	$(CXX) $(CPPFLAGS) $(CXXFLAGS) $(addprefix -include ,$(basename $(call precompiled,$<))) -MMD -MP -c $< -o $@
+
+# The copy of the header is what the compiler reads for the few files whose options differ.
+$(B)/%.h.gch: %.h
+	@mkdir -p $(@D)
+	@cp $< $(basename $@)
+	$(CXX) $(CPPFLAGS) $(CXXFLAGS) -MMD -MP -x c++-header -c $< -o $@
 
 $(B)/libfettle.a: $(OBJECTS)
 	@rm -f $@
@@ -134,6 +150,11 @@ docs: build
 
 lint:
 	@.ci/lint
+
+# Every file from its own includes alone: what is precompiled hides one that is missing.
+includes: deps
+	@git ls-files '*.cc' '*.h' | grep -v precompiled | xargs -n 1 -P $(JOBS) \
+	    $(CXX) $(CPPFLAGS) -isystem /usr/include/opencv4 $(CXXFLAGS) -w -Itests/lib -x c++ -fsyntax-only
 
 install: build
 	install -d $(DESTDIR)$(PREFIX)/bin

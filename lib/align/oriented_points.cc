@@ -1,8 +1,9 @@
 #include "align/oriented_points.h"
 
 #include "cloud/neighbours.h"
+#include "core/decompositions.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
@@ -27,8 +28,8 @@ Eigen::Matrix3Xd fitted_normals(const Eigen::Matrix3Xd& xyz)
             if (near.size() < 3) continue;
             Eigen::Matrix3Xd local = xyz(Eigen::all, near);
             local.colwise() -= Eigen::Vector3d(local.rowwise().mean());
-            const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> spread(local * local.transpose());
-            normals.col(i) = spread.eigenvectors().col(0);
+            const SymmetricEigen<3> spread = symmetric_eigen<3>(local * local.transpose());
+            normals.col(i) = spread.vectors.col(0);
         }
     });
     return normals;

@@ -1,8 +1,9 @@
 #include "align/pose_search.h"
 
 #include "cloud/neighbours.h"
+#include "core/decompositions.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
@@ -169,8 +170,8 @@ std::vector<Eigen::Matrix3d> axis_turns()
 Eigen::Matrix3d principal_axes(const Eigen::Matrix3Xd& points)
 {
     const Eigen::Matrix3Xd about = points.colwise() - Eigen::Vector3d(points.rowwise().mean());
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> spread(about * about.transpose());
-    Eigen::Matrix3d axes = spread.eigenvectors();
+    const SymmetricEigen<3> spread = symmetric_eigen<3>(about * about.transpose());
+    Eigen::Matrix3d axes = spread.vectors;
     axes.col(2) = axes.col(0).cross(axes.col(1));
     return axes;
 }

@@ -1,8 +1,9 @@
 #include "compare/cloud_reference.h"
 
 #include "cloud/neighbours.h"
+#include "core/decompositions.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Cholesky>
 
 #include <algorithm>
 #include <array>
@@ -180,8 +181,8 @@ std::optional<Patch> CloudReference::State::quick_patch(const Eigen::Vector3d& f
     local = points(Eigen::all, near);
     const Eigen::Vector3d centroid = local.rowwise().mean();
     const Local about = local.colwise() - centroid;
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> spread(about * about.transpose());
-    Eigen::Vector3d z = spread.eigenvectors().col(0), x = spread.eigenvectors().col(2);
+    const SymmetricEigen<3> spread = symmetric_eigen<3>(about * about.transpose());
+    Eigen::Vector3d z = spread.vectors.col(0), x = spread.vectors.col(2);
     Eigen::Vector3d out = direction ? *direction : Eigen::Vector3d::UnitZ();
     if (!direction && outward.cols() > 0) out = outward(Eigen::all, near).rowwise().sum();
     if (z.dot(out) < 0) z = -z;

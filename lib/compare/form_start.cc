@@ -90,12 +90,11 @@ FormElement form_start(FormKind kind, const Eigen::Matrix3Xd& points, const Eige
     const Eigen::Index needed = is_flat(kind) ? 3 : kind == FormKind::sphericity ? 4 : 6;
     if (points.cols() < needed)
         throw InputError("needs at least " + std::to_string(needed) + " points, got " + std::to_string(points.cols()));
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> spread(points * points.transpose());
-    const Eigen::Vector3d extent = spread.eigenvalues().cwiseMax(0).cwiseSqrt();
-    if (kind == FormKind::straightness) return line_start(points, spread.eigenvectors().col(0), section);
+    const SymmetricEigen<3> spread = symmetric_eigen<3>(points * points.transpose());
+    const Eigen::Vector3d extent = spread.values.cwiseMax(0).cwiseSqrt();
+    if (kind == FormKind::straightness) return line_start(points, spread.vectors.col(0), section);
     if (extent[1] <= kFlat * extent[2]) throw InputError("the points lie on a line");
-    if (kind == FormKind::flatness)
-        return {kind, Eigen::Vector3d::Zero(), Eigen::Vector3d(spread.eigenvectors().col(0))};
+    if (kind == FormKind::flatness) return {kind, Eigen::Vector3d::Zero(), Eigen::Vector3d(spread.vectors.col(0))};
     if (extent[0] <= kFlat * extent[2]) throw InputError("the points lie in a plane: no curvature to fit");
     if (kind == FormKind::cylindricity) return cylinder_start(points);
     const Round sphere = algebraic_fit(thinned(points));

@@ -13,8 +13,27 @@ SymmetricEigen<kSize> symmetric_eigen(const Eigen::Matrix<double, kSize, kSize>&
 }
 
 template SymmetricEigen<2> symmetric_eigen(const Eigen::Matrix<double, 2, 2>&);
+template SymmetricEigen<3> symmetric_eigen(const Eigen::Matrix<double, 3, 3>&);
 template SymmetricEigen<6> symmetric_eigen(const Eigen::Matrix<double, 6, 6>&);
 template SymmetricEigen<Eigen::Dynamic> symmetric_eigen(const Eigen::MatrixXd&);
+
+Orthogonal orthogonal(const Eigen::MatrixXd& A, Eigen::Index columns)
+{
+    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(A);
+    return {qr.householderQ() * Eigen::MatrixXd::Identity(A.rows(), columns),
+            qr.matrixQR().topRows(A.cols()).triangularView<Eigen::Upper>()};
+}
+
+std::optional<Eigen::MatrixXd> root_of_inverse(const Eigen::MatrixXd& A, double threshold)
+{
+    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(A);
+    qr.setThreshold(threshold);
+    const Eigen::Index p = A.cols();
+    if (qr.rank() < p) return std::nullopt;
+    const Eigen::MatrixXd R_inverse =
+        qr.matrixR().topLeftCorner(p, p).triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(p, p));
+    return qr.colsPermutation() * R_inverse;
+}
 
 namespace {
 

@@ -1,10 +1,10 @@
 #include "fit/family.h"
 
+#include "core/decompositions.h"
 #include "core/error.h"
 #include "fit/trimmed_touches.h"
 
 #include <boost/math/special_functions/gamma.hpp>
-#include <Eigen/QR>
 
 #include <algorithm>
 #include <cmath>
@@ -40,16 +40,12 @@ std::optional<Judged> judge(const FamilySolution& solution, const Touched& touch
     const MatrixXd G = solution.free.size() > 0 ? solution.free.transpose() * solution.gradients : solution.gradients;
     const MatrixXd J = G(Eigen::all, kept).transpose();
     const VectorXd size = J.colwise().norm().cwiseMax(std::numeric_limits<double>::min());
-    Eigen::ColPivHouseholderQR<MatrixXd> qr(J * size.cwiseInverse().asDiagonal());
-    qr.setThreshold(kRankThreshold);
-    if (qr.rank() < J.cols()) return std::nullopt;
-    const Index p = J.cols();
-    const MatrixXd R_inverse =
-        qr.matrixR().topLeftCorner(p, p).triangularView<Eigen::Upper>().solve(MatrixXd::Identity(p, p));
-    const MatrixXd root = size.cwiseInverse().asDiagonal() * (qr.colsPermutation() * R_inverse);
+    const std::optional<MatrixXd> scaled = root_of_inverse(J * size.cwiseInverse().asDiagonal(), kRankThreshold);
+    if (!scaled) return std::nullopt;
+    const MatrixXd root = size.cwiseInverse().asDiagonal() * *scaled;
     Judged judged;
     judged.covariance = root * root.transpose();
-    judged.parameters = p;
+    judged.parameters = J.cols();
     if (solution.free.size() > 0) judged.covariance = solution.free * judged.covariance * solution.free.transpose();
     judged.moves = root.transpose() * G;
     judged.leverage = judged.moves.colwise().squaredNorm();

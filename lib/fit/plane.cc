@@ -1,12 +1,13 @@
 #include "fit/plane.h"
 
+#include "core/decompositions.h"
 #include "core/error.h"
 #include "core/text.h"
 #include "surface/shapes.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/SVD>
 
+#include <algorithm>
 #include <cmath>
 
 namespace fettle {
@@ -32,10 +33,10 @@ Tls total_least_squares(const Eigen::Matrix3Xd& points, const Eigen::VectorXd& w
     const double sum = weight.sum();
     const Eigen::Vector3d centroid = points * weight / sum;
     const Eigen::Matrix3Xd scaled = (points.colwise() - centroid) * (weight / sum).cwiseSqrt().asDiagonal();
-    const Eigen::JacobiSVD<Eigen::Matrix3Xd> svd(scaled, Eigen::ComputeThinU);
-    const Eigen::VectorXd& spread = svd.singularValues();
-    const Eigen::Vector3d normal = svd.matrixU().col(2);
-    return {centroid, normal.z() < 0 ? Eigen::Vector3d(-normal) : normal, spread[1], spread[0]};
+    const SymmetricEigen<3> spread = symmetric_eigen<3>(scaled * scaled.transpose());
+    const Eigen::Vector3d normal = spread.vectors.col(0);
+    return {centroid, normal.z() < 0 ? Eigen::Vector3d(-normal) : normal, std::sqrt(std::max(spread.values[1], 0.0)),
+            std::sqrt(spread.values[2])};
 }
 
 } // namespace

@@ -1,10 +1,12 @@
 #include "fit/process_mixture.h"
 
+#include "core/decompositions.h"
+
 #include <Eigen/Geometry>
-#include <Eigen/QR>
 
 #include <cmath>
 #include <cstdlib>
+#include <utility>
 
 namespace fettle {
 
@@ -81,11 +83,9 @@ void ControlHeights::add_by_place(MatrixXd& sum, const MatrixXd& between) const
 ProcessMixture::ProcessMixture(const ProcessTouches& touches, const ControlHeights& controls, const MatrixXd& trend)
     : touches_(touches), controls_(controls)
 {
-    const Eigen::HouseholderQR<MatrixXd> qr(touches.F);
-    const Index p = touches.F.cols();
-    Q_ = qr.householderQ() * MatrixXd::Identity(touches.F.rows(), p);
-    const MatrixXd R = qr.matrixQR().topRows(p).triangularView<Eigen::Upper>();
-    F_ = R.transpose().triangularView<Eigen::Lower>().solve(trend.transpose()).transpose();
+    Orthogonal F = orthogonal(touches.F, touches.F.cols());
+    Q_ = std::move(F.Q);
+    F_ = F.R.transpose().triangularView<Eigen::Lower>().solve(trend.transpose()).transpose();
     trend_ = F_ * (Q_.transpose() * touches.z);
 }
 

@@ -2,7 +2,7 @@
 
 #include "core/decompositions.h"
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <cmath>
@@ -46,7 +46,7 @@ std::vector<Spectrum> spectra(const ProcessTouches& touches)
     const double half = half_size(touches.xy);
     const Index n = touches.F.rows(), p = touches.F.cols();
     const double price = static_cast<double>(p) * std::log(static_cast<double>(n));
-    const MatrixXd Q = Eigen::HouseholderQR<MatrixXd>(touches.F).householderQ() * MatrixXd::Identity(n, n);
+    const MatrixXd Q = orthogonal(touches.F, n).Q;
     const MatrixXd rest = Q.rightCols(n - p);
     for (const Roughness roughness : {Roughness::none, Roughness::matern})
         for (const double length : kLengths) {

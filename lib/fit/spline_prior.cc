@@ -1,9 +1,9 @@
 #include "fit/spline_prior.h"
 
+#include "core/decompositions.h"
 #include "surface/spline_energy.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/QR>
 
 namespace fettle {
 
@@ -32,7 +32,7 @@ SplinePrior spline_prior(const Bspline& grid)
     // K's own size keeps the matrix well conditioned.
     const MatrixXd K = third_derivative_energy(grid);
     const Index size = K.rows();
-    const MatrixXd Q = Eigen::HouseholderQR<MatrixXd>(prior.quadratics).householderQ() * MatrixXd::Identity(size, 6);
+    const MatrixXd Q = orthogonal(prior.quadratics, 6).Q;
     const double s = K.trace() / static_cast<double>(size);
     prior.pseudo_inverse = (K + s * Q * Q.transpose()).llt().solve(MatrixXd::Identity(size, size));
     prior.pseudo_inverse -= Q * Q.transpose() / s;

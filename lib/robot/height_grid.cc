@@ -1,5 +1,6 @@
 #include "robot/height_grid.h"
 
+#include "core/direction.h"
 #include "core/error.h"
 #include "core/text.h"
 
@@ -84,7 +85,7 @@ std::vector<std::uint32_t> with_a_corner_in(const HeightGrid& grid, const Triang
 
 HeightGrid::HeightGrid(const Mesh& mesh, const Vector3d& up, double side, Formulas formulas) : cell(side)
 {
-    T_grid_part = Eigen::Quaterniond::FromTwoVectors(up, Vector3d::UnitZ());
+    T_grid_part = turn_between(up, Vector3d::UnitZ());
     Eigen::Matrix3Xd points = T_grid_part * mesh.vertices;
     const Vector3d least = points.rowwise().minCoeff(), size = points.rowwise().maxCoeff() - least;
     T_grid_part.pretranslate(-least);

@@ -4,9 +4,8 @@
 #include "factorial.h"
 
 #include "cli/tool.h"
+#include "core/decompositions.h"
 #include "core/text.h"
-
-#include <Eigen/QR>
 
 #include <cstdio>
 #include <functional>
@@ -99,9 +98,10 @@ Refit refit(const Cells& cells, const std::string& method, Quantity quantity)
         measured[i] = cell.error(method, quantity);
     }
     Refit result{Eigen::VectorXd::Constant(terms, kNaN)};
-    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(model); // shows whether the terms are independent
-    if (count <= terms || qr.rank() < terms) return result;
-    result.coefficients = qr.solve(measured);
+    if (count <= terms) return result;
+    const LeastSquares fit = least_squares_by_qr(model, measured);
+    if (fit.rank < terms) return result; // the terms are not independent
+    result.coefficients = fit.x;
     const double residual = (measured - model * result.coefficients).squaredNorm();
     result.explained = 1 - residual / (measured.array() - measured.mean()).matrix().squaredNorm();
     result.rms = std::sqrt(residual / static_cast<double>(count));

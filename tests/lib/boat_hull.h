@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/direction.h"
 #include "mesh/mesh.h"
 
 #include <Eigen/Core>
@@ -57,7 +58,7 @@ inline std::vector<Eigen::Isometry3d> poses(int count)
         const Eigen::Vector3d axis = 0.2 * normal + 0.8 * Eigen::Vector3d::UnitZ();
         Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
         T.translation() = Eigen::Vector3d(x, y, height(x, y)) + (kBall + (k % 20 == 7 ? -0.05 : 0.02)) * normal;
-        T.linear() = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), axis).toRotationMatrix();
+        T.linear() = turn_between(Eigen::Vector3d::UnitZ(), axis);
         all.push_back(T);
     }
     return all;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/direction.h"
 #include "mesh/mesh.h"
 #include "mesh/triangle.h"
 #include "robot/solid.h"
@@ -65,7 +66,7 @@ inline bool any_deeper(const Mesh& mesh, const Solid& solid, const Eigen::Isomet
     const double length = way.norm(), radius = (cylinder ? cylinder->radius : sphere->radius) - depth;
     const Eigen::Vector3d middle = from + way / 2;
     const double around = std::hypot(length / 2, radius);
-    const Eigen::Matrix3d turn = Eigen::Quaterniond::FromTwoVectors(way, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    const Eigen::Matrix3d turn = turn_between(cylinder ? way : Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitZ());
     for (Eigen::Index i = 0; i < mesh.triangles.cols(); ++i) {
         const Triangle t = triangle_of(mesh, i);
         if (((t.colwise() - middle).rowwise().minCoeff().array() > around).any() ||

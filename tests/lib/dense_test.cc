@@ -1,5 +1,6 @@
 #include "fit/dense.h"
 
+#include "core/decompositions.h"
 #include "core/error.h"
 #include "fit/bspline.h"
 #include "fit/cell_moments.h"
@@ -10,9 +11,7 @@
 #include "json/document.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
-#include <Eigen/QR>
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
@@ -188,14 +187,14 @@ TEST(Smoothing, AgreesWithDenseLeastSquares)
     MatrixXd K = MatrixXd::Zero(72, 72);
     for (Index i = 0; i < 72; ++i)
         for (Index j = std::max<Index>(0, i - energy.K.half()); j <= i; ++j) K(i, j) = K(j, i) = energy.K(i, j);
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(K);
-    const MatrixXd root = eigen.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal() * eigen.eigenvectors().transpose();
+    const SymmetricEigen<Eigen::Dynamic> eigen = symmetric_eigen<Eigen::Dynamic>(K);
+    const MatrixXd root = eigen.values.cwiseMax(0).cwiseSqrt().asDiagonal() * eigen.vectors.transpose();
     for (const double lambda : {1e-2, 10.0, 1e4}) {
         MatrixXd A(472, 72);
         A << w.cwiseSqrt().asDiagonal() * G.transpose(), std::sqrt(lambda) * root;
         VectorXd b = VectorXd::Zero(472);
         b.head(400) = w.cwiseSqrt().cwiseProduct(z);
-        const VectorXd expected = A.householderQr().solve(b);
+        const VectorXd expected = least_squares_by_qr(A, b).x;
         const Smoothed result = smoothed(equations, VectorXd::Zero(72), energy, lambda);
         EXPECT_LT((result.heights - expected).norm(), 1e-10 * expected.norm());
         EXPECT_NEAR(result.variance * (w.sum() - 6), (A * expected - b).squaredNorm(), 1e-9 * b.squaredNorm());

@@ -1,6 +1,9 @@
 #include "boat_hull.h"
+#include "core/direction.h"
 #include "robot/heterogeneous.h"
 
+#include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -46,6 +49,25 @@ bool meets(const Triangle& t, const Vector2d& least, double cell)
         if (on.minCoeff() > middle + half || on.maxCoeff() < middle - half) return false;
     }
     return true;
+}
+
+// Identities: a rotation, onto the other direction, by no more than the angle between them; nearly opposite ones too.
+TEST(Direction, TurnBetween)
+{
+    std::mt19937 random(5);
+    std::normal_distribution<double> any;
+    for (int i = 0; i < 400; ++i) {
+        const Eigen::Vector3d a(any(random), any(random), any(random));
+        const double apart = std::pow(10.0, -(i % 20));
+        const Eigen::Vector3d b =
+            (i % 2 == 0 ? 3 : -3) * a + apart * Eigen::Vector3d(any(random), any(random), any(random));
+        const Eigen::Matrix3d R = turn_between(a, b);
+        EXPECT_LT((R * R.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-14);
+        EXPECT_GT(R.determinant(), 0);
+        EXPECT_LT((R * a.normalized() - b.normalized()).norm(), 3e-12); // what counts as opposite
+        const double cosine = a.normalized().dot(b.normalized());
+        EXPECT_NEAR((R.trace() - 1) / 2, cosine, 1e-12);
+    }
 }
 
 // Reference: separating axes, for the cells; points of the triangles, for the heights.

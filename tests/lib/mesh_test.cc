@@ -1,3 +1,4 @@
+#include "core/direction.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "mesh/mesh_file.h"
@@ -334,7 +335,7 @@ TEST(Polygons, ConcaveOnesAreCutWithinTheirEdges)
         }
         for (const Eigen::Vector3d& normal : {Eigen::Vector3d(0, 0, 1), Eigen::Vector3d(0, 0, -1),
                                               Eigen::Vector3d(1, 0.1, 0), Eigen::Vector3d(-1, -2, 0.5)}) {
-            const auto turn = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), normal);
+            const Eigen::Matrix3d turn = turn_between(Eigen::Vector3d::UnitZ(), normal);
             Eigen::Matrix3Xd vertices(3, static_cast<Eigen::Index>(outline.size()));
             std::vector<std::uint32_t> corners;
             for (std::size_t k = 0; k < outline.size(); ++k) {
