@@ -56,11 +56,11 @@ std::string clearance_chart(const CheckedPath& checked, const CheckedPath* befor
         chart.curves.push_back(curve_of(before->between, "before, between", kFaint, units.mm()));
         chart.curves.push_back(curve_of(before->pose, "before, at poses", kGrey, units.mm()));
     }
-    Eigen::Matrix2d zero;
-    zero << 0, static_cast<double>(checked.pose.size()), 0, 0;
-    chart.curves.push_back({"", zero, kRed, false});
     chart.curves.push_back(curve_of(checked.between, "between poses", curve_colour(5), units.mm()));
     chart.curves.push_back(curve_of(checked.pose, "at poses", curve_colour(0), units.mm()));
+    Eigen::Matrix2d zero; // last: a curve that runs along it does not hide it
+    zero << 0, static_cast<double>(checked.pose.size()), 0, 0;
+    chart.curves.push_back({"", zero, kRed, false});
     Canvas canvas(kWidth, kHeight + (changes == nullptr ? 0 : kTilts));
     draw_chart(canvas, {0, 0}, {kWidth, kHeight}, chart);
     if (changes != nullptr) draw_chart(canvas, {0, kHeight}, {kWidth, kTilts}, tilt_chart(*changes));
