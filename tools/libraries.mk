@@ -6,3 +6,4 @@ $(B)/bin/fettle-render:  LDLIBS = $(OPENCV) $(PNG)
 $(B)/bin/fettle-report:  LDLIBS = $(OPENCV) $(PNG) $(MD)
 $(B)/bin/fettle-contact: LDLIBS = -lopencv_core
 $(B)/bin/fettle-belt:    LDLIBS = -lopencv_core
+$(B)/bin/fettle-feed:    LDLIBS = -lopencv_core

@@ -24,6 +24,8 @@ struct LayerContact::Window {
 namespace {
 
 constexpr int kMostIterations = 1000;
+// A start that is far off may lead round in circles; from no start it takes a few dozen.
+constexpr int kMostFromStart = 100;
 
 using Marks = Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic>;
 
@@ -86,7 +88,7 @@ MatrixXd LayerContact::guess(const MatrixXd& gap, const Contact& wanted, bool is
 
 /// Solves in the window, whatever is beyond it. @return  whether to tolerance
 bool LayerContact::iterate(const MatrixXd& gap, const Window& window, double tolerance, bool is_force_known,
-                           Contact& contact)
+                           int most_iterations, Contact& contact)
 {
     Convolution& give = convolution(window.rows, window.columns);
     const ArrayXXd before = window.of(gap).array();
@@ -95,7 +97,7 @@ bool LayerContact::iterate(const MatrixXd& gap, const Window& window, double tol
     MatrixXd step = MatrixXd::Zero(window.rows, window.columns);
     double last = 0; // squares of the gaps; 0: the next step is along the gaps
     bool known = false;
-    for (; contact.iterations < kMostIterations; ++contact.iterations) {
+    for (; contact.iterations < most_iterations; ++contact.iterations) {
         auto p = pressure.array();
         if (!known) give(pressure, displacement);
         known = true;
@@ -134,9 +136,10 @@ bool LayerContact::iterate(const MatrixXd& gap, const Window& window, double tol
     return false;
 }
 
-Contact LayerContact::solve(const MatrixXd& from_the_plane, Contact contact, double tolerance, const MatrixXd& start,
-                            bool is_force_known)
+Contact LayerContact::solve(const MatrixXd& from_the_plane, const Contact& wanted, double tolerance,
+                            const MatrixXd& start, bool is_force_known)
 {
+    Contact contact = wanted;
     const double first = from_the_plane.minCoeff(); // where the hub stands when it first touches
     const MatrixXd gap = from_the_plane.array() - first;
     contact.indentation -= first;
@@ -153,7 +156,8 @@ Contact LayerContact::solve(const MatrixXd& from_the_plane, Contact contact, dou
         Window window;
         std::tie(window.row, window.rows) = side(touched.rowwise().any());
         std::tie(window.column, window.columns) = side(touched.colwise().any().transpose());
-        contact.converged = iterate(gap, window, tolerance, is_force_known, contact);
+        contact.converged = iterate(gap, window, tolerance, is_force_known,
+                                    start.size() > 0 ? kMostFromStart : kMostIterations, contact);
         const double bulge = least_influence_ * contact.pressure.sum(); // at most, anywhere
         const double open = contact.indentation * (1 - tolerance) - bulge;
         const auto beyond = [&](Marks marks) {
@@ -165,6 +169,7 @@ Contact LayerContact::solve(const MatrixXd& from_the_plane, Contact contact, dou
         if (!crossed.any()) break;
         touched = touched || crossed;
     }
+    if (!contact.converged && start.size() > 0) return solve(from_the_plane, wanted, tolerance, {}, is_force_known);
     contact.indentation += first;
     contact.force = contact.pressure.sum() * cell_area_;
     return contact;

@@ -43,10 +43,10 @@ class LayerContact {
 
   private:
     struct Window;
-    Contact solve(const Eigen::MatrixXd& gap, Contact wanted, double tolerance, const Eigen::MatrixXd& start,
+    Contact solve(const Eigen::MatrixXd& gap, const Contact& wanted, double tolerance, const Eigen::MatrixXd& start,
                   bool is_force_known);
     bool iterate(const Eigen::MatrixXd& gap, const Window& window, double tolerance, bool is_force_known,
-                 Contact& contact);
+                 int most_iterations, Contact& contact);
     Eigen::MatrixXd guess(const Eigen::MatrixXd& gap, const Contact& wanted, bool is_force_known) const;
     /// Negative where they cross.
     Eigen::MatrixXd left(const Eigen::MatrixXd& gap, const Contact& contact);

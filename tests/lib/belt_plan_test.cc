@@ -1,0 +1,177 @@
+// Plans for allowances that are known to be met by some feeds or forces, and what limits do.
+
+#include "belt/belt_plan.h"
+#include "core/error.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+using namespace fettle;
+
+namespace {
+
+using Eigen::Index;
+
+constexpr double kSpacing = 0.5;
+
+Surfels plate()
+{
+    const Index rows = 72, columns = 40;
+    Surfels surfels;
+    surfels.position.setZero(3, rows * columns);
+    for (Index j = 0; j < columns; ++j)
+        for (Index i = 0; i < rows; ++i)
+            surfels.position.col(j * rows + i) << (double(i) + 0.5) * kSpacing - 18, (double(j) + 0.5) * kSpacing - 10,
+                0;
+    surfels.normal.setZero(3, rows * columns);
+    surfels.normal.row(2).setOnes();
+    surfels.radius.setConstant(surfels.size(), kSpacing);
+    surfels.displacement.setZero(surfels.size());
+    surfels.uv.setZero(2, surfels.size());
+    surfels.patch.setZero(surfels.size());
+    return surfels;
+}
+
+/// It takes so little that the contact does not change with it: the choices that made an allowance are those that meet
+/// it.
+ContactWheel crowned()
+{
+    ContactWheel wheel;
+    wheel.radius = 20;
+    wheel.width = 30;
+    wheel.crown_radius = 30;
+    wheel.layer = {3, 2, 0.45};
+    wheel.belt_speed = 15000;
+    wheel.law.coefficient = 1e-8;
+    return wheel;
+}
+
+/// Three passes 4 mm apart, from -12 to 12 mm.
+std::vector<BeltPoint> passes(double (*feed)(double x, double y), double (*force)(double x, double y))
+{
+    std::vector<BeltPoint> path;
+    for (const double y : {-4.0, 0.0, 4.0})
+        for (int k = 0; k <= 12; ++k) {
+            const double x = -12 + 2 * k;
+            BeltPoint point{Eigen::Isometry3d::Identity(), {true, force(x, y)}, feed(x, y), 0, k == 0};
+            point.T_part_tool.translation() << x, y, 0;
+            path.push_back(point);
+        }
+    return path;
+}
+
+double even_feed(double, double) { return 5; }
+double even_force(double, double) { return 10; }
+double wavy_feed(double x, double y) { return 5 + 2 * std::sin(x / 5 + y); }
+double wavy_force(double x, double y) { return 10 + 5 * std::sin(x / 5 + y); }
+
+/// What such a path takes is the allowance.
+Surfels allowance_of(const std::vector<BeltPoint>& path)
+{
+    Surfels surfels = plate();
+    surfels.displacement = grind(surfels, crowned(), path, {}).removed;
+    return surfels;
+}
+
+BeltPlanOptions limits(double least, double most)
+{
+    BeltPlanOptions options;
+    options.least = least;
+    options.most = most;
+    options.smoothness = 1e-9;
+    return options;
+}
+
+TEST(BeltPlan, FindsTheFeedsAgain)
+{
+    const std::vector<BeltPoint> known = passes(wavy_feed, even_force);
+    const Surfels surfels = allowance_of(known);
+    const BeltPlan plan = plan_belt(surfels, crowned(), passes(even_feed, even_force), limits(1, 50));
+    EXPECT_TRUE(plan.converged);
+    EXPECT_LE(plan.rms_planned, 0.03 * plan.rms_constant);
+    EXPECT_LT(plan.rms_constant, plan.rms_before);
+    for (std::size_t k = 0; k < known.size(); ++k) {
+        EXPECT_NEAR(plan.path[k].feed, known[k].feed, 0.05 * known[k].feed);
+        EXPECT_EQ(plan.path[k].pressing.amount, 10);
+    }
+    EXPECT_GT(plan.reached, 0);
+    EXPECT_LT(plan.reached, plan.touched);
+}
+
+TEST(BeltPlan, FindsTheForcesAgain)
+{
+    const Surfels surfels = allowance_of(passes(even_feed, wavy_force));
+    const BeltPlan plan = [&] {
+        BeltPlanOptions options = limits(1, 50);
+        options.by_force = true;
+        return plan_belt(surfels, crowned(), passes(even_feed, even_force), options);
+    }();
+    EXPECT_LE(plan.rms_planned, 0.05 * plan.rms_constant);
+    for (const BeltPoint& point : plan.path) {
+        EXPECT_EQ(point.feed, 5);
+        EXPECT_NEAR(point.pressing.amount,
+                    wavy_force(point.T_part_tool.translation().x(), point.T_part_tool.translation().y()), 1.5);
+    }
+}
+
+// The law's exponents bend what a feed takes; the answer is the same.
+TEST(BeltPlan, FollowsThePowerLaw)
+{
+    ContactWheel wheel = crowned();
+    wheel.law.pressure = 1.5;
+    wheel.law.feed = -0.3;
+    wheel.law.wear_work = 5e5;
+    Surfels surfels = plate();
+    const std::vector<BeltPoint> known = passes(wavy_feed, even_force);
+    surfels.displacement = grind(surfels, wheel, known, {}).removed;
+    const BeltPlan plan = plan_belt(surfels, wheel, passes(even_feed, even_force), limits(1, 50));
+    EXPECT_LE(plan.rms_planned, 0.03 * plan.rms_constant);
+    for (std::size_t k = 0; k < known.size(); ++k) EXPECT_NEAR(plan.path[k].feed, known[k].feed, 0.05 * known[k].feed);
+}
+
+TEST(BeltPlan, KeepsItsLimits)
+{
+    const Surfels surfels = allowance_of(passes(wavy_feed, even_force));
+    const BeltPlan plan = plan_belt(surfels, crowned(), passes(even_feed, even_force), limits(4, 6));
+    for (const BeltPoint& point : plan.path) {
+        EXPECT_GE(point.feed, 4);
+        EXPECT_LE(point.feed, 6);
+    }
+    EXPECT_GT(plan.at_least, 0);
+    EXPECT_GT(plan.at_most, 0);
+    EXPECT_LT(plan.rms_planned, plan.rms_constant);
+}
+
+// The smoother, the more even, at the cost of the error.
+TEST(BeltPlan, IsSmoothOnRequest)
+{
+    const Surfels surfels = allowance_of(passes(wavy_feed, even_force));
+    const auto planned = [&](double smoothness) {
+        BeltPlanOptions options = limits(1, 50);
+        options.smoothness = smoothness;
+        return plan_belt(surfels, crowned(), passes(even_feed, even_force), options);
+    };
+    const BeltPlan rough = planned(1e-9), smooth = planned(1e-3);
+    const auto spread = [](const BeltPlan& plan) {
+        double least = 1e9, most = 0;
+        for (const BeltPoint& point : plan.path) {
+            least = std::min(least, point.feed);
+            most = std::max(most, point.feed);
+        }
+        return most / least;
+    };
+    EXPECT_LT(spread(smooth), 0.7 * spread(rough));
+    EXPECT_LE(rough.rms_planned, smooth.rms_planned);
+}
+
+TEST(BeltPlan, RefusesForcesWhereDepthsAreGiven)
+{
+    std::vector<BeltPoint> path = passes(even_feed, even_force);
+    path[3].pressing = {false, 0.2};
+    BeltPlanOptions options = limits(1, 50);
+    options.by_force = true;
+    EXPECT_THROW(plan_belt(plate(), crowned(), path, options), InputError);
+}
+
+} // namespace
