@@ -4,6 +4,7 @@
 #   make test       build and run the tests   make figures   the chain's figures beside their targets
 #   make test TOOL=fettle-fit                 make bench     benchmarks
 #   make bless TOOL=fettle-fit                make docs      pages of docs/tools from --help
+#   make test-linuxcnc  on LinuxCNC, simulated
 #   make lint       format and scripts        make includes   every file by its own includes
 #   make install PREFIX=/usr/local DESTDIR=
 #
@@ -16,13 +17,18 @@ PREFIX   ?= /usr/local
 CXXFLAGS ?= -O2 -g1
 JOBS     ?= $(shell nproc)
 
-TOOLS    := $(patsubst tools/%.cc,%,$(wildcard tools/fettle-*.cc))
+# What needs LinuxCNC's headers (linuxcnc-uspace-dev) is built where they are.
+LINUXCNC := $(wildcard /usr/include/linuxcnc/emc_nml.hh)
+NEEDS_LINUXCNC := $(if $(LINUXCNC),,tools/fettle-gantry-linuxcnc.cc lib/gantry/linuxcnc.cc lib/gantry/linuxcnc_link.cc)
+TOOLS    := $(patsubst tools/%.cc,%,$(filter-out $(NEEDS_LINUXCNC),$(wildcard tools/fettle-*.cc)))
 BINARIES := $(TOOLS:%=$(B)/bin/%)
 TESTS    := $(patsubst tests/lib/%.cc,$(B)/tests/%,$(wildcard tests/lib/*_test.cc))
 STUDIES  := $(patsubst pipelines/programs/%.cc,$(B)/study/%,$(wildcard pipelines/programs/*.cc))
 BENCHES  := $(patsubst tests/bench/%.cc,$(B)/bench/%,$(wildcard tests/bench/*_bench.cc))
-CASES    := $(sort $(wildcard tests/$(or $(TOOL),*)/*.sh))
-OBJECTS  := $(patsubst %.cc,$(B)/%.o,$(wildcard lib/*/*.cc))
+# Those of tests/linuxcnc have a machine of their own to start: make test-linuxcnc.
+CASES    := $(sort $(filter-out tests/linuxcnc/%,$(wildcard tests/$(or $(TOOL),*)/*.sh)))
+OBJECTS  := $(patsubst %.cc,$(B)/%.o,$(filter-out $(NEEDS_LINUXCNC),$(wildcard lib/*/*.cc)))
+MODULES  := $(if $(LINUXCNC),$(B)/linuxcnc/fettle_head.so $(B)/linuxcnc/fettle_watch.so)
 
 # -ffp-contract=off: the same digits on every processor. No -march: Debian's PCL is built without it, and Eigen's
 # alignment must agree with PCL's.
@@ -40,12 +46,12 @@ PRECOMPILED ?= $(B)/lib/precompiled.h.gch $(B)/tests/lib/precompiled.h.gch
 
 .DELETE_ON_ERROR:
 .SECONDARY:
-.PHONY: all build deps test tests-built run-cases demo figures bench bless docs lint includes install clean
+.PHONY: all build deps test test-linuxcnc tests-built run-cases demo figures bench bless docs lint includes install clean
 
 all: deps
 	@$(MAKE) --no-print-directory -j$(JOBS) build
 
-build: $(BINARIES) $(STUDIES)
+build: $(BINARIES) $(STUDIES) $(MODULES)
 
 # --- libraries, tool by tool: a heavy one is linked only where it is named ------------------------------------------
 CERES  := -lceres -lglog
@@ -106,16 +112,34 @@ $(B)/bench/%: $(B)/tests/bench/%.o $(B)/libfettle.a
 	@mkdir -p $(@D)
 	$(CXX) $(LDFLAGS) -o $@ $^ $(LDLIBS) $(LDLIBS_ALL)
 
--include $(wildcard $(B)/*/*.d $(B)/*/*/*.d)
+-include $(wildcard $(B)/*/*.d $(B)/*/*/*.d $(B)/*/*/*/*.d)
 
 # --- what a machine needs --------------------------------------------------------------------------------------------
 deps:
 	@.ci/install-packages packages.txt
 
+# --- LinuxCNC: its client, and the realtime module that simulates head and stock --------------------------------------
+$(B)/lib/gantry/linuxcnc_link.o: override CPPFLAGS += -DULAPI -isystem /usr/include/linuxcnc
+
+$(B)/linuxcnc/%.o: override CPPFLAGS += -DRTAPI -isystem /usr/include/linuxcnc
+$(B)/linuxcnc/%.o: override CXXFLAGS += -fPIC -fvisibility=hidden -ffunction-sections -fdata-sections
+$(B)/linuxcnc/%.o: %.cc
+	@mkdir -p $(@D)
+	$(CXX) $(CPPFLAGS) $(CXXFLAGS) -MMD -MP -c $< -o $@
+
+# The linker drops what the module does not call, and with it the libraries that only that needs.
+$(B)/linuxcnc/fettle_head.so: $(patsubst %,$(B)/linuxcnc/%.o,tools/linuxcnc/fettle_head lib/gantry/simulated_head lib/removal/height_field lib/removal/preston lib/removal/wheel)
+	$(CXX) $(LDFLAGS) -shared -Wl,--gc-sections -Wl,--no-undefined-version -o $@ $^
+
+$(B)/linuxcnc/fettle_watch.so: tools/linuxcnc/fettle_watch.comp
+	@mkdir -p $(@D)
+	cp $< $(@D) && cd $(@D) && halcompile --compile $(<F) > /dev/null
+
 # --- tests: each golden case and each test program is a target of its own --------------------------------------------
 CASE_RUNS := $(CASES:.sh=.case)
 TEST_RUNS := $(if $(TOOL),,$(TESTS:%=%.run))
-.PHONY: $(CASE_RUNS) $(TEST_RUNS)
+LINUXCNC_RUNS := $(patsubst %.sh,%.case,$(sort $(wildcard tests/linuxcnc/*.sh)))
+.PHONY: $(CASE_RUNS) $(TEST_RUNS) $(LINUXCNC_RUNS)
 
 test: deps
 	@rm -rf $(B)/results && mkdir -p $(B)/results
@@ -124,7 +148,14 @@ test: deps
 
 tests-built: $(TESTS)
 
-$(CASE_RUNS): %.case: %.sh
+# One after the other: each has a machine that wants the computer for itself.
+test-linuxcnc: deps
+	@.ci/install-packages packages-linuxcnc.txt
+	@mkdir -p $(B)/results && rm -f $(B)/results/linuxcnc__*
+	@$(MAKE) --no-print-directory -j$(JOBS) build
+	@$(MAKE) --no-print-directory -j1 -k -s $(LINUXCNC_RUNS) 2>/dev/null; tests/summary $(B)/results
+
+$(CASE_RUNS) $(LINUXCNC_RUNS): %.case: %.sh
 	tests/run $(B) $<
 
 $(TEST_RUNS): %.run: %

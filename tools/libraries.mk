@@ -7,3 +7,5 @@ $(B)/bin/fettle-report:  LDLIBS = $(OPENCV) $(PNG) $(MD)
 $(B)/bin/fettle-contact: LDLIBS = -lopencv_core
 $(B)/bin/fettle-belt:    LDLIBS = -lopencv_core
 $(B)/bin/fettle-feed:    LDLIBS = -lopencv_core
+# LinuxCNC's libraries are under the GPL: so is this program as a whole.
+$(B)/bin/fettle-gantry-linuxcnc: LDLIBS = /usr/lib/liblinuxcnc.a -lnml -llinuxcncini -ltooldata -llinuxcnchal

@@ -28,7 +28,7 @@ std::string words(const Eigen::Vector3d& p) { return to_text(p.x()) + " " + to_t
 } // namespace
 
 DriverGantry::DriverGantry(const std::string& command, const Job& job, double patience)
-    : command_(command), child_(command), patience_(patience)
+    : command_(command), child_(command), patience_(patience), most_force_(job.force.max)
 {
     const std::string told = ask(std::string("connect ") + protocol::kVersion, kStartTime);
     const std::string version = std::string(protocol::kVersion) + " ";
@@ -159,6 +159,7 @@ const GantryStatus& DriverGantry::move(const std::string& command, const Eigen::
 {
     check_range(target);
     obey(command, duration);
+    if (status_.force >= most_force_) return status_; // the guard has stopped it, wherever that was
     const Eigen::Vector3d off = status_.commanded - target;
     const bool held = guarded && off.z() > 0; // the way down ended early
     if (off.head<2>().norm() > kCorner || (!held && std::abs(off.z()) > kCorner))

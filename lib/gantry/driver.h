@@ -46,6 +46,7 @@ class DriverGantry final : public Gantry {
     std::string command_;
     Child child_;
     double patience_;
+    double most_force_; ///< F_max, N
     int asked_ = 0;
     protocol::Limits limits_;
     GantryStatus status_;

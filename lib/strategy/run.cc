@@ -95,7 +95,7 @@ class Runner {
         default:
             break;
         }
-        noticed(status, action.layer);
+        noticed(status, action);
         if (by_force(action.layer)) learn(action, status);
         record(action, status, action.kind == Action::Kind::grind ? feed_ : 0);
         return status;
@@ -173,7 +173,7 @@ class Runner {
             const double s = double(i) / pieces;
             const Eigen::Vector3d point = a + s * (b - a) + 4 * s * (1 - s) * crown * Eigen::Vector3d::UnitZ();
             status = grind(point, action.layer);
-            noticed(status, action.layer);
+            noticed(status, action);
             Action piece = action;
             if (i > 1) piece.event = Event::none;
             record(piece, status, feed_);
@@ -182,10 +182,12 @@ class Runner {
         return status;
     }
 
-    // A guarded way down may have stopped above the reference surface.
-    void noticed(const GantryStatus& status, int layer)
+    // A guarded way down may have stopped above the reference surface. A step along it has not, though a machine with
+    // look-ahead may still be on its way.
+    void noticed(const GantryStatus& status, const Action& action)
     {
-        short_of_ = std::max(0.0, status.commanded.z() - tool_point(layer).z());
+        const bool along = action.kind == Action::Kind::grind;
+        short_of_ = along ? 0 : std::max(0.0, status.commanded.z() - tool_point(action.layer).z());
         result_.peak_force = std::max({result_.peak_force, status.force, status.peak_force});
     }
 

@@ -2,5 +2,6 @@
 root=$HERE/../..
 for source in "$root"/tools/fettle-*.cc; do
     tool=$(basename "$source" .cc)
+    [ "$tool" != fettle-gantry-linuxcnc ] || command -v "$tool" > /dev/null || continue # built where LinuxCNC's headers are
     diff -u "$root/docs/tools/$tool.md" <("$root/tests/tool-page" "$(command -v "$tool")")
 done

@@ -1,0 +1,310 @@
+#include "gantry/linuxcnc_link.h"
+
+#include "core/error.h"
+#include "gantry/gantry.h"
+
+#include <emc.hh>
+#include <emc_nml.hh>
+#include <hal.h>
+#include <inifile.hh>
+#include <nml_oi.hh>
+#include <rcs.hh>
+#include <rcs_print.hh>
+
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <limits>
+#include <pthread.h>
+#include <thread>
+#include <unistd.h>
+
+namespace fettle {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// Between two looks at a condition: half a period of the servo thread.
+constexpr std::chrono::microseconds kLook{500};
+// A sixteenth of the guard's patience: it takes many lost beats.
+constexpr std::chrono::milliseconds kBeat{5};
+// Until LinuxCNC is up, and for what it does without motion, s; homing, with motion.
+constexpr double kPatience = 10, kHoming = 60;
+
+const char* const kNmlName = "xemc"; // of any client in the NML file
+
+bool wait_for(double seconds, const std::function<bool()>& holds)
+{
+    const auto end = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+    while (!holds()) {
+        if (Clock::now() > end) return false;
+        std::this_thread::sleep_for(kLook);
+    }
+    return true;
+}
+
+/// A signal of HAL by its name.
+volatile hal_data_u& signal(const char* name, hal_type_t type)
+{
+    hal_type_t found = HAL_TYPE_UNSPECIFIED;
+    hal_data_u* data = nullptr;
+    bool written = false;
+    if (hal_get_signal_value_by_name(name, &found, &data, &written) != 0 || found != type || data == nullptr)
+        throw GantryFault(std::string("LinuxCNC has no signal '") + name +
+                          "': see samples/machines/linuxcnc/guard.hal");
+    return *data;
+}
+
+struct Number {
+    volatile hal_data_u& data;
+    explicit Number(const char* name) : data(signal(name, HAL_FLOAT)) {}
+    operator double() const { return data.f; }
+    void set(double value) { data.f = value; }
+};
+
+struct Flag {
+    volatile hal_data_u& data;
+    explicit Flag(const char* name) : data(signal(name, HAL_BIT)) {}
+    operator bool() const { return data.b; }
+    void set(bool value) { data.b = value; }
+};
+
+struct Count {
+    volatile hal_data_u& data;
+    explicit Count(const char* name) : data(signal(name, HAL_U32)) {}
+    void go_on() { data.u = data.u + 1; }
+};
+
+/// A component of HAL without pins.
+struct Component {
+    int id = hal_init(("fettle-" + std::to_string(::getpid())).c_str());
+    Component()
+    {
+        if (id < 0) throw GantryFault("LinuxCNC's HAL is not to be reached");
+        hal_ready(id);
+    }
+    ~Component() { hal_exit(id); }
+};
+
+struct Head {
+    Number x{"x-at"}, y{"y-at"}, z{"z-at"}, deflection{"deflection"}, force{"force"}, most_force{"client-fmax"};
+    Flag held{"held"}, lost{"lost"}, tripped{"tripped"}, off{"off"};
+    Count beat{"client-beat"};
+    Flag watch{"client-watch"}, hold{"client-hold"}, touch{"client-touch"}, tip{"client-tip"};
+};
+
+std::string message_in(NML& errors, NMLTYPE type)
+{
+    const NMLmsg* message = errors.get_address();
+    if (type == EMC_OPERATOR_ERROR_TYPE) return static_cast<const EMC_OPERATOR_ERROR*>(message)->error;
+    if (type == NML_ERROR_TYPE) return static_cast<const NML_ERROR*>(message)->error;
+    return "";
+}
+
+std::string beside(const std::string& ini, const std::string& file)
+{
+    return file.starts_with('/') ? file : ini.substr(0, ini.rfind('/') + 1) + file;
+}
+
+} // namespace
+
+struct LinuxcncLink::Wires {
+    std::string source;
+    mutable IniFile ini;
+    std::unique_ptr<RCS_CMD_CHANNEL> commands;
+    std::unique_ptr<RCS_STAT_CHANNEL> status;
+    std::unique_ptr<NML> errors;
+    std::unique_ptr<Component> component;
+    std::unique_ptr<Head> head;
+    std::atomic<bool> over{false};
+    std::thread heart;
+    int serial = 0;
+
+    const EMC_STAT& look()
+    {
+        status->peek();
+        return *static_cast<EMC_STAT*>(status->get_address());
+    }
+
+    void connect(const std::string& nml)
+    {
+        set_rcs_print_destination(RCS_PRINT_TO_NULL); // it would speak on stdout
+        const bool up = wait_for(kPatience, [&] {
+            const char* file = nml.c_str();
+            if (!commands) commands = std::make_unique<RCS_CMD_CHANNEL>(emcFormat, "emcCommand", kNmlName, file);
+            if (!commands->valid()) commands.reset();
+            if (!status) status = std::make_unique<RCS_STAT_CHANNEL>(emcFormat, "emcStatus", kNmlName, file);
+            if (!status->valid() || status->peek() != EMC_STAT_TYPE) status.reset();
+            if (!errors) errors = std::make_unique<NML>(nmlErrorFormat, "emcError", kNmlName, file);
+            if (!errors->valid()) errors.reset();
+            return commands && status && errors;
+        });
+        if (!up) throw GantryFault("LinuxCNC does not answer by " + nml);
+        component = std::make_unique<Component>();
+        head = std::make_unique<Head>();
+    }
+
+    void send(RCS_CMD_MSG& message, const char* what)
+    {
+        if (commands->write(&message) != 0) throw GantryFault("LinuxCNC takes no commands");
+        serial = message.serial_number;
+        if (!wait_for(kPatience, [&] { return look().echo_serial_number - serial >= 0; }))
+            throw GantryFault(std::string("LinuxCNC does not take '") + what + "'");
+    }
+
+    void obey(RCS_CMD_MSG& message, const char* what)
+    {
+        send(message, what);
+        if (!wait_for(kPatience, [&] { return look().status != RCS_EXEC; }))
+            throw GantryFault(std::string("LinuxCNC does not end '") + what + "'");
+        check_errors();
+    }
+
+    void check_errors()
+    {
+        for (NMLTYPE type = errors->read(); type > 0; type = errors->read())
+            if (const std::string text = message_in(*errors, type); !text.empty())
+                throw GantryFault("LinuxCNC reports: " + text.substr(0, text.find('\n')));
+    }
+
+    void forget_errors()
+    {
+        while (errors->read() > 0) {
+        }
+    }
+
+    void set_state(EMC_TASK_STATE_ENUM state)
+    {
+        EMC_TASK_SET_STATE message;
+        message.state = state;
+        obey(message, "machine on");
+    }
+
+    void set_mode(EMC_TASK_MODE_ENUM mode)
+    {
+        EMC_TASK_SET_MODE message;
+        message.mode = mode;
+        obey(message, "mode");
+    }
+
+    bool homed()
+    {
+        const EMC_STAT& now = look();
+        for (int j = 0; j < now.motion.traj.joints; ++j)
+            if (!now.motion.joint[j].homed) return false;
+        return true;
+    }
+
+    void beat()
+    {
+        // Before what else there is to do, where that is allowed: a beat that is late stops the machine.
+        const sched_param first{.sched_priority = 1};
+        pthread_setschedparam(pthread_self(), SCHED_FIFO, &first);
+        while (!over) {
+            head->beat.go_on();
+            std::this_thread::sleep_for(kBeat);
+        }
+    }
+};
+
+LinuxcncLink::LinuxcncLink(const std::string& ini) : wires_(std::make_unique<Wires>())
+{
+    wires_->source = ini;
+    if (!wires_->ini.Open(ini.c_str())) throw InputError(ini, "cannot be read");
+    const char* const nml = wires_->ini.Find("NML_FILE", "EMC");
+    if (nml == nullptr) throw InputError(ini, "[EMC]NML_FILE is missing");
+    wires_->connect(beside(ini, nml));
+}
+
+LinuxcncLink::~LinuxcncLink()
+{
+    wires_->head->watch.set(false);
+    wires_->head->hold.set(false);
+    wires_->over = true;
+    if (wires_->heart.joinable()) wires_->heart.join();
+}
+
+double LinuxcncLink::setting(const std::string& section, const std::string& key) const
+{
+    double value = 0;
+    if (wires_->ini.Find(&value, key.c_str(), section.c_str()) != IniFile::ERR_NONE)
+        throw InputError(wires_->source, "[" + section + "]" + key + " is missing, or no number");
+    return value;
+}
+
+void LinuxcncLink::enable()
+{
+    Head& head = *wires_->head;
+    head.watch.set(false); // of a client that is gone
+    head.hold.set(false);
+    head.touch.set(false);
+    head.tip.set(false);
+    wires_->heart = std::thread([this] { wires_->beat(); });
+    if (!wait_for(kPatience, [&] { return !head.lost && !head.off; })) throw GantryFault("the guard does not let go");
+    wires_->forget_errors();
+    wires_->set_state(EMC_TASK_STATE_ESTOP_RESET);
+    wires_->set_state(EMC_TASK_STATE_ON);
+    if (!wires_->homed()) {
+        wires_->set_mode(EMC_TASK_MODE_MANUAL);
+        EMC_JOINT_HOME all;
+        all.joint = -1;
+        wires_->send(all, "home");
+        if (!wait_for(kHoming, [&] { return wires_->homed(); })) throw GantryFault("LinuxCNC does not find its zeros");
+    }
+    wires_->set_mode(EMC_TASK_MODE_MDI);
+    head.watch.set(true);
+}
+
+// A line that is queued behind another waits until all motion has ended; one that is sent when none is queued does not.
+void LinuxcncLink::say(const std::string& line)
+{
+    const bool free = wait_for(kHoming, [&] {
+        done(); // for faults
+        const EMC_STAT& now = wires_->look();
+        return now.task.queuedMDIcommands == 0 && now.task.execState == EMC_TASK_EXEC_DONE;
+    });
+    if (!free) throw GantryFault("LinuxCNC does not come to '" + line + "'");
+    EMC_TASK_PLAN_EXECUTE message;
+    std::snprintf(message.command, sizeof message.command, "%s", line.c_str());
+    wires_->send(message, line.c_str());
+}
+
+void LinuxcncLink::abort()
+{
+    EMC_TASK_ABORT message;
+    wires_->obey(message, "abort");
+}
+
+bool LinuxcncLink::done()
+{
+    const EMC_STAT& now = wires_->look();
+    if (wires_->head->tripped) throw GantryFault("the force has passed the machine's hard limit; it is off");
+    if (wires_->head->lost) throw GantryFault("the guard has missed the heartbeat; the machine is off");
+    wires_->check_errors();
+    if (now.task.state != EMC_TASK_STATE_ON) throw GantryFault("LinuxCNC's machine is off");
+    return now.echo_serial_number == wires_->serial && now.status == RCS_DONE;
+}
+
+double LinuxcncLink::touched() const
+{
+    const EMC_TRAJ_STAT& now = wires_->look().motion.traj;
+    return now.probe_tripped ? now.probedPosition.tran.z : std::numeric_limits<double>::quiet_NaN();
+}
+
+Eigen::Vector3d LinuxcncLink::drives() const
+{
+    const Head& head = *wires_->head;
+    return {double(head.x), double(head.y), double(head.z)};
+}
+
+double LinuxcncLink::deflection() const { return wires_->head->deflection; }
+double LinuxcncLink::force() const { return wires_->head->force; }
+bool LinuxcncLink::held() const { return wires_->head->held; }
+void LinuxcncLink::set_most_force(double force) { wires_->head->most_force.set(force); }
+void LinuxcncLink::set_hold(bool armed) { wires_->head->hold.set(armed); }
+void LinuxcncLink::set_touch(bool armed) { wires_->head->touch.set(armed); }
+void LinuxcncLink::set_tip(bool probe) { wires_->head->tip.set(probe); }
+
+} // namespace fettle
