@@ -129,7 +129,7 @@ $(B)/linuxcnc/%.o: %.cc
 
 # The linker drops what the module does not call, and with it the libraries that only that needs.
 $(B)/linuxcnc/fettle_head.so: $(patsubst %,$(B)/linuxcnc/%.o,tools/linuxcnc/fettle_head lib/gantry/simulated_head lib/removal/height_field lib/removal/preston lib/removal/wheel)
-	$(CXX) $(LDFLAGS) -shared -Wl,--gc-sections -Wl,--no-undefined-version -o $@ $^
+	$(CXX) $(LDFLAGS) -shared -Wl,--gc-sections -o $@ $^
 
 $(B)/linuxcnc/fettle_watch.so: tools/linuxcnc/fettle_watch.comp
 	@mkdir -p $(@D)
@@ -184,7 +184,7 @@ lint:
 
 # Every file from its own includes alone: what is precompiled hides one that is missing.
 includes: deps
-	@git ls-files '*.cc' '*.h' | grep -v precompiled | xargs -n 1 -P $(JOBS) \
+	@git ls-files '*.cc' '*.h' | grep -v -e precompiled -e linuxcnc | xargs -n 1 -P $(JOBS) \
 	    $(CXX) $(CPPFLAGS) -isystem /usr/include/opencv4 $(CXXFLAGS) -w -Itests/lib -x c++ -fsyntax-only
 
 install: build

@@ -12,8 +12,6 @@ namespace {
 
 // Between two looks: the servo thread's period.
 constexpr std::chrono::milliseconds kLook{1};
-// A step of the strategy takes so long to come and to be planned, on a busy computer, s.
-constexpr double kLatency = 0.05;
 // Down to the work: at 20 mm/s a slow axis of 1000 mm/s² stops within 0.2 mm.
 constexpr double kDown = 20; // mm/s
 // In search of the surface; and the touch that counts: 0.0005 mm in a period of the servo thread.
@@ -34,6 +32,7 @@ LinuxcncGantry::LinuxcncGantry(const std::string& ini, const Job& job)
 {
     acceleration_ = std::min({link_.setting("AXIS_X", "MAX_ACCELERATION"), link_.setting("AXIS_Y", "MAX_ACCELERATION"),
                               link_.setting("AXIS_Z", "MAX_ACCELERATION")});
+    latency_ = link_.setting("FETTLE", "LATENCY");
     touch_at_ = link_.setting("FETTLE", "TOUCH");
     plate_ << link_.setting("FETTLE", "PLATE_X"), link_.setting("FETTLE", "PLATE_Y"),
         link_.setting("FETTLE", "PLATE_Z");
@@ -91,7 +90,7 @@ GantryStatus LinuxcncGantry::grind(const Eigen::Vector3d& tool_point, double fee
     link_.say(corners + "G1" + word("X", end.x()) + word("Y", end.y()) + word("Z", end.z()) + feed_word(feed));
     way_.push_back(end);
     // With blended corners it slows down at half of the acceleration.
-    const double ahead = feed * feed / acceleration_ + feed * kLatency;
+    const double ahead = feed * feed / acceleration_ + feed * latency_;
     for (bool done = false; !done && way_to_go() > ahead;) {
         std::this_thread::sleep_for(kLook);
         look();

@@ -45,6 +45,7 @@ class LinuxcncGantry final : public Gantry {
     Job job_;
     double new_radius_, known_radius_; ///< mm
     double acceleration_;              ///< of the slowest axis, mm/s²
+    double latency_;                   ///< of a step of the strategy, until it is planned, s
     double touch_at_;                  ///< deflection at which the probe trips, mm
     Eigen::Vector3d plate_;            ///< P0
     int wheel_ = 1;                    ///< its number in the tool table: 1 or 2

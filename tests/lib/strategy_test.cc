@@ -339,6 +339,7 @@ class ColumnGantry final : public Gantry {
     }
     double touch_off() override { return radius; }
     void change_wheel() override { radius = new_radius; }
+    double probe(const Eigen::Vector2d& /*xy*/, double lowest) override { return lowest; }
     GantryStatus status() const override { return status_; }
 
     double highest(const Heights& reference) const
