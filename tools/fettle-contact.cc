@@ -49,10 +49,14 @@ int main(int argc, char** argv)
         const auto& unit = t.length_unit("--file-units", "Unit of SURFELS, and of lengths here [its header, or mm]");
         const auto& force = t.number_if_given("--force", "FORCE", "Press with this force, N", Range::positive());
         const auto& depth = t.number_if_given("--depth", "LENGTH", "Press to this indentation", Range::positive());
-        t.choice("--solver", "layer", {"layer"}, "Compliance of the bonded layer in Fourier space");
+        const std::string& solver = t.choice(
+            "--solver", "layer", {"layer", "fem"},
+            "Compliance of the bonded layer in Fourier space, flat and without edges; or linear finite elements "
+            "of the round layer with its free sides");
+        const int& elements = t.count("--elements", 8, "From the surface to the hub, of --solver fem", 1, 64);
         const std::string& gridding =
             t.choice("--gridding", "kriging", {"kriging", "shepard"}, "How heights between surfels are estimated");
-        const int& cells = t.count("--cells", 64, "Along each side of the grid", 8, 512);
+        const int& cells = t.count("--cells", 64, "Along each side of the grid; of --solver fem 256 at most", 8, 512);
         const double& tolerance = t.number("--tolerance", 1e-6, "SHARE",
                                            "Of peak pressure times indentation: most pressure times gap", {1e-9, 1e-2});
         const bool& ascii = t.flag("--ascii", "Text instead of binary");
@@ -60,11 +64,14 @@ int main(int argc, char** argv)
                   "fettle-contact --wheel wheels/rubber.json --at 1000,1000,500,0.7071,0,0,0.7071 --force 20 --report "
                   "press.json > pressure.pcd",
                   "20 N on the keel's middle");
-        t.reference("Ren et al. 2006, 3; Johnson 1985, 5.8; Polonsky & Keer 1999");
+        t.reference("Ren et al. 2006, 3; Johnson 1985, 5.8; Polonsky & Keer 1999; Hughes 1980");
         t.parse();
 
         if (force.has_value() == depth.has_value())
             throw InputError("--force", "either --force or --depth says how the wheel is pressed on");
+        constexpr int kMostElements = 256; // along a side: memory grows with the cube, 140 MB here
+        if (solver == "fem" && cells > kMostElements)
+            throw InputError("--cells", "at most " + std::to_string(kMostElements) + " with --solver fem");
         const CloudFile file = read_cloud(points, unit ? std::optional(Units{*unit, Units::Force::N}) : std::nullopt);
         const Surfels surfels = surfels_of(file.cloud, display_name(points));
         const ContactWheel wheel = read_contact_wheel(wheel_file);
@@ -72,13 +79,15 @@ int main(int argc, char** argv)
         PressOptions options;
         options.gridding = gridding == "shepard" ? Gridding::shepard : Gridding::kriging;
         options.cells = cells;
+        options.solver = solver == "fem" ? LayerSolver::fem : LayerSolver::layer;
+        options.elements = elements;
         options.tolerance = tolerance;
         WheelPress wheel_press(surfels, wheel, options);
         const Press& press = wheel_press.at(pose, {force.has_value(), force ? *force : *depth * file.units.mm()});
         report(t.report(), press, file.units);
-        if (press.is_near_edge)
+        if (press.is_near_edge && options.solver == LayerSolver::layer)
             t.warn("the contact is nearer to the wheel's edge than 1.5 thicknesses of its layer, where it is softer "
-                   "than reckoned");
+                   "than reckoned; --solver fem sees the edge");
         write_pcd(t.output(), to_cloud(press, wheel_press.gap_left(), pose), file.units,
                   ascii ? PcdEncoding::ascii : PcdEncoding::binary);
         return Verdict::yes;

@@ -56,12 +56,27 @@ LayerContact::LayerContact(const ElasticLayer& layer, const Eigen::Vector2d& cel
 {
 }
 
+LayerContact::LayerContact(const LayerMesh& mesh, Index rows)
+    : layer_(mesh.layer), cell_area_(mesh.cell.prod()), least_influence_(0), fem_(std::in_place, mesh, rows)
+{
+}
+
 Convolution& LayerContact::convolution(Index rows, Index columns)
 {
     const auto found = convolutions_.find({rows, columns});
     if (found != convolutions_.end()) return found->second;
     return convolutions_.emplace(std::pair(rows, columns), Convolution(influence_.topLeftCorner(rows, columns)))
         .first->second;
+}
+
+/// Of the finite elements it is told along the middle's radius: what pressure along each row's own radius comes to
+/// there.
+void LayerContact::give(const MatrixXd& pressure, MatrixXd& displacement)
+{
+    if (!fem_) return convolution(pressure.rows(), pressure.cols())(pressure, displacement);
+    const auto upright = fem_->upright();
+    displacement = fem_->displacement((pressure.array().colwise() / upright).matrix());
+    displacement.array().colwise() /= upright;
 }
 
 /// Winkler's springs, as stiff as the layer is under a pressure that spreads as far as theirs.
@@ -90,7 +105,6 @@ MatrixXd LayerContact::guess(const MatrixXd& gap, const Contact& wanted, bool is
 bool LayerContact::iterate(const MatrixXd& gap, const Window& window, double tolerance, bool is_force_known,
                            int most_iterations, Contact& contact)
 {
-    Convolution& give = convolution(window.rows, window.columns);
     const ArrayXXd before = window.of(gap).array();
     const Marks there = before.isFinite();
     MatrixXd pressure = window.of(contact.pressure), displacement, give_of_step;
@@ -140,10 +154,19 @@ Contact LayerContact::solve(const MatrixXd& from_the_plane, const Contact& wante
                             const MatrixXd& start, bool is_force_known)
 {
     Contact contact = wanted;
-    const double first = from_the_plane.minCoeff(); // where the hub stands when it first touches
-    const MatrixXd gap = from_the_plane.array() - first;
+    MatrixXd gap = from_the_plane;
+    if (fem_) gap.array().colwise() /= fem_->upright();
+    const double first = gap.minCoeff(); // where the hub stands when it first touches
+    gap.array() -= first;
     contact.indentation -= first;
+    if (!is_force_known && !(contact.indentation > 0)) { // nothing touches
+        contact.indentation += first;
+        contact.pressure = MatrixXd::Zero(gap.rows(), gap.cols());
+        contact.converged = true;
+        return contact;
+    }
     contact.pressure = start.size() > 0 ? start.cwiseMax(0).eval() : guess(gap, contact, is_force_known);
+    if (fem_ && start.size() > 0) contact.pressure.array().colwise() *= fem_->upright();
     contact.pressure = gap.array().isFinite().select(contact.pressure, 0);
     if (is_force_known) {
         if (!(contact.pressure.sum() > 0)) contact.pressure = guess(gap, contact, is_force_known);
@@ -153,9 +176,11 @@ Contact LayerContact::solve(const MatrixXd& from_the_plane, const Contact& wante
     if (!is_force_known) touched = touched || gap.array() < contact.indentation;
     contact.converged = true;
     while (contact.converged) {
-        Window window;
-        std::tie(window.row, window.rows) = side(touched.rowwise().any());
-        std::tie(window.column, window.columns) = side(touched.colwise().any().transpose());
+        Window window{0, 0, gap.rows(), gap.cols()};
+        if (!fem_) {
+            std::tie(window.row, window.rows) = side(touched.rowwise().any());
+            std::tie(window.column, window.columns) = side(touched.colwise().any().transpose());
+        }
         contact.converged = iterate(gap, window, tolerance, is_force_known,
                                     start.size() > 0 ? kMostFromStart : kMostIterations, contact);
         const double bulge = least_influence_ * contact.pressure.sum(); // at most, anywhere
@@ -172,13 +197,17 @@ Contact LayerContact::solve(const MatrixXd& from_the_plane, const Contact& wante
     if (!contact.converged && start.size() > 0) return solve(from_the_plane, wanted, tolerance, {}, is_force_known);
     contact.indentation += first;
     contact.force = contact.pressure.sum() * cell_area_;
+    if (fem_) contact.pressure.array().colwise() /= fem_->upright();
     return contact;
 }
 
 MatrixXd LayerContact::left(const MatrixXd& gap, const Contact& contact)
 {
+    if (fem_)
+        return gap + fem_->displacement(contact.pressure) -
+               (contact.indentation * fem_->upright()).matrix().replicate(1, gap.cols());
     MatrixXd displacement;
-    convolution(gap.rows(), gap.cols())(contact.pressure, displacement);
+    give(contact.pressure, displacement);
     return gap + (displacement.array() - contact.indentation).matrix();
 }
 
@@ -188,11 +217,6 @@ Contact LayerContact::by_depth(const MatrixXd& gap, double indentation, double t
 {
     Contact contact;
     contact.indentation = indentation;
-    if (!(gap.minCoeff() < indentation)) { // nothing touches
-        contact.pressure = MatrixXd::Zero(gap.rows(), gap.cols());
-        contact.converged = true;
-        return contact;
-    }
     return solve(gap, contact, tolerance, start, false);
 }
 

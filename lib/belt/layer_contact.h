@@ -1,11 +1,13 @@
 #pragma once
 
 #include "belt/convolution.h"
+#include "belt/fem_layer.h"
 #include "belt/layer_compliance.h"
 
 #include <Eigen/Core>
 
 #include <map>
+#include <optional>
 #include <utility>
 
 namespace fettle {
@@ -27,6 +29,9 @@ class LayerContact {
     /// @param cell  sides, mm
     /// @throws InputError as influence() does
     LayerContact(const ElasticLayer& layer, const Eigen::Vector2d& cell, Eigen::Index rows, Eigen::Index columns);
+    /// As the layer's finite elements give way. Rows of cells lie along the wheel's arc, their middles its lowest
+    /// points; pressure and gap are along its radius, force and indentation along the middle's.
+    LayerContact(const LayerMesh& mesh, Eigen::Index rows);
 
     /// Until pressure · gap is below `tolerance` · peak pressure · approach, and no gap below -tolerance · approach,
     /// the way of the hub since it first touched.
@@ -51,12 +56,14 @@ class LayerContact {
     /// Negative where they cross.
     Eigen::MatrixXd left(const Eigen::MatrixXd& gap, const Contact& contact);
     Convolution& convolution(Eigen::Index rows, Eigen::Index columns);
+    void give(const Eigen::MatrixXd& pressure, Eigen::MatrixXd& displacement);
 
     ElasticLayer layer_;
     double cell_area_; ///< mm²
     Eigen::MatrixXd influence_;
     double least_influence_; ///< < 0 where rubber bulges beside the contact
     std::map<std::pair<Eigen::Index, Eigen::Index>, Convolution> convolutions_; ///< by size
+    std::optional<FemLayer> fem_;                                               ///< in place of the influence
 };
 
 } // namespace fettle

@@ -24,6 +24,21 @@ Vector2d first_half(const ContactWheel& wheel)
     return {std::min(std::sqrt(2 * wheel.radius * wheel.layer.thickness / 10), kMost * wheel.radius), wheel.width / 2};
 }
 
+ContactCells cells_of(const Vector2d& half, Index count)
+{
+    return {2 * half / static_cast<double>(count), count, count};
+}
+
+/// Places in the tool frame: along the wheel's arc, along its axis, and how far within the arc.
+void lay_along_arc(double radius, Eigen::Matrix3Xd& places)
+{
+    for (auto place : places.colwise()) {
+        const double below = radius - place.z(), across = place.x();
+        place.x() = radius * std::atan2(across, below);
+        place.z() = radius - std::hypot(across, below);
+    }
+}
+
 } // namespace
 
 WheelPress::WheelPress(const Surfels& surfels, const ContactWheel& wheel, const PressOptions& options)
@@ -32,10 +47,17 @@ WheelPress::WheelPress(const Surfels& surfels, const ContactWheel& wheel, const 
 {
 }
 
-void WheelPress::set_grid(const Vector2d& half, Index count)
+void WheelPress::set_grid(const ContactCells& cells, LayerSolver solver)
 {
-    press_.cells = {2 * half / static_cast<double>(count), count, count};
-    layer_.emplace(wheel_.layer, press_.cells.cell, count, count);
+    press_.cells = cells;
+    if (solver == LayerSolver::fem) {
+        press_.arc_radius = wheel_.radius;
+        layer_.emplace(mesh_of(wheel_.layer, wheel_.radius, wheel_.width, cells.cell, cells.columns, options_.elements),
+                       cells.rows);
+    } else {
+        press_.arc_radius = std::numeric_limits<double>::infinity();
+        layer_.emplace(wheel_.layer, cells.cell, cells.rows, cells.columns);
+    }
     lift();
 }
 
@@ -49,9 +71,9 @@ PressMemory WheelPress::memory() const { return {press_.cells, press_.contact.pr
 
 void WheelPress::remember(const PressMemory& memory)
 {
-    press_.cells = memory.cells;
     layer_.reset();
-    if (memory.cells.rows > 0) layer_.emplace(wheel_.layer, memory.cells.cell, memory.cells.rows, memory.cells.columns);
+    press_.cells = memory.cells;
+    if (memory.cells.rows > 0) set_grid(memory.cells, options_.solver);
     press_.contact.pressure = memory.pressure;
     last_ = memory.last;
 }
@@ -68,6 +90,11 @@ void WheelPress::press_on(const Eigen::Isometry3d& T_part_tool, const Pressing& 
     const Eigen::Vector3d stock = Eigen::Vector3d::Constant(farthest_);
     index_.in_box(T_part_tool, {below - stock, beside + stock}, under_);
     places_ = facing(surfels_, under_, T_part_tool, cells, deepest);
+    ContactWheel over = wheel_;
+    if (std::isfinite(press_.arc_radius)) {
+        lay_along_arc(wheel_.radius, places_);
+        over.radius = std::numeric_limits<double>::infinity();
+    }
     press_.height = heights_on(cells, places_, gridding);
     gap_.resize(cells.rows, cells.columns);
     for (Index j = 0; j < cells.columns; ++j)
@@ -75,7 +102,7 @@ void WheelPress::press_on(const Eigen::Isometry3d& T_part_tool, const Pressing& 
             const Vector2d at = cells.middle(i, j);
             const double height = press_.height(i, j);
             gap_(i, j) =
-                std::isnan(height) ? std::numeric_limits<double>::infinity() : profile(wheel_, at.x(), at.y()) - height;
+                std::isnan(height) ? std::numeric_limits<double>::infinity() : profile(over, at.x(), at.y()) - height;
         }
     if (!gap_.array().isFinite().any()) throw InputError("there is nothing under the wheel");
     MatrixXd start = press_.contact.pressure;
@@ -112,11 +139,12 @@ void WheelPress::find_grid(const Eigen::Isometry3d& T_part_tool, const Pressing&
     Vector2d half = layer_ ? Vector2d(1.5 * press_.cells.half()) : first_half(wheel_);
     for (;; half *= 2) {
         half = half.cwiseMin(most);
-        set_grid(half, kCoarse);
+        set_grid(cells_of(half, kCoarse), LayerSolver::layer);
         press_on(T_part_tool, pressing, Gridding::shepard, kRough);
         if (!is_at_border()) break;
     }
-    set_grid((kAround * reach() + press_.cells.cell).cwiseMin(most), options_.cells);
+    half = (kAround * reach() + press_.cells.cell).cwiseMin(most);
+    set_grid(cells_of(half, options_.cells), options_.solver);
 }
 
 const Press& WheelPress::at(const Eigen::Isometry3d& T_part_tool, const Pressing& pressing)
@@ -144,7 +172,13 @@ Cloud to_cloud(const Press& press, const MatrixXd& gap_left, const Eigen::Isomet
         for (Index i = 0; i < press.cells.rows; ++i) {
             if (std::isnan(press.height(i, j))) continue;
             const Vector2d at = press.cells.middle(i, j);
-            points.push_back(T_part_tool * Eigen::Vector3d(at.x(), at.y(), press.height(i, j)));
+            Eigen::Vector3d place(at.x(), at.y(), press.height(i, j));
+            if (const double radius = press.arc_radius; std::isfinite(radius)) {
+                const double angle = at.x() / radius, r = radius - place.z();
+                place.x() = r * std::sin(angle);
+                place.z() = radius - r * std::cos(angle);
+            }
+            points.push_back(T_part_tool * place);
             pressure.push_back(press.contact.pressure(i, j));
             gap.push_back(gap_left(i, j));
         }

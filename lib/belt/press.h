@@ -5,15 +5,22 @@
 #include "belt/layer_contact.h"
 #include "belt/surfel_index.h"
 
+#include <limits>
 #include <optional>
 
 namespace fettle {
+
+/// How the layer gives way: as a bonded layer that is flat and has no edges (layer_compliance.h), or as finite elements
+/// of the round one with its sides (fem_layer.h).
+enum class LayerSolver { layer, fem };
 
 /// How the contact is reckoned.
 struct PressOptions {
     Gridding gridding = Gridding::kriging;
     Eigen::Index cells = 64; ///< along each side of the grid
     double tolerance = 1e-6; ///< of the contact (layer_contact.h)
+    LayerSolver solver = LayerSolver::layer;
+    Eigen::Index elements = 8; ///< from the surface to the hub: of finite elements
 };
 
 /// How the wheel is pressed on: with a force, or to a depth of its lowest point below the contact point.
@@ -25,9 +32,12 @@ struct Pressing {
 /// A contact situation: what lies under the wheel, and how it is pressed.
 struct Press {
     ContactCells cells;
-    Eigen::MatrixXd height; ///< over the plane through the contact point, mm; NaN: nothing is there
+    /// Of the wheel's arc that rows lie along, about its lowest point, and heights are measured from, inwards;
+    /// infinite: that is the plane through the contact point.
+    double arc_radius = std::numeric_limits<double>::infinity();
+    Eigen::MatrixXd height; ///< mm; NaN: nothing is there
     Contact contact;
-    /// Nearer than 1.5 thicknesses to the layer's free edge, where it is softer than reckoned.
+    /// Nearer than 1.5 thicknesses to the layer's free edge, where it is softer than a layer without edges.
     bool is_near_edge = false;
     double area() const; ///< that touches, mm²
 };
@@ -48,7 +58,7 @@ class WheelPress {
 
     /// @throws InputError if there is nothing under the wheel, or the contact is not found to tolerance
     const Press& at(const Eigen::Isometry3d& T_part_tool, const Pressing& pressing);
-    /// The surfels that the last grid was made from, and where they are in the tool frame.
+    /// The surfels that the last grid was made from, and where they are: as the cells and their heights.
     const std::vector<Eigen::Index>& under() const { return under_; }
     const Eigen::Matrix3Xd& places() const { return places_; }
     /// Farthest edges of cells that touch, along x and y, mm.
@@ -62,7 +72,7 @@ class WheelPress {
     void remember(const PressMemory& memory);
 
   private:
-    void set_grid(const Eigen::Vector2d& half, Eigen::Index count);
+    void set_grid(const ContactCells& cells, LayerSolver solver);
     void find_grid(const Eigen::Isometry3d& T_part_tool, const Pressing& pressing);
     void press_on(const Eigen::Isometry3d& T_part_tool, const Pressing& pressing, Gridding gridding, double tolerance);
     bool is_at_border() const;

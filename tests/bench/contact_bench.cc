@@ -1,5 +1,6 @@
 // The elastic layer under a wheel that rolls along a wavy ground: contacts a second on a grid of 64 x 64 cells, each
-// begun from the two before it (to 1e-6 and 1e-4) or from nothing. And heights between surfels of a wavy ground, by
+// begun from the two before it (to 1e-6 and 1e-4) or from nothing; the same by 64 x 64 x 8 finite elements, the first
+// contact and the next ones on the same grid. And heights between surfels of a wavy ground, by
 // Shepard's weights and by kriging: time, and the rms error in micrometres.
 
 #include "belt/gridding.h"
@@ -58,6 +59,23 @@ void cold(benchmark::State& state)
     for (auto _ : state) benchmark::DoNotOptimize(contact.by_force(ground, 30, 1e-6).force);
 }
 BENCHMARK(cold)->Unit(benchmark::kMillisecond);
+
+LayerContact finite_elements() { return {mesh_of({10, 5, 0.45}, 100, 100, {kCell, kCell}, kCells, 8), kCells}; }
+
+void first_of_elements(benchmark::State& state)
+{
+    const MatrixXd ground = gap(0);
+    for (auto _ : state) benchmark::DoNotOptimize(finite_elements().by_force(ground, 30, 1e-8).force);
+}
+BENCHMARK(first_of_elements)->MeasureProcessCPUTime()->Unit(benchmark::kMillisecond);
+
+void next_of_elements(benchmark::State& state)
+{
+    LayerContact contact = finite_elements();
+    int step = 0;
+    for (auto _ : state) benchmark::DoNotOptimize(contact.by_force(gap(step++), 30, 1e-8).force);
+}
+BENCHMARK(next_of_elements)->Unit(benchmark::kMillisecond);
 
 /// @param state.range(0)  surfels for each cell, hundredths
 void gridding(benchmark::State& state, Gridding method)

@@ -1,0 +1,27 @@
+# Finite elements of the layer. Far from its edges they agree with the Fourier layer to 3 % at h/R = 0.1; at the depth that
+# the force took the force comes back; the pressure sums up to it; pressure times gap is below the tolerance; the same bytes
+# with one thread and two. Beyond the plate's middle the wheel's edge comes to lie on the plate: there the layer without
+# edges is too stiff, says so, and the elements do not.
+# shellcheck source=tests/fettle-contact/plate.bash
+. "$HERE/plate.bash"
+plate > plate.pcd
+wheel 6 0.49 > wheel.json
+press() { fettle-contact plate.pcd --wheel wheel.json --at "$1" "${@:2}"; }
+press 0,0,5.25,1,0,0,0 --force 20 --report layer.json > layer.pcd
+press 0,0,5.25,1,0,0,0 --force 20 --solver fem --tolerance 1e-8 --report fem.json --ascii --threads 1 > fem.pcd
+press 0,0,5.25,1,0,0,0 --force 20 --solver fem --tolerance 1e-8 --ascii --threads 2 | cmp - fem.pcd
+jq -e --slurpfile layer layer.json '(.indentation / $layer[0].indentation - 1 | fabs) < 0.03 and
+       (.peak_pressure / $layer[0].peak_pressure - 1 | fabs) < 0.03 and (.near_edge | not)' fem.json > ok
+sed '1,/^DATA/d' fem.pcd | awk -v cell="$(jq '.cell[0] * .cell[1]' fem.json)" -v most="$(jq '1e-8 * .peak_pressure * .indentation' fem.json)" \
+    '{ f += $4 * cell * (1 - $1 * $1 / 60 / 60 / 2) } $4 * $5 > most || $4 < 0 || $5 < 0 { bad = 1 } END { exit bad || f < 19.999 || f > 20.001 }'
+press 0,0,5.25,1,0,0,0 --depth "$(jq .indentation fem.json)" --solver fem --report depth.json > depth.pcd
+jq -e '(.force / 20 - 1 | fabs) < 1e-4' depth.json > ok
+sed -i 's/"crown_radius": 60,//; s/"width": 50/"width": 20/' wheel.json
+press 0,0,5.25,1,0,0,0 --force 20 --report layer.json 2> warned > layer.pcd
+grep -q 'softer than reckoned; --solver fem' warned
+press 0,0,5.25,1,0,0,0 --force 20 --solver fem --report fem.json 2> silent > fem.pcd
+[ ! -s silent ]
+jq -e --slurpfile layer layer.json '.near_edge and .indentation > 1.05 * $layer[0].indentation' fem.json > ok
+sed 's/0.49/0.5/' wheel.json > water.json
+"$HERE/../refuses" "Poisson's ratio must be less than 0.5" fettle-contact plate.pcd --wheel water.json --at 0,0,5.25,1,0,0,0 --force 1 --solver fem
+"$HERE/../refuses" '--cells: at most 256' fettle-contact plate.pcd --wheel wheel.json --at 0,0,5.25,1,0,0,0 --force 1 --solver fem --cells 257

@@ -1,0 +1,237 @@
+// Contacts of the finite elements' layer against layer theory, Hertz, an active set, and the Fourier layer.
+
+#include "belt/fem_layer.h"
+#include "belt/press.h"
+#include "layer_theory.h"
+
+#include <Eigen/Cholesky>
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+using namespace fettle;
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+using std::numbers::pi;
+
+constexpr double kTight = 1e-8;
+
+MatrixXd paraboloid(Index n, double cell, double radius)
+{
+    const Eigen::ArrayXd x = (Eigen::ArrayXd::LinSpaced(n, 0, static_cast<double>(n - 1)) - double(n - 1) / 2) * cell;
+    return (x.square().replicate(1, n) + x.square().transpose().replicate(n, 1)) / (2 * radius);
+}
+
+/// A flat layer wide enough that its sides are not felt.
+LayerContact flat(const ElasticLayer& layer, double cell, Index cells, Index elements)
+{
+    return {mesh_of(layer, 1e6 * layer.thickness, 20 * layer.thickness, {cell, cell}, cells, elements), cells};
+}
+
+struct Errors {
+    double indentation, peak;
+};
+
+Errors against_theory(double poisson, double thickness, Index cells, Index elements)
+{
+    const double a = 4, R = 60, cell = 3 * a / static_cast<double>(cells);
+    const ElasticLayer layer{thickness * a, 5, poisson};
+    const LayerTheory theory = layer_theory(layer, a, R);
+    const Contact contact =
+        flat(layer, cell, cells, elements).by_force(paraboloid(cells, cell, R), theory.force, kTight);
+    EXPECT_TRUE(contact.converged);
+    EXPECT_NEAR(contact.force, theory.force, 1e-9 * theory.force);
+    return {contact.indentation / theory.indentation - 1, contact.pressure.maxCoeff() / theory.peak - 1};
+}
+
+// No locking: as near at ν = 0.4999 as at 0.3, on 16 x 16 cells and four elements through the depth.
+TEST(FemContact, DoesNotLock)
+{
+    for (const double thickness : {1.0, 2.0, 4.0}) {
+        const Errors soft = against_theory(0.3, thickness, 16, 4);
+        for (const double poisson : {0.45, 0.49, 0.499, 0.4999}) {
+            const Errors error = against_theory(poisson, thickness, 16, 4);
+            EXPECT_NEAR(error.indentation, soft.indentation, 0.006);
+            EXPECT_NEAR(error.peak, soft.peak, 0.006);
+        }
+    }
+}
+
+TEST(FemContact, AgreesWithLayerTheory)
+{
+    for (const double poisson : {0.0, 0.3, 0.45, 0.499})
+        for (const double thickness : {1.0, 2.0, 4.0}) {
+            const Errors error = against_theory(poisson, thickness, 32, 8);
+            EXPECT_LE(std::abs(error.indentation), 0.005);
+            EXPECT_LE(std::abs(error.peak), 0.005);
+        }
+}
+
+// Of second order: half the elements' sides, a quarter of the error.
+TEST(FemContact, ConvergesToLayerTheory)
+{
+    for (const double poisson : {0.3, 0.499}) {
+        const double coarse = against_theory(poisson, 4, 16, 4).indentation;
+        const double fine = against_theory(poisson, 4, 32, 8).indentation;
+        EXPECT_GE(std::log2(coarse / fine), 1.8);
+        EXPECT_GE(std::log2(fine / against_theory(poisson, 4, 64, 16).indentation), 1.8);
+    }
+}
+
+// Sphere of 8 mm, 60 π N, a hub 1000 contact radii below (Hertz 1881, as in layer_contact_test.cc).
+TEST(FemContact, AgreesWithHertzOnAThickLayer)
+{
+    const double a = 1.0096, peak = 88.29, approach = 0.1274;
+    const auto error = [&](Index cells, Index elements) {
+        const double cell = 3 * a / static_cast<double>(cells);
+        const Contact contact =
+            flat({1000 * a, 1000, 0.3}, cell, cells, elements).by_force(paraboloid(cells, cell, 8), 60 * pi, kTight);
+        return Errors{contact.indentation / approach - 1, contact.pressure.maxCoeff() / peak - 1};
+    };
+    const Errors coarse = error(16, 8), fine = error(32, 16);
+    EXPECT_LE(std::abs(fine.indentation), 0.01);
+    EXPECT_LE(std::abs(fine.peak), 0.01);
+    EXPECT_GE(std::log2(coarse.indentation / fine.indentation), 1.8);
+    EXPECT_GE(std::log2(coarse.peak / fine.peak), 1.8);
+}
+
+/// On a small wheel, under its edge, where nothing is under a corner of the window.
+LayerMesh at_the_edge() { return mesh_of({6, 5, 0.49}, 40, 16, {1, 1}, 16, 4); }
+
+MatrixXd rough_gap()
+{
+    MatrixXd gap = paraboloid(16, 1, 30).rowwise().reverse();
+    for (Index i = 0; i < 16; ++i)
+        for (Index j = 0; j < 16; ++j) gap(i, j) += 0.1 * std::sin(1.7 * double(i)) * std::cos(0.9 * double(j));
+    gap.topLeftCorner(9, 3).setConstant(std::numeric_limits<double>::infinity());
+    return gap.array() - Eigen::ArrayXd::LinSpaced(16, 0, 4).transpose().replicate(16, 1);
+}
+
+// Pressure and gap are not negative, and one of them is 0, at once along the radii and summed up along the middle's.
+TEST(FemContact, IsComplementary)
+{
+    LayerContact contact(at_the_edge(), 16);
+    const FemLayer layer(at_the_edge(), 16);
+    const MatrixXd gap = rough_gap();
+    const Contact pressed = contact.by_force(gap, 40, kTight);
+    ASSERT_TRUE(pressed.converged);
+    EXPECT_GE(pressed.pressure.minCoeff(), 0);
+    EXPECT_EQ(pressed.pressure.topLeftCorner(9, 3).maxCoeff(), 0);
+    EXPECT_GT(pressed.pressure.col(15).maxCoeff(), 0);                                   // the edge is in it
+    EXPECT_NEAR((pressed.pressure.array().colwise() * layer.upright()).sum(), 40, 1e-9); // cells of 1 mm²
+    const double most = kTight * pressed.pressure.maxCoeff() * (pressed.indentation - gap.minCoeff());
+    const MatrixXd left = contact.gap_left(gap, pressed);
+    EXPECT_LE((pressed.pressure.array() > 0).select(pressed.pressure.array() * left.array(), 0).maxCoeff(), most);
+    const MatrixXd open =
+        gap + layer.displacement(pressed.pressure) - pressed.indentation * layer.upright().matrix().replicate(1, 16);
+    EXPECT_GE(open.minCoeff(), -2 * kTight * (pressed.indentation - gap.minCoeff()));
+    EXPECT_NEAR(contact.by_depth(gap, pressed.indentation, kTight).force, 40, 1e-5);
+    EXPECT_EQ(contact.by_depth(gap, gap.minCoeff() - 1, kTight).force, 0);
+    const Contact again = contact.by_force(gap, 40, kTight, contact.by_force(gap, 10, 1e-3).pressure);
+    EXPECT_LE((again.pressure - pressed.pressure).cwiseAbs().maxCoeff(), 1e-5 * pressed.pressure.maxCoeff());
+}
+
+// The same by a method that has nothing in common: an active set, eliminated anew until it stays (Hintermüller, Ito and
+// Kunisch 2003).
+TEST(FemContact, IsTheActiveSets)
+{
+    LayerContact contact(at_the_edge(), 16);
+    const FemLayer layer(at_the_edge(), 16);
+    const MatrixXd gap = rough_gap();
+    const double depth = gap.minCoeff() + 0.8;
+    MatrixXd S(256, 256);
+    for (Index k = 0; k < 256; ++k) S.col(k) = layer.displacement(VectorXd::Unit(256, k).reshaped(16, 16)).reshaped();
+    const VectorXd wanted = (depth * layer.upright().matrix().replicate(1, 16) - gap).reshaped();
+    VectorXd pressure = VectorXd::Zero(256);
+    std::vector<Index> active, before;
+    for (Index k = 0; k < 256; ++k)
+        if (wanted[k] > 0) active.push_back(k);
+    for (int step = 0; step < 50 && active != before; ++step) {
+        const MatrixXd A = S(active, active);
+        pressure.setZero();
+        const VectorXd depths = wanted(active), pressed = A.llt().solve(depths);
+        pressure(active) = pressed;
+        const VectorXd cross = wanted - S * pressure;
+        before = std::exchange(active, {});
+        for (Index k = 0; k < 256; ++k)
+            if (pressure[k] > 0 || (pressure[k] == 0 && cross[k] > 0)) active.push_back(k);
+    }
+    ASSERT_EQ(active, before);
+    const Contact found = contact.by_depth(gap, depth, kTight);
+    EXPECT_LE((found.pressure.reshaped() - pressure).cwiseAbs().maxCoeff(), 1e-5 * pressure.maxCoeff());
+}
+
+/// Surfels of a blade's skin, radii along x and y, as wide as the wheel finds it.
+Surfels blade(double radius_x, double radius_y)
+{
+    constexpr Index kSide = 121;
+    constexpr double kSpacing = 0.5;
+    Surfels surfels;
+    surfels.position.resize(3, kSide * kSide);
+    surfels.normal.resize(3, kSide * kSide);
+    for (Index i = 0; i < kSide; ++i)
+        for (Index j = 0; j < kSide; ++j) {
+            const double x = (double(i) - (kSide - 1) / 2.0) * kSpacing, y = (double(j) - (kSide - 1) / 2.0) * kSpacing;
+            surfels.position.col(i * kSide + j) << x, y, -x * x / (2 * radius_x) - y * y / (2 * radius_y);
+            surfels.normal.col(i * kSide + j) = Vector3d(x / radius_x, y / radius_y, 1).normalized();
+        }
+    surfels.radius.setConstant(kSide * kSide, kSpacing);
+    surfels.displacement.setZero(kSide * kSide);
+    surfels.uv.setZero(2, kSide * kSide);
+    surfels.patch.setZero(kSide * kSide);
+    return surfels;
+}
+
+// On a curved blade the Fourier layer, which is flat, and the round layer's elements agree to 3 % where h/R ≤ 0.1: the
+// blade's edge under the wheel, its back, and a hollow.
+TEST(FemContact, AgreesWithTheFourierLayerOnABlade)
+{
+    ContactWheel wheel;
+    wheel.radius = 100;
+    wheel.width = 200;
+    for (const auto& [radius_x, radius_y] : {std::pair(20, 300), std::pair(300, 20), std::pair(-400, 60)})
+        for (const double poisson : {0.3, 0.49}) {
+            wheel.layer = {10, 5, poisson};
+            const Surfels surfels = blade(radius_x, radius_y);
+            PressOptions options;
+            WheelPress layer(surfels, wheel, options);
+            options.solver = LayerSolver::fem;
+            WheelPress fem(surfels, wheel, options);
+            const Press& one = layer.at(Eigen::Isometry3d::Identity(), {true, 60});
+            const Press& other = fem.at(Eigen::Isometry3d::Identity(), {true, 60});
+            EXPECT_NEAR(other.contact.indentation, one.contact.indentation, 0.03 * one.contact.indentation);
+            EXPECT_NEAR(other.contact.pressure.maxCoeff(), one.contact.pressure.maxCoeff(),
+                        0.03 * one.contact.pressure.maxCoeff());
+            EXPECT_FALSE(other.is_near_edge);
+            EXPECT_EQ(other.arc_radius, 100);
+            // The contact lies where the layer's does: on the blade.
+            const Cloud cloud = to_cloud(other, fem.gap_left(), Eigen::Isometry3d::Identity());
+            const Eigen::ArrayXd x = cloud.xyz.row(0), y = cloud.xyz.row(1), z = cloud.xyz.row(2);
+            const double off = (z + x.square() / (2 * radius_x) + y.square() / (2 * radius_y)).abs().maxCoeff();
+            EXPECT_LE(off, 0.02);
+        }
+}
+
+TEST(FemContact, DoesNotDependOnTheThreads)
+{
+    const MatrixXd pressure = rough_gap().array().isFinite().select(rough_gap().array().abs(), 0);
+    std::vector<MatrixXd> displacements;
+    for (const std::size_t threads : {1, 2}) {
+        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+        displacements.push_back(FemLayer(at_the_edge(), 16).displacement(pressure));
+    }
+    EXPECT_EQ(displacements[0], displacements[1]);
+}
+
+} // namespace
