@@ -11,9 +11,11 @@
 #include "sampling/scan.h"
 #include "strategy/run.h"
 #include "strategy/trace.h"
+#include "strategy/trace_file.h"
 
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <numbers>
 #include <ostream>
@@ -63,6 +65,15 @@ void report_totals(json::Value& out, const GrindTotals& totals)
         .set("service_time", totals.service_time);
 }
 
+// The trace of a run is written ahead to a file that its name leads to; there is nothing to be resumed from a pipe.
+std::unique_ptr<TraceFile> journal_at(const std::string& path, const Units& units, PcdEncoding encoding,
+                                      const std::vector<TraceRow>& done)
+{
+    namespace fs = std::filesystem;
+    if (path.empty() || path == "-" || (fs::exists(path) && !fs::is_regular_file(path))) return nullptr;
+    return std::make_unique<TraceFile>(path, units, encoding, done);
+}
+
 // How the machine's controllers were tuned: on stderr with -v, and in the report.
 void tell_loops(Tool& t, const std::vector<Loop>& loops)
 {
@@ -103,7 +114,9 @@ int main(int argc, char** argv)
                      Range::positive());
         const auto& cell = t.number_if_given(
             "--cell", "LENGTH", "Side of a cell of the stock; default: 1/64 of the wheel's width", Range::positive());
-        const std::string& trace = t.text("--trace", "", "FILE", "What the machine did and why, PCD");
+        const std::string& trace = t.text("--trace", "", "FILE", "What the machine did and why, PCD, written ahead");
+        const std::string& resume =
+            t.text("--resume", "", "TRACE", "Go on where the run that wrote this trace was cut off, and add to it");
         const bool& ascii = t.flag("--ascii", "Write PCDs as text");
         t.example("fettle-sample jobs/wang1.json | fettle-fit jobs/wang1.json | fettle-plan jobs/wang1.json | "
                   "fettle-grind --stock <(fettle-part parts/wang1.json) --gantry virtual:dynamic "
@@ -122,24 +135,30 @@ int main(int argc, char** argv)
             t.warn(display_name(stock_file) + ": " + doubt);
         const HeightField stock =
             height_field(scan, plan.job, cell_of(plan.job, cell ? *cell * units.mm() : 0), display_name(stock_file));
-        std::ostream* trace_out = trace.empty() ? nullptr : &t.output_file(trace); // a wrong name shows before the work
         RunOptions options;
         options.layer_1 = layer_1 == "feed" ? Layer1::feed : layer_1 == "force" ? Layer1::force : Layer1::constant;
+        const PcdEncoding encoding = ascii ? PcdEncoding::ascii : PcdEncoding::binary;
+        if (!resume.empty()) options.done = read_trace(resume, units);
+        options.done_source = resume;
+        const std::string& trace_file = trace.empty() ? resume : trace;
+        std::ostream* trace_out = trace_file.empty() ? nullptr : &t.output_file(trace_file);
+        const std::unique_ptr<TraceFile> journal = journal_at(trace_file, units, encoding, options.done);
+        options.journal = journal.get();
+        const HeightField left = ground_by(options.done, plan.job, stock);
 
         std::unique_ptr<VirtualGantry> simulated;
         std::unique_ptr<DriverGantry> driver;
         if (kind.rfind(kDriver, 0) == 0)
             driver = std::make_unique<DriverGantry>(kind.substr(kDriver.size()), plan.job, patience);
         else
-            simulated = make_virtual(stock, plan.job, {machine, removal, t.seed()});
+            simulated = make_virtual(left, plan.job, {machine, removal, t.seed()});
         Gantry& gantry = driver ? static_cast<Gantry&>(*driver) : *simulated;
         const GrindRun run = fettle::run(plan, gantry, options, t.progress("grinding"));
         const HeightField ground = simulated ? simulated->stock() : ground_by(run.trace, plan.job, stock);
 
-        const PcdEncoding encoding = ascii ? PcdEncoding::ascii : PcdEncoding::binary;
         write_pcd(t.output(), to_cloud(stock, ground), units, encoding);
         if (trace_out != nullptr) write_pcd(*trace_out, to_cloud(run.trace), units, encoding);
-        const double time = gantry.status().time;
+        const double time = run.trace.back().time;
         report_run(t.report(), run, time, units);
         t.report().set("removed_volume", volume_between(stock, ground) / std::pow(units.mm(), 3));
         if (simulated) report_totals(t.report(), simulated->totals());

@@ -24,6 +24,7 @@ enum class Event {
     touch_off = 10,    ///< the wheel's radius was measured at P0 (run.h)
     wheel_change = 11, ///< a new wheel (run.h)
     fault = 12,        ///< the machine stopped (run.h)
+    begun = 13,        ///< the machine was about to do it (trace_file.h)
 };
 
 /// A point of the staircase: index of the pass, index of its point.

@@ -12,15 +12,21 @@
 
 namespace fettle {
 
+class TraceFile;
+
 /// One line of a trace: what the machine did, and why. mm, N, s, frame M.
 struct TraceRow {
     double time = 0;
-    Eigen::Vector3d tool; ///< the wheel's lowest line at mid-width, where the spring lets it stand
+    Eigen::Vector3d tool =
+        Eigen::Vector3d::Zero(); ///< the wheel's lowest line at mid-width, where the spring lets it stand
     int layer = 1;
     int pass = 1;
     Event event = Event::none;
     double force = 0;
-    double feed = 0; ///< 0: not grinding
+    double feed = 0;       ///< 0: not grinding
+    double peak_force = 0; ///< during the move
+    double deflection = 0; ///< of the spring, at its end
+    double radius = 0;     ///< of the wheel, measured last; 0: not yet
 };
 
 /// How layer 1 is ground: at the job's feed, covering after covering until all is within tolerance; or pass after pass
@@ -32,6 +38,11 @@ struct RunOptions {
     Layer1 layer_1 = Layer1::constant;
     /// Grinding time between two measurements of the wheel at P0, s. It is measured at the start of each covering, too.
     double touch_off_period = 120;
+    /// What a run that was cut off has done (trace_file.h). It is gone over without the machine; then the wheel is
+    /// measured, the machine goes back to where it was, and on.
+    std::vector<TraceRow> done;
+    std::string done_source;      ///< the name of the trace, for messages
+    TraceFile* journal = nullptr; ///< the trace is written ahead to it
 };
 
 /// How a run ended.
@@ -48,7 +59,8 @@ struct GrindRun {
 
 /// Grinds: lets the strategy decide, compensates the wheel, moves the gantry, measures, until the strategy is done or
 /// the machine has stopped.
-/// @throws InputError if the surface is not defined under a pass, or a new wheel is smaller than the smallest radius
+/// @throws InputError if the surface is not defined under a pass, a new wheel is smaller than the smallest radius, or
+/// what was done is of another run
 GrindRun run(const Plan& plan, Gantry& gantry, const RunOptions& options = {}, const Progress& progress = {});
 
 } // namespace fettle

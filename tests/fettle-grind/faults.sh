@@ -1,5 +1,6 @@
 # A driver at fault, in one of six ways, 20 times each at different answers: every time status 1, one line that names the
-# driver and the fault, a trace that ends in event 12 and holds what was done, a readable part, and no process left behind.
+# driver and the fault, a trace that ends in event 12 and holds what was done, a readable part, and no process left behind. From
+# every trace the work goes on to its end, here on a simulated machine.
 # shellcheck source=tests/fettle-grind/stock.bash
 . "$HERE/stock.bash"
 make_job 0
@@ -17,6 +18,8 @@ check() { # FAULT N MESSAGE
     sed '1,/^DATA/d' trace.pcd | sed '$d' > done
     sed '1,/^DATA/d' whole.pcd | awk -v n="$(wc -l < done)" 'NR <= n' | cmp - done
     grep -q '^DATA ascii' ground.pcd
+    fettle-grind plan.json --stock stock.stl --cell 0.4 --resume trace.pcd --report report.json > ground.pcd
+    jq -e .finished report.json > ok
 }
 for n in 4 5 6 7 9 12 16 22 30 41 55 70 88 101 130 170 211 300 401 500; do
     check dies $n 'was killed by signal 9'
