@@ -49,7 +49,7 @@ const GantryStatus& Recorder::lift(const Mark& mark, double commanded_z)
 double Recorder::touch_off(const Mark& mark)
 {
     act(mark, status_.commanded, 0, [&] {
-        radius_ = held(gantry_.touch_off(), units_.mm());
+        radius_ = gantry_.touch_off() / units_.mm() * units_.mm();
         tell(gantry_.status());
     });
     return radius_;

@@ -33,6 +33,8 @@ class Recorder {
 
     /// All of what was done has been gone over, and the machine has not moved yet.
     bool resumes() const { return !live_ && next_ == done_.size(); }
+    /// So it has been here before: the trace goes on with what was done then, the wheel was measured.
+    bool resumed() const { return next_ < done_.size() && done_[next_].event == Event::touch_off; }
     /// From here on the machine moves.
     void go_live();
 

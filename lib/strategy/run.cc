@@ -184,8 +184,7 @@ class Runner {
     // a machine with look-ahead may still be on its way.
     void moved(const GantryStatus& status, int layer, double feed)
     {
-        const bool along = action.kind == Action::Kind::grind;
-        short_of_ = along ? 0 : std::max(0.0, status.commanded.z() - tool_point(action.layer).z());
+        short_of_ = feed > 0 ? 0 : std::max(0.0, status.commanded.z() - tool_point(layer).z());
         result_.peak_force = std::max({result_.peak_force, status.force, status.peak_force});
         const double ground = feed > 0 ? status.time - last_time_ : 0;
         impulse_ = (last_force_ + status.force) / 2 * ground;
@@ -199,9 +198,9 @@ class Runner {
     // Where the trace of a run that was cut off ends, nobody knows where the machine is and what wheel it has.
     void go_on_from_trace(const Action& action)
     {
-        if (!machine_.resumes()) return;
+        if (!machine_.resumes() && !machine_.resumed()) return;
         const Eigen::Vector3d place = machine_.status().commanded;
-        machine_.go_live();
+        if (machine_.resumes()) machine_.go_live();
         measure_wheel(action);
         if (action.kind != Action::Kind::travel) machine_.travel(mark(action, Event::none), place);
         last_time_ = machine_.status().time;

@@ -16,8 +16,8 @@ namespace {
 constexpr double kStep = 2; // cells
 
 constexpr const char* kTime = "t";
-constexpr std::array<const char*, 8> kFields = {"layer", "pass",       "event",      "force",
-                                                "feed",  "peak_force", "deflection", "radius"};
+constexpr std::array<const char*, 7> kFields = {"layer", "pass", "event", "force", "feed", "peak_force", "deflection"};
+constexpr const char* kRadius = "radius";
 
 } // namespace
 
@@ -42,7 +42,7 @@ Cloud to_cloud(const std::vector<TraceRow>& trace)
     const Eigen::Index n = Eigen::Index(trace.size());
     Cloud cloud;
     cloud.xyz.resize(3, n);
-    Eigen::MatrixXd rows(n, kFields.size() + 1);
+    Eigen::MatrixXd rows(n, kFields.size() + 2);
     for (Eigen::Index i = 0; i < n; ++i) {
         const TraceRow& row = trace[std::size_t(i)];
         cloud.xyz.col(i) = row.tool;
@@ -51,6 +51,7 @@ Cloud to_cloud(const std::vector<TraceRow>& trace)
     }
     set_field(cloud, kTime, rows.col(0), 8); // a float resolves a day's run to 8 ms only
     for (std::size_t k = 0; k < kFields.size(); ++k) set_field(cloud, kFields[k], rows.col(Eigen::Index(k) + 1));
+    set_field(cloud, kRadius, rows.rightCols(1), 8);
     return cloud;
 }
 
@@ -79,7 +80,7 @@ std::vector<TraceRow> trace_of(const Cloud& cloud, const std::string& source)
         take("feed", &TraceRow::feed);
         take("peak_force", &TraceRow::peak_force);
         take("deflection", &TraceRow::deflection);
-        take("radius", &TraceRow::radius);
+        take(kRadius, &TraceRow::radius);
         return trace;
     } catch (const InputError& error) {
         throw InputError(source, error.what());

@@ -9,6 +9,7 @@
 #include "plan/plan.h"
 #include "removal/height_field.h"
 #include "strategy/trace.h"
+#include "strategy/trace_file.h"
 
 #include <cmath>
 #include <ostream>
@@ -25,16 +26,6 @@ constexpr double kHead = 56, kGap = 12;
 constexpr double kRim = 4; // cells around B
 // The trace is replayed in so many pieces to find the stages.
 constexpr std::size_t kPieces = 120;
-
-std::vector<TraceRow> rows_of(const Cloud& cloud)
-{
-    std::vector<TraceRow> rows(std::size_t(cloud.size()));
-    const Eigen::VectorXd t = field(cloud, "t"), layer = field(cloud, "layer"), pass = field(cloud, "pass"),
-                          force = field(cloud, "force"), feed = field(cloud, "feed");
-    for (Eigen::Index i = 0; i < cloud.size(); ++i)
-        rows[std::size_t(i)] = {t[i], cloud.xyz.col(i), int(layer[i]), int(pass[i]), Event::none, force[i], feed[i]};
-    return rows;
-}
 
 /// Rows first … end of the trace, and the stock after them.
 struct Stage {
@@ -141,7 +132,7 @@ int main(int argc, char** argv)
         const Plan plan = read_plan(plan_file);
         const HeightField stock =
             height_field(read_scan(stock_file, plan.job.units, {}), plan.job, plan.job.wheel.width / 32, stock_file);
-        const std::vector<TraceRow> rows = rows_of(read_cloud(trace_file, plan.job.units).cloud);
+        const std::vector<TraceRow> rows = read_trace(trace_file, plan.job.units);
         const Eigen::Matrix2d R_working_machine = rotation_working_machine(plan.job.theta);
         Eigen::ArrayXXd desired(stock.columns(), stock.rows());
         for (Eigen::Index j = 0; j < stock.rows(); ++j)

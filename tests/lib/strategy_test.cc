@@ -1,10 +1,15 @@
+#include "own_folder.h"
+
 #include "core/error.h"
+#include "core/file.h"
 #include "strategy/layer_switching.h"
 #include "strategy/run.h"
+#include "strategy/trace_file.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 #include <functional>
 #include <string>
 #include <vector>
@@ -471,8 +476,123 @@ TEST(Run, MeasuresTheWheelOnItsPeriod)
 {
     Plan plan = square_plan(); // 41 · 40 mm and 40 step-overs at 25 mm/s: 67.2 s
     ColumnGantry gantry(flat, plan.job.force.stiffness);
-    const GrindRun result = run(plan, gantry, {.touch_off_period = 20});
+    RunOptions options;
+    options.touch_off_period = 20;
+    const GrindRun result = run(plan, gantry, options);
     EXPECT_EQ(result.touch_offs, 1 + 3);
+}
+
+/// A machine that stops for good at its Nth command, like one whose driver dies.
+class FailingGantry final : public Gantry {
+  public:
+    FailingGantry(Gantry& gantry, int commands) : gantry_(gantry), left_(commands) {}
+
+    GantryStatus travel(const Eigen::Vector3d& p) override { return obey().travel(p); }
+    GantryStatus grind(const Eigen::Vector3d& p, double feed) override
+    {
+        ground = obey().grind(p, feed).time;
+        return gantry_.status();
+    }
+    GantryStatus lift(double z) override { return obey().lift(z); }
+    double touch_off() override { return obey().touch_off(); }
+    void change_wheel() override { obey().change_wheel(); }
+    double probe(const Eigen::Vector2d& xy, double lowest) override { return gantry_.probe(xy, lowest); }
+    GantryStatus status() const override { return gantry_.status(); }
+    double ground = 0;
+
+  private:
+    Gantry& obey()
+    {
+        if (left_-- == 0) throw GantryFault("dead");
+        return gantry_;
+    }
+    Gantry& gantry_;
+    int left_;
+};
+
+TEST(Run, GoesOnWhereverItWasCutOff)
+{
+    // The machine keeps its stock and dies at every seventh command; every time the run goes on from its trace. In the
+    // end the same has been done as without: the rows that are no touch-off and no way back are the same, but for the
+    // readings, and the ground surface is the same within a step's repetition.
+    const auto hills = [](double x, double y) {
+        return std::max(dome(x, y, 10, 12, 7, 3.2), dome(x, y, 28, 27, 9, 2.2));
+    };
+    const Plan plan = square_plan();
+    ColumnGantry undisturbed(hills, plan.job.force.stiffness), mortal(hills, plan.job.force.stiffness);
+    const GrindRun whole = run(plan, undisturbed);
+    ASSERT_TRUE(whole.finished);
+
+    RunOptions options;
+    int cut_off = 0;
+    for (int commands = 700;; ++cut_off) {
+        FailingGantry gantry(mortal, commands);
+        const GrindRun part = run(plan, gantry, options);
+        if (part.finished) {
+            EXPECT_EQ(part.counts.highest_layer, whole.counts.highest_layer);
+            EXPECT_NEAR(part.counts.steps, whole.counts.steps, 0.05 * whole.counts.steps);
+            EXPECT_LE(mortal.highest(flat), plan.job.tolerance);
+            break;
+        }
+        ASSERT_LT(cut_off, 100);
+        EXPECT_EQ(part.trace.back().event, Event::fault);
+        ASSERT_GT(part.trace.size(), options.done.size());
+        for (std::size_t n = 0; n < options.done.size(); ++n) // what was done is not done again
+            ASSERT_EQ(part.trace[n].time, options.done[n].time) << n;
+        for (std::size_t n = 1; n < part.trace.size(); ++n) ASSERT_GE(part.trace[n].time, part.trace[n - 1].time) << n;
+        options.done = part.trace;
+        options.done.pop_back();
+    }
+    EXPECT_GT(cut_off, 3);
+}
+
+TEST(Run, RefusesToGoOnWithAnotherRun)
+{
+    Plan plan = square_plan();
+    ColumnGantry gantry(flat, plan.job.force.stiffness);
+    RunOptions options;
+    options.done = run(plan, gantry).trace;
+    plan.passes.erase(plan.passes.begin() + 20);
+    EXPECT_THROW(run(plan, gantry, options), InputError);
+}
+
+TEST(TraceFile, HoldsEveryRowAtEveryMoment)
+{
+    const OwnFolder folder;
+    const Units inches{Units::Length::in, Units::Force::lbf};
+    for (const PcdEncoding encoding : {PcdEncoding::ascii, PcdEncoding::binary}) {
+        const std::string path = "trace.pcd";
+        const auto row = [](int n) {
+            return TraceRow{.time = n + 0.1,
+                            .tool = {n * 1.7, -n * 0.3, 20},
+                            .layer = 2,
+                            .pass = n,
+                            .event = Event::none,
+                            .force = 10.3 * n,
+                            .feed = 25.4,
+                            .peak_force = 11.0 * n,
+                            .deflection = 0.01 * n,
+                            .radius = 25};
+        };
+        TraceFile file(path, inches, encoding, {row(1)});
+        for (int n = 2; n < 30; ++n) {
+            TraceRow begun = row(n);
+            begun.event = Event::begun;
+            file.begin(begun);
+            EXPECT_EQ(int(read_cloud(path, inches).cloud.size()), n);
+            EXPECT_EQ(int(read_trace(path, inches).size()), n - 1);
+            file.done(row(n));
+            const std::vector<TraceRow> rows = read_trace(path, inches);
+            ASSERT_EQ(int(rows.size()), n);
+            EXPECT_NEAR(rows.back().force, row(n).force, 1e-4);
+            EXPECT_EQ(rows.back().time, row(n).time);
+            EXPECT_NEAR((rows.back().tool - row(n).tool).norm(), 0, 1e-4);
+        }
+        // Killed after a row, before its count: the row is passed over.
+        std::string bytes = read_whole(path);
+        std::ofstream(path) << bytes << bytes.substr(bytes.size() - 3);
+        EXPECT_EQ(read_trace(path, inches).size(), 29u);
+    }
 }
 
 } // namespace
