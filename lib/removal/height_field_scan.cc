@@ -109,14 +109,19 @@ void lay_mesh(HeightField& field, const Mesh& mesh)
     });
 }
 
-/// The same over a cloud, whose surface is found cell by cell.
+/// The same over a cloud, whose surface is found cell by cell. Beside the walls that a wheel leaves it has none, but a
+/// ground part has a point in each cell.
 void lay_cloud(HeightField& field, const Scan& cloud)
 {
     const Eigen::Matrix2d R_machine_working = rotation_working_machine(field.theta).transpose();
     tbb::parallel_for(tbb::blocked_range<Eigen::Index>(0, field.rows()), [&](const auto& range) {
         for (Eigen::Index j = range.begin(); j < range.end(); ++j)
-            for (Eigen::Index i = 0; i < field.columns(); ++i)
-                if (const auto z = cloud.height(R_machine_working * field.centre(i, j))) field.z(i, j) = *z;
+            for (Eigen::Index i = 0; i < field.columns(); ++i) {
+                const Eigen::Vector2d xy = R_machine_working * field.centre(i, j);
+                auto z = cloud.height(xy);
+                if (!z) z = cloud.highest_point(xy, field.cell / 2);
+                if (z) field.z(i, j) = *z;
+            }
     });
 }
 

@@ -207,6 +207,13 @@ std::optional<double> PointSurface::height(const Vector2d& xy) const
 
 // The ball's lowest point is at the largest z(q) + sqrt(R^2 - |q - xy|^2) - R over the disc of its shadow: found on a
 // square lattice first, then by steps that are halved.
+std::optional<double> PointSurface::highest(const Eigen::Vector2d& xy, double radius) const
+{
+    std::optional<double> z;
+    for (const Eigen::Vector3d& point : near(xy, radius)) z = std::max(z.value_or(point.z()), point.z());
+    return z;
+}
+
 std::optional<double> PointSurface::drop_ball(const Vector2d& xy, double radius) const
 {
     constexpr int kHalfLattice = 8;    // a bump narrower than an eighth of the radius may be missed

@@ -17,6 +17,8 @@ class PointSurface {
     /// several sheets (the upper and the lower side of a plate) the highest. Nothing where fewer points than a
     /// quadratic needs are near, or where they do not surround the line (a hole, the border).
     std::optional<double> height(const Eigen::Vector2d& xy) const;
+    /// z of the highest point within `radius` of the vertical line.
+    std::optional<double> highest(const Eigen::Vector2d& xy, double radius) const;
     /// z of the lowest point of a ball that comes down over xy, when it first touches the surface.
     std::optional<double> drop_ball(const Eigen::Vector2d& xy, double radius) const;
 

@@ -49,6 +49,11 @@ std::optional<double> Scan::drop_ball(const Eigen::Vector2d& xy, double radius) 
     return *centre - radius;
 }
 
+std::optional<double> Scan::highest_point(const Eigen::Vector2d& xy, double radius) const
+{
+    return state_->points ? state_->points->highest(xy, radius) : std::nullopt;
+}
+
 const Mesh* Scan::mesh() const { return state_->points ? nullptr : &state_->mesh; }
 
 Eigen::Matrix<double, 3, 2> Scan::bounds() const { return state_->bounds; }

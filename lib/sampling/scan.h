@@ -26,6 +26,8 @@ class Scan {
     /// z of the lowest point of a ball of `radius` that comes down over xy, when it first touches. On a mesh exact
     /// (facets, edges, vertices); on a cloud against the local quadratics.
     std::optional<double> drop_ball(const Eigen::Vector2d& xy, double radius) const;
+    /// z of a cloud's highest point within `radius` of the vertical line: beside a wall there is no local quadratic.
+    std::optional<double> highest_point(const Eigen::Vector2d& xy, double radius) const;
     /// The triangles; nothing for a cloud.
     const Mesh* mesh() const;
     /// Column 0 the least corner, column 1 the greatest, mm.

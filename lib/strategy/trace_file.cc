@@ -50,6 +50,9 @@ TraceFile::TraceFile(const std::string& path, const Units& units, PcdEncoding en
                      const std::vector<TraceRow>& rows)
     : path_(path), units_(units), encoding_(encoding), width_(text({}).size()), count_(rows.size())
 {
+    std::ostringstream plain;
+    write_pcd_header(plain, to_cloud({}), 0, units, encoding);
+    header_ = plain.str();
     start_ = header(0).size();
     const std::string name = working_name(path);
     ::unlink(name.c_str());
@@ -83,9 +86,7 @@ void TraceFile::done(const TraceRow& row)
 
 std::string TraceFile::header(std::size_t points) const
 {
-    std::ostringstream out;
-    write_pcd_header(out, to_cloud({}), points, units_, encoding_);
-    std::string text = out.str();
+    std::string text = header_;
     widen(text, "WIDTH", points);
     widen(text, "POINTS", points);
     return text;

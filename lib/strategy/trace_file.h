@@ -10,9 +10,9 @@
 namespace fettle {
 
 /// A trace that is written ahead: what the machine is to do stands in the file before it does it (event `begun`, the
-/// place where it is to go), and in its stead, afterwards, what came of it. Whenever the program is killed, the file is a
-/// PCD; it may have a point more than its header counts, which read_trace() passes over. It is not synced to the disk:
-/// it outlives the program, not the computer.
+/// place where it is to go), and in its stead, afterwards, what came of it. Whenever the program is killed, the file is
+/// a PCD; it may have a point more than its header counts, which read_trace() passes over. It is not synced to the
+/// disk: it outlives the program, not the computer.
 class TraceFile {
   public:
     /// Puts a file with these rows in the place of `path`.
@@ -31,6 +31,7 @@ class TraceFile {
     std::string path_;
     Units units_;
     PcdEncoding encoding_;
+    std::string header_; ///< of no points
     Descriptor file_;
     std::size_t start_ = 0, width_ = 0; ///< of the first row; of each, bytes
     std::size_t count_ = 0;             ///< rows
