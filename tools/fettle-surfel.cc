@@ -7,6 +7,7 @@
 #include "compare/comparison_report.h"
 #include "compare/shape_file.h"
 #include "core/file.h"
+#include "core/lines.h"
 #include "mesh/mesh_file.h"
 
 #include <numbers>
@@ -28,7 +29,7 @@ SampledDesign sample_design(const std::string& path, const std::optional<Units::
 {
     const std::string bytes = read_whole(path);
     const std::string source = display_name(path);
-    if (looks_like_json(bytes)) {
+    if (looks_like_json(without_mark(bytes, source))) {
         if (unit) throw InputError("--file-units", "patches name their units themselves");
         return sample_surfels(parse_patches(bytes, source), options);
     }

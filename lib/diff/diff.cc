@@ -3,6 +3,7 @@
 #include "cloud/fields.h"
 #include "cloud/pcd.h"
 #include "core/error.h"
+#include "core/lines.h"
 #include "core/text.h"
 #include "mesh/mesh_file.h"
 #include "json/leaves.h"
@@ -167,9 +168,10 @@ using Content = std::variant<Leaves, CloudFile, Mesh>;
 
 Content read_content(std::string_view bytes, const std::string& name)
 {
-    const std::size_t first = bytes.find_first_not_of(" \t\r\n");
+    const std::string_view text = without_mark(bytes, name);
+    const std::size_t first = text.find_first_not_of(" \t\r\n");
     if (first == std::string_view::npos) throw InputError(name, "empty");
-    if (bytes[first] == '{' || bytes[first] == '[') return json::leaves(bytes, name);
+    if (text[first] == '{' || text[first] == '[') return json::leaves(bytes, name);
     if (looks_like_cloud(bytes)) return parse_cloud(bytes, name);
     return parse_mesh(bytes, name);
 }
