@@ -155,7 +155,8 @@ const Press& WheelPress::at(const Eigen::Isometry3d& T_part_tool, const Pressing
         find_grid(T_part_tool, pressing);
         press_on(T_part_tool, pressing, options_.gridding, options_.tolerance);
     }
-    constexpr double kEdge = 1.5; // thicknesses
+    // Thicknesses: there rubber of ν = 0.49 is pressed in 0.5 % farther than without an edge, 5 % at a sixth of it.
+    constexpr double kEdge = 1.5;
     press_.is_near_edge = reach().y() > wheel_.width / 2 - kEdge * wheel_.layer.thickness;
     return press_;
 }

@@ -106,6 +106,35 @@ TEST(FemContact, AgreesWithHertzOnAThickLayer)
     EXPECT_GE(std::log2(coarse.peak / fine.peak), 1.8);
 }
 
+// A wheel pressed across its whole width: of second order too, its pressure at the edges finite. The layer without
+// edges is a quarter too stiff, and its pressure at the edges grows as the cells get smaller: what is_near_edge warns
+// of.
+TEST(FemContact, ConvergesAcrossTheWholeWidth)
+{
+    const ElasticLayer rubber{6, 5, 0.49};
+    const double width = 20, radius = 60;
+    const auto pressed = [&](Index cells, auto make) {
+        const Eigen::Vector2d cell(16.0 / static_cast<double>(cells), width / static_cast<double>(cells));
+        const Eigen::ArrayXd x = (Eigen::ArrayXd::LinSpaced(cells, 1, 2 * double(cells) - 1) - double(cells)) / 2;
+        const MatrixXd gap = ((x * cell.x()).square() / 80).matrix().replicate(1, cells);
+        return make(cell).by_force(gap, 200, kTight);
+    };
+    const auto fem = [&](Index cells) {
+        return pressed(cells, [&](const Eigen::Vector2d& cell) {
+            return LayerContact(mesh_of(rubber, radius, width, cell, cells, cells / 8), cells);
+        });
+    };
+    const Contact coarse = fem(16), middle = fem(32), fine = fem(64);
+    EXPECT_GT(fine.pressure.col(0).minCoeff(), -1e-12);
+    EXPECT_GT(fine.pressure.col(0).maxCoeff(), 0);
+    EXPECT_GE(std::log2((middle.indentation - coarse.indentation) / (fine.indentation - middle.indentation)), 1.7);
+    EXPECT_NEAR(middle.pressure.maxCoeff(), fine.pressure.maxCoeff(), 0.01 * fine.pressure.maxCoeff());
+    const Contact edgeless =
+        pressed(64, [&](const Eigen::Vector2d& cell) { return LayerContact(rubber, cell, 64, 64); });
+    EXPECT_LT(edgeless.indentation, 0.8 * fine.indentation);
+    EXPECT_GT(edgeless.pressure.maxCoeff(), 2 * fine.pressure.maxCoeff());
+}
+
 /// On a small wheel, under its edge, where nothing is under a corner of the window.
 LayerMesh at_the_edge() { return mesh_of({6, 5, 0.49}, 40, 16, {1, 1}, 16, 4); }
 
@@ -221,6 +250,28 @@ TEST(FemContact, AgreesWithTheFourierLayerOnABlade)
             const double off = (z + x.square() / (2 * radius_x) + y.square() / (2 * radius_y)).abs().maxCoeff();
             EXPECT_LE(off, 0.02);
         }
+}
+
+// A path that goes on from where it was left finds the elements' grid again.
+TEST(FemContact, GoesOnFromWhatItRemembers)
+{
+    ContactWheel wheel;
+    wheel.radius = 60;
+    wheel.width = 40;
+    wheel.layer = {6, 5, 0.49};
+    const Surfels surfels = blade(100, 60);
+    PressOptions options;
+    options.solver = LayerSolver::fem;
+    options.cells = 24;
+    options.elements = 4;
+    WheelPress one(surfels, wheel, options), other(surfels, wheel, options);
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    EXPECT_NEAR(one.at(pose, {true, 20}).contact.force, 20, 1e-9);
+    other.remember(one.memory());
+    pose.rotate(Eigen::AngleAxisd(0.01, Vector3d::UnitX()));
+    const MatrixXd expected = one.at(pose, {true, 21}).contact.pressure;
+    EXPECT_EQ(other.at(pose, {true, 21}).contact.pressure, expected);
+    EXPECT_EQ(other.at(pose, {true, 21}).arc_radius, 60);
 }
 
 TEST(FemContact, DoesNotDependOnTheThreads)
