@@ -18,6 +18,8 @@ constexpr Eigen::Index kProbes = 10000;
 constexpr int kPieces = 64;
 // A width that is a whole number of steps but for what fits at the border are off, in steps.
 constexpr double kWhole = 1e-3;
+// Of single-precision places a decimetre away, in steps of a millimetre's tenth.
+constexpr double kRounding = 1e-4;
 
 /// One patch as a surface over (u, v).
 class PatchSurface {
@@ -39,29 +41,19 @@ class PatchSurface {
         reach_ = surfels_.radius.maxCoeff();
         measure();
         Eigen::Matrix3Xd flat = Eigen::Matrix3Xd::Zero(3, surfels_.size());
-        flat.topRows<2>() = speed_.asDiagonal() * surfels_.uv;
+        for (Eigen::Index i = 0; i < surfels_.size(); ++i)
+            flat.col(i).head<2>() << length(0, surfels_.uv(0, i)), length(1, surfels_.uv(1, i));
         neighbours_.emplace(flat);
     }
 
     /// How wide the patch is along u (axis 0) or v (1), mm: no curve of that parameter is longer.
     double width(int axis) const { return lengths_[axis][kPieces]; }
-    /// The parameter so far from its least value, mm.
-    double parameter(int axis, double length) const
-    {
-        const Eigen::VectorXd& lengths = lengths_[axis];
-        int piece = 0;
-        while (piece + 1 < kPieces && lengths[piece + 1] < length) ++piece;
-        const double share = (length - lengths[piece]) / (lengths[piece + 1] - lengths[piece]);
-        return least_[axis] + (most_[axis] - least_[axis]) * (piece + std::clamp(share, 0.0, 1.0)) / kPieces;
-    }
-    /// The largest lengths of P_u and P_v.
-    const Eigen::Vector2d& speed() const { return speed_; }
-
     /// Nothing where the patch is not.
-    std::optional<LocalFit> at(const Eigen::Vector2d& uv) const
+    /// @param place  lengths along u and v from their least values, mm
+    std::optional<LocalFit> at(const Eigen::Vector2d& place) const
     {
-        const Eigen::Vector2d flat = speed_.cwiseProduct(uv);
-        const std::vector<Eigen::Index> near = neighbours_->nearest({flat.x(), flat.y(), 0}, kFitCandidates);
+        const std::vector<Eigen::Index> near = neighbours_->nearest({place.x(), place.y(), 0}, kFitCandidates);
+        const Eigen::Vector2d uv(parameter(0, place.x()), parameter(1, place.y()));
         const std::optional<LocalFit> fit = local_fit(surfels_, patch_, uv, near);
         if (!fit) return std::nullopt;
         const bool there = std::any_of(near.begin(), near.end(), [&](Eigen::Index i) {
@@ -73,6 +65,22 @@ class PatchSurface {
   private:
     // The corner of a lattice's cell is just within the radius of its middle.
     static constexpr double kCorner = 0.01;
+
+    double parameter(int axis, double length) const
+    {
+        const Eigen::VectorXd& lengths = lengths_[axis];
+        int piece = 0;
+        while (piece + 1 < kPieces && lengths[piece + 1] < length) ++piece;
+        const double share = (length - lengths[piece]) / (lengths[piece + 1] - lengths[piece]);
+        return least_[axis] + (most_[axis] - least_[axis]) * (piece + std::clamp(share, 0.0, 1.0)) / kPieces;
+    }
+
+    double length(int axis, double parameter) const
+    {
+        const double at = (parameter - least_[axis]) / (most_[axis] - least_[axis]) * kPieces;
+        const int piece = std::clamp(static_cast<int>(at), 0, kPieces - 1);
+        return lengths_[axis][piece] + (at - piece) * (lengths_[axis][piece + 1] - lengths_[axis][piece]);
+    }
 
     void measure()
     {
@@ -92,8 +100,8 @@ class PatchSurface {
                 here = std::max(here, speed[axis]);
             }
         }
-        speed_ = speeds.rowwise().maxCoeff();
-        if (!(speed_.minCoeff() > 0))
+        const Eigen::Vector2d most = speeds.rowwise().maxCoeff();
+        if (!(most.minCoeff() > 0))
             throw InputError("too few surfels on patch " + std::to_string(patch_) + " for a path");
         for (int axis = 0; axis < 2; ++axis) {
             lengths_[axis] = Eigen::VectorXd::Zero(kPieces + 1);
@@ -102,7 +110,7 @@ class PatchSurface {
                 // most.
                 const int from = std::max(k - 1, 0), to = std::min(k + 1, kPieces - 1);
                 const double found = speeds.row(axis).segment(from, to - from + 1).maxCoeff();
-                const double speed = found > 0 ? found : speed_[axis];
+                const double speed = found > 0 ? found : most[axis];
                 lengths_[axis][k + 1] = lengths_[axis][k] + speed * (most_[axis] - least_[axis]) / kPieces;
             }
         }
@@ -112,29 +120,36 @@ class PatchSurface {
     Surfels surfels_;
     double reach_ = 0;
     Eigen::Vector2d least_, most_; ///< u, v
-    Eigen::Vector2d speed_ = Eigen::Vector2d::Zero();
-    Eigen::VectorXd lengths_[2]; ///< of u and v, up to the ends of their pieces
+    Eigen::VectorXd lengths_[2];   ///< of u and v, up to the ends of their pieces
     std::optional<Neighbours> neighbours_;
 };
 
-/// Adds poses along straight legs in u and v.
+/// Adds poses along legs in u or v.
 class PathBuilder {
   public:
     PathBuilder(const PatchSurface& surface, const ContactPathOptions& options) : surface_(surface), options_(options)
     {
     }
 
+    /// @param from, to  lengths along u and v, mm; one of them is the same
     void leg(const Eigen::Vector2d& from, const Eigen::Vector2d& to)
     {
-        const double length = surface_.speed().cwiseProduct(to - from).norm();
-        const int steps = std::max(1, static_cast<int>(std::ceil(length / options_.spacing - 1e-9)));
-        for (int k = 0; k <= steps; ++k) {
-            const Eigen::Vector2d uv = from + (to - from) * (double(k) / steps);
-            if (const std::optional<LocalFit> fit = surface_.at(uv))
+        const auto steps_for = [&](double length) {
+            return std::max(1.0, std::ceil(length / options_.spacing - 1e-9));
+        };
+        double steps = steps_for((to - from).norm());
+        std::vector<std::optional<LocalFit>> fits = along(from, to, steps);
+        // Lengths come from probes, which may have missed where the parameters run fastest.
+        for (double longest = longest_step(fits); longest > options_.spacing * (1 + kRounding);
+             longest = longest_step(fits)) {
+            steps = std::max(steps_for(steps * longest), steps + 1);
+            fits = along(from, to, steps);
+        }
+        for (const std::optional<LocalFit>& fit : fits)
+            if (fit)
                 add(*fit, to - from);
             else
                 end_pass();
-        }
     }
 
     void end_pass()
@@ -146,6 +161,22 @@ class PathBuilder {
     ContactPath path;
 
   private:
+    std::vector<std::optional<LocalFit>> along(const Eigen::Vector2d& from, const Eigen::Vector2d& to,
+                                               double steps) const
+    {
+        std::vector<std::optional<LocalFit>> fits;
+        for (double k = 0; k <= steps; ++k) fits.push_back(surface_.at(from + (to - from) * (k / steps)));
+        return fits;
+    }
+
+    static double longest_step(const std::vector<std::optional<LocalFit>>& fits)
+    {
+        double longest = 0;
+        for (std::size_t k = 1; k < fits.size(); ++k)
+            if (fits[k - 1] && fits[k]) longest = std::max(longest, (fits[k]->P - fits[k - 1]->P).norm());
+        return longest;
+    }
+
     void add(const LocalFit& fit, const Eigen::Vector2d& way)
     {
         const Eigen::Vector3d z = fit.n.normalized();
@@ -171,12 +202,12 @@ struct Rows {
     int along, across; ///< axes
 
     Eigen::Vector2d width() const { return {surface.width(along), surface.width(across)}; }
-    Eigen::Vector2d uv(const Eigen::Vector2d& place) const
+    Eigen::Vector2d on_patch(const Eigen::Vector2d& place) const
     {
-        Eigen::Vector2d uv;
-        uv[along] = surface.parameter(along, place.x());
-        uv[across] = surface.parameter(across, place.y());
-        return uv;
+        Eigen::Vector2d lengths;
+        lengths[along] = place.x();
+        lengths[across] = place.y();
+        return lengths;
     }
 };
 
@@ -187,7 +218,7 @@ void add_rows(PathBuilder& builder, const Rows& rows, const ContactPathOptions& 
     for (int k = 0; k < count; ++k) {
         // In the middles of equal strips: each row works half a step to either side.
         const double across = width.y() * (k + 0.5) / count;
-        const Eigen::Vector2d a = rows.uv({0, across}), b = rows.uv({width.x(), across});
+        const Eigen::Vector2d a = rows.on_patch({0, across}), b = rows.on_patch({width.x(), across});
         const bool back = k % 2 == 1 && !options.one_way;
         builder.leg(back ? b : a, back ? a : b);
         builder.end_pass();
@@ -200,7 +231,7 @@ void add_spiral(PathBuilder& builder, const Rows& rows, double step)
     Eigen::Vector2d least = Eigen::Vector2d::Constant(step / 2), most = rows.width() - least;
     Eigen::Vector2d at = least;
     const auto go = [&](const Eigen::Vector2d& to) {
-        builder.leg(rows.uv(at), rows.uv(to));
+        builder.leg(rows.on_patch(at), rows.on_patch(to));
         at = to;
     };
     while (most.x() >= least.x() && most.y() >= least.y()) {

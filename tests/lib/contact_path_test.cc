@@ -106,6 +106,27 @@ TEST(ContactPath, passes_end_where_the_patch_does)
     EXPECT_THROW(contact_path(holed, {}), std::runtime_error);
 }
 
+// Like a blade's profile: at the nose the parameter runs at a tenth of its speed at the ends, the surfels stand evenly.
+TEST(ContactPath, rows_go_on_where_the_parameter_runs_slowly)
+{
+    Surfels surfels = half_cylinder(0.25);
+    const double end = std::sinh(3.0);
+    for (Eigen::Index i = 0; i < surfels.size(); ++i)
+        surfels.uv(0, i) = std::asinh(surfels.uv(0, i) / (kPi / 2) * end) / 3;
+    const ContactPathOptions options = of_patch_3();
+    const ContactPath path = contact_path(surfels, options);
+    EXPECT_EQ(path.pass.back() + 1, 6);
+    double length = 0;
+    for (std::size_t i = 1; i < path.poses.size(); ++i) {
+        if (path.pass[i] != path.pass[i - 1]) continue;
+        const double step = (path.poses[i].translation() - path.poses[i - 1].translation()).norm();
+        EXPECT_LE(step, options.spacing * (1 + 1e-4));
+        length += step;
+    }
+    EXPECT_NEAR(length, 6 * 10 * kPi, 0.01 * 60 * kPi);
+    EXPECT_LE(double(path.poses.size()), 2 * length / options.spacing); // and not many more than it takes
+}
+
 TEST(Slerp, agrees_with_eigen)
 {
     std::mt19937 random(1);
