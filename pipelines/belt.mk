@@ -1,24 +1,34 @@
-# Belt grinding: a rough part as surfels, what is left on it, and a path over it.
+# Belt grinding: a rough part as surfels, a path over it, and what the belt leaves on it.
 #
 #   make -f pipelines/belt.mk                                      the blade that the project makes itself
-#   make -f pipelines/belt.mk PARTS='blade nasa handle' DATA=DIR   and DIR/nasa_blade_a.stl and DIR/handle.off
+#   make -f pipelines/belt.mk PARTS='blade nasa handle edge' DATA=DIR
+#       and DIR/nasa_blade_a.stl, DIR/handle.off, and of EDGE=DIR/../before_after a leading edge before and after, LE_mesh.ply and LE_mesh_grinded.ply
 #   make -f pipelines/belt.mk plan                                 feeds, and forces, that meet the blade's allowance
 #   make -f pipelines/belt.mk law                                  the removal law from measured trials; exit 1 if a figure is missed
 #
 # BELT/PART/stock.stl is the design with an allowance of 0.2 to 0.6 mm that varies over it, work.pcd the surfels, errors.pcd what
-# would be left without grinding, surface.pcd the stock's surface with its normals, rows.pcd a path; errors.png the picture.
+# would be left without grinding, surface.pcd the stock's surface with its normals, rows.pcd a path; ground.pcd the surfels after it,
+# watch.csv the errors on the way, left.pcd what is left. At one contact point: contact.png, the gap before anything gives way less what gave
+# way, pressure.png and removal.png; three.png: removed after three points; whole.png: after the path; errors.png and left.png: the error before
+# and after; cell.png: part, wheel and robot. report.html holds the numbers.
 
 B       ?= build
 BELT    ?= $(B)/belt
 DATA    ?=
+EDGE    ?= $(DATA)/../before_after
 PARTS   ?= blade
 SPACING ?= 0.5
 # What a ground part may have left, mm.
 LOWER   ?= -0.02
 UPPER   ?= 0.05
+# N, mm/s
+PRESS   ?= 10
+FEED    ?= 6
+WHEEL   ?= samples/wheels/crowned.json
 
+PICTURES := contact pressure removal three whole errors left cell
 .PHONY: belt
-belt: $(foreach part,$(PARTS),$(BELT)/$(part)/errors.png $(BELT)/$(part)/rows.json $(BELT)/$(part)/errors.json)
+belt: $(foreach part,$(PARTS),$(PICTURES:%=$(BELT)/$(part)/%.png) $(BELT)/$(part)/report.html)
 	@pipelines/belt-table $(PARTS:%=$(BELT)/%)
 
 # --- designs and their units: a blade in metres, a handle of the size of one ---------------------------------------------
@@ -33,6 +43,15 @@ $(BELT)/handle/design: $(DATA)/handle.off
 	@mkdir -p $(@D)
 	awk 'FNR > 2 && NF == 3 && !faces { print $$1 * 100, $$2 * 100, $$3 * 100; next } FNR > 2 && NF > 3 { faces = 1 } { print }' $< > $@
 $(BELT)/nasa/%: UNITS = --file-units m
+# The facets of the leading edge look inwards.
+$(BELT)/edge/design: $(EDGE)/LE_mesh_grinded.ply $(B)/study/stock
+	@mkdir -p $(@D)
+	$(B)/study/stock $< --turned --least 0 --most 0 -o $@
+$(BELT)/edge/stock.stl: $(EDGE)/LE_mesh.ply $(B)/study/stock
+	@mkdir -p $(@D)
+	$(B)/study/stock $< --turned --least 0 --most 0 -o $@
+# It has half a millimetre at its tip alone, and so little time.
+$(BELT)/edge/ground.pcd: FEED = 40
 
 # --- the removal law from measured trials ----------------------------------------------------------------------------------
 TRIALS ?= samples/removal
@@ -55,30 +74,83 @@ $(BELT)/law/wheel.json: $(BELT)/law/static.json samples/wheels/rubber.json
 $(BELT)/%/stock.stl: $(BELT)/%/design $(B)/study/stock
 	$(B)/study/stock $< $(UNITS) --least 0.2 --most 0.6 -o $@
 
-$(BELT)/%/work.pcd: $(BELT)/%/design $(BELT)/%/stock.stl $(B)/bin/fettle-surfel
-	$(B)/bin/fettle-surfel $< $(UNITS) --stock $(@D)/stock.stl --spacing $(SPACING) --reach 2 -q --report $(@D)/work.json -o $@
+# Of the meshes that others made only the piece with the most surfels: about the others' edges facets lie over one another.
+KEEP = cat
+$(BELT)/nasa/work.pcd $(BELT)/handle/work.pcd: KEEP = pipelines/belt-points largest
+$(BELT)/%/work.pcd: $(BELT)/%/design $(BELT)/%/stock.stl $(B)/bin/fettle-surfel pipelines/belt-points
+	$(B)/bin/fettle-surfel $< $(UNITS) --stock $(@D)/stock.stl --spacing $(SPACING) --reach 2 -q --ascii --report $(@D)/work.json | $(KEEP) > $@
 
 # Exit status 1 of the judge is an answer, which the table tells.
+ASSESS = $(B)/bin/fettle-assess $< --lower $(LOWER) --upper $(UPPER) -q
 $(BELT)/%/errors.pcd: $(BELT)/%/work.pcd $(B)/bin/fettle-assess
-	$(B)/bin/fettle-assess $< --lower $(LOWER) --upper $(UPPER) -q --report $(@D)/errors.json -o $@ || test $$? = 1
-	$(B)/bin/fettle-assess $< --lower $(LOWER) --upper $(UPPER) -q --displaced --report $(@D)/surface.json -o $(@D)/surface.pcd || test $$? = 1
-$(BELT)/%/errors.json: $(BELT)/%/errors.pcd ;
+	$(ASSESS) --report $(@D)/errors.json -o $@ || test $$? = 1
+$(BELT)/%/surface.pcd: $(BELT)/%/work.pcd $(B)/bin/fettle-assess
+	$(ASSESS) --displaced --report $(@D)/surface.json -o $@ || test $$? = 1
+$(BELT)/%/left.pcd: $(BELT)/%/ground.pcd $(B)/bin/fettle-assess
+	$(ASSESS) --report $(@D)/left.json -o $@ || test $$? = 1
 
 $(BELT)/%/rows.pcd: $(BELT)/%/work.pcd $(B)/bin/fettle-path
-	$(B)/bin/fettle-path $< --step-over 2 --spacing 0.5 --report $(@D)/rows.json -o $@
-$(BELT)/%/rows.json: $(BELT)/%/rows.pcd ;
+	$(B)/bin/fettle-path $< --step-over 2 --spacing 0.5 --ascii --report $(@D)/rows.json -o $@
 
+GRIND = $(B)/bin/fettle-belt $< --wheel $(WHEEL) --force $(PRESS) --feed $(FEED)
+$(BELT)/%/ground.pcd: $(BELT)/%/work.pcd $(BELT)/%/rows.pcd $(WHEEL) $(B)/bin/fettle-belt
+	$(GRIND) --path $(@D)/rows.pcd --journal $(@D)/journal --watch $(@D)/watch.csv --lower $(LOWER) --upper $(UPPER) --trace $(@D)/trace.pcd \
+	    --report $(@D)/ground.json -o $@
+	rm -f $(@D)/journal
+
+# --- one contact point, three, and the whole path --------------------------------------------------------------------------
+$(BELT)/%/one.pcd: $(BELT)/%/rows.pcd pipelines/belt-points
+	pipelines/belt-points middle 1 0 < $< > $@
+$(BELT)/%/three.pcd: $(BELT)/%/rows.pcd pipelines/belt-points
+	pipelines/belt-points middle 3 16 < $< > $@
+$(BELT)/%/contact.pcd: $(BELT)/%/work.pcd $(BELT)/%/one.pcd $(WHEEL) $(B)/bin/fettle-contact
+	$(B)/bin/fettle-contact $< --wheel $(WHEEL) --at "$$(pipelines/belt-points pose < $(@D)/one.pcd)" --force $(PRESS) --report $(@D)/contact.json -o $@
+# Half a second there; the three points take the time of the ways between them, 16 points of the path.
+$(BELT)/%/at-one.pcd: $(BELT)/%/work.pcd $(BELT)/%/one.pcd $(WHEEL) $(B)/bin/fettle-belt
+	$(GRIND) --path $(@D)/one.pcd --dwell 0.5 --ascii | pipelines/belt-points near "$$(pipelines/belt-points pose < $(@D)/one.pcd)" 12 > $@
+$(BELT)/%/at-three.pcd: $(BELT)/%/work.pcd $(BELT)/%/three.pcd $(WHEEL) $(B)/bin/fettle-belt
+	$(GRIND) --path $(@D)/three.pcd --ascii | pipelines/belt-points near "$$(pipelines/belt-points pose < $(@D)/three.pcd)" 22 > $@
+
+# --- pictures ---------------------------------------------------------------------------------------------------------------
+ALONG = --from "$$(pipelines/belt-points normal < $(@D)/one.pcd)"
+RENDER = $(B)/bin/fettle-render $< -o $@
+$(BELT)/%/contact.png: $(BELT)/%/contact.pcd $(B)/bin/fettle-render
+	$(RENDER) --field gap $(ALONG) --title '$*: gap beside the contact'
+$(BELT)/%/pressure.png: $(BELT)/%/contact.pcd $(B)/bin/fettle-render
+	$(RENDER) --field pressure $(ALONG) --title '$*: pressure, MPa'
+$(BELT)/%/removal.png: $(BELT)/%/at-one.pcd $(B)/bin/fettle-render
+	$(RENDER) --field removed $(ALONG) --title '$*: removed at one contact point'
+$(BELT)/%/three.png: $(BELT)/%/at-three.pcd $(B)/bin/fettle-render
+	$(RENDER) --field removed $(ALONG) --title '$*: removed after three points'
+$(BELT)/%/whole.png: $(BELT)/%/ground.pcd $(B)/bin/fettle-render
+	$(RENDER) --field removed --scale 0.8 --from 1,-2,0.5 --title '$*: removed after the whole path'
 $(BELT)/%/errors.png: $(BELT)/%/errors.pcd $(B)/bin/fettle-render
-	$(B)/bin/fettle-render $< --scale 0.6 --from 1,-2,0.5 --title '$*: allowance before grinding' -o $@
+	$(RENDER) --scale 0.6 --from 1,-2,0.5 --title '$*: error before grinding'
+$(BELT)/%/left.png: $(BELT)/%/left.pcd $(B)/bin/fettle-render
+	$(RENDER) --scale 0.6 --from 1,-2,0.5 --title '$*: error after grinding'
+
+# The robot holds the wheel; the part stands before it so that the contact point comes to SPOT with the wheel above it.
+SPOT = 1000,950,520
+WHEEL_FOR_BALL = $$wheel[0] as $$w | .bodies |= map(select(.name | IN("ball", "shank", "holder", "vise") | not)) + \
+    [{name: "wheel", link: 7, shape: "cylinder", from: [0, -$$w.width / 2, $$w.radius], to: [0, $$w.width / 2, $$w.radius], radius: $$w.radius}]
+$(BELT)/cell.json: samples/robots/irb1400_vise.json $(WHEEL)
+	jq --slurpfile wheel $(WHEEL) '$(WHEEL_FOR_BALL)' $< > $@
+$(BELT)/%/placed.stl: $(BELT)/%/design $(BELT)/%/one.pcd $(B)/study/stock
+	$(B)/study/stock $< $(UNITS) --least 0.4 --most 0.4 --at "$$(pipelines/belt-points under $(SPOT) < $(@D)/one.pcd)" -o $@
+$(BELT)/spot.pcd:
+	printf '# units mm\nVERSION 0.7\nFIELDS x y z qw qx qy qz\nSIZE 4 4 4 4 4 4 4\nTYPE F F F F F F F\nCOUNT 1 1 1 1 1 1 1\nWIDTH 1\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 1\nDATA ascii\n%s 1 0 0 0\n' "$$(echo $(SPOT) | tr , ' ')" > $@
+# Exit status 1 says that the rigid wheel of the picture is in the part by more than the tolerance, as on a nose beside the contact point.
+$(BELT)/%/cell.png: $(BELT)/%/placed.stl $(BELT)/cell.json $(BELT)/spot.pcd $(B)/bin/fettle-collide
+	$(B)/bin/fettle-collide $(BELT)/cell.json $(BELT)/spot.pcd --workpiece $< --tolerance 1 --picture $@ --report $(@D)/cell.json -q -o /dev/null || test $$? = 1
+
+$(BELT)/%/report.html: $(BELT)/%/ground.pcd $(BELT)/%/left.pcd $(BELT)/%/errors.pcd $(BELT)/%/surface.pcd pipelines/belt-page
+	pipelines/belt-page $(@D) > $@
 
 # --- plans for the blade: feeds of each contact point, or forces, beside the best constant -------------------------------------
 # Its flat trailing edge is not ground with its sides. Planned on surfels SPACING apart; ground, to be judged, on others that are
 # closer together. BELT/plan/VARY/report.json is the plan's account, constant/ and planned/ have what is left.
 VARY  ?= feed force
-PRESS ?= 10
-WHEEL ?= samples/wheels/crowned.json
 FINER ?= $(shell awk 'BEGIN { print 0.7 * $(SPACING) }')
-FEED  ?= 6
 LIMITS_feed  := --least 0.5 --most 200
 LIMITS_force := --least 1 --most 40
 OTHER_feed   := --force $(PRESS)

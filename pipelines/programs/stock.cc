@@ -5,13 +5,18 @@
 #include "core/file.h"
 #include "mesh/mesh.h"
 #include "mesh/mesh_file.h"
+#include "robot/solve_path.h"
 #include "surface/patches.h"
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
+#include <map>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 using namespace fettle;
@@ -89,21 +94,90 @@ Mesh stock_of(const std::vector<Patch>& design, Allowance allowance)
     return mesh;
 }
 
-/// Each vertex is raised along the mean normal of its facets.
+/// Triangles whose edges are no longer than `longest`, on the same surface: an edge that is too long is halved in both
+/// its triangles.
+Mesh refined(Mesh mesh, double longest)
+{
+    using Edge = std::pair<int, int>;
+    const auto edge = [](int a, int b) { return Edge(std::min(a, b), std::max(a, b)); };
+    for (bool any = true; any;) {
+        std::map<Edge, int> middles;
+        std::vector<Eigen::Vector3d> vertices(mesh.vertices.colwise().begin(), mesh.vertices.colwise().end());
+        const auto length = [&](const Edge& e) {
+            return (mesh.vertices.col(e.first) - mesh.vertices.col(e.second)).norm();
+        };
+        std::vector<Eigen::Vector3i> triangles;
+        for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t)
+            for (int k = 0; k < 3; ++k) {
+                const Edge e = edge(mesh.triangles(k, t), mesh.triangles((k + 1) % 3, t));
+                if (length(e) <= longest || !middles.try_emplace(e, static_cast<int>(vertices.size())).second) continue;
+                vertices.push_back((mesh.vertices.col(e.first) + mesh.vertices.col(e.second)) / 2);
+            }
+        const std::function<void(Eigen::Vector3i)> divide = [&](Eigen::Vector3i c) {
+            int cut = -1;
+            for (int k = 0; k < 3; ++k) {
+                const Edge e = edge(c[k], c[(k + 1) % 3]);
+                if (middles.count(e) > 0 && (cut < 0 || length(e) > length(edge(c[cut], c[(cut + 1) % 3])))) cut = k;
+            }
+            if (cut < 0) {
+                triangles.push_back(c);
+                return;
+            }
+            const int a = c[cut], b = c[(cut + 1) % 3], other = c[(cut + 2) % 3], middle = middles.at(edge(a, b));
+            divide({a, middle, other});
+            divide({middle, b, other});
+        };
+        for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) divide(mesh.triangles.col(t));
+        any = !middles.empty();
+        mesh.vertices = Eigen::Matrix3Xd::Map(vertices[0].data(), 3, static_cast<Eigen::Index>(vertices.size()));
+        mesh.triangles = Eigen::Matrix3Xi::Map(triangles[0].data(), 3, static_cast<Eigen::Index>(triangles.size()));
+    }
+    return mesh;
+}
+
+/// Where the planes of a vertex's facets meet when all are raised by 1, by least squares with the facets' angles there
+/// for weights; no farther than 2, as at edges of 60 degrees.
+struct Corner {
+    Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+
+    void add(const Eigen::Vector3d& normal, double angle)
+    {
+        squares += angle * normal * normal.transpose();
+        sum += angle * normal;
+    }
+    Eigen::Vector3d raised() const
+    {
+        constexpr double kFlat = 1e-3; // of the angles: across the facets nothing is known
+        const Eigen::Vector3d mean = sum.normalized();
+        const double weight = kFlat * squares.trace();
+        const Eigen::Vector3d rise = (squares + weight * Eigen::Matrix3d::Identity()).inverse() * (sum + weight * mean);
+        return rise.norm() > 2 ? Eigen::Vector3d(2 * rise.normalized()) : rise;
+    }
+};
+
+/// Each facet is raised along its normal.
 Mesh stock_of(Mesh mesh, Allowance allowance)
 {
-    Eigen::Matrix3Xd normals = Eigen::Matrix3Xd::Zero(3, mesh.vertices.cols());
-    for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
-        const Eigen::Vector3i c = mesh.triangles.col(t);
-        const Eigen::Vector3d a = mesh.vertices.col(c[0]);
-        const Eigen::Vector3d area = (mesh.vertices.col(c[1]) - a).cross(Eigen::Vector3d(mesh.vertices.col(c[2]) - a));
-        for (const int k : c) normals.col(k) += area;
-    }
     const Eigen::Matrix<double, 3, 2> box = bounding_box(mesh.vertices);
     allowance.box = Eigen::AlignedBox3d(Eigen::Vector3d(box.col(0)), Eigen::Vector3d(box.col(1)));
+    constexpr double kFacets = 200; // to the part's size, a fifteenth of the allowance's waves
+    mesh = refined(std::move(mesh), allowance.box.diagonal().norm() / kFacets);
+    std::vector<Corner> corners(static_cast<std::size_t>(mesh.vertices.cols()));
+    for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
+        const Eigen::Vector3i c = mesh.triangles.col(t);
+        for (int k = 0; k < 3; ++k) {
+            const Eigen::Vector3d at = mesh.vertices.col(c[k]);
+            const Eigen::Vector3d a = mesh.vertices.col(c[(k + 1) % 3]) - at,
+                                  b = mesh.vertices.col(c[(k + 2) % 3]) - at;
+            const Eigen::Vector3d normal = a.cross(b);
+            if (normal.norm() > 0)
+                corners[static_cast<std::size_t>(c[k])].add(normal.normalized(), std::atan2(normal.norm(), a.dot(b)));
+        }
+    }
     for (Eigen::Index v = 0; v < mesh.vertices.cols(); ++v) {
-        const Eigen::Vector3d place = mesh.vertices.col(v);
-        mesh.vertices.col(v) += allowance.at(place) * normals.col(v).normalized();
+        const Corner& corner = corners[static_cast<std::size_t>(v)];
+        if (corner.sum.norm() > 0) mesh.vertices.col(v) += allowance.at(mesh.vertices.col(v)) * corner.raised();
     }
     return mesh;
 }
@@ -117,14 +191,24 @@ int main(int argc, char** argv)
         const auto& unit = t.length_unit("--file-units", "Unit of a mesh, if it is not mm");
         const double& least = t.number("--least", 0.2, "MM", "Allowance", Range::at_least(0));
         const double& most = t.number("--most", 0.6, "MM", "Allowance", Range::at_least(0));
+        const std::string& at = t.text("--at", "0,0,0,1,0,0,0", "X,Y,Z,QW,QX,QY,QZ", "Where it stands");
+        const bool& turned = t.flag("--turned", "Facets look the other way");
         t.parse();
         const std::string bytes = read_whole(path);
         const Allowance allowance = {least, most, {}};
-        if (bytes.starts_with('{'))
-            write_stl(t.output(), stock_of(parse_patches(bytes, display_name(path)), allowance));
-        else
-            write_stl(t.output(),
-                      stock_of(parse_mesh(bytes, display_name(path), unit.value_or(Units::Length::mm)), allowance));
+        Mesh stock;
+        if (bytes.starts_with('{')) {
+            stock = stock_of(parse_patches(bytes, display_name(path)), allowance);
+        } else {
+            stock = parse_mesh(bytes, display_name(path), unit.value_or(Units::Length::mm));
+            if (turned) stock.triangles.row(0).swap(stock.triangles.row(1));
+            stock = stock_of(std::move(stock), allowance);
+        }
+        const Eigen::VectorXd pose = numbers_in(at);
+        if (pose.size() != 7 || !(pose.tail<4>().norm() > 0)) throw InputError("--at", "expected x,y,z,qw,qx,qy,qz");
+        const Eigen::Quaterniond turn(pose[3], pose[4], pose[5], pose[6]);
+        stock.vertices = (turn.normalized().toRotationMatrix() * stock.vertices).colwise() + pose.head<3>();
+        write_stl(t.output(), stock);
         return Verdict::yes;
     });
 }
