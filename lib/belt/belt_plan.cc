@@ -203,6 +203,7 @@ BeltPlan plan_belt(const Surfels& surfels, const ContactWheel& wheel, const std:
     plan.reached = counts.count();
     plan.rms_before = rms(planner.left(surfels), counts);
     plan.rms_planned = plan.rms_constant = rms(ground.left, counts);
+    plan.time_planned = plan.time_constant = ground.run.trace.back().time;
     plan.path = now;
     for (const BeltPoint& point : now)
         if (point.is_on()) plan.constant = planner.choice().shown(planner.choice().of(point));
@@ -214,6 +215,7 @@ BeltPlan plan_belt(const Surfels& surfels, const ContactWheel& wheel, const std:
         plan.converged = error > (1 - kEnough) * plan.rms_planned;
         if (error > plan.rms_planned) break;
         plan.rms_planned = error;
+        plan.time_planned = ground.run.trace.back().time;
         plan.path = now;
     }
     for (const BeltPoint& point : plan.path)

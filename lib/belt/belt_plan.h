@@ -22,7 +22,8 @@ struct BeltPlan {
     /// Root mean square of displacement - wanted over the surfels reached, mm: as they are, ground with the constant,
     /// ground as planned.
     double rms_before = 0, rms_constant = 0, rms_planned = 0;
-    Eigen::Index touched = 0; ///< surfels
+    double time_constant = 0, time_planned = 0; ///< of the path, s
+    Eigen::Index touched = 0;                   ///< surfels
     /// Those that lose at least a quarter of the median of all that are touched, with the constant. The others lie at
     /// the rim of the contact, or around an edge, and are for another pass.
     Eigen::Index reached = 0;

@@ -15,8 +15,9 @@ fettle-feed rows.pcd "${how[@]}" --force 5 --feed 5 --report feed.json --threads
 fettle-feed rows.pcd "${how[@]}" --force 5 --feed 5 --threads 2 | cmp - feed.pcd
 jq -e '.points == 441 and .touched == 6561 and .reached == 6561 and .ratio < 0.3 and .converged and .rms_before > .rms_constant and
        (.constant / (3e-5 * 15000 * 5 / 2 / 0.2) - 1 | fabs) < 0.1' feed.json > ok
-fettle-belt plate.pcd --path feed.pcd --wheel "$SAMPLES/wheels/crowned.json" --cells 16 --ascii > planned.pcd
-jq -e --argjson rms "$(rms planned.pcd)" '.rms_planned / $rms - 1 | fabs < 1e-3' feed.json > ok
+fettle-belt plate.pcd --path feed.pcd --wheel "$SAMPLES/wheels/crowned.json" --cells 16 --ascii --report belt.json > planned.pcd
+jq -e --argjson rms "$(rms planned.pcd)" --slurpfile belt belt.json \
+    '(.rms_planned / $rms - 1 | fabs) < 1e-3 and (.time_planned / $belt[0].time - 1 | fabs) < 1e-9' feed.json > ok
 fettle-belt plate.pcd --path rows.pcd --force 5 --feed "$(jq .constant feed.json)" --wheel "$SAMPLES/wheels/crowned.json" --cells 16 --ascii > constant.pcd
 jq -e --argjson rms "$(rms constant.pcd)" '.rms_constant / $rms - 1 | fabs < 0.01' feed.json > ok
 fettle-feed rows.pcd "${how[@]}" --vary force --force 5 --feed 5 --least 2 --most 12 --ascii --report force.json > force.pcd

@@ -155,6 +155,27 @@ TEST(LayerContact, IsComplementary)
         }
 }
 
+// On a rippled surface, starts extrapolated from forces that fell from 40 to 10 N led round in circles.
+TEST(LayerContact, BeginsAnewWhereAStartLeadsNowhere)
+{
+    const Index cells = 24;
+    const double side = 9.0 / cells;
+    LayerContact contact({3, 1.8, 0.45}, {side, side}, cells, cells);
+    MatrixXd gap(cells, cells);
+    for (Index j = 0; j < cells; ++j)
+        for (Index i = 0; i < cells; ++i) {
+            const double x = (double(i) + 0.5) * side - 4.5, y = (double(j) + 0.5) * side - 4.5;
+            gap(i, j) = x * x / 80 + y * y / 30 + 0.02 * std::sin(3 * x + 1) * std::cos(2.3 * y);
+        }
+    const MatrixXd hard = contact.by_force(gap, 40, 1e-4).pressure, soft = contact.by_force(gap, 10, 1e-4).pressure;
+    for (const double force : {1.0, 5.0, 25.0}) {
+        const Contact found = contact.by_force(gap, force, 1e-4, 2 * soft - hard);
+        const Contact fresh = contact.by_force(gap, force, 1e-4);
+        EXPECT_TRUE(found.converged);
+        EXPECT_NEAR(found.indentation, fresh.indentation, 1e-3 * fresh.indentation);
+    }
+}
+
 TEST(LayerContact, KnowsWhenNothingTouches)
 {
     LayerContact contact({10, 5, 0.45}, {1, 1}, 16, 16);
