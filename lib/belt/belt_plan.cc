@@ -46,7 +46,7 @@ Which reached(const VectorXd& removed)
     std::vector<double> depths;
     for (const double depth : removed)
         if (depth > 0) depths.push_back(depth);
-    if (depths.empty()) throw InputError("the path touches no surfel");
+    if (depths.empty()) throw InputError("the belt takes nothing along the path");
     const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
     std::nth_element(depths.begin(), middle, depths.end());
     return removed.array() >= kShare * *middle;
@@ -90,6 +90,7 @@ class Planner {
             for (BeltPoint& point : path) choice_.set(point, value);
             Ground now = ground(path);
             const VectorXd& removed = now.run.removed;
+            if (removed.isZero(0)) return now;
             const double more = removed.dot(now.left) / removed.squaredNorm();
             const double next = std::clamp(value * std::max(1 + more, 0.1), choice_.least(), choice_.most());
             if (round + 1 == kMost || std::abs(next / value - 1) < kEnough) return now;

@@ -37,7 +37,7 @@ struct BeltPlan {
 /// bounded least-squares problem: Σ (displacement - wanted)² over the surfels reached + Σ smoothness² (change from a
 /// point to the next of its run / mean)². Then the simulation is made anew with them, until the error shrinks no more.
 /// @param surfels  as before grinding
-/// @throws InputError as grind(), if a point is pressed by depth while forces are chosen, and if nothing is touched
+/// @throws InputError as grind(), if a point is pressed by depth while forces are chosen, and if nothing is taken
 BeltPlan plan_belt(const Surfels& surfels, const ContactWheel& wheel, const std::vector<BeltPoint>& path,
                    const BeltPlanOptions& options, const Progress& progress = {});
 
