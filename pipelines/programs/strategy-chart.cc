@@ -23,7 +23,7 @@ using Eigen::Vector2d;
 constexpr int kStages = 6, kColumns = 3;
 const Vector2d kPanel(380, 350), kTimes(1140, 240); // pixels
 constexpr double kHead = 56, kGap = 12;
-constexpr double kRim = 4; // cells around B
+constexpr double kRim = 20; // cells around B: on a slope the tool point stands beside the contact
 // The trace is replayed in so many pieces to find the stages.
 constexpr std::size_t kPieces = 120;
 

@@ -48,6 +48,7 @@ header POINTS 5 WIDTH 5 >none-of-5.pcd
 { header DATA binary_compressed; printf '\24\0\0\0'; printf '\%03o\0\0\0' $((4 * fields)); printf '\340\377\377'; floats 4; printf '\0'; } >packed-corrupt.pcd
 { header; body; header; body; } >twice.pcd
 { header; floats "$fields"; } >mixed.pcd
+{ header | sed '/^FIELDS/Q'; printf 'FIELDS '; head -c 50000000 /dev/zero | tr '\0' x; } >long.pcd
 for file in *.pcd; do
     case $file in good.pcd | samples.pcd) ;; *) points R "$file" ;; esac
 done

@@ -7,7 +7,7 @@
 #                             G: it is good: status 0 or 1.
 #   all_tried                 fails if a try has, or if there were fewer than so many
 #
-# Whatever it is: no signal, at most 10 s of processor time, and no more memory than the tool itself needs and ten times the file.
+# Whatever it is: no signal, at most 10 s of processor time, and no more memory than the tool itself needs and ten times the file, of a large one three times.
 kOwnMemory=250000 # KiB: libraries and their threads; PCL and OpenCV alone map half of it
 tried=0
 failed=0
@@ -18,12 +18,13 @@ say() {
 }
 
 try() {
-    local wish=$1 file=$2 status=0 memory most
+    local wish=$1 file=$2 status=0 memory most size
     shift 2
     tried=$((tried + 1))
     ( ulimit -t 10; exec /usr/bin/time -q -o rss -f '%M' "$@" ) >out 2>err </dev/null || status=$?
     memory=$(tail -n 1 rss)
-    most=$((kOwnMemory + 10 * $(stat -Lc %s "$file") / 1024))
+    size=$(stat -Lc %s "$file")
+    most=$((kOwnMemory + (size > 10000000 ? 3 : 10) * size / 1024))
     if [ $status -gt 2 ]; then
         say "status $status" "$@"
     elif [ "$memory" -gt $most ]; then
