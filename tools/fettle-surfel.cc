@@ -56,7 +56,7 @@ int main(int argc, char** argv)
         "pieces "
         "between its edges, a scan by thinning. Along edges and borders boundary re-sampling puts small surfels; "
         "others shrink there. Displacements come from rays along the normals. Out: points on the design with normal, "
-        "radius, u v, patch (from 0) and displacement; mm. Exit 1 if no ray meets the stock.";
+        "radius, u v, patch (from 0), area and displacement; mm. Exit 1 if no ray meets the stock.";
     return tool_main(argc, argv, description, [](Tool& t) {
         const std::string& path =
             t.input("DESIGN", "Patches (JSON), a mesh (STL, PLY, OBJ, OFF) or a scan with normals");

@@ -66,8 +66,10 @@ void set_assessment(Cloud& cloud, const Eigen::VectorXd& displacement, const Tol
 Statistics displacement_statistics(const Surfels& surfels)
 {
     Tally tally(std::nullopt);
-    tally.add(surfels.displacement, Eigen::VectorXd::Zero(surfels.size()), surfels.position);
+    const bool has_areas = surfels.area.size() > 0;
+    tally.add(surfels.displacement, has_areas ? surfels.area : Eigen::VectorXd::Zero(surfels.size()), surfels.position);
     Statistics statistics = tally.statistics();
+    if (has_areas) return statistics;
     statistics.over_cut_area = statistics.under_cut_area = kNone;
     statistics.over_cut_volume = statistics.under_cut_volume = kNone;
     return statistics;

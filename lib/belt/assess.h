@@ -28,7 +28,8 @@ AssessmentCounts count(const Eigen::VectorXd& displacement, const ToleranceRange
 /// to the range's width bright red or violet, further dark red or dark blue.
 void set_assessment(Cloud& cloud, const Eigen::VectorXd& displacement, const ToleranceRange& range);
 
-/// Of displacements as of errors, mm. Surfels do not know their areas, so those and volumes are NaN.
+/// Of displacements as of errors, mm. Volumes are sums of displacement · area, as on a flat design; NaN, as areas,
+/// where the surfels do not know their areas.
 Statistics displacement_statistics(const Surfels& surfels);
 
 /// The statistics, with "within" the share inside the range, and the counts.

@@ -1,5 +1,6 @@
 #include "belt/edges.h"
 
+#include "cloud/neighbours.h"
 #include "mesh/mesh_index.h"
 
 #include <tbb/parallel_for.h>
@@ -72,13 +73,34 @@ Mesh needles_of(const std::vector<EdgeCurve>& curves)
     return mesh;
 }
 
+/// Gives the areas of surfels that go to the nearest ones on the curves, of their patches if these are near.
+void hand_on_areas(const std::vector<Surfel>& gone, std::vector<Surfel>& surfels, std::size_t first_on_curve)
+{
+    if (first_on_curve == surfels.size()) return;
+    Eigen::Matrix3Xd places(3, static_cast<Eigen::Index>(surfels.size() - first_on_curve));
+    for (Eigen::Index i = 0; i < places.cols(); ++i)
+        places.col(i) = surfels[first_on_curve + static_cast<std::size_t>(i)].position;
+    const Neighbours neighbours(places);
+    constexpr Eigen::Index kLookedAt = 8; // where some patches meet
+    for (const Surfel& surfel : gone) {
+        const std::vector<Eigen::Index> near = neighbours.nearest(surfel.position, kLookedAt);
+        const auto on_curve = [&](Eigen::Index i) -> Surfel& {
+            return surfels[first_on_curve + static_cast<std::size_t>(i)];
+        };
+        const auto same =
+            std::find_if(near.begin(), near.end(), [&](Eigen::Index i) { return on_curve(i).patch == surfel.patch; });
+        on_curve(same != near.end() ? *same : near.front()).area += surfel.area;
+    }
+}
+
 } // namespace
 
 Surfels to_surfels(const std::vector<Surfel>& list)
 {
     const auto size = static_cast<Eigen::Index>(list.size());
     Surfels surfels{Eigen::Matrix3Xd(3, size),   Eigen::Matrix3Xd(3, size), Eigen::VectorXd(size),
-                    Eigen::VectorXd::Zero(size), Eigen::Matrix2Xd(2, size), Eigen::VectorXi(size)};
+                    Eigen::VectorXd::Zero(size), Eigen::Matrix2Xd(2, size), Eigen::VectorXi(size),
+                    Eigen::VectorXd(size)};
     for (Eigen::Index i = 0; i < size; ++i) {
         const Surfel& surfel = list[static_cast<std::size_t>(i)];
         surfels.position.col(i) = surfel.position;
@@ -86,6 +108,7 @@ Surfels to_surfels(const std::vector<Surfel>& list)
         surfels.uv.col(i) = surfel.uv;
         surfels.radius[i] = surfel.radius;
         surfels.patch[i] = surfel.patch;
+        surfels.area[i] = surfel.area;
     }
     return surfels;
 }
@@ -102,10 +125,13 @@ EdgeCounts resample_boundaries(std::vector<Surfel>& inside, const std::vector<Ed
             if (foot) distances[i] = (foot->point - inside[i].position).norm();
         });
     }
-    std::vector<Surfel> surfels;
+    std::vector<Surfel> surfels, gone;
     surfels.reserve(inside.size());
     for (std::size_t i = 0; i < inside.size(); ++i) {
-        if (distances[i] < e / 2 * (1 - kLanding)) continue;
+        if (distances[i] < e / 2 * (1 - kLanding)) {
+            gone.push_back(inside[i]);
+            continue;
+        }
         surfels.push_back(inside[i]);
         if (distances[i] >= inside[i].radius) continue;
         surfels.back().radius = distances[i];
@@ -114,6 +140,7 @@ EdgeCounts resample_boundaries(std::vector<Surfel>& inside, const std::vector<Ed
     const std::size_t before = surfels.size();
     for (const EdgeCurve& curve : curves) append_curve(surfels, curve, curve.smooth ? curve.spacing : e);
     counts.on_edges = static_cast<Eigen::Index>(surfels.size() - before);
+    hand_on_areas(gone, surfels, before);
     inside = std::move(surfels);
     return counts;
 }

@@ -14,6 +14,7 @@ struct Surfel {
     Eigen::Vector2d uv;
     double radius = 0;
     int patch = 0;
+    double area = 0; ///< of the piece of the design that it stands for, mm²
 };
 
 Surfels to_surfels(const std::vector<Surfel>& list);
@@ -38,7 +39,7 @@ struct EdgeCounts {
 /// distances L, at most its spacing, from its beginning on; between one at C0 and the next come n = floor(L / e) of
 /// radius e at C0 + i e, i = 1 … n, along the curve; the one that lands on the next is left out. Surfels of the
 /// patches' inside whose discs would reach over a curve shrink; what is closer to one than e / 2 gives way to those on
-/// it.
+/// it, and its area goes to the nearest of them.
 /// @param inside  of all patches; the surfels on the curves are appended
 /// @param e       splitting interval, mm
 EdgeCounts resample_boundaries(std::vector<Surfel>& inside, const std::vector<EdgeCurve>& curves, double e);

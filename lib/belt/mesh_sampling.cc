@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -31,6 +32,7 @@ struct Entry {
     double squared_distance; ///< from the cell's middle in the plane, mm²
     int facet;
     Eigen::Vector3d barycentric;
+    double area; ///< of what of the facet is over the cell, in the plane, mm²
 };
 
 /// The cells of a chart's plane.
@@ -114,6 +116,34 @@ Eigen::Vector2d stretch_between(const Triangle& t, double low, double high)
     return found;
 }
 
+/// The area of what of a triangle (x, y) lies in a rectangle, by clipping at its sides (Sutherland & Hodgman 1974).
+double area_in(const Triangle& t, const Eigen::Array2d& least, const Eigen::Array2d& most)
+{
+    std::array<Eigen::Vector2d, 7> polygon; // each of the four sides adds a corner at most
+    std::size_t count = 3;
+    for (int k = 0; k < 3; ++k) polygon[static_cast<std::size_t>(k)] = t.col(k).head<2>();
+    for (int side = 0; side < 4; ++side) {
+        const int axis = side / 2;
+        const double sign = side % 2 == 0 ? 1 : -1, limit = side % 2 == 0 ? least[axis] : most[axis];
+        std::array<Eigen::Vector2d, 7> clipped;
+        std::size_t kept = 0;
+        for (std::size_t k = 0; k < count; ++k) {
+            const Eigen::Vector2d &a = polygon[k], &b = polygon[(k + 1) % count];
+            const double of_a = sign * (a[axis] - limit), of_b = sign * (b[axis] - limit);
+            if (of_a >= 0) clipped[kept++] = a;
+            if ((of_a < 0) != (of_b < 0)) clipped[kept++] = a + (b - a) * (of_a / (of_a - of_b));
+        }
+        polygon = clipped;
+        count = kept;
+    }
+    double twice = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+        const Eigen::Vector2d &a = polygon[k], &b = polygon[(k + 1) % count];
+        twice += a.x() * b.y() - a.y() * b.x();
+    }
+    return std::abs(twice) / 2;
+}
+
 void add_entries(const Triangle& corners, int facet, const Lattice& lattice, std::vector<Entry>& entries)
 {
     Triangle flat = corners;
@@ -128,12 +158,13 @@ void add_entries(const Triangle& corners, int facet, const Lattice& lattice, std
             const TrianglePoint point = closest_on_triangle(flat, {middle.x(), middle.y(), 0});
             if (((point.point.head<2>().array() - middle).abs() > lattice.side * (0.5 + 1e-9)).any()) continue;
             entries.push_back({j * lattice.cells[0] + i, corners.row(2).dot(point.barycentric), point.squared_distance,
-                               facet, point.barycentric});
+                               facet, point.barycentric,
+                               area_in(flat, middle - lattice.side / 2, middle + lattice.side / 2)});
         }
     }
 }
 
-/// The entries that become surfels: of each layer in each cell the one closest to its middle.
+/// The entries that become surfels: of each layer in each cell the one closest to its middle, with the areas of all.
 std::vector<Entry> chosen(std::vector<Entry> entries, double gap)
 {
     std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
@@ -146,8 +177,11 @@ std::vector<Entry> chosen(std::vector<Entry> entries, double gap)
         const Entry& entry = entries[i];
         if (i == 0 || entry.cell != entries[i - 1].cell || entry.height - entries[i - 1].height > gap)
             best.push_back(entry);
-        else if (entry.squared_distance < best.back().squared_distance)
-            best.back() = entry;
+        else {
+            const double area = best.back().area + entry.area;
+            if (entry.squared_distance < best.back().squared_distance) best.back() = entry;
+            best.back().area = area;
+        }
     }
     return best;
 }
@@ -167,6 +201,13 @@ void sample_chart(const DesignMesh& design, const Chart& chart, int patch, doubl
         if (!(design.areas[f] > 0)) continue;
         add_entries(facet_in(design, f, chart.axes), f, lattice, entries);
     }
+    // Of the plane, and of facets that reach into a corner of a cell, but are closest to its middle beyond it.
+    double area = 0, found = 0;
+    for (const int f : chart.elements) area += design.areas[f];
+    for (Entry& entry : entries) {
+        entry.area /= design.facet_normals.col(entry.facet).dot(chart.axes.col(2));
+        found += entry.area;
+    }
     const double half = lattice.side.matrix().norm() / 2;
     for (const Entry& entry : chosen(std::move(entries), kLayerGap * 2 * half)) {
         Surfel surfel;
@@ -181,6 +222,7 @@ void sample_chart(const DesignMesh& design, const Chart& chart, int patch, doubl
         surfel.uv = chart.axes.leftCols<2>().transpose() * surfel.position;
         surfel.radius = half / design.facet_normals.col(entry.facet).dot(chart.axes.col(2));
         surfel.patch = patch;
+        surfel.area = found > 0 ? entry.area * (area / found) : 0;
         surfels.push_back(surfel);
     }
 }

@@ -139,8 +139,8 @@ void sample_inside(const Patch& patch, int number, const Cuts& lattice, std::vec
             if (!patch.trim.empty() && !inside(around, uv)) continue;
             const Place place = place_on(patch, uv);
             const Eigen::Vector3d a = side[0] / 2 * place.along_u, b = side[1] / 2 * place.along_v;
-            cells[i * columns + j] =
-                Surfel{place.point, place.normal, uv, std::max((a + b).norm(), (a - b).norm()), number};
+            cells[i * columns + j] = Surfel{
+                place.point, place.normal, uv, std::max((a + b).norm(), (a - b).norm()), number, 4 * a.cross(b).norm()};
         }
     });
     for (const std::optional<Surfel>& cell : cells)

@@ -102,6 +102,7 @@ SampledDesign sample_surfels(const Cloud& design, const std::string& source, con
     const std::vector<Chart> charts = charts_of(near.adjacency, surfels.normal, Eigen::VectorXd::Ones(surfels.size()));
     surfels.radius.setConstant(near.distance);
     surfels.displacement.setZero();
+    surfels.area.resize(0);
     for (std::size_t c = 0; c < charts.size(); ++c) {
         const std::vector<int>& elements = charts[c].elements;
         const Eigen::Matrix3Xd points = surfels.position(Eigen::all, elements);

@@ -30,6 +30,7 @@ Surfels surfels_of(const Cloud& cloud, const std::string& source)
     surfels.uv.resize(2, surfels.size());
     surfels.uv << or_zero("u").transpose(), or_zero("v").transpose();
     surfels.patch = has_field(cloud, "patch") ? whole_numbers(cloud, "patch") : Eigen::VectorXi::Zero(surfels.size());
+    if (has_field(cloud, "area")) surfels.area = field(cloud, "area");
     return surfels;
 }
 
@@ -43,6 +44,7 @@ Cloud to_cloud(const Surfels& surfels)
     set_field(cloud, "u", surfels.uv.row(0).transpose());
     set_field(cloud, "v", surfels.uv.row(1).transpose());
     set_field(cloud, "patch", surfels.patch.cast<double>());
+    if (surfels.area.size() > 0) set_field(cloud, "area", surfels.area);
     // A float would lose what a light pass removes from a large displacement.
     set_field(cloud, "displacement", surfels.displacement, 8);
     return cloud;

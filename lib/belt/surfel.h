@@ -17,6 +17,7 @@ struct Surfels {
     Eigen::VectorXd displacement; ///< > 0: stock is left; NaN: there is none along the normal
     Eigen::Matrix2Xd uv;          ///< of the patch
     Eigen::VectorXi patch;        ///< from 0
+    Eigen::VectorXd area;         ///< of the piece of the design that it stands for, mm²; empty: not known
 
     Eigen::Index size() const { return position.cols(); }
 };
@@ -24,8 +25,8 @@ struct Surfels {
 /// Where the stock is now.
 Eigen::Matrix3Xd displaced(const Surfels& surfels);
 
-/// From fields normal_x normal_y normal_z radius u v patch displacement. Without radius, u, v, patch or displacement,
-/// as in an ordinary cloud, they are 0: the points are the stock's surface.
+/// From fields normal_x normal_y normal_z radius u v patch displacement area. Without radius, u, v, patch or
+/// displacement, as in an ordinary cloud, they are 0: the points are the stock's surface.
 /// @throws InputError without normals, or where one has no direction
 Surfels surfels_of(const Cloud& cloud, const std::string& source);
 

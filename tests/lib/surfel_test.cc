@@ -329,6 +329,49 @@ TEST(SurfelSampling, sees_where_patches_join_without_an_edge)
     EXPECT_EQ(sample_surfels({left, right}, spaced(1)).edges.on_edges, 2 * (2 * (10 + 6) + 2 * (15 + 6)));
 }
 
+double area_of(const Mesh& mesh)
+{
+    double area = 0;
+    for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
+        const Eigen::Vector3d a = mesh.vertices.col(mesh.triangles(0, t));
+        const Eigen::Vector3d b = mesh.vertices.col(mesh.triangles(1, t)) - a;
+        area += b.cross(Eigen::Vector3d(mesh.vertices.col(mesh.triangles(2, t)) - a)).norm() / 2;
+    }
+    return area;
+}
+
+// Surfels share the design out among them: a mesh to the last digits, patches by the midpoint rule.
+TEST(SurfelSampling, shares_out_the_area)
+{
+    const Mesh whole = box({0, 0, 0}, {20, 10, 5}), odd = box({0, 0, 0}, {7.3, 4.1, 2.2}), round = sphere(10, 60);
+    for (const Mesh* mesh : {&whole, &odd, &round}) {
+        const Surfels s = sample_surfels(*mesh, spaced(1)).surfels;
+        EXPECT_NEAR(s.area.sum(), area_of(*mesh), 1e-9 * area_of(*mesh));
+        EXPECT_GE(s.area.minCoeff(), 0);
+        EXPECT_LE(s.area.maxCoeff(), 2);
+    }
+    const Surfels face = sample_surfels(whole, spaced(1)).surfels;
+    for (Eigen::Index i = 0; i < 700; ++i) EXPECT_NEAR(face.area[i], 1, 1e-9); // a millimetre's square each
+    const Surfels cylinder = sample_surfels({quarter_cylinder()}, spaced(0.5)).surfels;
+    EXPECT_NEAR(cylinder.area.sum(), 5 * kPi * 20, 1e-3 * 100 * kPi);
+}
+
+// 20 x 10 x 5 mm with 0.3 mm more on every side: 700 mm² times 0.3 mm, and 0.3 mm too little over a stock that is
+// smaller.
+TEST(SurfelSampling, tells_volumes)
+{
+    Surfels s = sample_surfels(box({0, 0, 0}, {20, 10, 5}), spaced(0.7)).surfels;
+    cast_on_stock(s, box({-0.3, -0.3, -0.3}, {20.3, 10.3, 5.3}), 2);
+    const Statistics over = displacement_statistics(s);
+    EXPECT_NEAR(over.under_cut_volume, 210, 1e-3);
+    EXPECT_NEAR(over.under_cut_area, 700, 1e-3);
+    EXPECT_EQ(over.over_cut_volume, 0);
+    s.displacement.array() -= 0.4;
+    EXPECT_NEAR(displacement_statistics(s).over_cut_volume, 70, 1e-3);
+    s.area.resize(0);
+    EXPECT_TRUE(std::isnan(displacement_statistics(s).over_cut_volume));
+}
+
 TEST(SurfelSampling, thins_a_scan)
 {
     Cloud scan;
