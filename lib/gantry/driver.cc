@@ -66,6 +66,15 @@ GantryStatus DriverGantry::grind(const Eigen::Vector3d& tool_point, double feed)
     return move("move " + words(tool_point) + " " + to_text(feed), tool_point, way / feed, false);
 }
 
+GantryStatus DriverGantry::press(const Eigen::Vector3d& tool_point, double feed, double force)
+{
+    if (!(feed > 0 && feed <= limits_.speed))
+        throw InputError("gantry", "a feed of " + to_text(feed) + " mm/s is not in the machine's range");
+    const double way = (tool_point - status_.commanded).head<2>().norm();
+    return move("press " + words(tool_point) + " " + to_text(feed) + " " + to_text(force), tool_point, way / feed,
+                true);
+}
+
 GantryStatus DriverGantry::lift(double commanded_z)
 {
     const Eigen::Vector3d target(status_.commanded.x(), status_.commanded.y(), commanded_z);

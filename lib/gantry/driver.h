@@ -27,11 +27,13 @@ class DriverGantry final : public Gantry {
 
     GantryStatus travel(const Eigen::Vector3d& tool_point) override;
     GantryStatus grind(const Eigen::Vector3d& tool_point, double feed) override;
+    GantryStatus press(const Eigen::Vector3d& tool_point, double feed, double force) override;
     GantryStatus lift(double commanded_z) override;
     double touch_off() override;
     void change_wheel() override;
     double probe(const Eigen::Vector2d& xy, double lowest) override;
     GantryStatus status() const override { return status_; }
+    const protocol::Limits& limits() const { return limits_; }
 
   private:
     std::string ask(const std::string& command, double duration);

@@ -16,6 +16,9 @@ constexpr double kSettled = 3;        // counts
 constexpr double kMostSettling = 0.5; // s
 /// Touching may use half of what F_max leaves for the way the drives need to stop.
 constexpr double kTouchShare = 0.5;
+/// The part is felt where the spring bends by this share of what is wanted; what it is searched with goes on to bend it
+/// by so much while the drives stop.
+constexpr double kFelt = 0.1, kGentle = 0.2;
 /// Corners are rounded back to the line within as long as it takes to reach the feed, but no faster than the loops.
 constexpr double kLeastPeriods = 4;
 
@@ -41,6 +44,7 @@ DynamicGantry::DynamicGantry(HeightField stock, const Job& job, const Machine& m
       axes_(servo_axes(machine, spring_, status_.commanded)),
       acceleration_(
           std::min({machine.axes[0].acceleration, machine.axes[1].acceleration, machine.axes[2].acceleration})),
+      force_gains_(tune_force(machine.axes[2], spring_.stiffness, machine.head.damping, machine.period)),
       random_(options.seed), line_end_(status_.commanded), tip_(status_.commanded.z()), met_at_(status_.commanded),
       spindle_energy_(machine.spindle.inertia * machine.spindle.speed * machine.spindle.speed / 2),
       account_(&totals_.travel_time)
@@ -113,18 +117,67 @@ GantryStatus DynamicGantry::grind(const Eigen::Vector3d& tool_point, double feed
     const double length = way.norm();
     if (length == 0) return status_;
     const Eigen::Vector3d along = way / length;
-    const double back = std::max(feed / acceleration_, kLeastPeriods * machine_.period);
     const double most = acceleration_ * machine_.period;
     while ((reference_.p - tool_point).dot(along) < 0) {
-        const Eigen::Vector3d off = reference_.p - line_end_;
-        const Eigen::Vector3d wanted = feed * along - (off - off.dot(along) * along) / back;
-        const Eigen::Vector3d change = wanted - reference_.v;
+        const Eigen::Vector3d change = along_line(reference_.p - line_end_, along, feed) - reference_.v;
         const double size = change.norm();
         move_reference(reference_.v + (size > most ? change * (most / size) : change));
     }
     line_end_ = tool_point;
     totals_.grinding_length += length;
     return status_;
+}
+
+/// The speed at which the command goes on along a line, and back to it.
+Eigen::Vector3d DynamicGantry::along_line(const Eigen::Vector3d& off, const Eigen::Vector3d& along, double feed) const
+{
+    const double back = std::max(feed / acceleration_, kLeastPeriods * machine_.period);
+    return feed * along - (off - off.dot(along) * along) / back;
+}
+
+GantryStatus DynamicGantry::press(const Eigen::Vector3d& tool_point, double feed, double force)
+{
+    check_positive(feed, "feed");
+    check_range(tool_point);
+    begin_move();
+    account_ = &totals_.grinding_time;
+    const auto level = [](Eigen::Vector3d v) { return Eigen::Vector3d(v.x(), v.y(), 0); };
+    const Eigen::Vector3d way = level(tool_point - line_end_);
+    const double length = way.norm();
+    if (length == 0) return status_;
+    const Eigen::Vector3d along = way / length;
+    const double most = acceleration_ * machine_.period;
+    const double wanted = std::max(force - spring_.preload, 0.0) / spring_.stiffness;
+    if (!force_loop_) come_down(tool_point.z(), wanted);
+    while (level(reference_.p - tool_point).dot(along) < 0) {
+        const Eigen::Vector3d change = along_line(level(reference_.p - line_end_), along, feed) - level(reference_.v);
+        Eigen::Vector3d next = level(reference_.v) + change * std::min(1.0, most / std::max(change.norm(), most / 2));
+        next.z() = hold(tool_point.z(), wanted);
+        move_reference(next);
+    }
+    line_end_ << tool_point.head<2>(), reference_.p.z();
+    totals_.grinding_length += length;
+    return status_;
+}
+
+/// In place, until the part is felt.
+void DynamicGantry::come_down(double lowest, double wanted)
+{
+    const Drive& z = machine_.axes[2];
+    force_loop_.emplace(force_gains_, machine_.period, z.speed, z.acceleration);
+    while (status_.deflection < kFelt * wanted && reference_.p.z() > lowest + z.encoder)
+        move_reference({0, 0, hold(lowest, wanted)});
+    line_end_ = reference_.p;
+}
+
+/// The speed of Z that holds the deflection. Until it touches, and above its lowest place, no faster than it can stop.
+double DynamicGantry::hold(double lowest, double wanted)
+{
+    const double rest = std::max(reference_.p.z() - lowest, 0.0), sinking = std::max(-reference_.v.z(), 0.0);
+    const double stop = std::max(speed_to_stop(rest, sinking, acceleration_, machine_.period), 0.0);
+    const double search = touching_speed(kGentle * spring_.stiffness * wanted);
+    const double fastest = status_.deflection > kFelt * wanted ? machine_.axes[2].speed : search;
+    return force_loop_->step(wanted, status_.deflection, reference_.v.z(), std::min(fastest, stop));
 }
 
 protocol::Limits DynamicGantry::limits() const
@@ -150,6 +203,7 @@ void DynamicGantry::check_range(const Eigen::Vector3d& tool_point) const
 /// To rest, straight on.
 void DynamicGantry::halt()
 {
+    force_loop_.reset();
     while (reference_.v.squaredNorm() > 0) {
         const double speed = reference_.v.norm();
         move_reference(reference_.v * std::max(0.0, 1 - acceleration_ * machine_.period / speed));
@@ -184,10 +238,16 @@ void DynamicGantry::run_to(const Eigen::Vector3d& target, double speed, bool gua
     for (double waited = 0; !settled() && waited < kMostSettling; waited += period) move_reference({0, 0, 0});
 }
 
+/// From which the drives stop before the spring has that force.
+double DynamicGantry::touching_speed(double force) const
+{
+    return std::sqrt(2 * acceleration_ * kTouchShare * force / spring_.stiffness);
+}
+
 void DynamicGantry::down_to(double z)
 {
-    const double touching = std::sqrt(2 * acceleration_ * kTouchShare * most_force_ / spring_.stiffness);
-    run_to({reference_.p.x(), reference_.p.y(), z}, std::min(machine_.axes[2].speed, touching), true);
+    run_to({reference_.p.x(), reference_.p.y(), z}, std::min(machine_.axes[2].speed, touching_speed(most_force_)),
+           true);
 }
 
 void DynamicGantry::go_to_safe_height()

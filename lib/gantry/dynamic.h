@@ -1,10 +1,12 @@
 #pragma once
 
+#include "gantry/force_loop.h"
 #include "gantry/machine.h"
 #include "gantry/servo.h"
 #include "gantry/virtual_gantry.h"
 
 #include <cstdint>
+#include <optional>
 #include <random>
 
 namespace fettle {
@@ -32,9 +34,10 @@ class DynamicGantry final : public VirtualGantry {
     /// @throws InputError if no controller holds a drive's margins, or the work lies outside the machine's range
     DynamicGantry(HeightField stock, const Job& job, const Machine& machine, const DynamicOptions& options = {});
 
-    /// All three: @throws GantryFault, InputError for a place outside the machine's range
+    /// All four: @throws GantryFault, InputError for a place outside the machine's range
     GantryStatus travel(const Eigen::Vector3d& tool_point) override;
     GantryStatus grind(const Eigen::Vector3d& tool_point, double feed) override;
+    GantryStatus press(const Eigen::Vector3d& tool_point, double feed, double force) override;
     GantryStatus lift(double commanded_z) override;
     protocol::Limits limits() const override;
 
@@ -44,8 +47,12 @@ class DynamicGantry final : public VirtualGantry {
   private:
     void turn_head(double theta);
     void check_range(const Eigen::Vector3d& tool_point) const;
+    Eigen::Vector3d along_line(const Eigen::Vector3d& off, const Eigen::Vector3d& along, double feed) const;
+    void come_down(double lowest, double wanted);
+    double hold(double lowest, double wanted);
     void halt();
     void run_to(const Eigen::Vector3d& target, double speed, bool guarded);
+    double touching_speed(double force) const;
     void down_to(double z);
     void go_to_safe_height() override;
     void move_reference(const Eigen::Vector3d& velocity);
@@ -65,6 +72,8 @@ class DynamicGantry final : public VirtualGantry {
     Machine machine_;
     std::array<ServoAxis, 3> axes_;
     double acceleration_; ///< of commands, mm/s²
+    ForceGains force_gains_;
+    std::optional<ForceLoop> force_loop_; ///< while it presses
     std::mt19937_64 random_;
 
     struct {

@@ -70,7 +70,7 @@ Balance DynamicGantry::press_at(double recoil, double dt, double preload, double
 {
     const Eigen::Vector2d xy = R_working_machine_ * actual().head<2>() + Eigen::Vector2d(0, recoil);
     wheel_.place(xy, radius_, stop);
-    return press(wheel_, {preload, stiffness}, stop, removal_ * dt, tip_ + loss());
+    return fettle::press(wheel_, {preload, stiffness}, stop, removal_ * dt, tip_ + loss());
 }
 
 /// Where the machine, bent by the force along Y_w, holds against it: push(u) = k u. Moving the wheel on against what

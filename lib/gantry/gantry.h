@@ -34,6 +34,10 @@ class Gantry {
     /// Grinds in a straight line to `tool_point` at `feed`, mm/s. One step of the strategy: a few tenths of a mm to
     /// some mm.
     virtual GantryStatus grind(const Eigen::Vector3d& tool_point, double feed) = 0;
+    /// Grinds in a straight line over x, y of `tool_point` at `feed`, mm/s, held on the part by `force`, N, along the
+    /// spring: the drives go up and down as the force asks, but not below z of `tool_point`. Where nothing is under the
+    /// wheel it comes down in search of it. A machine that cannot throws GantryFault.
+    virtual GantryStatus press(const Eigen::Vector3d& tool_point, double feed, double force);
     /// Lifts straight up, or lowers (guarded, as travel() does), in place, without feed.
     virtual GantryStatus lift(double commanded_z) = 0;
     /// Touches the calibration plate P0 and measures the wheel's radius, mm; comes back over its place, at the safe
@@ -48,5 +52,10 @@ class Gantry {
     virtual double probe(const Eigen::Vector2d& xy, double lowest) = 0;
     virtual GantryStatus status() const = 0;
 };
+
+inline GantryStatus Gantry::press(const Eigen::Vector3d& /*tool_point*/, double /*feed*/, double /*force*/)
+{
+    throw GantryFault("the machine cannot hold a force");
+}
 
 } // namespace fettle

@@ -1,5 +1,7 @@
 #include "gantry/loops.h"
 
+#include "gantry/force_loop.h"
+
 namespace fettle {
 
 std::vector<Loop> loops_of(const Machine& machine, const Job& job)
@@ -16,6 +18,11 @@ std::vector<Loop> loops_of(const Machine& machine, const Job& job)
     add("z", machine.axes[2], k, b, false);
     add("z against the spring", machine.axes[2], k, b, true);
     add("c", machine.c, 0, 0, false);
+    const Drive& z = machine.axes[2];
+    const ForceGains force = tune_force(z, k, b, machine.period);
+    const Oscillator sprung{z.mass, z.damping + b, k};
+    loops.push_back(
+        {"force", force.kp, force_margins(force, z, tune(z, k, b, machine.period), sprung, machine.period)});
     return loops;
 }
 

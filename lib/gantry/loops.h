@@ -11,7 +11,7 @@ namespace fettle {
 
 /// A loop of a machine, as it was tuned for a job.
 struct Loop {
-    std::string name;     ///< "x", "y", "z", "z against the spring", "c"
+    std::string name;     ///< "x", "y", "z", "z against the spring", "c", "force"
     double bandwidth = 0; ///< rad/s
     Margins margins;
 };

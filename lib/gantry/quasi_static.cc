@@ -141,7 +141,7 @@ void QuasiStaticGantry::press_for(const Eigen::Vector3d& commanded, double durat
     wheel_.place(R_working_machine_ * commanded.head<2>(), radius_, z_stop);
     const double c_dt = removal_ * (duration + std::exchange(pending_, 0));
     // The head mostly bends on as it did: that guess saves every fifth look at the cells.
-    const Balance balance = press(wheel_, spring_, z_stop, c_dt, z_stop + status_.deflection + bending_);
+    const Balance balance = fettle::press(wheel_, spring_, z_stop, c_dt, z_stop + status_.deflection + bending_);
     if (balance.volume > 0) wheel_.cut(balance.z_tip);
     status_.commanded = commanded;
     bending_ = balance.z_tip - z_stop - status_.deflection;

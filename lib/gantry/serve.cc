@@ -50,6 +50,11 @@ class Server {
             const Eigen::Vector3d to = point();
             return protocol::text_of(gantry_.grind(to, number()));
         }
+        if (command == "press") {
+            const Eigen::Vector3d to = point();
+            const double feed = number();
+            return protocol::text_of(gantry_.press(to, feed, number()));
+        }
         if (command == "touch_off") {
             const double radius = gantry_.touch_off();
             return to_text(radius) + " " + protocol::text_of(gantry_.status());

@@ -40,6 +40,11 @@ const GantryStatus& Recorder::grind(const Mark& mark, const Eigen::Vector3d& too
     return act(mark, tool_point, feed, [&] { tell(gantry_.grind(tool_point, feed)); });
 }
 
+const GantryStatus& Recorder::press(const Mark& mark, const Eigen::Vector3d& tool_point, double feed, double force)
+{
+    return act(mark, tool_point, feed, [&] { tell(gantry_.press(tool_point, feed, force)); });
+}
+
 const GantryStatus& Recorder::lift(const Mark& mark, double commanded_z)
 {
     const Eigen::Vector3d target(status_.commanded.x(), status_.commanded.y(), commanded_z);

@@ -41,6 +41,7 @@ class Recorder {
     /// As the gantry's own. @throws InputError if the trace says something else; GantryFault
     const GantryStatus& travel(const Mark& mark, const Eigen::Vector3d& tool_point);
     const GantryStatus& grind(const Mark& mark, const Eigen::Vector3d& tool_point, double feed);
+    const GantryStatus& press(const Mark& mark, const Eigen::Vector3d& tool_point, double feed, double force);
     const GantryStatus& lift(const Mark& mark, double commanded_z);
     double touch_off(const Mark& mark);
     void change_wheel(const Mark& mark);

@@ -22,4 +22,4 @@ for gantry in virtual virtual:dynamic; do
         done
     done
 done
-jq -e '[.loops[] | select(.gain_margin >= 3 and .phase_margin_deg >= 38.9)] | length == 5' force.json > ok
+jq -e '[.loops[] | select(.gain_margin >= 3 and .phase_margin_deg >= 38.9)] | length == 6' force.json > ok

@@ -204,6 +204,38 @@ TEST(Tuning, HoldsItsMargins)
     EXPECT_THROW(tune(coarse, 0, 0, 1e-3), InputError);
 }
 
+TEST(ForceLoop, HoldsItsMarginsAndTheForceOnASlope)
+{
+    const Drive of = drive();
+    const ServoGains servo = tune(of, 35, 0.5, 1e-3);
+    const ForceGains gains = tune_force(of, 35, 0.5, 1e-3);
+    EXPECT_GT(gains.kp, 20);
+    for (const Oscillator& load : {Oscillator{of.mass, of.damping, 0}, Oscillator{of.mass, of.damping + 0.5, 35}}) {
+        const Margins told = force_margins(gains, of, servo, load, 1e-3);
+        EXPECT_LE(told.sensitivity, kMostSensitivity);
+        EXPECT_GE(told.gain, 3);
+        EXPECT_GE(told.phase, 2 * std::asin(1 / (2 * kMostSensitivity)));
+    }
+    // Up a slope that nothing grinds: the integral leaves no error.
+    Job job = small_job();
+    job.removal = 1e-6;
+    const auto slope = [](double, double y) { return kTop + 0.2 * y; };
+    DynamicGantry gantry(stock(slope), job, machine(), no_wear());
+    gantry.travel({0, -40, kTop});
+    GantryStatus status;
+    for (double y = -39.5; y < 20; y += 0.5) {
+        status = gantry.press({0, y, -100}, 25, 40);
+        if (y > -20) {
+            EXPECT_NEAR(status.force, 40, 1) << y;
+        }
+    }
+    EXPECT_NEAR(status.commanded.y(), 20, 0.6);
+    EXPECT_NEAR(status.time, 0, 10);
+    gantry.lift(kTop + 10); // 16 is above what stands there, and it comes no lower
+    EXPECT_EQ(gantry.press({0, 21, kTop + 6}, 25, 40).force, 0);
+    EXPECT_NEAR(gantry.status().commanded.z(), kTop + 6, 0.1);
+}
+
 TEST(ReadMachine, DrivesOfTheSamplesObeyWang)
 {
     // Driven by V without a load the screw turns at N K_m/R_m V / (B + N² K_m²/R_m) (eq. 6-1, the motor's brake in B);

@@ -1,0 +1,108 @@
+#include "strategy/steering.h"
+
+#include "core/error.h"
+#include "core/file.h"
+#include "core/lines.h"
+#include "core/text.h"
+
+#include <cerrno>
+#include <cstring>
+#include <fcntl.h>
+#include <limits>
+#include <linux/joystick.h>
+#include <sys/stat.h>
+
+namespace fettle {
+namespace {
+
+constexpr double kFullWay = 32767; // of an axis
+/// A stick at rest does not stand quite in the middle.
+constexpr double kRest = 0.1;
+
+} // namespace
+
+Steering::Steering(const std::string& path)
+    : path_(display_name(path)), file_(path == "-" ? ::dup(STDIN_FILENO) : ::open(path.c_str(), O_RDONLY | O_CLOEXEC))
+{
+    if (!file_.is_open()) throw InputError(path_, std::string("cannot open: ") + std::strerror(errno));
+    struct stat status = {};
+    char axes = 0;
+    live_ =
+        ::fstat(file_.get(), &status) == 0 && S_ISCHR(status.st_mode) && ::ioctl(file_.get(), JSIOCGAXES, &axes) == 0;
+    if (live_)
+        ::fcntl(file_.get(), F_SETFL, O_NONBLOCK);
+    else
+        read_next();
+}
+
+const Stick& Steering::at(double time)
+{
+    if (live_) read_device();
+    while (!live_ && time >= next_time_ && !now_.end) {
+        now_ = next_;
+        if (!now_.end) read_next();
+    }
+    return now_;
+}
+
+bool Steering::next_line(std::string& line)
+{
+    char some[4096];
+    for (;;) {
+        if (const std::size_t end = pending_.find('\n'); end != std::string::npos) {
+            line = pending_.substr(0, end);
+            pending_.erase(0, end + 1);
+            ++lines_;
+            return true;
+        }
+        const ssize_t n = read_some(file_, some, sizeof some);
+        if (n <= 0) return false;
+        pending_.append(some, static_cast<std::size_t>(n));
+    }
+}
+
+void Steering::read_next()
+{
+    std::string line;
+    if (!next_line(line)) {
+        next_ = {};
+        next_.end = true;
+        return;
+    }
+    const std::vector<std::string_view> parts = words(line);
+    const auto number = [&](std::size_t n) -> double {
+        const auto value = n < parts.size() ? parse_number(parts[n]) : std::nullopt;
+        if (!value || !(*value > -std::numeric_limits<double>::infinity() && *value < 1e9))
+            throw InputError(path_, "line " + std::to_string(lines_) + ": " + in_quotes(line) +
+                                        " is neither \"TIME X Y\", \"TIME X Y up\" nor \"TIME end\"");
+        return *value;
+    };
+    const double time = number(0);
+    if (time < next_time_)
+        throw InputError(path_, "line " + std::to_string(lines_) + ": goes back in time, to " + to_short_text(time));
+    next_time_ = time;
+    next_ = {};
+    if (parts.size() == 2 && parts[1] == "end") {
+        next_.end = true;
+        return;
+    }
+    next_.way << number(1), number(2);
+    next_.press = parts.size() == 3;
+    if (parts.size() > 3 && !(parts.size() == 4 && parts[3] == "up")) number(parts.size());
+}
+
+void Steering::read_device()
+{
+    js_event event = {};
+    while (::read(file_.get(), &event, sizeof event) == sizeof event) {
+        const int type = event.type & ~JS_EVENT_INIT;
+        const double value = event.value / kFullWay;
+        if (type == JS_EVENT_AXIS && event.number < 2)
+            now_.way[event.number] = std::abs(value) < kRest ? 0 : event.number == 1 ? -value : value; // forth is less
+        if (type == JS_EVENT_BUTTON && event.number == 0) now_.press = event.value == 0;
+        if (type == JS_EVENT_BUTTON && event.number == 1 && event.value != 0) now_.end = true;
+    }
+    if (errno != EAGAIN) now_.end = true; // it was pulled out
+}
+
+} // namespace fettle

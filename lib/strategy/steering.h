@@ -1,0 +1,46 @@
+#pragma once
+
+#include "core/descriptor.h"
+
+#include <Eigen/Core>
+
+#include <optional>
+#include <string>
+
+namespace fettle {
+
+/// What the operator's hand says.
+struct Stick {
+    Eigen::Vector2d way{0, 0}; ///< where to, M; only its direction counts. 0: nowhere
+    bool press = true;         ///< on the part; else at the safe height
+    bool end = false;
+};
+
+/// The operator's joystick. A file or a pipe holds lines "TIME X Y", "TIME X Y up" and "TIME end": from that time of
+/// steering on, s, the stick stands there. A device (Linux, /dev/input/js0) is asked as it stands: axes 0 and 1, button
+/// 0 held: at the safe height, button 1: end.
+class Steering {
+  public:
+    /// @throws InputError if it cannot be opened
+    explicit Steering(const std::string& path);
+
+    /// @throws InputError naming the line that is none; the end of the file is the end
+    const Stick& at(double time);
+    /// Of lines: when the next one is due; then nobody has to wait for it.
+    std::optional<double> next_change() const { return live_ ? std::nullopt : std::optional(next_time_); }
+
+  private:
+    bool next_line(std::string& line);
+    void read_next();
+    void read_device();
+
+    std::string path_;
+    Descriptor file_;
+    bool live_ = false;
+    std::string pending_;
+    int lines_ = 0;
+    Stick now_, next_;
+    double next_time_ = 0;
+};
+
+} // namespace fettle
