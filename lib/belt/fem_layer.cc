@@ -199,11 +199,13 @@ MatrixXd shares(const std::vector<std::pair<double, double>>& nodes, Index rows)
 LayerMesh mesh_of(const ElasticLayer& layer, double radius, double width, const Eigen::Vector2d& cell, Index columns,
                   Index elements)
 {
-    if (!(layer.poisson < 0.5)) throw InputError("finite elements", "Poisson's ratio must be less than 0.5");
     if (!(layer.thickness < radius)) throw InputError("finite elements", "the layer leaves no hub");
     const double last = static_cast<double>(columns - 1) / 2 * cell.y(), beside = width / 2 - last;
     if (!(beside > 0)) throw InputError("finite elements", "cells lie beyond the layer's width");
+    // Elements that cannot change their volume at all have no stiffness to eliminate by; from here on digits would go.
+    constexpr double kMostPoisson = 0.5 - 1e-7;
     LayerMesh mesh{layer, radius, cell, depths(layer.thickness, cell.minCoeff(), elements), {}, 0, columns};
+    mesh.layer.poisson = std::min(layer.poisson, kMostPoisson);
     const VectorXd sizes = growing(cell.y(), beside);
     mesh.first = sizes.size();
     mesh.across.resize(columns + 2 * sizes.size());

@@ -22,8 +22,7 @@ struct LayerMesh {
 /// @param cell  sides along the surface's arc and the axis, mm
 /// @param columns  of cells, the middle ones of the width
 /// @param elements  from the surface to the hub
-/// @throws InputError for cells beyond the width, a layer as thick as the radius, or rubber that cannot change its
-/// volume
+/// @throws InputError for cells beyond the width or a layer as thick as the radius
 LayerMesh mesh_of(const ElasticLayer& layer, double radius, double width, const Eigen::Vector2d& cell,
                   Eigen::Index columns, Eigen::Index elements);
 
