@@ -153,7 +153,8 @@ test-linuxcnc: deps
 	@.ci/install-packages packages-linuxcnc.txt
 	@mkdir -p $(B)/results && rm -f $(B)/results/linuxcnc__*
 	@$(MAKE) --no-print-directory -j$(JOBS) build
-	@$(MAKE) --no-print-directory -j1 -k -s $(LINUXCNC_RUNS) 2>/dev/null; tests/summary $(B)/results
+	@$(MAKE) --no-print-directory -j1 -k -s $(LINUXCNC_RUNS) 2>/dev/null; tests/summary $(B)/results || \
+	    [ -z "$$(find $(B)/results -name '*.failed')" ] # where namespaces are not allowed all are skipped
 
 $(CASE_RUNS) $(LINUXCNC_RUNS): %.case: %.sh
 	tests/run $(B) $<
