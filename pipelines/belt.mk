@@ -151,6 +151,8 @@ $(BELT)/%/report.html: $(BELT)/%/ground.pcd $(BELT)/%/left.pcd $(BELT)/%/errors.
 # closer together. BELT/plan/VARY/report.json is the plan's account, constant/ and planned/ have what is left.
 VARY  ?= feed force
 FINER ?= $(shell awk 'BEGIN { print 0.7 * $(SPACING) }')
+# Of the points along a row, mm.
+STEP  ?= 1.25
 LIMITS_feed  := --least 0.5 --most 200
 LIMITS_force := --least 1 --most 40
 OTHER_feed   := --force $(PRESS)
@@ -169,7 +171,7 @@ $(PLAN)/work.pcd $(PLAN)/finer.pcd: $(PLAN)/%.pcd: $(PLAN)/design $(BELT)/blade/
 	$(B)/bin/fettle-surfel $< --stock $(BELT)/blade/stock.stl --spacing $(if $(filter work,$*),$(SPACING),$(FINER)) --reach 2 -q -o $@
 
 $(PLAN)/rows.pcd: $(PLAN)/work.pcd $(B)/bin/fettle-path
-	$(B)/bin/fettle-path $< --step-over 2 --spacing 2 -o $@
+	$(B)/bin/fettle-path $< --step-over 2 --spacing $(STEP) -o $@
 
 $(PLAN)/%/planned.pcd: $(PLAN)/rows.pcd $(PLAN)/work.pcd $(WHEEL) $(B)/bin/fettle-feed
 	@mkdir -p $(@D)
