@@ -53,7 +53,7 @@ int main(int argc, char** argv)
             job.direction = *direction * kDegree;
         }
         if (theta) job.theta = *theta * kDegree;
-        t.output() << to_json(checked(job)).text() << '\n';
+        t.output() << to_json(checked(job));
         return Verdict::yes;
     });
 }
