@@ -11,6 +11,7 @@
 # `make test` and `make demo` need nothing but git and make beforehand: they install what packages.txt names.
 # B is the build folder.
 
+VERSION  := $(shell sed -n 's/^## \([0-9.]*\).*/\1/p' CHANGELOG.md | head -n 1)
 B        ?= build
 PREFIX   ?= /usr/local
 # -g1: lines in backtraces; all of -g makes objects ten times as large and takes a third longer.
@@ -36,7 +37,7 @@ override CXXFLAGS += -std=c++20 -Wall -Wextra -Wshadow -ffp-contract=off
 # A compiler that may keep 800 MB does not stop to collect: a tenth faster.
 override CXXFLAGS += $(if $(findstring clang,$(CXX)),,--param ggc-min-heapsize=800000)
 override CPPFLAGS += -Ilib $(addprefix -isystem ,$(wildcard /usr/include/pcl-1.*) /usr/include/eigen3) \
-                     -DFETTLE_VERSION='"$(shell sed -n 's/^## \([0-9.]*\).*/\1/p' CHANGELOG.md | head -n 1)"'
+                     -DFETTLE_VERSION='"$(VERSION)"'
 # gold links in half the time.
 override LDFLAGS  += -Wl,--as-needed -fuse-ld=gold
 
@@ -63,7 +64,7 @@ FCL    := -lfcl -lccd
 LDLIBS_ALL := -llzf -ltbb
 
 # The files that see OpenCV.
-$(B)/lib/compare/canvas.o $(B)/lib/belt/convolution.o: override CPPFLAGS += $(addprefix -isystem ,$(wildcard /usr/include/opencv4))
+$(B)/lib/compare/canvas.o $(B)/lib/belt/convolution.o $(B)/lib/cli/version.o: override CPPFLAGS += $(addprefix -isystem ,$(wildcard /usr/include/opencv4))
 
 # Square roots of eight numbers at once are one instruction where nobody reads errno.
 $(B)/lib/mesh/mesh_index.o $(B)/lib/robot/workpiece.o: override CXXFLAGS += -fno-math-errno
@@ -188,9 +189,34 @@ includes: deps
 	@git ls-files '*.cc' '*.h' | grep -v -e precompiled -e linuxcnc | xargs -n 1 -P $(JOBS) \
 	    $(CXX) $(CPPFLAGS) -isystem /usr/include/opencv4 $(CXXFLAGS) -w -Itests/lib -x c++ -fsyntax-only
 
-install: build
-	install -d $(DESTDIR)$(PREFIX)/bin
+# --- installation: tools with manual pages and completion, and the library for other programs -------------------------
+PAGES := $(TOOLS:%=$(B)/man/%.1)
+LIBDIR ?= $(PREFIX)/lib
+
+$(B)/man/%.1: $(B)/bin/% packaging/man-page
+	@mkdir -p $(@D)
+	packaging/man-page $< > $@
+
+$(B)/completion/fettle: $(BINARIES) packaging/completion
+	@mkdir -p $(@D)
+	packaging/completion $(BINARIES) > $@
+
+$(B)/packaging/%: packaging/%.in
+	@mkdir -p $(@D)
+	sed 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(patsubst $(PREFIX)/%,$${prefix}/%,$(LIBDIR))|; s|@VERSION@|$(VERSION)|' $< > $@
+
+install: build $(PAGES) $(B)/completion/fettle $(addprefix $(B)/packaging/,fettle.pc fettleConfigVersion.cmake)
+	install -d $(addprefix $(DESTDIR)$(PREFIX)/,bin include/fettle share/man/man1 share/bash-completion/completions) \
+	    $(addprefix $(DESTDIR)$(LIBDIR)/,pkgconfig cmake/fettle)
 	install $(BINARIES) $(DESTDIR)$(PREFIX)/bin
+	install -m 644 $(PAGES) $(DESTDIR)$(PREFIX)/share/man/man1
+	install -m 644 $(B)/completion/fettle $(DESTDIR)$(PREFIX)/share/bash-completion/completions
+	for tool in $(TOOLS); do ln -sf fettle $(DESTDIR)$(PREFIX)/share/bash-completion/completions/$$tool; done
+	for header in $(filter-out precompiled.h,$(patsubst lib/%,%,$(wildcard lib/*/*.h))); do \
+	    install -m 644 -D lib/$$header $(DESTDIR)$(PREFIX)/include/fettle/$$header || exit 1; done
+	install -m 644 $(B)/libfettle.a $(DESTDIR)$(LIBDIR)
+	install -m 644 $(B)/packaging/fettle.pc $(DESTDIR)$(LIBDIR)/pkgconfig
+	install -m 644 packaging/fettleConfig.cmake $(B)/packaging/fettleConfigVersion.cmake $(DESTDIR)$(LIBDIR)/cmake/fettle
 
 clean:
 	rm -rf $(B)

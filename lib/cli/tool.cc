@@ -3,6 +3,7 @@
 #include "cli/command_line.h"
 #include "cli/option.h"
 #include "cli/progress_bar.h"
+#include "cli/version.h"
 #include "core/file.h"
 #include "core/text.h"
 
@@ -283,7 +284,7 @@ int tool_main(int argc, char** argv, const std::string& description, const std::
             if (dynamic_cast<const CLI::CallForHelp*>(&success) != nullptr)
                 out.stream() << tool.state_->app.help();
             else
-                out.stream() << name << ' ' << FETTLE_VERSION << '\n';
+                out.stream() << name << ' ' << FETTLE_VERSION << "\nBuilt with " << built_with() << '\n';
             out.commit();
             return 0;
         } catch (const CLI::ExtrasError&) {
