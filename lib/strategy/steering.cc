@@ -37,10 +37,15 @@ Steering::Steering(const std::string& path)
 
 const Stick& Steering::at(double time)
 {
-    if (live_) read_device();
-    while (!live_ && time >= next_time_ && !now_.end) {
+    const bool pushed = now_.button != Button::none;
+    now_.button = Button::none;
+    if (live_)
+        read_device();
+    else if (pushed)
+        read_next(); // now: who writes into a pipe may want to see first what the push did
+    while (!live_ && time >= next_time_ && !now_.end && now_.button == Button::none) {
         now_ = next_;
-        if (!now_.end) read_next();
+        if (!now_.end && now_.button == Button::none) read_next();
     }
     return now_;
 }
@@ -73,8 +78,9 @@ void Steering::read_next()
     const auto number = [&](std::size_t n) -> double {
         const auto value = n < parts.size() ? parse_number(parts[n]) : std::nullopt;
         if (!value || !(*value > -std::numeric_limits<double>::infinity() && *value < 1e9))
-            throw InputError(path_, "line " + std::to_string(lines_) + ": " + in_quotes(line) +
-                                        " is neither \"TIME X Y\", \"TIME X Y up\" nor \"TIME end\"");
+            throw InputError(
+                path_, "line " + std::to_string(lines_) + ": " + in_quotes(line) +
+                           " is none of \"TIME X Y\", \"TIME X Y up\", \"TIME record\", \"TIME next\", \"TIME end\"");
         return *value;
     };
     const double time = number(0);
@@ -82,9 +88,10 @@ void Steering::read_next()
         throw InputError(path_, "line " + std::to_string(lines_) + ": goes back in time, to " + to_short_text(time));
     next_time_ = time;
     next_ = {};
-    if (parts.size() == 2 && parts[1] == "end") {
-        next_.end = true;
-        return;
+    if (parts.size() == 2) {
+        next_.end = parts[1] == "end";
+        next_.button = parts[1] == "record" ? Button::record : parts[1] == "next" ? Button::next : Button::none;
+        if (next_.end || next_.button != Button::none) return;
     }
     next_.way << number(1), number(2);
     next_.press = parts.size() == 3;
@@ -94,15 +101,18 @@ void Steering::read_next()
 void Steering::read_device()
 {
     js_event event = {};
-    while (::read(file_.get(), &event, sizeof event) == sizeof event) {
+    while (now_.button == Button::none && ::read(file_.get(), &event, sizeof event) == sizeof event) {
         const int type = event.type & ~JS_EVENT_INIT;
         const double value = event.value / kFullWay;
         if (type == JS_EVENT_AXIS && event.number < 2)
             now_.way[event.number] = std::abs(value) < kRest ? 0 : event.number == 1 ? -value : value; // forth is less
         if (type == JS_EVENT_BUTTON && event.number == 0) now_.press = event.value == 0;
-        if (type == JS_EVENT_BUTTON && event.number == 1 && event.value != 0) now_.end = true;
+        if (event.type != JS_EVENT_BUTTON || event.value == 0) continue; // how a button stands at the start is no push
+        if (event.number == 1) now_.end = true;
+        if (event.number == 2) now_.button = Button::record;
+        if (event.number == 3) now_.button = Button::next;
     }
-    if (errno != EAGAIN) now_.end = true; // it was pulled out
+    if (now_.button == Button::none && errno != EAGAIN) now_.end = true; // it was pulled out
 }
 
 } // namespace fettle

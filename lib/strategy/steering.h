@@ -9,16 +9,21 @@
 
 namespace fettle {
 
+/// Buttons for teaching; manual mode knows none.
+enum class Button { none, record, next };
+
 /// What the operator's hand says.
 struct Stick {
-    Eigen::Vector2d way{0, 0}; ///< where to, M; only its direction counts. 0: nowhere
-    bool press = true;         ///< on the part; else at the safe height
+    Eigen::Vector2d way{0, 0};    ///< where to, M; only its direction counts. 0: nowhere
+    bool press = true;            ///< on the part; else at the safe height
+    Button button = Button::none; ///< pushed at this moment; told once
     bool end = false;
 };
 
-/// The operator's joystick. A file or a pipe holds lines "TIME X Y", "TIME X Y up" and "TIME end": from that time of
-/// steering on, s, the stick stands there. A device (Linux, /dev/input/js0) is asked as it stands: axes 0 and 1, button
-/// 0 held: at the safe height, button 1: end.
+/// The operator's joystick. A file or a pipe holds lines "TIME X Y", "TIME X Y up", "TIME record", "TIME next" and
+/// "TIME end": from that time of steering on, s, the stick stands there; it rests while a button is pushed. A device
+/// (Linux, /dev/input/js0) is asked as it stands: axes 0 and 1, button 0 held: at the safe height, button 1: end, 2:
+/// record, 3: next.
 class Steering {
   public:
     /// @throws InputError if it cannot be opened

@@ -15,6 +15,11 @@ fettle-sample job.json --strategy adaptive --max-touches 8 --report report.json 
 touches=$(jq .touches report.json)
 [ "$(grep -c ' probe ' lines)" -le $((touches + 2)) ] && [ "$(grep -c ' probe ' lines)" -ge "$touches" ]
 
+# The head turns to θ before the first touch.
+jq '.frame.theta_deg = 30' job.json > turned.json
+fettle-sample turned.json --on "gantry:exec:tee turned | fettle-gantry-virtual $PWD/turned.json --stock $PWD/part.stl" > turned.pcd
+awk '$2 == "home" { homed = $3 > 0.5235 && $3 < 0.5237 } $2 == "probe" { n++; if (!homed) exit 1 } END { exit n < 10 }' turned
+
 # A place without material is no touch; a machine has no unit and no noise of the user's.
 jq '.sampling[1] = [40, 0.1, 0.4722]' job.json > far.json
 "$HERE/../refuses" 'touches find no surface' fettle-sample far.json --on "gantry:exec:fettle-gantry-virtual $PWD/far.json --stock $PWD/part.stl"

@@ -15,4 +15,4 @@ refuses 'the job that was taught: anomaly' --anomaly crossed.txt
 refuses 'the job that was taught: sampling' --anomaly good.txt --surface freeform --sampling good.txt
 refuses '--direction: goes with a swept surface alone' --anomaly good.txt --direction 3
 refuses 'none.txt: cannot open' --anomaly none.txt
-refuses '--anomaly is required'
+refuses '--anomaly: or --gantry must be given'
