@@ -393,7 +393,7 @@ TEST(Gcode, KeepsTheChordError)
     const Plan plan = make_plan(job_with(25, 6), surface);
     const ToolPath path(plan.job, plan.surface, plan.passes, plan.step);
     std::ostringstream out;
-    write_gcode(out, plan, path, 0.01);
+    write_gcode(out, plan, path, GcodeDialect::linuxcnc, 0.01);
     std::istringstream lines(out.str());
     std::string line;
     std::vector<Eigen::Vector3d> ends;
