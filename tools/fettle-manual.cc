@@ -41,7 +41,8 @@ int main(int argc, char** argv)
         const std::string& stock_file = t.required_text("--stock", "PART", "The part as it is: STL, PLY, OBJ or PCD");
         const auto& stock_units = t.length_unit("--stock-units", "Unit of PART, if it is not the job's");
         const std::string& steer = t.required_text(
-            "--steer", "EVENTS", "The operator's stick: a joystick's device, or a file or pipe of lines (- is stdin)");
+            "--steer", "EVENTS",
+            "The operator's stick: a joystick's device, the keys of /dev/tty, or a file or pipe of lines (- is stdin)");
         const std::string& machine = t.text("--machine", "", "FILE", "A simulated machine with drives, JSON");
         const std::string& gantry = t.text("--gantry", "", "exec:COMMAND", "Or a driver (docs/driver.md)");
         const double& patience = t.number("--patience", 10, "SECONDS",

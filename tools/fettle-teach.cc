@@ -154,7 +154,8 @@ int main(int argc, char** argv)
             t.text("--stock", "", "PART", "The part beneath a virtual gantry: STL, PLY, OBJ or PCD"),
             t.length_unit("--stock-units", "Unit of PART, if it is not the job's"),
             t.text("--steer", "", "EVENTS",
-                   "The operator's stick: a joystick's device (button 2: record, 3: next), or a file or pipe of lines "
+                   "The operator's stick: a joystick's device (button 2: record, 3: next), the keys of /dev/tty, or a "
+                   "file or pipe of lines "
                    "(docs/formats.md); -: stdin, and nothing is asked"),
             t.number_if_given("--lowest", "Z", "The probe goes no lower; default: as far as the machine reaches"),
             t.number("--patience", 10, "SECONDS", "A driver may answer so much later than the move takes",

@@ -4,6 +4,7 @@
 #include "core/file.h"
 #include "core/lines.h"
 #include "core/text.h"
+#include "strategy/keys.h"
 
 #include <cerrno>
 #include <cstring>
@@ -31,15 +32,22 @@ Steering::Steering(const std::string& path)
         ::fstat(file_.get(), &status) == 0 && S_ISCHR(status.st_mode) && ::ioctl(file_.get(), JSIOCGAXES, &axes) == 0;
     if (live_)
         ::fcntl(file_.get(), F_SETFL, O_NONBLOCK);
+    else if (::isatty(file_.get()) != 0)
+        keys_ = std::make_unique<Keys>(file_.get());
     else
         read_next();
+    live_ = live_ || keys_;
 }
+
+Steering::~Steering() = default;
 
 const Stick& Steering::at(double time)
 {
     const bool pushed = now_.button != Button::none;
     now_.button = Button::none;
-    if (live_)
+    if (keys_)
+        keys_->tell(time, now_);
+    else if (live_)
         read_device();
     else if (pushed)
         read_next(); // now: who writes into a pipe may want to see first what the push did

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -20,14 +21,17 @@ struct Stick {
     bool end = false;
 };
 
+class Keys;
+
 /// The operator's joystick. A file or a pipe holds lines "TIME X Y", "TIME X Y up", "TIME record", "TIME next" and
 /// "TIME end": from that time of steering on, s, the stick stands there; it rests while a button is pushed. A device
 /// (Linux, /dev/input/js0) is asked as it stands: axes 0 and 1, button 0 held: at the safe height, button 1: end, 2:
-/// record, 3: next.
+/// record, 3: next. Of a terminal the keys are the stick (Keys).
 class Steering {
   public:
     /// @throws InputError if it cannot be opened
     explicit Steering(const std::string& path);
+    ~Steering();
 
     /// @throws InputError naming the line that is none; the end of the file is the end
     const Stick& at(double time);
@@ -41,7 +45,8 @@ class Steering {
 
     std::string path_;
     Descriptor file_;
-    bool live_ = false;
+    std::unique_ptr<Keys> keys_;
+    bool live_ = false; ///< a device or keys
     std::string pending_;
     int lines_ = 0;
     Stick now_, next_;
