@@ -6,7 +6,8 @@ namespace fettle {
 namespace {
 
 /// Longer than between two repeats of a key that is held (30 in a second are usual).
-constexpr double kHeld = 0.1; // s
+constexpr double kHeld = 0.1;      // s
+constexpr double kRounding = 1e-9; // of sums of time, s
 constexpr std::string_view kArrow = "\033[";
 
 Eigen::Vector2d way_of(char arrow)
@@ -41,7 +42,7 @@ Keys::~Keys() { ::tcsetattr(terminal_, TCSANOW, &before_); }
 void Keys::tell(double time, Stick& stick)
 {
     read_waiting(stick);
-    if (time >= rest_at_) stick.way.setZero();
+    if (time >= rest_at_ - kRounding) stick.way.setZero();
     while (!waiting_.empty() && stick.button == Button::none && !stick.end) {
         const char key = waiting_[0];
         const bool escape = key == kArrow[0];

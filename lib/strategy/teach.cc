@@ -10,8 +10,8 @@
 namespace fettle {
 namespace {
 
-/// The stick is looked at so often.
-constexpr double kPeriod = 0.005; // s
+/// The stick is looked at so often: what a machine that answers within some ms can follow.
+constexpr double kPeriod = 0.02; // s
 
 } // namespace
 
@@ -33,10 +33,12 @@ TaughtBoundaries teach_boundaries(const Job& job, Gantry& gantry, const protocol
             if (around_anomaly >= 0) break;
             around_anomaly = static_cast<Eigen::Index>(points.size());
         } else if (stick.way.norm() > 0) {
-            place.head<2>() += stick.way.normalized() * job.feed.rate * kPeriod;
+            const auto change = steering.next_change();
+            const bool last = change && *change - clock <= kPeriod; // a step ends where the stick is moved
+            place.head<2>() += stick.way.normalized() * job.feed.rate * (last ? *change - clock : kPeriod);
             place = place.cwiseMax(limits.least).cwiseMin(limits.most);
             gantry.grind(place, job.feed.rate);
-            clock += kPeriod;
+            clock = last ? *change : clock + kPeriod;
         } else if (const auto next = steering.next_change()) {
             clock = std::max(clock, *next);
         } else {

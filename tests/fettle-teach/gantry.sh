@@ -1,5 +1,5 @@
-# Boundary points of Wang's parts shown on simulated gantries, by events from a file. References: where the events lead at 1 in/s (the stick
-# is looked at every 5 ms, 0.005 in), the formulas of the parts, what was answered, the turn of the C axis by its speed and acceleration.
+# Boundary points of Wang's parts shown on simulated gantries, by events from a file. References: where the events lead at 1 in/s, the
+# formulas of the parts, what was answered, the turn of the C axis by its speed and acceleration.
 fettle-part "$SAMPLES/parts/wang1.json" > plane.stl
 fettle-part "$SAMPLES/parts/wang3.json" > sphere.stl
 teach() { fettle-teach "$SAMPLES/jobs/$1.json" --steer "$SAMPLES/steering/teach.txt" --report report.json "${@:2}"; }
