@@ -127,10 +127,10 @@ void compare_viewpoint(const Cloud& a, const Cloud& b, double unit, Tally& tally
 {
     for (int axis = 0; axis < 3; ++axis)
         tally.number(a.view_origin[axis] / unit, b.view_origin[axis] / unit,
-                     [] { return std::string("VIEWPOINT, origin"); });
+                     [&] { return "VIEWPOINT, origin " + std::string(1, "xyz"[axis]); });
     for (int part = 0; part < 4; ++part)
         tally.number(a.view_orientation.coeffs()[part], b.view_orientation.coeffs()[part],
-                     [] { return std::string("VIEWPOINT, orientation"); });
+                     [&] { return "VIEWPOINT, orientation " + std::string(1, "xyzw"[part]); });
 }
 
 void compare_clouds(const CloudFile& file_a, const CloudFile& file_b, Tally& tally)

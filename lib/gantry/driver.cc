@@ -30,9 +30,9 @@ std::string words(const Eigen::Vector3d& p) { return to_text(p.x()) + " " + to_t
 DriverGantry::DriverGantry(const std::string& command, const Job& job, double patience)
     : command_(command), child_(command), patience_(patience), most_force_(job.force.max)
 {
-    const std::string told = ask(std::string("connect ") + protocol::kVersion, kStartTime);
-    const std::string version = std::string(protocol::kVersion) + " ";
-    if (told.rfind(version, 0) != 0) fail("speaks something else than " + std::string(protocol::kVersion));
+    const std::string told = ask("connect " + protocol::kVersion, kStartTime);
+    const std::string version = protocol::kVersion + " ";
+    if (told.rfind(version, 0) != 0) fail("speaks something else than " + protocol::kVersion);
     try {
         limits_ = protocol::limits_in(std::string_view(told).substr(version.size()));
     } catch (const GantryFault& fault) {

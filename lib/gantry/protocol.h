@@ -12,7 +12,7 @@
 /// back the same.
 namespace fettle::protocol {
 
-inline constexpr const char* kVersion = "fettle-gantry 1";
+inline const std::string kVersion = "fettle-gantry 1";
 
 /// What a machine can do; a driver tells it first. The frame is M.
 struct Limits {

@@ -40,7 +40,7 @@ class Server {
             return Eigen::Vector3d(x, y, z);
         };
         if (command == "connect" && rest == protocol::kVersion)
-            return std::string(protocol::kVersion) + " " + protocol::text_of(limits_);
+            return protocol::kVersion + " " + protocol::text_of(limits_);
         if (command == "limit") return limit(number());
         if (command == "home") return home(number());
         if (command == "status") return protocol::text_of(gantry_.status());

@@ -92,6 +92,6 @@ svg .slip { fill: none; stroke: var(--orange); stroke-width: 1.8; } svg .scale-b
 
 } // namespace
 
-Html style_sheet() { return Html::markup(std::string("<style>") + kStyle + "</style>\n"); }
+Html style_sheet() { return Html::markup("<style>" + std::string(kStyle) + "</style>\n"); }
 
 } // namespace fettle
