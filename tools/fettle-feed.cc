@@ -10,14 +10,15 @@ using namespace fettle;
 
 namespace {
 
+/// NaN where the wheel is off the part.
 void set_chosen(Cloud& cloud, const BeltPlan& plan)
 {
     constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-    Eigen::VectorXd force(cloud.size()), depth(cloud.size()), feed(cloud.size());
+    Eigen::VectorXd force = Eigen::VectorXd::Constant(cloud.size(), kNone), depth = force, feed = force;
     for (Eigen::Index i = 0; i < cloud.size(); ++i) {
         const BeltPoint& point = plan.path[static_cast<std::size_t>(i)];
-        force[i] = point.pressing.by_force ? point.pressing.amount : kNone;
-        depth[i] = point.pressing.by_force ? kNone : point.pressing.amount;
+        if (!point.is_on()) continue;
+        (point.pressing.by_force ? force : depth)[i] = point.pressing.amount;
         feed[i] = point.feed;
     }
     if (!force.array().isNaN().all()) set_field(cloud, "force", force, 8);

@@ -87,7 +87,8 @@ class Planner {
             }
         value = std::clamp(value / count, choice_.least(), choice_.most());
         for (int round = 0;; ++round) {
-            for (BeltPoint& point : path) choice_.set(point, value);
+            for (BeltPoint& point : path)
+                if (point.is_on()) choice_.set(point, value);
             Ground now = ground(path);
             const VectorXd& removed = now.run.removed;
             if (removed.isZero(0)) return now;
@@ -124,14 +125,18 @@ class Planner {
     /// The best choices by what the last run took.
     std::vector<BeltPoint> improved(const std::vector<BeltPoint>& path, const Ground& last, const Which& counts) const
     {
+        // Unknown is the choice over that of now, of each point that is on the part: 1 changes nothing. Where the wheel
+        // is off the part there is nothing to choose: any number will do there, and no row asks for it.
         const auto count = static_cast<Index>(path.size());
-        VectorXd now(count);
-        double mean = 0;
+        VectorXd now = VectorXd::Constant(count, choice_.least());
+        double sum = 0, on = 0;
         for (Index k = 0; k < count; ++k) {
+            if (!path[static_cast<std::size_t>(k)].is_on()) continue;
             now[k] = choice_.of(path[static_cast<std::size_t>(k)]);
-            mean += now[k] / static_cast<double>(count);
+            sum += now[k];
+            ++on;
         }
-        // Unknown is the choice over that of now: 1 changes nothing.
+        const double mean = sum / on;
         std::vector<Eigen::Triplet<double>> entries = slopes(path, last, counts);
         VectorXd b = counts.select(last.left.array(), 0);
         for (const Eigen::Triplet<double>& slope : entries) b[slope.row()] += slope.value();

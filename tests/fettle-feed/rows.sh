@@ -26,3 +26,10 @@ sed '1,/^DATA/d' force.pcd | awk '$9 < 2 - 1e-9 || $9 > 12 + 1e-9 || $10 != 5 { 
 # Something may be left on purpose.
 fettle-feed rows.pcd "${how[@]}" --force 5 --feed 5 --wanted 0.1 --rounds 1 --report wanted.json > wanted.pcd
 jq -e --slurpfile all feed.json '.constant / $all[0].constant | . > 1.8 and . < 2.2' wanted.json > ok
+# Points off the part, as fettle-arm leaves them between passes, change nothing, and stay without feed and force.
+awk '/^(WIDTH|POINTS)/ { $2 += 21 } { print } body && $1 == 20 { print "nan nan nan nan nan nan nan", $8 } /^DATA/ { body = 1 }' rows.pcd > off.pcd
+fettle-feed rows.pcd "${how[@]}" --vary force --force 5 --feed 5 --rounds 1 --ascii --report on.json | sed '1,/^DATA/d' > on.txt
+fettle-feed off.pcd "${how[@]}" --vary force --force 5 --feed 5 --rounds 1 --ascii --report off.json | sed '1,/^DATA/d' > off.txt
+[ "$(grep -c '^nan nan nan .* nan nan$' off.txt)" = 21 ]
+grep -v '^nan' off.txt | paste -d ' ' - on.txt | awk '{ d = ($9 - $19) / $19; if (d * d > 1e-12 || $10 != 5) exit 1 } END { exit NR != 441 }'
+jq -e --slurpfile on on.json '.points == 462 and .constant == $on[0].constant' off.json > ok

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 using namespace fettle;
 
@@ -163,6 +164,39 @@ TEST(BeltPlan, IsSmoothOnRequest)
     };
     EXPECT_LT(spread(smooth), 0.7 * spread(rough));
     EXPECT_LE(rough.rms_planned, smooth.rms_planned);
+}
+
+// Where the wheel is off the part nothing is chosen, and nothing that stands there counts: the same plan as without.
+TEST(BeltPlan, PassesOverPointsOffThePart)
+{
+    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+    for (const bool by_force : {false, true}) {
+        const Surfels surfels = allowance_of(by_force ? passes(even_feed, wavy_force) : passes(wavy_feed, even_force));
+        const std::vector<BeltPoint> on = passes(even_feed, even_force);
+        std::vector<BeltPoint> with;
+        for (const BeltPoint& point : on) {
+            if (point.begins_run) {
+                BeltPoint off{point.T_part_tool, {true, kNan}, kNan, kNan, true};
+                off.T_part_tool.matrix().setConstant(kNan);
+                with.insert(with.end(), 4, off);
+            }
+            with.push_back(point);
+        }
+        BeltPlanOptions options = limits(1, 50);
+        options.by_force = by_force;
+        options.rounds = 1;
+        options.smoothness = 1e-3;
+        const BeltPlan expected = plan_belt(surfels, crowned(), on, options);
+        BeltPlan plan = plan_belt(surfels, crowned(), with, options);
+        EXPECT_NEAR(plan.rms_planned, expected.rms_planned, 1e-6 * expected.rms_planned);
+        EXPECT_EQ(plan.constant, expected.constant);
+        std::erase_if(plan.path, [](const BeltPoint& point) { return !point.is_on(); });
+        ASSERT_EQ(plan.path.size(), on.size());
+        for (std::size_t k = 0; k < on.size(); ++k) {
+            EXPECT_NEAR(plan.path[k].feed, expected.path[k].feed, 1e-6 * expected.path[k].feed);
+            EXPECT_NEAR(plan.path[k].pressing.amount, expected.path[k].pressing.amount, 1e-5);
+        }
+    }
 }
 
 TEST(BeltPlan, RefusesForcesWhereDepthsAreGiven)
