@@ -29,6 +29,19 @@ void name_gross_errors(Tool& t, const Fit& fit, const std::string& source, const
                to_short_text(fit.residuals[i] / units.mm()) + " " + to_string(units.length) + "; left out");
 }
 
+/// Touches that lie off every surface by more than the probe's accuracy, and are no slips that could be named.
+void warn_of_misfit(Tool& t, const Surface& surface, const std::string& source)
+{
+    constexpr double kUnlikely = 1e-6; // one good part in a million
+    if (!(surface.goodness < kUnlikely) || !surface.gross_errors.empty()) return;
+    const auto in_unit = [&](double length) {
+        return to_short_text(length / surface.units.mm()) + " " + to_string(surface.units.length);
+    };
+    t.warn(source + ": the touches lie " + in_unit(surface.rms) +
+           " rms off the surface, the probe's accuracy explains " + in_unit(surface.touch_sigma) +
+           ": does the anomaly's boundary go around all of it, is the accuracy right?");
+}
+
 Verdict finish(Tool& t, const Fit& fit, std::size_t touches, std::size_t ignored)
 {
     const Surface& surface = fit.surface;
@@ -92,6 +105,7 @@ int main(int argc, char** argv)
         const Fit fit = fit_surface(input, method);
         report(t.report(), fit);
         name_gross_errors(t, fit, source, job.units);
+        warn_of_misfit(t, fit.surface, source);
         return finish(t, fit, static_cast<std::size_t>(fit.surface.touches.cols()),
                       static_cast<std::size_t>(fit.surface.ignored));
     });
