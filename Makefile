@@ -29,7 +29,7 @@ BENCHES  := $(patsubst tests/bench/%.cc,$(B)/bench/%,$(wildcard tests/bench/*_be
 # Those of tests/linuxcnc have a machine of their own to start: make test-linuxcnc.
 CASES    := $(sort $(filter-out tests/linuxcnc/%,$(wildcard tests/$(or $(TOOL),*)/*.sh)))
 OBJECTS  := $(patsubst %.cc,$(B)/%.o,$(filter-out $(NEEDS_LINUXCNC),$(wildcard lib/*/*.cc)))
-MODULES  := $(if $(LINUXCNC),$(B)/linuxcnc/fettle_head.so $(B)/linuxcnc/fettle_watch.so)
+MODULES  := $(if $(LINUXCNC),$(B)/linuxcnc/fettle_head.so $(B)/linuxcnc/fettle_press.so $(B)/linuxcnc/fettle_watch.so)
 
 # -ffp-contract=off: the same digits on every processor. No -march: Debian's PCL is built without it, and Eigen's
 # alignment must agree with PCL's.
@@ -130,11 +130,13 @@ $(B)/linuxcnc/%.o: %.cc
 
 # The linker drops what the module does not call, and with it the libraries that only that needs.
 $(B)/linuxcnc/fettle_head.so: $(patsubst %,$(B)/linuxcnc/%.o,tools/linuxcnc/fettle_head lib/gantry/simulated_head lib/removal/height_field lib/removal/preston lib/removal/wheel)
+$(B)/linuxcnc/fettle_press.so: $(patsubst %,$(B)/linuxcnc/%.o,tools/linuxcnc/fettle_press lib/gantry/force_loop)
+$(B)/linuxcnc/%.so:
 	$(CXX) $(LDFLAGS) -shared -Wl,--gc-sections -o $@ $^
 
 $(B)/linuxcnc/fettle_watch.so: tools/linuxcnc/fettle_watch.comp
 	@mkdir -p $(@D)
-	cp $< $(@D) && cd $(@D) && halcompile --compile $(<F) > /dev/null
+	cp $< $(@D) && cd $(@D) && MAKEFLAGS= halcompile --compile $(<F) > /dev/null
 
 # --- tests: each golden case and each test program is a target of its own --------------------------------------------
 CASE_RUNS := $(CASES:.sh=.case)

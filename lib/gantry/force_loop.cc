@@ -18,9 +18,9 @@ constexpr double kDerivative = 0.3;
 constexpr double kBraking = 0.5;
 constexpr double kSlowest = 5, kFastest = 1000, kStep = 1.04; // 1/s
 
-ForceGains gains_of(double kp) { return {kp, kIntegral * kp * kp, kDerivative}; }
-
 } // namespace
+
+ForceGains force_gains(double kp) { return {kp, kIntegral * kp * kp, kDerivative}; }
 
 Margins force_margins(const ForceGains& gains, const Drive& drive, const ServoGains& servo, const Oscillator& load,
                       double period)
@@ -45,7 +45,7 @@ ForceGains tune_force(const Drive& drive, double k, double b, double period)
     const Oscillator free{drive.mass, drive.damping, 0}, sprung{drive.mass, drive.damping + b, k};
     ForceGains best;
     for (double kp = kSlowest; kp < kFastest; kp *= kStep) {
-        const ForceGains gains = gains_of(kp);
+        const ForceGains gains = force_gains(kp);
         if (force_margins(gains, drive, servo, free, period).sensitivity > kMostSensitivity ||
             force_margins(gains, drive, servo, sprung, period).sensitivity > kMostSensitivity)
             break;

@@ -12,6 +12,9 @@ struct ForceGains {
     double kd = 0;
 };
 
+/// The integral and the derivative part that go with K_p.
+ForceGains force_gains(double kp);
+
 /// K_p as large as kMostSensitivity allows, with the spring at work and free, around the drive's own loop as tuned.
 /// @param k, b  of the head's spring and damper, N/mm, N s/mm   @throws InputError if there is none
 ForceGains tune_force(const Drive& drive, double k, double b, double period);

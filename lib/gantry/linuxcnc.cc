@@ -20,6 +20,7 @@ constexpr double kSearch = 10, kTouch = 0.5; // mm/s
 constexpr double kBack = 0.5, kOverPlate = 3; // mm
 constexpr double kCorner = 0.01;              // what a blended corner may cut off, mm
 constexpr double kHere = 1e-4;                // mm: no way to go
+constexpr double kFelt = 0.1;                 // of the deflection to be held: it is on the part
 
 std::string word(const char* name, double value) { return std::string(" ") + name + to_fixed_text(value, 5); }
 
@@ -80,21 +81,57 @@ GantryStatus LinuxcncGantry::lift(double commanded_z)
 
 GantryStatus LinuxcncGantry::grind(const Eigen::Vector3d& tool_point, double feed)
 {
+    if (pressing_) settle();
+    const Eigen::Vector3d end = tool_point - worn() * Eigen::Vector3d::UnitZ();
+    step_to(end, word("X", end.x()) + word("Y", end.y()) + word("Z", end.z()), feed);
+    return status_;
+}
+
+GantryStatus LinuxcncGantry::press(const Eigen::Vector3d& tool_point, double feed, double force)
+{
+    const double wanted = (force - job_.force.preload) / job_.force.stiffness;
+    if (!(wanted > 0)) throw GantryFault("the head's spring is preloaded with more than that force");
+    const double lowest = tool_point.z() - worn();
+    if (!pressing_) {
+        settle();
+        rise_to(job_.safe_height);
+        pressing_ = true;
+        come_down(wanted, lowest);
+    }
+    link_.set_press(true, wanted, lowest);
+    step_to({tool_point.x(), tool_point.y(), 0}, word("X", tool_point.x()) + word("Y", tool_point.y()), feed);
+    return status_;
+}
+
+/// In place, until the part is felt.
+void LinuxcncGantry::come_down(double wanted, double lowest)
+{
+    link_.set_press(true, wanted, lowest);
+    link_.set_hold(true);
+    do {
+        std::this_thread::sleep_for(kLook);
+        look();
+        link_.done(); // for faults
+    } while (status_.deflection < kFelt * wanted && link_.drives().z() > lowest + kHere);
+}
+
+/// Streams a step, and follows the machine until the next is due.
+void LinuxcncGantry::step_to(const Eigen::Vector3d& end, const std::string& words, double feed)
+{
     status_.peak_force = 0;
     look();
-    if (way_.empty()) way_.push_back(link_.drives());
-    const Eigen::Vector3d end = tool_point - worn() * Eigen::Vector3d::UnitZ();
+    if (way_.empty()) way_.push_back(place());
     link_.set_hold(true);
     const std::string corners = blending_ ? "" : "G64" + word("P", kCorner) + " ";
     blending_ = true;
-    link_.say(corners + "G1" + word("X", end.x()) + word("Y", end.y()) + word("Z", end.z()) + feed_word(feed));
+    link_.say(corners + "G1" + words + feed_word(feed));
     way_.push_back(end);
     // With blended corners it slows down at half of the acceleration.
     const double ahead = feed * feed / acceleration_ + feed * latency_;
     for (bool done = false; !done && way_to_go() > ahead;) {
         std::this_thread::sleep_for(kLook);
         look();
-        if (link_.held()) {
+        if (link_.held() && !pressing_) { // pressed, Z gives way, and then it goes on
             const double force = status_.peak_force;
             link_.abort();
             way_.clear();
@@ -105,7 +142,6 @@ GantryStatus LinuxcncGantry::grind(const Eigen::Vector3d& tool_point, double fee
         done = link_.done();
         if (done) way_.clear();
     }
-    return status_;
 }
 
 double LinuxcncGantry::touch_off()
@@ -212,10 +248,22 @@ void LinuxcncGantry::settle()
 {
     while (!way_.empty() && !link_.done()) {
         std::this_thread::sleep_for(kLook);
-        if (link_.held()) link_.abort();
+        if (link_.held() && !pressing_) link_.abort();
     }
     way_.clear();
+    if (pressing_) let_go();
     look();
+}
+
+/// Back up to where Z is commanded: the safe height.
+void LinuxcncGantry::let_go()
+{
+    link_.set_press(false);
+    while (link_.drives().z() < job_.safe_height - worn() - kHere) {
+        std::this_thread::sleep_for(kLook);
+        link_.done(); // for faults
+    }
+    pressing_ = false;
 }
 
 void LinuxcncGantry::look()
@@ -227,10 +275,18 @@ void LinuxcncGantry::look()
     status_.peak_force = std::max(status_.peak_force, status_.force);
 }
 
+/// On the way.
+Eigen::Vector3d LinuxcncGantry::place() const
+{
+    Eigen::Vector3d at = link_.drives();
+    if (pressing_) at.z() = 0;
+    return at;
+}
+
 /// Drops what has been passed.
 double LinuxcncGantry::way_to_go()
 {
-    const Eigen::Vector3d at = link_.drives();
+    const Eigen::Vector3d at = place();
     while (way_.size() > 2) {
         const Eigen::Vector3d along = way_[1] - way_[0];
         if ((at - way_[0]).dot(along) < along.squaredNorm() - 2 * kCorner * along.norm()) break;

@@ -24,6 +24,8 @@ class LinuxcncGantry final : public Gantry {
     protocol::Limits limits() const;
     GantryStatus travel(const Eigen::Vector3d& tool_point) override;
     GantryStatus grind(const Eigen::Vector3d& tool_point, double feed) override;
+    /// From the safe height, and back to it before anything else is done.
+    GantryStatus press(const Eigen::Vector3d& tool_point, double feed, double force) override;
     GantryStatus lift(double commanded_z) override;
     double touch_off() override;
     void change_wheel() override;
@@ -34,10 +36,14 @@ class LinuxcncGantry final : public Gantry {
     void look();
     void run(const std::string& line);
     void settle();
+    void come_down(double wanted, double lowest);
+    void let_go();
+    void step_to(const Eigen::Vector3d& end, const std::string& words, double feed);
     void down_to(double z);
     void rise_to(double z);
     void go_over(const Eigen::Vector2d& xy);
     double touch_down(double lowest);
+    Eigen::Vector3d place() const;
     double way_to_go();
     double worn() const { return new_radius_ - known_radius_; }
 
@@ -50,6 +56,7 @@ class LinuxcncGantry final : public Gantry {
     Eigen::Vector3d plate_;            ///< P0
     int wheel_ = 1;                    ///< its number in the tool table: 1 or 2
     bool blending_ = true;             ///< does the machine go through the corners?
+    bool pressing_ = false;            ///< Z goes as the force asks, and the way is over X and Y
     std::deque<Eigen::Vector3d> way_;  ///< that is still to go, from its beginning; machine's coordinates
     std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
     GantryStatus status_;

@@ -90,9 +90,11 @@ struct Component {
 
 struct Head {
     Number x{"x-at"}, y{"y-at"}, z{"z-at"}, deflection{"deflection"}, force{"force"}, most_force{"client-fmax"};
+    Number wanted{"client-wanted"}, lowest{"client-lowest"};
     Flag held{"held"}, lost{"lost"}, tripped{"tripped"}, off{"off"};
     Count beat{"client-beat"};
     Flag watch{"client-watch"}, hold{"client-hold"}, touch{"client-touch"}, tip{"client-tip"};
+    Flag press{"client-press"};
 };
 
 std::string message_in(NML& errors, NMLTYPE type)
@@ -220,6 +222,7 @@ LinuxcncLink::LinuxcncLink(const std::string& ini) : wires_(std::make_unique<Wir
 
 LinuxcncLink::~LinuxcncLink()
 {
+    wires_->head->press.set(false);
     wires_->head->watch.set(false);
     wires_->head->hold.set(false);
     wires_->over = true;
@@ -237,7 +240,8 @@ double LinuxcncLink::setting(const std::string& section, const std::string& key)
 void LinuxcncLink::enable()
 {
     Head& head = *wires_->head;
-    head.watch.set(false); // of a client that is gone
+    head.press.set(false); // of a client that is gone
+    head.watch.set(false);
     head.hold.set(false);
     head.touch.set(false);
     head.tip.set(false);
@@ -306,5 +310,14 @@ void LinuxcncLink::set_most_force(double force) { wires_->head->most_force.set(f
 void LinuxcncLink::set_hold(bool armed) { wires_->head->hold.set(armed); }
 void LinuxcncLink::set_touch(bool armed) { wires_->head->touch.set(armed); }
 void LinuxcncLink::set_tip(bool probe) { wires_->head->tip.set(probe); }
+
+void LinuxcncLink::set_press(bool armed, double wanted, double lowest)
+{
+    if (armed) {
+        wires_->head->wanted.set(wanted);
+        wires_->head->lowest.set(lowest);
+    }
+    wires_->head->press.set(armed);
+}
 
 } // namespace fettle

@@ -42,6 +42,9 @@ class LinuxcncLink {
     void set_hold(bool armed);         ///< by F_max
     void set_touch(bool armed);        ///< a contact trips the probe
     void set_tip(bool probe);          ///< the probe is in the place of the wheel
+    /// Z goes up and down between where it is commanded and `lowest`, as a deflection of `wanted` asks, mm; without, it
+    /// comes back to where it is commanded.
+    void set_press(bool armed, double wanted = 0, double lowest = 0);
 
   private:
     struct Wires;

@@ -15,20 +15,10 @@ for k in {1..50}; do
     talk_to light.json
     tell "travel 0 -6 $(printf '4.%02d' $((80 - k)))"
     for i in $(seq -59 $((RANDOM % 30 - 30))); do tell "move 0 $(awk -v i="$i" 'BEGIN { print i / 10 }') 4.3 20"; done
-    kill -9 "$(pgrep -f "^[^ ]*fettle-gantry-linuxcnc $PWD/light.json")"
-    wait "$DRIVER_PID" 2> /dev/null || true
+    kill_driver light.json
     sleep 0.6
 done
 end_record
 stop
-cat > times.awk <<'A'
-# Of each time that the guard has struck: ms from the last heartbeat to the last motion or force.
-{ if ($5 != beat) { beat = $5; beaten = NR; cut = $4 }
-  if ($1 != x || $2 != y || $3 != z || $4 > 0) busy = NR
-  x = $1; y = $2; z = $3
-  if ($6 && !lost) { from = beaten; in_cut = cut; struck = 1 }
-  lost = $6
-  if (struck && NR - from == 500) { print busy - from, in_cut; struck = 0 } }
-A
-awk -f times.awk record > times
+stop_times > times
 sort -n times | awk '{ print $1 " ms, " $2 " N"; if ($1 > 250 || $2 <= 0) bad = 1 } END { print NR " times"; exit bad || NR != 50 }'

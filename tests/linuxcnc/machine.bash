@@ -54,3 +54,17 @@ tell() { # COMMAND: its answer is in `answer`
     read -r answer <&"${DRIVER[0]}"
     [[ $answer == "$n ok "* ]] || { echo "$1: $answer"; exit 1; }
 }
+kill_driver() { # PLAN: -9
+    kill -9 "$(pgrep -f "^[^ ]*fettle-gantry-linuxcnc $(realpath "$1")")"
+    wait "$DRIVER_PID" 2> /dev/null || true
+}
+# From the record, each time that the guard has missed a client: ms from its last heartbeat to the last motion or force; the force then, N.
+stop_times() {
+    awk '
+        { if ($5 != beat) { beat = $5; beaten = NR; cut = $4 }
+          if ($1 != x || $2 != y || $3 != z || $4 > 0) busy = NR
+          x = $1; y = $2; z = $3
+          if ($6 && !lost) { from = beaten; in_cut = cut; struck = 1 }
+          lost = $6
+          if (struck && NR - from == 500) { print busy - from, in_cut; struck = 0 } }' record
+}

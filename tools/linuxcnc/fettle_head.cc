@@ -6,27 +6,22 @@
 
 #include "core/error.h"
 #include "gantry/simulated_head.h"
+#include "realtime.h"
 
 #include <fstream>
 #include <memory>
 
 #pragma GCC visibility push(default) // LinuxCNC finds what describes the module by name
 extern "C" {
-#include <hal.h>
-#include <rtapi.h>
-#include <rtapi_app.h>
-
 MODULE_LICENSE("GPL");
 static char* stock = nullptr;
 RTAPI_MP_STRING(stock, "file of the stock")
 }
 #pragma GCC visibility pop
 
-using fettle::SimulatedHead;
+using namespace fettle;
 
 namespace {
-
-constexpr double kNanosecond = 1e-9;
 
 struct Pins {
     hal_float_t *x, *y, *z, *plate_x, *plate_y, *plate_z, *plate_radius; // in, mm
@@ -65,10 +60,10 @@ void step(void*, long period)
 bool export_pins()
 {
     const auto number = [](hal_pin_dir_t direction, hal_float_t** pin, const char* name) {
-        return hal_pin_float_newf(direction, pin, component, "fettle-head.%s", name) == 0;
+        return number_pin(component, direction, pin, std::string("fettle-head.") + name);
     };
     const auto flag = [](hal_bit_t** pin, const char* name) {
-        return hal_pin_bit_newf(HAL_IN, pin, component, "fettle-head.%s", name) == 0;
+        return flag_pin(component, HAL_IN, pin, std::string("fettle-head.") + name);
     };
     return number(HAL_IN, &pins->x, "x") && number(HAL_IN, &pins->y, "y") && number(HAL_IN, &pins->z, "z") &&
            number(HAL_IN, &pins->plate_x, "plate-x") && number(HAL_IN, &pins->plate_y, "plate-y") &&
@@ -86,7 +81,7 @@ extern "C" __attribute__((visibility("default"))) int rtapi_app_main(void)
     component = hal_init("fettle_head");
     if (component < 0) return component;
     try {
-        head = std::make_unique<SimulatedHead>(fettle::read_head(stock == nullptr ? "" : stock));
+        head = std::make_unique<SimulatedHead>(read_head(stock == nullptr ? "" : stock));
         pins = static_cast<Pins*>(hal_malloc(sizeof(Pins)));
         if (pins != nullptr && export_pins() && hal_ready(component) == 0) return 0;
         rtapi_print_msg(RTAPI_MSG_ERR, "fettle_head: no room in HAL\n");
@@ -101,5 +96,5 @@ extern "C" __attribute__((visibility("default"))) void rtapi_app_exit(void)
 {
     hal_exit(component);
     std::ofstream out(std::string(stock) + ".ground", std::ios::binary);
-    fettle::write_head(out, head->head());
+    write_head(out, head->head());
 }
