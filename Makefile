@@ -3,7 +3,7 @@
 #   make            build                     make demo      the whole chain on the samples, with pictures
 #   make test       build and run the tests   make figures   the chain's figures beside their targets
 #   make test TOOL=fettle-fit                 make bench     benchmarks
-#   make bless TOOL=fettle-fit                make docs      pages of docs/tools from --help
+#   make bless TOOL=fettle-fit                make docs      pages of docs/tools from --help, modules.svg
 #   make test-linuxcnc  on LinuxCNC, simulated
 #   make lint       format and scripts        make includes   every file by its own includes
 #   make install PREFIX=/usr/local DESTDIR=
@@ -182,6 +182,8 @@ bench: deps
 docs: build
 	@mkdir -p docs/tools
 	@set -e; for tool in $(TOOLS); do tests/tool-page $(B)/bin/$$tool > docs/tools/$$tool.md; done
+	@if command -v dot > /dev/null; then .ci/modules | dot -Tsvg > docs/pictures/modules.svg; \
+	    else echo "docs: the picture of the modules is made where graphviz is" >&2; fi
 
 lint:
 	@.ci/lint
