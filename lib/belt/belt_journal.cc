@@ -8,6 +8,7 @@
 #include <array>
 #include <bit>
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <ostream>
@@ -22,6 +23,8 @@ namespace {
 using Eigen::Index;
 
 constexpr char kTitle[] = "fettle-belt journal 1\n";
+constexpr char kBroken[] = "the journal is broken";
+constexpr double kMost = 9007199254740992; // the whole numbers that a double holds end at 2^53
 
 /// Numbers in the order in which they are told or asked for: one text for both ways.
 class Numbers {
@@ -46,6 +49,7 @@ class Numbers {
     {
         auto value = static_cast<double>(count);
         pass(value);
+        if (!(value >= 0 && value <= kMost && value == std::floor(value))) throw InputError(kBroken);
         count = static_cast<Count>(value);
     }
     template <typename Derived>
@@ -54,7 +58,7 @@ class Numbers {
         Index rows = matrix.rows(), columns = matrix.cols();
         pass(rows);
         pass(columns);
-        check(rows * columns);
+        if (rows > 0) check(columns, rows);
         matrix.resize(rows, columns);
         for (double& value : matrix.reshaped()) pass(value);
     }
@@ -63,7 +67,7 @@ class Numbers {
     {
         std::size_t count = items.size();
         pass(count);
-        check(static_cast<Index>(count));
+        check(static_cast<Index>(count), 1);
         items.resize(count);
         for (Item& item : items) pass_item(item);
     }
@@ -72,9 +76,10 @@ class Numbers {
     const std::vector<double>& values() const { return values_; }
 
   private:
-    void check(Index count) const
+    // No more can follow than there are.
+    void check(Index count, Index each) const
     {
-        if (!is_writing_ && static_cast<std::size_t>(count) > values_.size()) throw InputError("the journal is broken");
+        if (!is_writing_ && count > static_cast<Index>(values_.size()) / each) throw InputError(kBroken);
     }
 
     bool is_writing_;
@@ -181,8 +186,8 @@ void write_journal(const std::string& path, double print, BeltState state, Surfe
     file.commit();
 }
 
-/// @param state  as it is before the first point
-void read_journal(const std::string& bytes, double print, BeltState& state, Surfels& surfels)
+/// @param state  as it is before the first point   @param path_length  points of the path
+void read_journal(const std::string& bytes, double print, BeltState& state, Surfels& surfels, std::size_t path_length)
 {
     constexpr std::size_t kBegin = sizeof kTitle - 1;
     if (!bytes.starts_with(kTitle) || (bytes.size() - kBegin) % sizeof(double) != 0)
@@ -195,7 +200,8 @@ void read_journal(const std::string& bytes, double print, BeltState& state, Surf
     if (found != print)
         throw InputError("this is the journal of another run: of other surfels, another path, wheel or options");
     pass(numbers, state, surfels);
-    if (!numbers.is_at_end()) throw InputError("the journal is broken");
+    if (!numbers.is_at_end() || surfels.displacement.size() != surfels.position.cols() || state.next > path_length)
+        throw InputError(kBroken);
 }
 
 } // namespace
@@ -211,7 +217,7 @@ BeltRun grind(Surfels& surfels, const ContactWheel& wheel, const std::vector<Bel
         BeltState state = grinding.state();
         const std::string bytes = read_whole(journal.file);
         try {
-            read_journal(bytes, print, state, surfels);
+            read_journal(bytes, print, state, surfels, path.size());
         } catch (const InputError& error) {
             throw InputError(journal.file, error.what());
         }

@@ -44,6 +44,16 @@ refused 'run.journal: this is the journal of another run' fettle-belt plate.pcd 
 refused 'path.pcd: this is no journal of fettle-belt' fettle-belt plate.pcd --wheel wheel.json --path path.pcd --feed 0.003 --journal path.pcd
 head -c 5000 run.journal > short.journal
 refused 'short.journal: ' fettle-belt plate.pcd --wheel wheel.json --path path.pcd --feed 0.003 --journal short.journal
+# A count in it that is none, or more than there is: where the next point, and the sizes of the arrays, stand.
+title=22
+for number in 1 2 3; do
+    for bytes in '\0\0\0\0\0\0\370\177' '\0\0\0\0\0\0\360\277' '\0\0\0\0\0\0\320\177'; do # NaN, -1, 4e307
+        cp run.journal broken.journal
+        printf %b "$bytes" | dd of=broken.journal bs=1 seek=$((title + 8 * number)) conv=notrunc status=none
+        refused 'broken.journal: the journal is broken' fettle-belt plate.pcd --wheel wheel.json --path path.pcd --feed 0.003 --cells 64 \
+            --lower 0.1 --upper 0.2 --watch broken.csv --journal broken.journal
+    done
+done
 refused '--watch' fettle-belt plate.pcd --wheel wheel.json --path path.pcd --watch w.csv --lower 0
 refused '--lower: is more' fettle-belt plate.pcd --wheel wheel.json --path path.pcd --watch w.csv --lower 1 --upper 0
 refused '/missing/w.csv' fettle-belt plate.pcd --wheel wheel.json --path path.pcd --watch /missing/w.csv --lower 0 --upper 1
