@@ -4,6 +4,7 @@
 #include "core/lines.h"
 #include "machining/nc_arc.h"
 #include "machining/nc_block.h"
+#include "units/units.h"
 
 #include <array>
 #include <cctype>
@@ -13,7 +14,6 @@
 namespace fettle {
 namespace {
 
-constexpr double kInch = 25.4;
 constexpr double kSecondsPerMinute = 60;
 constexpr std::string_view kAxes = "XYZ";
 
@@ -44,7 +44,7 @@ class Interpreter {
             else if (g >= 17 && g <= 19)
                 plane_ = g;
             else if (g == 20 || g == 21)
-                unit_ = g == 20 ? kInch : 1;
+                unit_ = mm_per(g == 20 ? Units::Length::in : Units::Length::mm);
             else if (g == 90 || g == 91)
                 incremental_ = g == 91;
             else

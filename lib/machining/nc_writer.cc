@@ -1,6 +1,7 @@
 #include "machining/nc_writer.h"
 
 #include "core/fixed_text.h"
+#include "units/units.h"
 
 #include <cmath>
 #include <ostream>
@@ -9,8 +10,7 @@ namespace fettle {
 
 std::string NcWriter::number(double mm) const
 {
-    constexpr double kInch = 25.4;
-    return inches_ ? to_fixed_text(mm / kInch, 7) : to_fixed_text(mm, 5);
+    return inches_ ? to_fixed_text(mm / mm_per(Units::Length::in), 7) : to_fixed_text(mm, 5);
 }
 
 void NcWriter::set_inches(bool inches)

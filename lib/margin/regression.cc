@@ -6,6 +6,7 @@
 #include "margin/round_fit.h"
 #include "margin/shift.h"
 #include "sampling/touch_plan.h"
+#include "units/units.h"
 
 #include <Eigen/Cholesky>
 
@@ -18,7 +19,7 @@ namespace fettle {
 
 namespace {
 
-constexpr double kMmPerInch = 25.4;
+const double kMmPerInch = mm_per(Units::Length::in);
 
 Regression regression(std::initializer_list<double> band, std::initializer_list<double> shift)
 {
