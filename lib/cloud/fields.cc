@@ -12,7 +12,7 @@ namespace fettle {
 Dimension field_dimension(const std::string& name)
 {
     for (const char* length : {"error", "sigma", "clearance", "radius", "displacement", "removed", "foot_x", "foot_y",
-                               "foot_z", "joint7", "clearance_between", "gap", "indentation", "deflection"})
+                               "foot_z", "joint7", "clearance_between", "gap", "indentation", "deflection", "depth"})
         if (name == length) return {1, 0};
     if (name == "force" || name == "peak_force") return {0, 1};
     if (name == "feed") return {1, 0}; // per second, which is the unit of time everywhere
