@@ -1,0 +1,12 @@
+# The recipe of docs/adding-a-tool.md, in a copy of the tree whose library is the one that is built already. Reference: the page.
+root=$(realpath "$HERE/../..")
+cp -a "$root"/{Makefile,CHANGELOG.md,lib,tools,samples} .
+mkdir -p tests/lib build/bin build/tests docs/tools
+cp -a "$root"/tests/{run,refuses,tool-page} tests
+cp -a "$root"/tests/lib/precompiled.h tests/lib
+ln -s "$BUILD/lib" "$BUILD/libfettle.a" build
+ln -s "$BUILD/tests/lib" build/tests
+ln -s "$BUILD/bin/fettle-diff" build/bin
+MAKEFLAGS=$(sed -E 's/(^| )B=[^ ]*//g' <<<"${MAKEFLAGS:-}") # of a `make test` with a build folder of its own
+export MAKEFLAGS
+"$HERE/run-page" "$HERE/../../docs/adding-a-tool.md"
