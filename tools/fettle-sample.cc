@@ -4,6 +4,7 @@
 #include "core/text.h"
 #include "gantry/touch.h"
 #include "job/boundary.h"
+#include "job/plausible.h"
 #include "margin/best_touches.h"
 #include "sampling/freeform.h"
 #include "sampling/order.h"
@@ -174,7 +175,9 @@ int main(int argc, char** argv)
         // Adaptive touches have been made in their order already.
         const std::vector<Eigen::Index> order = adapted ? as_planned(touches) : short_way(touches.topRows<2>());
         const double highest = touches.row(2).maxCoeff<Eigen::PropagateNumbers>();
-        if (highest > job.safe_height)
+        if (const std::string doubt = part && !plan_only ? implausible_height(touches, job) : ""; !doubt.empty())
+            t.warn(part->name + ": " + doubt);
+        else if (highest > job.safe_height)
             t.warn("safe_height " + to_short_text(job.safe_height / mm) + " is below a touch at z " +
                    to_short_text(highest / mm));
         t.report()

@@ -2,6 +2,8 @@
 
 #include "core/text.h"
 
+#include <algorithm>
+
 namespace fettle {
 
 namespace {
@@ -11,6 +13,12 @@ constexpr double kLongestPart = 100;
 
 // Boundary points are touched at the very edge of a part, and the file's numbers are floats.
 constexpr double kOverEdge = 0.01;
+
+/// The least and the greatest number that is none; NaN if there is none.
+Eigen::Vector2d range(const Eigen::RowVectorXd& z)
+{
+    return {z.minCoeff<Eigen::PropagateNumbers>(), z.maxCoeff<Eigen::PropagateNumbers>()};
+}
 } // namespace
 
 std::string implausible_box(const Eigen::Matrix<double, 3, 2>& box, const Job& job)
@@ -30,6 +38,19 @@ std::string implausible_box(const Eigen::Matrix<double, 3, 2>& box, const Job& j
         (low.array() >= box.col(0).head<2>().array()).all() && (high.array() <= box.col(1).head<2>().array()).all();
     if (!held) return size() + "does not hold the job's boundary: is its unit right?";
     return {};
+}
+
+std::string implausible_height(const Eigen::Matrix3Xd& touches, const Job& job)
+{
+    Eigen::Matrix3Xd boundary(3, job.anomaly.cols() + job.sampling.cols());
+    boundary << job.anomaly, job.sampling;
+    const Eigen::Vector2d taught = range(boundary.row(2)), touched = range(touches.row(2));
+    const double length = (boundary.rowwise().maxCoeff() - boundary.rowwise().minCoeff()).head<2>().norm();
+    const double above = touched[0] - taught[1], below = taught[0] - touched[1];
+    if (!(std::max(above, below) > length)) return {}; // nor if there are none
+    return "the touches lie " + to_short_text(std::max(above, below) / job.units.mm()) + " " +
+           to_string(job.units.length) + (above > 0 ? " above" : " below") +
+           " the job's boundary points: is the part's unit right, does it lie where the job was taught?";
 }
 
 } // namespace fettle

@@ -13,4 +13,10 @@ namespace fettle {
 /// @return a sentence for a warning, empty if the box is plausible
 std::string implausible_box(const Eigen::Matrix<double, 3, 2>& box, const Job& job);
 
+/// Do touches lie higher or lower than the job's boundary points by more than the boundary is long, as if the part were
+/// in another unit than was taken, or lay elsewhere when the job was taught?
+/// @param touches  3xN, M, mm; NaN: none
+/// @return a sentence for a warning, empty if not, or if no boundary point has a z
+std::string implausible_height(const Eigen::Matrix3Xd& touches, const Job& job);
+
 } // namespace fettle

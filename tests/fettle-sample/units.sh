@@ -19,3 +19,9 @@ fettle-sample mm.json --on mm.stl --ascii | values 1 > expected
 fettle-sample mm.json --on m.stl --on-units m --ascii | values 1 | diff expected -
 fettle-sample in.json --on mm.stl --on-units mm --ascii | values 25.4 | diff expected -
 [ "$(wc -l < expected)" -gt 8 ]
+# In a wrong unit that holds the boundary, too: the touches are far above the points that the operator touched.
+fettle-part "$SAMPLES/parts/hammer.json" > hammer.stl
+fettle-sample "$SAMPLES/jobs/hammer.json" --on hammer.stl --on-units in 2> warning > samples.pcd
+grep -F "hammer.stl: the touches lie 668.932 mm above the job's boundary points: is the part's unit right" warning
+fettle-sample "$SAMPLES/jobs/hammer.json" --on hammer.stl 2> warning > samples.pcd
+[ ! -s warning ]

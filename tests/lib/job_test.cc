@@ -154,6 +154,24 @@ TEST(Plausible, BoxInAnotherUnitIsDoubted)
         "the part, 1000 x 1000 x 0.393701 in, is over 100 times as long as the job's boundary: is its unit right?");
 }
 
+TEST(Plausible, TouchesFarFromTheBoundaryPointsAreDoubted)
+{
+    // B from 1 to 2 in, S from 0 to 3 in: 4.24 in long.
+    const std::string taught = R"({"kind": "job", "units": {"length": "in"}, "surface": {"type": "freeform"},
+      "anomaly": [[1, 1, 2], [2, 1, 2.5], [2, 2]], "sampling": [[0, 0], [3, 0], [3, 3], [0, 3]]})";
+    const auto doubt = [](const std::string& text, double z) {
+        return implausible_height(Eigen::Vector3d(0, 0, z * 25.4), parse(text));
+    };
+    EXPECT_EQ(doubt(taught, 2.2), "");
+    EXPECT_EQ(doubt(taught, 6.7), "");
+    EXPECT_EQ(doubt(taught, 7.5),
+              "the touches lie 5 in above the job's boundary points: is the part's unit right, does "
+              "it lie where the job was taught?");
+    EXPECT_NE(doubt(taught, -2.3).find("4.3 in below"), std::string::npos);
+    EXPECT_EQ(doubt(taught, std::nan("")), "");
+    EXPECT_EQ(doubt(inches(""), 1e3), ""); // no z was taught
+}
+
 TEST(Job, WorkingFrameIsTurnedCounterClockwise)
 {
     // X_w lies along Y_m when theta is 90 degrees: a point on Y_m has x_w = 1.
