@@ -13,6 +13,7 @@ for line in "${elsewhere[@]}"; do
 done
 
 pages=$(cd "$root" && ls README.md CONTRIBUTING.md samples/README.md docs/*.md docs/methods/*.md)
+unset MAKEFLAGS MFLAGS # a make that a page begins is not of this one
 for page in $pages; do
     case $page in
     docs/tutorial.md | docs/adding-a-tool.md | docs/writing-a-driver.md) test -e "$HERE/$(basename "$page" .md).sh" && continue ;;
@@ -25,7 +26,7 @@ for page in $pages; do
     done
     rm -rf here
     mkdir here
-    cp -r "$SAMPLES" here/samples
+    cp -r "$SAMPLES" "$root/pipelines" here
     chmod -R u+w here
     (cd here && "$HERE/run-page" "$root/$page" "${skip[@]}")
 done
