@@ -6,4 +6,4 @@ awk 'BEGIN { for (i = -80; i <= 80; i++) for (j = -80; j <= 80; j++) if (i * i +
 jq '.anomaly |= map(. + [5])' job.json >taught.json
 fettle-sample taught.json --on hole.xyz --ascii >samples.pcd
 ! grep -qi nan samples.pcd || exit 1
-"$HERE/../refuses" 'hole.xyz: no surface over ' fettle-grind plan.json --stock hole.xyz
+"$HERE/../refuses" 'hole.xyz: no surface over ' fettle-grind plan.json --stock hole.xyz --cell 0.25
