@@ -71,6 +71,9 @@ $(B)/lib/mesh/mesh_index.o $(B)/lib/robot/workpiece.o: override CXXFLAGS += -fno
 # What this one computes in float only bounds what double measures elsewhere: products and sums may be fused.
 $(B)/lib/mesh/mesh_index.o: override CXXFLAGS += -ffp-contract=fast
 
+# What tests do themselves is little: they are sooner compiled and run so than with -O2.
+$(B)/tests/lib/%: override CXXFLAGS += -O1
+
 include tools/libraries.mk
 
 # --- rules ----------------------------------------------------------------------------------------------------------

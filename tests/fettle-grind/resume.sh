@@ -12,20 +12,20 @@ first() { awk -v n="$1" 'NR <= n'; }
 length_ground() { awk '/^DATA/ { body = 1; next } body { if ($9 > 0) s += sqrt(($1 - x) ^ 2 + ($2 - y) ^ 2); x = $1; y = $2 } END { print s }' "$1"; }
 flat() { # the ground part
     awk '/^DATA/ { body = 1; next } body && $1 > -6 && $1 < 6 && $2 > -6 && $2 < 6 { if ($3 > 5.1 || $3 < 5 - 0.01) bad++; n++ }
-        END { exit bad > 0 || n != 120 * 120 }' "$1"
+        END { exit bad > 0 || n != 60 * 60 }' "$1"
 }
 RANDOM=1
 for kind in virtual virtual:dynamic exec; do
     options=()
     [ $kind = virtual ] || options=(--machine "$SAMPLES/machines/full_scale.json")
     gantry=$kind
-    [ $kind != exec ] || options=() gantry="exec:exec fettle-gantry-virtual plan.json --stock stock.stl --cell 0.1 $machine --ground left.pcd"
+    [ $kind != exec ] || options=() gantry="exec:exec fettle-gantry-virtual plan.json --stock stock.stl --cell 0.2 $machine --ground left.pcd"
     begun=$(date +%s%N)
-    fettle-grind plan.json --stock stock.stl --cell 0.1 --gantry "$gantry" "${options[@]}" --layer-1 feed --trace whole.pcd --ascii > ground.pcd
+    fettle-grind plan.json --stock stock.stl --cell 0.2 --gantry "$gantry" "${options[@]}" --layer-1 feed --trace whole.pcd --ascii > ground.pcd
     took=$(( ($(date +%s%N) - begun) / 1000000 )) # ms
     for n in {1..20}; do
         rm -f left.pcd trace.pcd
-        fettle-grind plan.json --stock stock.stl --cell 0.1 --gantry "$gantry" "${options[@]}" --layer-1 feed --trace trace.pcd --ascii > ground.pcd &
+        fettle-grind plan.json --stock stock.stl --cell 0.2 --gantry "$gantry" "${options[@]}" --layer-1 feed --trace trace.pcd --ascii > ground.pcd &
         sleep "$(awk -v t=$took -v r=$RANDOM 'BEGIN { print t * (r % 1000) / 1000 / 1000 }')"
         kill -9 $! 2> killed || true
         wait $! 2> killed || true
@@ -37,9 +37,9 @@ for kind in virtual virtual:dynamic exec; do
             for _ in {1..100}; do [ -s left.pcd ] && break || sleep 0.05; done
             left=left.pcd
             [ -s left.pcd ] || { [ ! -s done ] && left=stock.stl; } # the driver had not begun either
-            again="exec:exec fettle-gantry-virtual plan.json --stock $left --cell 0.1 $machine --ground truth.pcd"
+            again="exec:exec fettle-gantry-virtual plan.json --stock $left --cell 0.2 $machine --ground truth.pcd"
         fi
-        fettle-grind plan.json --stock stock.stl --cell 0.1 --gantry "$again" "${options[@]}" --layer-1 feed --resume trace.pcd --report report.json --ascii > ground.pcd
+        fettle-grind plan.json --stock stock.stl --cell 0.2 --gantry "$again" "${options[@]}" --layer-1 feed --resume trace.pcd --report report.json --ascii > ground.pcd
         jq -e .finished report.json > ok
         flat ground.pcd
         rows trace.pcd | first "$(wc -l < done)" | cmp - done
@@ -56,6 +56,6 @@ jq '.passes |= .[:-1]' plan.json > other.json
 
 # What is finished stays as it is.
 cp whole.pcd again.pcd
-fettle-grind plan.json --stock stock.stl --cell 0.1 --layer-1 feed --resume again.pcd --ascii > ground.pcd
+fettle-grind plan.json --stock stock.stl --cell 0.2 --layer-1 feed --resume again.pcd --ascii > ground.pcd
 fettle-diff --tol 1e-6 whole.pcd again.pcd
 flat ground.pcd
