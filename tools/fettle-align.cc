@@ -56,11 +56,11 @@ int main(int argc, char** argv)
         "for bit, with all their fields. Exit 1 if the steps did not converge.";
     return tool_main(argc, argv, description, [](Tool& t) {
         const std::string& scan_path = t.input("SCAN", "What is moved");
-        const std::string& reference_path = t.required_text("--to", "FILE", "The reference, which stays");
+        const std::string& reference_path = t.required_file("--to", "FILE", "The reference, which stays");
         const auto& scan_unit = t.length_unit("--file-units", "Unit of SCAN, and of transforms and lengths here");
         const auto& reference_unit = t.length_unit("--to-units", "Unit of the reference");
-        const std::string& in = t.text("--transform-in", "", "FILE", "Begin with this 4 x 4 matrix, do not search");
-        const std::string& out = t.text("--transform-out", "", "FILE", "Write the 4 x 4 matrix, 17 digits");
+        const std::string& in = t.other_file("--transform-in", "FILE", "Begin with this 4 x 4 matrix, do not search");
+        const std::string& out = t.other_output("--transform-out", "Write the 4 x 4 matrix, 17 digits");
         const bool& near = t.flag("--near", "The scan lies nearly right as it is: do not search");
         const std::string& hold = t.text("--hold", "", "AXES",
                                          "Of x,y,z,rx,ry,rz: no shift of the scan's centroid along these, no turn "

@@ -113,7 +113,7 @@ int main(int argc, char** argv)
                                              Range::positive());
         const double& turn_feed = t.number("--turn-feed", 500, "DEG/S", "The tool turns no faster", Range::positive());
         const bool& all = t.flag("--all", "Write every solution of each pose: a point each, with pose and branch");
-        const std::string& rapid = t.text("--rapid", "", "FILE", "Write an ABB RAPID module, too; it needs --feed");
+        const std::string& rapid = t.other_output("--rapid", "Write an ABB RAPID module, too; it needs --feed");
         const std::string& zone = t.choice("--zone", "z0", {"fine", "z0", "z1", "z5", "z10"}, "RAPID: of the targets");
         const bool& ascii = t.flag("--ascii", "Text instead of binary");
         t.example("fettle-arm robots/irb1400.json --inverse paths/keel.pcd --feed 50 --rapid keel.mod > joints.pcd",

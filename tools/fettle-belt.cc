@@ -63,8 +63,8 @@ int main(int argc, char** argv)
     return tool_main(argc, argv, description, [](Tool& t) {
         const std::string& points = t.input("SURFELS", "points with normals (fettle-surfel), PCD or PLY");
         const std::string& path_file =
-            t.required_text("--path", "FILE", "Contact points with poses, PCD (fettle-path)");
-        const std::string& wheel_file = t.required_text("--wheel", "FILE", "The wheel, JSON");
+            t.required_file("--path", "FILE", "Contact points with poses, PCD (fettle-path)");
+        const std::string& wheel_file = t.required_file("--wheel", "FILE", "The wheel, JSON");
         const auto& unit = t.length_unit("--file-units", "Unit of SURFELS, and of lengths here [its header, or mm]");
         const auto& force = t.number_if_given("--force", "FORCE", "At all points, N", Range::positive());
         const auto& depth = t.number_if_given("--depth", "LENGTH", "Indentation at all points", Range::positive());
@@ -79,7 +79,7 @@ int main(int argc, char** argv)
         const std::string& gridding = t.choice("--gridding", "kriging", {"kriging", "shepard"}, "As of fettle-contact");
         const int& cells = t.count("--cells", 32, "As of fettle-contact", 8, 512);
         const double& tolerance = t.number("--tolerance", 1e-4, "SHARE", "As of fettle-contact", {1e-9, 1e-2});
-        const std::string& trace = t.text("--trace", "", "FILE", "The path with what happened at each point, PCD");
+        const std::string& trace = t.other_output("--trace", "The path with what happened at each point, PCD");
         const std::string& watch =
             t.text("--watch", "", "FILE",
                    "The errors after each point, CSV, line by line as they come; with --lower and --upper");
@@ -104,6 +104,8 @@ int main(int argc, char** argv)
             throw InputError("--watch", "goes with --lower and --upper");
         if (lower && !(*lower <= *upper)) throw InputError("--lower", "is more than --upper");
         journal = {journal_file, every};
+        for (const std::string& kept : {watch, journal_file})
+            if (!kept.empty()) t.claim(kept);
         CloudFile file = read_cloud(points, unit ? std::optional(Units{*unit, Units::Force::N}) : std::nullopt);
         const double mm = file.units.mm();
         Surfels surfels = surfels_of(file.cloud, display_name(points));

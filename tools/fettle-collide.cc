@@ -73,7 +73,7 @@ int main(int argc, char** argv)
     return tool_main(argc, argv, description, [](Tool& t) {
         const std::string& robot_file = t.file("ROBOT", "The robot, JSON");
         const std::string& points = t.input("PATH", "path or joints, PCD");
-        const std::string& part = t.text("--workpiece", "", "MESH", "STL, PLY, OBJ, OFF, in the part's frame [none]");
+        const std::string& part = t.other_file("--workpiece", "MESH", "STL, PLY, OBJ, OFF, in the part's frame [none]");
         const auto& part_unit = t.length_unit("--workpiece-units", "Unit of that file, if it is not the path's");
         const auto& unit = t.length_unit("--file-units", "Unit of PATH, and of lengths here [its header, or mm]");
         const auto& tolerance = t.number_if_given("--tolerance", "LENGTH", "What goes no deeper is a contact [0.01 mm]",
@@ -102,10 +102,10 @@ int main(int argc, char** argv)
         const bool& exact = t.flag("--exact", "All triangles, everywhere: --method exact");
         const auto& cell = t.number_if_given("--cell", "LENGTH", "Of grids: side of a cell [1 mm]", Range::positive());
         const auto& picture =
-            t.text("--picture", "", "FILE", "Draw the cell at some poses, PNG; the workpiece as --method sees it");
+            t.other_output("--picture", "Draw the cell at some poses, PNG; the workpiece as --method sees it");
         const auto& at = t.text("--at", "", "N,…", "Numbers of these poses, from 0 [that of the least clearance]");
         const auto& from = t.text("--from", "1,-1,0.8", "X,Y,Z", "Of the picture: towards the eye, in the cell");
-        const auto& chart = t.text("--chart", "", "FILE", "Draw the clearances along the path, PNG");
+        const auto& chart = t.other_output("--chart", "Draw the clearances along the path, PNG");
         const bool& ascii = t.flag("--ascii", "Text instead of binary");
         t.example("fettle-part parts/keel.json | fettle-collide robots/irb1400.json paths/keel.pcd --workpiece - "
                   "--report clear.json > checked.pcd",

@@ -93,10 +93,10 @@ int main(int argc, char** argv)
         "tolerance. A binary PCD is streamed; other files are held in memory.";
     return tool_main(argc, argv, description, [](Tool& t) {
         const std::string& test_path = t.input("TEST", "The part");
-        const std::string& reference_path = t.required_text("--to", "FILE", "The reference");
+        const std::string& reference_path = t.required_file("--to", "FILE", "The reference");
         const auto& reference_unit = t.length_unit("--to-units", "Unit of the reference, if not the job's");
         const auto& test_unit = t.length_unit("--file-units", "Unit of TEST, if not the job's");
-        const std::string& job_path = t.text("--within", "", "JOB", "Judge inside its anomaly's boundary; its units");
+        const std::string& job_path = t.other_file("--within", "JOB", "Judge inside its anomaly's boundary; its units");
         const auto& tolerance = t.number_if_given("--tolerance", "LENGTH", "Instead of the job's", Range::at_least(0));
         const std::string& mode = t.choice("--mode", "normal", {"normal", "z", "direction"},
                                            "Distance to the closest point, or along z or a direction");
@@ -107,16 +107,16 @@ int main(int argc, char** argv)
             t.choice("--winding", "mend", {"mend", "keep", "turn"},
                      "Of a mesh: turn facets that disagree with most and closed pieces that are inside out; keep all; "
                      "or turn an open mesh over");
-        const std::string& reverse = t.text("--reverse", "", "FILE",
-                                            "Also the error map of the reference's points against TEST; + is "
-                                            "material left, too");
+        const std::string& reverse =
+            t.other_output("--reverse", "Also the error map of the reference's points against TEST; + is "
+                                        "material left, too");
         const std::string& fields = t.text("--fields", "", "LIST",
                                            "More fields, of foot,facet,region,sigma: the nearest point, its facet "
                                            "(from 0), 0 inside 1 around 2 outside, of a cloud as reference");
         const std::string& format = t.choice("--format", "pcd", {"pcd", "ply", "csv", "vtk"}, "Of the error map");
         const bool& ascii = t.flag("--ascii", "Write a PCD as text instead of binary");
-        const std::string& csv = t.text("--csv", "", "FILE", "Statistics, a row for all points and for each region");
-        const std::string& histogram = t.text("--histogram", "", "FILE", "Histogram, CSV: a row for each bin");
+        const std::string& csv = t.other_output("--csv", "Statistics, a row for all points and for each region");
+        const std::string& histogram = t.other_output("--histogram", "Histogram, CSV: a row for each bin");
         const int& bins = t.count("--bins", 50, "Bins of the histogram", 1, 1000000);
         const int& memory =
             t.count("--max-memory", 1024, "MiB of points and errors to hold; more goes to $TMPDIR", 256, 1 << 24);

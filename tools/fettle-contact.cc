@@ -44,7 +44,7 @@ int main(int argc, char** argv)
         "lie below the contact point if nothing gave way. Out: a point for each cell with pressure and gap.";
     return tool_main(argc, argv, description, [](Tool& t) {
         const std::string& points = t.input("SURFELS", "points with normals (fettle-surfel), PCD or PLY");
-        const std::string& wheel_file = t.required_text("--wheel", "FILE", "The wheel, JSON");
+        const std::string& wheel_file = t.required_file("--wheel", "FILE", "The wheel, JSON");
         const std::string& at = t.required_text("--at", "X,Y,Z,QW,QX,QY,QZ", "The pose, in the unit of SURFELS");
         const auto& unit = t.length_unit("--file-units", "Unit of SURFELS, and of lengths here [its header, or mm]");
         const auto& force = t.number_if_given("--force", "FORCE", "Press with this force, N", Range::positive());

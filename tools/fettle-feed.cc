@@ -57,8 +57,8 @@ int main(int argc, char** argv)
         "surfels that the path reaches) before grinding, with the best constant, and as planned.";
     return tool_main(argc, argv, description, [](Tool& t) {
         const std::string& path_file = t.input("PATH", "contact points with poses (fettle-path), PCD");
-        const std::string& points = t.required_text("--on", "SURFELS", "Surfels with their displacement, PCD");
-        const std::string& wheel_file = t.required_text("--wheel", "FILE", "The wheel, JSON");
+        const std::string& points = t.required_file("--on", "SURFELS", "Surfels with their displacement, PCD");
+        const std::string& wheel_file = t.required_file("--wheel", "FILE", "The wheel, JSON");
         const std::string& vary = t.choice("--vary", "feed", {"feed", "force"}, "What is chosen");
         const double& least = t.number("--least", 1, "N or LENGTH/S", "Limit of what is chosen", Range::positive());
         const double& most = t.number("--most", 100, "N or LENGTH/S", "Limit of what is chosen", Range::positive());

@@ -84,7 +84,7 @@ int main(int argc, char** argv)
         const std::string& path = t.input("POINTS", "PCD, PLY or XYZ");
         const auto& unit = t.length_unit("--file-units", "Unit of POINTS, if not the job's");
         const std::string& job_path =
-            t.text("--within", "", "JOB", "Only points inside its anomaly's boundary; its units");
+            t.other_file("--within", "JOB", "Only points inside its anomaly's boundary; its units");
         const auto& outliers =
             t.number_if_given("--outliers", "SIGMAS",
                               "Leave out points farther from the least squares element than so many robust "

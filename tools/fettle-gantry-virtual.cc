@@ -18,19 +18,20 @@ int main(int argc, char** argv)
     return tool_main(argc, argv, "Drive a simulated gantry by the protocol of a real one.", [](Tool& t) {
         const std::string& plan_file =
             t.file("PLAN", "The plan whose job the machine is set up for, or a job without a plan, to be probed, JSON");
-        const std::string& stock_file = t.required_text("--stock", "PART", "The part as it is: STL, PLY, OBJ or PCD");
+        const std::string& stock_file = t.required_file("--stock", "PART", "The part as it is: STL, PLY, OBJ or PCD");
         const auto& stock_units = t.length_unit("--stock-units", "Unit of PART, if it is not the job's");
         const std::string& machine =
-            t.text("--machine", "", "FILE", "The machine, JSON; left out: one in equilibrium at every moment");
+            t.other_file("--machine", "FILE", "The machine, JSON; left out: one in equilibrium at every moment");
         const double& removal = t.number("--removal-factor", 1, "FACTOR",
                                          "The stock yields so many times as fast as the job says", Range::positive());
         const auto& cell = t.number_if_given(
             "--cell", "LENGTH", "Side of a cell of the stock; default: 1/64 of the wheel's width", Range::positive());
-        const std::string& ground = t.text("--ground", "", "FILE", "The part in the end, PCD");
+        const std::string& ground = t.other_output("--ground", "The part in the end, PCD");
         t.example("fettle-gantry-virtual <(fettle-sample jobs/wang1.json | fettle-fit jobs/wang1.json | fettle-plan "
                   "jobs/wang1.json) --stock <(fettle-part parts/wang1.json) <<< '1 status'",
                   "where the machine stands");
         t.reference("docs/driver.md: the protocol");
+        t.without_output();
         t.parse();
 
         const auto [job, planned] = read_work(plan_file);

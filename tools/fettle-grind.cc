@@ -97,12 +97,12 @@ int main(int argc, char** argv)
 {
     return tool_main(argc, argv, "Grind a part to its desired surface, guided by the force.", [](Tool& t) {
         const std::string& plan_file = t.input("PLAN", "What to do, JSON (fettle-plan)");
-        const std::string& stock_file = t.required_text("--stock", "PART", "The part as it is: STL, PLY, OBJ or PCD");
+        const std::string& stock_file = t.required_file("--stock", "PART", "The part as it is: STL, PLY, OBJ or PCD");
         const auto& stock_units = t.length_unit("--stock-units", "Unit of PART, if it is not the job's");
         const std::string& kind = t.text("--gantry", kVirtual, "virtual|virtual:dynamic|exec:COMMAND",
                                          "The machine: a simulated gantry in equilibrium at every moment, one with "
                                          "drives, inertia and sensors, or a driver (docs/driver.md)");
-        const std::string& machine = t.text("--machine", "", "FILE", "The machine of virtual:dynamic, JSON");
+        const std::string& machine = t.other_file("--machine", "FILE", "The machine of virtual:dynamic, JSON");
         const double& patience = t.number("--patience", 10, "SECONDS",
                                           "A driver may answer so much later than the move takes", Range::positive());
         const std::string& layer_1 =
@@ -114,7 +114,7 @@ int main(int argc, char** argv)
                      Range::positive());
         const auto& cell = t.number_if_given(
             "--cell", "LENGTH", "Side of a cell of the stock; default: 1/64 of the wheel's width", Range::positive());
-        const std::string& trace = t.text("--trace", "", "FILE", "What the machine did and why, PCD, written ahead");
+        const std::string& trace = t.other_output("--trace", "What the machine did and why, PCD, written ahead");
         const std::string& resume =
             t.text("--resume", "", "TRACE", "Go on where the run that wrote this trace was cut off, and add to it");
         const bool& ascii = t.flag("--ascii", "Write PCDs as text");

@@ -38,12 +38,12 @@ int main(int argc, char** argv)
 {
     return tool_main(argc, argv, "Grind by hand: the operator steers, the machine keeps force and feed.", [](Tool& t) {
         const std::string& job_file = t.file("JOB", "Wheel, spring, feed and safe height, JSON");
-        const std::string& stock_file = t.required_text("--stock", "PART", "The part as it is: STL, PLY, OBJ or PCD");
+        const std::string& stock_file = t.required_file("--stock", "PART", "The part as it is: STL, PLY, OBJ or PCD");
         const auto& stock_units = t.length_unit("--stock-units", "Unit of PART, if it is not the job's");
-        const std::string& steer = t.required_text(
+        const std::string& steer = t.required_file(
             "--steer", "EVENTS",
             "The operator's stick: a joystick's device, the keys of /dev/tty, or a file or pipe of lines (- is stdin)");
-        const std::string& machine = t.text("--machine", "", "FILE", "A simulated machine with drives, JSON");
+        const std::string& machine = t.other_file("--machine", "FILE", "A simulated machine with drives, JSON");
         const std::string& gantry = t.text("--gantry", "", "exec:COMMAND", "Or a driver (docs/driver.md)");
         const double& patience = t.number("--patience", 10, "SECONDS",
                                           "A driver may answer so much later than the move takes", Range::positive());
@@ -52,7 +52,7 @@ int main(int argc, char** argv)
         const auto& floor = t.number_if_given("--lowest", "Z", "The drives go no lower; default: as far as they reach");
         const auto& cell = t.number_if_given(
             "--cell", "LENGTH", "Side of a cell of the stock; default: 1/64 of the wheel's width", Range::positive());
-        const std::string& trace = t.text("--trace", "", "FILE", "What the machine did, PCD, written ahead");
+        const std::string& trace = t.other_output("--trace", "What the machine did, PCD, written ahead");
         const bool& ascii = t.flag("--ascii", "Write PCDs as text");
         t.example("fettle-manual jobs/wang1.json --stock <(fettle-part parts/wang1.json) "
                   "--machine machines/full_scale.json --steer steering/h.txt --report report.json > ground.pcd",

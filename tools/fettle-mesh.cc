@@ -28,14 +28,15 @@ int main(int argc, char** argv)
     return tool_main(argc, argv, "Evaluate a surface at given points or on a grid.", [](Tool& t) {
         const std::string& surface_file = t.input("SURFACE", "Fitted surface, JSON");
         const std::string& at =
-            t.text("--at", "", "FILE", "Points, PCD: their x y get the surface's z, in their order");
+            t.other_file("--at", "FILE", "Points, PCD: their x y get the surface's z, in their order");
         const std::optional<Units::Length>& at_units =
             t.length_unit("--at-units", "Unit of the points, if not the surface's");
         const std::optional<double>& step =
             t.number_if_given("--step", "LENGTH", "Spacing of a grid", Range::positive());
-        const std::string& within = t.text("--within", "", "JOB",
-                                           "The grid covers the job's anomaly, along W, in the job's units; else the "
-                                           "touches' bounding box");
+        const std::string& within =
+            t.other_file("--within", "JOB",
+                         "The grid covers the job's anomaly, along W, in the job's units; else the "
+                         "touches' bounding box");
         const bool& with_sigma = t.flag("--sigma", "Add the height's standard deviation as field sigma");
         const bool& stl = t.flag("--stl", "Write the grid as triangles, STL");
         t.example("fettle-sample jobs/hammer.json --on scans/hammer.stl | fettle-fit jobs/hammer.json | fettle-mesh "

@@ -75,7 +75,7 @@ int main(int argc, char** argv)
             "PATH",
             "Points of the tool tip with, if they vary, feeds (field feed, 0: rapid), PCD; or a program, G-code");
         const std::string& stock =
-            t.required_text("--stock", "STOCK", "box:x0,y0,z0,x1,y1,z1, or STL, PLY, OBJ or PCD");
+            t.required_file("--stock", "STOCK", "box:x0,y0,z0,x1,y1,z1, or STL, PLY, OBJ or PCD");
         const auto& stock_units = t.length_unit("--stock-units", "Unit of the stock's file, if it is not mm");
         const std::string& cutter_text =
             t.required_text("--cutter", "CUTTER",
@@ -84,8 +84,8 @@ int main(int argc, char** argv)
         const auto& tolerance = t.number_if_given(
             "--tolerance", "MM", "Instead of --step: cells so small that errors of the grid are within it",
             Range::positive());
-        const std::string& design = t.text(
-            "--design", "", "FILE", "With --tolerance: the design, whose curvatures and slopes count; else a plane");
+        const std::string& design = t.other_file(
+            "--design", "FILE", "With --tolerance: the design, whose curvatures and slopes count; else a plane");
         const auto& design_units = t.length_unit("--design-units", "Unit of the design, if it is not mm");
         const bool& published = t.flag("--as-published", "With --tolerance: without regard to slopes");
         const std::string& points = t.choice(
@@ -101,9 +101,9 @@ int main(int argc, char** argv)
             "--refine", 0,
             "Where the machined surface is steeper than 60 degrees: halve the way between cells so often", 0, 5);
         const bool& pcd = t.flag("--pcd", "Write a point for each cell, field removed, instead of triangles");
-        const std::string& trace = t.text("--trace", "", "FILE",
-                                          "Every move: where it ends, when, and what it met (fields t, feed, removed, "
-                                          "volume, holder, place), PCD");
+        const std::string& trace =
+            t.other_output("--trace", "Every move: where it ends, when, and what it met (fields t, feed, removed, "
+                                      "volume, holder, place), PCD");
         const bool& ascii = t.flag("--ascii", "PCDs as text");
         t.example(
             "fettle-mill programs/pocket.nc --stock box:0,0,-12,80,60,0 --cutter ball:6 --step 0.2 --holder 40,30 "

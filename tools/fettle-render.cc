@@ -27,7 +27,7 @@ int main(int argc, char** argv)
                        "Towards the eye, in the machine frame; Z is up in the picture, or Y when looking along Z");
             const std::string& title = t.text("--title", "", "TEXT", "Headline");
             const std::string& within =
-                t.text("--within", "", "JOB", "Draw this job's B and S; numbers are those inside B");
+                t.other_file("--within", "JOB", "Draw this job's B and S; numbers are those inside B");
             const std::optional<Units::Length>& stated =
                 t.length_unit("--file-units", "Of POINTS: mm, in, m [as the file says, else the job's, else mm]");
             t.example("fettle-part parts/wang1.json | fettle-render --within jobs/wang1.json -o wang1.png",

@@ -13,19 +13,19 @@ int main(int argc, char** argv)
         "Self-contained HTML, for the screen and for A4. Sections without their files are left out.";
     return tool_main(argc, argv, description, [](Tool& t) {
         const std::string& title = t.text("--title", "", "TEXT", "Headline");
-        const std::string& job = t.text("--job", "", "FILE", "Job, JSON [the plan's]");
-        const std::string& samples = t.text("--samples", "", "FILE", "Touches, PCD [the surface's]");
-        const std::string& surface = t.text("--surface", "", "FILE", "Desired surface, JSON [the plan's]");
-        const std::string& plan = t.text("--plan", "", "FILE", "Plan, JSON");
-        const std::string& grinding = t.text("--grinding", "", "FILE", "Report of fettle-grind, JSON");
-        const std::string& trace = t.text("--trace", "", "FILE", "Trace of fettle-grind, PCD");
-        const std::string& before = t.text("--before", "", "FILE", "The part before: mesh or cloud");
+        const std::string& job = t.other_file("--job", "FILE", "Job, JSON [the plan's]");
+        const std::string& samples = t.other_file("--samples", "FILE", "Touches, PCD [the surface's]");
+        const std::string& surface = t.other_file("--surface", "FILE", "Desired surface, JSON [the plan's]");
+        const std::string& plan = t.other_file("--plan", "FILE", "Plan, JSON");
+        const std::string& grinding = t.other_file("--grinding", "FILE", "Report of fettle-grind, JSON");
+        const std::string& trace = t.other_file("--trace", "FILE", "Trace of fettle-grind, PCD");
+        const std::string& before = t.other_file("--before", "FILE", "The part before: mesh or cloud");
         const auto& before_units = t.length_unit("--before-units", "Unit of the part before, if not the run's");
-        const std::string& after = t.text("--after", "", "FILE", "The part after: mesh or cloud");
-        const std::string& errors = t.text("--errors", "", "FILE", "Error map of fettle-compare, PCD");
-        const std::string& comparison = t.text("--comparison", "", "FILE", "Report of fettle-compare, JSON");
-        const std::string& alignment = t.text("--alignment", "", "FILE", "Report of fettle-align, JSON");
-        const std::string& form = t.text("--form", "", "FILE", "What fettle-form measured, JSON");
+        const std::string& after = t.other_file("--after", "FILE", "The part after: mesh or cloud");
+        const std::string& errors = t.other_file("--errors", "FILE", "Error map of fettle-compare, PCD");
+        const std::string& comparison = t.other_file("--comparison", "FILE", "Report of fettle-compare, JSON");
+        const std::string& alignment = t.other_file("--alignment", "FILE", "Report of fettle-align, JSON");
+        const std::string& form = t.other_file("--form", "FILE", "What fettle-form measured, JSON");
         t.example(
             "fettle-part parts/wang1.json | fettle-compare --to <(fettle-part parts/wang1.json --without-anomaly) "
             "--within jobs/wang1.json --report errors.json -o errors.pcd; "

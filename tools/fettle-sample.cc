@@ -98,10 +98,10 @@ int main(int argc, char** argv)
 {
     return tool_main(argc, argv, "Choose the touch points of a job and probe them on a part.", [](Tool& t) {
         const std::string& job_file = t.file("JOB", "The job, JSON");
-        const std::string& on =
-            t.text("--on", "", "SURFACE|gantry:exec:COMMAND",
-                   "Part to touch: mesh (STL, PLY, OBJ, OFF), cloud (PCD, PLY, XYZ), or what stands on a machine, "
-                   "through its driver (docs/driver.md)");
+        const std::string& on = t.other_file(
+            "--on", "SURFACE|gantry:exec:COMMAND",
+            "Part to touch: mesh (STL, PLY, OBJ, OFF), cloud (PCD, PLY, XYZ), or what stands on a machine, "
+            "through its driver (docs/driver.md)");
         const auto& part_unit = t.length_unit("--on-units", "Unit of that file, if it is not the job's");
         const std::string& noise_text =
             t.text("--noise", "", "uniform:A|normal:A",

@@ -15,12 +15,12 @@ int main(int argc, char** argv)
     return tool_main(argc, argv, "The stock under the simulated head of LinuxCNC: before and after.", [](Tool& t) {
         const std::string& plan_file =
             t.file("PLAN", "The plan whose job the machine is set up for, or a job without a plan, to be probed, JSON");
-        const std::string& stock_file = t.required_text("--stock", "PART", "The part as it is: STL, PLY, OBJ or PCD");
+        const std::string& stock_file = t.required_file("--stock", "PART", "The part as it is: STL, PLY, OBJ or PCD");
         const auto& stock_units = t.length_unit("--stock-units", "Unit of PART, if it is not the job's");
         const auto& cell = t.number_if_given(
             "--cell", "LENGTH", "Side of a cell of the stock; default: 1/64 of the wheel's width", Range::positive());
         const std::string& after =
-            t.text("--after", "", "FILE", "What the machine left (run/stock.ground): the part in the end, PCD");
+            t.other_file("--after", "FILE", "What the machine left (run/stock.ground): the part in the end, PCD");
         const bool& ascii = t.flag("--ascii", "Text instead of binary");
         t.example("fettle-stock-linuxcnc jobs/wang3.json --stock <(fettle-part parts/wang3.json) > stock",
                   "part 3, to be touched by machines/linuxcnc/start DIR stock");

@@ -61,7 +61,7 @@ int main(int argc, char** argv)
         const std::string& path =
             t.input("DESIGN", "Patches (JSON), a mesh (STL, PLY, OBJ, OFF) or a scan with normals");
         const auto& unit = t.length_unit("--file-units", "Unit of a mesh or scan, if it is not mm");
-        const std::string& stock_path = t.required_text("--stock", "FILE", "The stock: a mesh or a scan");
+        const std::string& stock_path = t.required_file("--stock", "FILE", "The stock: a mesh or a scan");
         const auto& stock_unit = t.length_unit("--stock-units", "Unit of the stock, if it is not mm");
         SurfelSampling options;
         const double& spacing =

@@ -143,20 +143,21 @@ int main(int argc, char** argv)
     return tool_main(argc, argv, "Make a job from points shown on a gantry, or picked on a scan.", [](Tool& t) {
         const std::string& like = t.file("JOB", "Settings to start from: any job, JSON; its boundaries are replaced");
         const std::string& anomaly =
-            t.text("--anomaly", "", "POINTS", "Around the anomaly, picked in CloudCompare or pcd_viewer: their text");
-        const std::string& sampling = t.text("--sampling", "", "POINTS", "Around what may be touched");
+            t.other_file("--anomaly", "POINTS", "Around the anomaly, picked in CloudCompare or pcd_viewer: their text");
+        const std::string& sampling = t.other_file("--sampling", "POINTS", "Around what may be touched");
         const auto& file_units = t.length_unit("--file-units", "Unit of POINTS, if it is not the job's");
         const GantryOptions on = {
             t.text("--gantry", "", "virtual|virtual:dynamic|exec:COMMAND",
                    "Or shown on a machine: a simulated gantry, one with drives, or a driver (docs/driver.md). Settings "
                    "that are not given are asked for on stdin"),
-            t.text("--machine", "", "FILE", "The machine of virtual:dynamic, JSON"),
-            t.text("--stock", "", "PART", "The part beneath a virtual gantry: STL, PLY, OBJ or PCD"),
+            t.other_file("--machine", "FILE", "The machine of virtual:dynamic, JSON"),
+            t.other_file("--stock", "PART", "The part beneath a virtual gantry: STL, PLY, OBJ or PCD"),
             t.length_unit("--stock-units", "Unit of PART, if it is not the job's"),
-            t.text("--steer", "", "EVENTS",
-                   "The operator's stick: a joystick's device (button 2: record, 3: next), the keys of /dev/tty, or a "
-                   "file or pipe of lines "
-                   "(docs/formats.md); -: stdin, and nothing is asked"),
+            t.other_file(
+                "--steer", "EVENTS",
+                "The operator's stick: a joystick's device (button 2: record, 3: next), the keys of /dev/tty, or a "
+                "file or pipe of lines "
+                "(docs/formats.md); -: stdin, and nothing is asked"),
             t.number_if_given("--lowest", "Z", "The probe goes no lower; default: as far as the machine reaches"),
             t.number("--patience", 10, "SECONDS", "A driver may answer so much later than the move takes",
                      Range::positive())};

@@ -68,7 +68,7 @@ int main(int argc, char** argv)
         const std::string& machined_path =
             t.input("MACHINED", "Triangles that face up (fettle-mill): STL, PLY, OBJ or OFF");
         const auto& unit = t.length_unit("--file-units", "Unit of MACHINED, if it is not mm");
-        const std::string& design_path = t.required_text("--design", "FILE", "The design: STL, PLY, OBJ or OFF");
+        const std::string& design_path = t.required_file("--design", "FILE", "The design: STL, PLY, OBJ or OFF");
         const auto& design_unit = t.length_unit("--design-units", "Unit of the design, if it is not mm");
         const double& tolerance = t.number("-t,--tolerance", 0.05, "MM", "Most error either way", Range::positive());
         const auto& inner =
@@ -85,12 +85,12 @@ int main(int argc, char** argv)
         const std::string& axis_text =
             t.text("--axis", "0,0,1", "X,Y,Z",
                    "Of the tool that machined (fettle-mill): what is said of Z above goes along it");
-        const std::string& csv = t.text("--csv", "", "FILE", "Data sheet: triangle, centre, d, mu, class");
-        const std::string& z_file = t.text("--z-errors", "", "FILE", "Errors along Z at the machined vertices, PCD");
+        const std::string& csv = t.other_output("--csv", "Data sheet: triangle, centre, d, mu, class");
+        const std::string& z_file = t.other_output("--z-errors", "Errors along Z at the machined vertices, PCD");
         const std::string& path_file =
-            t.text("--correct", "", "PATH", "What fettle-mill machined along: to be corrected by the errors");
-        const std::string& corrected_file = t.text(
-            "--corrected", "", "FILE", "The corrected path: of a program a program, of points a PCD of the tips");
+            t.other_file("--correct", "PATH", "What fettle-mill machined along: to be corrected by the errors");
+        const std::string& corrected_file = t.other_output(
+            "--corrected", "The corrected path: of a program a program, of points a PCD of the tips", &path_file);
         const std::string& cutter_text = t.text("--cutter", "", "CUTTER", "The cutter that machined along PATH");
         const std::string& points = t.choice("--points", "cl", {"cl", "cc"}, "What points of PATH are (fettle-mill)");
         const double& feed = t.number("--feed", 10, "MM/S", "Feed of points without one", Range::positive());

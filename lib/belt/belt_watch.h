@@ -1,8 +1,8 @@
 #pragma once
 
 #include "belt/belt_grinding.h"
+#include "core/descriptor.h"
 
-#include <fstream>
 #include <string>
 
 namespace fettle {
@@ -19,11 +19,11 @@ class BeltWatch {
     void write(const BeltRun& run);
 
   private:
-    void check() const;
+    void append(const std::string& lines);
 
     std::string path_;
     double mm_;
-    std::ofstream file_;
+    Descriptor file_;
     std::size_t lines_ = 0;
 };
 

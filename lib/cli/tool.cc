@@ -11,8 +11,12 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <csignal>
 #include <deque>
+#include <fcntl.h>
+#include <filesystem>
 #include <iostream>
+#include <list>
 #include <map>
 #include <unistd.h>
 
@@ -32,7 +36,23 @@ std::string one_line(std::string message)
     return message;
 }
 
+// Where stdin, stdout or stderr is closed, the next file that is opened would be taken for it: something else goes
+// there, of which reading, or writing, fails as it should.
+void keep_standard_files_apart()
+{
+    for (const int number : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+        if (fcntl(number, F_GETFD) == -1) open("/dev/null", number == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+}
+
 } // namespace
+
+/// An output besides the bulk's; nothing happens to its file before something is written.
+struct Other {
+    explicit Other(const std::string& name) : path(name), file(name) {}
+    std::string path;
+    OutputFile file;
+    bool is_used = false;
+};
 
 struct Tool::State {
     State(int count, char** values, const std::string& text) : app(text), argc(count), argv(values) {}
@@ -62,10 +82,50 @@ struct Tool::State {
     json::Value report;
     std::unique_ptr<tbb::global_control> thread_limit;
     std::unique_ptr<OutputFile> bulk;
-    std::deque<OutputFile> others;
+    bool has_bulk = false; ///< something is written there
+    std::list<Other> others;
+    struct Written {
+        const std::string* path;
+        const std::string* may_replace; ///< the input that it is made of, or null
+    };
+    std::vector<Written> written;          ///< the other outputs that are declared
     std::vector<std::string> output_names; ///< of all outputs so far
+    std::vector<const std::string*> read;  ///< names of the inputs
+    const std::string* bulk_input = nullptr;
+    bool has_output = true;
     std::vector<std::string> warnings;
+
+    /// @param may_replace  the input that it may take the place of, or null
+    void claim(const std::string& path, const std::string* may_replace);
+    /// Claims and opens all outputs.
+    void open_outputs();
 };
+
+void Tool::State::claim(const std::string& path, const std::string* may_replace)
+{
+    if (path == "/dev/null") return; // as often as one likes
+    for (const std::string& other : output_names)
+        if (same_file(path, other)) throw InputError(path == "-" ? "stdout" : path, "named for two outputs");
+    if (std::error_code unknown; std::filesystem::is_regular_file(path, unknown))
+        for (const std::string* input : read)
+            if (input != may_replace && same_file(path, *input))
+                throw InputError(path, "is an input, which would be lost: another name is needed for the output");
+    output_names.push_back(path);
+}
+
+void Tool::State::open_outputs()
+{
+    if (has_output) {
+        claim(output, bulk_input);
+        bulk = std::make_unique<OutputFile>(output);
+    }
+    written.push_back({&report_path, nullptr});
+    for (const auto& [path, may_replace] : written) {
+        if (path->empty()) continue;
+        claim(*path, may_replace);
+        others.emplace_back(*path);
+    }
+}
 
 Tool::Tool(int argc, char** argv, const std::string& description)
     : state_(std::make_unique<State>(argc, argv, description))
@@ -82,15 +142,36 @@ Tool::~Tool() = default;
 
 const std::string& Tool::file(const std::string& name, const std::string& help)
 {
-    std::string& value = state_->texts.emplace_back();
-    state_->app.add_option(name, value, help)->required()->type_name("FILE");
-    return value;
+    return required_file(name, "FILE", help);
 }
 
 const std::string& Tool::input(const std::string& name, const std::string& help)
 {
     std::string& value = state_->texts.emplace_back("-");
+    state_->read.push_back(state_->bulk_input = &value);
     state_->app.add_option(name, value, help + "; stdin if it is - or missing")->type_name("FILE");
+    return value;
+}
+
+const std::string& Tool::other_file(const std::string& names, const std::string& placeholder, const std::string& help)
+{
+    const std::string& value = text(names, "", placeholder, help);
+    state_->read.push_back(&value);
+    return value;
+}
+
+const std::string& Tool::required_file(const std::string& names, const std::string& placeholder,
+                                       const std::string& help)
+{
+    const std::string& value = required_text(names, placeholder, help);
+    state_->read.push_back(&value);
+    return value;
+}
+
+const std::string& Tool::other_output(const std::string& names, const std::string& help, const std::string* may_replace)
+{
+    const std::string& value = text(names, "", "FILE", help);
+    state_->written.push_back({&value, may_replace});
     return value;
 }
 
@@ -193,12 +274,15 @@ void Tool::example(const std::string& command, const std::string& meaning)
 
 void Tool::reference(const std::string& source) { state_->reference = "Reference: " + source; }
 
+void Tool::without_output() { state_->has_output = false; }
+
 void Tool::parse()
 {
     State& s = *state_;
-    s.app.add_option("-o,--output", s.output, "Output; appears whole or not at all")
-        ->type_name("FILE")
-        ->default_str("stdout");
+    if (s.has_output)
+        s.app.add_option("-o,--output", s.output, "Output; appears whole or not at all")
+            ->type_name("FILE")
+            ->default_str("stdout");
     s.app.add_option("--report", s.report_path, "Numbers about the run, JSON")->type_name("FILE");
     add_option(s.app, "--seed", "Seed of everything random",
                [&s](const std::string& text) { s.seed = whole_number_in(text, 0, kMostSeed); })
@@ -218,7 +302,7 @@ void Tool::parse()
     for (std::string& word : words) argv.push_back(word.data());
     check_options(s.app, static_cast<int>(argv.size()), argv.data());
     s.app.parse(static_cast<int>(argv.size()), argv.data());
-    s.output_names = {s.output};
+    s.open_outputs();
     if (s.threads > 0)
         s.thread_limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
                                                                static_cast<std::size_t>(s.threads));
@@ -230,16 +314,22 @@ bool Tool::verbose() const { return state_->verbose; }
 
 std::ostream& Tool::output()
 {
-    if (!state_->bulk) state_->bulk = std::make_unique<OutputFile>(state_->output);
+    state_->has_bulk = true;
     return state_->bulk->stream();
 }
 
+void Tool::claim(const std::string& path) { state_->claim(path, nullptr); }
+
 std::ostream& Tool::output_file(const std::string& path)
 {
-    for (const std::string& other : state_->output_names)
-        if (same_file(path, other)) throw InputError(path == "-" ? "stdout" : path, "named for two outputs");
-    state_->output_names.push_back(path);
-    return state_->others.emplace_back(path).stream();
+    std::list<Other>& others = state_->others;
+    auto at = std::find_if(others.begin(), others.end(), [&](const Other& other) { return other.path == path; });
+    if (at == others.end()) {
+        claim(path);
+        at = others.emplace(others.end(), path);
+    }
+    at->is_used = true;
+    return at->file.stream();
 }
 
 json::Value& Tool::report() { return state_->report; }
@@ -262,8 +352,12 @@ void Tool::finish()
 {
     State& s = *state_;
     if (!s.report_path.empty()) output_file(s.report_path) << s.report;
-    for (OutputFile& other : s.others) other.commit();
-    if (s.bulk) s.bulk->commit();
+    std::erase_if(s.others, [](const Other& other) { return !other.is_used; });
+    // All or none, as far as it goes: where one cannot be written none gets its name.
+    for (Other& other : s.others) other.file.settle();
+    if (s.has_bulk) s.bulk->settle();
+    for (Other& other : s.others) other.file.commit();
+    if (s.has_bulk) s.bulk->commit();
     if (s.quiet) return;
     for (const std::string& warning : s.warnings) std::cerr << s.name << ": warning: " << warning << '\n';
 }
@@ -272,6 +366,9 @@ int tool_main(int argc, char** argv, const std::string& description, const std::
 {
     std::string message;
     std::string name = "fettle";
+    keep_standard_files_apart();
+    std::signal(SIGXFSZ,
+                [](int) {}); // a file that may not grow is a failed write; programs that are started get it anew
     try {
         Tool tool(argc, argv, description);
         name = tool.state_->name;

@@ -33,6 +33,18 @@ class Tool {
     /// The bulk input, after the named files; "-" or nothing is stdin.
     const std::string& input(const std::string& name, const std::string& help);
 
+    /// A file that an option names, and that is read; it may be left out. What goes on stdin is the bulk input, or "-"
+    /// here.
+    const std::string& other_file(const std::string& names, const std::string& placeholder, const std::string& help);
+    /// As other_file, but it must be given.
+    const std::string& required_file(const std::string& names, const std::string& placeholder, const std::string& help);
+
+    /// A file that an option names, and that is written with output_file(); it may be left out. parse() looks whether
+    /// it can be, before any work.
+    /// @param may_replace  the input that it is made of and whose place it may take, if there is one
+    const std::string& other_output(const std::string& names, const std::string& help,
+                                    const std::string* may_replace = nullptr);
+
     const bool& flag(const std::string& names, const std::string& help);
     const double& number(const std::string& names, double otherwise, const std::string& unit, const std::string& help,
                          const Range& range = {});
@@ -57,6 +69,9 @@ class Tool {
     /// The paper and its section or equations, for the help.
     void reference(const std::string& source);
 
+    /// stdout is a conversation: there is no -o.
+    void without_output();
+
     /// Reads the command line. After it nothing can be declared.
     void parse();
 
@@ -67,7 +82,12 @@ class Tool {
     /// all.
     std::ostream& output();
     /// Another output, named by an option; whole or not at all, too.
+    /// @throws InputError as claim()
     std::ostream& output_file(const std::string& path);
+    /// A file that is written by the work itself.
+    /// @throws InputError if it is another output, or an input: that would be lost. Only the bulk output may take the
+    /// place of the bulk input.
+    void claim(const std::string& path);
     /// Numbers about the run, written where --report says.
     json::Value& report();
 

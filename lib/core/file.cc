@@ -24,6 +24,8 @@ Descriptor open_to_read(const std::string& path)
 {
     Descriptor file(path == "-" ? dup(STDIN_FILENO) : open(path.c_str(), O_RDONLY | O_CLOEXEC));
     if (!file.is_open()) fail(path, "cannot open");
+    if (path == "-" && isatty(file.get()) != 0)
+        throw InputError(display_name(path), "is a terminal: give the name of a file, or what it holds through a pipe");
     return file;
 }
 

@@ -10,7 +10,8 @@
 namespace fettle {
 
 /// All bytes of a file, a FIFO or stdin ("-").
-/// @throws InputError if it cannot be opened or read (the reason is named), or is a directory
+/// @throws InputError if it cannot be opened or read (the reason is named), is a directory, or is stdin and that a
+/// terminal, from which nobody types it
 std::string read_whole(const std::string& path);
 
 /// A file, a FIFO or stdin ("-") that can be read anywhere, by several threads at once. What cannot be sought is copied
@@ -40,6 +41,10 @@ std::string display_name(const std::string& path);
 /// Do two names mean the same file, which need not exist? "-" is itself alone.
 bool same_file(const std::string& a, const std::string& b);
 
+/// The file that a name leads to, through links: what takes its place leaves them as they are.
+/// @throws InputError if there is none
+std::string link_target(const std::string& path);
+
 /// A file that appears whole or not at all: what is written goes to an unnamed file in the same folder, which commit()
 /// syncs and gives the name. A link stays one: the file it names is replaced. A target that exists and is no regular
 /// file (/dev/null, a FIFO) and stdout ("-") get nothing before commit(). Without commit(), nothing is left, even if
@@ -54,7 +59,11 @@ class OutputFile {
 
     /// Throws InputError itself if something cannot be written (disk full).
     std::ostream& stream();
+    /// What is written goes to the disk, though without its name yet: commit() then finds room. Nothing can be written
+    /// after it.
     /// @throws InputError if something cannot be written
+    void settle();
+    /// @throws InputError if something cannot be written; binary data to a terminal
     void commit();
 
   private:

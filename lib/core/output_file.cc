@@ -15,9 +15,9 @@ namespace fettle {
 
 namespace {
 
-[[noreturn]] void fail(const std::string& name, int reason = errno)
+[[noreturn]] void fail(const std::string& name, int reason = errno, const std::string& doing = "cannot write")
 {
-    throw InputError(name, std::string("cannot write: ") + std::strerror(reason));
+    throw InputError(name, doing + ": " + std::strerror(reason));
 }
 
 /// Bytes that are held, and go to an unnamed file where `place` is once they are many.
@@ -29,13 +29,13 @@ class Held : public std::streambuf {
     void keep_at(const std::string& place)
     {
         file_ = open_unnamed(place);
-        if (!file_.is_open()) fail(name_);
+        if (!file_.is_open()) fail(name_, errno, doing_);
     }
 
     /// All that was written to the unnamed file, if there is one.
     const Descriptor& spill()
     {
-        if (!write_all(file_, held())) fail(name_);
+        if (!write_all(file_, held())) fail(name_, errno, doing_);
         setp(room_.data(), end());
         return file_;
     }
@@ -46,7 +46,10 @@ class Held : public std::streambuf {
   protected:
     int_type overflow(int_type c) override
     {
-        if (!is_spilled()) keep_at(scratch_path());
+        if (!is_spilled()) {
+            doing_ = "cannot copy to " + scratch_path();
+            keep_at(scratch_path());
+        }
         const off_t from = lseek(file_.get(), 0, SEEK_CUR);
         spill();
         // What goes to the disk already, commit() need not wait for.
@@ -61,6 +64,7 @@ class Held : public std::streambuf {
     char* end() { return room_.data() + room_.size(); }
 
     std::string name_;
+    std::string doing_ = "cannot write"; ///< what fails, for messages
     std::vector<char> room_;
     Descriptor file_;
 };
@@ -90,7 +94,6 @@ bool publish(const Descriptor& file, const std::string& target)
     const bool exists = stat(target.c_str(), &status) == 0;
     const std::string here = "/proc/self/fd/" + std::to_string(file.get()), name = working_name(target);
     unlink(name.c_str()); // of a program that had the same number and was killed
-    if (fsync(file.get()) != 0) return false;
     // Where unnamed files cannot be given a name, a copy can.
     const bool named =
         linkat(AT_FDCWD, here.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0 || copy_to(name, file);
@@ -104,6 +107,14 @@ bool publish(const Descriptor& file, const std::string& target)
 }
 
 } // namespace
+
+std::string link_target(const std::string& path)
+{
+    std::error_code unresolved;
+    std::string target = std::filesystem::canonical(path, unresolved).string();
+    if (unresolved) fail(display_name(path), unresolved.value());
+    return target;
+}
 
 struct OutputFile::State {
     explicit State(const std::string& path) : name(path == "-" ? "stdout" : display_name(path)) {}
@@ -127,9 +138,7 @@ OutputFile::OutputFile(const std::string& path) : state_(std::make_unique<State>
         if (!s.file.is_open()) fail(s.name);
         return;
     }
-    std::error_code unresolved;
-    s.target = exists ? std::filesystem::canonical(path, unresolved).string() : path;
-    if (unresolved) fail(s.name, unresolved.value());
+    s.target = exists ? link_target(path) : path;
     s.held.keep_at(s.target);
 }
 
@@ -137,12 +146,21 @@ OutputFile::~OutputFile() = default;
 
 std::ostream& OutputFile::stream() { return state_->stream; }
 
+void OutputFile::settle()
+{
+    State& s = *state_;
+    if (!s.target.empty() && fsync(s.held.spill().get()) != 0) fail(s.name);
+}
+
 void OutputFile::commit()
 {
     State& s = *state_;
+    settle();
     bool written = true;
     if (!s.target.empty())
         written = publish(s.held.spill(), s.target);
+    else if (isatty(s.file.get()) != 0 && (s.held.is_spilled() || s.held.held().find('\0') != std::string_view::npos))
+        throw InputError(s.name, "is a terminal, and what goes there is binary: -o FILE, or a pipe");
     else if (s.held.is_spilled())
         written = copy_all(s.held.spill(), s.file) && s.file.close();
     else

@@ -6,6 +6,7 @@
 #include "core/text.h"
 #include "strategy/keys.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
@@ -69,8 +70,10 @@ bool Steering::next_line(std::string& line)
             return true;
         }
         const ssize_t n = read_some(file_, some, sizeof some);
-        if (n <= 0) return false;
-        pending_.append(some, static_cast<std::size_t>(n));
+        if (n < 0) throw InputError(path_, std::string("cannot read: ") + std::strerror(errno));
+        if (n == 0 && pending_.empty()) return false;
+        if (n == 0) some[0] = '\n'; // which the last line may lack
+        pending_.append(some, static_cast<std::size_t>(std::max<ssize_t>(n, 1)));
     }
 }
 

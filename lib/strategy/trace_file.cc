@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstring>
 #include <fcntl.h>
+#include <filesystem>
 #include <sstream>
 #include <unistd.h>
 
@@ -54,13 +55,14 @@ TraceFile::TraceFile(const std::string& path, const Units& units, PcdEncoding en
     write_pcd_header(plain, to_cloud({}), 0, units, encoding);
     header_ = plain.str();
     start_ = header(0).size();
-    const std::string name = working_name(path);
+    const std::string target = std::filesystem::exists(path) ? link_target(path) : path;
+    const std::string name = working_name(target);
     ::unlink(name.c_str());
     file_ = Descriptor(::open(name.c_str(), O_CREAT | O_EXCL | O_RDWR | O_CLOEXEC, 0666));
     if (!file_.is_open()) fail(path);
     std::string all = header(count_);
     for (const TraceRow& row : rows) all += text(row);
-    const bool written = write_all(file_, all) && ::rename(name.c_str(), path.c_str()) == 0;
+    const bool written = write_all(file_, all) && ::rename(name.c_str(), target.c_str()) == 0;
     if (!written) {
         const int reason = errno;
         ::unlink(name.c_str());

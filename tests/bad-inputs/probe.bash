@@ -1,6 +1,6 @@
 # What every tool is tried with: bad files in every place where it reads one. To be sourced by the cases.
 #
-#   good                      makes good files for all the other places
+#   good [STEP]               makes good files for all the other places
 #   try R|S|G NAME COMMAND…   runs a command that reads the file NAME.
 #                             R: it must be refused: status 2, one line on stderr that names the file, nothing on stdout.
 #                             S: it may be read: status 0 or 1; or it is refused, though not for the file as such.
@@ -61,7 +61,7 @@ rows() { # < x y z a line: with values for the other fields
     awk '{ print $0, "0 0 1 1 0 0 0", NR % 2 + 1, NR % 4, 0.01, 0.02, 0.5, NR, 1, 1, 0, 5, 10, "0 0 0 0 0 0 0" }'
 }
 
-good() {
+good() { # STEP: mm between points [3]
     cp -r "$SAMPLES/robots/irb1400.json" robot.json
     cp "$SAMPLES/machines/full_scale.json" machine.json
     cp "$SAMPLES/wheels/rubber.json" wheel.json
@@ -69,7 +69,7 @@ good() {
         "anomaly": [[10, 10, 5], [20, 10, 5], [20, 20, 5], [10, 20, 5]], "sampling": [[2, 2, 5], [28, 2, 5], [28, 28, 5], [2, 28, 5]],
         "wheel": {"radius": 10, "width": 5, "min_radius": 5}, "feed": {"rate": 20, "step_over": 4}, "force": {"min": 20, "max": 60, "stiffness": 35}}' >job.json
     echo '{"kind": "surface", "units": {"length": "mm"}, "shape": {"type": "plane", "origin": [0, 0], "z0": 5, "slope": [0, 0]}}' >surface.json
-    awk 'BEGIN { for (i = 0; i <= 30; i += 3) for (j = 0; j <= 30; j += 3) print i, j, 5 + (i == 15 && j == 15) * 0.2 }' | rows | pcd "$kFields" >good.pcd
+    awk -v step="${1:-3}" 'BEGIN { n = int(30 / step + 0.5); for (i = 0; i <= n; i++) for (j = 0; j <= n; j++) print i * step, j * step, 5 + (i * 2 == n && j * 2 == n) * 0.2 }' | rows | pcd "$kFields" >good.pcd
     fettle-sample job.json --on good.pcd >samples.pcd
     fettle-fit job.json samples.pcd >fit.json
     fettle-plan job.json surface.json >plan.json

@@ -41,7 +41,9 @@ tail -1 whole.csv | tr , ' ' | { read -r point t gouge within undercut mean rms 
 [ "$(cut -d, -f4 whole.csv | sort -u | wc -l)" -gt 5 ]
 refused() { "$HERE/../refuses" "$@"; }
 refused 'run.journal: this is the journal of another run' fettle-belt plate.pcd --wheel wheel.json --path path.pcd --feed 0.2 --journal run.journal
-refused 'path.pcd: this is no journal of fettle-belt' fettle-belt plate.pcd --wheel wheel.json --path path.pcd --feed 0.003 --journal path.pcd
+cp path.pcd other.pcd
+refused 'other.pcd: this is no journal of fettle-belt' fettle-belt plate.pcd --wheel wheel.json --path path.pcd --feed 0.003 --journal other.pcd
+refused 'path.pcd: is an input, which would be lost' fettle-belt plate.pcd --wheel wheel.json --path path.pcd --feed 0.003 --journal path.pcd
 head -c 5000 run.journal > short.journal
 refused 'short.journal: ' fettle-belt plate.pcd --wheel wheel.json --path path.pcd --feed 0.003 --journal short.journal
 # A count in it that is none, or more than there is: where the next point, and the sizes of the arrays, stand.

@@ -1,0 +1,41 @@
+# Killed at any moment, by KILL, TERM or INT, a tool leaves its outputs as they were or all of them whole: never a part of a file, and no
+# other file, but after KILL perhaps a hidden one, which is in nobody's way. Exceptions are what is written ahead, line by line: traces of
+# machines, --watch; and the journal, which is there to go on from (tests/fettle-belt/journal.sh, tests/fettle-grind/resume.sh).
+# shellcheck source=tests/robustness/tools.bash
+. "$HERE/tools.bash"
+inputs
+mkdir place
+killed=0
+for name in $names; do
+    command_of "$name"
+    outputs once
+    begun=$(date +%s%N)
+    "fettle-$name" "${command[@]}" "${named[@]}" -q >out 2>err <<<"$lines" || say "$(cat err)" "$name"
+    took=$((($(date +%s%N) - begun) / 1000)) # us
+    outputs place
+    for moment in '3 KILL' '6 TERM' '8 INT' '9 KILL'; do
+        read -r tenths signal <<<"$moment"
+        rm -rf place/* place/.[!.]*
+        for option in "${bulk[@]}" --report "${writes[@]}"; do [ "$option" = --journal ] || echo 'what was there' >"place/$option"; done
+        status=0
+        after=$(awk -v t=$((took * tenths / 10)) 'BEGIN { printf "%.6f", t / 1e6 }')
+        { timeout -s $signal "$after" "fettle-$name" "${command[@]}" "${named[@]}" -q >out 2>err <<<"$lines"; } 2>said || status=$?
+        tried=$((tried + 1))
+        [ $status = 0 ] || killed=$((killed + 1))
+        [ ! -s err ] || say "said $(cat err)" "$name $moment"
+        for option in "${bulk[@]}" --report "${writes[@]}"; do
+            case "$name $option" in 'belt --watch' | 'belt --journal' | 'grind --trace' | 'manual --trace') continue ;; esac
+            cmp -s "place/$option" "once/$option" || grep -qx 'what was there' "place/$option" || say "$option is half-written" "$name $moment"
+        done
+        hidden=$(find place -name '.*' ! -name place)
+        [ -z "$hidden" ] || [ $signal = KILL ] || say "left $hidden" "$name $moment"
+    done
+    # What a run with this number left when it was killed is in nobody's way.
+    [ ${#bulk[@]} = 1 ] || continue
+    elsewhere -o place/-o
+    bash -c ': >place/.fettle-$$--o; exec "$@"' - "fettle-$name" "${command[@]}" "${named[@]}" -q >out 2>err || say "$(cat err)" "$name"
+    cmp -s place/-o once/-o && [ -z "$(find place -name '.*--o')" ] || say 'is hindered by what was left' "$name"
+done
+echo "$killed were killed before their end"
+[ $killed -ge 20 ]
+all_tried 110

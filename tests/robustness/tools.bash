@@ -1,0 +1,86 @@
+# A good command for every tool: what it reads, and all that it can write. To be sourced by the cases; tests/robustness/table.sh
+# asserts that no tool and no option that names a file is left out.
+#
+#   inputs [STEP]    makes the files that the commands read, with points so many mm apart [3]
+#   for name in $names; do command_of NAME; …
+#                    command   its words, without outputs; the last is the input that may come from stdin, if it has one
+#                    bulk      -o; nothing if stdout is a conversation
+#                    writes    options that name an output each, besides -o and --report
+#                    lines     what it is told on stdin
+# shellcheck source=tests/bad-inputs/probe.bash
+. "$HERE/../bad-inputs/probe.bash"
+
+# fettle-gantry-linuxcnc is for a machine that runs: tests/linuxcnc.
+names='align arm assess belt collide compare contact diff estimate feed finish fit form gantry-virtual grind manual margin mesh mill part path
+    plan render report sample stock-linuxcnc surfel teach verify'
+
+inputs() { # STEP
+    good "$@"
+    echo '{"kind": "part", "units": {"length": "mm"}, "surface": {"type": "plane", "point": [0, 0, 5]}, "region": {"x": [-20, 20], "y": [-20, 20]},
+        "step": 1, "anomalies": [{"type": "hill", "centre": [0, 0], "semi_axes": [4, 3], "height": 1}]}' >part.json
+    fettle-surfel plate.stl --stock plate.stl --spacing 4 -q -o work.pcd
+    awk 'BEGIN { for (i = 0; i < 9; i++) print 10 + 2 * i, 10, 5 }' | rows | pcd "$kFields" >rows.pcd
+    cp "$SAMPLES/paths/keel.pcd" tips.pcd
+    printf '0 0 1 up\n0.1 0 -1\n0.4 end\n' >steer.txt
+    printf '10,10,5\n20,10,5\n20,20,5\n10,20,5\n' >picked.txt
+}
+
+command_of() { # NAME
+    writes=()
+    bulk=(-o)
+    lines=
+    case $1 in
+    align) command=(--to plate.stl --near good.pcd) writes=(--transform-out) ;;
+    arm) command=(robot.json --inverse --feed 50 tips.pcd) writes=(--rapid) ;;
+    assess) command=(--lower -1 --upper 1 good.pcd) ;;
+    belt) command=(--path rows.pcd --wheel wheel.json --force 5 --lower -1 --upper 1 work.pcd) writes=(--trace --watch --journal) ;;
+    collide) command=(robot.json --workpiece plate.stl tips.pcd) writes=(--picture --chart) ;;
+    compare) command=(--to plate.stl good.pcd) writes=(--reverse --csv --histogram) ;;
+    contact) command=(--wheel wheel.json --at 15,15,5,1,0,0,0 --force 5 work.pcd) ;;
+    diff) command=(good.pcd good.pcd) ;;
+    estimate) command=(job.json samples.pcd) ;;
+    feed) command=(--on work.pcd --wheel wheel.json --force 5 --cells 8 --rounds 1 rows.pcd) ;;
+    finish) command=(--cutter ball:6 --step-over 4 plate.stl) ;;
+    fit) command=(job.json samples.pcd) ;;
+    form) command=(flatness good.pcd) ;;
+    gantry-virtual) command=(--stock good.pcd --cell 0.5 --machine machine.json plan.json) bulk=() writes=(--ground) lines='1 status' ;;
+    grind) command=(--stock good.pcd --cell 0.5 --gantry virtual:dynamic --machine machine.json plan.json) writes=(--trace) ;;
+    manual) command=(--stock good.pcd --cell 0.5 --machine machine.json --steer steer.txt job.json) writes=(--trace) ;;
+    margin) command=(job.json fit.json) ;;
+    mesh) command=(--at good.pcd surface.json) ;;
+    mill) command=(--stock box:0,0,0,9,9,9 --cutter ball:6 --step 0.5 path.nc) writes=(--trace) ;;
+    part) command=(part.json) ;;
+    path) command=(work.pcd) ;;
+    plan) command=(job.json surface.json) ;;
+    render) command=(good.pcd) ;;
+    report) command=(--job job.json --samples samples.pcd --errors good.pcd) ;;
+    sample) command=(--on good.pcd job.json) ;;
+    stock-linuxcnc) command=(--stock good.pcd --cell 0.5 plan.json) ;;
+    surfel) command=(--stock plate.stl --spacing 4 plate.stl) ;;
+    teach) command=(--anomaly picked.txt job.json) ;;
+    verify) command=(--design plate.stl --step 4 --correct path.nc --cutter ball:6 plate.stl) writes=(--csv --z-errors --corrected) ;;
+    *) return 1 ;;
+    esac
+}
+
+# Every output of the tool at hand in a folder of its own, named by its option.
+outputs() { # FOLDER: into `named`
+    local option
+    mkdir -p "$1"
+    named=()
+    for option in "${bulk[@]}" --report "${writes[@]}"; do named+=("$option" "$1/$option"); done
+}
+
+# All outputs to nowhere, but for one that goes to PLACE; without a journal, which would be read.
+elsewhere() { # OPTION PLACE: into `named`
+    local option
+    named=()
+    for option in "${bulk[@]}" --report "${writes[@]}"; do
+        if [ "$option" = "$1" ]; then named+=("$option" "$2"); elif [ "$option" != --journal ]; then named+=("$option" /dev/null); fi
+    done
+}
+
+# A refusal: status 2, one line on stderr that has the text in it, nothing on stdout.
+is_refusal() { # STATUS TEXT
+    [ "$1" = 2 ] && [ ! -s out ] && [ "$(wc -l <err)" = 1 ] && grep -qF -- "$2" err
+}
