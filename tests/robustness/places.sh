@@ -28,7 +28,7 @@ for name in $names; do
         [ "${nobody[*]}" = false ] || refused "$option" locked/out "${nobody[@]}"
     done
     bulk_input=
-    ! fettle-"$name" --help | grep -q 'stdin if it is - or missing' || bulk_input=${command[-1]}
+    if "fettle-$name" --help | grep -q 'stdin if it is - or missing'; then bulk_input=${command[-1]}; fi
     for input in "${command[@]}"; do
         [ -f "$input" ] || continue
         cp "$input" kept
