@@ -211,12 +211,13 @@ CloudFile parse_cloud(std::string_view bytes, const std::string& source, std::op
     bytes = without_mark(bytes, source);
     if (bytes.empty()) throw InputError(source, "empty, expected points");
     CloudFile file;
-    if (looks_like_ply(bytes))
-        file = {parse_ply(bytes, source).vertices, units.value_or(Units{})};
-    else if (looks_like_xyz(bytes))
-        file = {parse_xyz(bytes, source), units.value_or(Units{})};
-    else
+    const bool is_ply = looks_like_ply(bytes);
+    if (is_ply || looks_like_xyz(bytes)) {
+        file = {is_ply ? parse_ply(bytes, source).vertices : parse_xyz(bytes, source), units.value_or(Units{})};
+        check_names(file.cloud.fields, source);
+    } else {
         file = parse_pcd(bytes, source, units);
+    }
     convert_to_base(file.cloud, file.units);
     check_reach(file.cloud.xyz, source);
     return file;

@@ -256,6 +256,21 @@ std::size_t PcdHeader::values_per_row() const
     return sum;
 }
 
+void check_names(const std::vector<Field>& fields, const std::string& source)
+{
+    std::size_t length = std::string_view("FIELDS x y z").size();
+    for (const Field& field : fields) {
+        const auto is_control = [](char c) { return static_cast<unsigned char>(c) < ' '; };
+        if (field.name == "x" || field.name == "y" || field.name == "z" ||
+            std::any_of(field.name.begin(), field.name.end(), is_control))
+            throw InputError(source, "no field can be called " + in_quotes(field.name));
+        length += 1 + field.name.size();
+    }
+    if (length > kLongestLine)
+        throw InputError(source, "the names of the fields take " + std::to_string(length) + " bytes, at most " +
+                                     std::to_string(kLongestLine));
+}
+
 PcdHeader parse_pcd_header(std::string_view bytes, const std::string& source)
 {
     return HeaderParser(bytes, source).parse();

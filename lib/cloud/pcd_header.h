@@ -1,5 +1,6 @@
 #pragma once
 
+#include "cloud/cloud.h"
 #include "cloud/stated_units.h"
 
 #include <Eigen/Geometry>
@@ -49,6 +50,11 @@ PcdHeader parse_pcd_header(std::string_view bytes, const std::string& source);
 /// Refuses a binary body that is not as long as POINTS say. @param size  of the body in bytes  @param next  what
 /// follows the last point
 void check_binary_size(const PcdHeader& header, std::size_t size, std::string_view next, const std::string& source);
+
+/// Refuses fields that the header of a PCD could not name: after x, y or z, with a control character, or with all names
+/// longer than a line. Files of other formats may have such.
+/// @throws InputError with the field
+void check_names(const std::vector<Field>& fields, const std::string& source);
 
 /// Could these bytes be a PCD file: does the first line that is no comment begin with one of its words?
 bool looks_like_pcd(std::string_view bytes);

@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
@@ -14,6 +15,9 @@ namespace fettle {
 namespace {
 
 constexpr std::size_t kChunk = 1 << 18; // of a stream, bytes
+/// Longer first lines only JSON has: of PCD and PLY, whose own limit it is, and of all other texts they are short, and
+/// the first of these bytes in a binary STL hold zeros, in its count of triangles.
+constexpr std::size_t kLongestLine = 1 << 16;
 
 [[noreturn]] void fail(const std::string& path, const std::string& doing)
 {
@@ -29,6 +33,18 @@ Descriptor open_to_read(const std::string& path)
     return file;
 }
 
+/// Refuses what cannot become a file of ours before all of it is read.
+/// @param bytes  more than kLongestLine
+void check_first_line(std::string_view bytes, const std::string& path)
+{
+    const std::string_view head = bytes.substr(0, kLongestLine + 1);
+    const auto is_control = [](char c) { return static_cast<unsigned char>(c) < ' ' && c != '\t'; };
+    const std::size_t first = head.find_first_not_of(" \t\xef\xbb\xbf"); // after a byte order mark
+    const bool is_json = first != std::string_view::npos && (head[first] == '{' || head[first] == '[');
+    if (is_json || std::any_of(head.begin(), head.end(), is_control)) return;
+    throw InputError(display_name(path), "line 1: longer than " + std::to_string(kLongestLine) + " bytes");
+}
+
 } // namespace
 
 std::string display_name(const std::string& path) { return path == "-" ? "stdin" : path.empty() ? "''" : path; }
@@ -37,18 +53,16 @@ std::string read_whole(const std::string& path)
 {
     const Descriptor file = open_to_read(path);
     struct stat status = {};
-    std::string bytes;
-    // One byte more than the size: the read that finds the end then needs no room of its own.
+    std::string bytes, chunk(kChunk, '\0');
     if (fstat(file.get(), &status) == 0 && S_ISREG(status.st_mode))
-        bytes.reserve(static_cast<std::size_t>(status.st_size) + 1);
-    for (std::size_t size = 0;;) {
-        bytes.resize(std::max(bytes.capacity(), size + kChunk));
-        const ssize_t got = read_some(file, bytes.data() + size, bytes.size() - size);
+        bytes.reserve(static_cast<std::size_t>(status.st_size));
+    for (;;) {
+        const ssize_t got = read_some(file, chunk.data(), chunk.size());
         if (got < 0) fail(path, "cannot read");
-        size += static_cast<std::size_t>(got);
-        if (got > 0) continue;
-        bytes.resize(size);
-        return bytes;
+        if (got == 0) return bytes;
+        const bool was_short = bytes.size() <= kLongestLine;
+        bytes.append(chunk, 0, static_cast<std::size_t>(got));
+        if (was_short && bytes.size() > kLongestLine) check_first_line(bytes, path);
     }
 }
 
@@ -60,6 +74,9 @@ InputFile::InputFile(const std::string& path) : path_(path), file_(open_to_read(
     if (fstat(file_.get(), &status) == 0 && S_ISREG(status.st_mode) && start >= 0 && status.st_size > start) {
         start_ = static_cast<std::size_t>(start);
         size_ = static_cast<std::size_t>(status.st_size - start);
+        std::string head(std::min(size_, kLongestLine + 1), '\0');
+        read(0, head.data(), head.size());
+        if (head.size() > kLongestLine) check_first_line(head, path);
     } else {
         keep_stream();
     }
@@ -74,8 +91,10 @@ void InputFile::keep_stream()
         const ssize_t got = read_some(file_, chunk.data(), chunk.size());
         if (got < 0) fail(path_, "cannot read");
         if (got == 0) break;
+        const bool was_short = size_ <= kLongestLine;
         size_ += static_cast<std::size_t>(got);
         held_.append(chunk.data(), static_cast<std::size_t>(got));
+        if (was_short && size_ > kLongestLine) check_first_line(held_, path_);
         if (!copy.is_open() && held_.size() < kSmall) continue;
         const std::string scratch = scratch_path();
         if (!copy.is_open()) copy = open_unnamed(scratch);

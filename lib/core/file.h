@@ -10,8 +10,9 @@
 namespace fettle {
 
 /// All bytes of a file, a FIFO or stdin ("-").
-/// @throws InputError if it cannot be opened or read (the reason is named), is a directory, or is stdin and that a
-/// terminal, from which nobody types it
+/// @throws InputError if it cannot be opened or read (the reason is named), is a directory, is stdin and that a
+/// terminal, from which nobody types it, or begins with a line of text, which is not JSON, of more than 64 KiB: that is
+/// refused before the rest is read
 std::string read_whole(const std::string& path);
 
 /// A file, a FIFO or stdin ("-") that can be read anywhere, by several threads at once. What cannot be sought is copied

@@ -13,7 +13,8 @@
 namespace fettle {
 
 /// Four lanes, anywhere in memory. A comparison gives Mask4: all bits set where it holds, never for NaN.
-using Double4 = double __attribute__((vector_size(32), aligned(8), may_alias));
-using Mask4 = std::int64_t __attribute__((vector_size(32), aligned(8), may_alias));
+/// Old-fashioned typedefs: in others clang does not heed the alignment.
+typedef double Double4 __attribute__((vector_size(32), aligned(8), may_alias));
+typedef std::int64_t Mask4 __attribute__((vector_size(32), aligned(8), may_alias));
 
 } // namespace fettle

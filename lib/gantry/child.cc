@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
@@ -22,6 +23,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kLongestLine = 4096;
 constexpr double kGrace = 1;                  // s
+constexpr double kLongestWait = 1e6;          // s; what poll() counts in ms in an int
 constexpr std::chrono::milliseconds kLook{5}; // between two looks at a program that is to end
 
 double seconds_until(Clock::time_point end) { return std::chrono::duration<double>(end - Clock::now()).count(); }
@@ -76,8 +78,8 @@ bool Child::send(const std::string& line)
 
 Child::Heard Child::receive(double timeout, std::string& line)
 {
-    const Clock::time_point end =
-        Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(timeout));
+    const std::chrono::duration<double> most(std::min(timeout, kLongestWait));
+    const Clock::time_point end = Clock::now() + std::chrono::duration_cast<Clock::duration>(most);
     for (;;) {
         if (const std::size_t at = pending_.find('\n'); at != std::string::npos) {
             line = pending_.substr(0, at);
@@ -112,7 +114,7 @@ bool Child::wait(double timeout)
 
 std::string Child::ending()
 {
-    if (pid_ > 0 && !wait(kGrace)) return "closed its output";
+    if (group_ < 0 || (pid_ > 0 && !wait(kGrace))) return "closed its output";
     if (WIFSIGNALED(status_)) return "was killed by signal " + std::to_string(WTERMSIG(status_));
     return "ended with status " + std::to_string(WEXITSTATUS(status_));
 }

@@ -4,6 +4,7 @@
 
 #include <string>
 #include <sys/types.h>
+#include <utility>
 
 namespace fettle {
 
@@ -14,6 +15,8 @@ class Child {
     /// @param command  for the shell
     /// @throws InputError if it cannot be started
     explicit Child(const std::string& command);
+    /// Somebody who speaks already. @param socket  a stream's, where he is at the other end
+    explicit Child(Descriptor socket) : socket_(std::move(socket)) {}
     Child(const Child&) = delete;
     Child& operator=(const Child&) = delete;
     /// let_end() in a second.

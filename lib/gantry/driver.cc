@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace fettle {
 namespace {
@@ -30,6 +31,17 @@ std::string words(const Eigen::Vector3d& p) { return to_text(p.x()) + " " + to_t
 DriverGantry::DriverGantry(const std::string& command, const Job& job, double patience)
     : command_(command), child_(command), patience_(patience), most_force_(job.force.max)
 {
+    connect(job);
+}
+
+DriverGantry::DriverGantry(const std::string& name, Descriptor socket, const Job& job, double patience)
+    : command_(name), child_(std::move(socket)), patience_(patience), most_force_(job.force.max)
+{
+    connect(job);
+}
+
+void DriverGantry::connect(const Job& job)
+{
     const std::string told = ask("connect " + protocol::kVersion, kStartTime);
     const std::string version = protocol::kVersion + " ";
     if (told.rfind(version, 0) != 0) fail("speaks something else than " + protocol::kVersion);
@@ -38,6 +50,8 @@ DriverGantry::DriverGantry(const std::string& command, const Job& job, double pa
     } catch (const GantryFault& fault) {
         fail(fault.what());
     }
+    if (!(limits_.speed > 0 && (limits_.least.array() < limits_.most.array()).all()))
+        fail("has no range or no speed: '" + told + "'");
     if (job.force.max > limits_.force)
         throw InputError(job.source, "force.max is above the " + to_short_text(limits_.force) + " N of the machine");
     ask("limit " + to_text(job.force.max), 0);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/descriptor.h"
 #include "gantry/child.h"
 #include "gantry/gantry.h"
 #include "gantry/protocol.h"
@@ -21,6 +22,8 @@ class DriverGantry final : public Gantry {
     /// @param patience  how long an answer may take beyond the time of the move, s
     /// @throws InputError if the driver cannot be started, GantryFault if it is at fault
     DriverGantry(const std::string& command, const Job& job, double patience);
+    /// The same with a driver that runs already. @param name  for messages   @param socket  where it is spoken to
+    DriverGantry(const std::string& name, Descriptor socket, const Job& job, double patience);
     ~DriverGantry() override;
     DriverGantry(const DriverGantry&) = delete;
     DriverGantry& operator=(const DriverGantry&) = delete;
@@ -36,6 +39,7 @@ class DriverGantry final : public Gantry {
     const protocol::Limits& limits() const { return limits_; }
 
   private:
+    void connect(const Job& job);
     std::string ask(const std::string& command, double duration);
     double measure(const std::string& command, double duration);
     const GantryStatus& obey(const std::string& command, double duration);

@@ -12,6 +12,8 @@ namespace {
 
 /// The same angle but for the rounding of its text.
 constexpr double kSameAngle = 1e-9;
+/// No command is longer.
+constexpr std::size_t kLongestLine = 4096;
 
 class Server {
   public:
@@ -105,6 +107,10 @@ void serve(Gantry& gantry, const protocol::Limits& limits, const Job& job, const
     while (!server.over()) {
         const std::size_t end = pending.find('\n');
         if (end == std::string::npos) {
+            if (pending.size() > kLongestLine) {
+                server.let_go();
+                throw InputError("stdin", "a line of more than " + std::to_string(kLongestLine) + " bytes");
+            }
             const ssize_t n = read_some(in, some, sizeof some);
             if (n <= 0) return server.let_go(); // nobody speaks any more
             pending.append(some, static_cast<std::size_t>(n));

@@ -18,6 +18,8 @@ constexpr double kArcRounding = 0.0127;
 constexpr double kSameArc = 1e-4;
 /// Ends that are no farther apart than this turn (rad) are one: a whole turn.
 constexpr double kNoTurn = 1e-9;
+/// Chords of one arc: a whole turn of 8 m has so many.
+constexpr double kMostChords = 20000;
 constexpr double kTurn = 2 * std::numbers::pi;
 
 using Eigen::Vector2d;
@@ -60,7 +62,11 @@ std::vector<CutterMove> chords(const NcArc& arc, const Vector2d& centre, double 
     const double largest = std::max(first, last);
     // a chord over the angle α stands off by r (1 − cos α/2)
     const double most = kArcChord < largest ? 2 * std::acos(1 - kArcChord / largest) : kTurn / 2;
-    const int count = std::max(1, static_cast<int>(std::ceil(std::abs(turn) / most)));
+    const double needed = std::ceil(std::abs(turn) / most);
+    if (!(needed <= kMostChords))
+        throw InputError("an arc with a radius of " + to_short_text(largest) +
+                         " mm that is no level circle takes more than " + to_short_text(kMostChords) + " chords");
+    const int count = std::max(1, static_cast<int>(needed));
     const double begin = std::atan2(start.y(), start.x());
     std::vector<CutterMove> moves;
     Eigen::Vector3d at = arc.from;

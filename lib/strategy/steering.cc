@@ -20,6 +20,7 @@ namespace {
 constexpr double kFullWay = 32767; // of an axis
 /// A stick at rest does not stand quite in the middle.
 constexpr double kRest = 0.1;
+constexpr std::size_t kLongestLine = 4096;
 
 } // namespace
 
@@ -69,6 +70,9 @@ bool Steering::next_line(std::string& line)
             ++lines_;
             return true;
         }
+        if (pending_.size() > kLongestLine)
+            throw InputError(path_, "line " + std::to_string(lines_ + 1) + ": longer than " +
+                                        std::to_string(kLongestLine) + " bytes");
         const ssize_t n = read_some(file_, some, sizeof some);
         if (n < 0) throw InputError(path_, std::string("cannot read: ") + std::strerror(errno));
         if (n == 0 && pending_.empty()) return false;
@@ -104,7 +108,8 @@ void Steering::read_next()
         next_.button = parts[1] == "record" ? Button::record : parts[1] == "next" ? Button::next : Button::none;
         if (next_.end || next_.button != Button::none) return;
     }
-    next_.way << number(1), number(2);
+    const double x = number(1), y = number(2); // either may throw, which a row of Eigen's does not survive half-filled
+    next_.way = {x, y};
     next_.press = parts.size() == 3;
     if (parts.size() > 3 && !(parts.size() == 4 && parts[3] == "up")) number(parts.size());
 }

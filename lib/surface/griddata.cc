@@ -159,7 +159,8 @@ Griddata make_griddata(const Eigen::Matrix3Xd& points, double spacing, double an
     data.col(0) = stage.values * z;
     data.rightCols<2>() = Eigen::Map<const Eigen::Matrix2Xd>(gradients.data(), 2, data.rows()).transpose();
     return {points, spacing, angle,
-            std::make_shared<const Griddata::Interpolant>(rotation, std::move(stage), std::move(data))};
+            std::make_shared<const Griddata::Interpolant>(
+                Griddata::Interpolant{rotation, std::move(stage), std::move(data)})};
 }
 
 Eigen::VectorXd griddata_heights(const Eigen::Matrix3Xd& points, double spacing, double angle,

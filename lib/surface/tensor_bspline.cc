@@ -153,8 +153,7 @@ Eigen::Index count_places(const Eigen::Matrix2Xd& uv)
     std::vector<std::array<double, 2>> places;
     for (Eigen::Index i = 0; i < uv.cols(); ++i) places.push_back({uv(0, i), uv(1, i)});
     std::ranges::sort(places);
-    const auto repeated = std::ranges::unique(places);
-    return static_cast<Eigen::Index>(repeated.begin() - places.begin());
+    return std::unique(places.begin(), places.end()) - places.begin();
 }
 
 } // namespace

@@ -7,6 +7,7 @@ machine="$SAMPLES/machines/full_scale.json"
 printf '0 1 0\n' > fine
 refuses() { "$HERE/../refuses" "$1" fettle-manual job.json --stock stock.stl --cell 0.4 "${@:2}"; }
 refuses "line 2: '1 left' is none of" --machine "$machine" --steer <(printf '0 1 0\n1 left\n')
+refuses "line 2: '1 2' is none of" --machine "$machine" --steer <(printf '0 1 0\n1 2\n')
 refuses 'line 2: goes back in time, to 0.5' --machine "$machine" --steer <(printf '1 1 0\n0.5 end\n')
 refuses "line 1: '0 nan 1' is none of" --machine "$machine" --steer <(printf '0 nan 1\n')
 refuses 'none: cannot open' --machine "$machine" --steer none

@@ -466,6 +466,8 @@ TEST(Ply, BadFilesAreRefused)
     expect_refused(ascii("element face 0\n", ""), "without element vertex", "no vertex");
     expect_refused(replaced(ascii(kVertex, "1 2 3\n4 5 6\n"), "property float y\n", ""), "without x, y and z", "no y");
     expect_refused(replaced(ascii(kVertex, ""), "float y", "half y"), "unknown type 'half'", "type");
+    expect_refused(replaced(ascii(kVertex, "1 2 3 4\n5 6 7 8\n"), "float z", "float z\nproperty float scalar_x"),
+                   "be called 'x'", "a scalar x");
     expect_refused(replaced(ascii(kVertex, ""), "float y", "float x"), "'x' stands twice", "two x");
     expect_refused(replaced(ascii(kVertex, "1 2 3\n"), "end_header\n", ""), "line 7", "no end_header");
     expect_refused(ascii(kVertex, "1 2 3\n"), "only 6 bytes left", "a line missing");
@@ -497,6 +499,9 @@ TEST(Xyz, NamesCommentsAndColumns)
     expect_refused("1 2\n", "line 1: expected at least 3 numbers, got 2", "two columns");
     expect_refused("1 2 3\n1 2 3 4\n", "line 2: expected 3 numbers, got 4", "uneven");
     expect_refused("1 2 3\n1,5 2 3\n", "line 2: '1,5'", "decimal comma");
+    expect_refused(std::string("x y z a\0b\n1 2 3 4\n", 18), "be called 'a", "a name with a zero byte");
+    expect_refused("x y z a\rb\n1 2 3 4\n", "be called 'a", "a name with a carriage return");
+    expect_refused("x y z " + std::string(1 << 16, 'a') + "\n1 2 3 4\n", "names of the fields take", "a long name");
     expect_refused("x y z a a\n1 2 3 4 5\n", "'a' stands twice", "two names");
 }
 

@@ -24,6 +24,7 @@ class Files : public testing::Test {
 
 TEST_F(Files, AppearWholeOrNotAtAll)
 {
+    const std::string text = "a line\n" + std::string(100000, 'x');
     {
         OutputFile file("a");
         file.stream() << "half";
@@ -33,12 +34,31 @@ TEST_F(Files, AppearWholeOrNotAtAll)
     std::ofstream("a") << "old";
     {
         OutputFile file("a");
-        file.stream() << std::string(100000, 'x');
+        file.stream() << text;
         EXPECT_EQ(read_whole("a"), "old");
         file.commit();
     }
-    EXPECT_EQ(read_whole("a"), std::string(100000, 'x'));
+    EXPECT_EQ(read_whole("a"), text);
     EXPECT_EQ(files(), 1u);
+}
+
+// JSON is read whatever the length of its lines, and so is what is no text.
+TEST_F(Files, WithAFirstLineThatNoneOfOursHasAreNotRead)
+{
+    constexpr std::size_t kLongest = 1 << 16;
+    const auto write = [](const std::string& bytes) { std::ofstream("a", std::ios::binary) << bytes; };
+    for (const std::string begin : {"x", "\t", "\xef\xbb\xbf#"}) {
+        write(begin + std::string(kLongest, 'x'));
+        EXPECT_THROW(read_whole("a"), InputError) << begin;
+        EXPECT_THROW(InputFile("a"), InputError) << begin;
+    }
+    using namespace std::string_literals;
+    for (const std::string& begin : {""s, "\n"s, " {"s, "\xef\xbb\xbf["s, "\0"s}) {
+        const std::string bytes = begin + std::string(kLongest, 'x');
+        write(bytes);
+        EXPECT_EQ(read_whole("a"), bytes);
+        EXPECT_EQ(InputFile("a").size(), bytes.size());
+    }
 }
 
 TEST_F(Files, KeepTheirPermissions)
@@ -77,7 +97,7 @@ TEST_F(Files, AreNotThereBeforeTheyAreWhole)
 TEST_F(Files, PipesGetAllAtTheEnd)
 {
     ASSERT_EQ(mkfifo("pipe", 0600), 0);
-    const std::string sent(3000000, 'y');
+    const std::string sent = '\n' + std::string(3000000, 'y');
     std::string got;
     std::thread reader([&got] { got = read_whole("pipe"); });
     {
@@ -122,7 +142,7 @@ TEST_F(Files, ReadFromWhatIsNoFile)
     EXPECT_THROW(read_whole(""), InputError);
     EXPECT_EQ(read_whole("/dev/null"), "");
     ASSERT_EQ(mkfifo("pipe", 0600), 0);
-    const std::string sent(3000000, 'y');
+    const std::string sent = '\n' + std::string(3000000, 'y');
     std::thread writer([&sent] { std::ofstream("pipe") << sent; });
     EXPECT_EQ(read_whole("pipe"), sent);
     writer.join();
@@ -138,7 +158,7 @@ std::string part(const InputFile& file, std::size_t offset, std::size_t count)
 TEST_F(Files, AreReadAnywhere)
 {
     std::string sent;
-    for (int i = 0; sent.size() < 3000000; ++i) sent += std::to_string(i) + " ";
+    for (int i = 0; sent.size() < 3000000; ++i) sent += std::to_string(i) + "\n";
     std::ofstream("whole") << sent;
     ASSERT_EQ(mkfifo("pipe", 0600), 0);
     for (const std::size_t size : {std::size_t{0}, std::size_t{100}, sent.size()}) { // nothing, held, copied

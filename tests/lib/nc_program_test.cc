@@ -235,6 +235,9 @@ TEST(NcProgram, RefusesTheRestWithItsLine)
     EXPECT_NE(refusal("X1 Y1").find("none of G0"), std::string::npos);
     EXPECT_NE(refusal(start + "G0 X1\nM30\nG0 X2").find("line 4: after the end"), std::string::npos);
     EXPECT_NE(refusal("%\n" + start + "X1\n%\nX2").find("line 5: after the closing %"), std::string::npos);
+    EXPECT_NE(refusal(start + "F100\nG18 G2 I90990").find("line 3: an arc with a radius of 90990 mm"),
+              std::string::npos);
+    EXPECT_NE(refusal(start + "F100\nG18 G2 I1e300").find("line 3"), std::string::npos);
     EXPECT_NE(refusal("").find("without a move"), std::string::npos);
     EXPECT_NE(refusal("G0 X0 Y0 Z0\n").find("without a move"), std::string::npos);
     EXPECT_NE(refusal("\xff\xfeG").find("UTF-16"), std::string::npos);
