@@ -4,7 +4,7 @@
 #   make test       build and run the tests   make figures   the chain's figures beside their targets
 #   make test TOOL=fettle-fit                 make bench     benchmarks
 #   make bless TOOL=fettle-fit                make docs      pages of docs/tools from --help, modules.svg
-#   make test-linuxcnc  on LinuxCNC, simulated
+#   make test-linuxcnc  on LinuxCNC, simulated      make fuzz     build the fuzzing targets
 #   make lint       format and scripts        make includes   every file by its own includes
 #   make install PREFIX=/usr/local DESTDIR=
 #
@@ -172,6 +172,8 @@ $(TEST_RUNS): %.run: %
 
 bless: build
 	@FETTLE_BLESS=1 $(MAKE) --no-print-directory -k -s $(CASE_RUNS) B=$(B)
+
+include tests/fuzz/fuzz.mk
 
 # --- the rest ---------------------------------------------------------------------------------------------------------
 demo: all

@@ -1,0 +1,48 @@
+# Fuzzing (CONTRIBUTING.md): every tests/fuzz/TARGET.cc with libFuzzer and the sanitizers, by clang, its objects beside the others'.
+FUZZ_CXX ?= clang++
+FUZZ_RUNS ?= -1
+FUZZ_SECONDS ?= $(if $(filter -1,$(FUZZ_RUNS)),60,0)
+FUZZ_TARGETS := $(patsubst tests/fuzz/%.cc,%,$(wildcard tests/fuzz/*.cc))
+# What the readers are made of: whole modules, and of the others the files that the targets call.
+FUZZ_LIBRARY := $(wildcard $(addprefix lib/,$(addsuffix /*.cc,core units json cloud job surface plan removal))) \
+    $(addprefix lib/,$(addsuffix .cc,$(addprefix mesh/,mesh mesh_file stl obj off polygons equal_corners) \
+    $(addprefix gantry/,protocol serve driver child machine virtual_gantry quasi_static) \
+    $(addprefix strategy/,trace trace_file steering keys) align/rigid belt/contact_wheel \
+    $(addprefix machining/,nc_block nc_arc nc_program nc_writer cutter_path cutter) \
+    $(addprefix part/,spec surface anomalies outline profile) sampling/noise \
+    $(addprefix robot/,robot body_json)))
+FUZZ_LIBRARY := $(patsubst %.cc,$(B)/fuzz/%.o,$(FUZZ_LIBRARY))
+FUZZ_FLAGS = $(filter-out -O% --param ggc-%,$(CXXFLAGS)) -O1 -fsanitize=address,undefined,float-cast-overflow -fno-sanitize-recover=all \
+    -Wno-psabi -Wno-unused-const-variable
+
+.PHONY: fuzz fuzz-run $(FUZZ_TARGETS:%=%.fuzz)
+
+# Builds them all and has each read its seeds.
+fuzz:
+	@.ci/install-packages packages-fuzz.txt
+	@$(MAKE) --no-print-directory -j$(JOBS) $(FUZZ_TARGETS:%=$(B)/fuzz/%)
+	@set -e; for target in $(FUZZ_TARGETS); do tests/fuzz/run $(B) $$target 0; done
+
+# So many inputs each, or so long.
+fuzz-run: fuzz
+	@$(MAKE) --no-print-directory -j$(JOBS) -k $(FUZZ_TARGETS:%=%.fuzz)
+
+$(FUZZ_TARGETS:%=%.fuzz): %.fuzz: $(B)/fuzz/%
+	tests/fuzz/run $(B) $* $(FUZZ_RUNS) $(FUZZ_SECONDS)
+
+$(B)/fuzz/precompiled.h.pch: lib/precompiled.h
+	@mkdir -p $(@D)
+	$(FUZZ_CXX) $(CPPFLAGS) $(FUZZ_FLAGS) -fsanitize=fuzzer-no-link -MMD -MP -x c++-header -c $< -o $@
+
+$(B)/fuzz/%.o: %.cc | $(B)/fuzz/precompiled.h.pch
+	@mkdir -p $(@D)
+	$(FUZZ_CXX) $(CPPFLAGS) $(FUZZ_FLAGS) -fsanitize=fuzzer-no-link -include-pch $(B)/fuzz/precompiled.h.pch -MMD -MP -c $< -o $@
+
+$(B)/fuzz/library.a: $(FUZZ_LIBRARY)
+	@rm -f $@
+	$(AR) rcs $@ $^
+
+$(B)/fuzz/%: $(B)/fuzz/tests/fuzz/%.o $(B)/fuzz/library.a
+	$(FUZZ_CXX) $(FUZZ_FLAGS) -fsanitize=fuzzer -o $@ $^ -llzf -ltbb
+
+-include $(B)/fuzz/precompiled.h.d

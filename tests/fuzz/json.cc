@@ -1,0 +1,59 @@
+// JSON: as it stands, and as the document that its kind says. Surfaces are written and read the same again. Jobs and
+// plans have a target of their own.
+
+#include "belt/contact_wheel.h"
+#include "gantry/machine.h"
+#include "memory_file.h"
+#include "part/part.h"
+#include "robot/robot.h"
+#include "same_document.h"
+#include "surface/patches.h"
+#include "surface/surface.h"
+#include "json/document.h"
+#include "json/leaves.h"
+
+using namespace fettle;
+
+namespace {
+
+void read_kind(const std::string& kind, std::string_view text)
+{
+    static fuzz::MemoryFile memory;
+    if (kind == "surface") {
+        const std::string written = to_json(parse_surface(json::Reader::parse(text, "file"))).text();
+        fuzz::require(fuzz::is_read([&] {
+                          const std::string again =
+                              to_json(parse_surface(json::Reader::parse(written, "written"))).text();
+                          fuzz::require_same(again, written);
+                      }),
+                      "a surface that was written is read");
+    } else if (kind == "patches") {
+        for (const Patch& patch : parse_patches(text, "file")) outlines(patch);
+    } else if (kind == "wheel") {
+        read_contact_wheel(memory.with(text));
+    } else if (kind == "machine") {
+        read_machine(memory.with(text));
+    } else if (kind == "robot") {
+        read_robot(memory.with(text));
+    } else {
+        read_part(memory.with(text));
+    }
+}
+
+} // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
+{
+    const std::string_view text = fuzz::text_of(data, size);
+    const bool is_json = fuzz::is_read([&] {
+        for (const json::Leaf& leaf : json::leaves(text, "file")) json::to_text(leaf);
+    });
+    std::string kind;
+    const bool has_kind = fuzz::is_read([&] {
+        kind = json::Reader::parse(text, "file")
+                   .choice("kind", {"surface", "patches", "wheel", "machine", "robot", "part"});
+    });
+    fuzz::require(is_json || !has_kind, "what has a kind is JSON");
+    if (has_kind) fuzz::is_read([&] { read_kind(kind, text); });
+    return 0;
+}

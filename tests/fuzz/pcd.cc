@@ -1,0 +1,57 @@
+// Point clouds: whatever read_cloud() takes, at once and by parts. What was read is written as text and as numbers, and
+// both read the same again.
+
+#include "cloud/pcd.h"
+#include "cloud/pcd_header.h"
+#include "cloud/point_source.h"
+#include "memory_file.h"
+
+#include <sstream>
+
+using namespace fettle;
+
+namespace {
+
+std::string written(const Cloud& cloud, const Units& units, PcdEncoding encoding)
+{
+    std::ostringstream out;
+    write_pcd(out, cloud, units, encoding);
+    return out.str();
+}
+
+void check_round_trip(const CloudFile& file)
+{
+    for (const PcdEncoding encoding : {PcdEncoding::binary, PcdEncoding::ascii}) {
+        const CloudFile again = parse_cloud(written(file.cloud, file.units, encoding), "written");
+        fuzz::require(again.units.length == file.units.length && again.cloud.size() == file.cloud.size() &&
+                          again.cloud.fields.size() == file.cloud.fields.size(),
+                      "unit and size are kept");
+        const CloudFile twice = parse_cloud(written(again.cloud, again.units, encoding), "written");
+        fuzz::require(written(twice.cloud, twice.units, encoding) == written(again.cloud, again.units, encoding),
+                      "read and written again it is the same");
+    }
+}
+
+} // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
+{
+    static fuzz::MemoryFile memory;
+    const std::string_view bytes = fuzz::text_of(data, size);
+    CloudFile file;
+    const bool whole = fuzz::is_read([&] { file = parse_cloud(bytes, "file"); });
+    fuzz::is_read([&] { parse_cloud(bytes, "file", Units{Units::Length::in, Units::Force::lbf}); });
+    if (whole) check_round_trip(file);
+    if (!looks_like_pcd(bytes)) return 0;
+    CloudFile parts;
+    const bool streamed = fuzz::is_read([&] {
+        const CloudStream stream(memory.with(bytes));
+        parts = {*stream.cloud(), stream.units()};
+    });
+    fuzz::require(whole == streamed, "a stream is read where the whole is");
+    if (whole)
+        fuzz::require(written(file.cloud, file.units, PcdEncoding::binary) ==
+                          written(parts.cloud, parts.units, PcdEncoding::binary),
+                      "a stream is what the whole is");
+    return 0;
+}

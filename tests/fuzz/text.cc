@@ -1,0 +1,46 @@
+// Small texts: XYZ points, points that were picked in a viewer, transforms, and what the operator's stick did.
+
+#include "align/rigid.h"
+#include "cloud/xyz.h"
+#include "job/picked.h"
+#include "memory_file.h"
+#include "strategy/steering.h"
+
+#include <sstream>
+
+using namespace fettle;
+
+namespace {
+
+void check_transform(const std::string& path)
+{
+    static fuzz::MemoryFile again;
+    Eigen::Matrix4d matrix;
+    if (!fuzz::is_read([&] { matrix = read_transform(path); })) return;
+    std::ostringstream out;
+    write_transform(out, matrix);
+    fuzz::require(read_transform(again.with(out.str())) == matrix, "a transform reads the same again");
+}
+
+void check_steering(const std::string& path)
+{
+    fuzz::is_read([&] {
+        Steering steering(path);
+        double time = 0;
+        while (!steering.at(time).end) time = std::max(time, steering.next_change().value_or(time));
+    });
+}
+
+} // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
+{
+    static fuzz::MemoryFile memory;
+    const std::string_view text = fuzz::text_of(data, size);
+    fuzz::is_read([&] { parse_xyz(text, "file"); });
+    fuzz::is_read([&] { parse_picked(text, "file"); });
+    const std::string& path = memory.with(text);
+    check_transform(path);
+    check_steering(path);
+    return 0;
+}
