@@ -3,10 +3,14 @@
 #include "core/error.h"
 #include "gantry/virtual_gantry.h"
 
+#include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <fstream>
 #include <limits>
 #include <numbers>
+#include <sstream>
 #include <utility>
 #include <vector>
 
@@ -59,20 +63,30 @@ void write_head(std::ostream& out, const HeadAndStock& head)
     out.write(reinterpret_cast<const char*>(head.stock.z.data()), size_of(head.stock.z.size()));
 }
 
+// By itself, not by core/file.h: the realtime module reads it, too, and is linked to as little as possible.
 HeadAndStock read_head(const std::string& path)
 {
     std::ifstream in(path, std::ios::binary);
-    std::string magic(kMagic.size(), ' ');
+    if (!in) throw InputError(path, std::string("cannot open: ") + std::strerror(errno));
+    std::ostringstream whole;
+    whole << in.rdbuf();
+    const std::string all = whole.str();
     HeadAndStock head;
     std::vector<double> numbers = numbers_of(head);
-    const auto read = [&](double* into, Eigen::Index count) {
-        if (!in.read(bytes(into), size_of(count))) throw InputError(path, "is cut short");
-    };
-    if (!in.read(magic.data(), static_cast<std::streamsize>(magic.size())) || magic != kMagic)
-        throw InputError(path, "is no stock of a simulated head");
-    read(numbers.data(), static_cast<Eigen::Index>(numbers.size()));
+    const std::size_t begin = kMagic.size() + numbers.size() * sizeof(double);
+    if (!all.starts_with(kMagic)) throw InputError(path, "is no stock of a simulated head");
+    if (all.size() < begin) throw InputError(path, "is cut short");
+    std::memcpy(numbers.data(), all.data() + kMagic.size(), begin - kMagic.size());
     const double* n = numbers.data();
-    if (!(n[0] >= 1 && n[1] >= 1 && n[0] * n[1] < 1e9)) throw InputError(path, "is no stock of a simulated head");
+    // What is there bounds what is allocated, whatever is claimed.
+    const double cells = n[0] * n[1], there = static_cast<double>((all.size() - begin) / sizeof(double));
+    const bool is_whole = n[0] >= 1 && n[1] >= 1 && n[0] == std::floor(n[0]) && n[1] == std::floor(n[1]);
+    if (!is_whole || !std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); }) ||
+        !(n[5] > 0))
+        throw InputError(path, "is no stock of a simulated head");
+    if (cells > there) throw InputError(path, "is cut short");
+    if (cells < there || (all.size() - begin) % sizeof(double) != 0)
+        throw InputError(path, "goes on after its last cell");
     head.stock.z.resize(static_cast<Eigen::Index>(n[0]), static_cast<Eigen::Index>(n[1]));
     head.stock.theta = n[2];
     head.stock.origin = {n[3], n[4]};
@@ -83,7 +97,7 @@ HeadAndStock read_head(const std::string& path)
     head.width = n[10];
     head.tip_radius = n[11];
     head.grind_ratio = n[12];
-    read(head.stock.z.data(), head.stock.z.size());
+    std::memcpy(head.stock.z.data(), all.data() + begin, all.size() - begin);
     return head;
 }
 

@@ -13,3 +13,18 @@ fettle-diff after.pcd ground.pcd
 head -c 1000 before > short
 "$HERE/../refuses" 'is cut short' fettle-stock-linuxcnc plan.json --stock stock.stl --after short
 "$HERE/../refuses" '--stock is required' fettle-stock-linuxcnc plan.json
+# What is read is bounded by what is there, whatever is claimed.
+claims() { head -c 14 before; perl -e 'print pack("d<2", @ARGV)' "$@"; tail -c +31 before; }
+claims 30000 30000 > many
+claims 1e300 1e300 > most
+claims nan 5 > none
+claims 2.5 4 > part
+{ cat before; echo more; } > long
+refused() { ( ulimit -v 4000000; "$HERE/../refuses" "$1" fettle-stock-linuxcnc plan.json --stock stock.stl --cell 0.2 --after "$2" ); }
+refused 'many: is cut short' many
+refused 'most: is cut short' most
+refused 'none: is no stock' none
+refused 'part: is no stock' part
+refused 'long: goes on after its last cell' long
+refused 'nowhere: cannot open: No such file' nowhere
+refused '.: is no stock' .
