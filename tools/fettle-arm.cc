@@ -125,6 +125,8 @@ int main(int argc, char** argv)
             throw InputError("give one of --forward, --inverse and --reach");
         if (all && to_pose) throw InputError("--all goes with --inverse");
         if (!rapid.empty() && !feed) throw InputError("--rapid needs --feed");
+        if (!rapid.empty() && reach) throw InputError("--rapid needs a path");
+        if (!box.empty() && !reach) throw InputError("--box goes with --reach");
         const Robot robot = read_robot(robot_file);
         const PcdEncoding encoding = ascii ? PcdEncoding::ascii : PcdEncoding::binary;
         if (reach) {

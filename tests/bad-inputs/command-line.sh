@@ -21,6 +21,12 @@ for name in $names; do
     option --threads --threads 1 --threads 2
     option --seed --seed x
     option --zebra --zebra
+    # every option that takes a number, a word of a few or a list of them: nan is none; --avoid may stand alone
+    while read -r name_of placeholder; do
+        case $placeholder in FILE | PART | STOCK | SURFELS | SURFACE* | MESH | JOB | POINTS | PATH | TRACE | EVENTS | TEXT | NAME) continue ;; esac
+        case " ${command[*]} --threads --seed --avoid " in *" $name_of "*) continue ;; esac
+        option "$name_of" "$name_of" nan
+    done < <("$tool" --help | sed -nE 's/^ +(-[a-z],)?(--[a-z0-9-]+) ([^ =]+).*/\2 \3/p')
     # none of the inputs is what it should be
     for ((i = 0; i < ${#command[@]}; i++)); do
         [ -f "${command[i]}" ] || continue
@@ -53,4 +59,4 @@ for name in align arm assess belt collide compare contact estimate feed fit form
         tried=$((tried + 1))
     done
 done
-all_tried 400
+all_tried 550

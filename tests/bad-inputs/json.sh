@@ -24,6 +24,9 @@ places() { # KIND R|S|G FILE: of a model
         try "$2" "$3" fettle-form flatness good.pcd --within "$3"
         try "$2" "$3" fettle-render good.pcd --within "$3"
         try "$2" "$3" fettle-report --job "$3"
+        try "$2" "$3" fettle-gantry-virtual "$3" --stock good.pcd --cell 0.5
+        try "$2" "$3" fettle-manual "$3" --stock good.pcd --cell 0.5 --machine machine.json --steer -
+        try "$2" "$3" fettle-stock-linuxcnc "$3" --stock good.pcd --cell 0.5
         ;;
     surface)
         try "$2" "$3" fettle-mesh "$3" --at good.pcd
@@ -35,11 +38,18 @@ places() { # KIND R|S|G FILE: of a model
         try "$2" "$3" fettle-grind "$3" --stock good.pcd --cell 0.5
         try "$2" "$3" fettle-gantry-virtual "$3" --stock good.pcd --cell 0.5
         try "$2" "$3" fettle-report --plan "$3"
+        try "$2" "$3" fettle-stock-linuxcnc "$3" --stock good.pcd --cell 0.5
         ;;
-    machine) try "$2" "$3" fettle-grind plan.json --stock good.pcd --cell 0.5 --gantry virtual:dynamic --machine "$3" ;;
+    machine)
+        try "$2" "$3" fettle-grind plan.json --stock good.pcd --cell 0.5 --gantry virtual:dynamic --machine "$3"
+        try "$2" "$3" fettle-gantry-virtual plan.json --stock good.pcd --cell 0.5 --machine "$3"
+        try "$2" "$3" fettle-manual job.json --stock good.pcd --cell 0.5 --machine "$3" --steer -
+        [ "$2" != R ] || try R "$3" fettle-teach job.json --gantry virtual:dynamic --stock plate.stl --machine "$3" --steer - # without points there is no job
+        ;;
     wheel)
         try "$2" "$3" fettle-contact good.pcd --wheel "$3" --at 15,15,5,1,0,0,0 --force 5
         try "$2" "$3" fettle-belt good.pcd --path good.pcd --wheel "$3" --force 5
+        try "$2" "$3" fettle-feed good.pcd --on good.pcd --wheel "$3" --force 5 --cells 8 --rounds 1
         ;;
     robot)
         try "$2" "$3" fettle-arm "$3" --inverse good.pcd

@@ -94,11 +94,16 @@ points() { # R|S FILE
     try "$1" "$2" fettle-contact "$2" --wheel wheel.json --at 15,15,5,1,0,0,0 --force 5
     try "$1" "$2" fettle-diff "$2" good.pcd
     try "$1" "$2" fettle-diff good.pcd "$2"
+    if [ "$1" != S ]; then # it works long on what it can read, and reads as fettle-belt does
+        try "$1" "$2" fettle-feed good.pcd --on "$2" --wheel wheel.json --force 5 --cells 8 --rounds 1
+        try "$1" "$2" fettle-feed "$2" --on good.pcd --wheel wheel.json --force 5 --cells 8 --rounds 1
+    fi
     try "${1/G/S}" "$2" fettle-estimate job.json "$2"
     try "$1" "$2" fettle-fit job.json "$2"
     try "$1" "$2" fettle-form flatness "$2"
     try "$1" "$2" fettle-form sphericity "$2"
     try "$1" "$2" fettle-grind plan.json --stock "$2" --cell 0.5
+    stocks "$@"
     try "$1" "$2" fettle-mesh surface.json --at "$2"
     try "$1" "$2" fettle-mill "$2" --stock box:0,0,0,9,9,9 --cutter ball:6 --step 0.5
     try "$1" "$2" fettle-mill path.nc --stock "$2" --cutter ball:6 --step 0.5
@@ -114,6 +119,14 @@ points() { # R|S FILE
     try "$1" "$2" fettle-part spec.json
 }
 
+# As the stock of machines that end at once: nobody says anything on stdin.
+stocks() { # R|S|G FILE
+    try "$1" "$2" fettle-gantry-virtual plan.json --stock "$2" --cell 0.5
+    try "$1" "$2" fettle-manual job.json --stock "$2" --cell 0.5 --machine machine.json --steer -
+    try "$1" "$2" fettle-stock-linuxcnc plan.json --stock "$2" --cell 0.5
+    [ "$1" != R ] || try R "$2" fettle-teach job.json --gantry virtual --stock "$2" --steer - # without points there is no job
+}
+
 # Every tool that reads meshes, with FILE in each place where it does.
 meshes() { # R|S|G FILE
     try "$1" "$2" fettle-align good.pcd --to "$2" --near
@@ -125,6 +138,7 @@ meshes() { # R|S|G FILE
     try "$1" "$2" fettle-finish "$2" --cutter ball:6 --step-over 4
     try "$1" "$2" fettle-grind plan.json --stock "$2" --cell 0.5
     try "$1" "$2" fettle-mill path.nc --stock "$2" --cutter ball:6 --step 0.5
+    stocks "$@"
     try "$1" "$2" fettle-render "$2"
     try "$1" "$2" fettle-report --job job.json --before "$2"
     try "$1" "$2" fettle-sample job.json --on "$2"

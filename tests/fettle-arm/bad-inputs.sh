@@ -12,6 +12,8 @@ refuses 'missing.json' fettle-arm missing.json --inverse path.pcd
 refuses 'one of --forward, --inverse and --reach' fettle-arm good.json path.pcd
 refuses 'one of --forward, --inverse and --reach' fettle-arm good.json --forward --inverse path.pcd
 refuses '--all goes with --inverse' fettle-arm good.json --forward --all path.pcd
+refuses '--box goes with --reach' fettle-arm good.json --inverse --box 0,0,0,1,1,1 path.pcd
+refuses '--rapid needs a path' fettle-arm good.json --reach --box 0,0,0,1,1,1 --feed 1 --rapid out.mod
 refuses '--rapid needs --feed' fettle-arm good.json --inverse --rapid out.mod path.pcd
 refuses "path.pcd: the points have no field 'joint1'" fettle-arm good.json --forward path.pcd
 sed 's/ qz$/ qq/' path.pcd >no_qz.pcd

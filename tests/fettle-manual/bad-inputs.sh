@@ -14,3 +14,15 @@ refuses 'none: cannot open' --machine "$machine" --steer none
 refuses 'or --gantry must be given' --steer fine
 refuses 'or --gantry must be given' --steer fine --machine "$machine" --gantry exec:true
 refuses "'real' is not exec:COMMAND" --steer fine --gantry real
+# A driver that is none, before anything moves.
+printf '0 1 0\n' > fine
+driven() { refuses "$1" --patience 1 --steer fine --gantry "exec:$2"; }
+driven 'ended with status 127' 'no-such-program 2> nothing'
+driven 'ended with status 3' 'exit 3'
+driven 'makes no sense' 'echo hello; sleep 5'
+driven 'speaks something else' 'echo 1 ok grbl 1.1; sleep 5'
+refuses 'cannot read: Is a directory' --machine "$machine" --steer .
+# The last line of a file may lack its end.
+fettle-manual job.json --stock stock.stl --cell 0.4 --machine "$machine" --steer <(printf '0 1 0\n0.5 1 0\n1 end\n') --report whole.json > ground.pcd
+fettle-manual job.json --stock stock.stl --cell 0.4 --machine "$machine" --steer <(printf '0 1 0\n0.5 1 0\n1 end') --report cut.json > ground.pcd
+cmp whole.json cut.json
