@@ -78,7 +78,7 @@ bool HeaderParser::next_line()
     if (!lines_.next()) return false;
     if (length > kLongestLine) refuse("longer than " + std::to_string(kLongestLine) + " bytes, this is no PCD header");
     if (lines_.line().find('\0') != std::string_view::npos)
-        refuse("zero byte in the header" + std::string(lines_.number() == 1 ? " (text in UTF-16?)" : ""));
+        refuse("zero byte in the header" + std::string(lines_.number() == 1 ? " (a mesh, or text in UTF-16?)" : ""));
     if (lines_.line().find('\r') != std::string_view::npos) refuse("carriage return without line feed");
     if (lines_.number() > kMostHeaderLines) refuse("no DATA within " + std::to_string(kMostHeaderLines) + " lines");
     return true;

@@ -17,7 +17,8 @@ unset MAKEFLAGS MFLAGS # a make that a page begins is not of this one
 for page in $pages; do
     case $page in
     docs/tutorial.md | docs/adding-a-tool.md | docs/writing-a-driver.md) test -e "$HERE/$(basename "$page" .md).sh" && continue ;;
-    docs/methods/*) test -e "$HERE/methods.sh" && continue ;;
+    docs/methods/README.md) ;;
+    docs/methods/*) grep -qE "^follow .*\b$(basename "$page" .md)( |\$)" "$HERE"/methods-*.sh && continue ;;
     esac
     skip=()
     for line in "${elsewhere[@]}"; do
