@@ -4,6 +4,7 @@ root=$(realpath "$HERE/../..")
 elsewhere=(
     'README.md|make demo     #|builds everything and installs packages|.ci/run'
     'CONTRIBUTING.md|make test   |the tests themselves|.ci/run'
+    'CONTRIBUTING.md|make fuzz |clang, and minutes|.ci/run'
     'docs/linuxcnc.md|fettle-stock-linuxcnc plan.json|needs LinuxCNC and root|tests/linuxcnc/patch.sh'
     "docs/studies.md|make -f pipelines/factorial.mk -j100|needs a cluster with Slurm|tests/studies/slurm.sh"
     "docs/studies.md|sudo apt-get install --no-install-recommends slurmctld|needs Slurm and root|tests/studies/slurm.sh"
