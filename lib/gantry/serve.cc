@@ -12,6 +12,8 @@ namespace {
 
 /// The same angle but for the rounding of its text.
 constexpr double kSameAngle = 1e-9;
+/// Slower, a step takes weeks; 0 would take for ever.
+constexpr double kSlowest = 1e-6; // mm/s
 /// No command is longer.
 constexpr std::size_t kLongestLine = 4096;
 
@@ -39,7 +41,12 @@ class Server {
         const auto number = [&] { return protocol::number_in(protocol::next_word(rest)); };
         const auto point = [&] {
             const double x = number(), y = number(), z = number();
-            return Eigen::Vector3d(x, y, z);
+            return within_reach({x, y, z});
+        };
+        const auto feed = [&] {
+            const double rate = number();
+            if (rate < kSlowest || rate > limits_.speed) throw GantryFault("no feed of " + to_text(rate) + " mm/s");
+            return rate;
         };
         if (command == "connect" && rest == protocol::kVersion)
             return protocol::kVersion + " " + protocol::text_of(limits_);
@@ -47,15 +54,15 @@ class Server {
         if (command == "home") return home(number());
         if (command == "status") return protocol::text_of(gantry_.status());
         if (command == "travel") return protocol::text_of(gantry_.travel(point()));
-        if (command == "lift") return protocol::text_of(gantry_.lift(number()));
+        if (command == "lift") return protocol::text_of(gantry_.lift(height(number())));
         if (command == "move") {
             const Eigen::Vector3d to = point();
-            return protocol::text_of(gantry_.grind(to, number()));
+            return protocol::text_of(gantry_.grind(to, feed()));
         }
         if (command == "press") {
             const Eigen::Vector3d to = point();
-            const double feed = number();
-            return protocol::text_of(gantry_.press(to, feed, number()));
+            const double rate = feed();
+            return protocol::text_of(gantry_.press(to, rate, number()));
         }
         if (command == "touch_off") {
             const double radius = gantry_.touch_off();
@@ -76,6 +83,18 @@ class Server {
             return protocol::text_of(gantry_.status());
         }
         throw GantryFault("no such command: " + std::string(command));
+    }
+
+    Eigen::Vector3d within_reach(const Eigen::Vector3d& p) const
+    {
+        if ((p.array() >= limits_.least.array()).all() && (p.array() <= limits_.most.array()).all()) return p;
+        throw GantryFault("the machine does not reach " + to_text(p.x()) + " " + to_text(p.y()) + " " + to_text(p.z()));
+    }
+
+    double height(double z) const
+    {
+        const Eigen::Vector3d here = gantry_.status().commanded;
+        return within_reach({here.x(), here.y(), z}).z();
     }
 
     std::string limit(double force) const

@@ -31,6 +31,24 @@ awk 'NR == 1 && !($1 == 1 && $2 == "ok" && $3 " " $4 == "fettle-gantry 1" && NF 
     END { exit NR != 11 }' <<< "$answers"
 grep -q '^FIELDS x y z' <(head -c 500 ground.pcd)
 
+# What no client asks for: places and feeds that the machine has not, each refused without an end.
+refused=0
+while read -r command; do
+    answers=$(printf '1 %s\n2 status\n' "$command" | fettle-gantry-virtual plan.json --stock stock.stl --cell 0.2)
+    grep -q '^1 error .*\(reach\|feed\)' <<< "$answers" && [ "$(wc -l <<< "$answers")" = 2 ] || { echo "$command: $answers"; exit 1; }
+    refused=$((refused + 1))
+done << END
+move 1e9 0 10 10
+travel 1e300 0 0
+lift -1e300
+probe 1e300 0 0
+move 0 0 10 0
+move 0 0 10 1e-310
+move 0 0 10 -5
+press 0 0 10 1e300 20
+END
+[ $refused = 8 ]
+
 # A client that is gone: the driver ends by itself.
 fettle-gantry-virtual plan.json --stock stock.stl --cell 0.2 <<< '1 status' > out
 [ "$(wc -l < out)" = 1 ]
