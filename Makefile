@@ -79,7 +79,8 @@ include tools/libraries.mk
 # --- rules ----------------------------------------------------------------------------------------------------------
 precompiled = $(filter $(B)/$(if $(filter tests/lib/%,$(1)),tests/)lib/%,$(PRECOMPILED))
 
-$(B)/%.o: %.cc | $(PRECOMPILED)
+$(TESTS:$(B)/tests/%=$(B)/tests/lib/%.o): | $(filter $(B)/tests/%,$(PRECOMPILED))
+$(B)/%.o: %.cc | $(filter $(B)/lib/%,$(PRECOMPILED))
 	@mkdir -p $(@D)
 	$(CXX) $(CPPFLAGS) $(CXXFLAGS) $(addprefix -include ,$(basename $(call precompiled,$<))) -MMD -MP -c $< -o $@
 
