@@ -73,7 +73,9 @@ Verdict give_verdict(Tool& t, const std::vector<Comparison>& comparisons, double
     for (const Comparison& comparison : comparisons) {
         const Judgement one = judge(comparison.judged(), tolerance, comparison.largest);
         both = {both.within && one.within, std::max(one.worst, both.worst)};
-        if (comparison.judged().count == 0) t.warn("no point to judge has an error: out of tolerance");
+        if (comparison.judged().count == 0)
+            t.warn(std::string(&comparison == &comparisons.front() ? "" : "--reverse: ") +
+                   "no point to judge has an error: out of tolerance");
     }
     t.report().set("tolerance", tolerance / units.mm());
     t.report().set("judged", comparisons.front().regions.empty() ? "all" : "inside");

@@ -2,6 +2,7 @@
 
 #include "cloud/pcd.h"
 #include "cloud/pcd_header.h"
+#include "core/error.h"
 #include "core/file.h"
 #include "mesh/mesh_file.h"
 #include "mesh/stl.h"
@@ -47,6 +48,7 @@ ShapeFile read_shape(const InputFile& file, const std::string& name, const std::
         return shape;
     }
     const FileBytes bytes(file);
+    if (bytes.view().empty()) throw InputError(name, "empty, expected points or a mesh");
     if (looks_like_cloud(bytes.view())) {
         CloudFile cloud = parse_cloud(bytes.view(), name, units);
         return {std::move(cloud.cloud), cloud.units, {}};

@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "core/lines.h"
 
+#include <algorithm>
 #include <set>
 #include <vector>
 
@@ -49,7 +50,15 @@ std::string plain_message(std::string message)
 
 Json parse_strictly(std::string_view text, const std::string& source)
 {
-    if (text.find_first_not_of(" \t\r\n") == std::string_view::npos) throw InputError(source, "empty, expected JSON");
+    const std::size_t begin = text.find_first_not_of(" \t\r\n\xef\xbb\xbf");
+    if (begin == std::string_view::npos) throw InputError(source, "empty, expected JSON");
+    if (std::string_view("{[\"-0123456789tfn").find(text[begin]) == std::string_view::npos) { // another kind of file
+        const std::string_view before = text.substr(0, begin);
+        const std::size_t line = before.rfind('\n') + 1; // where it begins; of the first, 0
+        throw InputError(source, "line " + std::to_string(std::count(before.begin(), before.end(), '\n') + 1) +
+                                     ", column " + std::to_string(begin - line + 1) + ": expected JSON, got " +
+                                     in_quotes(text.substr(begin, text.find('\n', begin) - begin)));
+    }
     try {
         return Json::parse(text, Strictness(source));
     } catch (const Json::exception& error) {

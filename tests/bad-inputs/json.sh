@@ -24,9 +24,9 @@ places() { # KIND R|S|G FILE: of a model
         try "$2" "$3" fettle-form flatness good.pcd --within "$3"
         try "$2" "$3" fettle-render good.pcd --within "$3"
         try "$2" "$3" fettle-report --job "$3"
-        try "$2" "$3" fettle-gantry-virtual "$3" --stock good.pcd --cell 0.5
-        try "$2" "$3" fettle-manual "$3" --stock good.pcd --cell 0.5 --machine machine.json --steer -
-        try "$2" "$3" fettle-stock-linuxcnc "$3" --stock good.pcd --cell 0.5
+        try "$2" "$3" fettle-gantry-virtual "$3" --stock good.pcd --cell 2
+        try "$2" "$3" fettle-manual "$3" --stock good.pcd --cell 2 --machine machine.json --steer -
+        try "$2" "$3" fettle-stock-linuxcnc "$3" --stock good.pcd --cell 2
         ;;
     surface)
         try "$2" "$3" fettle-mesh "$3" --at good.pcd
@@ -36,14 +36,14 @@ places() { # KIND R|S|G FILE: of a model
     fit) try "$2" "$3" fettle-margin job.json "$3" ;;
     plan)
         try "$2" "$3" fettle-grind "$3" --stock good.pcd --cell 0.5
-        try "$2" "$3" fettle-gantry-virtual "$3" --stock good.pcd --cell 0.5
+        try "$2" "$3" fettle-gantry-virtual "$3" --stock good.pcd --cell 2
         try "$2" "$3" fettle-report --plan "$3"
-        try "$2" "$3" fettle-stock-linuxcnc "$3" --stock good.pcd --cell 0.5
+        try "$2" "$3" fettle-stock-linuxcnc "$3" --stock good.pcd --cell 2
         ;;
     machine)
         try "$2" "$3" fettle-grind plan.json --stock good.pcd --cell 0.5 --gantry virtual:dynamic --machine "$3"
-        try "$2" "$3" fettle-gantry-virtual plan.json --stock good.pcd --cell 0.5 --machine "$3"
-        try "$2" "$3" fettle-manual job.json --stock good.pcd --cell 0.5 --machine "$3" --steer -
+        try "$2" "$3" fettle-gantry-virtual plan.json --stock good.pcd --cell 2 --machine "$3"
+        try "$2" "$3" fettle-manual job.json --stock good.pcd --cell 2 --machine "$3" --steer -
         [ "$2" != R ] || try R "$3" fettle-teach job.json --gantry virtual:dynamic --stock plate.stl --machine "$3" --steer - # without points there is no job
         ;;
     wheel)

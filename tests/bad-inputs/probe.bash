@@ -102,7 +102,7 @@ points() { # R|S FILE
     try "$1" "$2" fettle-fit job.json "$2"
     try "$1" "$2" fettle-form flatness "$2"
     try "$1" "$2" fettle-form sphericity "$2"
-    try "$1" "$2" fettle-grind plan.json --stock "$2" --cell 0.5
+    try "$1" "$2" fettle-grind plan.json --stock "$2" --cell 2
     stocks "$@"
     try "$1" "$2" fettle-mesh surface.json --at "$2"
     try "$1" "$2" fettle-mill "$2" --stock box:0,0,0,9,9,9 --cutter ball:6 --step 0.5
@@ -121,9 +121,9 @@ points() { # R|S FILE
 
 # As the stock of machines that end at once: nobody says anything on stdin.
 stocks() { # R|S|G FILE
-    try "$1" "$2" fettle-gantry-virtual plan.json --stock "$2" --cell 0.5
-    try "$1" "$2" fettle-manual job.json --stock "$2" --cell 0.5 --machine machine.json --steer -
-    try "$1" "$2" fettle-stock-linuxcnc plan.json --stock "$2" --cell 0.5
+    try "$1" "$2" fettle-gantry-virtual plan.json --stock "$2" --cell 2
+    try "$1" "$2" fettle-manual job.json --stock "$2" --cell 2 --machine machine.json --steer -
+    try "$1" "$2" fettle-stock-linuxcnc plan.json --stock "$2" --cell 2
     [ "$1" != R ] || try R "$2" fettle-teach job.json --gantry virtual --stock "$2" --steer - # without points there is no job
 }
 
@@ -136,7 +136,7 @@ meshes() { # R|S|G FILE
     try "$1" "$2" fettle-diff "$2" plate.stl
     try "$1" "$2" fettle-diff plate.stl "$2"
     try "$1" "$2" fettle-finish "$2" --cutter ball:6 --step-over 4
-    try "$1" "$2" fettle-grind plan.json --stock "$2" --cell 0.5
+    try "$1" "$2" fettle-grind plan.json --stock "$2" --cell 2
     try "$1" "$2" fettle-mill path.nc --stock "$2" --cutter ball:6 --step 0.5
     stocks "$@"
     try "$1" "$2" fettle-render "$2"
