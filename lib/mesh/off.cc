@@ -73,6 +73,7 @@ class OffParser {
         if (rest_.find_first_not_of(" \t") == std::string_view::npos) need_line("the numbers of vertices and faces");
         vertices_ = whole("number of vertices", kMost);
         faces_ = whole("number of faces", kMost);
+        if (faces_ > 0 && vertices_ == 0) refuse("faces without a vertex");
         const std::size_t left = text_.size() - lines_.offset();
         if (vertices_ + faces_ > (left + 1) / kShortestLine)
             refuse(std::to_string(vertices_) + " vertices and " + std::to_string(faces_) + " faces: only " +

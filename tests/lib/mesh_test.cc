@@ -286,6 +286,7 @@ TEST(Off, ReadAndRefused)
     expect_refused(replaced(kOff, "4 1 0", "99999 1 0"), "bytes left", "more than there is");
     expect_refused(replaced(kOff, "4 1 0", "4 2 0"), "the file ends", "a face missing");
     expect_refused(kOff + "3 0 1 2\n", "text after the last face", "a face more");
+    expect_refused("OFF\n0 1 0\n3 4 5 9\n", "faces without a vertex", "no vertices");
     expect_refused(replaced(kOff, "OFF", "4OFF"), "'4OFF'", "another variant");
     expect_refused(replaced(kOff, "1 1 0\n0", "1 x 0\n0"), "'x' is no number", "no number");
 }
