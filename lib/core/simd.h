@@ -10,6 +10,9 @@
 #define FETTLE_CLONES
 #endif
 
+/// For what a function with clones calls: in vectors that are passed by value the clones do not agree with the rest.
+#define FETTLE_INLINE [[gnu::always_inline]] inline
+
 namespace fettle {
 
 /// Four lanes, anywhere in memory. A comparison gives Mask4: all bits set where it holds, never for NaN.

@@ -16,10 +16,6 @@
 // Vectors go nowhere but into functions that are inlined.
 #pragma GCC diagnostic ignored "-Wpsabi"
 
-#ifndef FETTLE_INLINE
-#define FETTLE_INLINE [[gnu::always_inline]] inline
-#endif
-
 namespace fettle {
 
 inline constexpr std::ptrdiff_t kLanes = 4; // of Double4

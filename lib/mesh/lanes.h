@@ -2,6 +2,8 @@
 
 // Eight numbers at a time. Only for code that is inlined into functions with clones (core/simd.h).
 
+#include "core/simd.h"
+
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -18,8 +20,6 @@ using Float8 = float __attribute__((vector_size(32), aligned(4)));
 using Mask8 = std::int32_t __attribute__((vector_size(32), aligned(4)));
 
 inline constexpr double kEpsilon = std::numeric_limits<float>::epsilon() / 2; // most of a rounding, relative
-
-#define FETTLE_INLINE [[gnu::always_inline]] inline
 
 FETTLE_INLINE Float8 larger(Float8 a, Float8 b) { return a > b ? a : b; }
 FETTLE_INLINE Float8 smaller(Float8 a, Float8 b) { return a < b ? a : b; }

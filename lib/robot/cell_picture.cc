@@ -123,8 +123,10 @@ void draw_path(Sheet& sheet, const Vector2d& corner, const Shot& shot, const Vie
     const auto place = [&](Eigen::Index i, Vector2d& at) {
         const Vector3d p = shot.rotation_view_cell * tips.col(i);
         at = view.to_pixel(p.head<2>());
-        const Eigen::Array2i fine = (at * kFine).array().floor().cast<int>();
-        if (p.hasNaN() || (fine < 0).any() || fine.x() >= depth.cols() || fine.y() >= depth.rows()) return false;
+        const Eigen::Array2d cell = (at * kFine).array().floor(); // NaN: nowhere
+        if (!(cell.x() >= 0 && cell.y() >= 0 && cell.x() < double(depth.cols()) && cell.y() < double(depth.rows())))
+            return false;
+        const Eigen::Array2i fine = cell.cast<int>();
         const double hides = depth(fine.y(), fine.x());
         return std::isnan(hides) || hides <= p.z() + slack;
     };

@@ -16,7 +16,7 @@ using Eigen::VectorXd;
 
 constexpr Index kLanes = 4;
 
-double sum(Double4 four) { return (four[0] + four[1]) + (four[2] + four[3]); }
+FETTLE_INLINE double sum(const Double4& four) { return (four[0] + four[1]) + (four[2] + four[3]); }
 
 FETTLE_CLONES double dot(const double* a, const double* b, Index count)
 {
