@@ -47,7 +47,7 @@ PRECOMPILED ?= $(B)/lib/precompiled.h.gch $(B)/tests/lib/precompiled.h.gch
 
 .DELETE_ON_ERROR:
 .SECONDARY:
-.PHONY: all build deps test test-linuxcnc tests-built run-cases demo figures bench bless docs lint includes install clean
+.PHONY: all build deps coverage test test-linuxcnc tests-built run-cases demo figures bench bless docs lint includes install clean
 
 all: deps
 	@$(MAKE) --no-print-directory -j$(JOBS) build
@@ -170,6 +170,11 @@ $(CASE_RUNS) $(LINUXCNC_RUNS): %.case: %.sh
 
 $(TEST_RUNS): %.run: %
 	tests/run $(B) $<
+
+# Of lib/, by the tests. Their own instrumented build takes as long as the ordinary one.
+coverage: deps
+	@$(MAKE) --no-print-directory test B=$(B)/coverage CXXFLAGS="-O1 -g1 --coverage" LDFLAGS=--coverage
+	@tests/coverage $(B)/coverage > $(B)/coverage/report; sed '/:/,$$d' $(B)/coverage/report
 
 bless: build
 	@FETTLE_BLESS=1 $(MAKE) --no-print-directory -k -s $(CASE_RUNS) B=$(B)
