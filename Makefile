@@ -171,9 +171,9 @@ $(CASE_RUNS) $(LINUXCNC_RUNS): %.case: %.sh
 $(TEST_RUNS): %.run: %
 	tests/run $(B) $<
 
-# Of lib/, by the tests. Their own instrumented build takes as long as the ordinary one.
+# Of lib/, by the tests, in a build of its own. Four cases fail in it: its programs write profiles, and complain where they cannot.
 coverage: deps
-	@$(MAKE) --no-print-directory test B=$(B)/coverage CXXFLAGS="-O1 -g1 --coverage" LDFLAGS=--coverage
+	@-$(MAKE) --no-print-directory test B=$(B)/coverage CXXFLAGS="-O1 -g1 --coverage" LDFLAGS=--coverage
 	@tests/coverage $(B)/coverage > $(B)/coverage/report; sed '/:/,$$d' $(B)/coverage/report
 
 bless: build
