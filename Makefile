@@ -148,10 +148,11 @@ TEST_RUNS := $(if $(TOOL),,$(TESTS:%=%.run))
 LINUXCNC_RUNS := $(patsubst %.sh,%.case,$(sort $(wildcard tests/linuxcnc/*.sh)))
 .PHONY: $(CASE_RUNS) $(TEST_RUNS) $(LINUXCNC_RUNS)
 
+# More at once than there are processors: some wait most of their time.
 test: deps
 	@rm -rf $(B)/results && mkdir -p $(B)/results
 	@$(MAKE) --no-print-directory -j$(JOBS) build $(if $(TOOL),,tests-built)
-	@$(MAKE) --no-print-directory -j$(JOBS) -k -s run-cases $(TEST_RUNS) 2>/dev/null; tests/summary $(B)/results
+	@$(MAKE) --no-print-directory -j$$(($(JOBS) + 2)) -k -s run-cases $(TEST_RUNS) 2>/dev/null; tests/summary $(B)/results
 
 tests-built: $(TESTS)
 

@@ -2,7 +2,7 @@
 #include "cli/option.h"
 #include "cli/tool.h"
 #include "cloud/pcd.h"
-#include "compare/shape_file.h"
+#include "compare/test_points.h"
 #include "core/file.h"
 
 #include <algorithm>
@@ -10,11 +10,6 @@
 namespace {
 
 using namespace fettle;
-
-std::optional<Units> units_of(const std::optional<Units::Length>& stated)
-{
-    return stated ? std::optional(Units{*stated, Units::Force::N}) : std::nullopt;
-}
 
 HeldAxes held_axes(const std::string& text)
 {

@@ -1,5 +1,6 @@
 #include "cli/tool.h"
 #include "cloud/pcd.h"
+#include "core/constants.h"
 #include "core/file.h"
 #include "core/lines.h"
 #include "core/text.h"
@@ -9,13 +10,9 @@
 #include "robot/reach.h"
 #include "robot/solve_path.h"
 
-#include <numbers>
-
 using namespace fettle;
 
 namespace {
-
-constexpr double kRadPerDegree = std::numbers::pi / 180;
 
 Eigen::AlignedBox3d box_in(const std::string& text, double mm)
 {

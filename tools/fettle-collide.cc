@@ -1,5 +1,6 @@
 #include "cli/tool.h"
 #include "cloud/pcd.h"
+#include "core/constants.h"
 #include "core/direction.h"
 #include "core/file.h"
 #include "mesh/mesh_file.h"
@@ -13,8 +14,6 @@
 using namespace fettle;
 
 namespace {
-
-constexpr double kRadPerDegree = std::numbers::pi / 180;
 
 // With the file's name before what the library has against it, but for options, which name themselves.
 SolvedPath path_in(const Robot& robot, const std::string& file, const Cloud& cloud, const PathWishes& wishes, double mm)

@@ -3,7 +3,7 @@
 #include "cloud/cloud_writer.h"
 #include "compare/comparison.h"
 #include "compare/comparison_report.h"
-#include "compare/shape_file.h"
+#include "compare/test_points.h"
 #include "core/direction.h"
 #include "core/file.h"
 #include "job/job.h"
@@ -15,12 +15,6 @@
 namespace {
 
 using namespace fettle;
-
-std::optional<Units> units_of(const std::optional<Units::Length>& stated, const std::optional<Job>& job)
-{
-    if (stated) return Units{*stated, job ? job->units.force : Units::Force::N};
-    return job ? std::optional(job->units) : std::nullopt;
-}
 
 CloudFormat format_of(const std::string& name, bool ascii)
 {
@@ -131,19 +125,20 @@ int main(int argc, char** argv)
         ComparisonOptions options;
         if (!job_path.empty()) options.job = read_job(job_path);
         set_fields(options, fields);
+        const std::optional<Units> job_units = options.job ? std::optional(options.job->units) : std::nullopt;
         options.distance = distance_options(mode, direction, winding);
         options.bins = bins;
         options.memory = static_cast<std::size_t>(memory) << 20;
         const CloudFormat written = format_of(format, ascii);
         std::optional<ShapeFile> whole_test; // a reference itself
-        if (!reverse.empty()) whole_test = read_shape(test_path, units_of(test_unit, options.job));
+        if (!reverse.empty()) whole_test = read_shape(test_path, units_of(test_unit, job_units));
         const TestPoints test = whole_test ? test_points(whole_test->shape, whole_test->units)
-                                           : open_test_points(test_path, units_of(test_unit, options.job));
+                                           : open_test_points(test_path, units_of(test_unit, job_units));
         const Units units = options.job ? options.job->units : test.units;
         if (max_distance) options.distance.max_distance = *max_distance * units.mm();
         if (tolerance || options.job) options.tolerance = tolerance ? *tolerance * units.mm() : options.job->tolerance;
         Survey of_test = survey(test, options);
-        ShapeFile shape = read_shape(reference_path, units_of(reference_unit, options.job));
+        ShapeFile shape = read_shape(reference_path, units_of(reference_unit, job_units));
         if (options.job)
             if (const std::string doubt = implausible_box(bounding_box(places_of(shape.shape)), *options.job);
                 !doubt.empty())

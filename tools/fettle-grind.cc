@@ -12,6 +12,7 @@
 #include "strategy/run.h"
 #include "strategy/trace.h"
 #include "strategy/trace_file.h"
+#include "json/units.h"
 
 #include <chrono>
 #include <cmath>
@@ -39,10 +40,8 @@ void check_gantry(const std::string& gantry, const std::string& machine)
 
 void report_run(json::Value& out, const GrindRun& run, double machine_time, const Units& units)
 {
-    json::Value unit;
-    unit.set("length", to_string(units.length)).set("force", to_string(units.force));
     out.set("kind", "grinding")
-        .set("units", unit)
+        .set("units", json::to_json(units))
         .set("finished", run.finished)
         .set("machine_time", machine_time)
         .set("layers", run.counts.highest_layer)

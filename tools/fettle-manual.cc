@@ -9,6 +9,7 @@
 #include "strategy/manual.h"
 #include "strategy/trace.h"
 #include "strategy/trace_file.h"
+#include "json/units.h"
 
 #include <cmath>
 #include <filesystem>
@@ -23,10 +24,8 @@ const std::string kDriver = "exec:";
 
 void report_run(json::Value& out, const ManualRun& run, const Units& units)
 {
-    json::Value unit;
-    unit.set("length", to_string(units.length)).set("force", to_string(units.force));
     out.set("kind", "manual")
-        .set("units", unit)
+        .set("units", json::to_json(units))
         .set("contact_time", run.contact_time)
         .set("within", run.within)
         .set("peak_force", run.peak_force / units.newton());

@@ -1,6 +1,5 @@
 #include "cli/tool.h"
 #include "cloud/pcd.h"
-#include "compare/shape_file.h"
 #include "core/direction.h"
 #include "core/file.h"
 #include "core/text.h"
@@ -14,6 +13,7 @@
 #include "machining/tool_path.h"
 #include "machining/workpiece.h"
 #include "mesh/mesh_file.h"
+#include "mesh/shape_file.h"
 #include "sampling/scan.h"
 
 #include <ostream>

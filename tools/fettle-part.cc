@@ -22,7 +22,7 @@ int main(int argc, char** argv)
                 spec.anomalies.clear();
                 spec.noise = {};
             }
-            const std::variant<Mesh, Cloud> part = make_part(spec, t.seed());
+            const MeshOrCloud part = make_part(spec, t.seed());
             const Units& units = spec.units;
             if (const Cloud* scan = std::get_if<Cloud>(&part)) {
                 write_pcd(t.output(), *scan, units);

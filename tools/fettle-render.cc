@@ -1,9 +1,8 @@
 #include "cli/tool.h"
-#include "cloud/pcd.h"
 #include "compare/picture.h"
 #include "core/direction.h"
 #include "core/file.h"
-#include "mesh/mesh_file.h"
+#include "mesh/shape_file.h"
 
 #include <ostream>
 
@@ -41,28 +40,14 @@ int main(int argc, char** argv)
             options.bands = bands;
             options.from = parse_direction(from, "--from");
             if (!within.empty()) options.within = read_job(within);
-            std::optional<Units> units;
-            if (options.within) units = options.within->units;
-            if (stated) units = Units{*stated, units.value_or(Units{}).force};
-
-            const std::string bytes = read_whole(path);
-            const std::string source = display_name(path);
-            std::variant<Cloud, Mesh> part;
-            if (looks_like_cloud(bytes)) {
-                CloudFile file = parse_cloud(bytes, source, units);
-                options.units = file.units;
-                options.field = !shown.empty() ? shown : has_field(file.cloud, "error") ? "error" : "z";
-                part = std::move(file.cloud);
-            } else {
-                options.units = units.value_or(Units{});
-                if (!shown.empty()) options.field = shown;
-                part = parse_mesh(bytes, source, options.units.length);
-            }
-            try {
-                t.output() << picture(part, options);
-            } catch (const InputError& error) {
-                throw InputError(source, error.what());
-            }
+            const std::optional<Units> units =
+                units_of(stated, options.within ? std::optional(options.within->units) : std::nullopt);
+            const ShapeFile file = parse_shape(read_whole(path), display_name(path), units);
+            options.units = file.units;
+            const Cloud* cloud = std::get_if<Cloud>(&file.shape);
+            if (cloud != nullptr && has_field(*cloud, "error")) options.field = "error";
+            if (!shown.empty()) options.field = shown;
+            named(display_name(path), [&] { t.output() << picture(file.shape, options); });
             return Verdict::yes;
         });
 }

@@ -5,10 +5,9 @@
 #include "cli/tool.h"
 #include "cloud/pcd.h"
 #include "compare/comparison_report.h"
-#include "compare/shape_file.h"
 #include "core/file.h"
 #include "core/lines.h"
-#include "mesh/mesh_file.h"
+#include "mesh/shape_file.h"
 
 #include <numbers>
 #include <ostream>
@@ -33,12 +32,12 @@ SampledDesign sample_design(const std::string& path, const std::optional<Units::
         if (unit) throw InputError("--file-units", "patches name their units themselves");
         return sample_surfels(parse_patches(bytes, source), options);
     }
-    if (!looks_like_cloud(bytes))
-        return sample_surfels(parse_mesh(bytes, source, unit.value_or(Units::Length::mm)), options);
+    if (bytes.empty()) throw InputError(source, "empty, expected patches, a mesh or a scan");
+    const MeshOrCloud design = parse_shape(bytes, source, units_of(unit)).shape;
+    if (const Mesh* mesh = std::get_if<Mesh>(&design)) return sample_surfels(*mesh, options);
     if (options.precision) throw InputError("--precision", "goes with patches and meshes, not with a scan");
     if (options.edge_spacing) throw InputError("--edge-spacing", "a scan has no boundary curves");
-    const std::optional<Units> units = unit ? std::optional(Units{*unit, Units::Force::N}) : std::nullopt;
-    return sample_surfels(parse_cloud(bytes, source, units).cloud, source, options);
+    return sample_surfels(std::get<Cloud>(design), source, options);
 }
 
 std::string share_of(Eigen::Index count, const Surfels& surfels)
@@ -88,10 +87,8 @@ int main(int argc, char** argv)
         options.edge_spacing = edge_spacing;
         options.sharp = sharp * std::numbers::pi / 180;
         SampledDesign design = sample_design(path, unit, options);
-        const std::optional<Units> units =
-            stock_unit ? std::optional(Units{*stock_unit, Units::Force::N}) : std::nullopt;
         Surfels& surfels = design.surfels;
-        const StockRays rays = cast_on_stock(surfels, read_shape(stock_path, units).shape, reach);
+        const StockRays rays = cast_on_stock(surfels, read_shape(stock_path, units_of(stock_unit)).shape, reach);
         write_pcd(t.output(), to_cloud(surfels), Units{}, ascii ? PcdEncoding::ascii : PcdEncoding::binary);
 
         t.report() = to_json(displacement_statistics(surfels), Units{});

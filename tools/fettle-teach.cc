@@ -1,5 +1,6 @@
 #include "cli/questions.h"
 #include "cli/tool.h"
+#include "core/constants.h"
 #include "core/text.h"
 #include "gantry/driver.h"
 #include "gantry/make_virtual.h"
@@ -10,10 +11,10 @@
 #include "sampling/scan.h"
 #include "strategy/teach.h"
 #include "json/document.h"
+#include "json/units.h"
 
 #include <cmath>
 #include <memory>
-#include <numbers>
 #include <optional>
 #include <ostream>
 
@@ -21,12 +22,26 @@ using namespace fettle;
 
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 const std::string kDriver = "exec:", kVirtual = "virtual", kDynamic = "virtual:dynamic";
 const std::vector<std::string> kSurfaces = {"plane", "swept", "freeform"}, kModes = {"automatic", "manual"};
 
 /// The job as it would be read from a file: with all that read_job() checks.
 Job checked(const Job& job) { return parse_job(json::Reader::parse(to_json(job).text(), "the job that was taught")); }
+
+/// What was taught, in numbers by which a point that went astray is noticed.
+void report_boundaries(json::Value& out, const Job& job)
+{
+    const auto [B, S] = boundaries(job);
+    const double mm = job.units.mm();
+    Eigen::Matrix3Xd points(3, job.anomaly.cols() + job.sampling.cols());
+    points << job.anomaly, job.sampling;
+    out.set("anomaly_points", static_cast<std::size_t>(job.anomaly.cols()))
+        .set("sampling_points", static_cast<std::size_t>(job.sampling.cols()))
+        .set("anomaly_area", area(B) / (mm * mm))
+        .set("sampling_area", area(S) / (mm * mm))
+        .set("lowest", points.row(2).minCoeff<Eigen::PropagateNumbers>() / mm)
+        .set("highest", points.row(2).maxCoeff<Eigen::PropagateNumbers>() / mm);
+}
 
 void set_surface(Job& job, const std::string& name)
 {
@@ -103,12 +118,7 @@ void teach_on_gantry(Tool& t, const GantryOptions& o, Questions& who, Job& job)
     job.sampling = std::move(taught.sampling);
     if (missed > 0)
         t.warn(std::to_string(missed) + (missed == 1 ? " point" : " points") + " met no surface: recorded without z");
-    t.report()
-        .set("kind", "teach")
-        .set("anomaly_points", static_cast<std::size_t>(job.anomaly.cols()))
-        .set("sampling_points", static_cast<std::size_t>(job.sampling.cols()))
-        .set("touches_without_surface", missed)
-        .set("machine_time", gantry.status().time);
+    t.report().set("touches_without_surface", missed).set("machine_time", gantry.status().time);
 }
 
 /// What is said about the work; nothing: as it is in the job, or asked for.
@@ -121,18 +131,19 @@ struct Settings {
 void set(Job& job, const Settings& said, Questions* who)
 {
     if (said.theta)
-        job.theta = *said.theta * kDegree;
+        job.theta = *said.theta * kRadPerDegree;
     else if (who != nullptr)
-        job.theta = who->number("θ of the wheel's axis, degrees", job.theta / kDegree) * kDegree;
+        job.theta = who->number("θ of the wheel's axis, degrees", job.theta / kRadPerDegree) * kRadPerDegree;
     if (!said.surface.empty())
         set_surface(job, said.surface);
     else if (who != nullptr)
         set_surface(job, who->choose("Surface", kSurfaces, to_string(job.surface)));
     if (said.direction) {
         if (job.surface != SurfaceType::swept) throw InputError("--direction", "goes with a swept surface alone");
-        job.direction = *said.direction * kDegree;
+        job.direction = *said.direction * kRadPerDegree;
     } else if (who != nullptr && job.surface == SurfaceType::swept) {
-        job.direction = who->number("Rulings, degrees from the wheel's axis", job.direction / kDegree) * kDegree;
+        job.direction =
+            who->number("Rulings, degrees from the wheel's axis", job.direction / kRadPerDegree) * kRadPerDegree;
     }
 }
 
@@ -177,6 +188,7 @@ int main(int argc, char** argv)
             throw InputError("--sampling, --file-units: go with --anomaly");
 
         Job job = read_job(like);
+        t.report().set("kind", "teach").set("units", json::to_json(job.units.length));
         const Settings said = {surface, direction, theta};
         if (on.kind.empty()) {
             const double mm = mm_per(file_units.value_or(job.units.length));
@@ -187,7 +199,9 @@ int main(int argc, char** argv)
                 job.sampling = read_picked(sampling) * mm;
             else if (was_plane && job.surface == SurfaceType::plane)
                 job.sampling.resize(3, 0); // a plane may do without; the old one lies elsewhere
-            t.output() << to_json(checked(job));
+            const Job taught = checked(job);
+            report_boundaries(t.report(), taught);
+            t.output() << to_json(taught);
             return Verdict::yes;
         }
         Questions who(on.steer != "-");
@@ -195,6 +209,7 @@ int main(int argc, char** argv)
         t.report().set("mode", mode.empty() ? who.choose("Mode", kModes, kModes[0]) : mode);
         teach_on_gantry(t, on, who, job);
         const Job taught = checked(job);
+        report_boundaries(t.report(), taught);
         if (who.choose("Write the job", {"start", "stop"}, "start") == "stop")
             throw InputError("stopped by the operator: no job is made");
         t.output() << to_json(taught);

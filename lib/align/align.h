@@ -40,7 +40,7 @@ bool ambiguous(const Alignment& alignment);
 
 /// "transform", "overlap", residuals over all points that overlap, "sd", "degrees_of_freedom", "next": in `units`.
 /// @param matrix  the transform as it is applied, in `units`
-/// @param points  of the scan as aligned
+/// @param points  of the scan as aligned, 3xN, mm
 json::Value to_json(const Alignment& alignment, const Eigen::Matrix4d& matrix, const Eigen::Matrix3Xd& points,
                     const AlignReference& reference, const Units& units);
 

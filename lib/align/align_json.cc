@@ -1,4 +1,5 @@
 #include "align/align.h"
+#include "json/units.h"
 
 #include <Eigen/Geometry>
 
@@ -104,9 +105,8 @@ json::Value to_json(const Alignment& alignment, const Eigen::Matrix4d& matrix, c
                     const AlignReference& reference, const Units& units)
 {
     const double mm = units.mm();
-    json::Value unit, report;
-    unit.set("length", to_string(units.length));
-    report.set("kind", "alignment").set("units", unit).set("transform", Eigen::MatrixXd(matrix));
+    json::Value report;
+    report.set("kind", "alignment").set("units", json::to_json(units.length)).set("transform", Eigen::MatrixXd(matrix));
     report.set("converged", alignment.fit.converged).set("iterations", alignment.fit.iterations);
     set_residuals(report, alignment.fit, points, reference, mm);
     report.set("misfit", std::sqrt(alignment.fit.misfit) / mm);

@@ -29,6 +29,7 @@ struct IcpFit {
 
 /// Iterative closest points, point to plane (Chen & Medioni 1992), trimmed (Chetverikov et al. 2005) and robust: of
 /// the points that overlap, those off by more than the noise are weighed down (Tukey's biweight).
+/// @param start  T_reference_scan   @param scan  3xN, mm   @param about  the scan's frame of motions
 IcpFit icp(const Eigen::Isometry3d& start, const Eigen::Matrix3Xd& scan, const TwistFrame& about,
            const AlignReference& reference, const IcpOptions& options);
 
@@ -36,8 +37,9 @@ IcpFit icp(const Eigen::Isometry3d& start, const Eigen::Matrix3Xd& scan, const T
 struct Distances {
     Eigen::VectorXd closest; ///< >= 0, mm
     Eigen::VectorXd across;  ///< along the reference's normal at the foot, mm
-    Eigen::Matrix3Xd normal; ///< there
+    Eigen::Matrix3Xd normal; ///< there, unit
 };
+/// @param points  3xN, mm, in the reference's frame
 Distances distances(const Eigen::Matrix3Xd& points, const AlignReference& reference);
 
 /// Where a scan ends to overlap, and how badly it fits as far as that: the share x of its points whose mean square

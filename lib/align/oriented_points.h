@@ -25,6 +25,7 @@ OrientedPoints oriented_points(const Mesh& mesh, Eigen::Index count = 20000);
 
 /// Columns of `count` points (all, if there are fewer) that cover the others as evenly as can be: each is the one
 /// farthest from those before it, the first farthest from the middle (Gonzalez 1985). A rigid motion changes nothing.
+/// @param points  3xN, finite
 std::vector<Eigen::Index> farthest_points(const Eigen::Matrix3Xd& points, Eigen::Index count);
 
 /// Columns of `count` points (all, if there are fewer) evenly through their order.

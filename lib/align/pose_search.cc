@@ -220,7 +220,8 @@ double distance_between(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b, 
 std::vector<Pose> search_poses(const Eigen::Matrix3Xd& scan_points, const TwistFrame& about,
                                const OrientedPoints& reference_points, const HeldAxes& held)
 {
-    const auto& [middle, radius] = about;
+    const Eigen::Vector3d& middle = about.centre;
+    const double radius = about.radius;
     const Eigen::Matrix3Xd scan = scan_points(Eigen::all, farthest_points(scan_points, kScanPoints));
     const std::vector<Eigen::Index> spread = farthest_points(reference_points.xyz, kReferencePoints);
     const OrientedPoints reference{reference_points.xyz(Eigen::all, spread),

@@ -39,7 +39,7 @@ struct TwistFrame {
     Eigen::Isometry3d motion(const Twist& x) const;
 };
 
-/// About the points' centroid, with their root mean square distance from it.
+/// About the points' centroid, with their root mean square distance from it. @param points  3xN, mm
 TwistFrame twist_frame(const Eigen::Matrix3Xd& points);
 
 /// The step -A⁺b in the axes that are not held and in those of its directions that the points determine.

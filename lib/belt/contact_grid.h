@@ -26,7 +26,7 @@ struct ContactCells {
 };
 
 /// How far the surfels looked at go, over the cells: neighbours for the cells at the border.
-constexpr double kBeside = 1.2;
+inline constexpr double kBeside = 1.2;
 
 /// Where surfels are in the tool frame: x, y, and their height over the plane through the contact point, mm. Only those
 /// that face the tool, are over the cells or near, and not deeper than `deepest` below the plane.

@@ -8,7 +8,7 @@
 
 namespace fettle {
 
-constexpr double kJoule = 1000; ///< N mm
+inline constexpr double kJoule = 1000; ///< N mm
 
 /// How fast a belt removes metal: depth per time = coefficient · (p - threshold)^pressure · V_b^speed · V_w^feed, in
 /// MPa, mm/s and s, as long as the belt is new; it falls to 1/e when the belt has done `wear_work`. Work is force · V_b

@@ -10,9 +10,9 @@ namespace fettle {
 
 /// One surfel while a design is being sampled.
 struct Surfel {
-    Eigen::Vector3d position, normal;
+    Eigen::Vector3d position, normal; ///< mm; unit
     Eigen::Vector2d uv;
-    double radius = 0;
+    double radius = 0; ///< mm
     int patch = 0;
     double area = 0; ///< of the piece of the design that it stands for, mm²
 };

@@ -123,6 +123,7 @@ MatrixXd compliance(const RingStiffness& ring, double phase)
         }
         if (column >= ring.first && column < ring.first + ring.count) forces(0, loaded - 1) += 1;
         cholesky.compute(diagonal);
+        if (loaded == 0) continue; // Eigen does not solve for nothing
         cholesky.matrixL().solveInPlace(forces);
         solved.leftCols(loaded) = forces;
         result.topLeftCorner(loaded, loaded).noalias() += forces.transpose() * forces;

@@ -82,12 +82,10 @@ double curvature(const DesignMesh& design, const Chart& chart)
         whole += design.areas[f];
     }
     std::sort(of_area.begin(), of_area.end());
-    double below = 0;
-    for (const auto& [value, area] : of_area) {
-        below += area;
-        if (below >= kCurvedShare * whole) return value;
-    }
-    return of_area.back().first;
+    std::size_t k = 0;
+    double below = of_area[k].second;
+    while (below < kCurvedShare * whole) below += of_area[++k].second;
+    return of_area[k].first;
 }
 
 Lattice lattice_over(const Eigen::Array2d& least, const Eigen::Array2d& most, double step)

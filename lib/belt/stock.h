@@ -1,7 +1,7 @@
 #pragma once
 
 #include "belt/surfel.h"
-#include "compare/shape_file.h"
+#include "mesh/shape_file.h"
 
 #include <Eigen/Core>
 

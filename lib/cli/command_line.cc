@@ -1,6 +1,7 @@
 #include "cli/command_line.h"
 
 #include "core/error.h"
+#include "core/file.h"
 #include "core/text.h"
 
 #include <CLI/CLI.hpp>
@@ -81,6 +82,20 @@ std::vector<std::string> with_values(int argc, char** argv,
         words.back() += "=" + (chosen ? std::string(argv[++i]) : choices.front());
     }
     return words;
+}
+
+std::string order_of_arguments(const CLI::App& app, const std::string& file)
+{
+    std::string list;
+    int arguments = 0;
+    bool is_one = false;
+    for (const CLI::Option* option : app.get_options([](const CLI::Option* o) { return o->get_positional(); })) {
+        const std::string name = option->get_name();
+        list += " " + (option->get_required() ? name : "[" + name + "]");
+        is_one |= file == display_name(option->empty() ? "-" : option->results().back());
+        ++arguments;
+    }
+    return is_one && arguments > 1 ? " (the arguments are" + list + ")" : "";
 }
 
 } // namespace fettle

@@ -20,4 +20,8 @@ void check_options(const CLI::App& app, int argc, char** argv);
 std::vector<std::string> with_values(int argc, char** argv,
                                      const std::map<std::string, std::vector<std::string>>& alone);
 
+/// Where a file among several arguments is not what it should be: how they follow each other, " (the arguments are JOB
+/// [POINTS])"; empty if it is none of them.
+std::string order_of_arguments(const CLI::App& app, const std::string& file);
+
 } // namespace fettle

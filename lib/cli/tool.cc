@@ -2,21 +2,18 @@
 
 #include "cli/command_line.h"
 #include "cli/option.h"
+#include "cli/outputs.h"
 #include "cli/progress_bar.h"
 #include "cli/version.h"
-#include "core/file.h"
 #include "core/text.h"
+#include "core/wrong_kind.h"
 
 #include <CLI/CLI.hpp>
 #include <tbb/global_control.h>
 
 #include <algorithm>
-#include <csignal>
 #include <deque>
-#include <fcntl.h>
-#include <filesystem>
 #include <iostream>
-#include <list>
 #include <map>
 #include <unistd.h>
 
@@ -36,23 +33,7 @@ std::string one_line(std::string message)
     return message;
 }
 
-// Where stdin, stdout or stderr is closed, the next file that is opened would be taken for it: something else goes
-// there, of which reading, or writing, fails as it should.
-void keep_standard_files_apart()
-{
-    for (const int number : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
-        if (fcntl(number, F_GETFD) == -1) open("/dev/null", number == STDIN_FILENO ? O_WRONLY : O_RDONLY);
-}
-
 } // namespace
-
-/// An output besides the bulk's; nothing happens to its file before something is written.
-struct Other {
-    explicit Other(const std::string& name) : path(name), file(name) {}
-    std::string path;
-    OutputFile file;
-    bool is_used = false;
-};
 
 struct Tool::State {
     State(int count, char** values, const std::string& text) : app(text), argc(count), argv(values) {}
@@ -81,51 +62,11 @@ struct Tool::State {
 
     json::Value report;
     std::unique_ptr<tbb::global_control> thread_limit;
-    std::unique_ptr<OutputFile> bulk;
-    bool has_bulk = false; ///< something is written there
-    std::list<Other> others;
-    struct Written {
-        const std::string* path;
-        const std::string* may_replace; ///< the input that it is made of, or null
-    };
-    std::vector<Written> written;          ///< the other outputs that are declared
-    std::vector<std::string> output_names; ///< of all outputs so far
-    std::vector<const std::string*> read;  ///< names of the inputs
+    Outputs outputs;
     const std::string* bulk_input = nullptr;
     bool has_output = true;
     std::vector<std::string> warnings;
-
-    /// @param may_replace  the input that it may take the place of, or null
-    void claim(const std::string& path, const std::string* may_replace);
-    /// Claims and opens all outputs.
-    void open_outputs();
 };
-
-void Tool::State::claim(const std::string& path, const std::string* may_replace)
-{
-    if (path == "/dev/null") return; // as often as one likes
-    for (const std::string& other : output_names)
-        if (same_file(path, other)) throw InputError(path == "-" ? "stdout" : path, "named for two outputs");
-    if (std::error_code unknown; std::filesystem::is_regular_file(path, unknown))
-        for (const std::string* input : read)
-            if (input != may_replace && same_file(path, *input))
-                throw InputError(path, "is an input, which would be lost: another name is needed for the output");
-    output_names.push_back(path);
-}
-
-void Tool::State::open_outputs()
-{
-    if (has_output) {
-        claim(output, bulk_input);
-        bulk = std::make_unique<OutputFile>(output);
-    }
-    written.push_back({&report_path, nullptr});
-    for (const auto& [path, may_replace] : written) {
-        if (path->empty()) continue;
-        claim(*path, may_replace);
-        others.emplace_back(*path);
-    }
-}
 
 Tool::Tool(int argc, char** argv, const std::string& description)
     : state_(std::make_unique<State>(argc, argv, description))
@@ -148,7 +89,8 @@ const std::string& Tool::file(const std::string& name, const std::string& help)
 const std::string& Tool::input(const std::string& name, const std::string& help)
 {
     std::string& value = state_->texts.emplace_back("-");
-    state_->read.push_back(state_->bulk_input = &value);
+    state_->bulk_input = &value;
+    state_->outputs.protect(value);
     state_->app.add_option(name, value, help + "; stdin if it is - or missing")->type_name("FILE");
     return value;
 }
@@ -156,7 +98,7 @@ const std::string& Tool::input(const std::string& name, const std::string& help)
 const std::string& Tool::other_file(const std::string& names, const std::string& placeholder, const std::string& help)
 {
     const std::string& value = text(names, "", placeholder, help);
-    state_->read.push_back(&value);
+    state_->outputs.protect(value);
     return value;
 }
 
@@ -164,14 +106,14 @@ const std::string& Tool::required_file(const std::string& names, const std::stri
                                        const std::string& help)
 {
     const std::string& value = required_text(names, placeholder, help);
-    state_->read.push_back(&value);
+    state_->outputs.protect(value);
     return value;
 }
 
 const std::string& Tool::other_output(const std::string& names, const std::string& help, const std::string* may_replace)
 {
     const std::string& value = text(names, "", "FILE", help);
-    state_->written.push_back({&value, may_replace});
+    state_->outputs.declare(value, may_replace);
     return value;
 }
 
@@ -302,7 +244,8 @@ void Tool::parse()
     for (std::string& word : words) argv.push_back(word.data());
     check_options(s.app, static_cast<int>(argv.size()), argv.data());
     s.app.parse(static_cast<int>(argv.size()), argv.data());
-    s.open_outputs();
+    s.outputs.declare(s.report_path, nullptr);
+    s.outputs.open(s.has_output ? &s.output : nullptr, s.bulk_input);
     if (s.threads > 0)
         s.thread_limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
                                                                static_cast<std::size_t>(s.threads));
@@ -310,27 +253,11 @@ void Tool::parse()
 
 std::uint64_t Tool::seed() const { return static_cast<std::uint64_t>(state_->seed); }
 
-bool Tool::verbose() const { return state_->verbose; }
+std::ostream& Tool::output() { return state_->outputs.bulk(); }
 
-std::ostream& Tool::output()
-{
-    state_->has_bulk = true;
-    return state_->bulk->stream();
-}
+void Tool::claim(const std::string& path) { state_->outputs.claim(path); }
 
-void Tool::claim(const std::string& path) { state_->claim(path, nullptr); }
-
-std::ostream& Tool::output_file(const std::string& path)
-{
-    std::list<Other>& others = state_->others;
-    auto at = std::find_if(others.begin(), others.end(), [&](const Other& other) { return other.path == path; });
-    if (at == others.end()) {
-        claim(path);
-        at = others.emplace(others.end(), path);
-    }
-    at->is_used = true;
-    return at->file.stream();
-}
+std::ostream& Tool::output_file(const std::string& path) { return state_->outputs.file(path); }
 
 json::Value& Tool::report() { return state_->report; }
 
@@ -347,17 +274,11 @@ Progress Tool::progress(const std::string& label) const
     return progress_bar(label);
 }
 
-// Named outputs first, stdout last: a reader of the pipe may rely on the files.
 void Tool::finish()
 {
     State& s = *state_;
     if (!s.report_path.empty()) output_file(s.report_path) << s.report;
-    std::erase_if(s.others, [](const Other& other) { return !other.is_used; });
-    // All or none, as far as it goes: where one cannot be written none gets its name.
-    for (Other& other : s.others) other.file.settle();
-    if (s.has_bulk) s.bulk->settle();
-    for (Other& other : s.others) other.file.commit();
-    if (s.has_bulk) s.bulk->commit();
+    s.outputs.commit();
     if (s.quiet) return;
     for (const std::string& warning : s.warnings) std::cerr << s.name << ": warning: " << warning << '\n';
 }
@@ -366,9 +287,7 @@ int tool_main(int argc, char** argv, const std::string& description, const std::
 {
     std::string message;
     std::string name = "fettle";
-    keep_standard_files_apart();
-    std::signal(SIGXFSZ,
-                [](int) {}); // a file that may not grow is a failed write; programs that are started get it anew
+    prepare_to_write();
     try {
         Tool tool(argc, argv, description);
         name = tool.state_->name;
@@ -384,6 +303,8 @@ int tool_main(int argc, char** argv, const std::string& description, const std::
                 out.stream() << name << ' ' << FETTLE_VERSION << "\nBuilt with " << built_with() << '\n';
             out.commit();
             return 0;
+        } catch (const WrongKind& error) {
+            message = error.what() + order_of_arguments(tool.state_->app, error.file);
         } catch (const CLI::ExtrasError&) {
             message = "unexpected argument '" + tool.state_->app.remaining().front() + "' (see " + name + " --help)";
         } catch (const CLI::ParseError& error) {

@@ -76,7 +76,6 @@ class Tool {
     void parse();
 
     std::uint64_t seed() const;
-    bool verbose() const;
 
     /// The bulk output: -o FILE, or stdout. It appears whole when the tool has ended without an exception, or not at
     /// all.

@@ -7,9 +7,10 @@
 
 namespace fettle {
 
-/// The dimension of a field by its name (docs/conventions.md): error, sigma, clearance, radius, displacement,
-/// removed, deflection, foot_x, foot_y, foot_z and joint7 (a robot's track) are lengths; force, peak_force are forces;
-/// feed is length per second; pressure is force per area. Any other name is a plain number.
+/// The dimension of a field by its name (docs/conventions.md): error, sigma, clearance, clearance_between, radius,
+/// displacement, removed, deflection, gap, indentation, depth, foot_x, foot_y, foot_z and joint7 (a robot's track) are
+/// lengths; force, peak_force are forces; feed is length per second; pressure is force per area. Any other name is a
+/// plain number.
 Dimension field_dimension(const std::string& name);
 
 /// A scalar field of whole numbers from 0 (curve, role); -1 for what is none of them (NaN).

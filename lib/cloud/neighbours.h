@@ -11,7 +11,7 @@ namespace fettle {
 /// Our own: nanoflann 1.4.3 takes 1.3 to 2.3 times as long for the same answers (a million points, 20 neighbours).
 class Neighbours {
   public:
-    /// NaN points are left out.
+    /// @param points  3xN; those with NaN are left out
     explicit Neighbours(const Eigen::Matrix3Xd& points);
     ~Neighbours();
 

@@ -6,10 +6,10 @@
 #include "cloud/ply.h"
 #include "cloud/reach.h"
 #include "cloud/xyz.h"
-#include "core/error.h"
 #include "core/file.h"
 #include "core/lines.h"
 #include "core/text.h"
+#include "core/wrong_kind.h"
 
 #include <liblzf/lzf.h>
 
@@ -210,6 +210,7 @@ CloudFile parse_cloud(std::string_view bytes, const std::string& source, std::op
 {
     bytes = without_mark(bytes, source);
     if (bytes.empty()) throw InputError(source, "empty, expected points");
+    if (bytes.front() == '{') throw WrongKind(source, "JSON, expected points");
     CloudFile file;
     const bool is_ply = looks_like_ply(bytes);
     if (is_ply || looks_like_xyz(bytes)) {

@@ -125,9 +125,9 @@ Comparison compare(const TestPoints& test, Survey& survey, const Reference& refe
                    const std::function<void(const Cloud&)>& use, const Progress& progress)
 {
     const std::size_t count = test.points.points;
-    const auto& [sample, plan, of_vertices] = survey.found();
+    const Survey::Found& found = survey.found();
     const ColourScale scale = scaled_by_tolerance(options) ? colour_scale(Eigen::VectorXd(), *options.tolerance)
-                                                           : colour_scale(reference(sample).error, 0);
+                                                           : colour_scale(reference(found.sample).error, 0);
     Collected collected(options, scale.limit);
 
     const auto read = [&](std::size_t first) {
@@ -138,10 +138,10 @@ Comparison compare(const TestPoints& test, Survey& survey, const Reference& refe
     const auto measure = [&](std::size_t first, Block block) {
         block.map = reference(block.cloud.xyz);
         if (options.reversed) turn(block.map);
-        if (plan)
-            block.areas = volume_areas((*plan)(block.cloud.xyz), block.map, options.distance);
+        if (found.plan)
+            block.areas = volume_areas((*found.plan)(block.cloud.xyz), block.map, options.distance);
         else
-            block.areas = of_vertices.segment(static_cast<Eigen::Index>(first), block.cloud.size());
+            block.areas = found.of_vertices.segment(static_cast<Eigen::Index>(first), block.cloud.size());
         if (options.job) block.regions = regions(*options.job, block.cloud.xyz);
         set_fields(block, options, scale);
         block.map.normal.resize(3, 0); // fields of the cloud now

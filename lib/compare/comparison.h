@@ -1,10 +1,10 @@
 #pragma once
 
 #include "compare/colours.h"
-#include "compare/shape_file.h"
 #include "compare/signed_distance.h"
 #include "compare/statistics.h"
 #include "compare/survey.h"
+#include "compare/test_points.h"
 #include "core/progress.h"
 #include "job/job.h"
 

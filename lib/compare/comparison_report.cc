@@ -1,6 +1,7 @@
 #include "compare/comparison_report.h"
 
 #include "core/text.h"
+#include "json/units.h"
 
 #include <cmath>
 #include <ostream>
@@ -83,9 +84,8 @@ json::Value to_json(const Statistics& s, const Units& units)
 
 json::Value to_json(const Comparison& comparison, const Units& units)
 {
-    json::Value unit, report;
-    unit.set("length", to_string(units.length));
-    report.set("kind", "comparison").set("units", unit);
+    json::Value report;
+    report.set("kind", "comparison").set("units", json::to_json(units.length));
     set_members(report, comparison.all, units);
     json::Value regions;
     for (const auto& [name, statistics] : comparison.regions) regions.set(name, to_json(statistics, units));

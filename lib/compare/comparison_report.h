@@ -12,7 +12,7 @@
 
 namespace fettle {
 
-/// All of its numbers, and where the extremes are.
+/// All of its numbers, and where the extremes are, in `units`, as are all numbers below.
 json::Value to_json(const Statistics& statistics, const Units& units);
 
 /// The members of a report: of all points, flat; of the regions, under "regions"; and the histogram.

@@ -27,9 +27,9 @@ struct Form {
     FormZone minimum_zone;  ///< the narrowest zone near it
 };
 
-/// Flatness (ISO 12781), cylindricity (ISO 12180), sphericity, or straightness in a section (ISO 12780); W 2007, 6.2.
-/// No filter is applied and every point counts. The minimum zone follows from the least squares element by a sequence
-/// of linear programmes; it is a zone that no small motion makes narrower.
+/// Flatness (ISO 12781), cylindricity (ISO 12180), sphericity, or straightness in a section (ISO 12780); Wang
+/// 2007, 6.2. No filter is applied and every point counts. The minimum zone follows from the least squares element by a
+/// sequence of linear programmes; it is a zone that no small motion makes narrower.
 /// @param points   3xN, mm, finite
 /// @param section  straightness: unit normal of the section plane, in which distances are taken; zero: the plane that
 /// the points lie in best

@@ -11,10 +11,9 @@ enum class FormKind { flatness, cylindricity, sphericity, straightness };
 /// A perfect plane, cylinder or sphere, or a line in a section plane.
 struct FormElement {
     FormKind kind = FormKind::flatness;
-    Eigen::Vector3d point; ///< on the plane; on the axis; the centre; on the line
-    Eigen::Vector3d
-        direction;     ///< unit: normal of the plane; axis; unused for a sphere; normal of the line, in its section
-    double radius = 0; ///< mm; unused for a plane and a line
+    Eigen::Vector3d point;     ///< mm: on the plane; on the axis; the centre; on the line
+    Eigen::Vector3d direction; ///< unit: normal of plane or line (in its section); axis; unused for a sphere
+    double radius = 0;         ///< mm; unused for a plane and a line
     Eigen::Vector3d section = Eigen::Vector3d::Zero(); ///< unit: normal of the section that a line lies in
 };
 

@@ -1,4 +1,5 @@
 #include "compare/form.h"
+#include "json/units.h"
 
 namespace fettle {
 
@@ -58,11 +59,10 @@ json::Value to_json(const Form& form, const Eigen::Matrix3Xd& points, const Unit
 {
     const Names names = names_of(form.least_squares.element.kind);
     const double mm = units.mm();
-    json::Value unit, elements, value;
-    unit.set("length", to_string(units.length));
+    json::Value elements, value;
     elements.set("least_squares", zone_json(form.least_squares, names.least_squares, points, mm));
     elements.set("minimum_zone", zone_json(form.minimum_zone, names.minimum_zone, points, mm));
-    value.set("kind", "form").set("units", unit).set("form", names.form);
+    value.set("kind", "form").set("units", json::to_json(units.length)).set("form", names.form);
     if (names.parameter != nullptr) value.set("parameter", names.parameter);
     value.set("count", static_cast<std::size_t>(points.cols()));
     value.set("least_squares", form.least_squares.width / mm).set("minimum_zone", form.minimum_zone.width / mm);

@@ -14,7 +14,8 @@ struct NumberBlocks {
 };
 
 /// The numbers that would stand at `ranks` (0: the smallest) if they were sorted, found in four passes that each tell
-/// 16 bits more of them (radix selection). @param ranks  below their count; none of them is NaN
+/// 16 bits more of them (radix selection). None of the numbers is NaN.
+/// @param ranks  below their count
 std::vector<double> order_statistics(const NumberBlocks& numbers, const std::vector<std::size_t>& ranks);
 
 } // namespace fettle

@@ -140,14 +140,14 @@ View finer(const View& view, int times)
 Drawing draw(const Cloud& cloud, const PictureOptions& options)
 {
     Drawing d;
-    const bool heights = options.field == "z";
-    const Eigen::VectorXd numbers =
-        heights ? Eigen::VectorXd(cloud.xyz.row(2) / options.units.mm())
-                : Eigen::VectorXd(field(cloud, options.field) / to_base(options.units, field_dimension(options.field)));
     const double spacing = point_spacing(cloud.xyz);
     constexpr double kAlone = 1; // the room of a single place, mm
     const Eigen::Matrix3Xd seen = in_view(view_rotation(options.from), cloud.xyz);
     d.layout = lay_out(seen, spacing > 0 ? spacing : kAlone, options);
+    const bool heights = options.field == "z";
+    const Eigen::VectorXd numbers =
+        heights ? Eigen::VectorXd(cloud.xyz.row(2) / options.units.mm())
+                : Eigen::VectorXd(field(cloud, options.field) / to_base(options.units, field_dimension(options.field)));
     d.view = finer(d.layout.view, options.fineness);
     const double pixel = d.view.pixel;
     d.raster = rasterise(d.view, seen, numbers, reach_of(seen.cols(), spacing, d.layout.view.pixel));
@@ -201,8 +201,13 @@ Rgb shaded(Rgb colour, double shading, double shade, bool diverging)
 {
     const double dark = 1 - 0.75 * shading * (1 - shade);
     const double light = diverging ? 0 : std::min(0.5, shading * (shade - 1));
-    for (std::uint8_t& c : colour)
-        c = static_cast<std::uint8_t>(std::lround(shade < 1 ? c * dark : std::lerp(double(c), 255, light)));
+    // Of hills, 52 values of a component are more than eyes tell apart, and a noisy scan's picture takes half the
+    // bytes.
+    const double step = shading < 1 ? 1 : 5;
+    const auto rounded = [step](double c) {
+        return static_cast<std::uint8_t>(std::lround(std::round(c / step) * step));
+    };
+    for (std::uint8_t& c : colour) c = rounded(shade < 1 ? c * dark : std::lerp(double(c), 255, light));
     return colour;
 }
 
@@ -225,7 +230,7 @@ void draw_map(Sheet& sheet, const Drawing& d, const Scale& scale, double shading
 
 } // namespace
 
-void draw_picture(const std::variant<Cloud, Mesh>& part, const PictureOptions& options,
+void draw_picture(const MeshOrCloud& part, const PictureOptions& options,
                   const std::function<Sheet&(int width, int height)>& make)
 {
     Drawing d = std::visit([&](const auto& p) { return draw(p, options); }, part);
@@ -248,7 +253,7 @@ void draw_picture(const std::variant<Cloud, Mesh>& part, const PictureOptions& o
     sheet.text(options.title, {kLeft, kTop + 4}, kTitle, Sheet::kInk, Sheet::Align::left, true);
 }
 
-std::string picture(const std::variant<Cloud, Mesh>& part, const PictureOptions& options)
+std::string picture(const MeshOrCloud& part, const PictureOptions& options)
 {
     std::optional<Canvas> canvas;
     draw_picture(part, options, [&](int width, int height) -> Sheet& { return canvas.emplace(width, height); });

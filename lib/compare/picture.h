@@ -1,15 +1,13 @@
 #pragma once
 
-#include "cloud/cloud.h"
 #include "compare/sheet.h"
 #include "job/job.h"
-#include "mesh/mesh.h"
+#include "mesh/shape_file.h"
 #include "units/units.h"
 
 #include <functional>
 #include <optional>
 #include <string>
-#include <variant>
 
 namespace fettle {
 
@@ -31,10 +29,10 @@ struct PictureOptions {
 /// is grey; what is behind something else is hidden.
 /// @return the bytes of a PNG, the same for the same input
 /// @throws InputError if there is no such field, or no point with finite x and y
-std::string picture(const std::variant<Cloud, Mesh>& part, const PictureOptions& options);
+std::string picture(const MeshOrCloud& part, const PictureOptions& options);
 
 /// The same on a sheet that `make` gives for a width and a height.
-void draw_picture(const std::variant<Cloud, Mesh>& part, const PictureOptions& options,
+void draw_picture(const MeshOrCloud& part, const PictureOptions& options,
                   const std::function<Sheet&(int width, int height)>& make);
 
 } // namespace fettle

@@ -14,7 +14,6 @@ std::string encode_png(std::span<const std::uint8_t> rgb, int width, int height)
     image.width = static_cast<png_uint_32>(width);
     image.height = static_cast<png_uint_32>(height);
     image.format = PNG_FORMAT_RGB;
-    image.flags = PNG_IMAGE_FLAG_FAST; // no filters, light compression: a twentieth of a second for the busiest sheet
     // Room for the worst case; asking for the size first would compress twice.
     png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
     std::string bytes(size, '\0');

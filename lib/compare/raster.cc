@@ -16,6 +16,10 @@ using Eigen::Index;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
+// Of a square grid these are all one cell away; of points at random the fourth is about as far as cells of their
+// density are wide.
+constexpr std::size_t kNeighbours = 4;
+
 Raster empty_raster(const View& view)
 {
     Raster raster;
@@ -48,12 +52,6 @@ ArrayXXd blurred(const ArrayXXd& image, double sigma)
     return blurred_down(blurred_down(image, sigma).transpose(), sigma).transpose();
 }
 
-} // namespace
-
-namespace {
-// Of a square grid these are all one cell away; of points at random the fourth is about as far as cells of their
-// density are wide.
-constexpr std::size_t kNeighbours = 4;
 } // namespace
 
 double point_spacing(const Eigen::Matrix3Xd& points)

@@ -2,6 +2,7 @@
 
 #include "compare/cloud_reference.h"
 #include "compare/pseudo_normals.h"
+#include "core/constants.h"
 #include "core/hilbert.h"
 #include "mesh/mesh_index.h"
 
@@ -19,8 +20,6 @@
 namespace fettle {
 
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 struct Measured {
     double error = kNaN;

@@ -1,6 +1,7 @@
 #include "compare/statistics.h"
 
 #include "compare/order_statistics.h"
+#include "core/constants.h"
 #include "job/boundary.h"
 
 #include <tbb/parallel_for.h>
@@ -12,8 +13,6 @@
 namespace fettle {
 
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 constexpr std::size_t kBlock = 1 << 15; // numbers that are taken out of a spool at once
 

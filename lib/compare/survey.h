@@ -1,8 +1,8 @@
 #pragma once
 
 #include "compare/areas.h"
-#include "compare/shape_file.h"
 #include "compare/signed_distance.h"
+#include "compare/test_points.h"
 
 #include <Eigen/Core>
 

@@ -3,12 +3,16 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 
+#include <type_traits>
+
 namespace fettle {
 
 template <int kSize>
 SymmetricEigen<kSize> symmetric_eigen(const Eigen::Matrix<double, kSize, kSize>& A)
 {
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, kSize, kSize>> eigen(A);
+    // Eigen has a way of its own for 3, which is called often.
+    using Matrix = std::conditional_t<kSize == 3, Eigen::Matrix3d, Eigen::MatrixXd>;
+    const Eigen::SelfAdjointEigenSolver<Matrix> eigen{Matrix(A)};
     return {eigen.eigenvalues(), eigen.eigenvectors()};
 }
 

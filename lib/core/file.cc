@@ -1,10 +1,12 @@
 #include "core/file.h"
 
 #include "core/error.h"
+#include "core/lines.h"
 
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <exception>
 #include <fcntl.h>
 #include <filesystem>
 #include <sys/stat.h>
@@ -35,51 +37,80 @@ Descriptor open_to_read(const std::string& path)
 
 /// Refuses what cannot become a file of ours before all of it is read.
 /// @param bytes  more than kLongestLine
-void check_first_line(std::string_view bytes, const std::string& path)
+/// @param most   that it may have, whatever it is
+/// @return  how many bytes it may have
+std::size_t most_bytes(std::string_view bytes, std::size_t most, const std::string& path)
 {
     const std::string_view head = bytes.substr(0, kLongestLine + 1);
     const auto is_control = [](char c) { return static_cast<unsigned char>(c) < ' ' && c != '\t'; };
-    const std::size_t first = head.find_first_not_of(" \t\xef\xbb\xbf"); // after a byte order mark
-    const bool is_json = first != std::string_view::npos && (head[first] == '{' || head[first] == '[');
-    if (is_json || std::any_of(head.begin(), head.end(), is_control)) return;
+    const std::size_t first = head.find_first_not_of(" \t\r\n\xef\xbb\xbf"); // after a byte order mark
+    const bool is_json = first != std::string_view::npos && (head[first] == '{' || head[first] == '[') &&
+                         head.find('\0') == std::string_view::npos; // the header of a binary STL may begin so
+    if (is_json) return std::min(most, kMostJson);
+    if (std::any_of(head.begin(), head.end(), is_control)) return most;
     throw InputError(display_name(path), "line 1: longer than " + std::to_string(kLongestLine) + " bytes");
+}
+
+/// @param size  of all of the file, or of what was read of it: `head` and more
+void check_size(std::size_t size, std::size_t most, std::string_view head, const std::string& path)
+{
+    if (size <= most) return;
+    throw InputError(display_name(path), "longer than the " + std::to_string(most >> 20) +
+                                             " MiB that JSON may have; it begins " + in_quotes(head));
+}
+
+/// For what is still to be read.
+void make_room(std::string& bytes, std::size_t size, const std::string& path)
+{
+    try {
+        bytes.reserve(size);
+    } catch (const std::exception&) { // of either kind, by how large it is
+        throw InputError(display_name(path), "does not fit into memory: " + std::to_string(size >> 20) + " MiB");
+    }
+}
+
+/// Of a regular file, what can still be read of it; 0 of another. The files of /proc say that they are regular and
+/// empty.
+std::size_t bytes_ahead(const Descriptor& file)
+{
+    struct stat status = {};
+    const off_t start = lseek(file.get(), 0, SEEK_CUR);
+    if (fstat(file.get(), &status) != 0 || !S_ISREG(status.st_mode) || start < 0 || status.st_size <= start) return 0;
+    return static_cast<std::size_t>(status.st_size - start);
 }
 
 } // namespace
 
 std::string display_name(const std::string& path) { return path == "-" ? "stdin" : path.empty() ? "''" : path; }
 
-std::string read_whole(const std::string& path)
+std::string read_whole(const std::string& path, std::size_t most)
 {
     const Descriptor file = open_to_read(path);
-    struct stat status = {};
+    const std::size_t ahead = bytes_ahead(file);
     std::string bytes, chunk(kChunk, '\0');
-    if (fstat(file.get(), &status) == 0 && S_ISREG(status.st_mode))
-        bytes.reserve(static_cast<std::size_t>(status.st_size));
     for (;;) {
         const ssize_t got = read_some(file, chunk.data(), chunk.size());
         if (got < 0) fail(path, "cannot read");
         if (got == 0) return bytes;
         const bool was_short = bytes.size() <= kLongestLine;
         bytes.append(chunk, 0, static_cast<std::size_t>(got));
-        if (was_short && bytes.size() > kLongestLine) check_first_line(bytes, path);
+        if (was_short && bytes.size() > kLongestLine) most = most_bytes(bytes, most, path);
+        check_size(std::max(bytes.size(), ahead), most, bytes, path);
+        make_room(bytes, ahead, path);
     }
 }
 
 InputFile::InputFile(const std::string& path) : path_(path), file_(open_to_read(path))
 {
-    struct stat status = {};
-    const off_t start = lseek(file_.get(), 0, SEEK_CUR);
-    // The files of /proc say that they are regular and empty.
-    if (fstat(file_.get(), &status) == 0 && S_ISREG(status.st_mode) && start >= 0 && status.st_size > start) {
-        start_ = static_cast<std::size_t>(start);
-        size_ = static_cast<std::size_t>(status.st_size - start);
-        std::string head(std::min(size_, kLongestLine + 1), '\0');
-        read(0, head.data(), head.size());
-        if (head.size() > kLongestLine) check_first_line(head, path);
-    } else {
+    size_ = bytes_ahead(file_);
+    if (size_ == 0) {
         keep_stream();
+        return;
     }
+    start_ = static_cast<std::size_t>(lseek(file_.get(), 0, SEEK_CUR));
+    std::string head(std::min(size_, kLongestLine + 1), '\0');
+    read(0, head.data(), head.size());
+    if (head.size() > kLongestLine) check_size(size_, most_bytes(head, std::string::npos, path), head, path);
 }
 
 void InputFile::keep_stream()
@@ -87,6 +118,8 @@ void InputFile::keep_stream()
     constexpr std::size_t kSmall = 1 << 20; // held in memory
     Descriptor copy;
     std::string chunk(kChunk, '\0');
+    std::string head;
+    std::size_t most = std::string::npos;
     for (;;) {
         const ssize_t got = read_some(file_, chunk.data(), chunk.size());
         if (got < 0) fail(path_, "cannot read");
@@ -94,7 +127,8 @@ void InputFile::keep_stream()
         const bool was_short = size_ <= kLongestLine;
         size_ += static_cast<std::size_t>(got);
         held_.append(chunk.data(), static_cast<std::size_t>(got));
-        if (was_short && size_ > kLongestLine) check_first_line(held_, path_);
+        if (was_short && size_ > kLongestLine) most = most_bytes(head = held_, most, path_);
+        check_size(size_, most, head, path_);
         if (!copy.is_open() && held_.size() < kSmall) continue;
         const std::string scratch = scratch_path();
         if (!copy.is_open()) copy = open_unnamed(scratch);

@@ -9,11 +9,15 @@
 
 namespace fettle {
 
+/// The most bytes of a JSON document: a million control points of patches, and no more than some GB as a tree.
+inline constexpr std::size_t kMostJson = std::size_t{1} << 26;
+
 /// All bytes of a file, a FIFO or stdin ("-").
-/// @throws InputError if it cannot be opened or read (the reason is named), is a directory, is stdin and that a
-/// terminal, from which nobody types it, or begins with a line of text, which is not JSON, of more than 64 KiB: that is
-/// refused before the rest is read
-std::string read_whole(const std::string& path);
+/// @param most  bytes; kMostJson where nothing but JSON will do
+/// @throws InputError if it cannot be opened or read (the reason is named), is a directory, or is stdin and that a
+/// terminal, from which nobody types it; before the rest is read also if it is longer than `most`, begins as JSON and
+/// is longer than kMostJson, or begins with a line of other text of more than 64 KiB
+std::string read_whole(const std::string& path, std::size_t most = std::string::npos);
 
 /// A file, a FIFO or stdin ("-") that can be read anywhere, by several threads at once. What cannot be sought is copied
 /// to an unnamed file in $TMPDIR (else /tmp) unless it is small.

@@ -1,7 +1,10 @@
 #include "core/error.h"
 #include "core/file.h"
 
+#include <array>
+#include <atomic>
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 #include <fcntl.h>
 #include <filesystem>
@@ -86,6 +89,40 @@ bool copy_to(const std::string& path, const Descriptor& file)
     return copy.is_open() && copy_all(file, copy) && fsync(copy.get()) == 0 && copy.close();
 }
 
+std::atomic<const char*> working_file = nullptr;
+
+extern "C" void remove_working_file(int signal)
+{
+    if (const char* const name = working_file.load()) unlink(name);
+    std::signal(signal, SIG_DFL);
+    raise(signal); // once the handler has returned
+}
+
+/// While it stands, a signal that ends the program removes a working file first; whoever is ignored stays so.
+class WorkingFile {
+  public:
+    explicit WorkingFile(const std::string& name)
+    {
+        working_file = name.c_str();
+        struct sigaction handler = {};
+        handler.sa_handler = remove_working_file;
+        for (std::size_t i = 0; i < before_.size(); ++i)
+            if (sigaction(kEnding[i], nullptr, &before_[i]) == 0 && before_[i].sa_handler == SIG_DFL)
+                sigaction(kEnding[i], &handler, nullptr);
+    }
+    WorkingFile(const WorkingFile&) = delete;
+    WorkingFile& operator=(const WorkingFile&) = delete;
+    ~WorkingFile()
+    {
+        for (std::size_t i = 0; i < before_.size(); ++i) sigaction(kEnding[i], &before_[i], nullptr);
+        working_file = nullptr;
+    }
+
+  private:
+    static constexpr std::array kEnding = {SIGHUP, SIGINT, SIGTERM};
+    std::array<struct sigaction, kEnding.size()> before_ = {};
+};
+
 /// Gives the unnamed file the name `target`, whose permissions it takes over.
 /// @return  false, and errno, if it cannot be done
 bool publish(const Descriptor& file, const std::string& target)
@@ -94,6 +131,7 @@ bool publish(const Descriptor& file, const std::string& target)
     const bool exists = stat(target.c_str(), &status) == 0;
     const std::string here = "/proc/self/fd/" + std::to_string(file.get()), name = working_name(target);
     unlink(name.c_str()); // of a program that had the same number and was killed
+    const WorkingFile removed_if_ended(name);
     // Where unnamed files cannot be given a name, a copy can.
     const bool named =
         linkat(AT_FDCWD, here.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0 || copy_to(name, file);

@@ -14,8 +14,8 @@ namespace fettle {
 /// change by 1 over the touched length; it only speaks where the touches do not, such as for the twist between two
 /// crossing lines. Quadratics, spheres and cylinders are reproduced when the touches are exact. The covariance is that
 /// of the control heights given the touches.
+/// More than kMostExactTouches (dense.h) take long: fit_dense() is for those.
 /// @throws InputError for fewer than 6 touches, or touches on a line
-/// More than kMostExactTouches are fitted by fit_dense().
 Fit fit_bspline(const FitInput& input);
 
 /// The grid: over B and the touches, with a cell around them; heights 0.

@@ -7,7 +7,7 @@ namespace fettle {
 
 /// More touches than this are too many for the exact posterior of fit_bspline(), whose cost goes with their cube: it
 /// takes a quarter of a second for 300, ten seconds for 1200.
-constexpr std::size_t kMostExactTouches = 300;
+inline constexpr std::size_t kMostExactTouches = 300;
 
 /// Are they streamed? More touches than the exact fit takes, for a method that does without it.
 bool is_dense(const PointSource& source, const Job& job, const std::string& method);

@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -16,9 +17,9 @@
 
 namespace fettle {
 
-// Sums over blocks depend on their order: block k always goes to lane k modulo kLanes, each lane adds its blocks in
-// order, and lanes are added in order, whatever the number of threads.
-constexpr std::size_t kBlockLanes = 8;
+// Sums over blocks depend on their order: block k always goes to lane k modulo kBlockLanes, each lane adds its blocks
+// in order, and lanes are added in order, whatever the number of threads.
+inline constexpr std::size_t kBlockLanes = 8;
 
 /// Calls work(lane, first, block) for all blocks of a source; lanes run in parallel.
 template <typename Work>

@@ -27,7 +27,7 @@ DenseStart dense_start(const DensePoints& points, const std::string& name);
 /// Factors that keep a dense patch from outweighing its surroundings: a cell counts at most kDensest times as much as
 /// the median of those that have points.
 Eigen::MatrixXd density_factors(const Eigen::MatrixXd& weights);
-constexpr double kDensest = 4;
+inline constexpr double kDensest = 4;
 
 /// Variance of the residuals that rounding leaves: coordinates in F4 are wrong by up to 2^-25 of their size.
 double rounding_variance(const DensePoints& points);

@@ -34,9 +34,10 @@ Columns all_touches(const Touched& touched);
 
 /// −2 ln of the odds that a touch is a slip, against a touch with no error. With ν degrees of freedom of sigma the
 /// residual's density is Student's t, ∝ (1 + χ²/ν)^(-(ν+1)/2), and the price is the χ² at which that is as improbable.
+/// @param sigma  of a touch, mm
 double price_of_a_slip(double sigma, double freedom = std::numeric_limits<double>::infinity());
 
-/// χ²'s probability to be larger.
+/// The probability that χ² is as large by chance.
 double goodness(double chi2, double freedom);
 
 /// The method of a family's name.
@@ -46,6 +47,7 @@ Fit fit_family_by_name(const FitInput& input, const std::string& name);
 /// @throws InputError always: what is wrong with touches that determine no such surface
 [[noreturn]] void refuse_undetermined(const Touched& touched, const std::string& name, const std::string& source);
 
+/// What families are fitted to: the touches and the noise of a surface that begin_surface() made.
 Touched touched_of(const Surface& surface, const Job& job);
 
 } // namespace fettle

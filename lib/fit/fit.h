@@ -43,7 +43,7 @@ const std::vector<std::string>& fit_methods();
 /// @throws InputError if there are none at all
 void take_boundary(FitInput& input);
 
-/// Fits by a method's name; "auto": plane for plane jobs, swept for swept jobs, bspline for free-form ones.
+/// Fits by a method's name; "auto": what explains the touches best (fit_auto() in selection.h).
 /// @throws InputError if the touches do not determine such a surface
 Fit fit_surface(const FitInput& input, const std::string& method);
 
@@ -64,7 +64,7 @@ Surface begin_surface(const FitInput& input, const std::string& method, const st
 /// Fills in residuals, rms and goodness. @param freedom  degrees of freedom of the residuals; 0: no goodness (NaN)
 Fit finish_fit(Surface surface, double freedom, bool converged, int iterations);
 
-/// Roles of touches on good metal that were not chosen as corners of B (INTERFACES, field names).
+/// Roles of touches on good metal that were not chosen as corners of B (docs/conventions.md, role).
 inline const std::vector<int> kSampleRoles = {1, 2, 4, 5};
 
 /// Huber's weight of a residual (1964): 1 within `width`, width/|r| beyond, so that an outlier pulls no more than a

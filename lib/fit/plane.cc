@@ -69,7 +69,8 @@ Fit fit_plane(const FitInput& input)
     const Eigen::Matrix3d normal_matrix = G * weight.asDiagonal() * G.transpose();
     surface.covariance =
         surface.touch_sigma * surface.touch_sigma * normal_matrix.ldlt().solve(Eigen::Matrix3d::Identity());
-    return finish_fit(std::move(surface), static_cast<double>(touches.cols() - 3), settled, iterations);
+    const auto freedom = static_cast<double>(touches.cols() - 3);
+    return finish_fit(std::move(surface), freedom, settled, iterations);
 }
 
 } // namespace fettle

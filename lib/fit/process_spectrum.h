@@ -20,7 +20,7 @@ struct ProcessTouches {
 
 ProcessTouches part_of(const ProcessTouches& all, const Columns& kept);
 
-constexpr int kRatios = 25;
+inline constexpr int kRatios = 25;
 
 /// The i-th amplitude τ over σ, i < kRatios: from what the touches cannot see to what bends as much as they do over the
 /// longest correlation.

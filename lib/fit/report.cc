@@ -1,5 +1,9 @@
 #include "fit/report.h"
 
+#include "fit/dense.h"
+#include "fit/fit.h"
+#include "json/document.h"
+
 namespace fettle {
 
 void report(json::Value& out, const Fit& fit)

@@ -1,10 +1,13 @@
 #pragma once
 
-#include "fit/dense.h"
-#include "fit/fit.h"
-#include "json/document.h"
+namespace fettle::json {
+class Value;
+}
 
 namespace fettle {
+
+struct DenseFit;
+struct Fit;
 
 /// Adds the numbers about a fit, lengths in the unit of its surface's file.
 void report(json::Value& out, const Fit& fit);

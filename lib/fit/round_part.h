@@ -17,6 +17,6 @@ Eigen::VectorXd round_part(const Bspline& grid, const SplinePrior& prior, const 
                            const Eigen::Matrix2Xd& uv);
 
 /// 43°; the flank of a sphere up to there is touched without doubt, beyond 90° there is none.
-constexpr double kMostRoundSlope = 0.94;
+inline constexpr double kMostRoundSlope = 0.94;
 
 } // namespace fettle

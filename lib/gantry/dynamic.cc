@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "core/text.h"
+#include "gantry/force_tuning.h"
 
 #include <algorithm>
 #include <cmath>

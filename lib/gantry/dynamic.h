@@ -72,7 +72,7 @@ class DynamicGantry final : public VirtualGantry {
     Machine machine_;
     std::array<ServoAxis, 3> axes_;
     double acceleration_; ///< of commands, mm/s²
-    ForceGains force_gains_;
+    Pid force_gains_;
     std::optional<ForceLoop> force_loop_; ///< while it presses
     std::mt19937_64 random_;
 

@@ -1,6 +1,6 @@
 #include "gantry/loops.h"
 
-#include "gantry/force_loop.h"
+#include "gantry/force_tuning.h"
 
 namespace fettle {
 
@@ -10,7 +10,8 @@ std::vector<Loop> loops_of(const Machine& machine, const Job& job)
     const auto add = [&](const std::string& name, const Drive& drive, double k, double b, bool loaded) {
         const ServoGains gains = tune(drive, k, b, machine.period);
         const Oscillator load{drive.mass, drive.damping + (loaded ? b : 0), loaded ? k : 0};
-        loops.push_back({name, gains.bandwidth, margins(gains, drive.gain, load, machine.period)});
+        loops.push_back(
+            {name, gains.bandwidth, servo_response(drive, load, machine.period, kFineFrequencies).margins(gains)});
     };
     const double k = job.force.stiffness, b = machine.head.damping;
     add("x", machine.axes[0], 0, 0, false);
@@ -19,10 +20,10 @@ std::vector<Loop> loops_of(const Machine& machine, const Job& job)
     add("z against the spring", machine.axes[2], k, b, true);
     add("c", machine.c, 0, 0, false);
     const Drive& z = machine.axes[2];
-    const ForceGains force = tune_force(z, k, b, machine.period);
-    const Oscillator sprung{z.mass, z.damping + b, k};
+    const Pid force = tune_force(z, k, b, machine.period);
+    const ServoGains servo = tune(z, k, b, machine.period);
     loops.push_back(
-        {"force", force.kp, force_margins(force, z, tune(z, k, b, machine.period), sprung, machine.period)});
+        {"force", force.kp, force_response(z, servo, {z.mass, z.damping + b, k}, machine.period).margins(force)});
     return loops;
 }
 

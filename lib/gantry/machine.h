@@ -17,9 +17,9 @@ struct Drive {
     double current = 0; ///< what the amplifier's largest current drops over R_m, V
     double emf = 0;     ///< electromotive force per speed, K_m N K_b, V s/mm
     double encoder = 0; ///< one count, mm
-    double speed = 0, acceleration = 0; ///< the largest that are asked of it
-    double least = 0, most = 0;         ///< its range
-    double following_error = 0;         ///< farther from its command it is switched off
+    double speed = 0, acceleration = 0; ///< the largest that are asked of it, mm/s, mm/s²
+    double least = 0, most = 0;         ///< its range, mm
+    double following_error = 0;         ///< farther from its command it is switched off, mm
 };
 
 /// The head: a spring (the job says which) and a damper carry the grinder, which can only move up from its stop.

@@ -92,8 +92,9 @@ GantryStatus QuasiStaticGantry::lift(double commanded_z)
 
 protocol::Limits QuasiStaticGantry::limits() const
 {
-    constexpr double kFar = 1e6;
-    return {Eigen::Vector3d::Constant(-kFar), Eigen::Vector3d::Constant(kFar), kFar, kFar};
+    constexpr double kFar = 1e4;       // ten metres: each millimetre of a move is computed, and somebody waits for it
+    constexpr double kUnlimited = 1e6; // mm/s and N
+    return {Eigen::Vector3d::Constant(-kFar), Eigen::Vector3d::Constant(kFar), kUnlimited, kUnlimited};
 }
 
 void QuasiStaticGantry::go_to_safe_height()

@@ -4,7 +4,9 @@
 #include "core/text.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <csignal>
 #include <optional>
 
 namespace fettle {
@@ -33,9 +35,18 @@ class Server {
         }
     }
     bool over() const { return over_; }
-    void let_go() { gantry_.lift(std::max(job_.safe_height, gantry_.status().commanded.z())); }
+    /// When nobody speaks any more. A wheel that is worn away by what it grinds on the way up stops nothing then.
+    void leave()
+    {
+        try {
+            let_go();
+        } catch (const InputError&) {
+        }
+    }
 
   private:
+    void let_go() { gantry_.lift(std::max(job_.safe_height, gantry_.status().commanded.z())); }
+
     std::string obey(std::string_view command, std::string_view rest)
     {
         const auto number = [&] { return protocol::number_in(protocol::next_word(rest)); };
@@ -120,6 +131,8 @@ class Server {
 
 void serve(Gantry& gantry, const protocol::Limits& limits, const Job& job, const Descriptor& in, const Descriptor& out)
 {
+    // Whoever asked may be gone before the answer; that must not end what is to be left behind in order.
+    std::signal(SIGPIPE, SIG_IGN);
     Server server(gantry, limits, job);
     std::string pending;
     char some[4096];
@@ -127,11 +140,11 @@ void serve(Gantry& gantry, const protocol::Limits& limits, const Job& job, const
         const std::size_t end = pending.find('\n');
         if (end == std::string::npos) {
             if (pending.size() > kLongestLine) {
-                server.let_go();
+                server.leave();
                 throw InputError("stdin", "a line of more than " + std::to_string(kLongestLine) + " bytes");
             }
             const ssize_t n = read_some(in, some, sizeof some);
-            if (n <= 0) return server.let_go(); // nobody speaks any more
+            if (n <= 0) return server.leave();
             pending.append(some, static_cast<std::size_t>(n));
             continue;
         }
@@ -139,7 +152,11 @@ void serve(Gantry& gantry, const protocol::Limits& limits, const Job& job, const
         pending.erase(0, end + 1);
         std::string_view rest = line;
         const std::string number(protocol::next_word(rest));
-        if (!write_all(out, number + " " + server.answer(rest) + "\n")) throw InputError("stdout", "cannot be written");
+        if (write_all(out, number + " " + server.answer(rest) + "\n")) continue;
+        const bool is_alone = errno == EPIPE;
+        server.leave();
+        if (is_alone) return;
+        throw InputError("stdout", "cannot be written");
     }
 }
 

@@ -5,16 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <numbers>
 
 namespace fettle {
 namespace {
 
 using Complex = std::complex<double>;
 
-constexpr int kFrequencies = 200;      // of the response, spaced evenly in logarithm
-constexpr int kFineFrequencies = 4000; // of it where its crossings are looked for
-constexpr double kLowest = 1e-3;       // of them, times the highest, π / period
+constexpr int kFrequencies = 200; // of the response while gains are looked for
 /// The search for ω: from slow to fast, in steps that matter to nobody.
 constexpr double kSlowest = 5, kFastest = 2000, kStep = 1.04; // rad/s
 constexpr double kQuiet = 0.1;                                // of the voltage, by one count
@@ -36,59 +33,29 @@ ServoGains place_poles(const Drive& drive, double omega)
     return gains;
 }
 
-/// L(z) of the sampled loop, opened at the voltage.
-Complex open_loop(const ServoGains& gains, double drive_gain, const ExactStep& step, double period, Complex z)
+} // namespace
+
+Complex drive_response(double drive_gain, const ExactStep& step, Complex z)
 {
     const double *p = step.position_row(), *v = step.velocity_row();
     const Complex det = (z - p[0]) * (z - v[1]) - p[1] * v[0];
-    const Complex plant = drive_gain * ((z - v[1]) * p[2] + p[1] * v[2]) / det;
-    return plant * (gains.kp + gains.ki * period * z / (z - 1.0) + gains.kd / period * (z - 1.0) / z);
+    return drive_gain * ((z - v[1]) * p[2] + p[1] * v[2]) / det;
 }
 
-} // namespace
-
-Margins margins(const std::function<Complex(Complex)>& open_loop)
-{
-    Margins found;
-    Complex last;
-    for (int n = 0; n <= kFineFrequencies; ++n) {
-        const double angle = std::numbers::pi * std::pow(kLowest, 1 - static_cast<double>(n) / kFineFrequencies);
-        const Complex l = open_loop(std::polar(1.0, angle));
-        found.sensitivity = std::max(found.sensitivity, 1 / std::abs(1.0 + l));
-        const bool crosses = n > 0 && (last.imag() < 0) != (l.imag() < 0) && l.real() < 0 && last.real() < 0;
-        if (crosses && std::abs(l) < 1) found.gain = std::min(found.gain, 1 / std::abs(l));
-        if (n > 0 && (std::abs(last) < 1) != (std::abs(l) < 1))
-            found.phase = std::min(found.phase, std::numbers::pi - std::abs(std::arg(l)));
-        last = l;
-    }
-    return found;
-}
-
-Margins margins(const ServoGains& gains, double drive_gain, const Oscillator& load, double period)
+LoopResponse servo_response(const Drive& drive, const Oscillator& load, double period, int frequencies)
 {
     const ExactStep step(load, period);
-    return margins([&](Complex z) { return open_loop(gains, drive_gain, step, period, z); });
-}
-
-double sensitivity_peak(const ServoGains& gains, double drive_gain, const Oscillator& load, double period)
-{
-    const ExactStep step(load, period);
-    double peak = 0;
-    for (int n = 0; n <= kFrequencies; ++n) {
-        const double angle = std::numbers::pi * std::pow(kLowest, 1 - static_cast<double>(n) / kFrequencies);
-        peak = std::max(peak, 1 / std::abs(1.0 + open_loop(gains, drive_gain, step, period, std::polar(1.0, angle))));
-    }
-    return peak;
+    return {[&](Complex z) { return drive_response(drive.gain, step, z); }, period, frequencies};
 }
 
 ServoGains tune(const Drive& drive, double k, double b, double period)
 {
-    const Oscillator free{drive.mass, drive.damping, 0}, sprung{drive.mass, drive.damping + b, k};
+    const LoopResponse free = servo_response(drive, {drive.mass, drive.damping, 0}, period, kFrequencies);
+    const LoopResponse sprung = servo_response(drive, {drive.mass, drive.damping + b, k}, period, kFrequencies);
     const auto good = [&](const ServoGains& gains) {
         const double kick = (gains.kp + gains.kd / period) * drive.encoder;
         return kick <= kQuiet * std::min(drive.voltage, drive.current) &&
-               sensitivity_peak(gains, drive.gain, free, period) <= kMostSensitivity &&
-               sensitivity_peak(gains, drive.gain, sprung, period) <= kMostSensitivity;
+               free.sensitivity_peak(gains) <= kMostSensitivity && sprung.sensitivity_peak(gains) <= kMostSensitivity;
     };
     ServoGains best;
     for (double omega = kSlowest; omega < kFastest; omega *= kStep) {

@@ -1,42 +1,34 @@
 #pragma once
 
 #include "gantry/exact_step.h"
+#include "gantry/loop_response.h"
 #include "gantry/machine.h"
 
 #include <complex>
-#include <functional>
-#include <numbers>
 
 namespace fettle {
 
-/// What a drive is asked to do at the beginning of a period: the acceleration is kept for the whole of it.
+/// What a drive is asked to do at the beginning of a period: the acceleration is kept for the whole of it. mm, mm/s,
+/// mm/s² (of a rotary axis rad).
 struct Reference {
     double p = 0, v = 0, a = 0;
 };
 
-/// V = K_p e + K_i ∫e + K_d ė + K_v v + K_a a + V_0: PID and feed-forward.
-struct ServoGains {
-    double kp = 0, ki = 0, kd = 0;
+/// V = K_p e + K_i ∫e + K_d ė + K_v v + K_a a + V_0: PID and feed-forward. Volts, mm and s (of a rotary axis rad).
+struct ServoGains : Pid {
     double kv = 0, ka = 0, v0 = 0;
     double bandwidth = 0; ///< ω of the slowest poles, rad/s
 };
 
-/// Largest |1 / (1 + L)| of the sampled loop over all frequencies. M means a gain margin of at least M / (M − 1) and a
-/// phase margin of at least 2 asin(1 / 2M) (Åström and Murray 2008, 9.3).
-double sensitivity_peak(const ServoGains& gains, double drive_gain, const Oscillator& load, double period);
+/// Place per volt, at z, of a drive whose voltage stands for a period.   @param gain  N per volt
+std::complex<double> drive_response(double gain, const ExactStep& step, std::complex<double> z);
 
-/// What a loop bears before it swings without end.
-struct Margins {
-    double gain = 1e6;               ///< factor on its gain, upwards
-    double phase = std::numbers::pi; ///< rad
-    double sensitivity = 0;          ///< the peak
-};
-/// @param open_loop  L(z), stable when closed
-Margins margins(const std::function<std::complex<double>(std::complex<double>)>& open_loop);
-Margins margins(const ServoGains& gains, double drive_gain, const Oscillator& load, double period);
+/// Frequencies at which a loop's margins are found to a thousandth.
+inline constexpr int kFineFrequencies = 4000;
 
-/// The stated margin of every loop: gain 3, phase 38.9°.
-inline constexpr double kMostSensitivity = 1.5;
+/// Of the loop around a drive, opened at the voltage.
+/// @param load  what the drive carries
+LoopResponse servo_response(const Drive& drive, const Oscillator& load, double period, int frequencies);
 
 /// Places the poles at −ω (and a third one farther out where the drive brakes itself more), ω as large as two
 /// conditions allow: the sensitivity peak of the sampled loop, free and with the spring (k, b) at work, stays within

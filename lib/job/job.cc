@@ -1,12 +1,13 @@
 #include "job/job.h"
 
+#include "core/constants.h"
 #include "core/text.h"
 #include "job/boundary.h"
+#include "json/units.h"
 
 #include <charconv>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 namespace fettle {
 
@@ -14,9 +15,6 @@ namespace {
 
 using json::Reader;
 using json::Value;
-
-constexpr double kRadPerDegree = std::numbers::pi / 180;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 // A kilometre: no table is larger, and squares of it stay far from overflow.
 constexpr double kLargestCoordinate = 1e6;
@@ -208,7 +206,7 @@ Value to_json(const Job& job)
 
     Value value;
     value.set("kind", "job")
-        .set("units", Value().set("length", to_string(job.units.length)).set("force", to_string(job.units.force)))
+        .set("units", json::to_json(job.units))
         .set("frame", Value().set("theta_deg", in(job.theta, kRadPerDegree)))
         .set("surface", surface)
         .set("anomaly", points_to_json(job.anomaly, mm));

@@ -1,8 +1,8 @@
 #include "json/document.h"
 
-#include "core/error.h"
 #include "core/file.h"
 #include "core/text.h"
+#include "core/wrong_kind.h"
 #include "json/parse.h"
 
 #include <cmath>
@@ -44,7 +44,10 @@ namespace {
 std::string shortened(const std::string& text)
 {
     constexpr std::size_t kLongest = 100;
-    return text.size() > kLongest ? text.substr(0, kLongest) + "..." : text;
+    std::string line = text.size() > kLongest ? text.substr(0, kLongest) + "..." : text;
+    for (char& c : line)
+        if ((c >= '\0' && c < ' ') || c == '\x7f') c = '?';
+    return line;
 }
 
 double any_number(const Reader& reader, const Json& json, const std::string& place)
@@ -63,7 +66,7 @@ double number_of(const Reader& reader, const Json& json, const std::string& plac
 
 } // namespace
 
-Reader Reader::open(const std::string& path) { return parse(read_whole(path), display_name(path)); }
+Reader Reader::open(const std::string& path) { return parse(read_whole(path, kMostJson), display_name(path)); }
 
 Reader Reader::parse(std::string_view text, const std::string& source)
 {
@@ -96,7 +99,8 @@ const Json& Reader::member(const std::string& key, const char* wanted)
 void Reader::expect_kind(const std::string& kind)
 {
     const std::string got = text("kind");
-    if (got != kind) refuse("kind", "expected \"" + kind + "\", got \"" + shortened(got) + "\"");
+    if (got != kind)
+        throw WrongKind(source_, path_of("kind") + ": expected \"" + kind + "\", got \"" + shortened(got) + "\"");
 }
 
 double Reader::number(const std::string& key, const Range& range)
@@ -283,13 +287,6 @@ std::vector<Reader> Reader::objects(const std::string& key)
         readers.push_back({std::make_shared<Node>(Node{node_->document, &json[i], {}}), source_, path_of(place)});
     }
     return readers;
-}
-
-Value Reader::raw(const std::string& key)
-{
-    Value value;
-    *value.json_ = member(key, "a value");
-    return value;
 }
 
 void Reader::done() const

@@ -89,8 +89,6 @@ class Reader {
     std::optional<Reader> object_or_none(const std::string& key);
     /// An array of objects.
     std::vector<Reader> objects(const std::string& key);
-    /// The member as it stands, unread: for carrying one document inside another.
-    Value raw(const std::string& key);
 
     /// Refuses members that were not asked for.
     void done() const;

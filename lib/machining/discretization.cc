@@ -1,5 +1,6 @@
 #include "machining/discretization.h"
 
+#include "core/constants.h"
 #include "core/error.h"
 
 #include <Eigen/Geometry>
@@ -7,17 +8,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numbers>
 #include <utility>
 #include <vector>
 
 namespace fettle {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
-constexpr double kSharp = 30 * kDegree;    // angle of an edge that is meant as one
-constexpr double kSteepest = 80 * kDegree; // slope of a wall
-constexpr double kLeftOut = 0.01;          // share of the area
+constexpr double kSharp = 30 * kRadPerDegree;    // angle of an edge that is meant as one
+constexpr double kSteepest = 80 * kRadPerDegree; // slope of a wall
+constexpr double kLeftOut = 0.01;                // share of the area
 /// An edge flatter than this is flat: the angle that the rounding of an STL's floats makes of a plane.
 constexpr double kFlat = 1e-4;
 
@@ -173,7 +172,7 @@ json::Value to_json(const Spacing& spacing, const DesignShape& shape)
         .set("shape", to_string(spacing.kind))
         .set("convex_radius", shape.convex_radius)
         .set("concave_radius", shape.concave_radius)
-        .set("slope_deg", shape.slope / kDegree)
+        .set("slope_deg", shape.slope / kRadPerDegree)
         .set("surface_error", spacing.surface_error)
         .set("sampling_error", spacing.sampling_error)
         .set("predicted_error", spacing.predicted_error);

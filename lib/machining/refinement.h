@@ -13,9 +13,10 @@
 
 namespace fettle {
 
+inline constexpr double kSteepSquare = 60; // degrees
+
 /// Where a machined surface is steep, its heights at more places: on the squares between the centres of four cells. A
 /// square is steep if two of its corners differ in height by more than the way between two cells at kSteepSquare.
-inline constexpr double kSteepSquare = 60; // degrees
 class Refinement {
   public:
     /// @param piece    as it was before the cut, which knows its heights everywhere

@@ -1,5 +1,6 @@
 #include "margin/adaptive.h"
 
+#include "core/constants.h"
 #include "core/error.h"
 #include "fit/fit.h"
 #include "job/boundary.h"
@@ -23,8 +24,6 @@ using Eigen::Matrix2Xd;
 using Eigen::MatrixXd;
 using Eigen::Vector2d;
 using Eigen::VectorXd;
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 // Enough to tell a sphere from a plane; the fit is asked from then on.
 constexpr int kFirst = 8;
@@ -117,7 +116,7 @@ void append(TouchPlan& plan, const Vector2d& xy, const Job& job, const Boundarie
     plan.xy.conservativeResize(2, n + 1);
     plan.xy.col(n) = xy;
     plan.z.conservativeResize(n + 1);
-    plan.z[n] = kNan;
+    plan.z[n] = kNaN;
     plan.curve.conservativeResize(n + 1);
     plan.curve[n] = kNoLine;
     plan.role.conservativeResize(n + 1);
@@ -164,7 +163,7 @@ AdaptiveTouches touch_adaptively(const Job& job, const AdaptiveLimits& limits, c
         if (!found) continue;
         result.plan = std::move(longer);
         result.touches = std::move(touches);
-        bands.push_back(kNan);
+        bands.push_back(kNaN);
         if (result.plan.size() < kFirst) continue;
         surface = fit_touches(job, result.plan, result.touches);
         bands.back() = predict_by_posterior(surface, job, limits.confidence, 1).band;

@@ -1,12 +1,30 @@
 #include "margin/round_fit.h"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
+#include "core/decompositions.h"
 
 #include <cmath>
-#include <limits>
 
 namespace fettle {
+
+namespace {
+
+// No eigenvalue of M counts as less than this share of the largest: points exactly on a circle leave none, and
+// rounding.
+constexpr double kLeast = 1e-12;
+
+/// The solution of M v = e N v with the least positive e, scaled to v'N v = 1. M is positive, N has one negative
+/// eigenvalue.
+Eigen::VectorXd least_positive(const Eigen::MatrixXd& M, const Eigen::MatrixXd& N, const Eigen::MatrixXd& N_inverse)
+{
+    // With W W = M, e is an eigenvalue of the symmetric W N⁻¹ W, too, and v = N⁻¹ W u with its vector u.
+    const SymmetricEigen<Eigen::Dynamic> m = symmetric_eigen<Eigen::Dynamic>(M);
+    const Eigen::VectorXd roots = m.values.cwiseMax(kLeast * m.values.maxCoeff()).cwiseSqrt();
+    const Eigen::MatrixXd W = m.vectors * roots.asDiagonal() * m.vectors.transpose();
+    const Eigen::VectorXd v = N_inverse * W * symmetric_eigen<Eigen::Dynamic>(W * N_inverse * W).vectors.col(1);
+    return v / std::sqrt(v.dot(N * v));
+}
+
+} // namespace
 
 RoundFit fit_round(const Eigen::MatrixXd& points)
 {
@@ -23,19 +41,9 @@ RoundFit fit_round(const Eigen::MatrixXd& points)
     constraint(0, 0) = constraint(n + 1, n + 1) = 0;
     constraint(0, n + 1) = constraint(n + 1, 0) = -2;
 
-    const Eigen::EigenSolver<Eigen::MatrixXd> solver(constraint.inverse() * design.transpose() * design);
-    Eigen::Index best = -1;
-    double least = std::numeric_limits<double>::infinity();
-    for (Eigen::Index i = 0; i < n + 2; ++i) {
-        const Eigen::VectorXd v = solver.eigenvectors().col(i).real();
-        const double value = solver.eigenvalues()[i].real();
-        if (v.dot(constraint * v) > 0 && value < least) {
-            least = value;
-            best = i;
-        }
-    }
-    Eigen::VectorXd v = solver.eigenvectors().col(best).real();
-    v /= std::sqrt(v.dot(constraint * v));
+    Eigen::MatrixXd inverse = constraint;
+    inverse(0, n + 1) = inverse(n + 1, 0) = -0.5;
+    const Eigen::VectorXd v = least_positive(design.transpose() * design, constraint, inverse);
 
     // Distance of p to the circle, centre -b / 2A: d = 2 q / (1 + sqrt(1 + 4 A q)) with q = A |p|² + b·p + d, so that
     // it holds for A = 0, a line.

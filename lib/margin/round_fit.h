@@ -10,7 +10,7 @@ struct RoundFit {
     double variance = 0;  ///< "surface variance": farthest less nearest distance of a point from the centre
 };
 
-constexpr int kLeastRoundPoints = 4;
+inline constexpr int kLeastRoundPoints = 4;
 
 /// Algebraic fit whose bias is small even for short arcs (Pratt 1987).
 /// @param points  2xN or 3xN, N >= kLeastRoundPoints

@@ -4,9 +4,9 @@
 #include "cloud/ply.h"
 #include "cloud/reach.h"
 #include "cloud/xyz.h"
-#include "core/error.h"
 #include "core/file.h"
 #include "core/lines.h"
+#include "core/wrong_kind.h"
 #include "mesh/obj_off.h"
 #include "mesh/polygons.h"
 #include "mesh/stl.h"
@@ -40,7 +40,8 @@ Mesh parse_any(std::string_view bytes, const std::string& source, MeshRepair& re
     if (looks_like_off(bytes)) return parse_off(bytes, source);
     if (looks_like_ascii_stl(bytes)) return parse_stl(bytes, source, repair);
     if (looks_like_obj(bytes)) return parse_obj(bytes, source);
-    if (looks_like_cloud(bytes)) throw InputError(source, "points, expected a mesh");
+    if (looks_like_cloud(bytes)) throw WrongKind(source, "points, expected a mesh");
+    if (bytes.front() == '{') throw WrongKind(source, "JSON, expected a mesh");
     if (bytes.find('\0') == std::string_view::npos) throw InputError(source, "neither STL, PLY, OBJ nor OFF");
     return parse_stl(bytes, source, repair); // says why it is none
 }

@@ -9,7 +9,7 @@
 namespace fettle {
 
 /// No real facet has more corners; more would make the cutting, whose time is quadratic, a trap.
-constexpr std::size_t kMostCorners = 4096;
+inline constexpr std::size_t kMostCorners = 4096;
 
 /// Polygons cut into triangles; those that are triangles stay as they are.
 /// @param corners  of all polygons, one after the other: columns of `vertices`, in range

@@ -1,9 +1,9 @@
 #include "part/anomalies.h"
 
+#include "core/constants.h"
 #include "part/outline.h"
 
 #include <cmath>
-#include <numbers>
 
 namespace fettle {
 namespace {
@@ -12,8 +12,6 @@ using Eigen::Vector2d;
 
 // A wall is a height over x-y: it must lean. Below a degree its triangles become needles.
 const Range kDraftDegrees = Range::between(1, 80);
-
-double radians(double degrees) { return degrees * std::numbers::pi / 180; }
 
 RidgeSection read_section(json::Reader& reader, double mm, const std::string& otherwise)
 {
@@ -25,7 +23,7 @@ RidgeSection read_section(json::Reader& reader, double mm, const std::string& ot
     if (section.round) {
         if (section.height > half) reader.refuse("height", "a round section is at most half as high as wide");
     } else {
-        section.draft = radians(reader.number_or("draft_deg", 10, kDraftDegrees));
+        section.draft = reader.number_or("draft_deg", 10, kDraftDegrees) * kRadPerDegree;
         if (section.height * std::tan(section.draft) > half)
             reader.refuse("height", "the flanks meet below it: lower it, or make width greater or draft_deg smaller");
     }
@@ -63,8 +61,8 @@ Anomaly read_stub(json::Reader& reader, double mm)
     SlopedTop top;
     top.low = mm * reader.number("height", Range::positive());
     top.high = mm * reader.number_or("height_end", top.low / mm, Range::positive());
-    top.direction = radians(reader.number_or("direction_deg", 0));
-    return stub(outline, top, radians(reader.number_or("draft_deg", 10, kDraftDegrees)));
+    top.direction = reader.number_or("direction_deg", 0) * kRadPerDegree;
+    return stub(outline, top, reader.number_or("draft_deg", 10, kDraftDegrees) * kRadPerDegree);
 }
 
 Anomaly read_blob(json::Reader& reader, double mm)
@@ -79,7 +77,7 @@ Anomaly read_hill(json::Reader& reader, double mm)
     const Vector2d centre = mm * reader.vector("centre", 2);
     const Vector2d axes = mm * reader.vector("semi_axes", 2);
     if (!(axes.minCoeff() > 0)) reader.refuse("semi_axes", "must be positive");
-    const double angle = radians(reader.number_or("angle_deg", 0));
+    const double angle = reader.number_or("angle_deg", 0) * kRadPerDegree;
     return hill(centre, axes, angle, mm * reader.number("height", Range::positive()));
 }
 

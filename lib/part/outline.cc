@@ -1,5 +1,7 @@
 #include "part/outline.h"
 
+#include "core/constants.h"
+
 #include <Eigen/Geometry>
 
 #include <cmath>
@@ -13,8 +15,6 @@ using Eigen::Vector2d;
 
 // Corners of a full turn: on a radius of 50 mm the chords stay within 50 (1 - cos(π/360)) = 0.002 mm.
 constexpr int kCornersOfCircle = 360;
-
-double radians(double degrees) { return degrees * std::numbers::pi / 180; }
 
 /// Points on an arc, both ends included.
 Matrix2Xd arc(const Vector2d& centre, double radius, double from, double sweep)
@@ -36,7 +36,7 @@ Matrix2Xd ellipse(json::Reader reader, double mm)
 {
     const Vector2d centre = mm * reader.vector("centre", 2);
     const Vector2d axes = mm * reader.vector("semi_axes", 2);
-    const double angle = radians(reader.number_or("angle_deg", 0));
+    const double angle = reader.number_or("angle_deg", 0) * kRadPerDegree;
     if (!(axes.minCoeff() > 0)) reader.refuse("semi_axes", "must be positive");
     reader.done();
     const Matrix2Xd circle = arc(Vector2d::Zero(), 1, 0, 2 * std::numbers::pi);
@@ -48,7 +48,7 @@ Matrix2Xd letter_h(json::Reader reader, double mm)
     const Vector2d centre = mm * reader.vector("centre", 2);
     const Vector2d half = mm * reader.vector("size", 2) / 2;
     const double stroke = mm * reader.number("stroke", Range::positive());
-    const double angle = radians(reader.number_or("angle_deg", 0));
+    const double angle = reader.number_or("angle_deg", 0) * kRadPerDegree;
     const double leg = half.x() - stroke; // inner edge of a leg
     const double bar = stroke / 2;
     if (!(leg > 0 && half.y() > bar)) reader.refuse("stroke", "is too thick for the letter's size");

@@ -1,10 +1,8 @@
 #include "part/part.h"
 
-#include "cloud/pcd.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "job/boundary.h"
-#include "mesh/mesh_file.h"
 #include "part/refine.h"
 #include "sampling/scan.h"
 
@@ -173,14 +171,12 @@ Cloud lay_on(const Cloud& scan, const PartSpec& spec)
     return part;
 }
 
-std::variant<Mesh, Cloud> make(const ScannedSurface& scanned, const PartSpec& spec)
+MeshOrCloud make(const ScannedSurface& scanned, const PartSpec& spec)
 {
-    const std::string bytes = read_whole(scanned.file);
-    if (!looks_like_cloud(bytes)) {
-        const Mesh whole = parse_mesh(bytes, scanned.file, scanned.unit);
-        return lay_on(scanned.region ? crop(whole, *scanned.region) : whole, spec);
-    }
-    const Cloud whole = parse_cloud(bytes, scanned.file, Units{scanned.unit, Units::Force::N}).cloud;
+    const ShapeFile file = parse_shape(read_whole(scanned.file), scanned.file, Units{scanned.unit, Units::Force::N});
+    if (const Mesh* whole = std::get_if<Mesh>(&file.shape))
+        return lay_on(scanned.region ? crop(*whole, *scanned.region) : *whole, spec);
+    const Cloud& whole = std::get<Cloud>(file.shape);
     std::vector<Index> kept;
     for (Index i = 0; i < whole.size(); ++i) {
         const bool inside = !scanned.region || scanned.region->contains(Vector2d(whole.xyz.col(i).head<2>()));
@@ -196,10 +192,10 @@ void add_noise(Eigen::Matrix3Xd& points, const TouchNoise& noise, std::uint64_t 
 
 } // namespace
 
-std::variant<Mesh, Cloud> make_part(const PartSpec& spec, std::uint64_t seed)
+MeshOrCloud make_part(const PartSpec& spec, std::uint64_t seed)
 {
-    std::variant<Mesh, Cloud> part =
-        std::visit([&](const auto& surface) -> std::variant<Mesh, Cloud> { return make(surface, spec); }, spec.surface);
+    MeshOrCloud part =
+        std::visit([&](const auto& surface) -> MeshOrCloud { return make(surface, spec); }, spec.surface);
     if (Mesh* mesh = std::get_if<Mesh>(&part))
         add_noise(mesh->vertices, spec.noise, seed);
     else

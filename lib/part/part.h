@@ -1,7 +1,6 @@
 #pragma once
 
-#include "cloud/cloud.h"
-#include "mesh/mesh.h"
+#include "mesh/shape_file.h"
 #include "part/profile.h"
 #include "sampling/noise.h"
 #include "units/units.h"
@@ -9,7 +8,6 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
 namespace fettle {
@@ -45,6 +43,6 @@ PartSpec read_part(const std::string& path);
 /// what is seen from above is lifted. On a cloud the anomaly gets points of its own, `step` apart.
 /// @throws InputError if the surface is not defined somewhere in its region, an anomaly lies beside the part, or the
 ///         step is too fine
-std::variant<Mesh, Cloud> make_part(const PartSpec& spec, std::uint64_t seed);
+MeshOrCloud make_part(const PartSpec& spec, std::uint64_t seed);
 
 } // namespace fettle

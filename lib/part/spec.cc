@@ -3,6 +3,7 @@
 #include "part/anomalies.h"
 #include "part/part.h"
 #include "part/surface.h"
+#include "json/units.h"
 
 #include <filesystem>
 
@@ -45,11 +46,9 @@ PartSpec read_part(const std::string& path)
 {
     json::Reader reader = json::Reader::open(path);
     reader.expect_kind("part");
-    json::Reader units = reader.object("units");
     PartSpec spec;
     spec.source = display_name(path);
-    spec.units.length = parse_length_unit(units.choice("length", {"mm", "in", "m"}));
-    units.done();
+    spec.units.length = json::read_length_unit(reader);
     const double mm = spec.units.mm();
 
     spec.step = mm * reader.number("step", Range::positive());

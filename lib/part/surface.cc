@@ -1,12 +1,12 @@
 #include "part/surface.h"
 
+#include "core/constants.h"
 #include "surface/patches.h"
 
 #include <unsupported/Eigen/Splines>
 
 #include <cmath>
 #include <filesystem>
-#include <numbers>
 
 namespace fettle {
 namespace {
@@ -18,7 +18,7 @@ constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
 
 Vector2d heading(json::Reader& reader)
 {
-    const double angle = reader.number("direction_deg") * std::numbers::pi / 180;
+    const double angle = reader.number("direction_deg") * kRadPerDegree;
     return {std::cos(angle), std::sin(angle)};
 }
 

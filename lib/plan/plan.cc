@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "core/text.h"
 #include "plan/wheel_fit.h"
+#include "json/units.h"
 
 #include <algorithm>
 #include <cmath>
@@ -180,9 +181,7 @@ json::Value to_json(const Plan& plan)
     const double mm = plan.job.units.mm();
     json::Value value;
     return value.set("kind", "plan")
-        .set(
-            "units",
-            json::Value().set("length", to_string(plan.job.units.length)).set("force", to_string(plan.job.units.force)))
+        .set("units", json::to_json(plan.job.units))
         .set("layers", json::Value()
                            .set("thickness", plan.layers.thickness / mm)
                            .set("distance", plan.layers.distance / mm)

@@ -1,16 +1,15 @@
 #include "plan/staircase.h"
 
+#include "core/constants.h"
 #include "core/error.h"
+#include "core/text.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace fettle {
 
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // The coverage is judged on rows across the passes; the region's part around a row is taken whole.
 constexpr int kRows = 32;
@@ -166,7 +165,7 @@ Grid make_grid(const Polygon& region, const HeightsAcross& heights, const WheelS
     const double low = region.row(0).minCoeff(), high = region.row(0).maxCoeff();
     const double lines = (high - low) / grid.spacing + 4.0 * grid.reach;
     if (lines > double(kMostPasses))
-        throw InputError("the surface is too steep across the passes, slope " + std::to_string(slope) + ": more than " +
+        throw InputError("the surface is too steep across the passes, slope " + to_short_text(slope) + ": more than " +
                          std::to_string(kMostPasses) + " lines to choose from");
     grid.origin = low - 2 * wheel.reach;
     grid.count = int(std::ceil(lines)) + 1;

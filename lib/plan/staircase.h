@@ -27,11 +27,12 @@ struct StaircaseOptions {
     double leftover = 0;
 };
 
+inline constexpr int kMostPasses = 20000;
+
 /// Zig-zag lines that cover a region of the pass frame: after all passes, wheel `sections.across` has come within
 /// `leftover` of the surface at every point of the region, and its footprint meets the region everywhere. Passes
 /// ascend; the first begins at the smallest coordinates (Wang 2007, eq. 5-4, 5-5).
 /// @throws InputError if the surface is so steep across the passes that more than kMostPasses are needed
-inline constexpr int kMostPasses = 20000;
 std::vector<Pass> staircase(const Polygon& region, const HeightsAcross& heights, const WheelSections& sections,
                             const StaircaseOptions& options);
 

@@ -1,5 +1,6 @@
 #include "plan/tool_path.h"
 
+#include "core/constants.h"
 #include "core/error.h"
 
 #include <array>
@@ -9,8 +10,6 @@
 namespace fettle {
 
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Places on the wheel where it is held against the surface. Between them the contact is found by a parabola, whose
 // error is of the third order of their distance: below 1e-4 mm for a wheel of 25 mm on a slope of 0.3.

@@ -15,7 +15,7 @@ struct Spring {
 
 /// Where the wheel comes to rest against the stock.
 struct Balance {
-    double z_tip = 0;
+    double z_tip = 0;  ///< of the wheel's lowest line, mm
     double force = 0;  ///< N
     double volume = 0; ///< that it removes, mm³
     double push = 0;   ///< on the wheel, along Y_w, N

@@ -1,21 +1,19 @@
 #include "report/run_files.h"
 
 #include "cloud/pcd.h"
+#include "core/constants.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/text.h"
 #include "diff/diff.h"
-#include "mesh/mesh_file.h"
 #include "report/checksum.h"
 #include "json/document.h"
 
+#include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace fettle {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// Reads a file once, for all that is told of it.
 class Files {
@@ -23,15 +21,15 @@ class Files {
     struct Content {
         std::string bytes, source;
     };
-    Content read(const std::string& what, const std::string& path)
+    Content read(const std::string& what, const std::string& path, std::size_t most = std::string::npos)
     {
-        Content content = {read_whole(path), display_name(path)};
+        Content content = {read_whole(path, most), display_name(path)};
         known_.push_back({what, content.source, content.bytes.size(), sha256(content.bytes)});
         return content;
     }
     json::Reader json(const std::string& what, const std::string& path)
     {
-        const Content content = read(what, path);
+        const Content content = read(what, path, kMostJson);
         return json::Reader::parse(content.bytes, content.source);
     }
     std::vector<SourceFile> known() && { return std::move(known_); }
@@ -76,7 +74,8 @@ ComparisonReport comparison_of(json::Reader& reader)
     report.judged = reader.choice("judged", {"all", "inside"});
     report.tolerance = reader.number("tolerance", Range::at_least(0));
     report.worst = number_or_nan(reader, "worst");
-    if (report.judged == "inside" && report.regions.size() == 1) reader.refuse("judged", "there is no region 'inside'");
+    if (report.judged == "inside" && (report.regions.size() == 1 || report.regions[1].first != report.judged))
+        reader.refuse("judged", "there is no region 'inside'");
     return report;
 }
 
@@ -159,9 +158,7 @@ std::vector<std::string> doubts(const RunFiles& run, const RunFileNames& names)
 
 const Figures& ComparisonReport::region(const std::string& name) const
 {
-    for (const auto& [known, numbers] : regions)
-        if (known == name) return numbers;
-    throw InputError("the comparison has no region '" + name + "'");
+    return std::find_if(regions.begin(), regions.end(), [&](const auto& of) { return of.first == name; })->second;
 }
 
 RunFiles read_run(const RunFileNames& names)
@@ -183,12 +180,9 @@ RunFiles read_run(const RunFileNames& names)
         return std::move(file.cloud);
     };
     const auto part = [&](const std::string& what, const std::string& path,
-                          const std::optional<Units::Length>& stated) -> std::variant<Cloud, Mesh> {
+                          const std::optional<Units::Length>& stated) -> MeshOrCloud {
         const Files::Content content = files.read(what, path);
-        std::optional<Units> own = units;
-        if (stated) own = Units{*stated, units.value_or(Units{}).force};
-        if (looks_like_cloud(content.bytes)) return parse_cloud(content.bytes, content.source, own).cloud;
-        return parse_mesh(content.bytes, content.source, own.value_or(Units{}).length);
+        return parse_shape(content.bytes, content.source, units_of(stated, units)).shape;
     };
     const auto report = [&](const std::string& what, const std::string& kind, const std::string& path,
                             const auto& content) {

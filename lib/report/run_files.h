@@ -2,7 +2,7 @@
 
 #include "cloud/cloud.h"
 #include "job/job.h"
-#include "mesh/mesh.h"
+#include "mesh/shape_file.h"
 #include "plan/plan.h"
 #include "surface/surface.h"
 #include "units/units.h"
@@ -11,7 +11,6 @@
 #include <optional>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
 namespace fettle {
@@ -30,6 +29,7 @@ struct ComparisonReport {
     std::vector<double> counts;
     double below = 0, above = 0;
 
+    /// @param name  of one that there is: "all", or what is judged
     const Figures& region(const std::string& name) const;
 };
 
@@ -69,8 +69,8 @@ struct RunFiles {
     std::optional<FormReport> form;
     std::optional<GrindReport> grinding;
     std::optional<Cloud> trace;
-    std::optional<std::variant<Cloud, Mesh>> before;
-    std::optional<std::variant<Cloud, Mesh>> after;
+    std::optional<MeshOrCloud> before;
+    std::optional<MeshOrCloud> after;
     std::optional<Cloud> errors;
     std::optional<ComparisonReport> comparison;
     std::vector<SourceFile> sources; ///< in the order of reading

@@ -3,20 +3,22 @@
 #include "report/sections.h"
 #include "report/svg_sheet.h"
 
+#include <algorithm>
+
 namespace fettle {
 namespace {
 
 /// @param what  the part's role among the sources, for messages
-Html picture_of(const RunFiles& run, const std::string& what, const std::variant<Cloud, Mesh>& part,
-                const PictureOptions& options, const std::string& caption)
+Html picture_of(const RunFiles& run, const std::string& what, const MeshOrCloud& part, const PictureOptions& options,
+                const std::string& caption)
 try {
     std::optional<SvgSheet> sheet;
     draw_picture(part, options, [&](int width, int height) -> Sheet& { return sheet.emplace(width, height); });
     return drawing_with_caption(sheet->drawing(caption), caption);
 } catch (const InputError& error) {
-    for (const SourceFile& file : run.sources)
-        if (file.what == what) throw InputError(file.name, error.what());
-    throw;
+    const auto file = std::find_if(run.sources.begin(), run.sources.end(),
+                                   [&](const SourceFile& source) { return source.what == what; });
+    throw InputError(file->name, error.what());
 }
 
 } // namespace

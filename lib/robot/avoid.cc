@@ -1,5 +1,7 @@
 #include "robot/avoid.h"
 
+#include "core/constants.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,8 +11,6 @@ namespace fettle {
 namespace {
 
 using Eigen::Index;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // A path while it is led around.
 struct Work {

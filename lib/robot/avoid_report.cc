@@ -1,10 +1,10 @@
 #include "robot/avoid_report.h"
 
 #include "cloud/fields.h"
+#include "core/constants.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace fettle {
 
@@ -12,10 +12,11 @@ namespace {
 
 using json::Value;
 
-constexpr double kDegree = std::numbers::pi / 180;
-
 // NaN if it does not lean.
-double azimuth(const Eigen::Vector2d& tilt) { return tilt.isZero(0) ? NAN : std::atan2(-tilt.x(), tilt.y()) / kDegree; }
+double azimuth(const Eigen::Vector2d& tilt)
+{
+    return tilt.isZero(0) ? NAN : std::atan2(-tilt.x(), tilt.y()) / kRadPerDegree;
+}
 
 bool is_solved(const AvoidedPath& avoided, std::size_t i, double tolerance)
 {
@@ -26,11 +27,8 @@ bool is_solved(const AvoidedPath& avoided, std::size_t i, double tolerance)
 
 Value pair_to_json(const Robot& robot, const std::vector<CellPair>& pairs, const CellClearance& c)
 {
-    const auto name = [&](std::size_t body) -> Value {
-        return body < robot.bodies.size() ? robot.bodies[body].name : kWorkpiece;
-    };
     if (std::isnan(c.clearance)) return Value(NAN);
-    return std::vector<Value>{name(pairs[c.pair].a), name(pairs[c.pair].b)};
+    return std::vector<Value>{body_name(robot, pairs[c.pair].a), body_name(robot, pairs[c.pair].b)};
 }
 
 } // namespace
@@ -58,7 +56,7 @@ void set_changes(Cloud& cloud, const AvoidedPath& avoided, double tolerance)
         const PoseChange& change = avoided.changes[i];
         const int what = (change.tilt.isZero(0) ? 0 : 1) + (change.retreat == 0 ? 0 : 2);
         columns.row(static_cast<Eigen::Index>(i)) << (is_solved(avoided, i, tolerance) ? what : 4),
-            change.tilt.norm() / kDegree, azimuth(change.tilt), change.retreat;
+            change.tilt.norm() / kRadPerDegree, azimuth(change.tilt), change.retreat;
     }
     const char* const names[] = {"avoided", "tilt", "tilt_towards", "retreat"};
     for (Eigen::Index k = 0; k < 4; ++k) set_field(cloud, names[k], columns.col(k));
@@ -89,7 +87,7 @@ void add_report(Value& report, const Robot& robot, const AvoidedPath& avoided, c
         most_retreat = std::max(most_retreat, change.retreat);
         changes.push_back(Value()
                               .set("pose", i)
-                              .set("tilt_deg", change.tilt.norm() / kDegree)
+                              .set("tilt_deg", change.tilt.norm() / kRadPerDegree)
                               .set("towards_deg", azimuth(change.tilt))
                               .set("retreat", change.retreat / units.mm())
                               .set("clearance_before", was.clearance / units.mm())
@@ -103,8 +101,8 @@ void add_report(Value& report, const Robot& robot, const AvoidedPath& avoided, c
                                 .set("drawn_back", drawn_back)
                                 .set("unsolved", unsolved.size())
                                 .set("unsolved_ways", ways)
-                                .set("most_tilt_deg", most_tilt / kDegree)
-                                .set("most_tilt_change_deg", most_change / kDegree)
+                                .set("most_tilt_deg", most_tilt / kRadPerDegree)
+                                .set("most_tilt_change_deg", most_change / kRadPerDegree)
                                 .set("most_retreat", most_retreat / units.mm())
                                 .set("changes", changes)
                                 .set("unsolved_poses", unsolved));

@@ -1,5 +1,7 @@
 #include "robot/avoid_trial.h"
 
+#include "core/constants.h"
+
 #include <cmath>
 #include <numbers>
 
@@ -8,8 +10,6 @@ namespace fettle {
 namespace {
 
 using Eigen::Isometry3d, Eigen::Vector3d;
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 // Whether a body stands still, whatever the arm does, once track and table stand.
 bool stands(const Robot& robot, std::size_t body)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/constants.h"
 #include "robot/arm.h"
 #include "robot/externals.h"
 #include "robot/heterogeneous.h"
@@ -11,7 +12,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 namespace fettle {
@@ -27,20 +27,21 @@ struct CellPair {
 std::vector<CellPair> checked_pairs(const Robot& robot);
 
 struct CollisionOptions {
-    double tolerance =
-        0.01;           ///< what goes no deeper is a contact, no collision, mm (Chen & Wei: the accuracy of machining)
-    double beyond = 50; ///< clearances are told up to here, mm
-    double resolution =
-        0.1; ///< between poses the bodies move no farther from one look to the next, mm, where it matters
-    const Heterogeneous* model = nullptr; ///< how the workpiece is seen; else by all of its triangles
+    /// What goes no deeper is a contact, no collision, mm (Chen & Wei: the accuracy of machining).
+    double tolerance = 0.01;
+    /// Clearances are told up to here, mm.
+    double beyond = 50;
+    /// Between poses the bodies move no farther from one look to the next, mm, where it matters.
+    double resolution = 0.1;
+    /// How the workpiece is seen; else by all of its triangles.
+    const Heterogeneous* model = nullptr;
 };
 
 /// The least clearance of a cell, its margin taken off.
 struct CellClearance {
-    double clearance = std::numeric_limits<double>::quiet_NaN(); ///< mm; NaN: not looked at
-    std::size_t pair = 0;                                        ///< of checked_pairs()
-    Eigen::Vector3d point =
-        Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN()); ///< on body a, cell frame
+    double clearance = kNaN;                                 ///< mm; NaN: not looked at
+    std::size_t pair = 0;                                    ///< of checked_pairs()
+    Eigen::Vector3d point = Eigen::Vector3d::Constant(kNaN); ///< on body a, cell frame
 };
 
 /// Where the frame of each link stands, by link + 1 (robot.h: cell, base, 1 to 6, tool, table).

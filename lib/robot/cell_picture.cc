@@ -150,16 +150,11 @@ void draw_mark(Sheet& sheet, const Vector2d& at)
     sheet.line(ring, kMark, 1.6, true);
 }
 
-std::string name_of(const Robot& robot, std::size_t body)
-{
-    return body < robot.bodies.size() ? robot.bodies[body].name : kWorkpiece;
-}
-
 std::string caption(const Robot& robot, const std::vector<CellPair>& pairs, const CellClearance& c, double tolerance,
                     const Units& units)
 {
     if (!std::isfinite(c.clearance)) return "clear of everything";
-    const std::string who = name_of(robot, pairs[c.pair].a) + " and " + name_of(robot, pairs[c.pair].b);
+    const std::string who = body_name(robot, pairs[c.pair].a) + " and " + body_name(robot, pairs[c.pair].b);
     const std::string length = number_text(std::abs(c.clearance) / units.mm()) + " " + to_string(units.length);
     if (c.clearance < -tolerance) return who + " collide by " + length;
     return who + (c.clearance < 0 ? " touch, " : " are nearest, ") + length + (c.clearance < 0 ? " deep" : " apart");

@@ -10,14 +10,9 @@ namespace {
 
 using json::Value;
 
-std::string name_of(const Robot& robot, std::size_t body)
-{
-    return body < robot.bodies.size() ? robot.bodies[body].name : kWorkpiece;
-}
-
 std::vector<Value> names_of(const Robot& robot, const CellPair& pair)
 {
-    return {name_of(robot, pair.a), name_of(robot, pair.b)};
+    return {body_name(robot, pair.a), body_name(robot, pair.b)};
 }
 
 Value least_to_json(const Robot& robot, const std::vector<CellClearance>& list,

@@ -49,7 +49,9 @@ ExternalChoice choose_externals(const Robot& robot, const PosePath& poses, const
 Eigen::Matrix2Xd external_values(const Robot& robot, const PosePath& poses, const AxisRule& track,
                                  const AxisRule& table);
 
+/// Where the base stands with the track there, mm. @return  T_cell_base
 Eigen::Isometry3d cell_base(const Robot& robot, double track);
+/// Where the part stands with the table there, rad. @return  T_cell_part
 Eigen::Isometry3d cell_part(const Robot& robot, double table);
 
 /// Where the flange must be so that the tool is at a pose in the part. @return  T_base_flange

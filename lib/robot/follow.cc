@@ -1,5 +1,6 @@
 #include "robot/follow.h"
 
+#include "core/constants.h"
 #include "robot/arm.h"
 #include "robot/layered_search.h"
 
@@ -12,7 +13,6 @@ namespace fettle {
 namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 // One way to reach a pose.
 struct Station {

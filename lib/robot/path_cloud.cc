@@ -1,17 +1,15 @@
 #include "robot/path_cloud.h"
 
+#include "core/constants.h"
 #include "core/error.h"
 #include "core/text.h"
 #include "robot/arm.h"
 
 #include <cmath>
-#include <numbers>
 
 namespace fettle {
 
 namespace {
-
-constexpr double kRadPerDegree = std::numbers::pi / 180;
 
 bool has_joint(const Robot& robot, Eigen::Index joint)
 {

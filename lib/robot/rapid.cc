@@ -1,5 +1,6 @@
 #include "robot/rapid.h"
 
+#include "core/constants.h"
 #include "core/fixed_text.h"
 #include "robot/arm.h"
 
@@ -11,7 +12,6 @@ namespace fettle {
 
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 // What RAPID's predefined speeds say of external axes: mm/s and degrees/s.
 constexpr const char* kExternalSpeeds = "5000,1000";
 constexpr const char* kNoAxis = "9E9";
@@ -36,7 +36,7 @@ std::string pose(const Eigen::Isometry3d& T)
 std::string external_axes(const Robot& robot, const Eigen::Vector2d& externals)
 {
     const std::string track = robot.track ? to_fixed_text(externals[0], 4) : kNoAxis;
-    const std::string table = robot.table ? to_fixed_text(externals[1] / kDegree, 6) : kNoAxis;
+    const std::string table = robot.table ? to_fixed_text(externals[1] / kRadPerDegree, 6) : kNoAxis;
     return "[" + track + "," + table + ",9E9,9E9,9E9,9E9]";
 }
 
@@ -60,7 +60,9 @@ Eigen::Isometry3d turned_half(const Eigen::Isometry3d& T)
 
 Eigen::Vector4i rapid_configuration(const Robot& robot, const Joints& joints)
 {
-    const auto quadrant = [&](Eigen::Index k) { return static_cast<int>(std::floor(joints[k] / (kDegree * 90))); };
+    const auto quadrant = [&](Eigen::Index k) {
+        return static_cast<int>(std::floor(joints[k] / (kRadPerDegree * 90)));
+    };
     Eigen::Vector4i configuration(quadrant(0), quadrant(3), quadrant(5), 0);
     if (robot.coupling == Coupling::parallelogram) return configuration;
     const auto frames = Arm(robot).frames(joints);
@@ -85,8 +87,8 @@ void write_rapid(std::ostream& out, const Robot& robot, const PosePath& poses, c
         << ",[1,[0,0,1],[1,0,0,0],0,0,0]];\n"
         << "  PERS wobjdata fettle_part := " << work_object(robot) << ";\n"
         << "  CONST speeddata fettle_speed := [" << to_fixed_text(options.feed.tip, 4) << ","
-        << to_fixed_text(options.feed.turn / kDegree, 4) << "," << kExternalSpeeds << "];\n"
-        << "  CONST jointtarget begin := [" << listed(path.joints.col(0).head<6>() / kDegree, 6) << ","
+        << to_fixed_text(options.feed.turn / kRadPerDegree, 4) << "," << kExternalSpeeds << "];\n"
+        << "  CONST jointtarget begin := [" << listed(path.joints.col(0).head<6>() / kRadPerDegree, 6) << ","
         << external_axes(robot, path.joints.col(0).tail<2>()) << "];\n";
     for (std::size_t i = 0; i < poses.size(); ++i) {
         const auto q = path.joints.col(static_cast<Eigen::Index>(i));

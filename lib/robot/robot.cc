@@ -1,10 +1,12 @@
 #include "robot/robot.h"
 
+#include "core/constants.h"
 #include "robot/body_json.h"
 
 #include "core/error.h"
 #include "core/text.h"
 #include "json/document.h"
+#include "json/units.h"
 
 #include <cmath>
 #include <numbers>
@@ -15,9 +17,6 @@ namespace {
 
 using json::Reader;
 
-constexpr double kRadPerDegree = std::numbers::pi / 180;
-// More than twice round either way: no cable follows.
-constexpr double kMostDegrees = 720;
 // A right angle written with six digits is one.
 constexpr double kRightAngle = 1e-6;
 
@@ -45,7 +44,7 @@ DhRow row_in(Reader reader, double mm)
     row.a = length_in(reader, "a", mm);
     row.d = length_in(reader, "d", mm);
     row.offset = reader.number_or("theta_offset_deg", 0, Range::between(-360, 360)) * kRadPerDegree;
-    row.range = range_in(reader, "min_deg", "max_deg", kRadPerDegree, kMostDegrees);
+    row.range = range_in(reader, "min_deg", "max_deg", kRadPerDegree, kMostJointDegrees);
     row.max_speed = speed_in(reader, "max_speed_deg", kRadPerDegree);
     reader.done();
     return row;
@@ -105,7 +104,7 @@ Table table_in(Reader reader, double mm)
     Table table;
     table.point = point_in(reader, "point", mm);
     table.axis = direction_in(reader, "axis");
-    table.range = range_in(reader, "min_deg", "max_deg", kRadPerDegree, kMostDegrees);
+    table.range = range_in(reader, "min_deg", "max_deg", kRadPerDegree, kMostJointDegrees);
     table.max_speed = speed_in(reader, "max_speed_deg", kRadPerDegree);
     table.unit = reader.text_or("unit", "");
     reader.done();
@@ -113,6 +112,11 @@ Table table_in(Reader reader, double mm)
 }
 
 } // namespace
+
+std::string body_name(const Robot& robot, std::size_t body)
+{
+    return body < robot.bodies.size() ? robot.bodies[body].name : kWorkpiece;
+}
 
 Eigen::Isometry3d dh_transform(double theta, double d, double a, double alpha)
 {
@@ -130,9 +134,7 @@ Robot read_robot(const std::string& path)
     Robot robot;
     robot.source = reader.source();
     reader.expect_kind("robot");
-    Reader units = reader.object("units");
-    const double mm = mm_per(parse_length_unit(units.choice("length", {"mm", "in", "m"})));
-    units.done();
+    const double mm = mm_per(json::read_length_unit(reader));
     parse_dh(reader, mm, robot);
     const std::string coupling = reader.choice("coupling", {"serial", "parallelogram"});
     robot.coupling = coupling == "serial" ? Coupling::serial : Coupling::parallelogram;

@@ -66,6 +66,9 @@ struct Body {
     Solid solid;
 };
 
+/// No joint turns farther, either way: no cable follows more than twice round.
+inline constexpr double kMostJointDegrees = 720;
+
 /// How robot files call what is machined; no body may be called so.
 inline constexpr const char* kWorkpiece = "workpiece";
 
@@ -97,6 +100,9 @@ struct Robot {
 /// Reads a robot file ("-": stdin). Hulls are read from mesh files beside it.
 /// @throws InputError with the key's path: also for an arm whose inverse has no closed form
 Robot read_robot(const std::string& path);
+
+/// Of a body by its number, or kWorkpiece.
+std::string body_name(const Robot& robot, std::size_t body);
 
 /// A = R_z(theta) T_z(d) T_x(a) R_x(alpha), Chen & Wei eq. 1.
 Eigen::Isometry3d dh_transform(double theta, double d, double a, double alpha);

@@ -1,12 +1,12 @@
 #include "robot/solve_path.h"
 
+#include "core/constants.h"
 #include "core/error.h"
 #include "core/lines.h"
 #include "core/text.h"
 #include "robot/path_cloud.h"
 
 #include <cmath>
-#include <numbers>
 #include <sstream>
 #include <vector>
 
@@ -14,16 +14,11 @@ namespace fettle {
 
 namespace {
 
-constexpr double kRadPerDegree = std::numbers::pi / 180;
-
-// No joint turns farther (robot.cc), and the search goes by whole turns from there.
-constexpr double kMostDegrees = 720;
-
 Joints start_in(const std::string& text)
 {
     const Eigen::VectorXd degrees = numbers_in(text);
-    if (degrees.size() != 6 || !(degrees.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= kMostDegrees))
-        throw InputError("--start", "expected six angles in degrees, up to " + to_short_text(kMostDegrees) +
+    if (degrees.size() != 6 || !(degrees.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= kMostJointDegrees))
+        throw InputError("--start", "expected six angles in degrees, up to " + to_short_text(kMostJointDegrees) +
                                         " either way, with commas between, got " + in_quotes(text));
     return degrees * kRadPerDegree;
 }

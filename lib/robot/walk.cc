@@ -1,5 +1,7 @@
 #include "robot/walk.h"
 
+#include "core/constants.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -7,7 +9,6 @@ namespace fettle {
 
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Between two steps the way is halved at most so often: 1 m to the hundredth of a micrometre.
 constexpr std::size_t kMostHalvings = 26;
 // A pair is looked at as far ahead as it would move in so many steps: it is then left alone for about as many.

@@ -8,7 +8,7 @@ namespace fettle {
 
 /// Lines each way that are probed at most. Wang 2007, 4.4.3.1, wants fewer than 60 touches; a hundred lines are a slip,
 /// or a needle of an anomaly.
-constexpr int kMostLines = 100;
+inline constexpr int kMostLines = 100;
 
 /// Number of lines across each side of the anomaly's bounding rectangle, Wang 2007, eq. 4-5.
 struct LineCount {

@@ -13,7 +13,7 @@ namespace fettle {
 
 /// Candidates in S \ B where nothing else is said: Wang's first subsets hold 457 to 481 of them (2007, 4.4.3.2 and
 /// Table 4-1), half of what there is to choose from.
-constexpr double kCandidates = 1000;
+inline constexpr double kCandidates = 1000;
 
 /// Places that may be touched: a square grid in W, centred on S, as far as it lies in S \ B.
 /// @param spacing  mm; 0: so that there are about kCandidates
@@ -25,8 +25,9 @@ Eigen::Matrix2Xd candidate_touches(const Job& job, double spacing);
 /// Infinite for a subset that makes no surface. It must not depend on anything else.
 using SubsetError = std::function<double(const std::vector<Eigen::Index>&)>;
 
-/// With few touches an evaluation costs so much less, and needs so many more.
-constexpr int kExchanges = 10;
+/// Exchanges after the discards, for each mutation before them: with few touches an evaluation costs less, and more of
+/// them are needed.
+inline constexpr int kExchanges = 10;
 
 struct HillClimb {
     Eigen::Index touches = 0; ///< to be left; 0: as few as the discards leave

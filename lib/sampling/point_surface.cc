@@ -1,8 +1,6 @@
 #include "sampling/point_surface.h"
 
-#include "core/decompositions.h"
-
-#include <Eigen/Dense>
+#include <Eigen/Cholesky>
 
 #include <algorithm>
 #include <cmath>
@@ -41,10 +39,15 @@ constexpr int kMedianSteps = 12;           // of reweighting towards least absol
 // Below that share of the spacing residuals are roundoff of float coordinates, not noise.
 constexpr double kExact = 1e-6;
 
-using Row = Eigen::Matrix<double, 1, 6>;
-constexpr std::size_t kUnknowns = 6;
+constexpr int kUnknowns = 6;
+using Unknowns = Eigen::Matrix<double, kUnknowns, 1>;
+using Normal = Eigen::Matrix<double, kUnknowns, kUnknowns>;
 
-Row quadratic(double u, double v) { return (Row() << 1, u, v, u * u, u * v, v * v).finished(); }
+/// Of a term's square, what the terms before it do not explain must be more than this share: the points may lie on one
+/// line or a circle, where a quadratic is not determined. A millionth of the length, as float coordinates are rounded.
+constexpr double kIndependent = 1e-12;
+
+Unknowns quadratic(double u, double v) { return (Unknowns() << 1, u, v, u * u, u * v, v * v).finished(); }
 
 bool surrounded(const Points& points, const Vector2d& xy)
 {
@@ -68,35 +71,47 @@ double median(Eigen::VectorXd values)
 }
 
 // z of the quadratic at its origin xy. Least absolute deviations by reweighting show which points are outliers; the
-// others then count alike.
+// others then count alike. By normal equations: within 3 spacings the terms are of one size, and only the last of the
+// solutions is more than weights for the next.
 std::optional<double> robust_height(const Points& points, const Vector2d& xy, double spacing)
 {
     const Index n = static_cast<Index>(points.size());
-    Eigen::MatrixXd A(n, kUnknowns);
-    Eigen::VectorXd z(n);
+    Eigen::Matrix<double, kUnknowns, Eigen::Dynamic> terms(kUnknowns, n);
+    Eigen::ArrayXd z(n), residuals(n), weights = Eigen::ArrayXd::Ones(n);
     for (Index i = 0; i < n; ++i) {
         const Vector3d& point = points[static_cast<std::size_t>(i)];
-        const Vector2d uv = (point.head<2>() - xy) / spacing;
-        A.row(i) = quadratic(uv.x(), uv.y());
+        const Vector2d uv = (point.head<2>() - xy) / (kNearSpacings * spacing);
+        terms.col(i) = quadratic(uv.x(), uv.y());
         z[i] = point.z();
     }
-    Eigen::VectorXd weights = Eigen::VectorXd::Ones(n), coefficients, residuals;
-    const auto solve = [&] { // QR: the points may lie on one line or a circle, where a quadratic is not determined
-        const LeastSquares found = least_squares_by_qr(weights.asDiagonal() * A, weights.cwiseProduct(z));
-        if (found.rank < static_cast<Index>(kUnknowns)) return false;
-        coefficients = found.x;
-        residuals = (A * coefficients - z).cwiseAbs();
+    const double middle = z.mean(); // far from z = 0 digits would be lost
+    z -= middle;
+    Unknowns coefficients;
+    const auto solve = [&] {
+        Normal A = Normal::Zero();
+        Unknowns b = Unknowns::Zero();
+        for (Index i = 0; i < n; ++i) {
+            const Unknowns weighted = weights[i] * terms.col(i);
+            A.noalias() += weighted * terms.col(i).transpose();
+            b += weighted * z[i];
+        }
+        const Eigen::LLT<Normal> cholesky(A);
+        const Unknowns pivots = cholesky.matrixLLT().diagonal();
+        const auto independent = pivots.array().square() > kIndependent * A.diagonal().array();
+        if (cholesky.info() != Eigen::Success || !independent.all()) return false;
+        coefficients = cholesky.solve(b);
+        residuals = ((coefficients.transpose() * terms).transpose().array() - z).abs();
         return true;
     };
     for (int step = 0; step < kMedianSteps; ++step) {
         if (!solve()) return std::nullopt;
-        const double floor = std::max(kExact * spacing, kExact * residuals.maxCoeff());
-        weights = residuals.cwiseMax(floor).cwiseSqrt().cwiseInverse();
+        if (residuals.maxCoeff() <= kExact * spacing) break; // without an outlier
+        weights = residuals.max(std::max(kExact * spacing, kExact * residuals.maxCoeff())).inverse();
     }
     const double limit = std::max(kOutlierSigmas * kSigmaPerMedian * median(residuals), kExact * spacing);
-    weights = (residuals.array() <= limit).cast<double>();
-    if (weights.sum() < static_cast<double>(kUnknowns) || !solve()) return std::nullopt;
-    return coefficients[0];
+    weights = (residuals <= limit).cast<double>();
+    if (weights.sum() < kUnknowns || !solve()) return std::nullopt;
+    return middle + coefficients[0];
 }
 
 // The points of the highest sheet that surrounds the line; none if no sheet does.
@@ -108,7 +123,7 @@ Points highest_sheet(Points points, const Vector2d& xy, double spacing)
         sheet.push_back(points[i]);
         const bool ends = i + 1 == points.size() || points[i].z() - points[i + 1].z() > kSheetGapSpacings * spacing;
         if (!ends) continue;
-        if (sheet.size() >= kUnknowns && surrounded(sheet, xy)) return sheet;
+        if (sheet.size() >= std::size_t{kUnknowns} && surrounded(sheet, xy)) return sheet;
         sheet.clear();
     }
     return sheet;
@@ -205,8 +220,6 @@ std::optional<double> PointSurface::height(const Vector2d& xy) const
     return robust_height(sheet, xy, spacing_);
 }
 
-// The ball's lowest point is at the largest z(q) + sqrt(R^2 - |q - xy|^2) - R over the disc of its shadow: found on a
-// square lattice first, then by steps that are halved.
 std::optional<double> PointSurface::highest(const Eigen::Vector2d& xy, double radius) const
 {
     std::optional<double> z;
@@ -214,6 +227,8 @@ std::optional<double> PointSurface::highest(const Eigen::Vector2d& xy, double ra
     return z;
 }
 
+// The ball's lowest point is at the largest z(q) + sqrt(R^2 - |q - xy|^2) - R over the disc of its shadow: found on a
+// square lattice first, then by steps that are halved.
 std::optional<double> PointSurface::drop_ball(const Vector2d& xy, double radius) const
 {
     constexpr int kHalfLattice = 8;    // a bump narrower than an eighth of the radius may be missed

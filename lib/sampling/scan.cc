@@ -1,9 +1,8 @@
 #include "sampling/scan.h"
 
-#include "cloud/pcd.h"
 #include "core/error.h"
 #include "core/file.h"
-#include "mesh/mesh_file.h"
+#include "mesh/shape_file.h"
 #include "sampling/point_surface.h"
 #include "sampling/triangle_grid.h"
 
@@ -60,13 +59,11 @@ Eigen::Matrix<double, 3, 2> Scan::bounds() const { return state_->bounds; }
 
 Scan read_scan(const std::string& path, const Units& units, std::optional<Units::Length> stated)
 {
-    const std::string bytes = read_whole(path);
-    const std::string source = display_name(path);
-    const Units::Length unit = stated.value_or(units.length);
-    if (!looks_like_cloud(bytes)) return Scan(parse_mesh(bytes, source, unit));
-    Cloud cloud = parse_cloud(bytes, source, Units{unit, units.force}).cloud;
-    if (!bounding_box(cloud.xyz).allFinite()) throw InputError(source, "no points");
-    return Scan(std::move(cloud));
+    ShapeFile file =
+        parse_shape(read_whole(path), display_name(path), Units{stated.value_or(units.length), units.force});
+    if (Mesh* mesh = std::get_if<Mesh>(&file.shape)) return Scan(std::move(*mesh));
+    if (!bounding_box(places_of(file.shape)).allFinite()) throw InputError(display_name(path), "no points");
+    return Scan(std::get<Cloud>(std::move(file.shape)));
 }
 
 } // namespace fettle

@@ -38,8 +38,10 @@ class Scan {
     std::unique_ptr<State> state_;
 };
 
-/// Reads a mesh or a cloud, told by content. @param units  of the job; @param stated  the file's length unit if the
-/// user gave one (--on-units), else the job's
+/// Reads a mesh or a cloud, told by content.
+/// @param units   of the job
+/// @param stated  the file's length unit; nothing: the job's
+/// @throws InputError as read_shape() (mesh/shape_file.h), or if no point of a cloud is finite
 Scan read_scan(const std::string& path, const Units& units, std::optional<Units::Length> stated);
 
 } // namespace fettle

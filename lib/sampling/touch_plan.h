@@ -21,7 +21,7 @@ enum class Role {
 };
 
 /// The `curve` of a touch that is on no line.
-constexpr int kNoLine = -1;
+inline constexpr int kNoLine = -1;
 
 /// Where to touch the part, in the order of the lines that the touches belong to.
 struct TouchPlan {

@@ -17,8 +17,8 @@ class TraceFile;
 /// One line of a trace: what the machine did, and why. mm, N, s, frame M.
 struct TraceRow {
     double time = 0;
-    Eigen::Vector3d tool =
-        Eigen::Vector3d::Zero(); ///< the wheel's lowest line at mid-width, where the spring lets it stand
+    /// The wheel's lowest line at mid-width, where the spring lets it stand.
+    Eigen::Vector3d tool = Eigen::Vector3d::Zero();
     int layer = 1;
     int pass = 1;
     Event event = Event::none;

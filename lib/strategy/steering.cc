@@ -4,6 +4,7 @@
 #include "core/file.h"
 #include "core/lines.h"
 #include "core/text.h"
+#include "strategy/joystick.h"
 #include "strategy/keys.h"
 
 #include <algorithm>
@@ -11,15 +12,11 @@
 #include <cstring>
 #include <fcntl.h>
 #include <limits>
-#include <linux/joystick.h>
 #include <sys/stat.h>
 
 namespace fettle {
 namespace {
 
-constexpr double kFullWay = 32767; // of an axis
-/// A stick at rest does not stand quite in the middle.
-constexpr double kRest = 0.1;
 constexpr std::size_t kLongestLine = 4096;
 
 } // namespace
@@ -117,17 +114,7 @@ void Steering::read_next()
 void Steering::read_device()
 {
     js_event event = {};
-    while (now_.button == Button::none && ::read(file_.get(), &event, sizeof event) == sizeof event) {
-        const int type = event.type & ~JS_EVENT_INIT;
-        const double value = event.value / kFullWay;
-        if (type == JS_EVENT_AXIS && event.number < 2)
-            now_.way[event.number] = std::abs(value) < kRest ? 0 : event.number == 1 ? -value : value; // forth is less
-        if (type == JS_EVENT_BUTTON && event.number == 0) now_.press = event.value == 0;
-        if (event.type != JS_EVENT_BUTTON || event.value == 0) continue; // how a button stands at the start is no push
-        if (event.number == 1) now_.end = true;
-        if (event.number == 2) now_.button = Button::record;
-        if (event.number == 3) now_.button = Button::next;
-    }
+    while (now_.button == Button::none && ::read(file_.get(), &event, sizeof event) == sizeof event) hear(event, now_);
     if (now_.button == Button::none && errno != EAGAIN) now_.end = true; // it was pulled out
 }
 

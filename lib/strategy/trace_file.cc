@@ -82,7 +82,10 @@ void TraceFile::begin(const TraceRow& row)
 void TraceFile::done(const TraceRow& row)
 {
     if (!begun_) return begin(row), void(begun_ = false);
+    // SIGKILL can end a write where a page of the file ends, so a row that is counted is never written over.
+    write(header(count_ - 1), 0);
     write(text(row), start_ + (count_ - 1) * width_);
+    write(header(count_), 0);
     begun_ = false;
 }
 

@@ -10,9 +10,9 @@
 namespace fettle {
 
 /// A trace that is written ahead: what the machine is to do stands in the file before it does it (event `begun`, the
-/// place where it is to go), and in its stead, afterwards, what came of it. Whenever the program is killed, the file is
-/// a PCD; it may have a point more than its header counts, which read_trace() passes over. It is not synced to the
-/// disk: it outlives the program, not the computer.
+/// place where it is to go), and in its stead, afterwards, what came of it. Whenever the program is killed, the points
+/// that its header counts are whole; after them there may be one more, or a part of it, which read_trace() passes over.
+/// It is not synced to the disk: it outlives the program, not the computer.
 class TraceFile {
   public:
     /// Puts a file with these rows in the place of `path`.

@@ -129,12 +129,16 @@ Stage resample(const Stage& first, double spacing)
     return Stage(delaunay(nodes), std::move(values));
 }
 
-/// @param fields  points x C, what is interpolated
-Stage interpolate(const Eigen::Matrix2Xd& points, const Eigen::MatrixXd& fields, double spacing)
+void check(const Eigen::Matrix3Xd& points)
 {
     if (points.cols() < 3)
         throw InputError("griddata needs at least 3 points, there are " + std::to_string(points.cols()));
-    if (!points.allFinite() || !fields.allFinite()) throw InputError("a point is not finite");
+    if (!points.allFinite()) throw InputError("a point is not finite");
+}
+
+/// @param fields  points x C, what is interpolated
+Stage interpolate(const Eigen::Matrix2Xd& points, const Eigen::MatrixXd& fields, double spacing)
+{
     const Merged merged = merge_same(points);
     Stage once(delaunay(merged.xy), merged.mean * fields);
     return spacing > 0 ? resample(once, spacing) : once;
@@ -150,9 +154,9 @@ struct Griddata::Interpolant {
 
 Griddata make_griddata(const Eigen::Matrix3Xd& points, double spacing, double angle)
 {
+    check(points);
     const Eigen::Matrix2d rotation = rotation_working_machine(angle);
     const Eigen::VectorXd z = points.row(2).transpose();
-    if (!z.allFinite()) throw InputError("a point is not finite");
     Stage stage = interpolate(rotation * points.topRows<2>(), Eigen::MatrixXd::Identity(z.size(), z.size()), spacing);
     const Eigen::VectorXd gradients = stage.gradients * z;
     Eigen::MatrixXd data(stage.values.rows(), 3);
@@ -166,6 +170,7 @@ Griddata make_griddata(const Eigen::Matrix3Xd& points, double spacing, double an
 Eigen::VectorXd griddata_heights(const Eigen::Matrix3Xd& points, double spacing, double angle,
                                  const Eigen::Matrix2Xd& xy)
 {
+    check(points);
     const Eigen::Matrix2d rotation = rotation_working_machine(angle);
     const Stage stage = interpolate(rotation * points.topRows<2>(), points.row(2).transpose(), spacing);
     Eigen::VectorXd z(xy.cols());

@@ -3,6 +3,7 @@
 #include "surface/basis.h"
 #include "units/units.h"
 #include "json/document.h"
+#include "json/units.h"
 
 #include <Eigen/LU>
 
@@ -106,9 +107,7 @@ Patch read_patch(json::Reader reader, double mm)
 std::vector<Patch> read_patches(json::Reader reader)
 {
     reader.expect_kind("patches");
-    json::Reader units = reader.object("units");
-    const double mm = mm_per(parse_length_unit(units.choice("length", {"mm", "in", "m"})));
-    units.done();
+    const double mm = mm_per(json::read_length_unit(reader));
     std::vector<Patch> patches;
     for (const json::Reader& patch : reader.objects("patches")) patches.push_back(read_patch(patch, mm));
     if (patches.empty()) reader.refuse("patches", "there is none");

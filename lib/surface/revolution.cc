@@ -1,17 +1,16 @@
 #include "surface/revolution.h"
 
+#include "core/constants.h"
+
 #include <Eigen/Geometry>
 
 #include <cmath>
-#include <limits>
 
 namespace fettle {
 
 namespace {
 
 using Eigen::Vector3d;
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// Of v/|v|, as v changes.
 Vector3d change_of_unit(const Vector3d& unit, double norm, const Vector3d& change)
@@ -27,7 +26,7 @@ struct FromCircle {
 FromCircle from_circle(double k, double q)
 {
     const double ratio = 1 + 2 * k * q;
-    if (!(ratio > 0)) return {kNan, kNan};
+    if (!(ratio > 0)) return {kNaN, kNaN};
     const double r = std::sqrt(ratio);
     return {2 * q / (1 + r), r};
 }

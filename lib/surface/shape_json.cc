@@ -1,5 +1,6 @@
 #include "surface/shape_json.h"
 
+#include "core/constants.h"
 #include "core/error.h"
 #include "surface/griddata.h"
 #include "surface/shapes.h"
@@ -8,7 +9,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 namespace fettle {
 
@@ -16,8 +16,6 @@ namespace {
 
 using json::Reader;
 using json::Value;
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 // Each shape lists its members once, `members(io, shape)`: a Writer puts them into a JSON value, a Parser takes them
 // from one. A power of length belongs to each: with 1 it is divided by the file's unit, with -1 multiplied.
@@ -28,7 +26,7 @@ class Writer {
     double mm() const { return mm_; }
 
     void number(const char* key, double x, int power, const Range& = {}) { value_.set(key, in_unit(x, power)); }
-    void angle(const char* key, double x) { value_.set(key, x / kDegree); }
+    void angle(const char* key, double x) { value_.set(key, x / kRadPerDegree); }
     void vector(const char* key, const Eigen::VectorXd& v, int power) { value_.set(key, Value(in_unit(v, power))); }
     void matrix(const char* key, const Eigen::MatrixXd& m) { value_.set(key, Value(in_unit(m, 1))); }
     void points(const char* key, const Eigen::Matrix3Xd& m) { matrix(key, m.transpose()); }
@@ -61,7 +59,7 @@ class Parser {
     {
         x = in_mm(reader_.number(key, range), power);
     }
-    void angle(const char* key, double& x) { x = reader_.number(key) * kDegree; }
+    void angle(const char* key, double& x) { x = reader_.number(key) * kRadPerDegree; }
     template <typename Vector>
     void vector(const char* key, Vector& v, int power)
     {

@@ -1,5 +1,6 @@
 #include "surface/surface.h"
 
+#include "core/constants.h"
 #include "surface/griddata.h"
 #include "surface/precision.h"
 #include "surface/shapes.h"
@@ -9,13 +10,10 @@
 #include <tbb/parallel_for.h>
 
 #include <cmath>
-#include <limits>
 
 namespace fettle {
 
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// Griddata is piecewise: its slope by differences over a step that balances truncation (h²) and roundoff (1e-16 / h).
 Eigen::Vector2d slope(const Griddata& griddata, const Eigen::Vector2d& xy)
@@ -54,7 +52,7 @@ Eigen::VectorXd gradient_of(const Shape& shape, const Eigen::Vector2d& xy)
 double variance(const Shape& shape, const Eigen::MatrixXd& covariance, const Eigen::Vector2d& xy)
 {
     const Eigen::VectorXd g = gradient_of(shape, xy);
-    if (g.hasNaN()) return kNan;
+    if (g.hasNaN()) return kNaN;
     std::vector<Eigen::Index> used;
     for (Eigen::Index i = 0; i < g.size(); ++i)
         if (g[i] != 0) used.push_back(i);
@@ -115,7 +113,7 @@ bool knows_sigma(const Surface& surface) { return surface.covariance.size() > 0 
 double sigma(const Surface& surface, const Eigen::Vector2d& xy)
 {
     if (surface.precision) return sigmas(surface, xy)[0];
-    if (surface.covariance.size() == 0) return kNan;
+    if (surface.covariance.size() == 0) return kNaN;
     const double mean = height(surface, xy) - surface.shift;
     double sum = 0, spread = 0; // within the members, and of them about their mean
     for (const Member& member : members(surface)) {
@@ -124,7 +122,7 @@ double sigma(const Surface& surface, const Eigen::Vector2d& xy)
         sum += member.weight * variance(member.shape, member.covariance, xy);
         spread += member.weight * (z - mean) * (z - mean);
     }
-    return std::isnan(mean) ? kNan : std::sqrt(std::max(sum + spread, 0.0));
+    return std::isnan(mean) ? kNaN : std::sqrt(std::max(sum + spread, 0.0));
 }
 
 Eigen::VectorXd sigmas(const Surface& surface, const Eigen::Matrix2Xd& xy)

@@ -16,7 +16,7 @@ struct SurfaceGrid {
 ///                 begins at the polygon's least corner
 /// @throws InputError if the step makes more than kMostGridPoints
 SurfaceGrid grid_over(const Polygon& outline, double angle, double step);
-constexpr double kMostGridPoints = 2e7; // half a gigabyte of triangles
+inline constexpr double kMostGridPoints = 2e7; // half a gigabyte of triangles
 
 /// The bounding box of the touches, in M.
 /// @throws InputError for a surface without touches

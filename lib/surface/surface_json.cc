@@ -2,6 +2,7 @@
 #include "core/text.h"
 #include "surface/shape_json.h"
 #include "surface/surface.h"
+#include "json/units.h"
 
 #include <cmath>
 #include <limits>
@@ -199,10 +200,8 @@ Prediction read_prediction(Reader reader, double mm)
 json::Value to_json(const Surface& surface)
 {
     const double mm = surface.units.mm();
-    Value units;
-    units.set("length", to_string(surface.units.length));
     Value value;
-    value.set("kind", "surface").set("units", units);
+    value.set("kind", "surface").set("units", json::to_json(surface.units.length));
     value.set("shape", shape_to_json(surface.shape, mm));
     value.set("shift", surface.shift / mm);
     if (surface.prediction)
@@ -220,9 +219,7 @@ Surface parse_surface(json::Reader reader)
 {
     reader.expect_kind("surface");
     Surface surface;
-    Reader units = reader.object("units");
-    surface.units.length = parse_length_unit(units.choice("length", {"mm", "in", "m"}));
-    units.done();
+    surface.units.length = json::read_length_unit(reader);
     const double mm = surface.units.mm();
     surface.shape = parse_shape(reader.object("shape"), mm);
     surface.shift = reader.number_or("shift", 0) * mm;

@@ -1,3 +1,4 @@
+#include "core/constants.h"
 #include "surface/quadratic.h"
 #include "surface/revolution.h"
 #include "surface/shapes.h"
@@ -5,13 +6,10 @@
 #include <Eigen/Geometry>
 
 #include <cmath>
-#include <limits>
 
 namespace fettle {
 
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 Torus torus_of(const Cone& cone) { return {cone.point, cone.normal, cone.axis, cone.around, cone.lean, 0}; }
 
@@ -53,12 +51,12 @@ Eigen::Vector3d offset(const Torus& torus, const Eigen::Matrix3d& axes, const Ei
         const Eigen::Vector3d d = level + z * vertical;
         const RevolutionDistance f = distance_and_slopes(surface, d);
         const double rise = f.by_point.dot(vertical);
-        if (!(rise > 0)) return Eigen::Vector3d::Constant(kNan);
+        if (!(rise > 0)) return Eigen::Vector3d::Constant(kNaN);
         const double step = f.value / rise;
         z -= step;
         if (std::abs(step) <= kSettled * d.norm()) return level + z * vertical;
     }
-    return Eigen::Vector3d::Constant(kNan);
+    return Eigen::Vector3d::Constant(kNaN);
 }
 
 } // namespace

@@ -19,9 +19,9 @@ double mm_per(Units::Length length)
     case Units::Length::in:
         return kMmPerInch;
     case Units::Length::m:
-        return 1000;
+        break;
     }
-    throw std::logic_error("length unit");
+    return 1000;
 }
 
 double Units::mm() const { return mm_per(length); }

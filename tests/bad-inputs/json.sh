@@ -95,7 +95,14 @@ job() { # CHANGE…
     done
 }
 job '.anomaly |= .[:2]' '.anomaly = [[10, 10], [20, 20], [20, 10], [10, 20]]' '.anomaly = [[10, 10], [15, 15], [20, 20]]' '.anomaly[0] = [-90, 10]' \
-    '.anomaly = .sampling' '.force.min = 70' '.force.down = 70' '.force.stiffness = 0' '.feed.rate = -1' '.feed.step_over = 6' '.wheel.radius = 0'
+    '.anomaly = .sampling' '.force.min = 70' '.force.down = 70' '.force.preload = 60' '.force.stiffness = 0' '.feed.rate = -1' '.feed.step_over = 6' '.wheel.radius = 0'
+# a million objects in an array, and one of as many members: refused, or compared, in a time that grows as they do
+{ printf '{"kind": "job", "units": ['; printf '{},%.0s' {1..1000000}; echo '0]}'; } >objects.json
+try R objects.json fettle-fit objects.json samples.pcd
+try G objects.json fettle-diff job.json objects.json
+{ printf '{"kind": "job"'; seq 100000 | sed 's/.*/, "&": 0/'; echo '}'; } >members.json
+try R members.json fettle-fit members.json samples.pcd
+try R members.json fettle-diff job.json members.json
 jq '.anomaly |= reverse | .sampling |= reverse' job.json >clockwise.json
 places job G clockwise.json
 all_tried 600

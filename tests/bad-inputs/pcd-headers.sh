@@ -25,6 +25,9 @@ header POINTS 5 WIDTH 5 >none-of-5.pcd
 { header WIDTH 65536 HEIGHT 65536 POINTS 0 DATA binary; ten; } >wrap.pcd
 { header WIDTH -1; body; } >negative.pcd
 { header DATA -; body; } >no-data.pcd
+{ header WIDTH - HEIGHT - POINTS -; body; } >no-size.pcd
+{ header | sed 's/^# units mm/# units mm N s/'; body; } >three-units.pcd
+{ header | sed 's/^# units mm/# units mm kg/'; body; } >no-force.pcd
 { header DATA wrong; body; } >wrong-data.pcd
 { header | sed 's/^DATA.*/DATA/'; body; } >bare-data.pcd
 { header SIZE "$(repeat 0)"; body; } >size-0.pcd
@@ -48,7 +51,7 @@ header POINTS 5 WIDTH 5 >none-of-5.pcd
 { header DATA binary_compressed; printf '\24\0\0\0'; printf '\%03o\0\0\0' $((4 * fields)); printf '\340\377\377'; floats 4; printf '\0'; } >packed-corrupt.pcd
 { header; body; header; body; } >twice.pcd
 { header; floats "$fields"; } >mixed.pcd
-{ header | sed '/^FIELDS/Q'; printf 'FIELDS '; head -c 50000000 /dev/zero | tr '\0' x; } >long.pcd
+{ header | sed '/^FIELDS/,$d'; printf 'FIELDS '; head -c 50000000 /dev/zero | tr '\0' x; } >long.pcd
 for file in *.pcd; do
     case $file in good.pcd | samples.pcd) ;; *) points R "$file" ;; esac
 done

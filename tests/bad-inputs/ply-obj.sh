@@ -27,6 +27,8 @@ ply 's/^4 0 1 2 3/4 0 1 2 7/' >bad/index.ply
 ply 's/^4 0 1 2 3/4 0 1 2 -1/' >bad/index-negative.ply
 ply 's/float x/quad x/' >bad/type.ply
 ply '/end_header/d' >bad/no-end.ply
+ply 's/ascii 1.0/ascii 2.0/' >bad/version.ply
+ply 's/property float z/property float z\nproperty float nx\nproperty float normal_x/; s/ 5$/ 5 0 0/' >bad/two-names.ply
 ply 's/^40 0 5/40 0/' >bad/short-row.ply
 ply 's/^40 0 5/4,0 0 5/' >bad/comma.ply
 { ply '/end_header/q' | sed 's/ascii/binary_little_endian/; s/vertex 4/vertex 4000000000/'; printf '0123456789'; } >bad/binary-lies.ply
@@ -42,6 +44,7 @@ ply 's/^4 0 1 2 3/0/' >unusual/list-0.ply
 ply 's/^element face/element edge 1\nproperty int a\nelement face/; s/^4 0 1 2 3/7\n4 0 1 2 3/' >unusual/other-first.ply
 ply 's/property float z/property float z\nproperty list uchar int extra/; s/ 5$/ 5 2 1 1/' >unusual/list-on-vertices.ply
 ply 's/$/\r/' >unusual/crlf.ply
+ply 's/^property list/property uchar red\nproperty list/; s/^4 0 1 2 3/9 4 0 1 2 3/' >unusual/faces-in-colour.ply
 ply 's/^40 0 5/nan 0 5/' >unusual/nan.ply
 ply 's/^40 0 5/1e400 0 5/' >unusual/beyond.ply
 { ply '/end_header/q' | sed 's/ascii/binary_big_endian/'; binary 'f>12CN4' 0 0 5 40 0 5 40 40 5 0 40 5 4 0 1 2 3; } >unusual/big-endian.ply

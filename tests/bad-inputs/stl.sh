@@ -41,7 +41,19 @@ cp ../*.json ../good.pcd ../plate.stl ../path.nc .
 { echo 'solid a'; facet $flat | sed 's/0 0 1$/nan nan nan/'; facet $other; echo 'endsolid a'; } >nan-normal.stl
 { echo 'solid a'; facet $flat; echo 'endsolid a'; echo 'solid b'; facet $other; echo 'endsolid b'; } >two-solids.stl
 tr '[:lower:]' '[:upper:]' <plate.stl >upper.stl
+box() { # X0 Y0 Z0 X1 Y1 Z1 WAY: twelve facets, their outer side out (1) or in (-1)
+    awk -v "box=$*" 'function facet(a, b, c) {
+            printf "facet normal 0 0 0\nouter loop\nvertex %s\nvertex %s\nvertex %s\nendloop\nendfacet\n", at[a], at[b], at[c] }
+        BEGIN { split(box, v, " "); way = v[7]
+            for (i = 0; i < 8; i++) at[i] = v[i % 2 ? 4 : 1] " " v[int(i / 2) % 2 ? 5 : 2] " " v[i > 3 ? 6 : 3]
+            n = split("0231 4576 0154 2673 0462 1375", face, " ") # q[1], q[3] is their diagonal
+            for (k = 1; k <= n; k++) { split(face[k], q, ""); facet(q[1], q[3 - way], q[3]); facet(q[1], q[3], q[3 + way]) } }'
+}
+{ echo 'solid a'; box 0 0 -15 40 40 5 1; box 10 10 -10 30 30 -5 -1; echo 'endsolid a'; } >cavity.stl
 for file in *.stl; do meshes S "$file"; done
+# Over the part, in its roof, near the cavity, in it, beneath it: the distances from the planes.
+printf '20 20 6\n20 20 1\n20 20 -3\n20 20 -7.5\n20 20 -11\n' >through.xyz
+fettle-compare through.xyz --to cavity.stl --format csv -q | cut -d , -f 7 | diff - <(printf '%s\n' error 1 -4 -2 2.5 -1)
 # What can be read is read, and what is dropped is counted.
 fettle-compare good.pcd --to nan.stl --report r.json -q -o errors.pcd
 jq -e '[.. | numbers] | length > 0' r.json >numbers

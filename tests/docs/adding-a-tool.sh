@@ -10,4 +10,5 @@ ln -s "$BUILD/tests/lib" build/tests
 ln -s "$BUILD/bin/fettle-diff" build/bin
 MAKEFLAGS=$(sed -E 's/(^| )B=[^ ]*//g' <<<"${MAKEFLAGS:-}") # of a `make test` with a build folder of its own
 export MAKEFLAGS
+unset B
 "$HERE/run-page" "$HERE/../../docs/adding-a-tool.md"

@@ -56,6 +56,9 @@ for number in 1 2 3; do
             --lower 0.1 --upper 0.2 --watch broken.csv --journal broken.journal
     done
 done
+{ cat run.journal; printf '\0\0\0\0\0\0\0\0'; } > long.journal
+refused 'long.journal: the journal is broken' fettle-belt plate.pcd --wheel wheel.json --path path.pcd --feed 0.003 --cells 64 \
+    --lower 0.1 --upper 0.2 --watch long.csv --journal long.journal
 refused '--watch' fettle-belt plate.pcd --wheel wheel.json --path path.pcd --watch w.csv --lower 0
 refused '--lower: is more' fettle-belt plate.pcd --wheel wheel.json --path path.pcd --watch w.csv --lower 1 --upper 0
 refused '/missing/w.csv' fettle-belt plate.pcd --wheel wheel.json --path path.pcd --watch /missing/w.csv --lower 0 --upper 1

@@ -15,6 +15,8 @@ refused missing.pcd --to plate.obj
 refused one.xyz
 refused one.xyz --to plate.obj --within job.json
 refused one.xyz --to plate.obj --tolerance -1
+refused one.xyz --to plate.obj --histogram bins.csv --bins 0
+[ ! -e bins.csv ]
 refused one.xyz --to plate.obj --tolerance nan
 refused one.xyz --to plate.obj --max-distance 0
 refused one.xyz --to plate.obj --mode zz

@@ -22,3 +22,8 @@ compare --to part.stl --to-units m
 grep -qxF "fettle-compare: warning: part.stl: the part, 30000 x 30000 x 0 mm, is over 100 times as long as the job's boundary: is its unit right?" warning
 compare --to part.stl --to-units m -q
 [ ! -s warning ]
+awk 'BEGIN { for (i = 0; i <= 30; i++) for (j = 0; j <= 30; j++) print i / 1000, j / 1000, 0 }' >metres.xyz
+! compare --to metres.xyz || exit 1
+grep -qxF "fettle-compare: warning: metres.xyz: the part, 0.03 x 0.03 x 0 mm, does not hold the job's boundary: is its unit right?" warning
+compare --to metres.xyz --to-units m
+[ ! -s warning ]

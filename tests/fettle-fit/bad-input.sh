@@ -8,7 +8,16 @@ heights 1 20 1 | pcd x y z >good.pcd
 "$refuses" 'empty' fettle-fit job.json empty
 "$refuses" 'stdin' fettle-fit job.json </dev/null
 "$refuses" 'job.json' fettle-fit job.json job.json
-"$refuses" 'good.pcd' fettle-fit good.pcd good.pcd
+"$refuses" "good.pcd: line 1, column 1: expected JSON, got '# " fettle-fit good.pcd good.pcd
+# the two arguments in the wrong order, for each kind of points; points alone
+order='(the arguments are JOB [POINTS])'
+echo '1 2 3' >points.xyz
+for points in good.pcd points.xyz; do
+    "$refuses" "$points: line 1, column 1: expected JSON, got" fettle-fit $points job.json
+    "$refuses" "$order" fettle-fit $points job.json
+    "$refuses" "$order" fettle-fit $points <job.json
+done
+"$refuses" "job.json: JSON, expected points $order" fettle-fit job.json job.json
 "$refuses" 'nowhere.pcd' fettle-fit job.json nowhere.pcd
 "$refuses" '--method' fettle-fit job.json good.pcd --method spheer
 "$refuses" "did you mean 'sphere'?" fettle-fit job.json good.pcd --method spheer

@@ -15,7 +15,9 @@ answers=$(fettle-gantry-virtual plan.json --stock stock.stl --cell 0.2 --machine
 8 touch_off
 9 probe 0.5 -0.5 2
 10 probe 0 0 8
-11 quit
+11 home 0.1
+12 change_wheel
+13 quit
 END
 )
 awk 'NR == 1 && !($1 == 1 && $2 == "ok" && $3 " " $4 == "fettle-gantry 1" && NF == 12 && $5 < $6) { exit 1 }
@@ -27,8 +29,11 @@ awk 'NR == 1 && !($1 == 1 && $2 == "ok" && $3 " " $4 == "fettle-gantry 1" && NF 
     NR == 8 && !(NF == 10 && $3 > 9.99 && $3 < 10.01) { exit 1 }
     NR == 9 && !(NF == 10 && $3 > 5.009 && $3 < 5.011 && $7 > 19.99) { exit 1 }
     NR == 10 && $3 != "none" { exit 1 }
+    NR == 11 && $0 != "11 error the head stands at 0 rad" { exit 1 }
+    NR == 12 && !(NF == 9 && $2 == "ok" && $3 > t && $4 == x && $5 == y && $6 > 19.99) { exit 1 }
+    NR == 10 { t = $4; x = $5; y = $6 }
     $1 != NR { exit 1 }
-    END { exit NR != 11 }' <<< "$answers"
+    END { exit NR != 13 }' <<< "$answers"
 grep -q '^FIELDS x y z' <(head -c 500 ground.pcd)
 
 # What no client asks for: places and feeds that the machine has not, each refused without an end.
@@ -48,7 +53,17 @@ move 0 0 10 -5
 press 0 0 10 1e300 20
 END
 [ $refused = 8 ]
+[ "$(fettle-gantry-virtual plan.json --stock stock.stl --cell 0.2 <<< '1 press -5 -5 10 20 5')" = '1 error the machine cannot hold a force' ]
 
 # A client that is gone: the driver ends by itself.
 fettle-gantry-virtual plan.json --stock stock.stl --cell 0.2 <<< '1 status' > out
 [ "$(wc -l < out)" = 1 ]
+
+# Far below the part the wheel is worn away; when nobody speaks any more, the part is kept all the same.
+answers=$(printf '1 travel 0 0 5\n2 move 5 5 -9000 10000\n' | fettle-gantry-virtual plan.json --stock stock.stl --cell 0.2 --ground worn.pcd)
+grep -q '^2 error .*the wheel is worn away' <<< "$answers"
+grep -q '^FIELDS x y z' <(head -c 500 worn.pcd)
+
+# A client that is gone when it is answered: the same.
+(sleep 0.5; echo '1 status') | fettle-gantry-virtual plan.json --stock stock.stl --cell 0.2 --ground left.pcd | true
+grep -q '^FIELDS x y z' <(head -c 500 left.pcd)

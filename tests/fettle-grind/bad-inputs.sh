@@ -9,6 +9,10 @@ jq '.layers.distance = 0.7' plan.json > layers.json
 jq '.bounds.coverings = 0' plan.json > bounds.json
 jq '.passes[1].from[0] += 1' plan.json > slanted.json
 jq '.passes = []' plan.json > none.json
+jq '.passes[2].from[0] = -5 | .passes[2].to[0] = -5' plan.json > back.json
+jq '.passes[2].pass = 5' plan.json > order.json
+jq '.layers.overlap_case = 1' plan.json > overlap.json
+jq '.surface.shape = {type: "sphere", point: [0, 0, 5], normal: [0, 0, 1], curvature: -0.2}' plan.json > small.json
 jq '.units.length = "in"' plan.json > units.json
 jq '.pases = .passes' plan.json > misspelt.json
 jq '.region.x = [30, 60] | .anomalies = []' part.json | fettle-part > beside.stl
@@ -24,6 +28,10 @@ refused fettle-grind layers.json --stock stock.stl
 refused fettle-grind bounds.json --stock stock.stl
 refused fettle-grind slanted.json --stock stock.stl
 refused fettle-grind none.json --stock stock.stl
+refused fettle-grind back.json --stock stock.stl
+refused fettle-grind order.json --stock stock.stl
+refused fettle-grind overlap.json --stock stock.stl
+refused fettle-grind small.json --stock stock.stl
 refused fettle-grind units.json --stock stock.stl
 refused fettle-grind misspelt.json --stock stock.stl
 refused fettle-grind plan.json --stock beside.stl --cell 0.1

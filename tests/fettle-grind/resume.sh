@@ -7,9 +7,11 @@
 make_job 0
 make_stock 4
 machine="--machine $SAMPLES/machines/full_scale.json"
-rows() { sed '1,/^DATA/d; s/ *$//' "$1"; }
+rows() { # that the header counts: after them there may be a part of one more
+    awk '/^POINTS/ { n = $2 } body && n-- > 0 { sub(/ *$/, ""); print } /^DATA/ { body = 1 }' "$1"
+}
 first() { awk -v n="$1" 'NR <= n'; }
-length_ground() { awk '/^DATA/ { body = 1; next } body { if ($9 > 0) s += sqrt(($1 - x) ^ 2 + ($2 - y) ^ 2); x = $1; y = $2 } END { print s }' "$1"; }
+length_ground() { rows "$1" | awk '{ if ($9 > 0) s += sqrt(($1 - x) ^ 2 + ($2 - y) ^ 2); x = $1; y = $2 } END { print s }'; }
 flat() { # the ground part
     awk '/^DATA/ { body = 1; next } body && $1 > -6 && $1 < 6 && $2 > -6 && $2 < 6 { if ($3 > 5.1 || $3 < 5 - 0.01) bad++; n++ }
         END { exit bad > 0 || n != 60 * 60 }' "$1"

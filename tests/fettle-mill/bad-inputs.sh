@@ -7,6 +7,8 @@ printf '0 0 5\n9 nan 5\n' > nan.xyz
 printf '0 0 5\n' > one.xyz
 printf 'x y z feed\n0 0 5 1\n1 1 5 -1\n' > slow.xyz
 printf 'x y z qw qx qy qz\n0 0 5 1 0 0 0\n1 1 5 0.7 0.7 0 0\n' > tilted.xyz
+printf 'x y z normal_x normal_y normal_z\n0 0 5 0 0 1\n1 1 5 0 0 0\n' > aimless.xyz
+printf 'x y z normal_x normal_y normal_z\n0 0 5 0 0 1\n1 1 5 0 0 -1\n' > under.xyz
 : > empty
 refused() { # MESSAGE PATH [STOCK [CUTTER [OPTION...]]]
     local message=$1 path=$2 stock=${3:-box:0,0,0,9,9,9} cutter=${4:-ball:6}
@@ -21,6 +23,8 @@ refused 'one.xyz: a path needs two points or more' one.xyz
 refused 'slow.xyz: point 2: feed must be at least 0, got -1' slow.xyz
 refused 'tilted.xyz: point 2: the cutter' tilted.xyz
 refused 'contact points need normal_x' path.xyz $box ball:6 --points cc
+refused 'aimless.xyz: point 2: its normal has no direction' aimless.xyz $box ball:6 --points cc
+refused 'under.xyz: point 2: ' under.xyz $box ball:6 --points cc
 refused 'a program has no contact points' feed.nc $box ball:6 --points cc
 refused 'empty' empty
 refused 'missing.nc' missing.nc

@@ -18,7 +18,7 @@ pcd 'nan nan nan' 'nan nan nan' >nan.pcd
 refused 'nan.pcd: .*nothing to draw' nan.pcd
 pcd >empty.pcd
 refused 'empty.pcd' empty.pcd
-refused 'stdin' -
+refused 'stdin: empty, expected points or a mesh' -
 refused "one.pcd: .*'error'" one.pcd --field error
 refused "one.pcd: .*'forse'" one.pcd --field forse
 refused '.in' one.pcd --file-units in

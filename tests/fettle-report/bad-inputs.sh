@@ -9,6 +9,10 @@ echo '{"kind": "comparison", "units": {"length": "mm"}, "count": 3}' >short.json
 "$refuses" 'short.json: undefined: missing' fettle-report --comparison short.json
 "$refuses" 'short.json: in mm, but the run is in in' fettle-report --job "$job" --comparison short.json
 "$refuses" 'short.json: kind: expected "grinding", got "comparison"' fettle-report --grinding short.json
+jq -n '{count: 3, undefined: 0, mean: 0, mean_abs: 0, rms: 0, sd: 0, min: 0, max: 0, band: 0, p01: 0, p05: 0, p50: 0, p95: 0, p99: 0, within: 1,
+    over_cut_area: 0, under_cut_area: 0, over_cut_volume: 0, under_cut_volume: 0} |
+    . + {kind: "comparison", units: {length: "mm"}, regions: {outside: .}, verdict: "within", judged: "inside", tolerance: 1, worst: 0}' >short.json
+"$refuses" "short.json: judged: there is no region 'inside'" fettle-report --comparison short.json
 echo '{"kind": "grinding", "units": {"length": "in", "force": "lbf"}}' >short.json
 "$refuses" 'short.json: finished: missing' fettle-report --grinding short.json
 "$refuses" 'wang1.json: kind: expected "plan", got "job"' fettle-report --plan "$job"
@@ -37,6 +41,10 @@ trace '2 1 0 0 0' '1 1 0 0 0' >back.pcd
 "$refuses" 'back.pcd: point 1: t does not go on: 1' fettle-report --trace back.pcd
 trace '2 1e30 0 0 0' >layer.pcd
 "$refuses" 'layer.pcd: point 0: there is no layer 1e+30' fettle-report --trace layer.pcd
+trace '0 1 0 nan 0' '1 1 0 nan nan' '2 1 0 5 1' >feed.pcd
+fettle-report --trace feed.pcd >feed.html
+xmllint --noout feed.html
+! grep -qE '="([^"]*[^a-z"])?(nan|inf)[^a-z]' feed.html || exit 1
 trace '0 1 0 nan 0' '1 1 0 nan 1' >nan.pcd # nothing was measured: a page without a line
 fettle-report --trace nan.pcd >nan.html
 xmllint --noout nan.html

@@ -21,6 +21,14 @@ fettle-compare ground.pcd --to truth.stl --within "$job" --tolerance 0.0001 --re
 fettle-report --job "$job" --comparison tight.json | grep -q 'data-verdict="Out of tolerance"'
 fettle-compare ground.pcd --to truth.stl --report free.json -o /dev/null
 fettle-report --comparison free.json | grep -q 'data-verdict="Not judged"'
+# nothing to judge, a machine that stopped, a swept surface
+jq '.worst = null' tight.json >nothing.json
+fettle-report --comparison nothing.json | grep -q 'has an error to judge'
+jq '.finished = false' grind.json >stopped.json
+fettle-report --job "$job" --grinding stopped.json | grep -q 'Grinding not finished'
+! fettle-report --job "$job" --grinding grind.json | grep -q 'Grinding not finished' || exit 1
+jq '.surface = {"type": "swept", "direction_deg": 30}' "$job" >swept.json
+fettle-report --job swept.json | grep -q 'swept, rulings 30°'
 # slips are named
 jq '.fit.gross_errors = [2]' desired.json >slip.json
 fettle-report --job "$job" --surface slip.json | grep -q 'Slips, left out</th><td>1<.*>touch 2<'

@@ -30,6 +30,9 @@ bad '.tolerence = 1' 'tolerence: unknown key, did you mean "tolerance"?'
 bad '.anomaly[1] = [1]' 'anomaly[1]: expected 2 to 3 numbers, got 1'
 bad '.anomaly[1][0] = null' 'anomaly[1][0]: expected a number, got null'
 bad '.anomaly = [[0, 1], [1, 1], [1, 2], [0, 2]]' 'sampling: no room to touch on both sides of the anomaly, on the line through (0, 1.33333) in'
+printf '%s\n' '0 0 0' '3 0 0' '3 3 0' '0 3 0' >part.xyz
+jq '.probe.tip_radius = 1.1' good.json >bad.json
+"$HERE/../refuses" "fettle-sample: bad.json: a probe's tip of radius 1.1 is larger than the anomaly, 1 across" fettle-sample bad.json --on part.xyz
 # clockwise polygons are no mistake
 jq '.anomaly |= reverse | .sampling |= reverse' good.json > clockwise.json
 fettle-sample clockwise.json --plan-only | cmp plan.pcd -

@@ -7,7 +7,7 @@ FUZZ_TARGETS := $(patsubst tests/fuzz/%.cc,%,$(wildcard tests/fuzz/*.cc))
 FUZZ_LIBRARY := $(wildcard $(addprefix lib/,$(addsuffix /*.cc,core units json cloud job surface plan removal))) \
     $(addprefix lib/,$(addsuffix .cc,$(addprefix mesh/,mesh mesh_file stl obj off polygons equal_corners) \
     $(addprefix gantry/,protocol serve driver child machine virtual_gantry quasi_static) \
-    $(addprefix strategy/,trace trace_file steering keys) align/rigid belt/contact_wheel \
+    $(addprefix strategy/,trace trace_file steering joystick keys) align/rigid belt/contact_wheel \
     $(addprefix machining/,nc_block nc_arc nc_program nc_writer cutter_path cutter) \
     $(addprefix part/,spec surface anomalies outline profile) sampling/noise \
     $(addprefix robot/,robot body_json)))

@@ -20,7 +20,9 @@ void check_round_trip(const NcProgram& program)
     NcWriter writer(out);
     out << "G21 G90 G17\n";
     writer.go(program.moves.front().from, 0);
+    const auto begun = out.tellp();
     for (const CutterMove& move : program.moves) writer.go(move);
+    if (out.tellp() == begun) return; // all of them shorter than five decimals tell
     NcProgram again;
     const bool is_read = fuzz::is_read([&] { again = parse_nc_program(out.str(), "written"); });
     fuzz::require(is_read, "what was written is read");

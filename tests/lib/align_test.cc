@@ -147,6 +147,24 @@ TEST(Align, AnAnomalyDoesNotPull)
     EXPECT_LT(((a.fit.T_reference_scan * motion) * scan.xyz - scan.xyz).colwise().norm().maxCoeff(), 1e-5);
 }
 
+// Given the overlap, exactly that share is taken to lie on the reference, be it less than what does; the pose is right
+// to within the noise of a point.
+TEST(Align, TakesTheShareThatIsGiven)
+{
+    const AlignReference reference(mesh_of(kBracket));
+    OrientedPoints scan = scan_of(kBracket, 2000, 0.2, 3);
+    const Eigen::Index heap = scan.xyz.cols() / 5;
+    scan.xyz.leftCols(heap) += 2 * scan.normals.leftCols(heap);
+    for (const double share : {0.5, 0.75}) {
+        AlignOptions options;
+        options.icp.overlap = share;
+        const Eigen::Isometry3d motion = random_motion(3);
+        const Alignment a = align(moved_by(motion, scan), reference, options);
+        EXPECT_NEAR(a.fit.overlap, share, 1e-9);
+        EXPECT_LT(((a.fit.T_reference_scan * motion) * scan.xyz - scan.xyz).colwise().norm().maxCoeff(), 0.2);
+    }
+}
+
 // The predicted standard deviations against 200 repetitions; 20 % is four standard errors of an sd of 200.
 TEST(Align, StandardDeviationsHold)
 {

@@ -1,10 +1,15 @@
 // What collides is led around. References: sines of tilts, exhaustive search, and trying what is passed over.
+#include "cloud/fields.h"
 #include "irb1400.h"
 #include "robot/avoid.h"
+#include "robot/avoid_report.h"
 #include "robot/layered_search.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <limits>
+#include <numbers>
 #include <random>
 
 namespace fettle {
@@ -232,6 +237,13 @@ TEST(Avoid, PosesThatTheArmCannotReachUpright)
     for (const PoseState state : avoided.path.state) left += state == PoseState::reached ? 0 : 1;
     EXPECT_LT(left, unreached);
     EXPECT_TRUE(avoided.path.jumps.empty());
+    // The other way round there is no pose before to begin from; as many are reached.
+    PosePath back = along_x(1500, 300);
+    std::reverse(back.begin(), back.end());
+    const AvoidedPath inwards = Case(robot, back).run({});
+    EXPECT_NEAR(
+        static_cast<double>(std::count(inwards.path.state.begin(), inwards.path.state.end(), PoseState::reached)),
+        static_cast<double>(300 - left), 5);
 }
 
 // Whatever is passed over as known to collide does collide.
@@ -281,6 +293,63 @@ TEST(LayeredSearch, AgreesWithAllWays)
         EXPECT_EQ(total(search.path()), least);
         EXPECT_EQ(search.path().back(), search.best());
     }
+}
+
+// Two walls beside one path. The tool leans past the first one, may not jump back, and so passes the second one.
+TEST(Avoid, HandsATiltOnToTheNextWall)
+{
+    const auto beside = [](const char* name, double least_x, double most_x) {
+        const Vector3d least(least_x, kRod - 15, 560), most(most_x, 1500, 900);
+        return Body{name, link::kCell,
+                    solid::Box{Isometry3d(Eigen::Translation3d((least + most) / 2)), (most - least) / 2}};
+    };
+    const Case c(with_tool({beside("first", 850, 905), beside("second", 980, 1050)}), along_x(900, 100));
+    EXPECT_GT(c.before.pose[40].clearance, 5); // between them
+    AvoidOptions options;
+    options.jump = 2 * kDegree;
+    const AvoidedPath avoided = c.run(options);
+    EXPECT_EQ(colliding(avoided.checked, c.collision), 0);
+    EXPECT_GT(avoided.changes[0].tilt.norm(), 0);
+    for (const PoseChange& change : avoided.changes) EXPECT_EQ(change, avoided.changes[0]);
+}
+
+// A fin between two poses, higher than any retreat: the ends of the way are where they were.
+TEST(Avoid, TakesBackRetreatsThatDoNotHelp)
+{
+    Mesh fin;
+    fin.vertices.resize(3, 3);
+    fin.vertices << 1025, 1025, 1025, -20, 20, 0, 480, 480, 560;
+    fin.triangles = Eigen::Vector3i(0, 1, 2);
+    const Workpiece workpiece(fin);
+    const PosePath poses = {Isometry3d(Eigen::Translation3d(1000, 0, 500)),
+                            Isometry3d(Eigen::Translation3d(1050, 0, 500))};
+    const Case c(with_tool({}), poses, &workpiece);
+    ASSERT_GT(c.before.pose[0].clearance, 0);
+    ASSERT_GT(c.before.pose[1].clearance, 0);
+    ASSERT_LT(c.before.between[1].clearance, 0);
+    const AvoidedPath avoided = c.run({});
+    EXPECT_EQ(avoided.path.joints, c.solved.path.joints);
+    for (const PoseChange& change : avoided.changes) EXPECT_EQ(change, PoseChange());
+    EXPECT_LT(avoided.checked.between[1].clearance, 0);
+}
+
+TEST(Avoid, RetreatsAlongNormals)
+{
+    const Isometry3d on_its_side(Eigen::AngleAxisd(std::numbers::pi / 2, Vector3d::UnitX()));
+    const PosePath poses(4, on_its_side);
+    Cloud cloud;
+    cloud.xyz.setZero(3, 4);
+    const Vector3d axis = -Vector3d::UnitY();
+    EXPECT_LT((retreat_directions(cloud, poses).colwise() - axis).norm(), 1e-12);
+    Eigen::Matrix3Xd normals = Eigen::Matrix3Xd::Zero(3, 4);
+    normals.col(0) << 0, 3, 4;
+    normals.col(2).setConstant(std::numeric_limits<double>::quiet_NaN());
+    normals.col(3) << 1, 0, 0;
+    set_normals(cloud, normals);
+    Eigen::Matrix3Xd expected = axis.replicate(1, 4);
+    expected.col(0) << 0, 0.6, 0.8;
+    expected.col(3) << 1, 0, 0;
+    EXPECT_LT((retreat_directions(cloud, poses) - expected).norm(), 1e-6);
 }
 
 } // namespace

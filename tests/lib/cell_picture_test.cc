@@ -10,6 +10,8 @@
 #include <gtest/gtest.h>
 
 #include <numbers>
+#include <set>
+#include <string>
 
 namespace fettle {
 
@@ -116,6 +118,44 @@ TEST(CellScene, AModelIsDrawnAsItCounts)
     parts = model.parts(zone);
     EXPECT_EQ(parts.triangles.triangles, roof.triangles);
     EXPECT_EQ(parts.cuboids.triangles.cols(), 0);
+}
+
+// A box and a slope, and what counts of them beside the tool: cuboids in their colour, and of the slope a step. What
+// they are AModelIsDrawnAsItCounts tests.
+TEST(CellPicture, ShowsTheModel)
+{
+    Robot robot = irb1400();
+    robot.bodies = {{"ball", link::kTool, solid::Sphere{{0, 0, 6}, 6}}};
+    const CellJointsPath joints = CellJointsPath::Zero(8, 1);
+    const Vector3d tip = link_frames(robot, Arm(robot), joints.col(0))[link::kTool + 1].translation();
+    const auto part = [&](double low) {
+        Mesh box;
+        box.vertices.resize(3, 8);
+        for (int k = 0; k < 8; ++k)
+            box.vertices.col(k) << tip.x() + (k & 1 ? 200 : 100), tip.y() + (k & 2 ? 50 : -50),
+                (k & 4 ? tip.z() - (k & 1 ? low : 0) : tip.z() - 300);
+        box.triangles.resize(3, 12);
+        box.triangles.transpose() << 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 4, 6, 0,
+            6, 2, 1, 3, 7, 1, 7, 5;
+        return box;
+    };
+    std::set<std::string> pictures;
+    for (const double low : {0.0, 150.0}) {
+        const Mesh mesh = part(low);
+        const Workpiece workpiece(mesh);
+        const std::vector<Vector3d> up = {Vector3d::UnitZ()};
+        const Heterogeneous model(workpiece, up, {.cell = 100});
+        const CheckedPath checked = check_path(robot, nullptr, joints, {});
+        CellPictureOptions options;
+        options.at = {0};
+        const std::string plain = cell_picture(robot, &mesh, joints, checked, options);
+        options.model = &model;
+        const std::string drawn = cell_picture(robot, &mesh, joints, checked, options);
+        pictures.insert(plain);
+        pictures.insert(drawn);
+        EXPECT_EQ(cell_picture(robot, &mesh, joints, checked, options), drawn);
+    }
+    EXPECT_EQ(pictures.size(), 4u);
 }
 
 TEST(CellPicture, RefusesPosesThatAreNotThere)

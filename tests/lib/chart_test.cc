@@ -76,9 +76,9 @@ TEST(Chart, LinesBreakWhereThereIsNoNumber)
     Chart whole, broken;
     Eigen::Matrix2Xd points(2, 5);
     points << 0, 1, 2, 3, 4, 0, 0, 0, 0, 0;
-    whole.curves = {{"", points, kRed, false}};
+    whole.curves.push_back({"", points, kRed, false});
     points(1, 2) = kNaN;
-    broken.curves = {{"", points, kRed, false}};
+    broken.curves.push_back({"", points, kRed, false});
     // two of the four stretches are left
     EXPECT_NEAR(double(red_pixels(broken).size()), red_pixels(whole).size() / 2.0, 8);
     // nor has 0 a logarithm

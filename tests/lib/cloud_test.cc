@@ -1,4 +1,5 @@
 #include "cloud/cloud.h"
+#include "cloud/cloud_writer.h"
 #include "cloud/element.h"
 #include "cloud/fields.h"
 #include "cloud/pcd.h"
@@ -247,6 +248,15 @@ TEST(Pcd, HeadersThatLieAreRefused)
     expect_refused(wide, "UTF-16", "with a mark");
     expect_refused(wide.substr(2), "zero byte", "without a mark");
     expect_refused(std::string(1000, '\n'), "without DATA", "blank lines");
+    expect_refused(replaced(replaced(replaced(good, "WIDTH 1\n", ""), "HEIGHT 1\n", ""), "POINTS 1\n", ""),
+                   "without WIDTH or POINTS", "no number of points");
+    std::string names, sizes, types, counts; // 2^32 points of more than 2^32 bytes
+    for (int i = 0; i < 8193; ++i) names += " _", sizes += " 8", types += " F", counts += " 65536";
+    expect_refused(
+        replaced(replaced(header("x y z" + names, "4 4 4" + sizes, "F F F" + types, 1, "binary", "1 1 1" + counts),
+                          "WIDTH 1", "WIDTH 4294967295"),
+                 "POINTS 1", "POINTS 4294967295"),
+        "POINTS 4294967295 of 4295491596 bytes are more than any file holds", "beyond 64 bits");
 }
 
 TEST(Pcd, RowsAreHeldAgainstTheHeader)
@@ -351,6 +361,8 @@ TEST(Units, CommentIsReadAndHeldAgainstTheJob)
     EXPECT_EQ(message_of("# units in N\n" + text, inches), "file: units: the file says N, expected lbf");
     expect_refused("# units furlong\n" + text, "line 1: unknown length unit 'furlong'", "no unit");
     expect_refused("# units mm\n# units in\n" + text, "line 2: second units", "two units");
+    expect_refused("# units mm kg\n" + text, "line 1: unknown force unit 'kg'", "no force");
+    expect_refused("# units mm N s\n" + text, "expected '# units LENGTH [FORCE]', got '# units mm N s'", "three units");
 }
 
 TEST(Units, FieldsWithUnitsAreWrittenInThem)
@@ -413,6 +425,8 @@ TEST(Fields, SetGetSelect)
     EXPECT_EQ(field(chosen, "a"), Eigen::Vector3d(8, 6, 6));
     EXPECT_EQ(chosen.xyz.col(2), cloud.xyz.col(1));
     EXPECT_THROW(field(cloud, "c"), InputError);
+    cloud.fields.push_back({"pair", 'U', 1, 2, std::vector<std::byte>(8)});
+    EXPECT_THROW(field(cloud, "pair"), InputError);
     EXPECT_FALSE(has_normals(cloud));
     set_normals(cloud, Eigen::Matrix3Xd::Ones(3, 4));
     EXPECT_TRUE(has_normals(cloud));
@@ -480,6 +494,10 @@ TEST(Ply, BadFilesAreRefused)
     expect_refused(ply("binary_little_endian", kVertex + "end_header\n" + std::string(25, '\1')), "after the last",
                    "long");
     expect_refused(ply("binary_middle_endian", kVertex), "'binary_middle_endian'", "format");
+    expect_refused(replaced(ply("ascii", kVertex), "ascii 1.0", "ascii 2.0"),
+                   "expected 'format ENCODING 1.0', got 'format ascii 2.0'", "version");
+    expect_refused(ascii(kVertex + "property float nx\nproperty float normal_x\n", "1 2 3 1 1\n4 5 6 1 1\n"),
+                   "field 'normal_x' stands twice", "by two names");
     expect_refused(replaced(ply("ascii", kVertex), "format ascii 1.0\n", "") + "end_header\n", "without format",
                    "none");
     expect_refused(ascii("element a 4000000000\n" + kVertex, ""), "element a without a property", "endless");
@@ -488,6 +506,12 @@ TEST(Ply, BadFilesAreRefused)
     const std::string list = replaced(kVertex, "z\n", "z\nproperty list char int l\n");
     expect_refused(ascii(list, "1 2 3 -1\n4 5 6 0\n"), "list of -1", "negative length");
     expect_refused(ascii(list, "1 2 3 100 1\n4 5 6 0\n"), "a list of 100", "longer than the line");
+    const auto binary = [&](char length) {
+        return ply("binary_little_endian",
+                   list + "end_header\n" + std::string(12, '\1') + length + std::string(27, '\1'));
+    };
+    expect_refused(binary('\x80'), "vertex 0: property l: a list of -128", "negative length");
+    expect_refused(binary('\x64'), "vertex 0: a list of 100, the file ends", "longer than the file");
 }
 
 TEST(Xyz, NamesCommentsAndColumns)
@@ -503,6 +527,45 @@ TEST(Xyz, NamesCommentsAndColumns)
     expect_refused("x y z a\rb\n1 2 3 4\n", "be called 'a", "a name with a carriage return");
     expect_refused("x y z " + std::string(1 << 16, 'a') + "\n1 2 3 4\n", "names of the fields take", "a long name");
     expect_refused("x y z a a\n1 2 3 4 5\n", "'a' stands twice", "two names");
+}
+
+std::string written(const Cloud& cloud, CloudFormat format)
+{
+    std::ostringstream out;
+    CloudWriter writer(out, format, Units{}, static_cast<std::size_t>(cloud.size()));
+    writer.write(cloud);
+    writer.finish();
+    return out.str();
+}
+
+// Reference: the names of the types in the VTK user's guide; the numbers by hand, big-endian.
+TEST(Vtk, HasTheTypesOfTheFields)
+{
+    Cloud cloud;
+    cloud.xyz = Eigen::Vector3d(1, 2, 3);
+    const auto add = [&](char type, int size, const std::string& name) {
+        Field& field = cloud.fields.emplace_back(
+            Field{name, type, size, 1, std::vector<std::byte>(static_cast<std::size_t>(size))});
+        field.bytes[0] = std::byte{7};
+    };
+    const std::pair<int, std::string> names[] = {{1, "char"}, {2, "short"}, {4, "int"}, {8, "long"}};
+    for (const auto& [size, name] : names) add('I', size, "i_" + name), add('U', size, "u_" + name);
+    const std::string text = written(cloud, CloudFormat::vtk);
+    for (const auto& [size, name] : names) {
+        const std::string bytes =
+            "\nLOOKUP_TABLE default\n" + std::string(static_cast<std::size_t>(size) - 1, '\0') + '\7';
+        EXPECT_NE(text.find("SCALARS i_" + name + " " + name + " 1" + bytes), std::string::npos) << name;
+        EXPECT_NE(text.find("SCALARS u_" + name + " unsigned_" + name + " 1" + bytes), std::string::npos) << name;
+    }
+}
+
+TEST(Csv, NamesEachElement)
+{
+    Cloud cloud;
+    cloud.xyz = Eigen::Matrix3Xd::Identity(3, 2);
+    cloud.fields.push_back({"pair", 'U', 1, 2, {std::byte{1}, std::byte{2}, std::byte{3}, std::byte{4}}});
+    set_field(cloud, "t", Eigen::Vector2d(5, 6));
+    EXPECT_EQ(written(cloud, CloudFormat::csv), "x,y,z,pair_0,pair_1,t\n1,0,0,1,2,5\n0,1,0,3,4,6\n");
 }
 
 /// The points of a file as a stream gives them, in blocks.

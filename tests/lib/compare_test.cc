@@ -325,6 +325,26 @@ TEST(SignedDistance, LooksThroughFacetsWithoutArea)
     for (int i = 0; i < 3; ++i) EXPECT_NEAR(map.error[i], std::hypot(0.5, 0.3), 1e-12) << i;
 }
 
+// The needle is as wide as rounding leaves it, and points stand over its inside: it has no normal to tell the side by.
+TEST(SignedDistance, LooksThroughNeedlesThatItStandsOver)
+{
+    constexpr double kWide = 1e-4, kOver = 0.01, kFar = 1000; // where floats are 6e-5 apart
+    Mesh ridge;
+    ridge.vertices.resize(3, 5);
+    ridge.vertices << 0, 2, 4, 2, 2, /* y */ 0, kWide, 0, -3, 3, /* z */ 0, 0, 0, -6, -6;
+    ridge.triangles.resize(3, 4);
+    ridge.triangles.transpose() << 3, 2, 0, 0, 1, 2, 0, 4, 1, 1, 4, 2; // the needle's back is up
+    Eigen::Matrix3Xd points(3, 2);
+    points << 1, 3, kWide / 4, kWide / 4, kOver, kOver;
+    ridge.vertices.row(0).array() += kFar;
+    points.row(0).array() += kFar;
+    for (const bool up : {false, true}) {
+        if (up) ridge.triangles.row(1).swap(ridge.triangles.row(2));
+        const ErrorMap map = signed_distance(points, ridge);
+        for (int i = 0; i < 2; ++i) EXPECT_NEAR(map.error[i], up ? kOver : -kOver, 1e-12) << i;
+    }
+}
+
 TEST(SignedDistance, AlongADirection)
 {
     // Inside a solid the line counts to the surface that faces the direction, however near the other side is.

@@ -29,6 +29,19 @@ Surfels half_cylinder(double spacing)
     return surfels;
 }
 
+/// Of all passes; none of the steps is longer than the spacing.
+double length_of_short_steps(const ContactPath& path, double spacing)
+{
+    double length = 0;
+    for (std::size_t i = 1; i < path.poses.size(); ++i) {
+        if (path.pass[i] != path.pass[i - 1]) continue;
+        const double step = (path.poses[i].translation() - path.poses[i - 1].translation()).norm();
+        EXPECT_LE(step, spacing * (1 + 1e-4));
+        length += step;
+    }
+    return length;
+}
+
 ContactPathOptions of_patch_3()
 {
     ContactPathOptions options;
@@ -116,15 +129,30 @@ TEST(ContactPath, rows_go_on_where_the_parameter_runs_slowly)
     const ContactPathOptions options = of_patch_3();
     const ContactPath path = contact_path(surfels, options);
     EXPECT_EQ(path.pass.back() + 1, 6);
-    double length = 0;
-    for (std::size_t i = 1; i < path.poses.size(); ++i) {
-        if (path.pass[i] != path.pass[i - 1]) continue;
-        const double step = (path.poses[i].translation() - path.poses[i - 1].translation()).norm();
-        EXPECT_LE(step, options.spacing * (1 + 1e-4));
-        length += step;
-    }
+    const double length = length_of_short_steps(path, options.spacing);
     EXPECT_NEAR(length, 6 * 10 * kPi, 0.01 * 60 * kPi);
     EXPECT_LE(double(path.poses.size()), 2 * length / options.spacing); // and not many more than it takes
+}
+
+// Lengths are those between probes, one surfel in sixteen here. Between two of them the place runs ten times as fast.
+TEST(ContactPath, points_stand_close_where_no_probe_has_been)
+{
+    constexpr int kColumns = 1024, kRows = 157, kFast = 30 * 16 + 4;
+    constexpr double kPitch = 0.03;
+    std::vector<Surfel> list;
+    for (int j = 0; j < kRows; ++j) {
+        double u = 0;
+        for (int i = 0; i < kColumns; ++i) {
+            list.push_back({{kPitch * i, kPitch * j, 0}, Eigen::Vector3d::UnitZ(), {u, kPitch * j}, kPitch, 3});
+            u += i >= kFast && i < kFast + 8 ? kPitch / 10 : kPitch;
+        }
+    }
+    ContactPathOptions options = of_patch_3();
+    options.spacing = 0.1;
+    options.step_over = 5;
+    const ContactPath path = contact_path(to_surfels(list), options);
+    const double length = length_of_short_steps(path, options.spacing);
+    EXPECT_NEAR(length, (path.pass.back() + 1) * kPitch * (kColumns - 1), 0.01 * length);
 }
 
 TEST(Slerp, agrees_with_eigen)

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <sstream>
 #include <string>
 
@@ -28,7 +29,7 @@ Mesh slope(double half, int cells, double lift)
 std::vector<CutterMove> moves_on(const Cutter& cutter, double lift, const std::vector<Eigen::Vector2d>& places)
 {
     std::vector<CutterMove> moves;
-    Eigen::Vector3d at;
+    Eigen::Vector3d at = Eigen::Vector3d::Zero();
     for (std::size_t i = 0; i < places.size(); ++i) {
         const Eigen::Vector3d contact(places[i].x(), places[i].y(), 0.75 * places[i].x());
         const Eigen::Vector3d tip = tip_at_contact(cutter, contact, kNormal) + lift * kNormal;
@@ -92,6 +93,31 @@ TEST(Correction, TipsOfUnknownErrorGoAsTheirNeighbours)
     const auto path = correct(moves, cutter, machined, design, patch_errors(machined, design), 0.01);
     EXPECT_GT(path.unknown, 5u);
     EXPECT_LT((path.moves.back().to - moves_on(cutter, 0, {{0, 0}, {9, 0}})[0].to).norm(), 1e-9);
+}
+
+// On a level plane an arc is led on the arc, only deeper, as finely as its chords ask.
+TEST(Correction, FollowsAnArc)
+{
+    const Cutter cutter = parse_cutter("ball:6");
+    const auto level = [](double half, int cells, double z) {
+        return height_surface(-half, half, cells, [z](double, double) { return z; });
+    };
+    const Mesh design = level(30, 3, 0), machined = level(20, 4, 0.07); // facets of 10 mm
+    CutterMove arc;
+    arc.from = {8, 0, 0.07};
+    arc.to = {0, 8, 0.07};
+    arc.centre = {0, 0};
+    arc.sweep = std::numbers::pi / 2;
+    arc.feed = 5;
+    const auto path = correct({arc}, cutter, machined, design, patch_errors(machined, design), 0.01);
+    ASSERT_GT(path.moves.size(), 8u);
+    EXPECT_LT((path.moves.front().from - Eigen::Vector3d(8, 0, 0)).norm(), 1e-9);
+    EXPECT_LT((path.moves.back().to - Eigen::Vector3d(0, 8, 0)).norm(), 1e-9);
+    for (const CutterMove& move : path.moves) {
+        EXPECT_NEAR(move.to.head<2>().norm(), 8, 1e-9);
+        EXPECT_NEAR(((move.from + move.to) / 2).head<2>().norm(), 8, 0.02);
+        EXPECT_NEAR(move.to.z(), 0, 1e-9);
+    }
 }
 
 TEST(Correction, StraightUpStaysStraightUp)

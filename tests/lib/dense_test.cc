@@ -353,6 +353,18 @@ TEST(Dense, LeavesOutAndCounts)
     EXPECT_LT(errors(result.fit.surface, wavy).around, 0.15);
 }
 
+// Around a large anomaly places half of it apart are too few for what margins are told by: 9. They stand closer.
+TEST(Dense, IsCondensedToEnoughPlaces)
+{
+    Job job = square_job();
+    job.anomaly.topRows<2>() *= 40 / kHalfB;
+    const Surface surface = fit(scan(6000, quadratic, 0.05), job).fit.surface;
+    EXPECT_GE(surface.touches.cols(), 24);
+    EXPECT_LE(surface.touches.cols(), 100);
+    for (const auto& touch : surface.touches.colwise()) EXPECT_GT(touch.head<2>().cwiseAbs().maxCoeff(), 38);
+    EXPECT_LT(errors(surface, quadratic).around, 0.1);
+}
+
 TEST(Dense, RolesSayWhatIsTaken)
 {
     Cloud cloud = scan(4000, wavy, 0);

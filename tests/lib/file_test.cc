@@ -135,6 +135,37 @@ TEST_F(Files, FailedWritesAreErrors)
     nothing.commit();
 }
 
+TEST_F(Files, AreGoneWhenTheyCannotBeNamed)
+{
+    OutputFile file("a");
+    file.stream() << "x";
+    fs::create_directory("a");
+    EXPECT_THROW(file.commit(), InputError);
+    EXPECT_TRUE(fs::is_directory("a"));
+    EXPECT_EQ(files(), 1u);
+}
+
+// What was written lies on another disk by then.
+TEST_F(Files, AreCopiedWhereTheyCannotBeNamed)
+{
+    const fs::path other = fs::path("/dev/shm") / fs::current_path().filename();
+    struct stat here = {}, there = {};
+    if (stat(".", &here) != 0 || stat("/dev/shm", &there) != 0 || here.st_dev == there.st_dev)
+        GTEST_SKIP() << "/dev/shm is no other disk";
+    fs::create_directory("folder");
+    OutputFile file("folder/a");
+    const std::string text = "a line\n" + std::string(3000000, 'x');
+    file.stream() << text;
+    fs::rename("folder", "away");
+    fs::create_directory(other);
+    fs::create_symlink(other, "folder");
+    file.commit();
+    EXPECT_EQ(read_whole("folder/a"), text);
+    EXPECT_EQ(std::distance(fs::directory_iterator(other), {}), 1);
+    EXPECT_TRUE(fs::is_empty("away"));
+    fs::remove_all(other);
+}
+
 TEST_F(Files, ReadFromWhatIsNoFile)
 {
     EXPECT_THROW(read_whole("absent"), InputError);

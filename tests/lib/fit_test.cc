@@ -547,6 +547,10 @@ TEST(Noise, NeedsDegreesOfFreedom)
     EXPECT_EQ(refusal("plane"),
               "touches: a plane fit leaves 2 degrees of freedom, too few to tell the noise of the touches (3)");
     EXPECT_NE(refusal("griddata").find("too few to tell the noise"), std::string::npos);
+    input.xyz.conservativeResize(3, 3);
+    input.roles.conservativeResize(3);
+    EXPECT_EQ(refusal("plane"),
+              "touches: a plane fit leaves 0 degrees of freedom, too few to tell the noise of the touches (3)");
 }
 
 double wavy(double x, double y) { return quadratic(x, y) + 1.5 * std::sin(x / 25) * std::cos(y / 30); }

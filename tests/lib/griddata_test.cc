@@ -73,6 +73,18 @@ TEST(Griddata, reproduces_planes)
     }
 }
 
+// Within the hull, and at its corners, where only one side is defined.
+TEST(Griddata, has_the_normal_of_a_plane)
+{
+    Eigen::Matrix3Xd points(3, 25);
+    for (int i = 0; i < 25; ++i) points.col(i) << 3 * (i % 5), 2 * (i / 5), 1 + 1.5 * (i % 5) - 0.5 * (i / 5);
+    Surface surface;
+    surface.shape = make_griddata(points, 0, 0);
+    for (const Eigen::Vector2d& xy :
+         {Eigen::Vector2d(5, 3), Eigen::Vector2d(0, 0), Eigen::Vector2d(12, 8), Eigen::Vector2d(0, 8)})
+        EXPECT_LT((normal(surface, xy) - Eigen::Vector3d(-0.5, 0.25, 1).normalized()).norm(), 1e-9) << xy.transpose();
+}
+
 TEST(Griddata, goes_through_the_points_when_interpolated_once)
 {
     const Eigen::Matrix3Xd points = scattered(30, 80);

@@ -110,6 +110,7 @@ TEST(Job, RefusesWithTheKey)
            "force.down: must lie between min and max, 5 and 15, got 16");
     expect(R"(, "force": {"min": 5, "down": 4, "max": 15})",
            "force.down: must lie between min and max, 5 and 15, got 4");
+    expect(R"(, "force": {"min": 5, "max": 15, "preload": 15})", "force.preload: must be below max, 15, got 15");
     expect(R"(, "force": {"stiffness": 0})", "force.stiffness: must be positive, got 0");
     expect(R"(, "feed": {"rate": -1})", "feed.rate: must be positive, got -1");
     expect(R"(, "wheel": {"width": 0.25}, "feed": {"step_over": 0.5})",

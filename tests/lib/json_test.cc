@@ -79,6 +79,8 @@ TEST(Json, MembersHaveTypesAndRanges)
     good.done();
 
     expect_refused(text, "kind: expected \"plan\", got \"job\"", [](Reader& r) { r.expect_kind("plan"); });
+    expect_refused(R"({"kind": "a\nb"})", "kind: expected \"plan\", got \"a?b\"",
+                   [](Reader& r) { r.expect_kind("plan"); });
     expect_refused(text, "absent: missing, expected a number", [](Reader& r) { r.number("absent"); });
     expect_refused(text, "t: expected a number, got text", [](Reader& r) { r.number("t"); });
     expect_refused(text, "n: must be in [3, 4], got 2.5", [](Reader& r) { r.number("n", Range::between(3, 4)); });

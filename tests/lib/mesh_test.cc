@@ -289,6 +289,7 @@ TEST(Off, ReadAndRefused)
     expect_refused("OFF\n0 1 0\n3 4 5 9\n", "faces without a vertex", "no vertices");
     expect_refused(replaced(kOff, "OFF", "4OFF"), "'4OFF'", "another variant");
     expect_refused(replaced(kOff, "1 1 0\n0", "1 x 0\n0"), "'x' is no number", "no number");
+    expect_refused(replaced(kOff, "1 1 0\n0", "1 1 0 5\n0"), "a vertex of more than 3 numbers: '5'", "four numbers");
 }
 
 std::string ply(const std::string& count, const std::string& faces)
@@ -301,6 +302,14 @@ std::string ply(const std::string& count, const std::string& faces)
 TEST(Ply, Faces)
 {
     EXPECT_DOUBLE_EQ(area(parse_mesh(ply("1", "4 0 1 2 3\n"), "file")), 1);
+    const std::string coloured = replaced(
+        replaced(ply("2", "9 3 0 1 2 0.5\n8 3 0 2 3 1\n"), "property list", "property uchar red\nproperty list"),
+        "end_header", "property float quality\nend_header");
+    EXPECT_DOUBLE_EQ(area(parse_mesh(coloured, "file")), 1);
+    std::string wheel = std::to_string(kMostCorners + 1);
+    for (std::size_t k = 0; k <= kMostCorners; ++k) wheel += " " + std::to_string(k % 4);
+    expect_refused(replaced(ply("2", "3 0 1 2\n" + wheel + "\n"), "uchar", "int"), "face 1: 4097 corners, at most 4096",
+                   "too many corners");
     expect_refused(ply("1", "3 0 1 4\n"), "line 14: vertex 4 of 4", "index");
     expect_refused(ply("1", "3 0 1 -1\n"), "vertex -1 of 4", "negative");
     expect_refused(ply("1", "0\n"), "a face of 0 corners", "no corner");
@@ -323,12 +332,13 @@ TEST(Ply, Faces)
 // The triangles of a simple polygon, concave or not, in any plane: they cover its area once, facing the same way.
 TEST(Polygons, ConcaveOnesAreCutWithinTheirEdges)
 {
-    std::vector<Eigen::Vector2d> star, comb;
+    std::vector<Eigen::Vector2d> star, comb, frame;
     for (int k = 0; k < 14; ++k)
         star.push_back((k % 2 == 0 ? 1.0 : 0.3) *
                        Eigen::Vector2d(std::cos(k * std::numbers::pi / 7), std::sin(k * std::numbers::pi / 7)));
     comb = {{0, 0}, {7, 0}, {7, 5}, {6, 5}, {6, 1}, {5, 1}, {5, 5}, {4, 5}, {4, 1}, {1, 1}, {1, 5}, {0, 5}};
-    for (const auto& outline : {star, comb}) {
+    frame = {{0, 0}, {6, 0}, {6, 6}, {0, 6}, {0, 0}, {2, 2}, {2, 4}, {4, 4}, {4, 2}, {2, 2}}; // a hole, cut open
+    for (const auto& outline : {star, comb, frame}) {
         double expected = 0; // the shoelace formula
         for (std::size_t k = 0; k < outline.size(); ++k) {
             const Eigen::Vector2d a = outline[k], b = outline[(k + 1) % outline.size()];

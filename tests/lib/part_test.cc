@@ -237,6 +237,33 @@ TEST(Scan, OnlyWhatIsSeenFromAboveIsLifted)
     EXPECT_NEAR(highest, 11, 0.02);
 }
 
+// Of 20 x 20 squares those that lie in the region, with their corners, and no more.
+TEST(Scan, MeshIsCropped)
+{
+    const OwnFolder folder;
+    std::ofstream file("grid.off");
+    file << "OFF\n441 400 0\n";
+    for (int i = 0; i <= 20; ++i)
+        for (int j = 0; j <= 20; ++j) file << i << ' ' << j << ' ' << 0.1 * i << '\n';
+    for (int i = 0; i < 20; ++i)
+        for (int j = 0; j < 20; ++j)
+            file << "4 " << 21 * i + j << ' ' << 21 * (i + 1) + j << ' ' << 21 * (i + 1) + j + 1 << ' '
+                 << 21 * i + j + 1 << '\n';
+    file.close();
+    PartSpec spec;
+    spec.surface = ScannedSurface{"grid.off", Units::Length::mm,
+                                  Eigen::AlignedBox2d(Eigen::Vector2d(4.5, 7), Eigen::Vector2d(10.5, 9.9))};
+    spec.step = 0.5;
+    const Mesh mesh = mesh_of(spec);
+    EXPECT_EQ(mesh.triangles.cols(), 2 * 5 * 2);
+    EXPECT_EQ(mesh.vertices.cols(), 6 * 3);
+    EXPECT_EQ(bounding_box(mesh.vertices).col(0), Eigen::Vector3d(5, 7, 0.5));
+    EXPECT_EQ(bounding_box(mesh.vertices).col(1), Eigen::Vector3d(10, 9, 1));
+    const Eigen::Matrix3Xd normals = triangle_normals(mesh);
+    for (const Eigen::Vector3d& normal : normals.colwise())
+        EXPECT_LT((normal - Eigen::Vector3d(-0.1, 0, 1).normalized()).norm(), 1e-6);
+}
+
 TEST(Scan, CloudIsLiftedAndDensified)
 {
     const OwnFolder folder;

@@ -115,6 +115,15 @@ TEST(Patch, AgreesWithTheClosestPointOnTheReSampledDesign)
     RecordProperty("share_of_tolerance", std::to_string(apart / kTolerance));
 }
 
+TEST(Patch, StatesHaveNames)
+{
+    const std::pair<PatchState, const char*> names[] = {{PatchState::defined, "defined"},
+                                                        {PatchState::not_hit, "not_hit"},
+                                                        {PatchState::vertical, "vertical"},
+                                                        {PatchState::turned_away, "turned_away"}};
+    for (const auto& [state, name] : names) EXPECT_EQ(to_string(state), name);
+}
+
 TEST(Patch, ClassesBySeparateTolerances)
 {
     const PatchTolerances t{0.1, 0.3, 0.1};

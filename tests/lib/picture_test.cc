@@ -194,6 +194,27 @@ TEST(Picture, LengthsAreThoseSeen)
     EXPECT_NEAR(red * pixel, (38 - 9) / 2.0 + 1, 1);
 }
 
+// Numbers do not depend on where a mesh is seen from. Reference: those from above. A roof of 20 x 20 mm, 5 mm high.
+TEST(Picture, HeightsAreThoseOfThePart)
+{
+    Mesh roof;
+    roof.vertices.resize(3, 6);
+    roof.vertices << 0, 20, 20, 0, 0, 20, 0, 0, 20, 20, 10, 10, 0, 0, 0, 0, 5, 5;
+    roof.triangles.resize(3, 4);
+    roof.triangles.transpose() << 0, 1, 5, 0, 5, 4, 2, 3, 4, 2, 4, 5;
+    PictureOptions options;
+    const Sheet above = drawn(roof, options);
+    options.from = Eigen::Vector3d(0, -1, 1).normalized();
+    const Sheet aside = drawn(roof, options);
+    ASSERT_EQ(above.width, aside.width);
+    const auto numbers = [](const Sheet& sheet) { // the last line
+        return std::vector<std::uint8_t>(sheet.rgb.end() - 3 * 50 * sheet.width, sheet.rgb.end());
+    };
+    EXPECT_EQ(numbers(above), numbers(aside));
+    EXPECT_NE(numbers(above), std::vector<std::uint8_t>(numbers(above).size(), 255));
+    EXPECT_NE(above.rgb, aside.rgb);
+}
+
 // Of the legend: pointed where values lie beyond, else not. The tips stand 2 pixels beyond the bar's frame.
 TEST(Picture, MarksTheEndsThatValuesExceed)
 {
@@ -279,6 +300,7 @@ TEST(Canvas, WritesWesternLettersByOthers)
     };
     EXPECT_EQ(drawn_text("Gu\u00DFteil \u2013 Pr\u00FCfung \u00B10.5 \u00E9\u00FF"),
               drawn_text("Gussteil - Pruefung +-0.5 ey"));
+    EXPECT_EQ(drawn_text("\u22125 \u2212"), drawn_text("-5 -"));
     EXPECT_EQ(drawn_text("a\u4E2D\xFFz\xC3"), drawn_text("a??z?"));
 }
 

@@ -2,10 +2,12 @@
 
 #include "belt/press.h"
 #include "core/error.h"
+#include "own_folder.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 #include <limits>
 #include <numbers>
 #include <random>
@@ -193,6 +195,41 @@ TEST(Press, RefusesWhereThereIsNothing)
     Eigen::Isometry3d under = Eigen::Isometry3d::Identity();
     under.linear() = Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitX()).toRotationMatrix();
     EXPECT_THROW(press.at(under, {true, 5}), InputError); // from behind
+}
+
+// The refusal of a wheel in inches to which `keys` are added, "read" if there is none.
+std::string reading(const std::string& keys, ContactWheel* wheel = nullptr)
+{
+    const OwnFolder folder;
+    std::ofstream("wheel.json")
+        << R"({"kind": "wheel", "units": {"length": "in", "stress": "MPa"}, "radius": 4, "width": 2,
+        "layer": {"thickness": 0.5, "young": 3, "poisson": 0.4}, "belt_speed": 600, "law": {"type": "preston", "coefficient": 1e-8})"
+        << keys << "}";
+    try {
+        const ContactWheel found = read_contact_wheel("wheel.json");
+        if (wheel != nullptr) *wheel = found;
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "read";
+}
+
+TEST(ContactWheel, IsReadInMillimetres)
+{
+    ContactWheel wheel;
+    const std::string serration = R"(, "serration": {"pitch": 0.4, "land": 0.3, "depth": 0.1, "angle_deg": 45})";
+    EXPECT_EQ(reading(R"(, "crown_radius": 12)" + serration, &wheel), "read");
+    EXPECT_DOUBLE_EQ(wheel.radius, 101.6);
+    EXPECT_DOUBLE_EQ(wheel.crown_radius, 304.8);
+    EXPECT_DOUBLE_EQ(wheel.serration.pitch, 10.16);
+    EXPECT_DOUBLE_EQ(wheel.serration.land, 7.62);
+    EXPECT_DOUBLE_EQ(wheel.serration.depth, 2.54);
+    EXPECT_DOUBLE_EQ(wheel.serration.angle, std::numbers::pi / 4);
+    EXPECT_EQ(reading(R"(, "crown_radius": 0.9)"), "wheel.json: crown_radius: is less than half the width");
+    EXPECT_EQ(reading(R"(, "serration": {"pitch": 0.4, "land": 0.5, "depth": 0.1})"),
+              "wheel.json: serration.land: is wider than the pitch");
+    EXPECT_NE(reading(R"(, "serration": {"pitch": 0.4, "land": 0.3, "depth": 0})").find("serration.depth"),
+              std::string::npos);
 }
 
 TEST(ContactWheel, HasItsProfile)

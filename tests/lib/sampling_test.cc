@@ -300,6 +300,48 @@ TEST(Swept, PartOfTheWidthFreeOnTwoLines)
     EXPECT_LT(plan.xy(0, 6), 1 * kInch);
 }
 
+// Case (b) where only one stretch within the width is free, [p, q]: its ends, and what is free beyond the width. By
+// hand.
+TEST(Swept, OneStretchOfTheWidthFree)
+{
+    const auto across = [](std::initializer_list<Eigen::Vector2d> anomaly, const Eigen::Matrix3Xd& sampling) {
+        const TouchPlan plan = plan_touches(job_of(SurfaceType::swept, corners(anomaly, kInch), sampling));
+        EXPECT_EQ(plan.size(), 7);
+        return Eigen::Vector4d(plan.xy.row(1).tail<4>().transpose() / kInch);
+    };
+    const Eigen::Matrix3Xd square = rectangle(0, 0, 3, 3), low = rectangle(0, 1, 3, 2);
+    const auto expect = [](const Eigen::Vector4d& found, const Eigen::Vector4d& v) {
+        EXPECT_LT((found - v).cwiseAbs().maxCoeff(), 1e-12) << found.transpose();
+    };
+    // B is [0,3] x [1,2] with a notch [1.4,1.6] wide from above, from below, and from the left.
+    expect(across({{0, 1}, {3, 1}, {3, 2}, {1.6, 2}, {1.6, 1.5}, {1.4, 1.5}, {1.4, 2}, {0, 2}}, square),
+           {1, 1.5, 1.75, 2});
+    expect(across({{0, 1}, {1.4, 1}, {1.4, 1.5}, {1.6, 1.5}, {1.6, 1}, {3, 1}, {3, 2}, {0, 2}}, square),
+           {1, 1.25, 1.5, 2});
+    expect(across({{0, 1}, {3, 1}, {3, 2}, {0, 2}, {0, 1.6}, {0.5, 1.6}, {0.5, 1.4}, {0, 1.4}}, square),
+           {1, 1.4, 1.6, 2});
+    // S is no wider: nothing is free beyond.
+    expect(across({{0, 1}, {3, 1}, {3, 2}, {0, 2}, {0, 1.6}, {0.5, 1.6}, {0.5, 1.4}, {0, 1.4}}, low),
+           Eigen::Vector4d::LinSpaced(1.4, 1.6));
+}
+
+// A boundary traced by a scanner, of more corners than are tried: case (a) beside a circle.
+TEST(Swept, BoundariesOfManyCorners)
+{
+    Eigen::Matrix3Xd circle(3, 300);
+    for (int k = 0; k < 300; ++k) {
+        const double angle = 2 * std::numbers::pi * k / 300;
+        circle.col(k) << kInch * (1.5 + 0.5 * std::cos(angle)), kInch * (1.5 + 0.5 * std::sin(angle)), 0;
+    }
+    const TouchPlan plan = plan_touches(job_of(SurfaceType::swept, circle, rectangle(0, 0, 3, 3)));
+    ASSERT_EQ(plan.size(), 7);
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(plan.xy(0, i) / kInch, 1.5 * i, 1e-12);
+    for (int i = 0; i < 4; ++i) {
+        EXPECT_NEAR(plan.xy(1, 3 + i) / kInch, 1 + i / 3.0, 1e-3);
+        EXPECT_NEAR(std::abs(plan.xy(0, 3 + i) / kInch - 1.5), 0.6, 0.11); // a tenth into the gap, or at the circle
+    }
+}
+
 TEST(Swept, NothingOfTheWidthFree)
 {
     // Case (c). B spans S along the rulings; S is widest, 4 in, at x = 1.
@@ -331,6 +373,13 @@ TEST(Swept, NoUsableLineAsksForAnotherBoundary)
     EXPECT_EQ(problem(job_of(SurfaceType::swept, rectangle(0, 0, 3, 2), rectangle(0, 0, 3, 3))),
               "job.json: sampling: no line across the rulings can be touched on both sides of the anomaly: "
               "widen the sampling boundary near (1.5, 1) in");
+}
+
+TEST(Swept, NoFreeRulingAsksForAnotherBoundary)
+{
+    // Beside B there is less room than the probe's accuracy.
+    EXPECT_EQ(problem(job_of(SurfaceType::swept, rectangle(0.001, 0, 2.999, 3), rectangle(0, 0, 3, 3))),
+              "job.json: sampling: no line along the rulings is free of the anomaly: widen the sampling boundary");
 }
 
 TEST(Swept, TouchesLieInTheFreeAreaAndCoverTheAnomaly)

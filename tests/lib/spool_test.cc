@@ -1,7 +1,10 @@
 #include "core/spool.h"
 
+#include "core/error.h"
+
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <random>
 
 namespace fettle {
@@ -28,6 +31,23 @@ TEST(Spool, GivesBackWhatItTook)
             ASSERT_TRUE(got == all.substr(first, count)) << memory << ' ' << first << ' ' << count;
         }
     }
+}
+
+TEST(Spool, SaysWhereItCannotWrite)
+{
+    const char* before = std::getenv("TMPDIR");
+    const std::string kept = before == nullptr ? "" : before;
+    setenv("TMPDIR", "/no/where", 1);
+    Spool spool(10);
+    spool.append("in memory");
+    std::string message;
+    try {
+        spool.append("no longer");
+    } catch (const InputError& error) {
+        message = error.what();
+    }
+    before == nullptr ? unsetenv("TMPDIR") : setenv("TMPDIR", kept.c_str(), 1);
+    EXPECT_EQ(message, "/no/where/scratch: cannot make a temporary file: No such file or directory");
 }
 
 } // namespace

@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "strategy/joystick.h"
 #include "strategy/layer_switching.h"
 #include "strategy/run.h"
 #include "strategy/trace_file.h"
@@ -9,9 +10,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <csignal>
+#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <string>
+#include <sys/resource.h>
 #include <vector>
 
 namespace fettle {
@@ -306,6 +310,16 @@ TEST(LayerSwitching, Bounds)
     EXPECT_EQ(coverings.force(1, 1), "bound 1 0.1");
     EXPECT_NE(coverings.strategy().failure().find("coverings of layer 1 3"), std::string::npos);
 
+    LayerSwitching::Settings finishing = settings();
+    finishing.finish_passes = true;
+    Script strokes(square(1, 3), finishing);
+    int asked = 0;
+    for (; strokes.kind() != Kind::fail && asked < 100; ++asked) strokes.force(1, 1);
+    EXPECT_EQ(strokes.said(), "bound 1 0.0");
+    EXPECT_EQ(strokes.strategy().counts().coverings, 0);
+    EXPECT_NE(strokes.strategy().failure().find("strokes of a pass 3"), std::string::npos);
+    EXPECT_LT(asked, 100);
+
     LayerSwitching::Settings few = settings();
     few.bounds.steps = 2;
     Script steps(square(1, 9), few);
@@ -546,6 +560,26 @@ TEST(Run, GoesOnWhereverItWasCutOff)
     EXPECT_GT(cut_off, 3);
 }
 
+// Between the measurement of a worn wheel and the first move: measured, changed, measured.
+TEST(Run, GoesOnInTheMiddleOfAChangeOfTheWheel)
+{
+    const Plan plan = square_plan();
+    for (const int commands : {1, 2, 3}) {
+        ColumnGantry gantry(flat, plan.job.force.stiffness);
+        gantry.radius = 12;
+        FailingGantry mortal(gantry, commands);
+        RunOptions options;
+        options.done = run(plan, mortal).trace;
+        options.done.pop_back();
+        ASSERT_EQ(int(options.done.size()), commands);
+        const GrindRun result = run(plan, gantry, options);
+        EXPECT_TRUE(result.finished) << commands;
+        EXPECT_EQ(result.wheel_changes, 1) << commands;
+        EXPECT_EQ(result.wheel_radius, 25.4) << commands;
+        EXPECT_EQ(gantry.radius, 25.4) << commands;
+    }
+}
+
 TEST(Run, RefusesToGoOnWithAnotherRun)
 {
     Plan plan = square_plan();
@@ -554,6 +588,65 @@ TEST(Run, RefusesToGoOnWithAnotherRun)
     options.done = run(plan, gantry).trace;
     plan.passes.erase(plan.passes.begin() + 20);
     EXPECT_THROW(run(plan, gantry, options), InputError);
+}
+
+// By the kernel's description: axis 0 to the right, axis 1 towards the operator, 32767 the full way; buttons from 0.
+TEST(Joystick, MovesTheStick)
+{
+    Stick stick;
+    const auto event = [&](int type, int number, int value) {
+        js_event e = {};
+        e.type = static_cast<__u8>(type), e.number = static_cast<__u8>(number), e.value = static_cast<__s16>(value);
+        hear(e, stick);
+    };
+    event(JS_EVENT_AXIS | JS_EVENT_INIT, 0, 32767);
+    event(JS_EVENT_AXIS, 1, -32767);
+    event(JS_EVENT_AXIS, 2, 20000); // a throttle
+    EXPECT_EQ(stick.way, Eigen::Vector2d(1, 1));
+    event(JS_EVENT_AXIS, 0, 3000); // at rest, but for the springs
+    event(JS_EVENT_AXIS, 1, 3300);
+    EXPECT_EQ(stick.way.x(), 0);
+    EXPECT_NEAR(stick.way.y(), -0.1, 1e-3);
+    EXPECT_TRUE(stick.press);
+    event(JS_EVENT_BUTTON | JS_EVENT_INIT, 0, 1);
+    EXPECT_FALSE(stick.press);
+    event(JS_EVENT_BUTTON, 0, 0);
+    EXPECT_TRUE(stick.press);
+    for (int button = 1; button <= 3; ++button) {
+        event(JS_EVENT_BUTTON | JS_EVENT_INIT, button, 1);
+        event(JS_EVENT_BUTTON, button, 0);
+    }
+    EXPECT_EQ(stick.button, Button::none);
+    EXPECT_FALSE(stick.end);
+    event(JS_EVENT_BUTTON, 2, 1);
+    EXPECT_EQ(stick.button, Button::record);
+    event(JS_EVENT_BUTTON, 3, 1);
+    EXPECT_EQ(stick.button, Button::next);
+    event(JS_EVENT_BUTTON, 1, 1);
+    EXPECT_TRUE(stick.end);
+}
+
+TEST(Trace, RefusesEventsThatThereAreNot)
+{
+    const std::vector<TraceRow> rows = {{.layer = 1, .pass = 1}, {.time = 1, .layer = 1, .pass = 1}};
+    Cloud cloud = to_cloud(rows);
+    EXPECT_EQ(trace_of(cloud, "trace").size(), 2u);
+    set_field(cloud, "event", Eigen::Vector2d(0, 99));
+    try {
+        trace_of(cloud, "trace");
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_STREQ(error.what(), "trace: event 99 of point 2 is none of a trace");
+    }
+}
+
+TEST(TraceFile, SaysWhereItCannotWrite)
+{
+    const OwnFolder folder;
+    EXPECT_THROW(TraceFile("no/where", {}, PcdEncoding::ascii, {}), InputError);
+    std::filesystem::create_directory("folder");
+    EXPECT_THROW(TraceFile("folder", {}, PcdEncoding::ascii, {}), InputError);
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator("."), {}), 1); // it leaves nothing
 }
 
 TEST(TraceFile, HoldsEveryRowAtEveryMoment)
@@ -592,6 +685,34 @@ TEST(TraceFile, HoldsEveryRowAtEveryMoment)
         std::string bytes = read_whole(path);
         std::ofstream(path) << bytes << bytes.substr(bytes.size() - 3);
         EXPECT_EQ(read_trace(path, inches).size(), 29u);
+    }
+}
+
+// A limit on the file's size cuts a write short at that byte, as SIGKILL does where a page ends: the row that was to be
+// replaced is not counted then, and those before it are untouched.
+TEST(TraceFile, CountsNoRowThatIsWrittenInPart)
+{
+    const OwnFolder folder;
+    std::signal(SIGXFSZ, SIG_IGN); // as the tools do
+    rlimit before{};
+    ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+    for (const PcdEncoding encoding : {PcdEncoding::ascii, PcdEncoding::binary}) {
+        const std::string path = "trace.pcd";
+        TraceFile file(path, {}, encoding, {{.time = 1.25, .pass = 1, .feed = 25}});
+        const rlim_t start = std::filesystem::file_size(path);
+        file.begin({.time = 1.25, .pass = 2, .event = Event::begun});
+        for (rlim_t cut = start + 1; cut < std::filesystem::file_size(path); cut += 3) {
+            const rlimit limit{cut, before.rlim_max};
+            ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &limit), 0);
+            EXPECT_THROW(file.done({.time = 2.5, .pass = 2, .feed = 25}), InputError);
+            ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
+            const std::vector<TraceRow> rows = read_trace(path, {});
+            ASSERT_EQ(rows.size(), 1u);
+            EXPECT_EQ(rows[0].time, 1.25);
+            EXPECT_EQ(rows[0].pass, 1);
+        }
+        file.done({.time = 2.5, .pass = 2, .feed = 25}); // there is room again
+        EXPECT_EQ(read_trace(path, {}).size(), 2u);
     }
 }
 

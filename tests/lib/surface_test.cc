@@ -419,6 +419,16 @@ TEST(SurfaceJson, RefusesWhatIsWrong)
     EXPECT_EQ(refusal(surface_text(R"({"type": "bspline", "angle_deg": 0, "origin": [0, 0], "cell": [1, 0],
                                       "heights": [[1, 1, 1, 1], [1, 1, 1, 1], [1, 1, 1, 1], [1, 1, 1, 1]]})")),
               "s.json: shape.cell: must be positive");
+    EXPECT_EQ(
+        refusal(surface_text(R"({"type": "polynomial", "origin": [0, 0], "scale": 1, "coefficients": [1, 2, 3, 4]})")),
+        "s.json: shape.coefficients: expected 1, 3, 6, 10, … numbers: all of a total degree");
+    EXPECT_EQ(refusal(surface_text(plane, R"(, "precision": {"amplitude": 1, "weights": [[1]]})")),
+              "s.json: precision: belongs to a shape of type bspline");
+    EXPECT_EQ(
+        refusal(surface_text(
+            plane,
+            R"(, "fit": {"method": "plane", "touch_sigma": 1, "rms": 1, "ignored": 0, "gross_errors": [1, 1.5]})")),
+        "s.json: fit.gross_errors: 1.5 is no number of a touch");
 }
 
 TEST(SurfaceGrid, CoversTheOutlineOnce)
@@ -506,6 +516,8 @@ TEST(Precision, IsWrittenAndRead)
     };
     refused("\"amplitude\"", "\"amplitud\"");
     refused("\"weights\": [\n", "\"weights\": [[1],\n");
+    surface.precision->weights.conservativeResize(Eigen::NoChange, surface.precision->weights.cols() - 1);
+    EXPECT_THROW(parse_surface(json::Reader::parse(to_json(surface).text(), "test")), InputError);
 }
 
 } // namespace

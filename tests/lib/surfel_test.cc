@@ -2,6 +2,7 @@
 #include "belt/displaced_normals.h"
 #include "belt/sampling.h"
 #include "belt/stock.h"
+#include "core/error.h"
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
@@ -274,6 +275,32 @@ TEST(SurfelSampling, of_a_rational_patch_is_exactly_on_the_cylinder)
     }
 }
 
+/// An eighth of the sphere of radius 10 about the origin; v = 1 is its pole, a single point.
+Patch eighth_of_a_sphere()
+{
+    Patch patch;
+    patch.degree_u = patch.degree_v = 2;
+    patch.knots_u = patch.knots_v = (Eigen::VectorXd(6) << 0, 0, 0, 1, 1, 1).finished();
+    const Eigen::Vector3d x(10, 10, 0), y(0, 10, 10), across(10, 10, 0), up(0, 10, 10), w(1, std::sqrt(0.5), 1);
+    patch.control[0] = x * across.transpose() / 10;
+    patch.control[1] = y * across.transpose() / 10;
+    patch.control[2] = Eigen::Vector3d::Ones() * up.transpose();
+    patch.weights = w * w.transpose();
+    return patch;
+}
+
+// At the pole all of u is one place: the tangents say nothing of the normal there.
+TEST(SurfelSampling, has_a_normal_at_a_pole)
+{
+    const Surfels s = sample_surfels({eighth_of_a_sphere()}, spaced(0.5)).surfels;
+    bool at_pole = false;
+    for (Eigen::Index i = 0; i < s.size(); ++i) {
+        EXPECT_LT((s.normal.col(i).cwiseAbs() - s.position.col(i) / 10).norm(), 1e-4);
+        at_pole = at_pole || s.uv(1, i) == 1;
+    }
+    EXPECT_TRUE(at_pole);
+}
+
 // Neighbours 2 √(p / κ) apart: 0.02 mm on a radius of 10 mm.
 TEST(SurfelSampling, follows_the_precision_where_it_is_curved)
 {
@@ -388,6 +415,18 @@ TEST(SurfelSampling, thins_a_scan)
         EXPECT_LT(nearest(s, scan.xyz.col(k), Eigen::Vector3d::UnitZ()), 0.5);
     for (Eigen::Index i = 1; i < s.size(); ++i)
         EXPECT_NEAR((s.uv.col(i) - s.uv.col(0)).norm(), (s.position.col(i) - s.position.col(0)).norm(), 1e-9);
+}
+
+TEST(Surfels, refuse_a_normal_without_direction)
+{
+    Cloud cloud;
+    cloud.xyz = Eigen::Matrix3Xd::Identity(3, 2);
+    set_normals(cloud, Eigen::Matrix3Xd::Identity(3, 2));
+    EXPECT_EQ(surfels_of(cloud, "cloud").normal, Eigen::Matrix3Xd(Eigen::Matrix3Xd::Identity(3, 2)));
+    set_normals(cloud, (Eigen::Matrix3Xd(3, 2) << 1, 0, 0, 0, 0, 0).finished());
+    EXPECT_THROW(surfels_of(cloud, "cloud"), InputError);
+    cloud.xyz.col(1).setConstant(NAN); // nothing is asked of what is nowhere
+    EXPECT_EQ(surfels_of(cloud, "cloud").size(), 2);
 }
 
 TEST(Assessment, is_by_the_range)

@@ -99,6 +99,30 @@ TEST(Workpiece, NearestAsByBruteForce)
     EXPECT_LT(touching, 500);
 }
 
+// A box by its corners. Reference: the box.
+TEST(Workpiece, AHullIsMetAsItsBox)
+{
+    const Mesh mesh = sheet(24, 100);
+    const Workpiece workpiece(mesh);
+    std::mt19937 random(17);
+    std::uniform_real_distribution<double> place(-60, 60), height_over(-12, 30);
+    const Vector3d half(9, 6, 4);
+    solid::Hull hull{Eigen::Matrix3Xd(3, 8)};
+    for (int k = 0; k < 8; ++k)
+        hull.points.col(k) << (k & 1 ? 1 : -1) * half.x(), (k & 2 ? 1 : -1) * half.y(), (k & 4 ? 1 : -1) * half.z();
+    const Solid box = solid::Box{Isometry3d::Identity(), half}, same = hull;
+    int touching = 0;
+    for (int k = 0; k < 200; ++k) {
+        Isometry3d T(Eigen::AngleAxisd(k, Vector3d(1, 2, 3).normalized()));
+        T.pretranslate(Vector3d(place(random), place(random), height_over(random)));
+        const double expected = workpiece.nearest(PlacedSolid(box, T)).clearance.distance;
+        EXPECT_NEAR(workpiece.nearest(PlacedSolid(same, T)).clearance.distance, expected, 1e-3);
+        touching += expected < 0;
+    }
+    EXPECT_GT(touching, 20);
+    EXPECT_LT(touching, 180);
+}
+
 // A tool along a raster over a hull, its ball just clear or 0.05 mm too deep, its spindle now and then in the hull.
 // Reference: each triangle clipped by each part. tool_hull_bench does the same with 50,000 poses and 100,000 triangles.
 TEST(Workpiece, VerdictsAsByBruteForce)

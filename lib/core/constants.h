@@ -1,0 +1,12 @@
+#pragma once
+
+#include <limits>
+#include <numbers>
+
+namespace fettle {
+
+inline constexpr double kRadPerDegree = std::numbers::pi / 180;
+inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+} // namespace fettle
