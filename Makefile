@@ -63,16 +63,16 @@ MD     := -lmd
 FCL    := -lfcl -lccd
 LDLIBS_ALL := -llzf -ltbb
 
-# The files that see OpenCV.
-$(B)/lib/compare/canvas.o $(B)/lib/belt/convolution.o $(B)/lib/cli/version.o: override CPPFLAGS += $(addprefix -isystem ,$(wildcard /usr/include/opencv4))
+# The files that see OpenCV. Private: what a file needs before it, the precompiled header, is compiled as ever.
+$(B)/lib/compare/canvas.o $(B)/lib/belt/convolution.o $(B)/lib/cli/version.o: private override CPPFLAGS += $(addprefix -isystem ,$(wildcard /usr/include/opencv4))
 
 # Square roots of eight numbers at once are one instruction where nobody reads errno.
-$(B)/lib/mesh/mesh_index.o $(B)/lib/robot/workpiece.o: override CXXFLAGS += -fno-math-errno
+$(B)/lib/mesh/mesh_index.o $(B)/lib/robot/workpiece.o: private override CXXFLAGS += -fno-math-errno
 # What this one computes in float only bounds what double measures elsewhere: products and sums may be fused.
-$(B)/lib/mesh/mesh_index.o: override CXXFLAGS += -ffp-contract=fast
+$(B)/lib/mesh/mesh_index.o: private override CXXFLAGS += -ffp-contract=fast
 
 # What tests do themselves is little: they are sooner compiled and run so than with -O2.
-$(B)/tests/lib/%: override CXXFLAGS += -O1
+$(B)/tests/lib/%: private override CXXFLAGS += -O1
 
 include tools/libraries.mk
 

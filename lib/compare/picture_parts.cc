@@ -196,7 +196,10 @@ void draw_outlines(Sheet& sheet, const Layout& layout, const Raster& part, const
         constexpr double kBeside = 13;
         const bool room = top.y() - kBeside > layout.map_corner.y() + kLabel;
         const Vector2d inwards = (middle / double(count) - top).normalized();
-        sheet.text(name, top + kBeside * (room ? Vector2d(0, -1) : inwards), kLabel, colour, Align::centre, true);
+        Vector2d at = top + kBeside * (room ? Vector2d(0, -1) : inwards);
+        const double left = layout.map_corner.x() + kLabel; // not across the frame
+        at.x() = std::clamp(at.x(), left, left + layout.map_size.x() - 2 * kLabel);
+        sheet.text(name, at, kLabel, colour, Align::centre, true);
     };
     draw(job.sampling, kSamplingEdge, 1, "S");
     draw(job.anomaly, kInsideEdge, 2, "B");
