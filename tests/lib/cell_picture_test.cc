@@ -1,5 +1,6 @@
 // Pictures of a cell. References: volumes, distances, and what lies before what by construction.
 #include "core/error.h"
+#include "cube.h"
 #include "irb1400.h"
 #include "robot/cell_picture.h"
 #include "robot/cell_scene.h"
@@ -129,14 +130,10 @@ TEST(CellPicture, ShowsTheModel)
     const CellJointsPath joints = CellJointsPath::Zero(8, 1);
     const Vector3d tip = link_frames(robot, Arm(robot), joints.col(0))[link::kTool + 1].translation();
     const auto part = [&](double low) {
-        Mesh box;
-        box.vertices.resize(3, 8);
+        Mesh box = cube(1);
         for (int k = 0; k < 8; ++k)
             box.vertices.col(k) << tip.x() + (k & 1 ? 200 : 100), tip.y() + (k & 2 ? 50 : -50),
                 (k & 4 ? tip.z() - (k & 1 ? low : 0) : tip.z() - 300);
-        box.triangles.resize(3, 12);
-        box.triangles.transpose() << 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 4, 6, 0,
-            6, 2, 1, 3, 7, 1, 7, 5;
         return box;
     };
     std::set<std::string> pictures;

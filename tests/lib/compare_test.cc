@@ -1,3 +1,5 @@
+#include "cube.h"
+
 #include "compare/areas.h"
 #include "compare/colours.h"
 #include "compare/signed_distance.h"
@@ -24,18 +26,6 @@ Eigen::Matrix3Xd random_points(Eigen::Index count, double size, unsigned seed)
     return Eigen::Matrix3Xd::NullaryExpr(3, count, [&] { return place(random); });
 }
 
-// The cube [-1, 1]³ of twelve facets.
-Mesh cube()
-{
-    Mesh mesh;
-    mesh.vertices.resize(3, 8);
-    for (int i = 0; i < 8; ++i) mesh.vertices.col(i) << (i & 1 ? 1 : -1), (i & 2 ? 1 : -1), (i & 4 ? 1 : -1);
-    mesh.triangles.resize(3, 12);
-    mesh.triangles.transpose() << 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6,
-        2, 1, 3, 7, 1, 7, 5;
-    return mesh;
-}
-
 double cube_distance(const Eigen::Vector3d& p)
 {
     const Eigen::Vector3d q = p.cwiseAbs().array() - 1;
@@ -59,7 +49,7 @@ TEST(SignedDistance, CubeInClosedForm)
     Eigen::Matrix3Xd points = random_points(3000, 3, 1);
     for (Eigen::Index i = 0; i < 1000; ++i) // a lattice that holds the extensions of every facet and edge
         points.col(i) << -3 + i % 10 * 0.5, -3 + i / 10 % 10 * 0.5, -3 + i / 100 * 0.5;
-    const ErrorMap map = signed_distance(points, cube());
+    const ErrorMap map = signed_distance(points, cube(1));
     for (Eigen::Index i = 0; i < points.cols(); ++i) EXPECT_NEAR(map.error[i], cube_distance(points.col(i)), 1e-14);
 }
 
@@ -158,7 +148,7 @@ TEST(SignedDistance, SignOnSpikes)
 
 TEST(SignedDistance, RigidMotionChangesNothing)
 {
-    const Mesh mesh = cube();
+    const Mesh mesh = cube(1);
     const Eigen::Matrix3Xd points = random_points(500, 2, 6);
     const Eigen::Isometry3d motion =
         Eigen::Translation3d(30, -20, 10) * Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized());
@@ -275,7 +265,7 @@ TEST(SignedDistance, NothingBeyondMaxDistance)
 // A crack as CAD programs leave it, vertices that differ in the last bits of a float, is no border.
 TEST(SignedDistance, CracksOfRoundingAreClosed)
 {
-    Mesh mesh = cube();
+    Mesh mesh = cube(1);
     Mesh soup;
     soup.vertices.resize(3, 36);
     for (int i = 0; i < 36; ++i)
@@ -289,7 +279,7 @@ TEST(SignedDistance, CracksOfRoundingAreClosed)
 // A stray facet far away does not make one vertex of the cube's.
 TEST(SignedDistance, StrayFacetsDoNotWeld)
 {
-    Mesh mesh = cube();
+    Mesh mesh = cube(1);
     mesh.vertices.conservativeResize(3, 11);
     mesh.vertices.rightCols(3) << 1e9, 2e9, 1e9, 1e9, 1e9, 2e9, 1e9, 1e9, 1e9;
     mesh.triangles.conservativeResize(3, 13);
@@ -354,7 +344,7 @@ TEST(SignedDistance, AlongADirection)
     points.col(2) << 0.3, 0.2, 1; // on it
     points.col(3) << 1.3, 0, 1;   // the line misses the cube
     points.col(4) << 0, 0, 1;     // over the diagonal of the facets
-    const ErrorMap z = signed_distance(points, cube(), {DistanceMode::direction});
+    const ErrorMap z = signed_distance(points, cube(1), {DistanceMode::direction});
     EXPECT_NEAR(z.error[0], -1.9, 1e-14);
     EXPECT_NEAR(z.error[1], 0.25, 1e-14);
     EXPECT_NEAR(z.error[2], 0, 1e-14);
@@ -362,7 +352,7 @@ TEST(SignedDistance, AlongADirection)
     EXPECT_NEAR(z.error[4], 0, 1e-14);
 
     const Eigen::Vector3d slanted = Eigen::Vector3d(3, 0, 4) / 5;
-    const ErrorMap along = signed_distance(points.col(1), cube(), {DistanceMode::direction, slanted});
+    const ErrorMap along = signed_distance(points.col(1), cube(1), {DistanceMode::direction, slanted});
     EXPECT_NEAR(along.error[0], 0.25 / 0.8, 1e-14); // height over the cosine
 }
 
@@ -484,8 +474,8 @@ TEST(Areas, OfAScatteredCloudSumUp)
 // Identity: an offset cube's vertices stand for its whole surface, and for its shadow along z twice.
 TEST(Areas, OfVertices)
 {
-    EXPECT_DOUBLE_EQ(vertex_areas(cube()).sum(), 24);
-    EXPECT_DOUBLE_EQ(vertex_areas(cube(), Eigen::Vector3d::UnitZ()).sum(), 8);
+    EXPECT_DOUBLE_EQ(vertex_areas(cube(1)).sum(), 24);
+    EXPECT_DOUBLE_EQ(vertex_areas(cube(1), Eigen::Vector3d::UnitZ()).sum(), 8);
 }
 
 TEST(Colours, TellSidesApart)

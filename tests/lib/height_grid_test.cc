@@ -1,4 +1,6 @@
 #include "boat_hull.h"
+#include "cube.h"
+
 #include "core/direction.h"
 #include "robot/heterogeneous.h"
 
@@ -203,18 +205,11 @@ TEST(HeightGrid, Equation22IsTooShort)
     EXPECT_EQ(distance(Formulas::published).second, 0);
 }
 
-// A ball-end tool over a hull: the verdicts of the tool are those of the triangles, and no clearance is larger than by
-// these, nor smaller by more than what is stated. Leaning poses need more grids than one.
 // Deep inside a body neither its triangles nor the cuboids are near: the way out is the workpiece's own. By hand.
 TEST(Heterogeneous, InsideItIsTheWorkpiece)
 {
-    Mesh cube;
-    cube.vertices.resize(3, 8);
-    for (int k = 0; k < 8; ++k) cube.vertices.col(k) << (k & 1 ? 50 : -50), (k & 2 ? 50 : -50), (k & 4 ? 50 : -50);
-    cube.triangles.resize(3, 12);
-    cube.triangles.transpose() << 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6,
-        2, 1, 3, 7, 1, 7, 5;
-    const Workpiece workpiece(cube);
+    const Mesh mesh = cube(50);
+    const Workpiece workpiece(mesh);
     const std::vector<Vector3d> up = {Vector3d::UnitZ()};
     const Heterogeneous model(workpiece, up, {.cell = 10});
     for (const char in_zone : {0, 1}) {
@@ -224,6 +219,8 @@ TEST(Heterogeneous, InsideItIsTheWorkpiece)
     }
 }
 
+// A ball-end tool over a hull: the verdicts of the tool are those of the triangles, and no clearance is larger than by
+// these, nor smaller by more than what is stated. Leaning poses need more grids than one.
 TEST(Heterogeneous, AsTheTrianglesTell)
 {
     const Mesh mesh = boat::hull(8000);
