@@ -1,6 +1,7 @@
 # fettle: a suite of small tools. One executable for each tools/fettle-NAME.cc, one library from lib/.
 #
 #   make            build                     make demo      the whole chain on the samples, with pictures
+#   make fettle-fit one tool and the modules it needs
 #   make test       build and run the tests   make figures   the chain's figures beside their targets
 #   make test TOOL=fettle-fit                 make bench     benchmarks
 #   make bless TOOL=fettle-fit                make docs      pages of docs/tools from --help, modules.svg
@@ -14,8 +15,9 @@
 VERSION  := $(shell sed -n 's/^## \([0-9.]*\).*/\1/p' CHANGELOG.md | head -n 1)
 B        ?= build
 PREFIX   ?= /usr/local
-# -g1: lines in backtraces; all of -g makes objects ten times as large and takes a third longer.
-CXXFLAGS ?= -O2 -g1
+# -g1: lines in backtraces; all of -g makes objects ten times as large and takes a third longer. -DNDEBUG: Eigen's
+# checks of sizes and indices take a fifth of the compile time; coverage, sanitizers and fuzzing keep them.
+CXXFLAGS ?= -O2 -g1 -DNDEBUG
 JOBS     ?= $(shell nproc)
 
 # What needs LinuxCNC's headers (linuxcnc-uspace-dev) is built where they are.
@@ -23,36 +25,46 @@ LINUXCNC := $(wildcard /usr/include/linuxcnc/emc_nml.hh)
 NEEDS_LINUXCNC := $(if $(LINUXCNC),,tools/fettle-gantry-linuxcnc.cc lib/gantry/linuxcnc.cc lib/gantry/linuxcnc_link.cc)
 TOOLS    := $(patsubst tools/%.cc,%,$(filter-out $(NEEDS_LINUXCNC),$(wildcard tools/fettle-*.cc)))
 BINARIES := $(TOOLS:%=$(B)/bin/%)
+# The command that lists them.
+LIST     := $(B)/bin/fettle
 TESTS    := $(patsubst tests/lib/%.cc,$(B)/tests/%,$(wildcard tests/lib/*_test.cc))
 STUDIES  := $(patsubst pipelines/programs/%.cc,$(B)/study/%,$(wildcard pipelines/programs/*.cc))
 BENCHES  := $(patsubst tests/bench/%.cc,$(B)/bench/%,$(wildcard tests/bench/*_bench.cc))
 # Those of tests/linuxcnc have a machine of their own to start: make test-linuxcnc.
 CASES    := $(sort $(filter-out tests/linuxcnc/%,$(wildcard tests/$(or $(TOOL),*)/*.sh)))
-OBJECTS  := $(patsubst %.cc,$(B)/%.o,$(filter-out $(NEEDS_LINUXCNC),$(wildcard lib/*/*.cc)))
+PROGRAMS := $(TOOLS:%=tools/%.cc) $(wildcard tests/lib/*_test.cc tests/bench/*_bench.cc pipelines/programs/*.cc)
 MODULES  := $(if $(LINUXCNC),$(B)/linuxcnc/fettle_head.so $(B)/linuxcnc/fettle_press.so $(B)/linuxcnc/fettle_watch.so)
 
 # -ffp-contract=off: the same digits on every processor. No -march: Debian's PCL is built without it, and Eigen's
 # alignment must agree with PCL's.
 override CXXFLAGS += -std=c++20 -Wall -Wextra -Wshadow -ffp-contract=off
+# What a program does not call is left out of it, and with it the libraries that only that needs, though it was compiled
+# together with what it does call.
+override CXXFLAGS += -ffunction-sections -fdata-sections
 # A compiler that may keep 800 MB does not stop to collect: a tenth faster.
 override CXXFLAGS += $(if $(findstring clang,$(CXX)),,--param ggc-min-heapsize=800000)
 override CPPFLAGS += -Ilib $(addprefix -isystem ,$(wildcard /usr/include/pcl-1.*) /usr/include/eigen3) \
                      -DFETTLE_VERSION='"$(VERSION)"'
 # gold links in half the time.
-override LDFLAGS  += -Wl,--as-needed -fuse-ld=gold
+override LDFLAGS  += -Wl,--as-needed,--gc-sections -fuse-ld=gold
 
 # What most files include is read once: a third of the compile time. `make PRECOMPILED=` builds without, each file from
 # its own includes alone.
 PRECOMPILED ?= $(B)/lib/precompiled.h.gch $(B)/tests/lib/precompiled.h.gch
+# So many files of a module are compiled as one: a third of the compile time. Who works on the library says BUNDLE=1, and
+# waits for the one file alone.
+BUNDLE ?= 8
 
 .DELETE_ON_ERROR:
 .SECONDARY:
-.PHONY: all build deps coverage test test-linuxcnc tests-built run-cases demo figures bench bless docs lint includes install clean
+.PHONY: fettle $(TOOLS) all build deps coverage test test-linuxcnc tests-built run-cases demo figures bench bless docs lint includes install clean
 
 all: deps
 	@$(MAKE) --no-print-directory -j$(JOBS) build
 
-build: $(BINARIES) $(STUDIES) $(MODULES)
+build: $(BINARIES) $(LIST) $(STUDIES) $(MODULES)
+
+fettle $(TOOLS): %: $(B)/bin/%
 
 # --- libraries, tool by tool: a heavy one is linked only where it is named ------------------------------------------
 CERES  := -lceres -lglog
@@ -64,25 +76,51 @@ FCL    := -lfcl -lccd
 LDLIBS_ALL := -llzf -ltbb
 
 # The files that see OpenCV. Private: what a file needs before it, the precompiled header, is compiled as ever.
-$(B)/lib/compare/canvas.o $(B)/lib/belt/convolution.o $(B)/lib/cli/version.o: private override CPPFLAGS += $(addprefix -isystem ,$(wildcard /usr/include/opencv4))
+$(B)/lib/draw/canvas.o $(B)/lib/belt/convolution.o $(B)/lib/cli/version.o: private override CPPFLAGS += $(addprefix -isystem ,$(wildcard /usr/include/opencv4))
 
 # Square roots of eight numbers at once are one instruction where nobody reads errno.
 $(B)/lib/mesh/mesh_index.o $(B)/lib/robot/workpiece.o: private override CXXFLAGS += -fno-math-errno
 # What this one computes in float only bounds what double measures elsewhere: products and sums may be fused.
 $(B)/lib/mesh/mesh_index.o: private override CXXFLAGS += -ffp-contract=fast
+# Those with flags of their own are compiled alone, and so are LinuxCNC's.
+ALONE := lib/mesh/mesh_index.cc lib/robot/workpiece.cc $(wildcard lib/gantry/linuxcnc*.cc)
 
-# What tests do themselves is little: they are sooner compiled and run so than with -O2.
-$(B)/tests/lib/%: private override CXXFLAGS += -O1
+# What tests and tools do themselves is little: they are sooner compiled and run so than with -O2.
+$(B)/tests/lib/% $(B)/tools/%: private override CXXFLAGS += -O1
 
 include tools/libraries.mk
+
+# --- archives, module by module: a program links, and so makes, only the modules that it includes -------------------
+SOURCES := $(filter-out $(NEEDS_LINUXCNC),$(wildcard lib/*/*.cc))
+ifneq ($(filter clean,$(MAKECMDGOALS)),clean)
+include $(B)/archives.mk
+endif
+$(B)/archives.mk: lib/archives Makefile $(wildcard lib/*/*.h) $(SOURCES) $(PROGRAMS)
+	@mkdir -p $(@D)
+	@ALONE="$(ALONE)" LEFT_OUT="$(NEEDS_LINUXCNC)" lib/archives $(B) $(BUNDLE) $(PROGRAMS) > $@
+
+ARCHIVES := $(patsubst lib/%,$(B)/lib/%.a,$(filter-out %.h,$(wildcard lib/*)))
+.SECONDEXPANSION:
+# The archives of a program, by its source without .cc.
+archives = $(patsubst %,$(B)/lib/%.a,$(MODULES_$(1)))
+
+$(B)/lib/%.a: $$(OBJECTS_$$*)
+	@rm -f $@
+	$(AR) rcs $@ $^
 
 # --- rules ----------------------------------------------------------------------------------------------------------
 precompiled = $(filter $(B)/$(if $(filter tests/lib/%,$(1)),tests/)lib/%,$(PRECOMPILED))
 
 $(TESTS:$(B)/tests/%=$(B)/tests/lib/%.o): | $(filter $(B)/tests/%,$(PRECOMPILED))
-$(B)/%.o: %.cc | $(filter $(B)/lib/%,$(PRECOMPILED))
+define compile
 	@mkdir -p $(@D)
 	$(CXX) $(CPPFLAGS) $(CXXFLAGS) $(addprefix -include ,$(basename $(call precompiled,$<))) -MMD -MP -c $< -o $@
+endef
+$(B)/%.o: %.cc | $(filter $(B)/lib/%,$(PRECOMPILED))
+	$(compile)
+# The compiler takes the files of a bundle for headers, whose anonymous namespaces it would warn of.
+$(B)/%.o: $(B)/%.cc | $(filter $(B)/lib/%,$(PRECOMPILED))
+	$(compile) -Wno-subobject-linkage
 
 # The copy of the header is what the compiler reads for the few files whose options differ.
 $(B)/%.h.gch: %.h
@@ -90,30 +128,38 @@ $(B)/%.h.gch: %.h
 	@cp $< $(basename $@)
 	$(CXX) $(CPPFLAGS) $(CXXFLAGS) -MMD -MP -x c++-header -c $< -o $@
 
-$(B)/libfettle.a: $(OBJECTS)
+# All of them as one, for programs outside.
+$(B)/libfettle.a: $(foreach module,$(ARCHIVES:$(B)/lib/%.a=%),$(OBJECTS_$(module)))
 	@rm -f $@
 	$(AR) rcs $@ $^
 
-$(B)/bin/%: $(B)/tools/%.o $(B)/libfettle.a
+$(B)/bin/%: $(B)/tools/%.o $$(call archives,tools/$$*)
 	@mkdir -p $(@D)
 	$(CXX) $(LDFLAGS) -o $@ $^ $(LDLIBS) $(LDLIBS_ALL)
 
+# Its list is made of the README's table and of what the tools say with --help.
+$(LIST): packaging/fettle.in packaging/tool-list packaging/about README.md CHANGELOG.md $(BINARIES)
+	packaging/tool-list README.md $(BINARIES) > $(B)/tool-list
+	sed -e 's|@VERSION@|$(VERSION)|' -e '/^@TOOLS@$$/{r $(B)/tool-list' -e 'd}' $< > $@
+	chmod +x $@
+
 # Programs of the studies: what would be too slow as a chain of tools for each of thousands of cells.
-$(B)/study/%: LDLIBS = $(CERES) $(OPENCV) $(PNG)
-$(B)/study/%: $(B)/pipelines/programs/%.o $(B)/libfettle.a
+$(B)/study/%: LDLIBS = $(CERES) $(OPENCV) $(PNG) $(MD)
+$(B)/study/%: $(B)/pipelines/programs/%.o $$(call archives,pipelines/programs/$$*)
 	@mkdir -p $(@D)
 	$(CXX) $(LDFLAGS) -o $@ $^ $(LDLIBS) $(LDLIBS_ALL)
 
 $(B)/tests/%: LDLIBS = $(CERES) $(OPENCV) $(PNG) $(MD) -lgtest_main -lgtest
 $(B)/tests/cloud_test: LDLIBS += -lpcl_io -lpcl_common
 $(B)/tests/fcl_test: LDLIBS += $(FCL)
-$(B)/tests/%: $(B)/tests/lib/%.o $(B)/libfettle.a
+$(B)/tests/%: $(B)/tests/lib/%.o $$(call archives,tests/lib/$$*)
 	@mkdir -p $(@D)
 	$(CXX) $(LDFLAGS) -o $@ $^ $(LDLIBS) $(LDLIBS_ALL)
 
-$(B)/bench/%: LDLIBS = $(CERES) $(EMBREE) $(OPENCV) $(PNG) -lbenchmark_main -lbenchmark
+$(B)/bench/%: LDLIBS = $(CERES) $(EMBREE) $(OPENCV) $(PNG) $(MD) -lbenchmark_main -lbenchmark
 $(B)/bench/tool_hull_bench: LDLIBS += $(FCL)
-$(B)/bench/%: $(B)/tests/bench/%.o $(B)/libfettle.a
+$(B)/bench/libraries_bench: LDLIBS += -lpcl_kdtree -lpcl_common -lflann_cpp -llz4
+$(B)/bench/%: $(B)/tests/bench/%.o $$(call archives,tests/bench/$$*)
 	@mkdir -p $(@D)
 	$(CXX) $(LDFLAGS) -o $@ $^ $(LDLIBS) $(LDLIBS_ALL)
 
@@ -127,7 +173,7 @@ deps:
 $(B)/lib/gantry/linuxcnc_link.o: override CPPFLAGS += -DULAPI -isystem /usr/include/linuxcnc
 
 $(B)/linuxcnc/%.o: override CPPFLAGS += -DRTAPI -isystem /usr/include/linuxcnc
-$(B)/linuxcnc/%.o: override CXXFLAGS += -fPIC -fvisibility=hidden -ffunction-sections -fdata-sections
+$(B)/linuxcnc/%.o: override CXXFLAGS += -fPIC -fvisibility=hidden
 $(B)/linuxcnc/%.o: %.cc
 	@mkdir -p $(@D)
 	$(CXX) $(CPPFLAGS) $(CXXFLAGS) -MMD -MP -c $< -o $@
@@ -136,7 +182,7 @@ $(B)/linuxcnc/%.o: %.cc
 $(B)/linuxcnc/fettle_head.so: $(patsubst %,$(B)/linuxcnc/%.o,tools/linuxcnc/fettle_head lib/gantry/simulated_head lib/removal/height_field lib/removal/preston lib/removal/wheel)
 $(B)/linuxcnc/fettle_press.so: $(patsubst %,$(B)/linuxcnc/%.o,tools/linuxcnc/fettle_press lib/gantry/force_loop)
 $(B)/linuxcnc/%.so:
-	$(CXX) $(LDFLAGS) -shared -Wl,--gc-sections -o $@ $^
+	$(CXX) $(LDFLAGS) -shared -o $@ $^
 
 $(B)/linuxcnc/fettle_watch.so: tools/linuxcnc/fettle_watch.comp
 	@mkdir -p $(@D)
@@ -149,13 +195,16 @@ LINUXCNC_RUNS := $(patsubst %.sh,%.case,$(sort $(wildcard tests/linuxcnc/*.sh)))
 .PHONY: $(CASE_RUNS) $(TEST_RUNS) $(LINUXCNC_RUNS)
 
 # More at once than there are processors: some wait most of their time.
+# Of one tool: what its cases name.
 test: deps
 	@rm -rf $(B)/results && mkdir -p $(B)/results
-	@$(MAKE) --no-print-directory -j$(JOBS) build $(if $(TOOL),,tests-built)
+	@$(MAKE) --no-print-directory -j$(JOBS) $(if $(TOOL),$(call tools_named_in,$(CASES)),build tests-built)
 	@$(MAKE) --no-print-directory -j$$(($(JOBS) + 2)) -k -s run-cases $(TEST_RUNS) 2>/dev/null; tests/summary $(B)/results
 
 tests-built: $(TESTS)
 
+# Tools and studies' programs whose names stand in some files, and the list of all for its own cases.
+tools_named_in = $(if $(filter tests/fettle/%,$(1)),$(LIST)) $(addprefix $(B)/bin/,$(sort $(filter $(TOOLS),$(shell grep -ohE "fettle-[a-z-]+" $(1)))))
 run-cases: $(CASE_RUNS)
 
 # One after the other: each has a machine that wants the computer for itself.
@@ -183,7 +232,8 @@ bless: build
 include tests/fuzz/fuzz.mk
 
 # --- the rest ---------------------------------------------------------------------------------------------------------
-demo: all
+demo: deps
+	@$(MAKE) --no-print-directory -j$(JOBS) $(call tools_named_in,pipelines/casting.mk)
 	@$(MAKE) --no-print-directory -j$(JOBS) -f pipelines/casting.mk B=$(B) demo
 
 figures: all
@@ -195,7 +245,7 @@ bench: deps
 
 docs: build
 	@mkdir -p docs/tools
-	@set -e; for tool in $(TOOLS); do tests/tool-page $(B)/bin/$$tool > docs/tools/$$tool.md; done
+	@set -e; for tool in $(TOOLS) fettle; do tests/tool-page $(B)/bin/$$tool > docs/tools/$$tool.md; done
 	@if command -v dot > /dev/null; then .ci/modules | dot -Tsvg > docs/pictures/modules.svg; \
 	    else echo "docs: the picture of the modules is made where graphviz is" >&2; fi
 
@@ -208,10 +258,10 @@ includes: deps
 	    $(CXX) $(CPPFLAGS) -isystem /usr/include/opencv4 $(CXXFLAGS) -w -Itests/lib -x c++ -fsyntax-only
 
 # --- installation: tools with manual pages and completion, and the library for other programs -------------------------
-PAGES := $(TOOLS:%=$(B)/man/%.1)
+PAGES := $(TOOLS:%=$(B)/man/%.1) $(B)/man/fettle.1
 LIBDIR ?= $(PREFIX)/lib
 
-$(B)/man/%.1: $(B)/bin/% packaging/man-page
+$(B)/man/%.1: $(B)/bin/% packaging/man-page packaging/about
 	@mkdir -p $(@D)
 	packaging/man-page $< > $@
 
@@ -223,10 +273,10 @@ $(B)/packaging/%: packaging/%.in
 	@mkdir -p $(@D)
 	sed 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(patsubst $(PREFIX)/%,$${prefix}/%,$(LIBDIR))|; s|@VERSION@|$(VERSION)|' $< > $@
 
-install: build $(PAGES) $(B)/completion/fettle $(addprefix $(B)/packaging/,fettle.pc fettleConfigVersion.cmake)
+install: build $(B)/libfettle.a $(PAGES) $(B)/completion/fettle $(addprefix $(B)/packaging/,fettle.pc fettleConfigVersion.cmake)
 	install -d $(addprefix $(DESTDIR)$(PREFIX)/,bin include/fettle share/man/man1 share/bash-completion/completions) \
 	    $(addprefix $(DESTDIR)$(LIBDIR)/,pkgconfig cmake/fettle)
-	install $(BINARIES) $(DESTDIR)$(PREFIX)/bin
+	install $(BINARIES) $(LIST) $(DESTDIR)$(PREFIX)/bin
 	install -m 644 $(PAGES) $(DESTDIR)$(PREFIX)/share/man/man1
 	install -m 644 $(B)/completion/fettle $(DESTDIR)$(PREFIX)/share/bash-completion/completions
 	for tool in $(TOOLS); do ln -sf fettle $(DESTDIR)$(PREFIX)/share/bash-completion/completions/$$tool; done

@@ -24,7 +24,7 @@ include pipelines/step.mk
 bands: $(CHAINS:%=%/griddata.json) $(CHAINS:%=%/bspline.json)
 	@pipelines/bands-table $(BANDS) $(SEEDS) $(CASES)
 
-# A path is $(BANDS)/SEED/CASE/STAGE; % stands for SEED/CASE.
+# A path is $(BANDS)/SEED/CASE/STAGE; % is SEED/CASE.
 case  = $(notdir $1)
 seed  = $(patsubst %/,%,$(dir $1))
 job   = samples/jobs/patch_$(call case,$1).json

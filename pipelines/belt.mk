@@ -74,13 +74,13 @@ $(BELT)/law/wheel.json: $(BELT)/law/static.json samples/wheels/rubber.json
 $(BELT)/%/stock.stl: $(BELT)/%/design $(B)/study/stock
 	$(B)/study/stock $< $(UNITS) --least 0.2 --most 0.6 -o $@
 
-# Of the meshes that others made only the piece with the most surfels: about the others' edges facets lie over one another.
+# Of third-party meshes only the piece with the most surfels is used: at the edges of the other pieces facets overlap.
 KEEP = cat
 $(BELT)/nasa/work.pcd $(BELT)/handle/work.pcd: KEEP = pipelines/belt-points largest
 $(BELT)/%/work.pcd: $(BELT)/%/design $(BELT)/%/stock.stl $(B)/bin/fettle-surfel pipelines/belt-points
 	$(B)/bin/fettle-surfel $< $(UNITS) --stock $(@D)/stock.stl --spacing $(SPACING) --reach 2 -q --ascii --report $(@D)/work.json | $(KEEP) > $@
 
-# Exit status 1 of the judge is an answer, which the table tells.
+# Exit status 1 of the judge is an answer, which the table shows.
 ASSESS = $(B)/bin/fettle-assess $< --lower $(LOWER) --upper $(UPPER) -q
 $(BELT)/%/errors.pcd: $(BELT)/%/work.pcd $(B)/bin/fettle-assess
 	$(ASSESS) --report $(@D)/errors.json -o $@ || test $$? = 1
@@ -129,7 +129,7 @@ $(BELT)/%/errors.png: $(BELT)/%/errors.pcd $(B)/bin/fettle-render
 $(BELT)/%/left.png: $(BELT)/%/left.pcd $(B)/bin/fettle-render
 	$(RENDER) --scale 0.6 --from 1,-2,0.5 --title '$*: error after grinding'
 
-# The robot holds the wheel; the part stands before it so that the contact point comes to SPOT with the wheel above it.
+# The robot holds the wheel; the part is before it so that the contact point is at SPOT with the wheel above it.
 SPOT = 1000,950,520
 WHEEL_FOR_BALL = $$wheel[0] as $$w | .bodies |= map(select(.name | IN("ball", "shank", "holder", "vise") | not)) + \
     [{name: "wheel", link: 7, shape: "cylinder", from: [0, -$$w.width / 2, $$w.radius], to: [0, $$w.width / 2, $$w.radius], radius: $$w.radius}]

@@ -68,7 +68,7 @@ $(BUDGET)/%/plan.json: $(BUDGET)/%/job.json $(BUDGET)/%/stock.stl $(addprefix $(
 	$(call step,$(B)/bin/fettle-sample $< --on $(@D)/stock.stl $(call on,$*,touches,$(touches_options)) $(call seed,$*,7) | $(B)/bin/fettle-estimate $< \
 	    | $(B)/bin/fettle-fit $< --method $(call of,methods.$(call part,$*).$(or $(call on,$*,approximation,wang),exact)) | $(B)/bin/fettle-plan $< > $@.part)
 
-# A run that does not finish is for the table to tell.
+# The table reports a run that does not finish.
 $(BUDGET)/%/ground.pcd: $(BUDGET)/%/plan.json $(MACHINE) $(B)/study/budget-grind
 	$(call step,$(B)/study/budget-grind $< --stock $(@D)/stock.stl --machine $(MACHINE) $(call on,$*,following,--following) $(call on,$*,lvdt,$(lvdt_options)) \
 	    $(call on,$*,tool,--wear) $(call seed,$*,6) --report $(@D)/grind.json > $@.part || test $$? = 1)

@@ -5,7 +5,7 @@
 #   make -f pipelines/casting.mk hills      the hills and the moon of Wang 2007, figure 5-8
 #   make -f pipelines/casting.mk seeds      how the figures of Wang's parts spread over 20 draws of the touch noise
 #
-# The case and the seed stand in the path, so make is the cache and -j the scheduler.
+# The case and the seed are part of the path, so make is the cache and -j the scheduler.
 
 B       ?= build
 CHAIN   := $(B)/chain
@@ -37,7 +37,7 @@ LIMIT_panel := 1
 .SECONDEXPANSION:
 .PHONY: demo figures hills seeds
 
-# A path is $(CHAIN)/SEED/CASE/STAGE; % stands for SEED/CASE.
+# A path is $(CHAIN)/SEED/CASE/STAGE; % is SEED/CASE.
 case   = $(notdir $1)
 seed   = $(patsubst %/,%,$(dir $1))
 job    = samples/jobs/$(call case,$1).json
@@ -118,7 +118,7 @@ $(CHAIN)/%/report.html: $$(call job,$$*) $$(call part,$$*) $(CHAIN)/%/errors.pcd
 	    --before $(call part,$*) --before-units $(call units,$*) --after $(@D)/ground.pcd \
 	    --errors $(@D)/errors.pcd --comparison $(@D)/errors.json -o $@
 
-# --- what is asked for ------------------------------------------------------------------------------------------------
+# --- requested files -------------------------------------------------------------------------------------------------
 SHOWN    := $(SCANS) $(WANG)
 results   = $(foreach c,$2,$(addprefix $(CHAIN)/$1/$c/,errors.pcd band.json))
 pictures  = $(foreach c,$2,$(addprefix $(CHAIN)/$1/$c/,before.png after.png errors.png report.html))

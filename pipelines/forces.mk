@@ -12,7 +12,7 @@ CONSTANT := samples/studies/forces.json
 constant  = $(shell jq -r '$(1)' $(CONSTANT))
 WHEELS   ?= $(call constant,.wheels | keys_unsorted | join(" "))
 METALS   ?= $(call constant,.specific_energy | keys_unsorted | join(" "))
-MOST     ?= $(call constant,.force_max | join(" "))
+MAX_FORCES     ?= $(call constant,.force_max | join(" "))
 SHARES   ?= $(call constant,.force_min_share | join(" "))
 PART     := $(call constant,.part)
 MACHINE  := samples/machines/$(call constant,.machine).json
@@ -20,8 +20,8 @@ FORCES   ?= $(B)/forces
 JOB      := samples/jobs/$(PART).json
 
 .PHONY: forces
-forces: $(foreach w,$(WHEELS),$(foreach m,$(METALS),$(foreach f,$(MOST),$(foreach s,$(SHARES),$(FORCES)/$(w)/$(m)/$(f)/$(s).json))))
-	@pipelines/forces-table $(FORCES) $(CONSTANT) "$(WHEELS)" "$(METALS)" "$(MOST)" "$(SHARES)"
+forces: $(foreach w,$(WHEELS),$(foreach m,$(METALS),$(foreach f,$(MAX_FORCES),$(foreach s,$(SHARES),$(FORCES)/$(w)/$(m)/$(f)/$(s).json))))
+	@pipelines/forces-table $(FORCES) $(CONSTANT) "$(WHEELS)" "$(METALS)" "$(MAX_FORCES)" "$(SHARES)"
 
 include pipelines/step.mk
 
@@ -34,7 +34,7 @@ $(FORCES)/desired.json: $(FORCES)/stock.stl $(addprefix $(B)/bin/fettle-,sample 
 $(FORCES)/%/machine.json: $(MACHINE) $(CONSTANT)
 	$(call step,jq --slurpfile all $(CONSTANT) -f pipelines/jq/forces_machine.jq --arg wheel $* $< > $@.part)
 
-# A run that does not finish is for the table to tell.
+# The table reports a run that does not finish.
 define wheel_rules
 $(FORCES)/$(1)/%.job: $(JOB) $(MACHINE) $(CONSTANT) pipelines/jq/forces_job.jq
 	$$(call step,jq --slurpfile all $(CONSTANT) --slurpfile machine $(MACHINE) -f pipelines/jq/forces_job.jq --arg cell $(1)/$$* $$< > $$@.part)

@@ -31,7 +31,7 @@ $(LAYER1)/%/plan.json: $(LAYER1)/%/desired.json $(B)/bin/fettle-plan
 $(LAYER1)/%/desired.stl: $(LAYER1)/%/desired.json $(B)/bin/fettle-mesh
 	$(call step,$(B)/bin/fettle-mesh $< --step 0.02 --within $(call JOB,$*) --stl > $@.part)
 
-# A run that does not finish is for the table to tell.
+# The table reports a run that does not finish.
 define cell_rule
 $(LAYER1)/$(1)/$(2)/$(3).json: $(LAYER1)/$(1)/plan.json $(LAYER1)/$(1)/stock.stl $(B)/bin/fettle-grind
 	$$(call step,$(B)/bin/fettle-grind $$< --stock $(LAYER1)/$(1)/stock.stl --gantry virtual:dynamic \

@@ -46,7 +46,7 @@ $(MACHINING)/finish.nc: $(DESIGN) $(B)/bin/fettle-finish
 	@mkdir -p $(@D)
 	$(B)/bin/fettle-finish $< --file-units $(UNITS) --cutter $(CUTTER) $(PASSES) -o $@
 
-# Exit status 1 of the tools is an answer, which the table tells.
+# Exit status 1 of the tools is an answer, which the table shows.
 $(MACHINING)/machined.stl: $(MACHINING)/finish.nc $(DESIGN) $(B)/bin/fettle-mill
 	$(B)/bin/fettle-mill $< --stock $(STOCK) --cutter $(CUTTER) --tolerance $(GRID) --design $(DESIGN) --design-units $(UNITS) \
 	    --report $(@D)/machined.json -o $@ || test $$? = 1

@@ -39,7 +39,7 @@ $(ROBOT)/reach/%.png: $(ROBOT)/reach/%.pcd $(B)/bin/fettle-render
 $(ROBOT)/reach/cell.json: $(B)/bin/fettle-arm samples/robots/irb1400.json
 	$(call step,$(ARM) --reach --box $(WHOLE) --report $@.part > /dev/null)
 
-# The hull of 300 x 120 x 100 mm lies in a vise, that of 567 x 250 x 150 mm stands on the table, its keel towards the robot. Both
+# The hull of 300 x 120 x 100 mm lies in a vise, that of 567 x 250 x 150 mm is on the table, its keel towards the robot. Both
 # are finished lying along x, keel up, by a ball of 12 mm. PLACE brings them to the cell, TURN is that of the tool.
 HULLS := small large
 LIES  := 0.7071067811865476 0 0 0.7071067811865476

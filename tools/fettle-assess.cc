@@ -13,19 +13,20 @@ using namespace fettle;
 namespace {
 
 /// Moves the points to the stock's surface, with its normals.
-void displace(Tool& t, Cloud& cloud, const Surfels& surfels, const std::string& source)
+void displace(cli::Tool& t, cloud::Cloud& cloud, const belt::Surfels& surfels, const std::string& source)
 {
-    const DisplacedNormals found = displaced_normals(surfels);
-    cloud.xyz = displaced(surfels);
-    set_normals(cloud, found.normal);
+    const belt::DisplacedNormals found = belt::displaced_normals(surfels);
+    cloud.xyz = belt::displaced_positions(surfels);
+    cloud::set_normals(cloud, found.normal);
     t.report()
-        .set("largest_bend", found.largest_bend)
-        .set("beyond", static_cast<std::size_t>(found.beyond))
-        .set("undetermined", static_cast<std::size_t>(found.undetermined));
+        .set("largest_bend", found.max_displacement_curvature)
+        .set("beyond", found.above_limit)
+        .set("undetermined", found.undetermined);
     const std::string of_all = " of " + std::to_string(surfels.size()) + " surfels";
-    if (found.beyond > 0)
-        t.warn(source + ": |displacement| times curvature exceeds " + to_short_text(kLargestBend) + " at " +
-               std::to_string(found.beyond) + of_all + ": their normals are rough");
+    if (found.above_limit > 0)
+        t.warn(source + ": |displacement| times curvature exceeds " +
+               core::to_short_text(belt::kMaxDisplacementCurvature) + " at " + std::to_string(found.above_limit) +
+               of_all + ": their normals are inaccurate");
 }
 
 } // namespace
@@ -37,10 +38,10 @@ int main(int argc, char** argv)
         "Out: the surfels with error (the displacement, + material left), class (-1 gouge, 0 within, 1 undercut; NaN: "
         "no displacement) and rgb: bright and dark red, pale green, violet and dark blue, a step for each width of the "
         "range. Lengths in mm. Exit 1 if a surfel is gouged or undercut, or none has a displacement.";
-    return tool_main(argc, argv, description, [](Tool& t) {
-        const std::string& path = t.input("SURFELS", "Of fettle-surfel or fettle-belt, PCD");
-        const auto& lower = t.number_if_given("--lower", "MM", "Displacements below are gouge; must be given");
-        const auto& upper = t.number_if_given("--upper", "MM", "Displacements above are undercut; must be given");
+    return cli::tool_main(argc, argv, description, [](cli::Tool& t) {
+        const std::string& path = t.main_input("SURFELS", "PCD of fettle-surfel or fettle-belt");
+        const auto& lower = t.optional_number("--lower", "MM", "Displacements below are gouge; must be given");
+        const auto& upper = t.optional_number("--upper", "MM", "Displacements above are undercut; must be given");
         const bool& as_displaced =
             t.flag("--displaced", "The points are those of the stock, with its normals, not the design's");
         const bool& ascii = t.flag("--ascii", "Text instead of binary");
@@ -51,21 +52,23 @@ int main(int argc, char** argv)
         t.reference("Ren et al. 2006, Grinding error assessment; eq. 4 (normals), with its last product put right");
         t.parse();
 
-        if (!lower || !upper) throw InputError("--lower and --upper must be given");
+        if (!lower || !upper) throw core::InputError("--lower and --upper must be given");
         if (!(*lower <= *upper))
-            throw InputError("--lower", to_text(*lower) + " is more than --upper, " + to_text(*upper));
-        const ToleranceRange range = {*lower, *upper};
-        Cloud cloud = read_cloud(path, Units{}).cloud;
-        if (!has_field(cloud, "displacement")) throw InputError(display_name(path), "no field displacement");
-        const Surfels surfels = surfels_of(cloud, display_name(path));
-        t.report() = to_json(surfels, range);
-        set_assessment(cloud, surfels.displacement, range);
-        if (as_displaced) displace(t, cloud, surfels, display_name(path));
-        write_pcd(t.output(), cloud, Units{}, ascii ? PcdEncoding::ascii : PcdEncoding::binary);
-        const AssessmentCounts counts = count(surfels.displacement, range);
+            throw core::InputError("--lower",
+                                   core::to_text(*lower) + " is more than --upper, " + core::to_text(*upper));
+        const belt::ToleranceRange range = {*lower, *upper};
+        cloud::Cloud cloud = cloud::read_cloud(path, units::Units{}).cloud;
+        if (!cloud::has_field(cloud, "displacement"))
+            throw core::InputError(core::display_name(path), "no field displacement");
+        const belt::Surfels surfels = belt::surfels_from_cloud(cloud, core::display_name(path));
+        t.report() = belt::to_json(surfels, range);
+        belt::set_assessment(cloud, surfels.displacement, range);
+        if (as_displaced) displace(t, cloud, surfels, core::display_name(path));
+        cloud::write_pcd(t.output(), cloud, units::Units{}, cloud::pcd_encoding(ascii));
+        const belt::AssessmentCounts counts = belt::count_assessments(surfels.displacement, range);
         if (counts.undefined > 0)
-            t.warn(display_name(path) + ": " + std::to_string(counts.undefined) + " of " +
+            t.warn(core::display_name(path) + ": " + std::to_string(counts.undefined) + " of " +
                    std::to_string(surfels.size()) + " surfels have no displacement");
-        return counts.within > 0 && counts.gouge + counts.undercut == 0 ? Verdict::yes : Verdict::no;
+        return counts.within > 0 && counts.gouge + counts.undercut == 0 ? cli::Verdict::yes : cli::Verdict::no;
     });
 }

@@ -1,48 +1,51 @@
 #include "cli/tool.h"
 #include "cloud/pcd.h"
 #include "core/descriptor.h"
-#include "core/file.h"
+#include "gantry/gantry_options.h"
 #include "gantry/make_virtual.h"
 #include "gantry/serve.h"
 #include "plan/plan.h"
-#include "removal/height_field.h"
-#include "sampling/scan.h"
 
 #include <ostream>
 #include <unistd.h>
 
 using namespace fettle;
 
+namespace {
+
+struct Options {
+    cli::Tool& t;
+    const std::string& plan = t.positional_file(
+        "PLAN", "The plan whose job the machine is set up for, or a job without a plan, to be probed, JSON");
+    gantry::StockOptions stock{t};
+    const std::string& machine = t.optional_file(
+        "--machine", "FILE", "The machine, JSON; without it the gantry is always in equilibrium, without drives");
+    const double& removal_factor = gantry::declare_removal_factor(t);
+    const std::string& ground = t.optional_output("--ground", "The ground part at the end, PCD");
+};
+
+} // namespace
+
 int main(int argc, char** argv)
 {
-    return tool_main(argc, argv, "Drive a simulated gantry by the protocol of a real one.", [](Tool& t) {
-        const std::string& plan_file =
-            t.file("PLAN", "The plan whose job the machine is set up for, or a job without a plan, to be probed, JSON");
-        const std::string& stock_file = t.required_file("--stock", "PART", "The part as it is: STL, PLY, OBJ or PCD");
-        const auto& stock_units = t.length_unit("--stock-units", "Unit of PART, if it is not the job's");
-        const std::string& machine =
-            t.other_file("--machine", "FILE", "The machine, JSON; left out: one in equilibrium at every moment");
-        const double& removal = t.number("--removal-factor", 1, "FACTOR",
-                                         "The stock yields so many times as fast as the job says", Range::positive());
-        const auto& cell = t.number_if_given(
-            "--cell", "LENGTH", "Side of a cell of the stock; default: 1/64 of the wheel's width", Range::positive());
-        const std::string& ground = t.other_output("--ground", "The part in the end, PCD");
+    return cli::tool_main(argc, argv, "Drive a simulated gantry by the protocol of a real one.", [](cli::Tool& t) {
+        const Options o{t};
         t.example("fettle-gantry-virtual <(fettle-sample jobs/wang1.json | fettle-fit jobs/wang1.json | fettle-plan "
                   "jobs/wang1.json) --stock <(fettle-part parts/wang1.json) <<< '1 status'",
-                  "where the machine stands");
+                  "the machine's position and force");
         t.reference("docs/driver.md: the protocol");
-        t.without_output();
+        t.disable_output();
         t.parse();
 
-        const auto [job, planned] = read_work(plan_file);
-        const Units& units = job.units;
-        const HeightField stock =
-            height_field(read_scan(stock_file, units, stock_units), job, cell_of(job, cell ? *cell * units.mm() : 0),
-                         display_name(stock_file), planned ? Extent::anomaly : Extent::sampling);
-        std::ostream* out = ground.empty() ? nullptr : &t.output_file(ground);
-        const std::unique_ptr<VirtualGantry> gantry = make_virtual(stock, job, {machine, removal, t.seed()});
-        serve(*gantry, gantry->limits(), job, Descriptor(::dup(STDIN_FILENO)), Descriptor(::dup(STDOUT_FILENO)));
-        if (out != nullptr) write_pcd(*out, to_cloud(stock, gantry->stock()), units, PcdEncoding::binary);
-        return Verdict::yes;
+        const auto [job, planned] = plan::read_job_or_plan(o.plan);
+        const removal::Extent extent = planned ? removal::Extent::anomaly : removal::Extent::sampling;
+        const removal::HeightField stock = gantry::read_stock(o.stock, job, extent).field;
+        std::ostream* out = o.ground.empty() ? nullptr : &t.output_file(o.ground);
+        const auto gantry = gantry::make_virtual_gantry(stock, job, {o.machine, o.removal_factor, t.seed()});
+        gantry::serve(*gantry, gantry->limits(), job, core::FileDescriptor(::dup(STDIN_FILENO)),
+                      core::FileDescriptor(::dup(STDOUT_FILENO)));
+        if (out != nullptr)
+            cloud::write_pcd(*out, removal::to_cloud(stock, gantry->stock()), job.units, cloud::PcdEncoding::binary);
+        return cli::Verdict::yes;
     });
 }

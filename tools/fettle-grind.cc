@@ -1,25 +1,18 @@
 #include "cli/tool.h"
 #include "cloud/pcd.h"
 #include "core/file.h"
-#include "core/text.h"
-#include "gantry/driver.h"
+#include "gantry/gantry_options.h"
 #include "gantry/loops.h"
-#include "gantry/make_virtual.h"
-#include "job/plausible.h"
 #include "plan/plan.h"
-#include "removal/height_field.h"
-#include "sampling/scan.h"
 #include "strategy/run.h"
+#include "strategy/run_identity.h"
+#include "strategy/run_json.h"
 #include "strategy/trace.h"
 #include "strategy/trace_file.h"
-#include "json/units.h"
 
 #include <chrono>
-#include <cmath>
-#include <filesystem>
-#include <memory>
-#include <numbers>
-#include <ostream>
+#include <utility>
+#include <vector>
 
 using namespace fettle;
 
@@ -27,65 +20,79 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// What --gantry says: a driver's command line, or a simulated machine, with drives or without.
-const std::string kDriver = "exec:", kVirtual = "virtual", kDynamic = "virtual:dynamic";
+struct Options {
+    cli::Tool& t;
+    const std::string& plan = t.main_input("PLAN", "What to do, JSON (fettle-plan)");
+    gantry::StockOptions stock{t};
+    gantry::GantryOptions gantry{
+        t,
+        {.fallback = "virtual",
+         .gantry = "The machine: a simulated gantry that is always in equilibrium (virtual), one with drives, inertia "
+                   "and sensors (virtual:dynamic), or a driver (docs/driver.md)"}};
+    const strategy::Layer1& layer_1 = t.choice<strategy::Layer1>(
+        "--layer-1",
+        {{"constant", strategy::Layer1::constant},
+         {"feed", strategy::Layer1::feed},
+         {"force", strategy::Layer1::force}},
+        "Layer 1 at the job's feed, covering after covering; or pass after pass, with controlled feed or controlled "
+        "force");
+    const double& removal_factor = gantry::declare_removal_factor(t);
+    const std::string& trace = t.optional_output("--trace", "What the machine did and why, PCD, written ahead");
+    const std::string& resume =
+        t.text("--resume", "", "TRACE", "Continue the interrupted run that wrote this trace, and append to it");
+    const bool& ascii = t.flag("--ascii", "Write PCDs as text");
+};
 
-void check_gantry(const std::string& gantry, const std::string& machine)
+void add_usage(cli::Tool& t)
 {
-    if (gantry != kVirtual && gantry != kDynamic && (gantry.rfind(kDriver, 0) != 0 || gantry == kDriver))
-        throw InputError("--gantry: '" + gantry + "' is none of virtual, virtual:dynamic, exec:COMMAND");
-    if ((gantry == kDynamic) == machine.empty())
-        throw InputError("--machine", "goes with --gantry virtual:dynamic, and that with it");
+    t.example("fettle-sample jobs/wang1.json | fettle-fit jobs/wang1.json | fettle-plan jobs/wang1.json | "
+              "fettle-grind --stock <(fettle-part parts/wang1.json) --gantry virtual:dynamic "
+              "--machine machines/full_scale.json --trace trace.pcd > ground.pcd",
+              "Wang's part 1 from the job to the ground part, on a machine with inertia");
+    t.reference("Wang 2007, 5.3.2 and figure 5-7: the layer-based path planning strategy; 6.1.2, eq. 6-1 to 6-8: "
+                "the machine");
 }
 
-void report_run(json::Value& out, const GrindRun& run, double machine_time, const Units& units)
+strategy::RunOptions run_options(const Options& o, const units::Units& units, const strategy::RunIdentity& identity)
 {
-    out.set("kind", "grinding")
-        .set("units", json::to_json(units))
-        .set("finished", run.finished)
-        .set("machine_time", machine_time)
-        .set("layers", run.counts.highest_layer)
-        .set("coverings", run.counts.coverings)
-        .set("strokes", run.counts.strokes)
-        .set("re_cuts", run.counts.re_cuts)
-        .set("raises", run.counts.raises)
-        .set("passes", run.counts.passes)
-        .set("steps", run.counts.steps)
-        .set("peak_force", run.peak_force / units.newton())
-        .set("touch_offs", run.touch_offs)
-        .set("wheel_changes", run.wheel_changes)
-        .set("wheel_radius", run.wheel_radius / units.mm());
+    strategy::RunOptions options;
+    options.layer_1 = o.layer_1;
+    options.previous_source = o.resume;
+    if (o.resume.empty()) return options;
+    strategy::RecordedTrace trace = strategy::read_recorded_trace(o.resume, units);
+    strategy::require_same_run(trace, identity, core::display_name(o.resume));
+    if (!trace.cut.empty()) o.t.warn(core::display_name(o.resume) + ": " + trace.cut);
+    options.previous_trace = std::move(trace.rows);
+    return options;
 }
 
-void report_totals(json::Value& out, const GrindTotals& totals)
+/// Writes the trace of the run that has ended. A journal that could not hold it keeps the rows for which there was
+/// room; one that holds it, but has no room for a second copy, stays as it is.
+void save_trace(const Options& o, const std::vector<strategy::TraceRow>& trace, const strategy::TraceFile* journal,
+                const units::Units& units, const strategy::RunIdentity& identity)
 {
-    out.set("grinding_time", totals.grinding_time)
-        .set("travel_time", totals.travel_time)
-        .set("service_time", totals.service_time);
+    const cloud::PcdEncoding encoding = cloud::pcd_encoding(o.ascii);
+    if (journal == nullptr) {
+        if (!o.trace.empty()) strategy::write_trace(o.t.output_file(o.trace), trace, units, encoding, identity);
+        return;
+    }
+    if (journal->has_failed()) return;
+    try {
+        core::OutputFile file(o.trace.empty() ? o.resume : o.trace);
+        strategy::write_trace(file.stream(), trace, units, encoding, identity);
+        file.commit();
+    } catch (const core::InputError& error) {
+        o.t.warn(error.what() + std::string("; the trace stays as it was written ahead"));
+    }
 }
 
-// The trace of a run is written ahead to a file that its name leads to; there is nothing to be resumed from a pipe.
-std::unique_ptr<TraceFile> journal_at(const std::string& path, const Units& units, PcdEncoding encoding,
-                                      const std::vector<TraceRow>& done)
-{
-    namespace fs = std::filesystem;
-    if (path.empty() || path == "-" || (fs::exists(path) && !fs::is_regular_file(path))) return nullptr;
-    return std::make_unique<TraceFile>(path, units, encoding, done);
-}
-
-// How the machine's controllers were tuned: on stderr with -v, and in the report.
-void tell_loops(Tool& t, const std::vector<Loop>& loops)
+/// How the machine's controllers were tuned: on stderr with -v, and in the report.
+void report_loops(cli::Tool& t, const std::vector<gantry::ControlLoop>& loops)
 {
     std::vector<json::Value> list;
-    for (const Loop& loop : loops) {
-        const double phase = loop.margins.phase * 180 / std::numbers::pi;
-        t.note("loop " + loop.name + ": bandwidth " + to_short_text(loop.bandwidth) + " rad/s, gain margin " +
-               to_short_text(loop.margins.gain) + ", phase margin " + to_short_text(phase) + "\u00B0");
-        list.push_back(json::Value()
-                           .set("loop", loop.name)
-                           .set("bandwidth", loop.bandwidth)
-                           .set("gain_margin", loop.margins.gain)
-                           .set("phase_margin_deg", phase));
+    for (const gantry::ControlLoop& loop : loops) {
+        t.note(to_string(loop));
+        list.push_back(to_json(loop));
     }
     t.report().set("loops", list);
 }
@@ -94,78 +101,46 @@ void tell_loops(Tool& t, const std::vector<Loop>& loops)
 
 int main(int argc, char** argv)
 {
-    return tool_main(argc, argv, "Grind a part to its desired surface, guided by the force.", [](Tool& t) {
-        const std::string& plan_file = t.input("PLAN", "What to do, JSON (fettle-plan)");
-        const std::string& stock_file = t.required_file("--stock", "PART", "The part as it is: STL, PLY, OBJ or PCD");
-        const auto& stock_units = t.length_unit("--stock-units", "Unit of PART, if it is not the job's");
-        const std::string& kind = t.text("--gantry", kVirtual, "virtual|virtual:dynamic|exec:COMMAND",
-                                         "The machine: a simulated gantry in equilibrium at every moment, one with "
-                                         "drives, inertia and sensors, or a driver (docs/driver.md)");
-        const std::string& machine = t.other_file("--machine", "FILE", "The machine of virtual:dynamic, JSON");
-        const double& patience = t.number("--patience", 10, "SECONDS",
-                                          "A driver may answer so much later than the move takes", Range::positive());
-        const std::string& layer_1 =
-            t.choice("--layer-1", "constant", {"constant", "feed", "force"},
-                     "Layer 1 at the job's feed, covering after covering; or pass after pass, with controlled feed or "
-                     "controlled force");
-        const double& removal =
-            t.number("--removal-factor", 1, "FACTOR", "The virtual stock yields so many times as fast as the job says",
-                     Range::positive());
-        const auto& cell = t.number_if_given(
-            "--cell", "LENGTH", "Side of a cell of the stock; default: 1/64 of the wheel's width", Range::positive());
-        const std::string& trace = t.other_output("--trace", "What the machine did and why, PCD, written ahead");
-        const std::string& resume =
-            t.text("--resume", "", "TRACE", "Go on where the run that wrote this trace was cut off, and add to it");
-        const bool& ascii = t.flag("--ascii", "Write PCDs as text");
-        t.example("fettle-sample jobs/wang1.json | fettle-fit jobs/wang1.json | fettle-plan jobs/wang1.json | "
-                  "fettle-grind --stock <(fettle-part parts/wang1.json) --gantry virtual:dynamic "
-                  "--machine machines/full_scale.json --trace trace.pcd > ground.pcd",
-                  "Wang's part 1 from the job to the ground part, on a machine with inertia");
-        t.reference("Wang 2007, 5.3.2 and figure 5-7: the layer-based path planning strategy; 6.1.2, eq. 6-1 to 6-8: "
-                    "the machine");
+    return cli::tool_main(argc, argv, "Grind a part to its desired surface, guided by the force.", [](cli::Tool& t) {
+        const Options o{t};
+        add_usage(t);
         t.parse();
-        check_gantry(kind, machine);
+        o.gantry.check();
 
         const auto begun = Clock::now();
-        const Plan plan = read_plan(plan_file);
-        const Units& units = plan.job.units;
-        const Scan scan = read_scan(stock_file, units, stock_units);
-        if (const std::string doubt = implausible_box(scan.bounds(), plan.job); !doubt.empty())
-            t.warn(display_name(stock_file) + ": " + doubt);
-        const HeightField stock =
-            height_field(scan, plan.job, cell_of(plan.job, cell ? *cell * units.mm() : 0), display_name(stock_file));
-        RunOptions options;
-        options.layer_1 = layer_1 == "feed" ? Layer1::feed : layer_1 == "force" ? Layer1::force : Layer1::constant;
-        const PcdEncoding encoding = ascii ? PcdEncoding::ascii : PcdEncoding::binary;
-        if (!resume.empty()) options.done = read_trace(resume, units);
-        options.done_source = resume;
-        const std::string& trace_file = trace.empty() ? resume : trace;
-        std::ostream* trace_out = trace_file.empty() ? nullptr : &t.output_file(trace_file);
-        const std::unique_ptr<TraceFile> journal = journal_at(trace_file, units, encoding, options.done);
+        const plan::Plan plan = plan::read_plan(o.plan);
+        const units::Units& units = plan.job.units;
+        const auto [stock, doubts, dropped] = gantry::read_stock(o.stock, plan.job, removal::Extent::anomaly);
+        for (const std::string& doubt : doubts) t.warn(doubt);
+        const std::string& trace_file = o.trace.empty() ? o.resume : o.trace;
+        if (o.trace.empty() && !o.resume.empty()) t.reserve_output(o.resume);
+        const auto identity =
+            trace_file.empty() ? strategy::RunIdentity{} : strategy::identity_of(plan, stock, o.layer_1);
+        strategy::RunOptions options = run_options(o, units, identity);
+        const cloud::PcdEncoding encoding = cloud::pcd_encoding(o.ascii);
+        const auto journal = strategy::open_journal(trace_file, units, encoding, options.previous_trace, identity);
         options.journal = journal.get();
-        const HeightField left = ground_by(options.done, plan.job, stock);
 
-        std::unique_ptr<VirtualGantry> simulated;
-        std::unique_ptr<DriverGantry> driver;
-        if (kind.rfind(kDriver, 0) == 0)
-            driver = std::make_unique<DriverGantry>(kind.substr(kDriver.size()), plan.job, patience);
-        else
-            simulated = make_virtual(left, plan.job, {machine, removal, t.seed()});
-        Gantry& gantry = driver ? static_cast<Gantry&>(*driver) : *simulated;
-        const GrindRun run = fettle::run(plan, gantry, options, t.progress("grinding"));
-        const HeightField ground = simulated ? simulated->stock() : ground_by(run.trace, plan.job, stock);
+        const removal::HeightField left = strategy::replay_removal(options.previous_trace, plan.job, stock);
+        auto [machine, limits, simulated] = gantry::open_gantry(o.gantry, plan.job, left, t.seed(), o.removal_factor);
+        if (simulated == nullptr) options.known_stock = &left;
+        const strategy::GrindRun run = strategy::run(plan, *machine, options, t.progress("grinding"));
+        if (simulated == nullptr) machine.reset(); // it lifts now, not after what is computed below
+        const removal::HeightField ground =
+            simulated ? simulated->stock() : strategy::replay_removal(run.trace, plan.job, stock);
 
-        write_pcd(t.output(), to_cloud(stock, ground), units, encoding);
-        if (trace_out != nullptr) write_pcd(*trace_out, to_cloud(run.trace), units, encoding);
-        const double time = run.trace.back().time;
-        report_run(t.report(), run, time, units);
-        t.report().set("removed_volume", volume_between(stock, ground) / std::pow(units.mm(), 3));
-        if (simulated) report_totals(t.report(), simulated->totals());
-        if (!machine.empty()) tell_loops(t, loops_of(read_machine(machine), plan.job));
-        const double computing = std::chrono::duration<double>(Clock::now() - begun).count();
+        cloud::write_pcd(t.output(), removal::to_cloud(stock, ground), units, encoding);
+        save_trace(o, run.trace, journal.get(), units, identity);
+        t.report() = strategy::to_json(run, removal::volume_between(stock, ground), units);
+        t.report().set("dropped_facets", dropped);
+        if (simulated) gantry::add_report(t.report(), simulated->totals());
+        if (const std::string& file = o.gantry.machine; simulated && !file.empty())
+            report_loops(t, gantry::tune_loops(gantry::read_machine(file), plan.job));
+        const double time = run.trace.back().time,
+                     computing = std::chrono::duration<double>(Clock::now() - begun).count();
         t.note("machine time " + std::to_string(time) + " s, computing time " + std::to_string(computing) +
                " s, ratio " + std::to_string(time / computing));
-        if (!run.finished) t.warn(display_name(plan_file) + ": " + run.failure);
-        return run.finished ? Verdict::yes : Verdict::no;
+        if (!run.finished) t.warn(core::display_name(o.plan) + ": " + run.failure);
+        return run.finished ? cli::Verdict::yes : cli::Verdict::no;
     });
 }

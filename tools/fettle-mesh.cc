@@ -11,32 +11,57 @@ using namespace fettle;
 namespace {
 
 /// x, y with the surface's z and, if wanted, its standard deviation.
-Cloud evaluate(const Surface& surface, const Eigen::Matrix2Xd& xy, bool with_sigma)
+cloud::Cloud evaluate(const surface::Surface& surface, const Eigen::Matrix2Xd& xy, bool with_sigma)
 {
-    Cloud cloud;
+    cloud::Cloud cloud;
     cloud.xyz.resize(3, xy.cols());
-    cloud.xyz << xy, heights(surface, xy).transpose();
+    cloud.xyz << xy, surface::heights(surface, xy).transpose();
     if (!with_sigma) return cloud;
-    set_field(cloud, "sigma", sigmas(surface, xy));
+    cloud::set_field(cloud, "sigma", surface::sigmas(surface, xy));
     return cloud;
+}
+
+/// A grid over the anomaly of a job, in the job's units, or without one over the touches, in the surface's.
+struct GridInUnits {
+    surface::SurfaceGrid grid;
+    units::Units units;
+};
+
+GridInUnits make_grid(const surface::Surface& surface, const std::string& source, const std::string& job_file,
+                      double step)
+{
+    units::Units units = surface.units;
+    job::Polygon outline;
+    double angle = 0;
+    if (job_file.empty()) {
+        outline = surface::touch_bounding_box(surface, source);
+    } else {
+        const job::Job job = job::read_job(job_file);
+        units = job.units;
+        angle = job.theta;
+        outline = job::working_boundaries(job).anomaly;
+    }
+    return {
+        cli::with_error_prefix("--step", [&] { return surface::make_surface_grid(outline, angle, step * units.mm()); }),
+        units};
 }
 
 } // namespace
 
 int main(int argc, char** argv)
 {
-    return tool_main(argc, argv, "Evaluate a surface at given points or on a grid.", [](Tool& t) {
-        const std::string& surface_file = t.input("SURFACE", "Fitted surface, JSON");
+    return cli::tool_main(argc, argv, "Evaluate a surface at given points or on a grid.", [](cli::Tool& t) {
+        const std::string& surface_file = t.main_input("SURFACE", "Fitted surface, JSON");
         const std::string& at =
-            t.other_file("--at", "FILE", "Points, PCD: their x y get the surface's z, in their order");
-        const std::optional<Units::Length>& at_units =
+            t.optional_file("--at", "FILE", "Points, PCD: their x y get the surface's z, in their order");
+        const std::optional<units::Units::Length>& at_units =
             t.length_unit("--at-units", "Unit of the points, if not the surface's");
         const std::optional<double>& step =
-            t.number_if_given("--step", "LENGTH", "Spacing of a grid", Range::positive());
+            t.optional_number("--step", "LENGTH", "Spacing of a grid", core::Range::positive());
         const std::string& within =
-            t.other_file("--within", "JOB",
-                         "The grid covers the job's anomaly, along W, in the job's units; else the "
-                         "touches' bounding box");
+            t.optional_file("--within", "JOB",
+                            "The grid covers the job's anomaly, along W, in the job's units; else the "
+                            "touches' bounding box");
         const bool& with_sigma = t.flag("--sigma", "Add the height's standard deviation as field sigma");
         const bool& stl = t.flag("--stl", "Write the grid as triangles, STL");
         t.example("fettle-sample jobs/hammer.json --on scans/hammer.stl | fettle-fit jobs/hammer.json | fettle-mesh "
@@ -45,42 +70,31 @@ int main(int argc, char** argv)
         t.reference("standard deviation: of a linear function of the fit's parameters, gᵀ C g");
         t.parse();
 
-        if (at.empty() == !step.has_value()) throw InputError("give either --at POINTS or --step LENGTH");
-        if (!at.empty() && (stl || !within.empty())) throw InputError("--within and --stl belong to --step");
-        if (at == "-" && surface_file == "-") throw InputError("only one of SURFACE and --at can be stdin");
-        if (stl && with_sigma) throw InputError("--sigma: an STL has no place for it");
-        const Surface surface = read_surface(surface_file);
-        if (with_sigma && !knows_sigma(surface))
-            throw InputError(display_name(surface_file), "has no covariance, so --sigma is not known");
+        if (at.empty() == !step.has_value()) throw core::InputError("give either --at POINTS or --step LENGTH");
+        if (!at.empty() && (stl || !within.empty())) throw core::InputError("--within and --stl belong to --step");
+        if (at == "-" && surface_file == "-") throw core::InputError("only one of SURFACE and --at can be stdin");
+        if (stl && with_sigma) throw core::InputError("--sigma: an STL has no place for it");
+        const surface::Surface surface = surface::read_surface(surface_file);
+        if (with_sigma && !surface::has_sigma(surface))
+            throw core::InputError(core::display_name(surface_file),
+                                   surface::has_touch_noise_only(surface)
+                                       ? "the covariance of an interpolant (" + surface.method +
+                                             ") holds the touches' noise, not what it misses between them, so --sigma "
+                                             "is not known"
+                                       : "has no covariance, so --sigma is not known");
 
-        Units units = surface.units;
         if (!at.empty()) {
-            const Units point_units = at_units ? Units{*at_units, units.force} : units;
-            const Eigen::Matrix2Xd xy = read_cloud(at, point_units).cloud.xyz.topRows(2);
-            write_pcd(t.output(), evaluate(surface, xy, with_sigma), units);
-            return Verdict::yes;
+            const units::Units point_units{at_units.value_or(surface.units.length), surface.units.force};
+            const Eigen::Matrix2Xd xy = cloud::read_cloud(at, point_units).cloud.xyz.topRows(2);
+            cloud::write_pcd(t.output(), evaluate(surface, xy, with_sigma), surface.units);
+            return cli::Verdict::yes;
         }
-        Polygon outline;
-        double angle = 0;
-        if (within.empty()) {
-            outline = touched_box(surface, display_name(surface_file));
-        } else {
-            const Job job = read_job(within);
-            units = job.units;
-            angle = job.theta;
-            outline = boundaries(job).anomaly;
-        }
-        SurfaceGrid grid;
-        try {
-            grid = grid_over(outline, angle, *step * units.mm());
-        } catch (const InputError& error) {
-            throw InputError("--step", error.what());
-        }
+        const auto [grid, units] = make_grid(surface, core::display_name(surface_file), within, *step);
         t.report().set("points", static_cast<int>(grid.xy.cols()));
         if (stl)
-            write_stl(t.output(), mesh_of(surface, grid), units.length);
+            mesh::write_stl(t.output(), surface::mesh_of(surface, grid), units.length);
         else
-            write_pcd(t.output(), evaluate(surface, grid.xy, with_sigma), units);
-        return Verdict::yes;
+            cloud::write_pcd(t.output(), evaluate(surface, grid.xy, with_sigma), units);
+        return cli::Verdict::yes;
     });
 }

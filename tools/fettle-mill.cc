@@ -1,169 +1,166 @@
 #include "cli/tool.h"
 #include "cloud/pcd.h"
-#include "core/direction.h"
 #include "core/file.h"
-#include "core/text.h"
-#include "machining/cutter.h"
+#include "geometry/bounding_box.h"
 #include "machining/discretization.h"
+#include "machining/limits.h"
 #include "machining/milling.h"
 #include "machining/milling_summary.h"
-#include "machining/number_list.h"
+#include "machining/part_mesh.h"
+#include "machining/path_options.h"
 #include "machining/refinement.h"
 #include "machining/tilt.h"
-#include "machining/tool_path.h"
 #include "machining/workpiece.h"
-#include "mesh/mesh_file.h"
-#include "mesh/shape_file.h"
-#include "sampling/scan.h"
 
+#include <optional>
 #include <ostream>
 
 using namespace fettle;
 
 namespace {
 
-Holder parse_holder(const std::string& text)
+const std::string kDescription =
+    "Machines a stock virtually: cuts a map of heights with a cutter along a path of three axes, upright or tilted.\n"
+    "Every cell's centre comes to the lowest height at which the cutter passes over it, computed from whole moves. "
+    "Lengths in mm, feeds in mm/s; a program states its own (F in length a minute). Exit 1 if a rapid move went "
+    "through material or the holder collides.";
+
+struct Options {
+    cli::Tool& t;
+    const std::string& path_file = t.main_input(
+        "PATH", "Points of the tool tip with, if they vary, feeds (field feed, 0: rapid), PCD; or a program, G-code");
+    const std::string& stock =
+        t.required_file_option("--stock", "STOCK", "box:x0,y0,z0,x1,y1,z1, or STL, PLY, OBJ or PCD");
+    const std::optional<units::Units::Length>& stock_units =
+        t.length_unit("--stock-units", "Unit of the stock's file, if it is not mm");
+    const std::string& cutter = t.required_text(
+        "--cutter", "CUTTER", "ball:D, flat:D, bull:D,r or taper:D,halfangle_deg,r: diameter, radius of corner or tip");
+    const std::optional<double>& step = t.optional_number("--step", "MM", "Side of a cell", machining::kLengthRange);
+    const std::optional<double>& tolerance = t.optional_number(
+        "--tolerance", "MM", "Bound on the grid's error, instead of --step: takes the largest cells that keep it",
+        machining::kLengthRange);
+    const std::string& design = t.optional_file(
+        "--design", "FILE", "With --tolerance: the design, whose curvatures and slopes count; else a plane");
+    const std::optional<units::Units::Length>& design_units =
+        t.length_unit("--design-units", "Unit of the design, if it is not mm");
+    const bool& published = t.flag("--as-published", "With --tolerance: without regard to slopes");
+    machining::ToolPathOptions path{t};
+    const double& rapid = t.number("--rapid", 200, "MM/S", "Speed of rapid moves", machining::kSpeedRange);
+    const std::string& holder =
+        t.text("--holder", "", "D,HEIGHT", "A cylinder above the cutter, this high over the tip, that must not touch");
+    const int& refine =
+        t.count("--refine", 0,
+                "Where the machined surface is steeper than 60 degrees: halve the grid's step this many times", 0, 5);
+    const bool& pcd = t.flag("--pcd", "Write a point for each cell, field removed, instead of triangles");
+    const std::string& trace = t.optional_output(
+        "--trace", "Every move, PCD: its end, time and engagement (fields t, feed, removed, volume, holder, place)");
+    const bool& ascii = t.flag("--ascii", "PCDs as text");
+};
+
+void add_usage(cli::Tool& t)
 {
-    const auto numbers = numbers_of(text, {"the diameter", "the height over the tip"});
-    if (!(numbers[0] > 0 && numbers[1] > 0)) throw InputError("both must be positive, got " + text);
-    return {numbers[0] / 2, numbers[1]};
+    t.example("fettle-mill programs/pocket.nc --stock box:0,0,-12,80,60,0 --cutter ball:6 --step 0.2 --holder 40,30 "
+              "--report mill.json > machined.stl",
+              "a pocket with an island, and its time and volume");
+    t.reference("Guan & Xiong, Virtual machining accuracy verification by triangular patch comparison: steps 1, 2, "
+                "eq. 1 to 3");
 }
 
-Workpiece read_stock(const std::string& stock, std::optional<Units::Length> unit, double cell,
-                     const Eigen::Matrix3d& R_tilted_machine)
+void check(const Options& o)
 {
-    constexpr std::string_view kBox = "box:";
-    return named("--stock", [&] {
-        if (!stock.starts_with(kBox)) {
-            const Units::Length length = unit.value_or(Units::Length::mm);
-            return std::visit(
-                [&](auto shape) { return scanned_workpiece(Scan(turned(std::move(shape), R_tilted_machine)), cell); },
-                read_shape(stock, Units{length}).shape);
-        }
-        if (unit) throw InputError("a box is in mm; --stock-units belongs to a file");
-        return box_workpiece(stock.substr(kBox.size()), cell, R_tilted_machine);
-    });
+    if (o.refine > 0 && o.pcd) throw core::InputError("--refine", "belongs to triangles, not to --pcd");
+    if (o.step.has_value() == o.tolerance.has_value()) throw core::InputError("give either --step or --tolerance");
+    if (o.step && (!o.design.empty() || o.published))
+        throw core::InputError("--design and --as-published belong to --tolerance");
+    if (o.ascii && !o.pcd && o.trace.empty()) throw core::InputError("--ascii", "belongs to --pcd and --trace");
 }
 
-void report(json::Value& out, const NcProgram& program, const HeightField& left)
+void warn_of_size(const Options& o, const std::string& name, const std::string& part, const Eigen::Vector3d& size,
+                  const machining::Cutter& cutter)
 {
-    json::Value words;
-    for (const auto& [word, count] : program.without_motion) words.set(word, count);
-    out.set("moves", program.moves.size())
-        .set("unplaced_rapids", program.unplaced.size())
-        .set("chorded_arcs", program.chorded)
-        .set("arc_chord_error", kArcChord)
-        .set("words_without_motion", words)
-        .set("columns", static_cast<int>(left.columns()))
-        .set("rows", static_cast<int>(left.rows()))
-        .set("step", left.cell)
-        .set("cells_without_material", static_cast<double>(left.z.isNaN().count()));
+    const std::string doubt = machining::cutter_size_warning(part, size, cutter);
+    if (!doubt.empty()) o.t.warn(core::display_name(name) + ": " + doubt);
+}
+
+machining::DesignShape read_design_shape(const Options& o, const machining::Cutter& cutter,
+                                         const Eigen::Matrix3d& R_tilted_machine)
+{
+    if (o.design.empty()) return {};
+    const machining::PartMesh part = machining::read_design(o.design, o.design_units, R_tilted_machine);
+    for (const std::string& warning : part.warnings) o.t.warn(warning);
+    warn_of_size(o, o.design, "the design", geometry::bounding_box(part.mesh.vertices).sizes(), cutter);
+    return cli::with_error_prefix(core::display_name(o.design),
+                                  [&] { return machining::estimate_design_shape(part.mesh); });
+}
+
+/// Writes the triangles of the machined surface. @return  number of refined squares
+std::size_t write_triangles(const Options& o, const machining::Workpiece& piece, const machining::Cutter& cutter,
+                            const std::vector<machining::CutterMove>& moves, const Eigen::Matrix3d& R_tilted_machine)
+{
+    std::optional<machining::Refinement> refinement;
+    if (o.refine > 0) refinement.emplace(piece, piece.stock, cutter, moves, 1 << o.refine);
+    machining::write_stl(o.t.output(), piece.stock, refinement ? &*refinement : nullptr, R_tilted_machine);
+    return refinement ? refinement->count() : 0;
+}
+
+void warn_of_path(const Options& o, const machining::MillingSummary& sum, const machining::ToolPath& path)
+{
+    const std::string source = core::display_name(o.path_file) + ": ", place = path.points ? "point" : "line";
+    if (path.program.tool_change > 0)
+        o.t.warn(source + "line " + std::to_string(path.program.tool_change) +
+                 " changes the tool: the moves after it are cut with the same --cutter");
+    if (sum.rapid_cuts.moves > 0) o.t.warn(source + describe(sum.rapid_cuts, "rapid moves through material", place));
+    if (sum.holder_collisions.moves > 0)
+        o.t.warn(source + describe(sum.holder_collisions, "moves with the holder in material", place));
 }
 
 } // namespace
 
 int main(int argc, char** argv)
 {
-    const std::string description =
-        "Machines a stock virtually: cuts a map of heights with a cutter along a path of three axes, upright or "
-        "tilted.\n"
-        "Every cell's centre comes to the lowest height at which the cutter passes over it, computed from whole moves. "
-        "Lengths in mm, feeds in mm/s; a program states its own (F in length a minute). Exit 1 if a rapid move went "
-        "through material or the holder collides.";
-    return tool_main(argc, argv, description, [](Tool& t) {
-        const std::string& path = t.input(
-            "PATH",
-            "Points of the tool tip with, if they vary, feeds (field feed, 0: rapid), PCD; or a program, G-code");
-        const std::string& stock =
-            t.required_file("--stock", "STOCK", "box:x0,y0,z0,x1,y1,z1, or STL, PLY, OBJ or PCD");
-        const auto& stock_units = t.length_unit("--stock-units", "Unit of the stock's file, if it is not mm");
-        const std::string& cutter_text =
-            t.required_text("--cutter", "CUTTER",
-                            "ball:D, flat:D, bull:D,r or taper:D,halfangle_deg,r: diameter, radius of corner or tip");
-        const auto& step = t.number_if_given("--step", "MM", "Side of a cell", Range::positive());
-        const auto& tolerance = t.number_if_given(
-            "--tolerance", "MM", "Instead of --step: cells so small that errors of the grid are within it",
-            Range::positive());
-        const std::string& design = t.other_file(
-            "--design", "FILE", "With --tolerance: the design, whose curvatures and slopes count; else a plane");
-        const auto& design_units = t.length_unit("--design-units", "Unit of the design, if it is not mm");
-        const bool& published = t.flag("--as-published", "With --tolerance: without regard to slopes");
-        const std::string& points = t.choice(
-            "--points", "cl", {"cl", "cc"}, "Are points those of the tip, or where the cutter touches (with normals)?");
-        const std::string& axis_text = t.text("--axis", "0,0,1", "X,Y,Z",
-                                              "Of the tool, from tip to holder (3+2 axes); a program is then in the "
-                                              "frame that is turned the shortest way so that this points up");
-        const double& feed = t.number("--feed", 10, "MM/S", "Feed of points without one", Range::positive());
-        const double& rapid = t.number("--rapid", 200, "MM/S", "Rate of rapid moves", Range::positive());
-        const std::string& holder = t.text("--holder", "", "D,HEIGHT",
-                                           "A cylinder above the cutter, this high over the tip, that must not touch");
-        const int& refine = t.count(
-            "--refine", 0,
-            "Where the machined surface is steeper than 60 degrees: halve the way between cells so often", 0, 5);
-        const bool& pcd = t.flag("--pcd", "Write a point for each cell, field removed, instead of triangles");
-        const std::string& trace =
-            t.other_output("--trace", "Every move: where it ends, when, and what it met (fields t, feed, removed, "
-                                      "volume, holder, place), PCD");
-        const bool& ascii = t.flag("--ascii", "PCDs as text");
-        t.example(
-            "fettle-mill programs/pocket.nc --stock box:0,0,-12,80,60,0 --cutter ball:6 --step 0.2 --holder 40,30 "
-            "--report mill.json > machined.stl",
-            "a pocket with an island, and what it takes");
-        t.reference("Guan & Xiong, Virtual machining accuracy verification by triangular patch comparison: steps 1, 2, "
-                    "eq. 1 to 3");
+    return cli::tool_main(argc, argv, kDescription, [](cli::Tool& t) {
+        const Options o{t};
+        add_usage(t);
         t.parse();
+        check(o);
 
-        if (refine > 0 && pcd) throw InputError("--refine", "belongs to triangles, not to --pcd");
-        if (step.has_value() == tolerance.has_value()) throw InputError("give either --step or --tolerance");
-        if (step && (!design.empty() || published))
-            throw InputError("--design and --as-published belong to --tolerance");
-        if (ascii && !pcd && trace.empty()) throw InputError("--ascii", "belongs to --pcd and --trace");
-        const Cutter cutter = named("--cutter", [&] { return parse_cutter(cutter_text); });
-        MillingOptions options;
-        if (!holder.empty()) options.holder = named("--holder", [&] { return parse_holder(holder); });
-        const Eigen::Vector3d axis = parse_direction(axis_text, "--axis");
-        const Eigen::Matrix3d R_tilted_machine = rotation_tilted_machine(axis);
-        const std::string source = display_name(path);
-        const ToolPath tool_path = parse_tool_path(read_whole(path), source, cutter, {points == "cc", feed, axis});
-        const NcProgram& program = tool_path.program;
-        const DesignShape shape = design.empty() ? DesignShape{} : named(display_name(design), [&] {
-            return shape_of(turned(read_mesh(design, design_units.value_or(Units::Length::mm)), R_tilted_machine));
+        const machining::Cutter cutter = machining::parse_cutter_option(o.cutter);
+        machining::MillingOptions options;
+        if (!o.holder.empty())
+            options.holder = cli::with_error_prefix("--holder", [&] { return machining::parse_holder(o.holder); });
+        const Eigen::Matrix3d R_tilted_machine = machining::rotation_tilted_machine(o.path.axis());
+        const machining::ToolPath path = o.path.read(o.path_file, cutter);
+        const std::vector<machining::CutterMove>& moves = path.program.moves;
+        const machining::DesignShape shape = read_design_shape(o, cutter, R_tilted_machine);
+        const machining::Spacing spacing =
+            o.step ? machining::Spacing{*o.step}
+                   : machining::spacing_for(*o.tolerance, machining::sampling_radius(cutter), shape, o.published);
+        machining::Workpiece piece = cli::with_error_prefix("--stock", [&] {
+            return machining::read_workpiece(o.stock, o.stock_units, spacing.step, R_tilted_machine);
         });
-        const Spacing spacing =
-            step ? Spacing{*step} : spacing_for(*tolerance, sampling_radius(cutter), shape, published);
-        Workpiece piece = read_stock(stock, stock_units, spacing.step, R_tilted_machine);
         options.floor = piece.floor;
+        if (!piece.warning.empty()) t.warn(piece.warning);
+        warn_of_size(o, o.stock, "the stock", piece.size, cutter);
 
-        std::size_t refined = 0;
-        std::optional<HeightField> before;
-        if (pcd) before = piece.stock;
-        const auto bites = mill(piece.stock, cutter, program.moves, options);
-        const MillingSummary sum = summarise(program.moves, bites, rapid);
-        const PcdEncoding encoding = ascii ? PcdEncoding::ascii : PcdEncoding::binary;
-        if (pcd)
-            write_pcd(t.output(), turned(to_cloud(*before, piece.stock), R_tilted_machine.transpose()), Units{},
-                      encoding);
-        else {
-            std::optional<Refinement> refinement;
-            if (refine > 0) refinement.emplace(piece, piece.stock, cutter, program.moves, 1 << refine);
-            write_stl(t.output(), piece.stock, refinement ? &*refinement : nullptr, R_tilted_machine);
-            if (refinement) refined = refinement->count();
-        }
-        if (!trace.empty())
-            write_pcd(t.output_file(trace), turned(trace_of(program.moves, bites, rapid), R_tilted_machine.transpose()),
-                      Units{}, encoding);
-        t.report() = to_json(sum);
-        report(t.report(), program, piece.stock);
-        t.report().set("refined_squares", refined);
-        if (tolerance) t.report().set("discretization", to_json(spacing, shape));
-        const std::string unit = tool_path.points ? "point " : "line ";
-        const auto warn = [&](const Clash& clash, const std::string& what) {
-            if (clash.moves > 0)
-                t.warn(source + ": " + what + ": " + std::to_string(clash.moves) + ", the first to " + unit +
-                       std::to_string(clash.first_place) + "; up to " + to_short_text(clash.depth) + " mm deep");
+        std::optional<removal::HeightField> before;
+        if (o.pcd) before = piece.stock;
+        const auto engagements = machining::mill(piece.stock, cutter, moves, options);
+        const machining::MillingSummary sum = machining::summarise(moves, engagements, o.rapid);
+
+        const auto write_cloud = [&](std::ostream& out, cloud::Cloud cloud) {
+            cloud::write_pcd(out, machining::rotated(std::move(cloud), R_tilted_machine.transpose()), units::Units{},
+                             cloud::pcd_encoding(o.ascii));
         };
-        warn(sum.rapid_cuts, "rapid moves through material");
-        warn(sum.holder, "moves with the holder in material");
-        return sum.rapid_cuts.moves + sum.holder.moves == 0 ? Verdict::yes : Verdict::no;
+        std::size_t refined = 0;
+        if (before)
+            write_cloud(t.output(), removal::to_cloud(*before, piece.stock));
+        else
+            refined = write_triangles(o, piece, cutter, moves, R_tilted_machine);
+        if (!o.trace.empty()) write_cloud(t.output_file(o.trace), machining::trace_of(moves, engagements, o.rapid));
+        t.report() = machining::to_json(sum, path.program, piece.stock);
+        t.report().set("refined_squares", refined);
+        if (o.tolerance) t.report().set("discretization", machining::to_json(spacing, shape));
+        warn_of_path(o, sum, path);
+        return sum.rapid_cuts.moves + sum.holder_collisions.moves == 0 ? cli::Verdict::yes : cli::Verdict::no;
     });
 }

@@ -7,9 +7,9 @@ using namespace fettle;
 
 int main(int argc, char** argv)
 {
-    return tool_main(
-        argc, argv, "Make a part: a desired surface, anomalies on it, and the noise of a scan.", [](Tool& t) {
-            const std::string& path = t.input("SPEC", "what to make, JSON of kind \"part\"");
+    return cli::tool_main(
+        argc, argv, "Make a part: a desired surface, anomalies on it, and the noise of a scan.", [](cli::Tool& t) {
+            const std::string& path = t.main_input("SPEC", "what to make, JSON of kind \"part\"");
             const bool& bare = t.flag("--without-anomaly", "The desired surface alone: no anomalies, no noise");
             const bool& as_cloud =
                 t.flag("--cloud", "The corners of the triangles as points (PCD); a scanned cloud is always one");
@@ -17,22 +17,24 @@ int main(int argc, char** argv)
             t.reference("Wang 2007, 6.2 (test parts) and figure 5-8");
             t.parse();
 
-            PartSpec spec = read_part(path);
+            part::PartSpec spec = part::read_part(path);
             if (bare) {
                 spec.anomalies.clear();
                 spec.noise = {};
             }
-            const MeshOrCloud part = make_part(spec, t.seed());
-            const Units& units = spec.units;
-            if (const Cloud* scan = std::get_if<Cloud>(&part)) {
-                write_pcd(t.output(), *scan, units);
+            std::vector<std::string> warnings;
+            const mesh::MeshOrCloud part = part::make_part(spec, t.seed(), &warnings);
+            for (const std::string& warning : warnings) t.warn(warning);
+            const units::Units& units = spec.units;
+            if (const cloud::Cloud* scan = std::get_if<cloud::Cloud>(&part)) {
+                cloud::write_pcd(t.output(), *scan, units);
             } else if (as_cloud) {
-                Cloud corners;
-                corners.xyz = std::get<Mesh>(part).vertices;
-                write_pcd(t.output(), corners, units);
+                cloud::Cloud corners;
+                corners.xyz = std::get<mesh::Mesh>(part).vertices;
+                cloud::write_pcd(t.output(), corners, units);
             } else {
-                write_stl(t.output(), std::get<Mesh>(part), units.length);
+                mesh::write_stl(t.output(), std::get<mesh::Mesh>(part), units.length);
             }
-            return Verdict::yes;
+            return cli::Verdict::yes;
         });
 }

@@ -1,195 +1,111 @@
 #include "cli/tool.h"
 #include "cloud/pcd.h"
 #include "core/file.h"
-#include "core/text.h"
-#include "gantry/touch.h"
-#include "job/boundary.h"
-#include "job/plausible.h"
-#include "margin/best_touches.h"
+#include "gantry/gantry_options.h"
+#include "gantry/touch_job.h"
 #include "sampling/freeform.h"
-#include "sampling/order.h"
 #include "sampling/probe.h"
 
-#include <numeric>
+#include <optional>
 
 using namespace fettle;
 
 namespace {
 
-// More would take hours: each is a fit.
-constexpr int kMostTouches = 1000, kMostMutations = 1000000;
+constexpr int kMaxTouches = 1000, kMaxMutations = 1000000; // more would take hours: each is a fit
 
-Eigen::Matrix3Xd untouched(const TouchPlan& plan)
-{
-    Eigen::Matrix3Xd places(3, plan.size());
-    places << plan.xy, plan.z.transpose();
-    return places;
-}
-
-Eigen::Matrix3Xd probe_part(const Tool& t, const TouchedPart& part, const Job& job, const TouchPlan& plan)
-{
-    const Eigen::Matrix3Xd touches = part.touch(plan);
-    check_touched(touches, job, plan, part.name, part.doubt);
-    if (!part.doubt.empty()) t.warn(part.name + ": " + part.doubt);
-    return touches;
-}
-
-// What --strategy hillclimb goes by.
-struct ClimbOptions {
-    const int& touches;
-    const double& spacing;
-    const std::string& method;
-    const int& mutations;
-    const std::optional<double>& sharpness;
+struct Options {
+    cli::Tool& t;
+    const std::string& job = t.positional_file("JOB", "The job, JSON");
+    const std::string& on = t.optional_file(
+        "--on", "SURFACE|gantry:exec:COMMAND",
+        "Part to touch: mesh (STL, PLY, OBJ, OFF), cloud (PCD, PLY, XYZ), or the part on a machine, through its driver "
+        "(docs/driver.md)");
+    const std::optional<units::Units::Length>& part_unit =
+        t.length_unit("--on-units", "Unit of that file, if it is not the job's");
+    const std::string& noise = t.text("--noise", "", "uniform:A|normal:A",
+                                      "Touch error, in the job's unit: within ±A, or normal with 99 % within ±A");
+    const std::optional<double>& tip = t.optional_number(
+        "--tip", "LENGTH",
+        "Radius of the probe's ball, job's unit; 0: a point. Keep the boundary points that far from the anomaly [the "
+        "job's tip_radius]",
+        core::Range::at_least(0));
+    const int& lines =
+        t.count("--lines", 0, "Free-form jobs: number of lines in each direction; 0: after Wang's eq. 4-5", 0,
+                sampling::kMaxProbingLines);
+    const gantry::TouchStrategy& strategy = t.choice<gantry::TouchStrategy>(
+        "--strategy",
+        {{"wang", gantry::TouchStrategy::wang},
+         {"adaptive", gantry::TouchStrategy::adaptive},
+         {"hillclimb", gantry::TouchStrategy::hillclimb}},
+        "wang: by his rules; adaptive: one after the other, each where it lowers the predicted error band most, until "
+        "that meets the job's tolerance; hillclimb: by his Appendix A the best subset of many candidates, for a "
+        "SURFACE that is known beneath the anomaly, too");
+    const int& max_touches = t.count("--max-touches", 60, "Adaptive: maximum number of touches", 6, kMaxTouches);
+    const int& touches =
+        t.count("--touches", 0, "Hillclimb: number of touches; 0: as many as wang takes", 0, kMaxTouches);
+    const double& candidate_spacing =
+        t.number("--candidates", 0, "LENGTH", "Hillclimb: spacing of the candidates; 0: for about a thousand of them",
+                 core::Range::at_least(0));
+    const std::string& fit = t.choice("--fit", "griddata", {"griddata", "bspline-wang"},
+                                      "Hillclimb: the method whose error band inside the anomaly is minimised");
+    const int& mutations = t.count(
+        "--mutations", 500, "Hillclimb: random changes tried before candidates are discarded; ten times as many after",
+        0, kMaxMutations);
+    const std::optional<double>& sharpness =
+        t.optional_number("--sharpness", "K",
+                          "Hillclimb: a discard that widens the band by d is accepted with probability exp(-K d) [ln "
+                          "100 / the probe's accuracy]",
+                          core::Range::at_least(0));
+    const double& timeout = gantry::declare_timeout(t);
+    const bool& plan_only = t.flag("--plan-only", "Choose only: x and y, no z but where the job gives it");
+    const bool& ascii = t.flag("--ascii", "Text instead of binary");
 };
 
-void check_climb(const std::string& source, const Job& job, int lines, bool surface_known)
+void add_usage(cli::Tool& t)
 {
-    if (job.surface != SurfaceType::freeform) throw InputError(source, "--strategy hillclimb is for free-form jobs");
-    if (lines > 0) throw InputError("--lines is for --strategy wang");
-    if (!surface_known) throw InputError(source, "--strategy hillclimb needs the surface: --on SURFACE");
+    t.example("fettle-sample jobs/hammer.json --on scans/hammer.stl --noise normal:0.1 --seed 7 > samples.pcd",
+              "touch a scanned hammer where Wang's rules say, 99 % of the touches within 0.1 mm");
+    t.reference("Wang 2007, 4.4.4 (touch points), eq. 4-5 (number of lines), Appendix A (hill climbing)");
 }
 
-TouchPlan climb(Tool& t, const TouchedPart& part, const Job& job, const ClimbOptions& options)
+gantry::TouchRequest request(const Options& o, double mm)
 {
-    const double mm = job.units.mm();
-    TouchSearch search = {options.touches, options.spacing * mm, options.method, options.mutations, {}, t.seed()};
-    if (options.sharpness) search.sharpness = *options.sharpness / mm;
-    try {
-        BestTouches best = best_touches(*part.scan, job, search);
-        t.report()
-            .set("candidates", static_cast<std::size_t>(best.candidates))
-            .set("evaluations", best.found.evaluations)
-            .set("start_band", best.found.start_error / mm)
-            .set("band", best.found.error / mm);
-        return std::move(best.plan);
-    } catch (const InputError& error) {
-        throw InputError(part.name, error.what());
-    }
-}
-
-// Touches where the fit learns most, and warns of places where nothing was found.
-AdaptiveTouches adapt(Tool& t, const TouchedPart& part, const Job& job, int most)
-{
-    AdaptiveLimits limits;
-    limits.most_touches = most;
-    limits.band = job.tolerance;
-    AdaptiveTouches found = touch_adaptively(job, limits, part.touch);
-    for (const Eigen::Vector2d& xy : found.unreachable)
-        t.warn(part.name + ": no surface at " + place(xy, job.units) + "; touched elsewhere");
-    const double band = found.band[found.band.size() - 1] / job.units.mm();
-    t.report().set("predicted_band", band).set("within_tolerance", found.enough);
-    if (!found.enough)
-        t.warn(std::to_string(found.plan.size()) + " touches leave a predicted error band of " + to_short_text(band) +
-               ", more than the tolerance " + to_short_text(job.tolerance / job.units.mm()));
-    return found;
-}
-
-std::vector<Eigen::Index> as_planned(const Eigen::Matrix3Xd& touches)
-{
-    std::vector<Eigen::Index> order(static_cast<std::size_t>(touches.cols()));
-    std::iota(order.begin(), order.end(), Eigen::Index{0});
-    return order;
+    margin::TouchSearch search = {o.touches, o.candidate_spacing * mm, o.fit, o.mutations, {}, o.t.seed()};
+    if (o.sharpness) search.sharpness = *o.sharpness / mm;
+    return {o.strategy, o.lines, o.max_touches, search, o.plan_only};
 }
 
 } // namespace
 
 int main(int argc, char** argv)
 {
-    return tool_main(argc, argv, "Choose the touch points of a job and probe them on a part.", [](Tool& t) {
-        const std::string& job_file = t.file("JOB", "The job, JSON");
-        const std::string& on = t.other_file(
-            "--on", "SURFACE|gantry:exec:COMMAND",
-            "Part to touch: mesh (STL, PLY, OBJ, OFF), cloud (PCD, PLY, XYZ), or what stands on a machine, "
-            "through its driver (docs/driver.md)");
-        const auto& part_unit = t.length_unit("--on-units", "Unit of that file, if it is not the job's");
-        const std::string& noise_text =
-            t.text("--noise", "", "uniform:A|normal:A",
-                   "Touch error, in the job's unit: within ±A, or normal with 99 % within ±A");
-        const auto& tip = t.number_if_given("--tip", "LENGTH",
-                                            "Radius of the probe's ball, job's unit; 0: a point. Keep the boundary "
-                                            "points that far from the anomaly [the job's tip_radius]",
-                                            Range::at_least(0));
-        const int& lines = t.count("--lines", 0, "Free-form jobs: so many lines each way; 0: as many as Wang's eq. 4-5",
-                                   0, kMostLines);
-        const std::string& strategy =
-            t.choice("--strategy", "wang", {"wang", "adaptive", "hillclimb"},
-                     "wang: by his rules; adaptive: one after the other, each where it lowers "
-                     "the predicted error band most, until that meets the job's tolerance; "
-                     "hillclimb: by his Appendix A the best of many places, for a SURFACE that "
-                     "is known beneath the anomaly, too");
-        const int& most_touches = t.count("--max-touches", 60, "Adaptive: no more than so many", 6, kMostTouches);
-        const ClimbOptions climbing = {
-            t.count("--touches", 0, "Hillclimb: how many; 0: as many as wang takes", 0, kMostTouches),
-            t.number("--candidates", 0, "LENGTH", "Hillclimb: spacing of the places; 0: about a thousand places",
-                     Range::at_least(0)),
-            t.choice("--fit", "griddata", {"griddata", "bspline-wang"},
-                     "Hillclimb: the method whose error band inside the anomaly is lowered"),
-            t.count("--mutations", 500,
-                    "Hillclimb: random changes tried before places are discarded; ten times as many after", 0,
-                    kMostMutations),
-            t.number_if_given("--sharpness", "K",
-                              "Hillclimb: a discard that widens the band by d is accepted with exp(-K d) "
-                              "[ln 100 / the probe's accuracy]",
-                              Range::at_least(0))};
-        const double& patience = t.number("--patience", 10, "SECONDS",
-                                          "A driver may answer so much later than the touch takes", Range::positive());
-        const bool& plan_only = t.flag("--plan-only", "Choose only: x and y, no z but where the job gives it");
-        const bool& ascii = t.flag("--ascii", "Text instead of binary");
-        t.example("fettle-sample jobs/hammer.json --on scans/hammer.stl --noise normal:0.1 --seed 7 > samples.pcd",
-                  "touch a scanned hammer where Wang's rules say, 99 % of the touches within 0.1 mm");
-        t.reference("Wang 2007, 4.4.4 (touch points), eq. 4-5 (number of lines), Appendix A (hill climbing)");
+    return cli::tool_main(argc, argv, "Choose the touch points of a job and probe them on a part.", [](cli::Tool& t) {
+        const Options o{t};
+        add_usage(t);
         t.parse();
 
-        Job job = read_job(job_file);
+        job::Job job = job::read_job(o.job);
         const double mm = job.units.mm();
-        if (tip) job.probe.tip_radius = *tip * mm;
-        parse_noise(noise_text, mm); // a wrong one shows, touched or not
-        if (lines > 0 && job.surface != SurfaceType::freeform)
-            throw InputError(display_name(job_file), "--lines is for free-form jobs");
-        std::optional<TouchedPart> part;
-        if (!on.empty() && (!plan_only || strategy != "wang"))
-            part = touched_part(on, job, {part_unit, noise_text, t.seed(), patience});
-        TouchPlan plan;
-        std::optional<AdaptiveTouches> adapted;
-        if (strategy == "adaptive") {
-            if (!part || plan_only) throw InputError("--strategy adaptive needs a part to touch: --on SURFACE");
-            adapted = adapt(t, *part, job, most_touches);
-            plan = adapted->plan;
-        } else if (strategy == "hillclimb") {
-            check_climb(display_name(job_file), job, lines, part && part->scan);
-            plan = climb(t, *part, job, climbing);
-        } else {
-            if (climbing.touches > 0 || climbing.spacing > 0 || climbing.sharpness)
-                throw InputError("--touches, --candidates, --sharpness: only for --strategy hillclimb");
-            plan = lines > 0 ? plan_freeform(job, LineCount{lines, lines}) : plan_touches(job);
-        }
-        Eigen::Matrix3Xd touches = untouched(plan);
-        if (adapted) {
-            touches = adapted->touches;
-        } else if (part && !plan_only) {
-            touches = probe_part(t, *part, job, plan);
-        } else if (!plan_only && touches.row(2).hasNaN()) {
-            throw InputError(display_name(job_file), "touch points without z: name the part to touch, --on SURFACE");
-        }
-        // Adaptive touches have been made in their order already.
-        const std::vector<Eigen::Index> order = adapted ? as_planned(touches) : short_way(touches.topRows<2>());
-        const double highest = touches.row(2).maxCoeff<Eigen::PropagateNumbers>();
-        if (const std::string doubt = part && !plan_only ? implausible_height(touches, job) : ""; !doubt.empty())
-            t.warn(part->name + ": " + doubt);
-        else if (highest > job.safe_height)
-            t.warn("safe_height " + to_short_text(job.safe_height / mm) + " is below a touch at z " +
-                   to_short_text(highest / mm));
-        t.report()
-            .set("touches", static_cast<std::size_t>(plan.size()))
-            .set("lines", plan.curve.maxCoeff() + 1)
-            .set("probing_time", probing_time(touches, order, job.safe_height))
-            .set("path_length", way_length(touches.topRows<2>(), order) / mm)
-            .set("tip_radius", job.probe.tip_radius / mm);
-        t.note(std::to_string(plan.size()) + " touches" +
-               (adapted ? "" : " on " + std::to_string(plan.curve.maxCoeff() + 1) + " lines"));
-        write_pcd(t.output(), sample_cloud(touches, plan, order), job.units,
-                  ascii ? PcdEncoding::ascii : PcdEncoding::binary);
-        return Verdict::yes;
+        if (o.tip) job.probe.tip_radius = *o.tip * mm;
+        sampling::parse_noise(o.noise, mm); // throws, also if nothing is touched
+        if (o.lines > 0 && job.surface != job::SurfaceType::freeform)
+            throw core::InputError(core::display_name(o.job), "--lines is for free-form jobs");
+        const bool wang = o.strategy == gantry::TouchStrategy::wang;
+        if (wang && (o.touches > 0 || o.candidate_spacing > 0 || o.sharpness))
+            throw core::InputError("--touches, --candidates, --sharpness: only for --strategy hillclimb");
+
+        std::optional<gantry::TouchedPart> part;
+        if (!o.on.empty() && (!o.plan_only || !wang))
+            part = gantry::open_touched_part(o.on, job, {o.part_unit, o.noise, t.seed(), o.timeout});
+        const gantry::JobTouches result = gantry::touch_job(job, part ? &*part : nullptr, request(o, mm));
+        for (const std::string& warning : result.warnings) t.warn(warning);
+
+        t.report() = gantry::to_json(result, job);
+        t.note(std::to_string(result.plan.size()) + " touches" +
+               (result.adaptive ? "" : " on " + std::to_string(result.plan.curve.maxCoeff() + 1) + " lines"));
+        cloud::write_pcd(t.output(), sampling::sample_cloud(result.touches, result.plan, result.order), job.units,
+                         cloud::pcd_encoding(o.ascii));
+        return cli::Verdict::yes;
     });
 }

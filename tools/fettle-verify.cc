@@ -1,146 +1,161 @@
 #include "cli/tool.h"
 #include "cloud/pcd.h"
-#include "compare/signed_distance.h"
-#include "core/direction.h"
 #include "core/file.h"
-#include "core/text.h"
+#include "geometry/bounding_box.h"
+#include "job/plausible.h"
 #include "machining/correction.h"
-#include "machining/patch_error.h"
+#include "machining/limits.h"
+#include "machining/part_mesh.h"
 #include "machining/patch_report.h"
+#include "machining/path_options.h"
 #include "machining/tilt.h"
-#include "machining/tool_path.h"
 #include "machining/workpiece.h"
-#include "mesh/mesh_file.h"
-#include "sampling/scan.h"
 
+#include <optional>
 #include <ostream>
 
 using namespace fettle;
 
 namespace {
 
-/// The machined mesh, or its upper side on a grid.
-Mesh read_machined(const std::string& path, std::optional<Units::Length> unit, const std::optional<double>& step,
-                   const Eigen::Matrix3d& R_tilted_machine)
+const std::string kDescription =
+    "Verifies a machined surface against its design by triangle patches.\n"
+    "The design is re-sampled at the x, y of the machined vertices; of each pair of triangles d is the mean of the "
+    "three differences along Z (the tool axis), and the error is d along the normal of the design's triangle: + "
+    "material left. Where "
+    "the design is vertical or not hit, or the machined triangle does not face up, it is undefined: counted and "
+    "listed. Out: a point for each patch, coloured bright red, dark red (over-cut), grey, violet, dark blue (material "
+    "left). With --correct also a path that is corrected by the errors. Lengths in mm. Exit 1 if a patch is over-cut "
+    "beyond the tolerance, or none is defined.";
+
+struct Options {
+    cli::Tool& t;
+    const std::string& machined =
+        t.main_input("MACHINED", "Triangles that face up (fettle-mill): STL, PLY, OBJ or OFF");
+    const std::optional<units::Units::Length>& unit =
+        t.length_unit("--file-units", "Unit of MACHINED, if it is not mm");
+    const std::string& design = t.required_file_option("--design", "FILE", "The design: STL, PLY, OBJ or OFF");
+    const std::optional<units::Units::Length>& design_unit =
+        t.length_unit("--design-units", "Unit of the design, if it is not mm");
+    const double& tolerance =
+        t.number("-t,--tolerance", 0.05, "MM", "Maximum error either way", machining::kLengthRange);
+    const std::optional<double>& inner =
+        t.optional_number("--inner-tolerance", "MM", "Maximum over-cut, if it differs", machining::kLengthRange);
+    const std::optional<double>& outer =
+        t.optional_number("--outer-tolerance", "MM", "Maximum material left, if it differs", machining::kLengthRange);
+    const double& neutral = t.number("--neutral", 0.1, "SHARE",
+                                     "Half-width of the neutral band, as a fraction of both tolerances: smaller errors "
+                                     "are neither over-cut nor material left",
+                                     core::Range::between(0, 1));
+    const std::string& method = t.choice("--method", "patch", {"patch", "closest"},
+                                         "closest: judge by the distance of the patch's centre from the closest point "
+                                         "of the design; the report says how far the two are apart");
+    const std::optional<double>& step = t.optional_number(
+        "--step", "MM", "Sample the machined surface from above on a grid, too: its step", machining::kLengthRange);
+    const std::string& csv = t.optional_output("--csv", "Data sheet: triangle, centre, d, mu, class");
+    const std::string& z_errors = t.optional_output("--z-errors", "Errors along Z at the machined vertices, PCD");
+    const std::string& path_file =
+        t.optional_file("--correct", "PATH", "The path of fettle-mill: to be corrected by the errors");
+    const std::string& corrected = t.optional_output(
+        "--corrected", "The corrected path: of a program a program, of points a PCD of the tips", &path_file);
+    const std::string& cutter = t.text("--cutter", "", "CUTTER", "The cutter that machined along PATH");
+    machining::ToolPathOptions path{t};
+    const bool& ascii = t.flag("--ascii", "Write PCDs as text");
+};
+
+void add_usage(cli::Tool& t)
 {
-    Mesh mesh = turned(read_mesh(path, unit.value_or(Units::Length::mm)), R_tilted_machine);
-    if (!step) return mesh;
-    return named("--step", [&] {
-        const HeightField field = scanned_workpiece(Scan(std::move(mesh)), *step).stock;
-        return surface_between(field, 0, field.rows() - 1);
-    });
+    t.example("fettle-mill programs/pocket.nc --stock box:0,0,-12,80,60,0 --cutter ball:6 --step 0.25 | fettle-verify "
+              "--design <(fettle-mill programs/pocket.nc --stock box:0,0,-12,80,60,0 --cutter ball:5.9 --step 0.5) "
+              "--tolerance 0.03 --csv sheet.csv > patches.pcd",
+              "a cutter that is 0.1 mm too thick cuts walls too wide");
+    t.reference("Guan & Xiong, Virtual machining accuracy verification by triangular patch comparison: eq. 4 to 6");
 }
 
-Cloud z_errors(const Mesh& machined, const Eigen::VectorXd& errors)
+/// The patches in the tilted frame, judged by the tolerances.
+machining::PatchVerdict judge(const Options& o, const mesh::Mesh& machined, const machining::PartMesh& design)
 {
-    Cloud cloud;
-    cloud.xyz = machined.vertices;
-    set_field(cloud, "error", errors);
-    return cloud;
+    machining::PatchVerdict verdict;
+    verdict.tolerances = {o.inner.value_or(o.tolerance), o.outer.value_or(o.tolerance), o.neutral};
+    verdict.patches = machining::patch_errors(machined, design.mesh);
+    verdict.use_closest_point = o.method == "closest";
+    if (verdict.use_closest_point)
+        verdict.closest = machining::closest_errors(verdict.patches, design.mesh, design.closed);
+    return verdict;
 }
 
-json::Value to_json(const CorrectedPath& path)
+void write_cloud(const Options& o, std::ostream& out, const cloud::Cloud& cloud)
 {
-    return json::Value()
-        .set("moves", path.moves.size())
-        .set("shifted", path.shifted)
-        .set("held", path.held)
-        .set("in_air", path.in_air)
-        .set("unknown", path.unknown)
-        .set("greatest_shift", path.greatest_shift);
+    cloud::write_pcd(out, cloud, units::Units{}, cloud::pcd_encoding(o.ascii));
+}
+
+/// Corrects the path by the errors, and writes it. @param R_machine_tilted  from the frame of the meshes
+machining::CorrectedPath correct_path(const Options& o, const mesh::Mesh& machined, const mesh::Mesh& design,
+                                      const machining::PatchVerdict& verdict, const Eigen::Matrix3d& R_machine_tilted)
+{
+    const machining::Cutter cutter = machining::parse_cutter_option(o.cutter);
+    const machining::ToolPath path = o.path.read(o.path_file, cutter);
+    machining::CorrectedPath corrected =
+        machining::correct(path.program.moves, cutter, machined, design, verdict.patches, verdict.tolerances.outer);
+    std::ostream& out = o.t.output_file(o.corrected);
+    if (path.points)
+        write_cloud(
+            o, out,
+            machining::rotated(machining::corrected_points(path, corrected, o.path.contacts()), R_machine_tilted));
+    else
+        machining::write_corrected(out, path, corrected);
+    return corrected;
+}
+
+void warn_of_meshes(const Options& o, const machining::PartMesh& machined, const machining::PartMesh& design)
+{
+    for (const machining::PartMesh* part : {&machined, &design})
+        for (const std::string& warning : part->warnings) o.t.warn(warning);
+    constexpr double kMaxRatio = 100; // a part of a design, or a design of a part of the machined surface
+    const Eigen::AlignedBox3d box = geometry::finite_bounding_box(machined.mesh.vertices);
+    const Eigen::AlignedBox3d design_box = geometry::finite_bounding_box(design.mesh.vertices);
+    const std::string doubt =
+        job::scale_warning("the machined surface", box.sizes(), units::Units{},
+                           {"the design", design_box.sizes().head<2>().norm(), 1 / kMaxRatio, kMaxRatio});
+    if (!doubt.empty()) o.t.warn(core::display_name(o.machined) + ": " + doubt);
 }
 
 } // namespace
 
 int main(int argc, char** argv)
 {
-    const std::string description =
-        "Verifies a machined surface against its design by triangle patches.\n"
-        "The design is re-sampled at the x, y of the machined vertices; of each pair of triangles d is the mean of the "
-        "three differences along Z, and the error is d along the normal of the design's triangle: + material left. "
-        "Where "
-        "the design is vertical or not hit, or the machined triangle does not face up, it is undefined: counted and "
-        "listed. Out: a point for each patch, coloured bright red, dark red (over-cut), grey, violet, dark blue "
-        "(material "
-        "left). With --correct also a path that takes the errors back. Lengths in mm. Exit 1 if a patch is over-cut "
-        "beyond the tolerance, or none is defined.";
-    return tool_main(argc, argv, description, [](Tool& t) {
-        const std::string& machined_path =
-            t.input("MACHINED", "Triangles that face up (fettle-mill): STL, PLY, OBJ or OFF");
-        const auto& unit = t.length_unit("--file-units", "Unit of MACHINED, if it is not mm");
-        const std::string& design_path = t.required_file("--design", "FILE", "The design: STL, PLY, OBJ or OFF");
-        const auto& design_unit = t.length_unit("--design-units", "Unit of the design, if it is not mm");
-        const double& tolerance = t.number("-t,--tolerance", 0.05, "MM", "Most error either way", Range::positive());
-        const auto& inner =
-            t.number_if_given("--inner-tolerance", "MM", "Most over-cut, if another", Range::positive());
-        const auto& outer =
-            t.number_if_given("--outer-tolerance", "MM", "Most material left, if another", Range::positive());
-        const double& neutral =
-            t.number("--neutral", 0.1, "SHARE", "Of the tolerances: errors that are neither", Range::between(0, 1));
-        const std::string& method = t.choice("--method", "patch", {"patch", "closest"},
-                                             "closest: judge by the distance of the patch's centre from the closest "
-                                             "point of the design; the report says how far the two are apart");
-        const auto& step = t.number_if_given(
-            "--step", "MM", "Sample the machined surface from above on such a grid, too", Range::positive());
-        const std::string& axis_text =
-            t.text("--axis", "0,0,1", "X,Y,Z",
-                   "Of the tool that machined (fettle-mill): what is said of Z above goes along it");
-        const std::string& csv = t.other_output("--csv", "Data sheet: triangle, centre, d, mu, class");
-        const std::string& z_file = t.other_output("--z-errors", "Errors along Z at the machined vertices, PCD");
-        const std::string& path_file =
-            t.other_file("--correct", "PATH", "What fettle-mill machined along: to be corrected by the errors");
-        const std::string& corrected_file = t.other_output(
-            "--corrected", "The corrected path: of a program a program, of points a PCD of the tips", &path_file);
-        const std::string& cutter_text = t.text("--cutter", "", "CUTTER", "The cutter that machined along PATH");
-        const std::string& points = t.choice("--points", "cl", {"cl", "cc"}, "What points of PATH are (fettle-mill)");
-        const double& feed = t.number("--feed", 10, "MM/S", "Feed of points without one", Range::positive());
-        const bool& ascii = t.flag("--ascii", "Write PCDs as text");
-        t.example(
-            "fettle-mill programs/pocket.nc --stock box:0,0,-12,80,60,0 --cutter ball:6 --step 0.25 | fettle-verify "
-            "--design <(fettle-mill programs/pocket.nc --stock box:0,0,-12,80,60,0 --cutter ball:5.9 --step 0.5) "
-            "--tolerance 0.03 --csv sheet.csv > patches.pcd",
-            "a cutter that is 0.1 mm too thick cuts walls too wide");
-        t.reference("Guan & Xiong, Virtual machining accuracy verification by triangular patch comparison: eq. 4 to 6");
+    return cli::tool_main(argc, argv, kDescription, [](cli::Tool& t) {
+        const Options o{t};
+        add_usage(t);
         t.parse();
+        if (o.path_file.empty() != o.corrected.empty() || o.path_file.empty() != o.cutter.empty())
+            throw core::InputError("--correct, --corrected and --cutter belong together");
 
-        const bool corrects = !path_file.empty();
-        if (corrects == corrected_file.empty() || corrects == cutter_text.empty())
-            throw InputError("--correct, --corrected and --cutter belong together");
-        const Eigen::Vector3d axis = parse_direction(axis_text, "--axis");
-        const Eigen::Matrix3d R_tilted_machine = rotation_tilted_machine(axis);
-        const Eigen::Matrix3d back = R_tilted_machine.transpose();
-        const Mesh machined = read_machined(machined_path, unit, step, R_tilted_machine);
-        const Mesh design = turned(read_mesh(design_path, design_unit.value_or(Units::Length::mm)), R_tilted_machine);
-        PatchVerdict verdict;
-        verdict.tolerances = {inner.value_or(tolerance), outer.value_or(tolerance), neutral};
-        verdict.patches = patch_errors(machined, design);
-        verdict.by_closest = method == "closest";
-        if (verdict.by_closest) verdict.closest = signed_distance(verdict.patches.centre, design).error;
+        const Eigen::Matrix3d R_tilted_machine = machining::rotation_tilted_machine(o.path.axis());
+        const Eigen::Matrix3d R_machine_tilted = R_tilted_machine.transpose();
+        const machining::PartMesh machined_part =
+            machining::read_machined_surface(o.machined, o.unit, o.step, R_tilted_machine);
+        const machining::PartMesh design_part = machining::read_design(o.design, o.design_unit, R_tilted_machine);
+        const mesh::Mesh &machined = machined_part.mesh, &design = design_part.mesh;
+        machining::PatchVerdict verdict = judge(o, machined, design_part);
+        std::optional<machining::CorrectedPath> corrected;
+        if (!o.path_file.empty()) corrected = correct_path(o, machined, design, verdict, R_machine_tilted);
 
-        const PcdEncoding encoding = ascii ? PcdEncoding::ascii : PcdEncoding::binary;
-        const auto write = [&](std::ostream& out, const Cloud& cloud) { write_pcd(out, cloud, Units{}, encoding); };
-        std::optional<CorrectedPath> corrected;
-        if (corrects) {
-            const Cutter cutter = named("--cutter", [&] { return parse_cutter(cutter_text); });
-            const ToolPath path =
-                parse_tool_path(read_whole(path_file), display_name(path_file), cutter, {points == "cc", feed, axis});
-            corrected =
-                correct(path.program.moves, cutter, machined, design, verdict.patches, verdict.tolerances.outer);
-            if (path.points)
-                write(t.output_file(corrected_file), turned(corrected_points(path, *corrected, points == "cc"), back));
-            else
-                write_corrected(t.output_file(corrected_file), path, *corrected);
-        }
-        if (!z_file.empty()) write(t.output_file(z_file), turned(z_errors(machined, verdict.patches.z_error), back));
-        verdict.patches = turned(std::move(verdict.patches), back);
-        if (!csv.empty()) write_csv(t.output_file(csv), verdict);
-        write(t.output(), to_cloud(verdict));
-        t.report() = to_json(verdict);
-        if (corrected) t.report().set("correction", to_json(*corrected));
+        if (!o.z_errors.empty())
+            write_cloud(
+                o, t.output_file(o.z_errors),
+                machining::rotated(machining::z_errors_to_cloud(machined, verdict.patches.z_error), R_machine_tilted));
+        verdict.patches = machining::rotated(std::move(verdict.patches), R_machine_tilted);
+        if (!o.csv.empty()) machining::write_csv(t.output_file(o.csv), verdict);
+        write_cloud(o, t.output(), machining::to_cloud(verdict));
+        t.report() = machining::to_json(verdict);
+        if (corrected) t.report().set("correction", machining::to_json(*corrected));
+        warn_of_meshes(o, machined_part, design_part);
         const auto undefined = verdict.error().array().isNaN().count();
         if (undefined > 0)
-            t.warn(display_name(machined_path) + ": " + std::to_string(undefined) + " of " +
+            t.warn(core::display_name(o.machined) + ": " + std::to_string(undefined) + " of " +
                    std::to_string(verdict.error().size()) + " patches have no error: see \"undefined_by_patch\"");
-        return over_cut(verdict) == 0 && undefined < verdict.error().size() ? Verdict::yes : Verdict::no;
+        const bool accepted = machining::count_over_cut(verdict) == 0 && undefined < verdict.error().size();
+        return accepted ? cli::Verdict::yes : cli::Verdict::no;
     });
 }

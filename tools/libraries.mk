@@ -4,8 +4,9 @@ $(B)/bin/fettle-fit:     LDLIBS = $(CERES)
 $(B)/bin/fettle-sample:  LDLIBS = $(CERES)
 $(B)/bin/fettle-render:  LDLIBS = $(OPENCV) $(PNG)
 $(B)/bin/fettle-report:  LDLIBS = $(OPENCV) $(PNG) $(MD)
+$(B)/bin/fettle-grind $(B)/bin/fettle-manual $(B)/bin/fettle-teach: LDLIBS = $(MD)
 $(B)/bin/fettle-contact: LDLIBS = -lopencv_core
-$(B)/bin/fettle-belt:    LDLIBS = -lopencv_core
+$(B)/bin/fettle-belt:    LDLIBS = -lopencv_core $(MD)
 $(B)/bin/fettle-feed:    LDLIBS = -lopencv_core
 # LinuxCNC's libraries are under the GPL: so is this program as a whole.
 $(B)/bin/fettle-gantry-linuxcnc: LDLIBS = /usr/lib/liblinuxcnc.a -lnml -llinuxcncini -ltooldata -llinuxcnchal

@@ -18,7 +18,8 @@ int main(int argc, char** argv)
         for (double number; std::cin >> number;) numbers.push_back(number);
         const auto count = static_cast<Eigen::Index>(numbers.size() / 3);
         const Eigen::Matrix3Xd points = Eigen::Matrix3Xd::Map(numbers.data(), 3, count);
-        const fettle::ErrorMap map = fettle::signed_distance(points, fettle::read_mesh(argv[1]));
+        const fettle::compare::ErrorMap map =
+            fettle::compare::signed_distance(points, fettle::mesh::read_mesh(argv[1]));
         for (const double error : map.error) std::cout << error << '\n';
     } catch (const std::exception& error) {
         std::cerr << "signed-distance: " << error.what() << '\n';

@@ -1,151 +1,154 @@
 #include "align/icp.h"
 
+#include "geometry/quantiles.h"
+
 #include <Eigen/Dense>
-#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-namespace fettle {
+namespace fettle::align {
 
 namespace {
 
-// Tukey's biweight at 95 % efficiency for normal noise, and the factor from the median |residual| to sigma.
-constexpr double kTukey = 4.685;
-constexpr double kMedianToSigma = 1.4826;
-// Of float coordinates, as a share of the scan's radius; and of sums of doubles, as a share of how far off it lies.
-constexpr double kRounding = 1e-7, kDoubleRounding = 1e-14;
-// A motion that changes the distances by less than a hundredth of itself is made by what normals are wrong by.
-constexpr double kLeastSlope = 0.01;
-// A step that moves the scan by less than this share of what noise leaves open is none.
-constexpr double kStill = 1e-2;
-// Trimming looks at shares from here on: with fewer points a chance plane would fit.
-constexpr double kLeastOverlap = 0.3;
+// Rounding of float coordinates, relative to the scan's radius; and of sums of doubles, relative to the distance of the
+// scan from the origin.
+constexpr double kFloatRounding = 1e-7, kDoubleRounding = 1e-14;
+// A motion that changes the distances by less than this share of its own length may do so by errors of the normals.
+constexpr double kMinSlope = 0.01;
+// Converged: a step is shorter than this share of the standard error of the pose.
+constexpr double kStepToleranceSigmas = 1e-2;
+// A scan whose points are on average farther from the reference than this share of its own radius does not lie on it:
+// the distances along the normals may vanish far away from it, too.
+constexpr double kMaxDistanceRadii = 0.25;
+// Trimming considers overlaps from here on: with fewer points a chance plane would fit.
+constexpr double kMinOverlap = 0.3;
 
-double median_of(Eigen::VectorXd values)
-{
-    if (values.size() == 0) return 0;
-    const auto middle = values.begin() + values.size() / 2;
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
-// The trim that the options ask for.
-Trim trim_of(const Eigen::VectorXd& closest, const IcpOptions& options, double floor)
+Trim trim_by_options(const Eigen::VectorXd& distances, const IcpOptions& options, double rounding)
 {
     if (options.max_distance) {
-        const double cut = *options.max_distance;
-        return {cut, closest.array().min(cut).square().mean()};
+        const double cutoff = *options.max_distance;
+        return {cutoff, distances.array().min(cutoff).square().mean()};
     }
-    if (!options.overlap) return trim(closest, floor);
-    Eigen::VectorXd sorted = closest;
+    if (!options.overlap) return estimate_overlap(distances, rounding);
+    Eigen::VectorXd sorted = distances;
     std::sort(sorted.begin(), sorted.end());
-    const auto kept = static_cast<Eigen::Index>(std::ceil(*options.overlap * static_cast<double>(closest.size())));
-    const Eigen::Index n = std::clamp<Eigen::Index>(kept, 1, closest.size());
-    return {sorted[n - 1], sorted.head(n).squaredNorm() / static_cast<double>(n)};
+    const auto overlapping = static_cast<Eigen::Index>(std::ceil(*options.overlap * distances.size()));
+    const Eigen::Index n = std::clamp<Eigen::Index>(overlapping, 1, distances.size());
+    return {sorted[n - 1], sorted.head(n).squaredNorm() / n};
 }
 
-std::vector<Eigen::Index> within(const Eigen::VectorXd& closest, double cut)
+std::vector<Eigen::Index> indices_within(const Eigen::VectorXd& distances, double cutoff)
 {
-    std::vector<Eigen::Index> kept;
-    for (Eigen::Index i = 0; i < closest.size(); ++i)
-        if (closest[i] <= cut) kept.push_back(i);
-    return kept;
+    std::vector<Eigen::Index> within;
+    for (Eigen::Index i = 0; i < distances.size(); ++i)
+        if (distances[i] <= cutoff) within.push_back(i);
+    return within;
 }
 
-// Sets the cut and sigma. Returns the points within. Trimming cuts into the tails of the noise: where it is left to
-// itself, the cut moves out to where Tukey's weights end, as sigma follows from what is within.
-std::vector<Eigen::Index> judge_noise(IcpFit& fit, const Distances& d, double cut, const IcpOptions& options,
-                                      double rounding)
+// Estimates sigma and sets the cutoff. Returns the overlapping points. Trimming cuts off the tails of the noise: unless
+// the options fix it, the cutoff is widened to the end of Tukey's weights, while sigma follows from the points within.
+std::vector<Eigen::Index> estimate_noise(IcpFit& fit, const FootDistances& d, double cutoff, const IcpOptions& options,
+                                         double rounding)
 {
-    constexpr int kRounds = 5; // sigma settles in two or three
-    std::vector<Eigen::Index> kept;
-    fit.cut = cut;
-    for (int round = 0; round < kRounds; ++round) {
-        kept = within(d.closest, fit.cut);
-        fit.sigma = std::max(kMedianToSigma * median_of(d.across(kept).cwiseAbs()), rounding);
-        if (options.max_distance || options.overlap || kTukey * fit.sigma <= fit.cut) break;
-        fit.cut = kTukey * fit.sigma;
+    constexpr int kMaxRounds = 5; // sigma converges in two or three
+    std::vector<Eigen::Index> overlapping;
+    fit.cutoff = cutoff;
+    for (int round = 0; round < kMaxRounds; ++round) {
+        overlapping = indices_within(d.absolute, fit.cutoff);
+        fit.sigma =
+            std::max(geometry::kMedianToSigma * geometry::median_absolute(d.along_normal(overlapping)), rounding);
+        if (options.max_distance || options.overlap || geometry::kTukeyCutoff * fit.sigma <= fit.cutoff) break;
+        fit.cutoff = geometry::kTukeyCutoff * fit.sigma;
     }
-    return kept;
+    return overlapping;
+}
+
+// Whether enough points overlap, and are near the reference for a scan of this radius.
+bool lies_on_reference(const Eigen::VectorXd& distances, const std::vector<Eigen::Index>& overlapping, double radius)
+{
+    constexpr std::size_t kMinPoints = 6; // one for each degree of freedom
+    return overlapping.size() >= kMinPoints &&
+           std::sqrt(distances(overlapping).squaredNorm() / overlapping.size()) <= kMaxDistanceRadii * radius;
 }
 
 } // namespace
 
-Distances distances(const Eigen::Matrix3Xd& points, const AlignReference& reference)
+FootDistances foot_distances(const Eigen::Matrix3Xd& points, const AlignReference& reference)
 {
-    Distances d{Eigen::VectorXd(points.cols()), Eigen::VectorXd(points.cols()), Eigen::Matrix3Xd(3, points.cols())};
-    tbb::parallel_for(tbb::blocked_range<Eigen::Index>(0, points.cols()), [&](const auto& range) {
-        for (Eigen::Index i = range.begin(); i < range.end(); ++i) {
-            const AlignReference::Foot foot = reference.closest(points.col(i));
-            const Eigen::Vector3d offset = points.col(i) - foot.point;
-            d.closest[i] = offset.norm();
-            d.across[i] = offset.dot(foot.normal);
-            d.normal.col(i) = foot.normal;
-        }
+    FootDistances d{Eigen::VectorXd(points.cols()), Eigen::VectorXd(points.cols()), Eigen::Matrix3Xd(3, points.cols())};
+    tbb::parallel_for(Eigen::Index{0}, points.cols(), [&](Eigen::Index i) {
+        const AlignReference::Foot foot = reference.closest(points.col(i));
+        const Eigen::Vector3d offset = points.col(i) - foot.point;
+        d.absolute[i] = offset.norm();
+        d.along_normal[i] = offset.dot(foot.normal);
+        d.normals.col(i) = foot.normal;
     });
     return d;
 }
 
-Trim trim(Eigen::VectorXd closest, double floor)
+Trim estimate_overlap(Eigen::VectorXd absolute, double rounding)
 {
-    std::sort(closest.begin(), closest.end());
-    const auto n = closest.size();
-    const auto first = static_cast<Eigen::Index>(kLeastOverlap * static_cast<double>(n));
+    std::sort(absolute.begin(), absolute.end());
+    const double n = absolute.size();
+    const auto first = static_cast<Eigen::Index>(kMinOverlap * n);
     double sum = 0;
     Trim best{0, std::numeric_limits<double>::infinity()};
-    for (Eigen::Index i = 0; i < n; ++i) {
-        sum += closest[i] * closest[i];
-        const double share = static_cast<double>(i + 1) / static_cast<double>(n);
-        const double misfit = (sum / static_cast<double>(i + 1) + floor * floor) / std::pow(share, 3);
-        if (i >= first && misfit <= best.misfit) best = {closest[i], misfit};
+    for (Eigen::Index i = 0; i < absolute.size(); ++i) {
+        sum += absolute[i] * absolute[i];
+        const double misfit = (sum / (i + 1) + rounding * rounding) / std::pow((i + 1) / n, 3);
+        if (i >= first && misfit <= best.misfit) best = {absolute[i], misfit};
     }
     return best;
 }
 
-IcpFit icp(const Eigen::Isometry3d& start, const Eigen::Matrix3Xd& scan, const TwistFrame& about,
+IcpFit icp(const Eigen::Isometry3d& start, const Eigen::Matrix3Xd& scan, const TwistFrame& scan_frame,
            const AlignReference& reference, const IcpOptions& options)
 {
     IcpFit fit;
     fit.T_reference_scan = start;
+    const Eigen::Vector3d& centre = scan_frame.centre;
     const double rounding =
-        kRounding * about.radius + kDoubleRounding * std::max(about.centre.norm(), (start * about.centre).norm());
-    Twist last = Twist::Zero();
-    double share = 1; // of a step that is taken
+        kFloatRounding * scan_frame.radius + kDoubleRounding * std::max(centre.norm(), (start * centre).norm());
+    Twist last_step = Twist::Zero();
+    double step_share = 1; // share of each Gauss-Newton step that is taken
     for (;; ++fit.iterations) {
-        const Eigen::Matrix3Xd at = fit.T_reference_scan * scan;
-        const Distances d = distances(at, reference);
-        const Trim trimmed = trim_of(d.closest, options, rounding);
-        fit.misfit = trimmed.misfit;
-        const std::vector<Eigen::Index> kept = judge_noise(fit, d, trimmed.cut, options, rounding);
-        fit.overlap = static_cast<double>(kept.size()) / static_cast<double>(at.cols());
+        const Eigen::Matrix3Xd points = fit.T_reference_scan * scan;
+        const FootDistances d = foot_distances(points, reference);
+        const Trim trim = trim_by_options(d.absolute, options, rounding);
+        fit.misfit = trim.misfit;
+        const std::vector<Eigen::Index> overlapping = estimate_noise(fit, d, trim.cutoff, options, rounding);
+        fit.overlap = double(overlapping.size()) / points.cols();
 
-        const TwistFrame frame{fit.T_reference_scan * about.centre, about.radius};
+        const TwistFrame frame{fit.T_reference_scan * centre, scan_frame.radius};
         fit.information.setZero();
         Twist b = Twist::Zero();
         double weights = 0;
-        for (const Eigen::Index i : kept) {
-            const double relative = d.across[i] / (kTukey * fit.sigma);
+        for (const Eigen::Index i : overlapping) {
+            const double relative = d.along_normal[i] / (geometry::kTukeyCutoff * fit.sigma);
             if (std::abs(relative) >= 1) continue;
             const double weight = std::pow(1 - relative * relative, 2);
-            const Twist g = frame.gradient(at.col(i), d.normal.col(i));
+            const Twist g = frame.gradient(points.col(i), d.normals.col(i));
             fit.information.noalias() += weight * g * g.transpose();
-            b += weight * d.across[i] * g;
+            b += weight * d.along_normal[i] * g;
             weights += weight;
         }
-        fit.least_information = kLeastSlope * kLeastSlope * weights;
-        if (fit.iterations == options.iterations || fit.converged) break;
-        const Twist x = solve_step(fit.information, b, options.held, fit.least_information);
-        // Where a foot jumps from one disc to the next, or a point across the cut, a step may lead back and forth:
-        // one that turns back and is no shorter is halved, and so are those after it.
-        if (x.dot(last) < 0 && x.norm() > last.norm() / 2) share /= 2;
-        last = x;
-        fit.T_reference_scan = straightened(frame.motion(share * x) * fit.T_reference_scan);
-        fit.converged = kept.size() >= 6 && share * x.norm() <= kStill * fit.sigma / std::sqrt(std::max(weights, 1.0));
+        fit.min_information = kMinSlope * kMinSlope * weights;
+        const bool is_last = fit.converged || fit.iterations == options.max_iterations;
+        if (fit.converged) fit.converged = lies_on_reference(d.absolute, overlapping, scan_frame.radius);
+        if (is_last) break;
+        const Twist x = solve_step(fit.information, b, options.held, fit.min_information);
+        // The steps may oscillate where a foot jumps from one disc to the next or a point across the cutoff. A step
+        // that turns back and is not much shorter than the last halves itself and all later ones.
+        if (x.dot(last_step) < 0 && x.norm() > last_step.norm() / 2) step_share /= 2;
+        last_step = x;
+        fit.T_reference_scan = orthonormalized(frame.motion(step_share * x) * fit.T_reference_scan);
+        const double tolerance = kStepToleranceSigmas * fit.sigma / std::sqrt(std::max(weights, 1.0));
+        fit.converged = step_share * x.norm() <= tolerance;
     }
     return fit;
 }
 
-} // namespace fettle
+} // namespace fettle::align

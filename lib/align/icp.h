@@ -5,50 +5,51 @@
 
 #include <optional>
 
-namespace fettle {
+namespace fettle::align {
 
 struct IcpOptions {
     HeldAxes held{};
     std::optional<double> max_distance; ///< points farther from the reference do not overlap it, mm
-    std::optional<double> overlap;      ///< share of the points that do; neither given: found anew in every step
-    int iterations = 200;
+    std::optional<double> overlap; ///< share of points that overlap; without either, trimming finds it in every step
+    int max_iterations = 200;      ///< at most
 };
 
-/// The scan on its reference.
+/// A pose of the scan on the reference.
 struct IcpFit {
     Eigen::Isometry3d T_reference_scan;
-    bool converged = false;
+    bool converged = false; ///< the steps have become short, and the scan lies on the reference
     int iterations = 0;
-    double cut = 0;     ///< points within it overlap, mm
-    double overlap = 0; ///< share of the points within it
-    double sigma = 0;   ///< robust standard deviation of the distances across the reference, mm
-    double misfit = 0;  ///< what trimming makes least: a mean square, mm², by which two poses of a scan compare
-    TwistMatrix information = TwistMatrix::Zero(); ///< sum of w g gᵀ about the scan's centroid as it lies now
-    double least_information = 0;                  ///< eigenvalues below it are made by what normals are wrong by
+    double cutoff = 0;  ///< largest distance from the reference at which a point overlaps it, mm
+    double overlap = 0; ///< share of the points within that distance
+    double sigma = 0;   ///< robust standard deviation of the distances along the normals, mm
+    double misfit = 0;  ///< objective of trimming, mm²: the mean square distance by which poses of a scan are compared
+    TwistMatrix information = TwistMatrix::Zero(); ///< Σ w g gᵀ about the scan's centroid in the final pose
+    double min_information = 0; ///< eigenvalues below it may stem from errors of the normals: undetermined
 };
 
-/// Iterative closest points, point to plane (Chen & Medioni 1992), trimmed (Chetverikov et al. 2005) and robust: of
-/// the points that overlap, those off by more than the noise are weighed down (Tukey's biweight).
-/// @param start  T_reference_scan   @param scan  3xN, mm   @param about  the scan's frame of motions
-IcpFit icp(const Eigen::Isometry3d& start, const Eigen::Matrix3Xd& scan, const TwistFrame& about,
+/// Point-to-plane ICP (Chen & Medioni 1992), trimmed (Chetverikov et al. 2005) and robust: Tukey's biweight reduces the
+/// weight of overlapping points whose distance exceeds the noise. pcl::IterativeClosestPoint takes a cloud, not a mesh,
+/// as target and does not tell which motions the points determine.
+/// @param start  T_reference_scan   @param scan  3xN, mm   @param scan_frame  twist_frame() of the scan
+IcpFit icp(const Eigen::Isometry3d& start, const Eigen::Matrix3Xd& scan, const TwistFrame& scan_frame,
            const AlignReference& reference, const IcpOptions& options);
 
-/// Distances of the scan's points from the reference: to the closest point, and across it.
-struct Distances {
-    Eigen::VectorXd closest; ///< >= 0, mm
-    Eigen::VectorXd across;  ///< along the reference's normal at the foot, mm
-    Eigen::Matrix3Xd normal; ///< there, unit
+/// Distances of the scan's points from their feet on the reference.
+struct FootDistances {
+    Eigen::VectorXd absolute;     ///< to the foot, >= 0, mm
+    Eigen::VectorXd along_normal; ///< component along the normal at the foot, mm
+    Eigen::Matrix3Xd normals;     ///< of the reference at the feet, unit
 };
 /// @param points  3xN, mm, in the reference's frame
-Distances distances(const Eigen::Matrix3Xd& points, const AlignReference& reference);
+FootDistances foot_distances(const Eigen::Matrix3Xd& points, const AlignReference& reference);
 
-/// Where a scan ends to overlap, and how badly it fits as far as that: the share x of its points whose mean square
-/// distance over x³ is least (Chetverikov et al. 2005).
+/// Overlap of a scan with its reference, estimated by trimming: the share x of the points, nearest first, that
+/// minimises their mean square distance over x³ (Chetverikov et al. 2005).
 struct Trim {
-    double cut = 0;    ///< mm
-    double misfit = 0; ///< that least value, mm²
+    double cutoff = 0; ///< largest distance within the overlap, mm
+    double misfit = 0; ///< the minimum, mm²
 };
-/// @param floor  what rounding makes of a distance of none, mm
-Trim trim(Eigen::VectorXd closest, double floor);
+/// @param absolute  distances, mm   @param rounding  that a distance of zero may have, mm
+Trim estimate_overlap(Eigen::VectorXd absolute, double rounding);
 
-} // namespace fettle
+} // namespace fettle::align

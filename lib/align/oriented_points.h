@@ -7,28 +7,29 @@
 
 #include <vector>
 
-namespace fettle {
+namespace fettle::align {
 
-/// Points of a surface, each with the direction across it.
+/// Surface points with normals, as pcl::PointNormal but in double.
 struct OrientedPoints {
     Eigen::Matrix3Xd xyz;     ///< mm, finite
     Eigen::Matrix3Xd normals; ///< unit; zero where the surface has no direction
+    bool outward = false;     ///< the normals point out of the material
 };
 
-/// The points of a cloud that are there; its normals, or where it has none, those of the planes through the nearest
-/// points, on no particular side.
-OrientedPoints oriented_points(const Cloud& cloud);
+/// The finite points of a cloud with its normals, which are taken for outward. A cloud without normals gets those of
+/// planes fitted to the nearest points, on the side of the viewpoint.
+OrientedPoints oriented_points(const cloud::Cloud& cloud);
 
-/// Points spread evenly over a mesh's facets, by a low-discrepancy sequence; none, if it has no area.
+/// Samples a mesh evenly by area with a low-discrepancy sequence; a mesh without area has no samples.
 /// @param count  20000: as many as a fine scan of a part has
-OrientedPoints oriented_points(const Mesh& mesh, Eigen::Index count = 20000);
+OrientedPoints oriented_points(const mesh::Mesh& mesh, Eigen::Index count = 20000);
 
-/// Columns of `count` points (all, if there are fewer) that cover the others as evenly as can be: each is the one
-/// farthest from those before it, the first farthest from the middle (Gonzalez 1985). A rigid motion changes nothing.
-/// @param points  3xN, finite
-std::vector<Eigen::Index> farthest_points(const Eigen::Matrix3Xd& points, Eigen::Index count);
+/// Farthest point sampling (Gonzalez 1985): each sample is the point farthest from all samples before it, the first is
+/// the point farthest from the centroid. A rigid motion of the points does not change the choice.
+/// @param points  3xN, finite   @return  columns of min(count, N) points
+std::vector<Eigen::Index> farthest_point_sample(const Eigen::Matrix3Xd& points, Eigen::Index count);
 
-/// Columns of `count` points (all, if there are fewer) evenly through their order.
-std::vector<Eigen::Index> every_nth(Eigen::Index points, Eigen::Index count);
+/// min(size, count) indices at equal steps through 0 … size - 1.
+std::vector<Eigen::Index> evenly_spaced_indices(Eigen::Index size, Eigen::Index count);
 
-} // namespace fettle
+} // namespace fettle::align

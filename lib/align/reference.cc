@@ -1,31 +1,29 @@
 #include "align/reference.h"
 
-#include "cloud/neighbours.h"
 #include "core/error.h"
+#include "geometry/point_index.h"
 #include "mesh/mesh_index.h"
 
-#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <limits>
 #include <optional>
 
-namespace fettle {
+namespace fettle::align {
 
 namespace {
 
-// A point of a cloud stands for a disc that reaches half way to its fourth neighbour: such discs cover most of a
-// surface and overlap little, so that on a curved one none stands far above the next. Which of the discs is closest is
-// decided among a few of the nearest points.
-constexpr Eigen::Index kDiscReach = 4;
-constexpr Eigen::Index kDiscs = 6;
+// Each point of a cloud represents a disc whose radius is half the distance to its fourth neighbour. Such discs cover
+// most of a surface and overlap little, so that on a curved surface the step from one disc to the next stays small.
+constexpr Eigen::Index kRadiusNeighbour = 4;
+// The closest disc is searched among the discs of this many nearest points.
+constexpr Eigen::Index kCandidateDiscs = 6;
 
-Eigen::VectorXd disc_radii(const Eigen::Matrix3Xd& xyz, const Neighbours& neighbours)
+Eigen::VectorXd disc_radii(const Eigen::Matrix3Xd& xyz, const geometry::PointIndex<3>& neighbours)
 {
     Eigen::VectorXd radii(xyz.cols());
-    tbb::parallel_for(tbb::blocked_range<Eigen::Index>(0, xyz.cols()), [&](const auto& range) {
-        for (Eigen::Index i = range.begin(); i < range.end(); ++i)
-            radii[i] = (xyz.col(neighbours.nearest(xyz.col(i), 1 + kDiscReach).back()) - xyz.col(i)).norm() / 2;
+    tbb::parallel_for(Eigen::Index{0}, xyz.cols(), [&](Eigen::Index i) {
+        radii[i] = (xyz.col(neighbours.nearest(xyz.col(i), 1 + kRadiusNeighbour).back()) - xyz.col(i)).norm() / 2;
     });
     return radii;
 }
@@ -34,11 +32,11 @@ Eigen::VectorXd disc_radii(const Eigen::Matrix3Xd& xyz, const Neighbours& neighb
 
 struct AlignReference::State {
     OrientedPoints points;
-    std::optional<Neighbours> neighbours;
+    std::optional<geometry::PointIndex<3>> neighbours;
     Eigen::VectorXd radii; ///< of the discs
-    Mesh mesh;
+    mesh::Mesh mesh;
     Eigen::Matrix3Xd facet_normals;
-    std::optional<MeshIndex> index;
+    std::optional<mesh::MeshIndex> index;
 
     Foot closest_disc(const Eigen::Vector3d& point) const;
     Foot closest_on_mesh(const Eigen::Vector3d& point) const;
@@ -47,15 +45,15 @@ struct AlignReference::State {
 AlignReference::Foot AlignReference::State::closest_disc(const Eigen::Vector3d& point) const
 {
     Foot closest;
-    double least = std::numeric_limits<double>::infinity();
-    for (const Eigen::Index i : neighbours->nearest(point, kDiscs)) {
+    double min_squared = std::numeric_limits<double>::infinity();
+    for (const Eigen::Index i : neighbours->nearest(point, kCandidateDiscs)) {
         const Eigen::Vector3d centre = points.xyz.col(i), normal = points.normals.col(i), offset = point - centre;
-        const Eigen::Vector3d along = offset - offset.dot(normal) * normal;
-        const double length = along.norm();
-        const Eigen::Vector3d foot = centre + (length > radii[i] ? radii[i] / length : 1) * along;
+        const Eigen::Vector3d tangential = offset - offset.dot(normal) * normal;
+        const double length = tangential.norm();
+        const Eigen::Vector3d foot = centre + (length > radii[i] ? radii[i] / length : 1) * tangential;
         const double squared = normal.isZero(0) ? offset.squaredNorm() : (point - foot).squaredNorm();
-        if (!(squared < least)) continue;
-        least = squared;
+        if (!(squared < min_squared)) continue;
+        min_squared = squared;
         closest = {normal.isZero(0) ? centre : foot, normal};
     }
     return closest;
@@ -67,24 +65,24 @@ AlignReference::Foot AlignReference::State::closest_on_mesh(const Eigen::Vector3
     return {foot->point, facet_normals.col(foot->triangle)};
 }
 
-AlignReference::AlignReference(const Cloud& cloud)
+AlignReference::AlignReference(const cloud::Cloud& cloud)
 {
     auto state = std::make_unique<State>();
     state->points = oriented_points(cloud);
     if (state->points.xyz.cols() < 3)
-        throw InputError("needs at least 3 points, got " + std::to_string(state->points.xyz.cols()));
+        throw core::InputError("needs at least 3 points, got " + std::to_string(state->points.xyz.cols()));
     state->neighbours.emplace(state->points.xyz);
     state->radii = disc_radii(state->points.xyz, *state->neighbours);
     state_ = std::move(state);
 }
 
-AlignReference::AlignReference(const Mesh& mesh)
+AlignReference::AlignReference(const mesh::Mesh& mesh)
 {
     auto state = std::make_unique<State>();
     state->points = oriented_points(mesh);
-    if (state->points.xyz.cols() == 0) throw InputError("none of its triangles has an area");
-    state->mesh = {mesh.vertices, distinct(mesh.triangles)};
-    state->facet_normals = triangle_normals(state->mesh);
+    if (state->points.xyz.cols() == 0) throw core::InputError("all triangles have zero area");
+    state->mesh = {mesh.vertices, mesh::unique_triangles(mesh.triangles)};
+    state->facet_normals = mesh::triangle_normals(state->mesh);
     state->index.emplace(state->mesh);
     state_ = std::move(state);
 }
@@ -98,4 +96,4 @@ AlignReference::Foot AlignReference::closest(const Eigen::Vector3d& point) const
 
 const OrientedPoints& AlignReference::points() const { return state_->points; }
 
-} // namespace fettle
+} // namespace fettle::align

@@ -1,5 +1,6 @@
 #include "align/rigid.h"
 
+#include "core/content.h"
 #include "core/decompositions.h"
 #include "core/error.h"
 #include "core/file.h"
@@ -12,24 +13,27 @@
 #include <cstdio>
 #include <ostream>
 
-namespace fettle {
+namespace fettle::align {
 
 namespace {
 
-// A matrix typed with seven digits is still a rotation; one with a scale or a shear of more is refused.
-constexpr double kBent = 1e-5;
+// Largest element of RᵀR - I. A matrix typed with seven digits still counts as a rotation, one with scale or shear does
+// not.
+constexpr double kMaxOrthogonalityError = 1e-5;
 
-Eigen::RowVector4d row_of(const Lines& lines, const std::string& source)
+Eigen::RowVector4d parse_row(const core::Lines& lines, const std::string& source)
 {
     Eigen::RowVector4d row;
-    const std::vector<std::string_view> numbers = words(lines.line());
+    const std::vector<std::string_view> numbers = core::words(lines.line());
     if (numbers.size() != 4)
-        throw InputError(source, lines.place() + ": expected 4 numbers, got " + std::to_string(numbers.size()));
-    for (std::size_t k = 0; k < 4; ++k) {
-        const std::optional<double> number = parse_number(numbers[k]);
+        throw core::InputError(source,
+                               lines.location() + ": expected 4 numbers, got " + std::to_string(numbers.size()));
+    for (int k = 0; k < 4; ++k) {
+        const std::optional<double> number = core::parse_number(numbers[k]);
         if (!number || !std::isfinite(*number))
-            throw InputError(source, lines.place() + ": expected a number, got " + in_quotes(numbers[k]));
-        row[static_cast<Eigen::Index>(k)] = *number;
+            throw core::InputError(source,
+                                   lines.location() + ": expected a number, got " + core::in_quotes(numbers[k]));
+        row[k] = *number;
     }
     return row;
 }
@@ -38,21 +42,24 @@ Eigen::RowVector4d row_of(const Lines& lines, const std::string& source)
 
 Eigen::Matrix4d read_transform(const std::string& path)
 {
-    const std::string bytes = read_whole(path), source = display_name(path);
+    const std::string bytes = core::read_file(path), source = core::display_name(path);
+    core::refuse_other_content(bytes, source, "a transform");
     Eigen::Matrix4d matrix;
     Eigen::Index rows = 0;
-    for (Lines lines(without_mark(bytes, source)); lines.next();) {
-        if (words(lines.line()).empty()) continue;
-        if (rows == 4) throw InputError(source, lines.place() + ": a transform has 4 lines, this is one more");
-        matrix.row(rows++) = row_of(lines, source);
+    for (core::Lines lines(core::strip_byte_order_mark(bytes, source)); lines.next();) {
+        if (core::words(lines.line()).empty()) continue;
+        if (rows == 4) throw core::InputError(source, lines.location() + ": a transform has only 4 lines");
+        matrix.row(rows++) = parse_row(lines, source);
     }
-    if (rows < 4) throw InputError(source, "expected 4 lines of 4 numbers, got " + std::to_string(rows));
-    if (matrix.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) throw InputError(source, "the last line must be 0 0 0 1");
+    if (rows < 4) throw core::InputError(source, "expected 4 lines of 4 numbers, got " + std::to_string(rows));
+    if (matrix.row(3) != Eigen::RowVector4d(0, 0, 0, 1))
+        throw core::InputError(source, "the last line must be 0 0 0 1");
     const Eigen::Matrix3d R = matrix.topLeftCorner<3, 3>();
-    const double bent = (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-    if (!(bent <= kBent))
-        throw InputError(source, "is no rotation: RᵀR differs from the identity by " + to_short_text(bent));
-    if (R.determinant() < 0) throw InputError(source, "mirrors: the rotation's determinant is -1");
+    const double error = (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+    if (!(error <= kMaxOrthogonalityError))
+        throw core::InputError(source,
+                               "is not a rotation: RᵀR differs from the identity by " + core::to_short_text(error));
+    if (R.determinant() < 0) throw core::InputError(source, "is a reflection: the determinant is -1");
     return matrix;
 }
 
@@ -66,20 +73,20 @@ void write_transform(std::ostream& out, const Eigen::Matrix4d& matrix)
         }
 }
 
-Cloud moved(Cloud cloud, const Eigen::Matrix4d& matrix, double mm)
+cloud::Cloud transformed(cloud::Cloud cloud, const Eigen::Matrix4d& matrix, double mm)
 {
     const auto apply = [&](const Eigen::Vector3d& p) {
-        Eigen::Vector3d to;
-        for (Eigen::Index k = 0; k < 3; ++k)
-            to[k] = ((matrix(k, 0) * p[0] + matrix(k, 1) * p[1]) + matrix(k, 2) * p[2]) + matrix(k, 3);
-        return to;
+        Eigen::Vector3d q;
+        for (int k = 0; k < 3; ++k)
+            q[k] = ((matrix(k, 0) * p[0] + matrix(k, 1) * p[1]) + matrix(k, 2) * p[2]) + matrix(k, 3);
+        return q;
     };
     for (Eigen::Index i = 0; i < cloud.size(); ++i) cloud.xyz.col(i) = mm * apply(cloud.xyz.col(i) / mm);
     const Eigen::Matrix3d R = matrix.topLeftCorner<3, 3>();
-    if (has_normals(cloud)) set_normals(cloud, R * normals(cloud));
+    if (cloud::has_normals(cloud)) cloud::set_normals(cloud, R * cloud::normals(cloud));
     cloud.view_origin = mm * apply(cloud.view_origin / mm);
-    const Eigen::Quaterniond turned = (Eigen::Quaterniond(R) * cloud.view_orientation).normalized();
-    cloud.view_orientation = turned.w() < 0 ? Eigen::Quaterniond(-turned.coeffs()) : turned; // one of two signs
+    const Eigen::Quaterniond q = (Eigen::Quaterniond(R) * cloud.view_orientation).normalized();
+    cloud.view_orientation = q.w() < 0 ? Eigen::Quaterniond(-q.coeffs()) : q; // q and -q are the same rotation
     return cloud;
 }
 
@@ -92,9 +99,10 @@ Twist TwistFrame::gradient(const Eigen::Vector3d& point, const Eigen::Vector3d& 
 
 Eigen::Isometry3d TwistFrame::motion(const Twist& x) const
 {
-    const Eigen::Vector3d turn = x.tail<3>() / radius;
+    const Eigen::Vector3d rotation = x.tail<3>() / radius;
     Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
-    if (turn.norm() > 0) motion.linear() = Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix();
+    if (rotation.norm() > 0)
+        motion.linear() = Eigen::AngleAxisd(rotation.norm(), rotation.normalized()).toRotationMatrix();
     motion.translation() = centre - motion.linear() * centre + x.head<3>();
     return motion;
 }
@@ -105,30 +113,34 @@ TwistFrame twist_frame(const Eigen::Matrix3Xd& points)
     return {centre, std::sqrt((points.colwise() - centre).colwise().squaredNorm().mean())};
 }
 
-Twist solve_step(const TwistMatrix& A, const Twist& b, const HeldAxes& held, double least)
+TwistMatrix without_held_axes(TwistMatrix A, const HeldAxes& held)
 {
-    TwistMatrix free_A = A;
-    Twist free_b = b;
-    for (Eigen::Index k = 0; k < 6; ++k)
-        if (held[static_cast<std::size_t>(k)]) {
-            free_A.row(k).setZero();
-            free_A.col(k).setZero();
-            free_b[k] = 0;
+    for (int k = 0; k < 6; ++k)
+        if (held[k]) {
+            A.row(k).setZero();
+            A.col(k).setZero();
         }
-    const SymmetricEigen<6> modes = symmetric_eigen(free_A);
+    return A;
+}
+
+Twist solve_step(const TwistMatrix& A, const Twist& b, const HeldAxes& held, double min_eigenvalue)
+{
+    Twist free_b = b;
+    for (int k = 0; k < 6; ++k)
+        if (held[k]) free_b[k] = 0;
+    const auto [values, vectors] = core::symmetric_eigen(without_held_axes(A, held));
     Twist x = Twist::Zero();
-    for (Eigen::Index k = 0; k < 6; ++k)
-        if (modes.values[k] > least) x -= modes.vectors.col(k) * (modes.vectors.col(k).dot(free_b) / modes.values[k]);
-    for (Eigen::Index k = 0; k < 6; ++k)
-        if (held[static_cast<std::size_t>(k)]) x[k] = 0; // exactly
+    for (int k = 0; k < 6; ++k)
+        if (values[k] > min_eigenvalue) x -= vectors.col(k) * (vectors.col(k).dot(free_b) / values[k]);
+    for (int k = 0; k < 6; ++k)
+        if (held[k]) x[k] = 0; // removes the rounding of the eigenvectors
     return x;
 }
 
-Eigen::Isometry3d straightened(const Eigen::Isometry3d& motion)
+Eigen::Isometry3d orthonormalized(Eigen::Isometry3d motion)
 {
-    Eigen::Isometry3d straight = motion;
-    straight.linear() = Eigen::Quaterniond(motion.linear()).normalized().toRotationMatrix();
-    return straight;
+    motion.linear() = Eigen::Quaterniond(motion.linear()).normalized().toRotationMatrix();
+    return motion;
 }
 
-} // namespace fettle
+} // namespace fettle::align

@@ -9,44 +9,48 @@
 #include <iosfwd>
 #include <string>
 
-namespace fettle {
+namespace fettle::align {
 
-/// A rigid motion as it stands in a file: p_reference = matrix · p_scan, lengths in the unit of the file.
+/// Reads a rigid transform from a text file: p_reference = matrix · p_scan, lengths in the unit of the file.
 /// @throws InputError unless it is four lines of four numbers, a rotation and a translation over 0 0 0 1
 Eigen::Matrix4d read_transform(const std::string& path);
 
-/// Four lines of four numbers with 17 digits: they read back as the same bits.
+/// Writes four lines of four numbers with 17 digits, so that they read back as the same bits.
 void write_transform(std::ostream& out, const Eigen::Matrix4d& matrix);
 
-/// The cloud with its points, normals and viewpoint moved. Row by row x' = ((m00 x + m01 y) + m02 z) + m03 in double,
-/// so that anybody who applies the matrix gets the same bits.
+/// Transforms points, normals and viewpoint of a cloud. Row by row x' = ((m00 x + m01 y) + m02 z) + m03 in double, so
+/// that whoever applies the matrix gets the same bits; pcl::transformPointCloudWithNormals fixes no order.
 /// @param matrix  in units of `mm` millimetres
-Cloud moved(Cloud cloud, const Eigen::Matrix4d& matrix, double mm);
+cloud::Cloud transformed(cloud::Cloud cloud, const Eigen::Matrix4d& matrix, double mm);
 
-/// Which components of a motion are held: shifts along x, y, z of M, turns about them.
+/// Components of a motion that are held fixed: shifts along x, y, z of M, rotations about them.
 using HeldAxes = std::array<bool, 6>;
 
 using Twist = Eigen::Matrix<double, 6, 1>;
 using TwistMatrix = Eigen::Matrix<double, 6, 6>;
 
-/// Small rigid motions about a centre, all measured in mm, so that they are of one size: shifts, and turns · radius.
+/// Coordinates of small rigid motions about a centre: the shift, then the rotation vector times `radius`. All six are
+/// in mm and of similar size.
 struct TwistFrame {
     Eigen::Vector3d centre; ///< mm
     double radius;          ///< mm
 
-    /// By how much a motion takes `point` along `direction`: g·x, to first order.
+    /// Derivative g of the displacement of `point` along `direction`: the displacement is g·x to first order.
     Twist gradient(const Eigen::Vector3d& point, const Eigen::Vector3d& direction) const;
     Eigen::Isometry3d motion(const Twist& x) const;
 };
 
-/// About the points' centroid, with their root mean square distance from it. @param points  3xN, mm
+/// Frame at the centroid of the points; its radius is their root mean square distance from it. @param points  3xN, mm
 TwistFrame twist_frame(const Eigen::Matrix3Xd& points);
 
-/// The step -A⁺b in the axes that are not held and in those of its directions that the points determine.
-/// @param A  sum of weighted g gᵀ, @param b  sum of weighted g r   @param least  eigenvalues below it say nothing
-Twist solve_step(const TwistMatrix& A, const Twist& b, const HeldAxes& held, double least);
+/// Gauss-Newton step -A⁺b, zero along held axes and along eigenvectors of A that the points do not determine.
+/// @param A  Σ w g gᵀ   @param b  Σ w g r   @param min_eigenvalue  of A, below which a direction is undetermined
+Twist solve_step(const TwistMatrix& A, const Twist& b, const HeldAxes& held, double min_eigenvalue);
 
-/// The nearest rotation in place of one that rounding has bent.
-Eigen::Isometry3d straightened(const Eigen::Isometry3d& motion);
+/// A with the rows and columns of held axes set to zero.
+TwistMatrix without_held_axes(TwistMatrix A, const HeldAxes& held);
 
-} // namespace fettle
+/// Replaces the linear part by a rotation, to remove the rounding that products accumulate.
+Eigen::Isometry3d orthonormalized(Eigen::Isometry3d motion);
+
+} // namespace fettle::align

@@ -2,37 +2,42 @@
 
 #include "belt/surfel.h"
 #include "cloud/cloud.h"
-#include "compare/statistics.h"
+#include "geometry/statistics.h"
 #include "json/document.h"
 
 #include <Eigen/Core>
 
-namespace fettle {
+namespace fettle::belt {
 
-/// Displacements from `lower` to `upper` are right, mm (Ren et al. 2006, "Grinding error assessment").
+/// Displacements from `lower` to `upper` are in tolerance, mm (Ren et al. 2006, "Grinding error assessment").
 struct ToleranceRange {
     double lower, upper;
 };
 
 enum class Assessment { gouge = -1, within = 0, undercut = 1 };
-/// NaN must not be asked about.
+/// @param displacement  mm; not NaN
 Assessment assess(double displacement, const ToleranceRange& range);
 
-/// What an assessment counts; surfels without displacement are in none of the classes.
+/// Surfels by class; `undefined` counts those without a displacement (NaN), which belong to no class.
 struct AssessmentCounts {
     Eigen::Index gouge = 0, within = 0, undercut = 0, undefined = 0;
+
+    Eigen::Index& operator[](Assessment found)
+    {
+        return found == Assessment::gouge ? gouge : found == Assessment::undercut ? undercut : within;
+    }
 };
-AssessmentCounts count(const Eigen::VectorXd& displacement, const ToleranceRange& range);
+AssessmentCounts count_assessments(const Eigen::VectorXd& displacement, const ToleranceRange& range);
 
-/// Adds error (the displacement), class (-1 gouge, 0 within, 1 undercut; NaN) and rgb: pale green within; beyond by up
-/// to the range's width bright red or violet, further dark red or dark blue.
-void set_assessment(Cloud& cloud, const Eigen::VectorXd& displacement, const ToleranceRange& range);
+/// Adds the fields error (the displacement), class (-1 gouge, 0 within, 1 undercut; NaN without displacement) and rgb:
+/// pale green within the range, bright red or violet outside it by up to its width, dark red or dark blue further out.
+void set_assessment(cloud::Cloud& cloud, const Eigen::VectorXd& displacement, const ToleranceRange& range);
 
-/// Of displacements as of errors, mm. Volumes are sums of displacement · area, as on a flat design; NaN, as areas,
-/// where the surfels do not know their areas.
-Statistics displacement_statistics(const Surfels& surfels);
+/// Statistics of the displacements taken as errors, mm. Volumes are sums of displacement · area, which is exact on a
+/// flat design. Areas and volumes are NaN if the surfels have no areas.
+geometry::Statistics displacement_statistics(const Surfels& surfels);
 
-/// The statistics, with "within" the share inside the range, and the counts.
+/// JSON report of the statistics, with "within" the share inside the range, and the counts by class.
 json::Value to_json(const Surfels& surfels, const ToleranceRange& range);
 
-} // namespace fettle
+} // namespace fettle::belt

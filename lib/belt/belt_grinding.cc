@@ -11,15 +11,15 @@
 #include <string>
 #include <utility>
 
-namespace fettle {
+namespace fettle::belt {
 
 namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-/// The pressure's force evenly over the rectangle about the cells that touch.
-MatrixXd evened(const MatrixXd& pressure)
+/// Spreads the pressure evenly over the bounding rectangle of the cells in contact; the force stays the same.
+MatrixXd spread_over_rectangle(const MatrixXd& pressure)
 {
     Index first_row = pressure.rows(), last_row = -1, first_column = pressure.cols(), last_column = -1;
     for (Index j = 0; j < pressure.cols(); ++j)
@@ -30,45 +30,47 @@ MatrixXd evened(const MatrixXd& pressure)
                 first_column = std::min(first_column, j);
                 last_column = std::max(last_column, j);
             }
-    MatrixXd even = MatrixXd::Zero(pressure.rows(), pressure.cols());
-    if (last_row < 0) return even;
-    auto box = even.block(first_row, first_column, last_row - first_row + 1, last_column - first_column + 1);
-    box.setConstant(pressure.sum() / static_cast<double>(box.size()));
-    return even;
+    MatrixXd result = MatrixXd::Zero(pressure.rows(), pressure.cols());
+    if (last_row < 0) return result;
+    auto rectangle = result.block(first_row, first_column, last_row - first_row + 1, last_column - first_column + 1);
+    rectangle.setConstant(pressure.sum() / rectangle.size());
+    return result;
 }
 
-/// Of the surfels under the wheel. @param depth  over the cells of the last contact, mm
-void add_losses(const WheelPress& press, const ContactCells& cells, const MatrixXd& depth, const Surfels& surfels,
-                const Eigen::Vector3d& up, std::size_t point, std::vector<BeltLoss>& losses)
+/// Depths that the surfels under the last contact lose at a point of the path.
+/// @param depth  normal to the tangent plane, on the cells of the contact, mm
+std::vector<SurfelRemoval> surfel_removals(const WheelContactSolver& solver, const ContactGrid& grid,
+                                           const MatrixXd& depth, const Surfels& surfels, const Eigen::Vector3d& up,
+                                           std::size_t point)
 {
-    // A surfel stands for the square about it.
-    const double side = spacing_of(press.places());
-    const SquareMeans lost_on(cells, depth, side);
-    const Eigen::Vector2d touched = press.reach().array() + side / 2;
-    const std::size_t first = losses.size();
-    std::vector<Index> under;
-    for (Index i = 0; i < press.places().cols(); ++i) {
-        if ((press.places().col(i).head<2>().cwiseAbs().array() > touched.array()).any()) continue;
-        losses.push_back({press.under()[static_cast<std::size_t>(i)], point, 0});
-        under.push_back(i);
+    // A surfel represents the square around it, whose side is the mean spacing.
+    const Eigen::Matrix3Xd& coordinates = solver.surfel_coordinates();
+    const double side = mean_spacing(coordinates);
+    const BoxAverage mean_depth(grid, depth, side);
+    const Eigen::Vector2d reach = solver.contact_extent().array() + side / 2;
+    std::vector<SurfelRemoval> removals;
+    std::vector<Index> in_contact;
+    for (Index i = 0; i < coordinates.cols(); ++i) {
+        if ((coordinates.col(i).head<2>().cwiseAbs().array() > reach.array()).any()) continue;
+        removals.push_back({solver.surfels_in_grid()[i], point, 0});
+        in_contact.push_back(i);
     }
-    constexpr std::size_t kTogether = 1024; // a share of work worth a thread
+    constexpr std::size_t kGrainSize = 1024; // surfels for one task
     using Range = tbb::blocked_range<std::size_t>;
-    tbb::parallel_for(Range(0, under.size(), kTogether), [&](const Range& range) {
-        for (std::size_t k = range.begin(); k < range.end(); ++k) {
-            BeltLoss& loss = losses[first + k];
-            loss.depth =
-                lost_on.about(press.places().col(under[k]).head<2>()) * surfels.normal.col(loss.surfel).dot(up);
-        }
+    tbb::parallel_for(Range(0, in_contact.size(), kGrainSize), [&](const Range& range) {
+        for (std::size_t k = range.begin(); k < range.end(); ++k)
+            removals[k].depth = mean_depth.mean_around(coordinates.col(in_contact[k]).head<2>()) *
+                                surfels.normal.col(removals[k].surfel).dot(up);
     });
+    return removals;
 }
 
 } // namespace
 
 BeltGrinding::BeltGrinding(Surfels& surfels, const ContactWheel& wheel, const std::vector<BeltPoint>& path,
                            const BeltOptions& options)
-    : surfels_(surfels), wheel_(wheel), path_(path), options_(options), way_(ways(path)),
-      press_(surfels, wheel, options.press)
+    : surfels_(surfels), wheel_(wheel), path_(path), options_(options), tributary_lengths_(tributary_lengths(path)),
+      solver_(surfels, wheel, options.contact)
 {
     state_.run.removed.setZero(surfels.size());
     if (options.range) state_.error = running_error(surfels.displacement, *options.range);
@@ -77,84 +79,83 @@ BeltGrinding::BeltGrinding(Surfels& surfels, const ContactWheel& wheel, const st
 BeltState BeltGrinding::state() const
 {
     BeltState state = state_;
-    state.press = press_.memory();
+    state.contact = solver_.state();
     return state;
 }
 
-void BeltGrinding::go_on(BeltState state)
+void BeltGrinding::restore(BeltState state)
 {
     state_ = std::move(state);
-    press_.remember(state_.press);
+    solver_.restore(state_.contact);
 }
 
-/// What the surfels lose, and the account of it.
-void BeltGrinding::take(const Press& pressed, const MatrixXd& depth, double duration)
+/// Lowers the surfels and records the point's results.
+void BeltGrinding::remove_material(const WheelContact& contact, const MatrixXd& depth, double duration)
 {
     BeltRun& run = state_.run;
-    if (!options_.keeps_losses) run.losses.clear();
-    const std::size_t first = run.losses.size();
-    const Eigen::Vector3d up = path_[state_.next].T_part_tool.linear().col(2);
-    add_losses(press_, pressed.cells, depth, surfels_, up, state_.next, run.losses);
-    for (std::size_t i = first; i < run.losses.size(); ++i) {
-        const BeltLoss& loss = run.losses[i];
-        const double before = surfels_.displacement[loss.surfel];
-        surfels_.displacement[loss.surfel] -= loss.depth;
-        run.removed[loss.surfel] += loss.depth;
-        if (state_.error) change(*state_.error, before, surfels_.displacement[loss.surfel]);
+    const Eigen::Vector3d up = path_[state_.next_point].T_part_tool.linear().col(2);
+    const std::vector<SurfelRemoval> removals =
+        surfel_removals(solver_, contact.grid, depth, surfels_, up, state_.next_point);
+    for (const SurfelRemoval& removal : removals) {
+        const double before = surfels_.displacement[removal.surfel];
+        surfels_.displacement[removal.surfel] -= removal.depth;
+        run.removed[removal.surfel] += removal.depth;
+        if (state_.error) state_.error->update(before, surfels_.displacement[removal.surfel]);
     }
-    const Contact& contact = pressed.contact;
-    const double volume = depth.sum() * pressed.cells.cell.prod();
+    if (options_.keep_removals) run.removals.insert(run.removals.end(), removals.begin(), removals.end());
+    const Contact& found = contact.contact;
+    const double volume = depth.sum() * contact.grid.cell_size.prod();
     run.removed_volume += volume;
-    run.work += contact.force * wheel_.belt_speed * duration;
-    run.near_edge += pressed.is_near_edge ? 1 : 0;
+    run.work += found.force * wheel_.belt_speed * duration;
+    run.near_edge += contact.is_near_edge ? 1 : 0;
     const double time = (run.trace.empty() ? 0 : run.trace.back().time) + duration;
     run.trace.push_back(
-        {time, duration, contact.force, contact.indentation, contact.pressure.maxCoeff(), pressed.area(), volume});
+        {time, duration, found.force, found.indentation, found.pressure.maxCoeff(), contact.area(), volume});
 }
 
 void BeltGrinding::step()
 {
-    const std::size_t k = state_.next;
+    const std::size_t k = state_.next_point;
     const BeltPoint& point = path_[k];
     BeltRun& run = state_.run;
-    if (point.begins_run) press_.lift();
-    if (point.is_on()) {
-        const Press* pressed = nullptr;
+    if (point.touches_down) solver_.reset();
+    if (point.is_on_part()) {
+        const WheelContact* contact = nullptr;
         try {
-            pressed = &press_.at(point.T_part_tool, point.pressing);
-        } catch (const InputError& error) {
-            throw InputError("point " + std::to_string(k), error.what());
+            contact = &solver_.solve(point.T_part_tool, point.load);
+        } catch (const core::InputError& error) {
+            throw core::InputError("point " + std::to_string(k), error.what());
         }
-        const double moving = way_[static_cast<Index>(k)] / point.feed;
-        const double cutting = moving + std::pow(point.dwell, wheel_.law.dwell);
-        const auto depth_of = [&](double p) {
-            return removed_depth(wheel_.law, p, wheel_.belt_speed, point.feed, cutting, options_.worn + run.work);
+        const double moving_time = tributary_lengths_[k] / point.feed;
+        const double cutting_time = moving_time + std::pow(point.dwell, wheel_.law.dwell_exponent);
+        const auto depth_at = [&](double p) {
+            return removed_depth(wheel_.law, p, wheel_.belt_speed, point.feed, cutting_time,
+                                 options_.prior_work + run.work);
         };
-        const MatrixXd& pressure = pressed->contact.pressure;
-        take(*pressed,
-             options_.model == BeltModel::local ? pressure.unaryExpr(depth_of) : evened(pressure).unaryExpr(depth_of),
-             moving + point.dwell);
+        const MatrixXd& pressure = contact->contact.pressure;
+        remove_material(*contact,
+                        options_.model == BeltModel::local ? pressure.unaryExpr(depth_at)
+                                                           : spread_over_rectangle(pressure).unaryExpr(depth_at),
+                        moving_time + point.dwell);
     } else {
         constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
         run.trace.push_back({run.trace.empty() ? 0 : run.trace.back().time, kNan, kNan, kNan, kNan, kNan, kNan});
     }
     if (const auto& error = state_.error)
         run.errors.push_back({error->counts.gouge, error->counts.within, error->counts.undercut, error->mean(),
-                              error->rms(), error->least});
-    ++state_.next;
+                              error->rms(), error->min});
+    ++state_.next_point;
 }
 
 BeltRun grind(Surfels& surfels, const ContactWheel& wheel, const std::vector<BeltPoint>& path,
-              const BeltOptions& options, const Progress& progress)
+              const BeltOptions& options, const core::Progress& progress)
 {
     BeltGrinding grinding(surfels, wheel, path, options);
     while (!grinding.is_done()) {
-        tell(progress, static_cast<double>(grinding.run().trace.size()) / static_cast<double>(path.size()));
+        core::report_progress(progress, grinding.progress());
         grinding.step();
     }
-    BeltRun run = grinding.run();
-    if (!options.keeps_losses) run.losses.clear();
-    return run;
+    return grinding.run();
 }
 
-} // namespace fettle
+} // namespace fettle::belt

@@ -10,95 +10,98 @@
 #include <optional>
 #include <vector>
 
-namespace fettle {
+namespace fettle::belt {
 
-/// Where the force acts: the pressure of the contact everywhere (Ren et al. 2006), or evenly over the rectangle about
-/// the contact, which is Hammann's linear global model (1998): r = C_A K_A k_t V_b / (V_w L_w) F over the width L_w.
+/// Distribution of the force: the local model takes the pressure of the contact (Ren et al. 2006); the global one
+/// spreads the force evenly over the bounding rectangle of the contact, which is Hammann's linear model (1998):
+/// r = C_A K_A k_t V_b / (V_w L_w) F over the width L_w.
 enum class BeltModel { local, global };
 
 struct BeltOptions {
-    PressOptions press;
+    WheelContactOptions contact;
     BeltModel model = BeltModel::local;
-    double worn = 0;                     ///< work of the belt before, N mm
-    bool keeps_losses = false;           ///< in BeltRun
-    std::optional<ToleranceRange> range; ///< of the errors after each point; none: they are not kept
+    double prior_work = 0;               ///< work that the belt did before this run, N mm
+    bool keep_removals = false;          ///< fill BeltRun::removals
+    std::optional<ToleranceRange> range; ///< for the errors after each point; without it BeltRun::errors stays empty
 };
 
-/// What happened at a contact point; NaN where the wheel is off the part.
+/// Contact and removal at one point of the path; NaN where the wheel is off the part.
 struct BeltTrace {
-    double time = 0; ///< since the start, at the point's end, s
+    double time = 0; ///< at the end of the point, since the start, s
     double duration = 0, force = 0, indentation = 0, peak_pressure = 0, area = 0;
-    double removed = 0; ///< mm³, by the law over the contact
+    double removed_volume = 0; ///< integral of the law's depth over the contact, mm³
 };
 
-/// What a surfel lost at one point of the path, mm along its normal.
-struct BeltLoss {
+/// Depth that one surfel loses at one point of the path: an entry of the sparse removal matrix.
+struct SurfelRemoval {
     Eigen::Index surfel;
     std::size_t point;
-    double depth;
+    double depth; ///< along the surfel's normal, mm
 };
 
-/// The errors of all surfels after a point of the path.
+/// Errors of all surfels after a point of the path.
 struct BeltError {
     Eigen::Index gouge = 0, within = 0, undercut = 0; ///< surfels
-    double mean = 0, rms = 0, least = 0;              ///< mm
+    double mean = 0, rms = 0, min = 0;                ///< mm
 };
 
-/// The account of a run.
+/// Results of a grinding run.
 struct BeltRun {
     std::vector<BeltTrace> trace;
-    Eigen::VectorXd removed;       ///< of each surfel, mm along its normal
-    double removed_volume = 0;     ///< mm³
-    double work = 0;               ///< of the belt in this run, N mm (BeltLaw)
-    Eigen::Index near_edge = 0;    ///< points whose contact is near the layer's free edge
-    std::vector<BeltLoss> losses;  ///< point by point; empty unless they are kept
-    std::vector<BeltError> errors; ///< of each point; empty unless they are kept
+    Eigen::VectorXd removed;             ///< depth that each surfel lost along its normal, mm
+    double removed_volume = 0;           ///< mm³
+    double work = 0;                     ///< that the belt did in this run, N mm (BeltLaw)
+    Eigen::Index near_edge = 0;          ///< points whose contact is near the layer's free edge
+    std::vector<SurfelRemoval> removals; ///< ordered by point; empty without BeltOptions::keep_removals
+    std::vector<BeltError> errors;       ///< one for each point; empty without BeltOptions::range
 };
 
-/// How far a run has come: all that its next point depends on, but for the surfels' displacements.
+/// Checkpoint of a run: everything that the next point depends on, except the surfels' displacements.
 struct BeltState {
-    std::size_t next = 0; ///< point of the path
+    std::size_t next_point = 0; ///< index in the path
     BeltRun run;
     std::optional<RunningError> error;
-    PressMemory press;
+    WheelContactState contact;
 };
 
-/// Grinds along a path, point by point. At each the surfels that touch lose depth along their normals by the wheel's
-/// law, in the time that half the ways to its neighbours take, and in the dwell; the others stay as they are. The law
-/// gives the depth normal to the tangent plane, so that the pressure's sum is the force's work whatever the surfels'
-/// normals (Ren et al. 2006, 4).
+/// Grinds along a path, point by point. At each point the surfels under the contact lose depth along their normals by
+/// the wheel's law; the time is that for the point's tributary length (belt_path.h) plus the dwell. The law gives the
+/// depth normal to the tangent plane, so that the integral of the pressure is the force whatever the surfels' normals
+/// are (Ren et al. 2006, 4).
 class BeltGrinding {
   public:
-    /// All but the options are kept by reference.
+    /// Keeps references to all arguments except the options.
     BeltGrinding(Surfels& surfels, const ContactWheel& wheel, const std::vector<BeltPoint>& path,
                  const BeltOptions& options);
 
-    bool is_done() const { return state_.next == path_.size(); }
-    /// The next point.
-    /// @throws InputError naming the point if nothing is under the wheel, or the contact is not found
+    bool is_done() const { return state_.next_point == path_.size(); }
+    /// Share of the points that are ground, of a path that has some.
+    double progress() const { return static_cast<double>(state_.next_point) / static_cast<double>(path_.size()); }
+    /// Grinds the next point.
+    /// @throws InputError naming the point if nothing is under the wheel, or the contact does not converge
     void step();
 
     const BeltRun& run() const { return state_.run; }
-    /// To go on from there later; the displacements are the surfels'.
+    /// Checkpoint for restore(); the caller keeps the displacements of the surfels.
     BeltState state() const;
-    /// The surfels must have the displacements of that time.
-    void go_on(BeltState state);
+    /// Continues from a checkpoint. The surfels must have the displacements that they had then.
+    void restore(BeltState state);
 
   private:
-    void take(const Press& pressed, const Eigen::MatrixXd& depth, double duration);
+    void remove_material(const WheelContact& contact, const Eigen::MatrixXd& depth, double duration);
 
     Surfels& surfels_;
     const ContactWheel& wheel_;
     const std::vector<BeltPoint>& path_;
     BeltOptions options_;
-    Eigen::VectorXd way_;
-    WheelPress press_;
+    Eigen::VectorXd tributary_lengths_; ///< of the points, mm
+    WheelContactSolver solver_;
     BeltState state_;
 };
 
-/// The whole path.
+/// Grinds the whole path.
 /// @throws InputError as BeltGrinding::step()
 BeltRun grind(Surfels& surfels, const ContactWheel& wheel, const std::vector<BeltPoint>& path,
-              const BeltOptions& options, const Progress& progress = {});
+              const BeltOptions& options, const core::Progress& progress = {});
 
-} // namespace fettle
+} // namespace fettle::belt

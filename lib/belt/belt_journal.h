@@ -1,26 +1,28 @@
 #pragma once
 
 #include "belt/belt_grinding.h"
+#include "core/progress.h"
 
 #include <functional>
 #include <string>
 
-namespace fettle {
+namespace fettle::belt {
 
-/// Where a run is kept, so that one that was killed can go on.
+/// Checkpoint file of a run, from which a killed run resumes.
 struct BeltJournal {
-    std::string file; ///< empty: it is not kept
-    double every = 5; ///< s of work, which is what is lost at most; 0: after every point
+    std::string file;    ///< empty: no checkpoints
+    double interval = 5; ///< time between checkpoints, s; 0: after every point
 };
 
-/// Called after each point, and once before the first that is ground now.
+/// Called after each point, and once before the first point that this process grinds.
 using BeltListener = std::function<void(const BeltRun& run)>;
 
-/// As grind(), but begun where the journal ends, if there is one; the journal appears whole or not at all, and says in
-/// the end that all is done. The result is that of a run that was not interrupted, to the last digit. Losses are not
-/// kept.
-/// @throws InputError as grind(); also if the journal is none, or that of other surfels, another wheel, path or options
+/// Grinds as grind() does, but resumes from the journal if it exists. The journal is replaced atomically; after the
+/// last point it holds the finished run. The result equals that of an uninterrupted run bit for bit. With a journal
+/// BeltRun::losses stays empty.
+/// @throws InputError as grind(); also if the file is not a journal, is corrupt, or its surfels, wheel, path or options
+/// differ
 BeltRun grind(Surfels& surfels, const ContactWheel& wheel, const std::vector<BeltPoint>& path, BeltOptions options,
-              const BeltJournal& journal, const BeltListener& listener, const Progress& progress = {});
+              const BeltJournal& journal, const BeltListener& listener, const core::Progress& progress = {});
 
-} // namespace fettle
+} // namespace fettle::belt

@@ -8,33 +8,33 @@
 #include <optional>
 #include <vector>
 
-namespace fettle {
+namespace fettle::belt {
 
-/// A contact point of a belt path.
+/// A contact point of a belt path. A run is the part of the path from a touchdown to the next lift-off.
 struct BeltPoint {
     Eigen::Isometry3d T_part_tool; ///< NaN: the wheel is off the part; the next point begins another run
-    Pressing pressing;
-    double feed = 0;         ///< V_w, mm/s
-    double dwell = 0;        ///< time that it stands there, besides, s
-    bool begins_run = false; ///< the wheel came down here, and not along the way from the point before
+    ContactLoad load;
+    double feed = 0;           ///< V_w, mm/s
+    double dwell = 0;          ///< time at rest on this point, in addition to the motion, s
+    bool touches_down = false; ///< the wheel came down here and did not slide here from the point before
 
-    bool is_on() const { return T_part_tool.matrix().allFinite(); }
+    bool is_on_part() const { return T_part_tool.matrix().allFinite(); }
 };
 
-/// What holds for points of a path that do not say it themselves.
+/// Values for points of a path that has no fields for them.
 struct BeltSettings {
-    std::optional<double> force, depth; ///< N, mm; not both; also for points that do say it
+    std::optional<double> force, depth; ///< N, mm; not both; they override the fields of the path
     double feed = 20;                   ///< mm/s
-    double dwell = 0;                   ///< at both ends of each run, besides, s
+    double dwell = 0;                   ///< at both ends of each run, in addition to the field dwell, s
 };
 
-/// From poses and the fields force, depth, feed, dwell and pass: another pass is another run. Where there is a depth it
-/// holds, else the force: one of them may be NaN.
-/// @throws InputError if nothing says how the wheel is pressed on, or a value is not positive
-std::vector<BeltPoint> belt_path(const Cloud& path, const BeltSettings& settings);
+/// A belt path from poses and the fields force, depth, feed, dwell and pass. Each pass is a run of its own. At each
+/// point the depth holds if there is one, otherwise the force; the other of the two may be NaN.
+/// @throws InputError if a point has neither force nor depth, or a value is not positive
+std::vector<BeltPoint> belt_path(const cloud::Cloud& path, const BeltSettings& settings);
 
-/// The way that belongs to each point: half the ways to both its neighbours of the same run, mm; 0 where the wheel is
-/// off the part.
-Eigen::VectorXd ways(const std::vector<BeltPoint>& path);
+/// Tributary length of each point, mm: half the distance to each of its neighbours in the same run; 0 where the wheel
+/// is off the part.
+Eigen::VectorXd tributary_lengths(const std::vector<BeltPoint>& path);
 
-} // namespace fettle
+} // namespace fettle::belt

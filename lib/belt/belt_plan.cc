@@ -2,11 +2,12 @@
 
 #include "core/bounded_least_squares.h"
 #include "core/error.h"
+#include "geometry/quantiles.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace fettle {
+namespace fettle::belt {
 
 namespace {
 
@@ -14,166 +15,166 @@ using Eigen::ArrayXd;
 using Eigen::Index;
 using Eigen::VectorXd;
 
-/// What is chosen at each point: the force, or the inverse feed, which removal is proportional to.
-class Choice {
+/// The unknown of each point, which removal is proportional to: the force, or the inverse feed.
+class Variable {
   public:
-    Choice(bool by_force, double least, double most) : by_force_(by_force)
+    Variable(bool by_force, double min, double max)
+        : by_force_(by_force), min_(by_force ? min : 1 / max), max_(by_force ? max : 1 / min)
     {
-        least_ = by_force ? least : 1 / most;
-        most_ = by_force ? most : 1 / least;
     }
-    double least() const { return least_; }
-    double most() const { return most_; }
-    double of(const BeltPoint& point) const { return by_force_ ? point.pressing.amount : 1 / point.feed; }
-    void set(BeltPoint& point, double value) const { (by_force_ ? point.pressing.amount : point.feed) = shown(value); }
-    double shown(double value) const { return by_force_ ? value : 1 / value; }
+    double min() const { return min_; }
+    double max() const { return max_; }
+    double value(const BeltPoint& point) const { return by_force_ ? point.load.value : 1 / point.feed; }
+    void set(BeltPoint& point, double value) const { (by_force_ ? point.load.value : point.feed) = setting(value); }
+    /// Force or feed for a value of the unknown.
+    double setting(double value) const { return by_force_ ? value : 1 / value; }
 
   private:
     bool by_force_;
-    double least_, most_;
+    double min_, max_;
 };
 
-using Which = Eigen::Array<bool, Eigen::Dynamic, 1>; ///< surfels
+using Mask = Eigen::Array<bool, Eigen::Dynamic, 1>; ///< surfels
 
-struct Ground {
-    VectorXd left; ///< displacement - wanted; 0 where it is not known
+struct Simulation {
+    VectorXd residual; ///< displacement - target; 0 where the displacement is NaN
     BeltRun run;
 };
 
-Which reached(const VectorXd& removed)
+/// Surfels that lose at least a quarter of the median removal.
+Mask reached_surfels(const VectorXd& removed)
 {
-    constexpr double kShare = 0.25;
+    constexpr double kMinShareOfMedian = 0.25;
     std::vector<double> depths;
     for (const double depth : removed)
         if (depth > 0) depths.push_back(depth);
-    if (depths.empty()) throw InputError("the belt takes nothing along the path");
-    const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
-    std::nth_element(depths.begin(), middle, depths.end());
-    return removed.array() >= kShare * *middle;
+    if (depths.empty()) throw core::InputError("the belt removes nothing along the path");
+    return removed.array() >= kMinShareOfMedian * geometry::median(depths);
 }
 
 class Planner {
   public:
     Planner(const Surfels& surfels, const ContactWheel& wheel, const BeltPlanOptions& options)
-        : surfels_(surfels), wheel_(wheel), options_(options), choice_(options.by_force, options.least, options.most)
+        : surfels_(surfels), wheel_(wheel), options_(options), variable_(options.by_force, options.min, options.max)
     {
-        options_.belt.keeps_losses = true;
+        options_.belt.keep_removals = true;
     }
 
-    Ground ground(const std::vector<BeltPoint>& path) const
+    Simulation simulate(const std::vector<BeltPoint>& path) const
     {
         Surfels surfels = surfels_;
-        Ground result;
+        Simulation result;
         result.run = grind(surfels, wheel_, path, options_.belt);
-        result.left = left(surfels);
+        result.residual = residual(surfels);
         return result;
     }
 
-    VectorXd left(const Surfels& surfels) const
+    VectorXd residual(const Surfels& surfels) const
     {
-        return surfels.displacement.array().isNaN().select(0, surfels.displacement.array() - options_.wanted);
+        return surfels.displacement.array().isNaN().select(0,
+                                                           surfels.displacement.array() - options_.target_displacement);
     }
 
-    /// All points alike; then as much more of it, or less, as is best.
-    Ground find_constant(std::vector<BeltPoint>& path) const
+    /// Finds the best value that is the same at all points, by scaling it with the least-squares factor of the removal.
+    Simulation find_constant(std::vector<BeltPoint>& path) const
     {
-        constexpr int kMost = 6;
-        constexpr double kEnough = 0.005;
-        double value = 0, count = 0;
-        for (const BeltPoint& point : path)
-            if (point.is_on()) {
-                value += choice_.of(point);
-                ++count;
-            }
-        value = std::clamp(value / count, choice_.least(), choice_.most());
-        for (int round = 0;; ++round) {
+        constexpr int kMaxIterations = 6;
+        constexpr double kRelativeTolerance = 0.005;
+        double value = std::clamp(mean_value(path), variable_.min(), variable_.max());
+        for (int iteration = 1;; ++iteration) {
             for (BeltPoint& point : path)
-                if (point.is_on()) choice_.set(point, value);
-            Ground now = ground(path);
-            const VectorXd& removed = now.run.removed;
-            if (removed.isZero(0)) return now;
-            const double more = removed.dot(now.left) / removed.squaredNorm();
-            const double next = std::clamp(value * std::max(1 + more, 0.1), choice_.least(), choice_.most());
-            if (round + 1 == kMost || std::abs(next / value - 1) < kEnough) return now;
+                if (point.is_on_part()) variable_.set(point, value);
+            Simulation current = simulate(path);
+            const VectorXd& removed = current.run.removed;
+            if (removed.isZero(0)) return current;
+            const double correction = removed.dot(current.residual) / removed.squaredNorm();
+            const double next = std::clamp(value * std::max(1 + correction, 0.1), variable_.min(), variable_.max());
+            if (iteration == kMaxIterations || std::abs(next / value - 1) < kRelativeTolerance) return current;
             value = next;
         }
     }
 
-    /// What more each point (column) would take from each surfel (row) reached, for each time its choice; of now.
-    std::vector<Eigen::Triplet<double>> slopes(const std::vector<BeltPoint>& path, const Ground& now,
-                                               const Which& counts) const
+    /// Derivative of each reached surfel's removal (row) by the relative change of each point's variable (column).
+    std::vector<Eigen::Triplet<double>> jacobian(const std::vector<BeltPoint>& path, const Simulation& current,
+                                                 const Mask& reached) const
     {
         std::vector<Eigen::Triplet<double>> entries;
-        const auto add = [&](const BeltLoss& loss, double factor) {
-            if (counts[loss.surfel])
-                entries.emplace_back(static_cast<int>(loss.surfel), static_cast<int>(loss.point), factor * loss.depth);
+        const auto add = [&](const SurfelRemoval& loss, double factor) {
+            if (reached[loss.surfel]) entries.emplace_back(loss.surfel, loss.point, factor * loss.depth);
         };
         if (!options_.by_force) {
             const ArrayXd exponent = exponents_of_inverse_feed(path);
-            for (const BeltLoss& loss : now.run.losses) add(loss, exponent[static_cast<Index>(loss.point)]);
+            for (const SurfelRemoval& loss : current.run.removals) add(loss, exponent[loss.point]);
             return entries;
         }
-        // With the force the contact grows, too.
-        constexpr double kStep = 0.1;
-        std::vector<BeltPoint> harder = path;
-        for (BeltPoint& point : harder) point.pressing.amount *= 1 + kStep;
-        for (const BeltLoss& loss : ground(harder).run.losses) add(loss, 1 / kStep);
-        for (const BeltLoss& loss : now.run.losses) add(loss, -1 / kStep);
+        // A finite difference, since the contact area grows with the force.
+        constexpr double kRelativeStep = 0.1;
+        std::vector<BeltPoint> stepped = path;
+        for (BeltPoint& point : stepped) point.load.value *= 1 + kRelativeStep;
+        for (const SurfelRemoval& loss : simulate(stepped).run.removals) add(loss, 1 / kRelativeStep);
+        for (const SurfelRemoval& loss : current.run.removals) add(loss, -1 / kRelativeStep);
         return entries;
     }
 
-    /// The best choices by what the last run took.
-    std::vector<BeltPoint> improved(const std::vector<BeltPoint>& path, const Ground& last, const Which& counts) const
+    /// Solves the problem linearised about the last simulation.
+    std::vector<BeltPoint> improved(const std::vector<BeltPoint>& path, const Simulation& last,
+                                    const Mask& reached) const
     {
-        // Unknown is the choice over that of now, of each point that is on the part: 1 changes nothing. Where the wheel
-        // is off the part there is nothing to choose: any number will do there, and no row asks for it.
-        const auto count = static_cast<Index>(path.size());
-        VectorXd now = VectorXd::Constant(count, choice_.least());
-        double sum = 0, on = 0;
-        for (Index k = 0; k < count; ++k) {
-            if (!path[static_cast<std::size_t>(k)].is_on()) continue;
-            now[k] = choice_.of(path[static_cast<std::size_t>(k)]);
-            sum += now[k];
-            ++on;
-        }
-        const double mean = sum / on;
-        std::vector<Eigen::Triplet<double>> entries = slopes(path, last, counts);
-        VectorXd b = counts.select(last.left.array(), 0);
-        for (const Eigen::Triplet<double>& slope : entries) b[slope.row()] += slope.value();
+        // The unknowns are the variables relative to their current values: 1 changes nothing. Points off the part have
+        // an empty column, so their value is arbitrary.
+        const Index count = std::ssize(path);
+        VectorXd current = VectorXd::Constant(count, variable_.min());
+        for (Index k = 0; k < count; ++k)
+            if (path[k].is_on_part()) current[k] = variable_.value(path[k]);
+        const double mean = mean_value(path);
+        std::vector<Eigen::Triplet<double>> entries = jacobian(path, last, reached);
+        VectorXd b = reached.select(last.residual.array(), 0);
+        for (const Eigen::Triplet<double>& entry : entries) b[entry.row()] += entry.value();
         Index row = b.size();
         for (Index k = 1; k < count; ++k) {
-            if (path[static_cast<std::size_t>(k)].begins_run || !path[static_cast<std::size_t>(k)].is_on()) continue;
-            entries.emplace_back(static_cast<int>(row), static_cast<int>(k - 1),
-                                 options_.smoothness * now[k - 1] / mean);
-            entries.emplace_back(static_cast<int>(row), static_cast<int>(k), -options_.smoothness * now[k] / mean);
+            if (path[k].touches_down || !path[k].is_on_part()) continue;
+            entries.emplace_back(row, k - 1, options_.smoothness * current[k - 1] / mean);
+            entries.emplace_back(row, k, -options_.smoothness * current[k] / mean);
             ++row;
         }
         Eigen::SparseMatrix<double> A(row, count);
         A.setFromTriplets(entries.begin(), entries.end());
         b.conservativeResizeLike(VectorXd::Zero(row));
-        constexpr double kEnough = 1e-4; // of the slope: the next simulation changes more
-        const VectorXd best = bounded_least_squares(A, b, choice_.least() * now.cwiseInverse(),
-                                                    choice_.most() * now.cwiseInverse(), VectorXd::Ones(count), kEnough)
+        constexpr double kGradientTolerance = 1e-4; // relative; the next simulation changes more
+        const VectorXd best = core::bounded_least_squares(A, b, variable_.min() * current.cwiseInverse(),
+                                                          variable_.max() * current.cwiseInverse(),
+                                                          VectorXd::Ones(count), kGradientTolerance)
                                   .x;
-        std::vector<BeltPoint> better = path;
+        std::vector<BeltPoint> result = path;
         for (Index k = 0; k < count; ++k)
-            if (better[static_cast<std::size_t>(k)].is_on())
-                choice_.set(better[static_cast<std::size_t>(k)],
-                            std::clamp(best[k] * now[k], choice_.least(), choice_.most()));
-        return better;
+            if (result[k].is_on_part())
+                variable_.set(result[k], std::clamp(best[k] * current[k], variable_.min(), variable_.max()));
+        return result;
     }
 
-    const Choice& choice() const { return choice_; }
+    const Variable& variable() const { return variable_; }
 
   private:
-    /// Depth goes with this power of the inverse feed, at each point: less where the wheel stands besides.
+    /// Mean over the points on the part.
+    double mean_value(const std::vector<BeltPoint>& path) const
+    {
+        double sum = 0, count = 0;
+        for (const BeltPoint& point : path) {
+            if (!point.is_on_part()) continue;
+            sum += variable_.value(point);
+            ++count;
+        }
+        return sum / count;
+    }
+
+    /// Exponent of depth over inverse feed at each point. Dwell reduces it, since it removes at any feed.
     ArrayXd exponents_of_inverse_feed(const std::vector<BeltPoint>& path) const
     {
-        ArrayXd result = ways(path);
+        ArrayXd result = tributary_lengths(path);
         for (std::size_t k = 0; k < path.size(); ++k) {
-            double& at = result[static_cast<Index>(k)];
-            const double moving = at / path[k].feed, standing = std::pow(path[k].dwell, wheel_.law.dwell);
-            at = moving > 0 ? moving / (moving + standing) - wheel_.law.feed : 0;
+            const double moving = result[k] / path[k].feed,
+                         standing = std::pow(path[k].dwell, wheel_.law.dwell_exponent);
+            result[k] = moving > 0 ? moving / (moving + standing) - wheel_.law.feed_exponent : 0;
         }
         return result;
     }
@@ -181,56 +182,57 @@ class Planner {
     const Surfels& surfels_;
     const ContactWheel& wheel_;
     BeltPlanOptions options_;
-    Choice choice_;
+    Variable variable_;
 };
 
-double rms(const VectorXd& left, const Which& counts)
+double rms(const VectorXd& residual, const Mask& reached)
 {
-    return std::sqrt(counts.select(left.array().square(), 0).sum() / static_cast<double>(counts.count()));
+    return std::sqrt(reached.select(residual.array().square(), 0).sum() / reached.count());
 }
 
 } // namespace
 
 BeltPlan plan_belt(const Surfels& surfels, const ContactWheel& wheel, const std::vector<BeltPoint>& path,
-                   const BeltPlanOptions& options, const Progress& progress)
+                   const BeltPlanOptions& options, const core::Progress& progress)
 {
     for (std::size_t k = 0; k < path.size(); ++k)
-        if (options.by_force && path[k].is_on() && !path[k].pressing.by_force)
-            throw InputError("point " + std::to_string(k) + ": is pressed to a depth, so no force can be chosen");
-    if (std::none_of(path.begin(), path.end(), [](const BeltPoint& p) { return p.is_on(); }))
-        throw InputError("no point is on the part");
-    constexpr double kEnough = 0.01; // of the error: less is not worth another simulation
+        if (options.by_force && path[k].is_on_part() && !path[k].load.by_force)
+            throw core::InputError("point " + std::to_string(k) +
+                                   ": is pressed to a depth, so no force can be planned");
+    if (std::none_of(path.begin(), path.end(), [](const BeltPoint& p) { return p.is_on_part(); }))
+        throw core::InputError("no point is on the part");
+    constexpr double kMinDecrease = 0.01; // of the error; less is not worth another simulation
     const Planner planner(surfels, wheel, options);
     BeltPlan plan;
-    std::vector<BeltPoint> now = path;
-    Ground ground = planner.find_constant(now);
-    const Which counts = reached(ground.run.removed) && !surfels.displacement.array().isNaN();
-    plan.touched = (ground.run.removed.array() > 0).count();
-    plan.reached = counts.count();
-    plan.rms_before = rms(planner.left(surfels), counts);
-    plan.rms_planned = plan.rms_constant = rms(ground.left, counts);
-    plan.time_planned = plan.time_constant = ground.run.trace.back().time;
-    plan.path = now;
-    for (const BeltPoint& point : now)
-        if (point.is_on()) plan.constant = planner.choice().shown(planner.choice().of(point));
-    while (plan.rounds < options.rounds && !plan.converged) {
-        tell(progress, static_cast<double>(plan.rounds++) / options.rounds);
-        now = planner.improved(now, ground, counts);
-        ground = planner.ground(now);
-        const double error = rms(ground.left, counts);
-        plan.converged = error > (1 - kEnough) * plan.rms_planned;
+    std::vector<BeltPoint> current = path;
+    Simulation simulation = planner.find_constant(current);
+    const Mask reached = reached_surfels(simulation.run.removed) && !surfels.displacement.array().isNaN();
+    plan.touched = (simulation.run.removed.array() > 0).count();
+    plan.reached = reached.count();
+    plan.rms_before = rms(planner.residual(surfels), reached);
+    plan.rms_planned = plan.rms_constant = rms(simulation.residual, reached);
+    plan.time_planned = plan.time_constant = simulation.run.trace.back().time;
+    plan.path = current;
+    for (const BeltPoint& point : current)
+        if (point.is_on_part()) plan.constant = planner.variable().setting(planner.variable().value(point));
+    while (plan.rounds < options.max_rounds && !plan.converged) {
+        core::report_progress(progress, static_cast<double>(plan.rounds++) / options.max_rounds);
+        current = planner.improved(current, simulation, reached);
+        simulation = planner.simulate(current);
+        const double error = rms(simulation.residual, reached);
+        plan.converged = error > (1 - kMinDecrease) * plan.rms_planned;
         if (error > plan.rms_planned) break;
         plan.rms_planned = error;
-        plan.time_planned = ground.run.trace.back().time;
-        plan.path = now;
+        plan.time_planned = simulation.run.trace.back().time;
+        plan.path = current;
     }
     for (const BeltPoint& point : plan.path)
-        if (point.is_on()) {
-            const double value = planner.choice().shown(planner.choice().of(point));
-            plan.at_least += value <= options.least * (1 + 1e-12) ? 1 : 0;
-            plan.at_most += value >= options.most * (1 - 1e-12) ? 1 : 0;
+        if (point.is_on_part()) {
+            const double setting = planner.variable().setting(planner.variable().value(point));
+            plan.at_min += setting <= options.min * (1 + 1e-12) ? 1 : 0;
+            plan.at_max += setting >= options.max * (1 - 1e-12) ? 1 : 0;
         }
     return plan;
 }
 
-} // namespace fettle
+} // namespace fettle::belt

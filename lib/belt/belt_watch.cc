@@ -8,31 +8,33 @@
 #include <fcntl.h>
 #include <sstream>
 
-namespace fettle {
+namespace fettle::belt {
 
-BeltWatch::BeltWatch(const std::string& path, double mm)
-    : path_(path), mm_(mm), file_(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666))
+BeltErrorLog::BeltErrorLog(const std::string& path, double mm_per_unit)
+    : path_(path), mm_per_unit_(mm_per_unit),
+      file_(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666))
 {
     append("point,t,gouge,within,undercut,mean,rms,min\n");
 }
 
-void BeltWatch::write(const BeltRun& run)
+void BeltErrorLog::write(const BeltRun& run)
 {
     std::ostringstream out;
-    for (; lines_ < run.errors.size(); ++lines_) {
-        const BeltError& error = run.errors[lines_];
-        out << lines_ << ',' << to_short_text(run.trace[lines_].time) << ',' << error.gouge << ',' << error.within
-            << ',' << error.undercut;
-        for (const double length : {error.mean, error.rms, error.least}) out << ',' << to_short_text(length / mm_);
+    for (; lines_written_ < run.errors.size(); ++lines_written_) {
+        const BeltError& error = run.errors[lines_written_];
+        out << lines_written_ << ',' << core::to_short_text(run.trace[lines_written_].time) << ',' << error.gouge << ','
+            << error.within << ',' << error.undercut;
+        for (const double length : {error.mean, error.rms, error.min})
+            out << ',' << core::to_short_text(length / mm_per_unit_);
         out << '\n';
     }
     append(out.str());
 }
 
-void BeltWatch::append(const std::string& lines)
+void BeltErrorLog::append(const std::string& lines)
 {
-    if (!file_.is_open() || !write_all(file_, lines))
-        throw InputError(path_, std::string("cannot write: ") + std::strerror(errno));
+    if (!file_.is_open() || !core::write_all(file_, lines))
+        throw core::InputError(path_, std::string("cannot write: ") + std::strerror(errno));
 }
 
-} // namespace fettle
+} // namespace fettle::belt

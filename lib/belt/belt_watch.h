@@ -5,16 +5,16 @@
 
 #include <string>
 
-namespace fettle {
+namespace fettle::belt {
 
-/// A table of the errors after each contact point, as CSV: a line appears as soon as its point is done.
-class BeltWatch {
+/// CSV table of the errors after each contact point. A line is written as soon as its point is done.
+class BeltErrorLog {
   public:
-    /// @param mm  of the lengths' unit
+    /// @param mm_per_unit  of the lengths in the table
     /// @throws InputError if it cannot be written
-    BeltWatch(const std::string& path, double mm);
+    BeltErrorLog(const std::string& path, double mm_per_unit);
 
-    /// The lines of points that are not there yet.
+    /// Appends the lines of the points done since the last call.
     /// @throws InputError if they cannot be written
     void write(const BeltRun& run);
 
@@ -22,9 +22,9 @@ class BeltWatch {
     void append(const std::string& lines);
 
     std::string path_;
-    double mm_;
-    Descriptor file_;
-    std::size_t lines_ = 0;
+    double mm_per_unit_;
+    core::FileDescriptor file_;
+    std::size_t lines_written_ = 0;
 };
 
-} // namespace fettle
+} // namespace fettle::belt

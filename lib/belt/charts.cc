@@ -8,10 +8,10 @@
 #include <numbers>
 #include <numeric>
 
-namespace fettle {
+namespace fettle::belt {
 namespace {
 
-// In its plane a chart is stretched by no more than √2, and a ball takes about as many as a cube has sides.
+// At 45° a chart is stretched by at most √2 in its plane, and a sphere needs about six charts, as a cube has faces.
 const double kChartCone = std::cos(std::numbers::pi / 4);
 
 struct Seed {
@@ -21,30 +21,31 @@ struct Seed {
 
 bool has_direction(const Eigen::Matrix3Xd& normals, int i) { return normals.col(i).squaredNorm() > 0; }
 
-class Growth {
+/// Region growing over the elements that no chart has yet.
+class RegionGrowing {
   public:
-    Growth(const Adjacency& adjacency, const Eigen::Matrix3Xd& normals)
-        : adjacency_(adjacency), normals_(normals), taken_(static_cast<std::size_t>(normals.cols()), false)
+    RegionGrowing(const Adjacency& adjacency, const Eigen::Matrix3Xd& normals)
+        : adjacency_(adjacency), normals_(normals), has_chart_(normals.cols(), false)
     {
     }
 
-    /// What a seed reaches of the elements that no chart has yet; does nothing if it is taken itself.
+    /// Grows a chart from the seed; does nothing if the seed has a chart already.
     void grow(const Seed& seed)
     {
-        if (taken_[static_cast<std::size_t>(seed.element)]) return;
+        if (has_chart_[seed.element]) return;
         Chart chart;
         chart.axes.col(2) = seed.outward;
-        taken_[static_cast<std::size_t>(seed.element)] = true;
+        has_chart_[seed.element] = true;
         chart.elements.push_back(seed.element);
         for (std::size_t k = 0; k < chart.elements.size(); ++k) {
-            const auto i = static_cast<std::size_t>(chart.elements[k]);
-            if (has_direction(normals_, chart.elements[k]))
-                chart.steepest = std::min(chart.steepest, normals_.col(chart.elements[k]).dot(seed.outward));
+            const int i = chart.elements[k];
+            if (has_direction(normals_, i))
+                chart.min_cosine = std::min(chart.min_cosine, normals_.col(i).dot(seed.outward));
             for (int at = adjacency_.first[i]; at < adjacency_.first[i + 1]; ++at) {
-                const int j = adjacency_.next[static_cast<std::size_t>(at)];
-                if (taken_[static_cast<std::size_t>(j)]) continue;
+                const int j = adjacency_.next[at];
+                if (has_chart_[j]) continue;
                 if (has_direction(normals_, j) && normals_.col(j).dot(seed.outward) < kChartCone) continue;
-                taken_[static_cast<std::size_t>(j)] = true;
+                has_chart_[j] = true;
                 chart.elements.push_back(j);
             }
         }
@@ -52,7 +53,7 @@ class Growth {
         charts.push_back(std::move(chart));
     }
 
-    /// Charts for what is left, elements with a direction first.
+    /// Grows charts until all elements have one; elements with a direction are seeds first.
     void grow_rest()
     {
         for (const bool directed : {true, false})
@@ -66,11 +67,11 @@ class Growth {
   private:
     const Adjacency& adjacency_;
     const Eigen::Matrix3Xd& normals_;
-    std::vector<bool> taken_;
+    std::vector<bool> has_chart_;
 };
 
-/// The convex hull, counter-clockwise, without points along its edges (Andrew 1979).
-std::vector<Eigen::Vector2d> hull_of(std::vector<Eigen::Vector2d> points)
+/// Convex hull, counter-clockwise, without collinear points (Andrew 1979).
+std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> points)
 {
     std::sort(points.begin(), points.end(),
               [](const auto& a, const auto& b) { return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y(); });
@@ -94,23 +95,21 @@ std::vector<Eigen::Vector2d> hull_of(std::vector<Eigen::Vector2d> points)
     return hull;
 }
 
-/// Sides of the points' box along a direction and across it.
-Eigen::Vector2d box_along(const std::vector<Eigen::Vector2d>& points, const Eigen::Vector2d& along)
+/// Sides of the points' bounding rectangle along a direction and across it.
+Eigen::Vector2d bounding_sides(const std::vector<Eigen::Vector2d>& points, const Eigen::Vector2d& along)
 {
-    Eigen::Array2d least = Eigen::Array2d::Constant(std::numeric_limits<double>::infinity()), most = -least;
-    for (const Eigen::Vector2d& p : points) {
-        const Eigen::Array2d place(along.dot(p), along.x() * p.y() - along.y() * p.x());
-        least = least.min(place);
-        most = most.max(place);
-    }
-    return most - least;
+    Eigen::AlignedBox2d box;
+    for (const Eigen::Vector2d& p : points)
+        box.extend(Eigen::Vector2d(along.dot(p), along.x() * p.y() - along.y() * p.x()));
+    return box.sizes();
 }
 
 } // namespace
 
-std::vector<Chart> charts_of(const Adjacency& adjacency, const Eigen::Matrix3Xd& normals, const Eigen::VectorXd& areas)
+std::vector<Chart> segment_into_charts(const Adjacency& adjacency, const Eigen::Matrix3Xd& normals,
+                                       const Eigen::VectorXd& areas)
 {
-    Growth first(adjacency, normals);
+    RegionGrowing first(adjacency, normals);
     first.grow_rest();
     std::vector<double> sizes;
     std::vector<Seed> seeds;
@@ -126,38 +125,38 @@ std::vector<Chart> charts_of(const Adjacency& adjacency, const Eigen::Matrix3Xd&
             mean.normalize();
         else
             mean = chart.axes.col(2);
-        const auto middle = std::max_element(chart.elements.begin(), chart.elements.end(), [&](int a, int b) {
+        const auto seed = std::max_element(chart.elements.begin(), chart.elements.end(), [&](int a, int b) {
             return normals.col(a).dot(mean) < normals.col(b).dot(mean);
         });
-        seeds.push_back({*middle, mean});
+        seeds.push_back({*seed, mean});
     }
     std::vector<std::size_t> order(seeds.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return sizes[a] > sizes[b]; });
-    Growth second(adjacency, normals);
+    RegionGrowing second(adjacency, normals);
     for (const std::size_t i : order) second.grow(seeds[i]);
     second.grow_rest();
     return std::move(second.charts);
 }
 
-Eigen::Matrix3d rectangle_axes(const Eigen::Matrix3Xd& points, const Eigen::Vector3d& outward)
+Eigen::Matrix3d min_rectangle_axes(const Eigen::Matrix3Xd& points, const Eigen::Vector3d& outward)
 {
     Eigen::Matrix3d axes;
     axes.col(2) = outward;
     axes.col(0) = outward.unitOrthogonal();
     axes.col(1) = outward.cross(axes.col(0));
-    std::vector<Eigen::Vector2d> seen;
-    for (Eigen::Index i = 0; i < points.cols(); ++i) seen.emplace_back(axes.leftCols<2>().transpose() * points.col(i));
-    const std::vector<Eigen::Vector2d> hull = hull_of(std::move(seen));
-    double least = std::numeric_limits<double>::infinity();
+    std::vector<Eigen::Vector2d> projected;
+    for (const auto point : points.colwise()) projected.emplace_back(axes.leftCols<2>().transpose() * point);
+    const std::vector<Eigen::Vector2d> hull = convex_hull(std::move(projected));
+    double min_area = std::numeric_limits<double>::infinity();
     Eigen::Vector2d best = Eigen::Vector2d::UnitX();
     for (std::size_t i = 0; i < hull.size(); ++i) {
         Eigen::Vector2d along = hull[(i + 1) % hull.size()] - hull[i];
         if (!(along.norm() > 0)) continue;
         along.normalize();
-        const Eigen::Vector2d sides = box_along(hull, along);
-        if (!(sides.prod() < least)) continue;
-        least = sides.prod();
+        const Eigen::Vector2d sides = bounding_sides(hull, along);
+        if (!(sides.prod() < min_area)) continue;
+        min_area = sides.prod();
         best = sides[0] >= sides[1] ? along : Eigen::Vector2d(-along.y(), along.x());
     }
     axes.col(0) = (axes.leftCols<2>() * best).eval().normalized();
@@ -165,4 +164,4 @@ Eigen::Matrix3d rectangle_axes(const Eigen::Matrix3Xd& points, const Eigen::Vect
     return axes;
 }
 
-} // namespace fettle
+} // namespace fettle::belt

@@ -7,58 +7,54 @@
 
 #include <vector>
 
-namespace fettle {
+namespace fettle::belt {
 
-/// A rectangle of cells about the origin of the tool frame, along its x (rows) and y (columns).
-struct ContactCells {
-    Eigen::Vector2d cell = Eigen::Vector2d::Zero(); ///< sides, mm
+/// A rectangular grid centred on the origin of the tool frame, with rows of cells along its x and columns along its y.
+struct ContactGrid {
+    Eigen::Vector2d cell_size = Eigen::Vector2d::Zero(); ///< size of a cell, mm
     Eigen::Index rows = 0, columns = 0;
 
-    Eigen::Vector2d half() const
+    Eigen::Vector2d half_size() const { return {cell_size.x() * rows / 2, cell_size.y() * columns / 2}; }
+    /// Centre of a cell, mm.
+    Eigen::Vector2d cell_center(Eigen::Index row, Eigen::Index column) const
     {
-        return cell.cwiseProduct(Eigen::Vector2d(static_cast<double>(rows), static_cast<double>(columns))) / 2;
-    }
-    Eigen::Vector2d middle(Eigen::Index row, Eigen::Index column) const
-    {
-        return {(static_cast<double>(2 * row + 1 - rows) / 2) * cell.x(),
-                (static_cast<double>(2 * column + 1 - columns) / 2) * cell.y()};
+        return {static_cast<double>(2 * row + 1 - rows) / 2 * cell_size.x(),
+                static_cast<double>(2 * column + 1 - columns) / 2 * cell_size.y()};
     }
 };
 
-/// How far the surfels looked at go, over the cells: neighbours for the cells at the border.
-inline constexpr double kBeside = 1.2;
+/// Surfels are used up to this multiple of the grid's half size, so that border cells have neighbours on all sides.
+inline constexpr double kGridMargin = 1.2;
 
-/// Where surfels are in the tool frame: x, y, and their height over the plane through the contact point, mm. Only those
-/// that face the tool, are over the cells or near, and not deeper than `deepest` below the plane.
-/// @param which  surfels to look at; those that are not among them go
-Eigen::Matrix3Xd facing(const Surfels& surfels, std::vector<Eigen::Index>& which, const Eigen::Isometry3d& T_part_tool,
-                        const ContactCells& cells, double deepest);
+/// Selects the surfels that face the tool, lie within the grid's margin, and at most `max_depth` (mm) below the tangent
+/// plane through the contact point. @return  their coordinates in the tool frame, 3xN, mm
+/// @param indices  of candidates; keeps those selected
+Eigen::Matrix3Xd select_facing_surfels(const Surfels& surfels, std::vector<Eigen::Index>& indices,
+                                       const Eigen::Isometry3d& T_part_tool, const ContactGrid& grid, double max_depth);
 
-/// The least box around points, as seen along z.
-Eigen::AlignedBox2d box_over(const Eigen::Matrix3Xd& points);
+/// Mean distance between neighbours of evenly spread points, projected along z, mm.
+double mean_spacing(const Eigen::Matrix3Xd& points);
 
-/// The mean distance between neighbours of points that are spread evenly, mm.
-double spacing_of(const Eigen::Matrix3Xd& points);
-
-/// Means of a field over squares, the field the same all over a cell and 0 beyond them all: squares that share out the
-/// plane share out the field's integral, however small the cells are.
-class SquareMeans {
+/// Averages of a cell-wise constant field over axis-parallel squares, from a summed-area table (Crow 1984). The field
+/// is 0 outside the grid. Squares that tile the plane preserve the integral of the field, however small the cells are.
+class BoxAverage {
   public:
-    /// @param side  of the squares, mm; along the tool frame's axes
-    SquareMeans(const ContactCells& cells, const Eigen::MatrixXd& field, double side);
-    double about(const Eigen::Vector2d& place) const;
+    /// @param side  of the squares, mm
+    BoxAverage(const ContactGrid& grid, const Eigen::MatrixXd& field, double side);
+    /// @param center  of the square, tool frame, mm
+    double mean_around(const Eigen::Vector2d& center) const;
 
   private:
-    /// A place along one axis: in which cell, and the part of it that is before the place.
-    struct Along {
+    /// A coordinate along one axis: its cell, and the fraction of the cell below it.
+    struct CellCoordinate {
         Eigen::Index cell;
-        double part;
+        double fraction;
     };
-    double until(const Along& x, const Along& y) const;
+    double integral_to(const CellCoordinate& x, const CellCoordinate& y) const;
 
-    ContactCells cells_;
-    Eigen::Array2d cells_each_, middle_, half_; ///< cells a mm; half of the grid and of a square, in cells
-    Eigen::MatrixXd sums_;                      ///< of all cells before each corner
+    ContactGrid grid_;
+    Eigen::Array2d cells_per_mm_, half_grid_, half_side_; ///< the latter two in cells
+    Eigen::MatrixXd sums_;                                ///< summed-area table at the corners of the cells
 };
 
-} // namespace fettle
+} // namespace fettle::belt

@@ -1,75 +1,89 @@
 #include "belt/contact_wheel.h"
 
+#include "core/text.h"
 #include "units/units.h"
 #include "json/document.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
-namespace fettle {
+namespace fettle::belt {
 
 namespace {
 
 using json::Reader;
 
-ElasticLayer layer_in(Reader reader, double mm)
+// The largest wheel, mm: as the largest cell of a robot, 100 m.
+constexpr double kMaxWheelLength = 1e5;
+// Radius and width over the thickness of the layer. Cells of the contact's grid are a share of the radius and the
+// width, and the layer's influence on one is integrated in steps of a thickness: a thinner layer would take minutes. Of
+// real wheels the ratio is 100 at most.
+constexpr double kMaxLengthThicknesses = 1e4;
+
+double read_length(Reader& reader, const std::string& key, double mm)
+{
+    return mm * reader.number(key, {0, kMaxWheelLength / mm, false, true});
+}
+
+ElasticLayer read_layer(Reader reader, double mm)
 {
     ElasticLayer layer;
-    layer.thickness = mm * reader.number("thickness", Range::positive());
-    layer.poisson = reader.number("poisson", Range::between(0, 0.5));
+    layer.thickness = mm * reader.number("thickness", core::Range::positive());
+    layer.poisson = reader.number("poisson", core::Range::between(0, 0.5));
     if (reader.has("young") == reader.has("shore_a"))
         reader.refuse("young", "a layer has either \"young\" or \"shore_a\"");
-    layer.young = reader.has("young") ? reader.number("young", Range::positive())
-                                      : young_of_shore(reader.number("shore_a", Range::between(20, 95)));
-    reader.done();
+    layer.young = reader.has("young") ? reader.number("young", core::Range::positive())
+                                      : young_from_shore_a(reader.number("shore_a", core::Range::between(20, 95)));
+    reader.reject_unknown_keys();
     return layer;
 }
 
-ContactWheel::Serration serration_in(Reader reader, double mm)
+ContactWheel::Serration read_serration(Reader reader, double mm)
 {
     ContactWheel::Serration serration;
-    serration.pitch = mm * reader.number("pitch", Range::positive());
-    serration.land = mm * reader.number("land", Range::positive());
-    serration.depth = mm * reader.number("depth", Range::positive());
-    serration.angle = reader.number_or("angle_deg", 0, Range::between(-90, 90)) * std::numbers::pi / 180;
+    serration.pitch = mm * reader.number("pitch", core::Range::positive());
+    serration.land = mm * reader.number("land", core::Range::positive());
+    serration.depth = mm * reader.number("depth", core::Range::positive());
+    serration.angle = reader.number_or("angle_deg", 0, core::Range::between(-90, 90)) * std::numbers::pi / 180;
     if (serration.land > serration.pitch) reader.refuse("land", "is wider than the pitch");
-    reader.done();
+    reader.reject_unknown_keys();
     return serration;
 }
 
-BeltLaw law_in(Reader reader, double mm)
+BeltLaw read_law(Reader reader, double mm)
 {
     BeltLaw law;
-    const bool is_general = reader.choice("type", {"preston", "power"}) == "power";
-    law.coefficient = reader.number("coefficient", Range::positive());
-    if (is_general) {
-        law.pressure = reader.number("pressure_exponent", Range::between(0, 5));
-        law.speed = reader.number("speed_exponent", Range::between(-5, 5));
-        law.feed = reader.number_or("feed_exponent", 0, Range::between(-5, 5));
-        law.dwell = reader.number_or("dwell_exponent", 1, Range::between(0, 5));
-        law.threshold = reader.number_or("threshold", 0, Range::at_least(0));
-        law.coefficient *= std::pow(mm, 1 - law.speed - law.feed);
+    const bool is_power_law = reader.choice("type", {"preston", "power"}) == "power";
+    law.coefficient = reader.number("coefficient", core::Range::positive());
+    if (is_power_law) {
+        law.pressure_exponent = reader.number("pressure_exponent", core::Range::between(0, 5));
+        law.speed_exponent = reader.number("speed_exponent", core::Range::between(-5, 5));
+        law.feed_exponent = reader.number_or("feed_exponent", 0, core::Range::between(-5, 5));
+        law.dwell_exponent = reader.number_or("dwell_exponent", 1, core::Range::between(0, 5));
+        law.threshold = reader.number_or("threshold", 0, core::Range::at_least(0));
+        law.coefficient *= std::pow(mm, 1 - law.speed_exponent - law.feed_exponent);
     }
-    law.wear_work = kJoule * reader.number_or("wear_work", 0, Range::at_least(0));
-    reader.done();
+    law.wear_work = kNewtonMmPerJoule * reader.number_or("wear_work", 0, core::Range::at_least(0));
+    reader.reject_unknown_keys();
     return law;
 }
 
 } // namespace
 
-double removed_depth(const BeltLaw& law, double p, double belt_speed, double feed, double duration, double worn)
+double removed_depth(const BeltLaw& law, double p, double belt_speed, double feed, double duration, double prior_work)
 {
     if (!(p > law.threshold)) return 0;
-    const double sharpness = law.wear_work > 0 ? std::exp(-worn / law.wear_work) : 1;
-    return law.coefficient * std::pow(p - law.threshold, law.pressure) * std::pow(belt_speed, law.speed) *
-           std::pow(feed, law.feed) * sharpness * duration;
+    const double sharpness = law.wear_work > 0 ? std::exp(-prior_work / law.wear_work) : 1;
+    return law.coefficient * std::pow(p - law.threshold, law.pressure_exponent) *
+           std::pow(belt_speed, law.speed_exponent) * std::pow(feed, law.feed_exponent) * sharpness * duration;
 }
 
-double young_of_shore(double shore_a)
+double young_from_shore_a(double shore_a)
 {
-    constexpr double kUnit = 0.0981; // kgf/cm² in MPa
-    return kUnit * (56 + 7.66 * shore_a) / (0.137505 * (254 - 2.54 * shore_a));
+    constexpr double kMpaPerKgfCm2 = 0.0981;
+    return kMpaPerKgfCm2 * (56 + 7.66 * shore_a) / (0.137505 * (254 - 2.54 * shore_a));
 }
 
 ContactWheel read_contact_wheel(const std::string& path)
@@ -77,35 +91,42 @@ ContactWheel read_contact_wheel(const std::string& path)
     Reader reader = Reader::open(path);
     reader.expect_kind("wheel");
     Reader units = reader.object("units");
-    const double mm = mm_per(parse_length_unit(units.choice("length", {"mm", "in", "m"})));
+    const double mm = units::mm_per(units::parse_length_unit(units.choice("length", {"mm", "in", "m"})));
     units.choice("stress", {"MPa"});
-    units.done();
+    units.reject_unknown_keys();
     ContactWheel wheel;
-    wheel.radius = mm * reader.number("radius", Range::positive());
-    wheel.width = mm * reader.number("width", Range::positive());
-    wheel.crown_radius = mm * reader.number_or("crown_radius", 0, Range::at_least(0));
+    wheel.radius = read_length(reader, "radius", mm);
+    wheel.width = read_length(reader, "width", mm);
+    wheel.crown_radius = mm * reader.number_or("crown_radius", 0, core::Range::at_least(0));
     if (wheel.crown_radius > 0 && wheel.crown_radius < wheel.width / 2)
         reader.refuse("crown_radius", "is less than half the width");
-    wheel.layer = layer_in(reader.object("layer"), mm);
-    if (wheel.layer.thickness >= wheel.radius) reader.refuse("layer.thickness", "leaves no hub");
-    if (auto serration = reader.object_or_none("serration")) wheel.serration = serration_in(*serration, mm);
-    wheel.belt_speed = mm * reader.number("belt_speed", Range::positive());
-    wheel.law = law_in(reader.object("law"), mm);
-    reader.done();
+    wheel.layer = read_layer(reader.object("layer"), mm);
+    if (wheel.layer.thickness >= wheel.radius)
+        reader.refuse("layer.thickness", "is not less than the radius of the wheel");
+    if (wheel.layer.thickness * kMaxLengthThicknesses < std::max(wheel.radius, wheel.width))
+        reader.refuse("layer.thickness", "is less than " + core::to_short_text(1 / kMaxLengthThicknesses) +
+                                             " of the radius or the width, got " +
+                                             core::to_short_text(wheel.layer.thickness / mm));
+    if (auto serration = reader.optional_object("serration")) wheel.serration = read_serration(*serration, mm);
+    wheel.belt_speed = mm * reader.number("belt_speed", core::Range::positive());
+    wheel.law = read_law(reader.object("law"), mm);
+    reader.reject_unknown_keys();
     return wheel;
 }
 
-double profile(const ContactWheel& wheel, double x, double y)
+double wheel_profile(const ContactWheel& wheel, double x, double y)
 {
     if (std::abs(y) > wheel.width / 2 || std::abs(x) >= wheel.radius) return std::numeric_limits<double>::infinity();
-    const auto arc = [](double radius, double at) { return at * at / (radius + std::sqrt(radius * radius - at * at)); };
-    double z = arc(wheel.radius, x) + (wheel.crown_radius > 0 ? arc(wheel.crown_radius, y) : 0);
+    const auto arc_height = [](double radius, double t) {
+        return t * t / (radius + std::sqrt(radius * radius - t * t));
+    };
+    double z = arc_height(wheel.radius, x) + (wheel.crown_radius > 0 ? arc_height(wheel.crown_radius, y) : 0);
     const ContactWheel::Serration& grooves = wheel.serration;
     if (grooves.pitch > 0) {
-        const double across = (x * std::cos(grooves.angle) + y * std::sin(grooves.angle)) / grooves.pitch;
-        if ((across - std::floor(across)) * grooves.pitch >= grooves.land) z += grooves.depth;
+        const double pitches = (x * std::cos(grooves.angle) + y * std::sin(grooves.angle)) / grooves.pitch;
+        if ((pitches - std::floor(pitches)) * grooves.pitch >= grooves.land) z += grooves.depth;
     }
     return z;
 }
 
-} // namespace fettle
+} // namespace fettle::belt

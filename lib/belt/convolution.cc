@@ -4,28 +4,26 @@
 
 #include <cstdlib>
 
-namespace fettle {
+namespace fettle::belt {
 
-using Eigen::Index;
-
-/// OpenCV's rows are Eigen's columns.
-struct Convolution::Work {
-    Index rows, columns;
-    cv::Mat spectrum; ///< of the influence, over the number of cells: CCS-packed
+/// OpenCV matrices are row-major, so that their rows are Eigen's columns.
+struct Convolution::Buffers {
+    int rows, columns;
+    cv::Mat spectrum; ///< of the influence divided by the number of cells, CCS-packed
     cv::Mat padded, transformed;
 };
 
-Convolution::Convolution(const Eigen::MatrixXd& influence) : work_(std::make_unique<Work>())
+Convolution::Convolution(const Eigen::MatrixXd& influence) : buffers_(std::make_unique<Buffers>())
 {
-    Work& w = *work_;
+    Buffers& w = *buffers_;
     w.rows = influence.rows();
     w.columns = influence.cols();
-    const int across = cv::getOptimalDFTSize(static_cast<int>(2 * w.rows));
-    const int along = cv::getOptimalDFTSize(static_cast<int>(2 * w.columns));
-    w.padded = cv::Mat::zeros(along, across, CV_64F);
-    for (Index j = 1 - w.columns; j < w.columns; ++j)
-        for (Index i = 1 - w.rows; i < w.rows; ++i)
-            w.padded.at<double>(static_cast<int>(j < 0 ? j + along : j), static_cast<int>(i < 0 ? i + across : i)) =
+    const int padded_rows = cv::getOptimalDFTSize(2 * w.rows);
+    const int padded_columns = cv::getOptimalDFTSize(2 * w.columns);
+    w.padded = cv::Mat::zeros(padded_columns, padded_rows, CV_64F);
+    for (int j = 1 - w.columns; j < w.columns; ++j)
+        for (int i = 1 - w.rows; i < w.rows; ++i)
+            w.padded.at<double>(j < 0 ? j + padded_columns : j, i < 0 ? i + padded_rows : i) =
                 influence(std::abs(i), std::abs(j));
     cv::dft(w.padded, w.spectrum, cv::DFT_SCALE);
     w.padded.setTo(0);
@@ -36,15 +34,14 @@ Convolution::Convolution(Convolution&&) noexcept = default;
 
 void Convolution::operator()(const Eigen::MatrixXd& pressure, Eigen::MatrixXd& displacement) const
 {
-    Work& w = *work_;
-    const int rows = static_cast<int>(w.rows), columns = static_cast<int>(w.columns);
+    Buffers& w = *buffers_;
     w.padded.setTo(0);
-    for (int j = 0; j < columns; ++j) Eigen::VectorXd::Map(w.padded.ptr<double>(j), rows) = pressure.col(j);
-    cv::dft(w.padded, w.transformed, 0, columns);
+    for (int j = 0; j < w.columns; ++j) Eigen::VectorXd::Map(w.padded.ptr<double>(j), w.rows) = pressure.col(j);
+    cv::dft(w.padded, w.transformed, 0, w.columns);
     cv::mulSpectrums(w.transformed, w.spectrum, w.transformed, 0);
-    cv::dft(w.transformed, w.padded, cv::DFT_INVERSE | cv::DFT_REAL_OUTPUT, columns);
-    displacement.resize(rows, columns);
-    for (int j = 0; j < columns; ++j) displacement.col(j) = Eigen::VectorXd::Map(w.padded.ptr<double>(j), rows);
+    cv::dft(w.transformed, w.padded, cv::DFT_INVERSE | cv::DFT_REAL_OUTPUT, w.columns);
+    displacement.resize(w.rows, w.columns);
+    for (int j = 0; j < w.columns; ++j) displacement.col(j) = Eigen::VectorXd::Map(w.padded.ptr<double>(j), w.rows);
 }
 
-} // namespace fettle
+} // namespace fettle::belt

@@ -4,9 +4,9 @@
 
 #include <memory>
 
-namespace fettle {
+namespace fettle::belt {
 
-/// Sums over a grid that surrounds itself with nothing: displacement(i, j) = Σ influence(|i - k|, |j - l|) pressure(k,
+/// Linear (zero-padded) convolution with an even kernel: displacement(i, j) = Σ influence(|i - k|, |j - l|) pressure(k,
 /// l), by Fourier transforms on a grid of at least twice the size.
 class Convolution {
   public:
@@ -14,12 +14,12 @@ class Convolution {
     ~Convolution();
     Convolution(Convolution&&) noexcept;
 
-    /// Both of the influence's size.
+    /// Both matrices have the size of the influence matrix.
     void operator()(const Eigen::MatrixXd& pressure, Eigen::MatrixXd& displacement) const;
 
   private:
-    struct Work;
-    std::unique_ptr<Work> work_;
+    struct Buffers;
+    std::unique_ptr<Buffers> buffers_;
 };
 
-} // namespace fettle
+} // namespace fettle::belt

@@ -7,17 +7,18 @@
 
 #include <vector>
 
-namespace fettle {
+namespace fettle::belt {
 
-/// A mesh as a smooth surface with sharp edges. Half-edge 3 f + k leads from corner k of facet f to the next.
+/// A half-edge mesh that represents a piecewise smooth surface with sharp edges. Half-edge 3 f + k runs from corner k
+/// of facet f to the next corner; the same number denotes the corner.
 struct DesignMesh {
-    ReferenceMesh reference;
+    compare::ReferenceMesh reference;
     Eigen::Matrix3Xd facet_normals;  ///< unit; zero for a facet without area
     Eigen::VectorXd areas;           ///< of the facets, mm²
-    Eigen::Matrix3Xd corner_normals; ///< column 3 f + k: unit, of the smooth surface at corner k of facet f
-    std::vector<int> twins;          ///< of half-edges; -1: none, the surface ends there or more than two facets meet
-    std::vector<bool> sharp;         ///< half-edges without twin, or where the normals turn by more than an angle
-    Adjacency adjacency;             ///< of facets over edges that are not sharp
+    Eigen::Matrix3Xd corner_normals; ///< column 3 f + k: unit normal of the smooth surface at that corner
+    std::vector<int> twins;          ///< opposite half-edges; -1: none, at a border or where more than two facets meet
+    std::vector<bool> sharp; ///< half-edges without a twin, or with more than the sharp angle between the facets
+    Adjacency adjacency;     ///< of facets across edges that are not sharp
 
     Eigen::Vector3d corner(int half_edge) const
     {
@@ -25,11 +26,10 @@ struct DesignMesh {
     }
 };
 
-/// @param angle  rad; between two normals, more is an edge
-DesignMesh design_mesh(Mesh mesh, double angle);
+/// @param sharp_angle  between the normals of two facets, rad: above it their edge is sharp
+DesignMesh design_mesh(mesh::Mesh mesh, double sharp_angle);
 
-/// Around the boundaries of its smooth pieces: closed loops of sharp half-edges, each following the one before around
-/// their vertex, with the piece on the left.
+/// Boundaries of the smooth pieces: closed loops of consecutive sharp half-edges, with the piece on their left.
 std::vector<std::vector<int>> sharp_loops(const DesignMesh& design);
 
-} // namespace fettle
+} // namespace fettle::belt

@@ -1,6 +1,7 @@
 #include "belt/edges.h"
 
-#include "cloud/neighbours.h"
+#include "belt/sampling.h"
+#include "geometry/point_index.h"
 #include "mesh/mesh_index.h"
 
 #include <tbb/parallel_for.h>
@@ -9,25 +10,25 @@
 #include <cmath>
 #include <limits>
 
-namespace fettle {
+namespace fettle::belt {
 namespace {
 
-// A surfel that lands on its neighbour does so to rounding, relative to e.
-constexpr double kLanding = 1e-6;
+// Surfels closer than this coincide, relative to e: more than rounding.
+constexpr double kCoincidenceTolerance = 1e-6;
 
-/// Distances from the beginning of a curve of a length at which there are surfels.
-std::vector<double> places_along(double length, double spacing, double e)
+/// Arc lengths of the surfels on a curve of a given length.
+std::vector<double> surfel_distances(double length, double spacing, double e)
 {
-    const double steps = std::max(1.0, std::ceil(length / spacing - kLanding));
+    const double steps = std::max(1.0, std::ceil(length / spacing - kCoincidenceTolerance));
     const double L = length / steps;
-    const auto n = static_cast<int>(std::floor(L / e + kLanding));
-    std::vector<double> places;
+    const auto n = static_cast<int>(std::floor(L / e + kCoincidenceTolerance));
+    std::vector<double> distances;
     for (int k = 0; k < static_cast<int>(steps); ++k) {
-        places.push_back(k * L);
+        distances.push_back(k * L);
         for (int i = 1; i <= n; ++i)
-            if (std::abs(i * e - L) > kLanding * e) places.push_back(k * L + i * e);
+            if (std::abs(i * e - L) > kCoincidenceTolerance * e) distances.push_back(k * L + i * e);
     }
-    return places;
+    return distances;
 }
 
 void append_curve(std::vector<Surfel>& surfels, const EdgeCurve& curve, double e)
@@ -36,60 +37,58 @@ void append_curve(std::vector<Surfel>& surfels, const EdgeCurve& curve, double e
     Eigen::VectorXd along = Eigen::VectorXd::Zero(last + 1);
     for (Eigen::Index i = 1; i <= last; ++i)
         along[i] = along[i - 1] + (curve.points.col(i) - curve.points.col(i - 1)).norm();
-    if (!(along[last] > kLanding * e)) return; // a side drawn together to a point
+    if (!(along[last] > kCoincidenceTolerance * e)) return; // a side that is collapsed to a point
+    check_surfel_count(double(surfels.size()) + along[last] / curve.spacing + along[last] / e, curve.patch);
     Eigen::Index piece = 0;
-    for (const double place : places_along(along[last], curve.spacing, e)) {
-        while (piece + 2 <= last && along[piece + 1] <= place) ++piece;
-        const double share = std::min((place - along[piece]) / (along[piece + 1] - along[piece]), 1.0);
-        const auto between = [&](const auto& columns) {
-            return ((1 - share) * columns.col(piece) + share * columns.col(piece + 1)).eval();
+    for (const double distance : surfel_distances(along[last], curve.spacing, e)) {
+        while (piece + 2 <= last && along[piece + 1] <= distance) ++piece;
+        const double fraction = std::min((distance - along[piece]) / (along[piece + 1] - along[piece]), 1.0);
+        const auto interpolate = [&](const auto& columns) {
+            return ((1 - fraction) * columns.col(piece) + fraction * columns.col(piece + 1)).eval();
         };
-        const Eigen::Vector3d normal = between(curve.normals);
+        const Eigen::Vector3d normal = interpolate(curve.normals);
         if (!(normal.norm() > 0)) continue; // on a facet without area
-        surfels.push_back({between(curve.points), normal.normalized(), between(curve.uv), e, curve.patch});
+        surfels.push_back({interpolate(curve.points), normal.normalized(), interpolate(curve.uv), e, curve.patch});
     }
 }
 
-/// The curves as a mesh of needles.
-Mesh needles_of(const std::vector<EdgeCurve>& curves)
+/// The segments of the curves as a mesh of degenerate triangles, for MeshIndex.
+mesh::Mesh needle_mesh(const std::vector<EdgeCurve>& curves)
 {
-    Eigen::Index points = 0, pieces = 0;
+    Eigen::Index points = 0, segments = 0;
     for (const EdgeCurve& curve : curves) {
         if (curve.smooth) continue;
         points += curve.points.cols();
-        pieces += curve.points.cols() - 1;
+        segments += curve.points.cols() - 1;
     }
-    Mesh mesh{Eigen::Matrix3Xd(3, points), Eigen::Matrix3Xi(3, pieces)};
-    Eigen::Index point = 0, piece = 0;
+    mesh::Mesh mesh{Eigen::Matrix3Xd(3, points), Eigen::Matrix3Xi(3, segments)};
+    Eigen::Index point = 0, segment = 0;
     for (const EdgeCurve& curve : curves) {
         if (curve.smooth) continue;
         mesh.vertices.middleCols(point, curve.points.cols()) = curve.points;
         for (Eigen::Index i = 1; i < curve.points.cols(); ++i) {
             const auto b = static_cast<int>(point + i);
-            mesh.triangles.col(piece++) << b - 1, b, b;
+            mesh.triangles.col(segment++) << b - 1, b, b;
         }
         point += curve.points.cols();
     }
     return mesh;
 }
 
-/// Gives the areas of surfels that go to the nearest ones on the curves, of their patches if these are near.
-void hand_on_areas(const std::vector<Surfel>& gone, std::vector<Surfel>& surfels, std::size_t first_on_curve)
+/// Adds the areas of removed surfels to the nearest ones on the curves, of the same patch if one is near.
+void transfer_areas(const std::vector<Surfel>& removed, std::vector<Surfel>& surfels, std::size_t first_on_curve)
 {
     if (first_on_curve == surfels.size()) return;
-    Eigen::Matrix3Xd places(3, static_cast<Eigen::Index>(surfels.size() - first_on_curve));
-    for (Eigen::Index i = 0; i < places.cols(); ++i)
-        places.col(i) = surfels[first_on_curve + static_cast<std::size_t>(i)].position;
-    const Neighbours neighbours(places);
-    constexpr Eigen::Index kLookedAt = 8; // where some patches meet
-    for (const Surfel& surfel : gone) {
-        const std::vector<Eigen::Index> near = neighbours.nearest(surfel.position, kLookedAt);
-        const auto on_curve = [&](Eigen::Index i) -> Surfel& {
-            return surfels[first_on_curve + static_cast<std::size_t>(i)];
-        };
-        const auto same =
-            std::find_if(near.begin(), near.end(), [&](Eigen::Index i) { return on_curve(i).patch == surfel.patch; });
-        on_curve(same != near.end() ? *same : near.front()).area += surfel.area;
+    Eigen::Matrix3Xd positions(3, surfels.size() - first_on_curve);
+    for (Eigen::Index i = 0; i < positions.cols(); ++i) positions.col(i) = surfels[first_on_curve + i].position;
+    const geometry::PointIndex<3> neighbours(positions);
+    constexpr Eigen::Index kCandidates = 8; // several patches may meet
+    for (const Surfel& surfel : removed) {
+        const std::vector<Eigen::Index> near = neighbours.nearest(surfel.position, kCandidates);
+        const auto same_patch = std::find_if(near.begin(), near.end(), [&](Eigen::Index i) {
+            return surfels[first_on_curve + i].patch == surfel.patch;
+        });
+        surfels[first_on_curve + (same_patch != near.end() ? *same_patch : near.front())].area += surfel.area;
     }
 }
 
@@ -97,12 +96,12 @@ void hand_on_areas(const std::vector<Surfel>& gone, std::vector<Surfel>& surfels
 
 Surfels to_surfels(const std::vector<Surfel>& list)
 {
-    const auto size = static_cast<Eigen::Index>(list.size());
+    const Eigen::Index size = std::ssize(list);
     Surfels surfels{Eigen::Matrix3Xd(3, size),   Eigen::Matrix3Xd(3, size), Eigen::VectorXd(size),
                     Eigen::VectorXd::Zero(size), Eigen::Matrix2Xd(2, size), Eigen::VectorXi(size),
                     Eigen::VectorXd(size)};
     for (Eigen::Index i = 0; i < size; ++i) {
-        const Surfel& surfel = list[static_cast<std::size_t>(i)];
+        const Surfel& surfel = list[i];
         surfels.position.col(i) = surfel.position;
         surfels.normal.col(i) = surfel.normal;
         surfels.uv.col(i) = surfel.uv;
@@ -113,36 +112,36 @@ Surfels to_surfels(const std::vector<Surfel>& list)
     return surfels;
 }
 
-EdgeCounts resample_boundaries(std::vector<Surfel>& inside, const std::vector<EdgeCurve>& curves, double e)
+EdgeCounts resample_boundaries(std::vector<Surfel>& surfels, const std::vector<EdgeCurve>& curves, double e)
 {
     EdgeCounts counts;
-    std::vector<double> distances(inside.size(), std::numeric_limits<double>::infinity());
-    const Mesh needles = needles_of(curves);
+    std::vector<double> distances(surfels.size(), std::numeric_limits<double>::infinity());
+    const mesh::Mesh needles = needle_mesh(curves);
     if (needles.triangles.cols() > 0) {
-        const MeshIndex index(needles);
-        tbb::parallel_for(std::size_t{0}, inside.size(), [&](std::size_t i) {
-            const auto foot = index.closest(inside[i].position, std::max(inside[i].radius, e));
-            if (foot) distances[i] = (foot->point - inside[i].position).norm();
+        const mesh::MeshIndex index(needles);
+        tbb::parallel_for(std::size_t{0}, surfels.size(), [&](std::size_t i) {
+            const auto foot = index.closest(surfels[i].position, std::max(surfels[i].radius, e));
+            if (foot) distances[i] = (foot->point - surfels[i].position).norm();
         });
     }
-    std::vector<Surfel> surfels, gone;
-    surfels.reserve(inside.size());
-    for (std::size_t i = 0; i < inside.size(); ++i) {
-        if (distances[i] < e / 2 * (1 - kLanding)) {
-            gone.push_back(inside[i]);
+    std::vector<Surfel> kept, removed;
+    kept.reserve(surfels.size());
+    for (std::size_t i = 0; i < surfels.size(); ++i) {
+        if (distances[i] < e / 2 * (1 - kCoincidenceTolerance)) {
+            removed.push_back(surfels[i]);
             continue;
         }
-        surfels.push_back(inside[i]);
-        if (distances[i] >= inside[i].radius) continue;
-        surfels.back().radius = distances[i];
+        kept.push_back(surfels[i]);
+        if (distances[i] >= surfels[i].radius) continue;
+        kept.back().radius = distances[i];
         ++counts.shrunk;
     }
-    const std::size_t before = surfels.size();
-    for (const EdgeCurve& curve : curves) append_curve(surfels, curve, curve.smooth ? curve.spacing : e);
-    counts.on_edges = static_cast<Eigen::Index>(surfels.size() - before);
-    hand_on_areas(gone, surfels, before);
-    inside = std::move(surfels);
+    const std::size_t first_on_curve = kept.size();
+    for (const EdgeCurve& curve : curves) append_curve(kept, curve, curve.smooth ? curve.spacing : e);
+    counts.on_edges = kept.size() - first_on_curve;
+    transfer_areas(removed, kept, first_on_curve);
+    surfels = std::move(kept);
     return counts;
 }
 
-} // namespace fettle
+} // namespace fettle::belt

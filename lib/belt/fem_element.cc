@@ -4,24 +4,24 @@
 
 #include <cmath>
 
-namespace fettle {
+namespace fettle::belt {
 
 namespace {
 
 using Eigen::Vector3d;
 
-/// Slopes of the eight shape functions along the element's axes, at a place in -1 … 1.
-Hexahedron shape_slopes(const Vector3d& at)
+/// Gradients of the eight shape functions in natural coordinates, at a point of [-1, 1]³.
+Hexahedron shape_gradients(const Vector3d& xi)
 {
-    Hexahedron slopes;
+    Hexahedron gradients;
     for (int corner = 0; corner < 8; ++corner) {
         Vector3d side;
         for (int axis = 0; axis < 3; ++axis) side[axis] = (corner >> axis) % 2 == 0 ? -1 : 1;
-        const Vector3d factor = (Vector3d::Ones() + side.cwiseProduct(at)) / 2;
-        slopes.col(corner) << side.x() / 2 * factor.y() * factor.z(), side.y() / 2 * factor.z() * factor.x(),
+        const Vector3d factor = (Vector3d::Ones() + side.cwiseProduct(xi)) / 2;
+        gradients.col(corner) << side.x() / 2 * factor.y() * factor.z(), side.y() / 2 * factor.z() * factor.x(),
             side.z() / 2 * factor.x() * factor.y();
     }
-    return slopes;
+    return gradients;
 }
 
 } // namespace
@@ -31,18 +31,18 @@ HexahedronStiffness stiffness(const Hexahedron& corners, const ElasticLayer& mat
     const double shear = material.young / (2 * (1 + material.poisson));    // μ
     const double bulk = material.young / (3 * (1 - 2 * material.poisson)); // κ = λ + 2μ/3
     HexahedronStiffness result = HexahedronStiffness::Zero();
-    Eigen::Matrix<double, 24, 1> dilatation = Eigen::Matrix<double, 24, 1>::Zero(); // ∫ div, by displacement
+    Eigen::Matrix<double, 24, 1> dilatation = Eigen::Matrix<double, 24, 1>::Zero(); // ∫ div u dV, per degree of freedom
     double volume = 0;
-    for (int point = 0; point < 8; ++point) { // Gauss, two along each axis
-        Vector3d at;
-        for (int axis = 0; axis < 3; ++axis) at[axis] = ((point >> axis) % 2 == 0 ? -1 : 1) / std::sqrt(3);
-        const Hexahedron slopes = shape_slopes(at);
-        const Eigen::Matrix3d jacobian = slopes * corners.transpose();
+    for (int point = 0; point < 8; ++point) { // 2 x 2 x 2 Gauss points
+        Vector3d xi;
+        for (int axis = 0; axis < 3; ++axis) xi[axis] = ((point >> axis) % 2 == 0 ? -1 : 1) / std::sqrt(3);
+        const Hexahedron local_gradients = shape_gradients(xi);
+        const Eigen::Matrix3d jacobian = local_gradients * corners.transpose();
         const double weight = jacobian.determinant();
-        const Hexahedron gradients = jacobian.inverse() * slopes;
+        const Hexahedron gradients = jacobian.inverse() * local_gradients;
         volume += weight;
         dilatation += weight * gradients.reshaped();
-        // 2μ (ε:ε - div²/3); the rest, κ div², by the mean.
+        // The deviatoric part, 2μ (ε:ε - div²/3); the volumetric part, κ div², uses the mean dilatation.
         for (int b = 0; b < 8; ++b)
             for (int a = 0; a < 8; ++a) {
                 const Vector3d ga = gradients.col(a), gb = gradients.col(b);
@@ -54,4 +54,4 @@ HexahedronStiffness stiffness(const Hexahedron& corners, const ElasticLayer& mat
     return result + bulk / volume * dilatation * dilatation.transpose();
 }
 
-} // namespace fettle
+} // namespace fettle::belt

@@ -4,17 +4,17 @@
 
 #include <Eigen/Core>
 
-namespace fettle {
+namespace fettle::belt {
 
-/// Corners of a hexahedron, mm: bit 0 of a corner's number says on which side it is along the first of the element's
-/// own axes, bit 1 along the second, bit 2 along the third; the axes are right-handed.
+/// Corners of a hexahedron, mm. Bit k of a corner's number is its side along axis k of the element; the axes are
+/// right-handed.
 using Hexahedron = Eigen::Matrix<double, 3, 8>;
 using HexahedronStiffness = Eigen::Matrix<double, 24, 24>;
 
-/// Stiffness of the linear hexahedron, N/mm; displacement 3 i + k is that of corner i along axis k. The change of
-/// volume is the element's mean (Nagtegaal, Parks and Rice 1974; Hughes 1980): nearly incompressible rubber costs one
-/// constraint an element and does not lock.
-/// @param material  its modulus and ratio < 0.5 count
+/// Stiffness of the trilinear hexahedron, N/mm; degree of freedom 3 i + k is corner i along axis k. The dilatation is
+/// the element's mean (B-bar method: Nagtegaal, Parks and Rice 1974; Hughes 1980), so that nearly incompressible rubber
+/// imposes one constraint per element and does not lock.
+/// @param material  modulus and Poisson's ratio < 0.5; the thickness is not used
 HexahedronStiffness stiffness(const Hexahedron& corners, const ElasticLayer& material);
 
-} // namespace fettle
+} // namespace fettle::belt

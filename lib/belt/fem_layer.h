@@ -4,48 +4,48 @@
 
 #include <Eigen/Core>
 
-namespace fettle {
+namespace fettle::belt {
 
-/// Hexahedra of a layer bonded to a hub: rings of equal elements about the wheel's axis, side by side along the axis
-/// and on top of each other. Its sides are free. The arc is a straight chord in each element; the ring goes on without
-/// end, as a wound tape that does not touch itself does, so that nothing comes back from around the wheel.
+/// Hexahedral mesh of a layer bonded to a hub: equal elements along the arc, graded ones along the axis and through the
+/// thickness. The sides are free. The arc is a chord in each element. It continues without end, like a coiled tape that
+/// does not touch itself, so that no displacement returns around the wheel.
 struct LayerMesh {
     ElasticLayer layer;
-    double radius = 0;      ///< of the layer's surface, mm
-    Eigen::Vector2d cell;   ///< sides of the cells about the loaded nodes, mm: the arc of an element; along the axis
-    Eigen::VectorXd depth;  ///< of the nodes below the surface, mm: 0 … the layer's thickness, rising
-    Eigen::VectorXd across; ///< of the nodes along the axis from the middle of the width, mm: rising, from side to side
-    Eigen::Index first = 0, count = 0; ///< the nodes across that are loaded
+    double radius = 0;              ///< of the layer's surface, mm
+    Eigen::Vector2d cell_size;      ///< size of an element at the loaded nodes, mm: along the arc, along the axis
+    Eigen::VectorXd node_depths;    ///< of the nodes below the surface, mm: ascending from 0 to the thickness
+    Eigen::VectorXd node_positions; ///< of the nodes along the axis from the middle of the width, mm: ascending
+    Eigen::Index first_loaded = 0, loaded_count = 0; ///< range of the loaded nodes in `across`
 };
 
-/// A mesh with nodes under the middles of a contact's cells, elements that grow beside them and towards the hub.
-/// @param cell  sides along the surface's arc and the axis, mm
-/// @param columns  of cells, the middle ones of the width
-/// @param elements  from the surface to the hub
+/// A mesh with nodes at the centres of a contact grid's cells, and elements that grow beside them and towards the hub.
+/// @param cell  size along the arc and the axis, mm
+/// @param columns  of cells, centred on the width
+/// @param elements  number through the thickness
 /// @throws InputError for cells beyond the width or a layer as thick as the radius
-LayerMesh mesh_of(const ElasticLayer& layer, double radius, double width, const Eigen::Vector2d& cell,
-                  Eigen::Index columns, Eigen::Index elements);
+LayerMesh layer_mesh(const ElasticLayer& layer, double radius, double width, const Eigen::Vector2d& cell,
+                     Eigen::Index columns, Eigen::Index elements);
 
-/// How far the surface goes in at the nodes across (rows), mm, under 1 N in at each node (columns) of one, times the
-/// cosine of a wave that goes on by `phase` from element to element along the arc. The finite elements' answer without
-/// further approximation: what is the same from element to element is solved for wave by wave (Bloch), across and
-/// through the depth by elimination.
+/// Compliance of the surface for loads that vary as a cosine along the arc, mm/N: radial displacement at the loaded
+/// nodes (rows) under 1 N at one of them (columns), both times a cosine that advances by `phase` from element to
+/// element. It is the exact finite-element solution: a Bloch wave along the periodic arc, elimination along the axis
+/// and the depth.
 Eigen::MatrixXd wave_compliance(const LayerMesh& mesh, double phase);
 
-/// How the finite elements' surface gives way, on a window of cells whose middles are nodes.
+/// Surface displacement of the finite elements under pressure on a grid of cells whose centres are nodes.
 class FemLayer {
   public:
     FemLayer(const LayerMesh& mesh, Eigen::Index rows);
 
-    /// @param pressure  along the radius, on the cells of the surface, MPa  @return  along the radius, mm
+    /// @param pressure  radial, on the cells, MPa   @return  radial, mm
     Eigen::MatrixXd displacement(const Eigen::MatrixXd& pressure) const;
-    /// Cosine of the angle between each row's radius and the middle's.
-    const Eigen::ArrayXd& upright() const { return upright_; }
+    /// Cosine of the angle between each row's radius and the radius at the middle of the grid.
+    const Eigen::ArrayXd& tilt_cosines() const { return tilt_cosines_; }
 
   private:
-    Eigen::ArrayXd upright_;
-    Eigen::MatrixXd waves_;    ///< cosine and sine of each wave along the window (rows in turn)
-    Eigen::MatrixXd spectrum_; ///< mm/MPa, a column for each wave
+    Eigen::ArrayXd tilt_cosines_;
+    Eigen::MatrixXd waves_;    ///< cosine and sine of each wave over the grid's rows, in alternate rows
+    Eigen::MatrixXd spectrum_; ///< compliance of each wave (column), mm/MPa
 };
 
-} // namespace fettle
+} // namespace fettle::belt

@@ -1,15 +1,16 @@
 #include "belt/gridding.h"
 
+#include "geometry/planar_grid.h"
+
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <vector>
 
-namespace fettle {
+namespace fettle::belt {
 
 namespace {
 
@@ -18,232 +19,207 @@ using Eigen::Matrix3Xd;
 using Eigen::Vector2d;
 using Lanes4 = Eigen::Array4d;
 
-constexpr Index kNearest = 8;
+constexpr Index kMaxGridNeighbours = 8;
+constexpr double kPointsPerBucket = 3;
 
-/// The points nearest to a place, nearest first.
+/// The points nearest to a query, nearest first.
 struct Nearest {
     Index count = 0;
-    std::array<double, kNearest> square; ///< of the distance
-    std::array<Index, kNearest> which;
+    std::array<double, kMaxGridNeighbours> squared_distance; ///< mm²
+    std::array<Index, kMaxGridNeighbours> index;
 
-    void add(double farther, Index point)
+    void insert(double squared, Index point)
     {
-        Index k = count < kNearest ? count++ : kNearest - 1;
-        for (; k > 0 && square[std::size_t(k - 1)] > farther; --k) {
-            square[std::size_t(k)] = square[std::size_t(k - 1)];
-            which[std::size_t(k)] = which[std::size_t(k - 1)];
+        Index k = count < kMaxGridNeighbours ? count++ : kMaxGridNeighbours - 1;
+        for (; k > 0 && squared_distance[k - 1] > squared; --k) {
+            squared_distance[k] = squared_distance[k - 1];
+            index[k] = index[k - 1];
         }
-        square[std::size_t(k)] = farther;
-        which[std::size_t(k)] = point;
+        squared_distance[k] = squared;
+        index[k] = point;
     }
 };
 
-/// Points in square buckets, about three in each, so that those nearest to a place are as a rule in its bucket and the
-/// eight around it.
+/// The points in square buckets of about three, so that the nearest ones are usually in the query's bucket or the eight
+/// around it. A geometry::PointIndex would break ties otherwise, and surfels on a lattice have many.
 class Buckets {
   public:
     explicit Buckets(const Matrix3Xd& points)
+        : grid_(geometry::planar_grid(points.topRows<2>(), kPointsPerBucket)), points_(points(Eigen::all, grid_.order))
     {
-        const Eigen::AlignedBox2d box = box_over(points);
-        least_ = box.min();
-        const Vector2d size = box.sizes();
-        const auto n = static_cast<double>(points.cols());
-        constexpr double kEach = 3;
-        constexpr double kLeast = 1e-9; // mm: all points at one place
-        side_ = std::max({std::sqrt(kEach * size.prod() / n), kEach * size.maxCoeff() / n, kLeast});
-        counts_ = (size / side_).array().cast<Index>() + 1;
-        sort(points);
     }
 
-    /// In the order of the buckets, row by row.
+    /// The points in the order of the buckets, row by row.
     const Matrix3Xd& points() const { return points_; }
 
-    /// Those nearer than `reach`, or the nearest of them.
-    Nearest nearest(const Vector2d& place, double reach) const
+    /// The nearest points within `max_distance`, mm.
+    Nearest nearest(const Vector2d& query, double max_distance) const
     {
         Nearest found;
-        const Eigen::Array2d at = (place - least_) / side_;
-        const auto u = static_cast<Index>(std::floor(at.x())), v = static_cast<Index>(std::floor(at.y()));
-        const Eigen::Array2d into = (at - Eigen::Array2d(double(u), double(v))) * side_;
-        const double border = std::min(into.minCoeff(), side_ - into.maxCoeff()); // of the place's own bucket
-        double most = reach * reach;
-        look_into(u - 1, u + 1, v - 1, v + 1, place, most, found);
-        for (Index ring = 2; border + static_cast<double>(ring - 1) * side_ < std::sqrt(most); ++ring) {
-            look_into(u - ring, u + ring, v - ring, v - ring, place, most, found);
-            look_into(u - ring, u - ring, v - ring + 1, v + ring - 1, place, most, found);
-            look_into(u + ring, u + ring, v - ring + 1, v + ring - 1, place, most, found);
-            look_into(u - ring, u + ring, v + ring, v + ring, place, most, found);
+        const double side = grid_.side;
+        const Eigen::Array2d uv = (query - grid_.min) / side;
+        const auto u = static_cast<Index>(std::floor(uv.x())), v = static_cast<Index>(std::floor(uv.y()));
+        const Eigen::Array2d offset = (uv - Eigen::Array2d(double(u), double(v))) * side;
+        const double border = std::min(offset.minCoeff(), side - offset.maxCoeff()); // to the sides of the own bucket
+        double max_squared = max_distance * max_distance;
+        search(u - 1, u + 1, v - 1, v + 1, query, max_squared, found);
+        for (Index ring = 2; border + (ring - 1) * side < std::sqrt(max_squared); ++ring) {
+            search(u - ring, u + ring, v - ring, v - ring, query, max_squared, found);
+            search(u - ring, u - ring, v - ring + 1, v + ring - 1, query, max_squared, found);
+            search(u + ring, u + ring, v - ring + 1, v + ring - 1, query, max_squared, found);
+            search(u - ring, u + ring, v + ring, v + ring, query, max_squared, found);
         }
         return found;
     }
 
   private:
-    void sort(const Matrix3Xd& points)
-    {
-        std::vector<std::int32_t> bucket(static_cast<std::size_t>(points.cols()));
-        begin_.assign(static_cast<std::size_t>(counts_.prod()) + 2, 0);
-        const double each = 1 / side_;
-        for (Index i = 0; i < points.cols(); ++i) {
-            const auto u = std::min(static_cast<Index>((points(0, i) - least_.x()) * each), counts_.x() - 1);
-            const auto v = std::min(static_cast<Index>((points(1, i) - least_.y()) * each), counts_.y() - 1);
-            const Index b = v * counts_.x() + u;
-            bucket[static_cast<std::size_t>(i)] = static_cast<std::int32_t>(b);
-            ++begin_[static_cast<std::size_t>(b) + 2];
-        }
-        for (std::size_t b = 2; b < begin_.size(); ++b) begin_[b] += begin_[b - 1];
-        points_.resize(3, points.cols());
-        for (Index i = 0; i < points.cols(); ++i)
-            points_.col(begin_[static_cast<std::size_t>(bucket[static_cast<std::size_t>(i)]) + 1]++) = points.col(i);
-        begin_.pop_back();
-    }
-
-    /// @param most  square of the distance that the nearest of the points not yet found may have
-    void look_into(Index first_u, Index last_u, Index first_v, Index last_v, const Vector2d& place, double& most,
-                   Nearest& found) const
+    /// Searches a range of buckets.
+    /// @param max_squared  square of the search radius, mm²; shrinks to the last neighbour's once there are enough
+    void search(Index first_u, Index last_u, Index first_v, Index last_v, const Vector2d& query, double& max_squared,
+                Nearest& found) const
     {
         first_u = std::max<Index>(first_u, 0);
-        last_u = std::min(last_u, counts_.x() - 1);
+        last_u = std::min<Index>(last_u, grid_.count.x() - 1);
         if (first_u > last_u) return;
-        for (Index v = std::max<Index>(first_v, 0); v <= std::min(last_v, counts_.y() - 1); ++v) {
-            const Index end = begin_[static_cast<std::size_t>(v * counts_.x() + last_u + 1)];
-            for (Index i = begin_[static_cast<std::size_t>(v * counts_.x() + first_u)]; i < end; ++i) {
-                const double x = points_(0, i) - place.x(), y = points_(1, i) - place.y(), square = x * x + y * y;
-                if (!(square < most)) continue;
-                found.add(square, i);
-                if (found.count == kNearest) most = found.square.back();
+        for (Index v = std::max<Index>(first_v, 0); v <= std::min<Index>(last_v, grid_.count.y() - 1); ++v) {
+            const Index row = v * grid_.count.x(), end = grid_.begin[row + last_u + 1];
+            for (Index i = grid_.begin[row + first_u]; i < end; ++i) {
+                const double x = points_(0, i) - query.x(), y = points_(1, i) - query.y(), squared = x * x + y * y;
+                if (!(squared < max_squared)) continue;
+                found.insert(squared, i);
+                if (found.count == kMaxGridNeighbours) max_squared = found.squared_distance.back();
             }
         }
     }
 
+    geometry::PlanarGrid grid_;
     Matrix3Xd points_;
-    Vector2d least_;
-    double side_;
-    Eigen::Array<Index, 2, 1> counts_;
-    std::vector<Index> begin_; ///< of the points of each bucket
 };
 
 double shepard(const Nearest& near, const Matrix3Xd& points)
 {
     double sum = 0, weights = 0;
-    for (std::size_t k = 0; k < static_cast<std::size_t>(near.count); ++k) {
-        const double height = points(2, near.which[k]);
-        if (near.square[k] == 0) return height;
-        sum += height / near.square[k];
-        weights += 1 / near.square[k];
+    for (Index k = 0; k < near.count; ++k) {
+        const double height = points(2, near.index[k]);
+        if (near.squared_distance[k] == 0) return height;
+        sum += height / near.squared_distance[k];
+        weights += 1 / near.squared_distance[k];
     }
     return sum / weights;
 }
 
-/// Ordinary kriging at four places at once, one in each lane.
+/// Ordinary kriging at four points at once, one in each SIMD lane.
 class KrigingOfFour {
   public:
     static constexpr Index kLanes = 4;
 
     KrigingOfFour()
     {
-        for (std::size_t k = 0; k < kNearest; ++k) x_[k] = y_[k] = z_[k] = Lanes4::Zero();
+        for (Index k = 0; k < kMaxGridNeighbours; ++k) x_[k] = y_[k] = z_[k] = Lanes4::Zero();
     }
 
-    /// Where fewer points are near, the nearest stands for the rest of them.
-    void set(Index lane, const Vector2d& place, const Nearest& near, const Matrix3Xd& points)
+    /// Sets the query of a lane. If it has fewer than kMaxGridNeighbours neighbours, the nearest one is repeated.
+    void set(Index lane, const Vector2d& query, const Nearest& near, const Matrix3Xd& points)
     {
-        for (std::size_t k = 0; k < kNearest; ++k) {
-            const Index i = near.which[k < static_cast<std::size_t>(near.count) ? k : 0];
-            x_[k][lane] = points(0, i) - place.x();
-            y_[k][lane] = points(1, i) - place.y();
+        for (Index k = 0; k < kMaxGridNeighbours; ++k) {
+            const Index i = near.index[k < near.count ? k : 0];
+            x_[k][lane] = points(0, i) - query.x();
+            y_[k][lane] = points(1, i) - query.y();
             z_[k][lane] = points(2, i);
         }
     }
 
-    /// With the covariance c(d) = 2 (greatest distance) - d in place of the variogram: the same weights, and a definite
-    /// matrix C, C_ij = c(|p_i - p_j|). Of b_i = c(|p_i - place|) and the heights z the estimate is
-    /// b C⁻¹z + (1 - b C⁻¹1) (1 C⁻¹z) / (1 C⁻¹1); by C = L D Lᵀ, b C⁻¹z = (L⁻¹b) D⁻¹ (L⁻¹z).
+    /// Uses the covariance c(d) = 2 (max. distance) - d instead of the variogram: the weights are the same, and the
+    /// matrix C, C_ij = c(|p_i - p_j|), is definite. With b_i = c(|p_i - query|) and the heights z the estimate is b
+    /// C⁻¹z + (1 - b C⁻¹1) (1 C⁻¹z) / (1 C⁻¹1); by C = L D Lᵀ, b C⁻¹z = (L⁻¹b) D⁻¹ (L⁻¹z).
     Lanes4 heights()
     {
-        Lanes4 one[kNearest], b[kNearest];
+        Lanes4 one[kMaxGridNeighbours], b[kMaxGridNeighbours];
         covariances(one, b);
         Lanes4 bz = Lanes4::Zero(), b1 = bz, z1 = bz, ones = bz;
-        for (std::size_t j = 0; j < kNearest; ++j) {
-            // Column j of L times D is left in C_; what it takes from the columns after it:
-            const Lanes4 each = 1 / C_[j][j];
-            bz += b[j] * z_[j] * each;
-            b1 += b[j] * one[j] * each;
-            z1 += z_[j] * one[j] * each;
-            ones += one[j] * one[j] * each;
-            for (std::size_t i = j + 1; i < kNearest; ++i) {
-                const Lanes4 share = C_[i][j] * each;
-                for (std::size_t k = j + 1; k <= i; ++k) C_[i][k] -= share * C_[k][j];
-                b[i] -= share * b[j];
-                z_[i] -= share * z_[j];
-                one[i] -= share * one[j];
+        for (Index j = 0; j < kMaxGridNeighbours; ++j) {
+            // Column j of C_ is that of L D. It is eliminated from the columns after it.
+            const Lanes4 inverse_pivot = 1 / C_[j][j];
+            bz += b[j] * z_[j] * inverse_pivot;
+            b1 += b[j] * one[j] * inverse_pivot;
+            z1 += z_[j] * one[j] * inverse_pivot;
+            ones += one[j] * one[j] * inverse_pivot;
+            for (Index i = j + 1; i < kMaxGridNeighbours; ++i) {
+                const Lanes4 factor = C_[i][j] * inverse_pivot;
+                for (Index k = j + 1; k <= i; ++k) C_[i][k] -= factor * C_[k][j];
+                b[i] -= factor * b[j];
+                z_[i] -= factor * z_[j];
+                one[i] -= factor * one[j];
             }
         }
         return bz + (1 - b1) * z1 / ones;
     }
 
   private:
-    /// @param one  1; 0 for a point at the place of an earlier one, which has no weight: the first stands for both
+    /// Computes C_, and decouples points that coincide with an earlier one.
+    /// @param one  1; 0 for a decoupled point
+    /// @param b    covariances with the query
     void covariances(Lanes4* one, Lanes4* b)
     {
-        constexpr double kLeast = 1e-9; // mm: one point, at the place
-        Lanes4 farthest = Lanes4::Constant(kLeast);
-        for (std::size_t i = 0; i < kNearest; ++i) {
-            Lanes4 least = Lanes4::Ones();
-            for (std::size_t j = 0; j < i; ++j) {
+        constexpr double kMinDistance = 1e-9; // mm, for a single point at the query
+        Lanes4 max_distance = Lanes4::Constant(kMinDistance);
+        for (Index i = 0; i < kMaxGridNeighbours; ++i) {
+            Lanes4 min_distance = Lanes4::Ones();
+            for (Index j = 0; j < i; ++j) {
                 C_[i][j] = ((x_[i] - x_[j]).square() + (y_[i] - y_[j]).square()).sqrt();
-                farthest = farthest.max(C_[i][j]);
-                least = least.min(C_[i][j]);
+                max_distance = max_distance.max(C_[i][j]);
+                min_distance = min_distance.min(C_[i][j]);
             }
-            one[i] = (least > 0).select(Lanes4::Ones(), Lanes4::Zero());
+            one[i] = (min_distance > 0).select(Lanes4::Ones(), Lanes4::Zero());
             b[i] = (x_[i].square() + y_[i].square()).sqrt();
-            farthest = farthest.max(b[i]);
+            max_distance = max_distance.max(b[i]);
         }
-        const Lanes4 at_0 = 2 * farthest;
-        for (std::size_t i = 0; i < kNearest; ++i) {
-            for (std::size_t j = 0; j < i; ++j) C_[i][j] = one[i] * one[j] * (at_0 - C_[i][j]);
-            C_[i][i] = one[i] * at_0 + (1 - one[i]);
-            b[i] = one[i] * (at_0 - b[i]);
+        const Lanes4 variance = 2 * max_distance;
+        for (Index i = 0; i < kMaxGridNeighbours; ++i) {
+            for (Index j = 0; j < i; ++j) C_[i][j] = one[i] * one[j] * (variance - C_[i][j]);
+            C_[i][i] = one[i] * variance + (1 - one[i]);
+            b[i] = one[i] * (variance - b[i]);
             z_[i] *= one[i];
         }
     }
 
-    Lanes4 x_[kNearest], y_[kNearest], z_[kNearest]; ///< from the place; height
-    Lanes4 C_[kNearest][kNearest];                   ///< below and on the diagonal
+    Lanes4 x_[kMaxGridNeighbours], y_[kMaxGridNeighbours], z_[kMaxGridNeighbours]; ///< from the query; height
+    Lanes4 C_[kMaxGridNeighbours][kMaxGridNeighbours];                             ///< lower triangle
 };
 
 } // namespace
 
-Eigen::MatrixXd heights_on(const ContactCells& cells, const Matrix3Xd& points, Gridding gridding)
+Eigen::MatrixXd interpolate_heights(const ContactGrid& grid, const Matrix3Xd& points, Gridding gridding)
 {
-    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-    Eigen::MatrixXd heights = Eigen::MatrixXd::Constant(cells.rows, cells.columns, kNone);
+    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+    Eigen::MatrixXd heights = Eigen::MatrixXd::Constant(grid.rows, grid.columns, kNan);
     if (points.cols() == 0) return heights;
     const Buckets buckets(points);
-    const double spacing = spacing_of(points);
-    constexpr double kNear = 2, kReach = 3; // spacings
-    tbb::parallel_for(Index{0}, cells.columns, [&](Index column) {
+    const double spacing = mean_spacing(points);
+    constexpr double kMaxNearestSpacings = 2, kSearchRadiusSpacings = 3;
+    tbb::parallel_for(Index{0}, grid.columns, [&](Index column) {
         KrigingOfFour kriging;
         Index rows[KrigingOfFour::kLanes], lanes = 0;
-        const auto finish = [&] {
-            const Lanes4 found = kriging.heights();
-            for (Index lane = 0; lane < lanes; ++lane) heights(rows[lane], column) = found[lane];
+        const auto solve_lanes = [&] {
+            const Lanes4 results = kriging.heights();
+            for (Index lane = 0; lane < lanes; ++lane) heights(rows[lane], column) = results[lane];
             lanes = 0;
         };
-        for (Index row = 0; row < cells.rows; ++row) {
-            const Vector2d place = cells.middle(row, column);
-            const Nearest near = buckets.nearest(place, kReach * spacing);
-            if (near.count == 0 || !(std::sqrt(near.square[0]) <= kNear * spacing)) continue;
+        for (Index row = 0; row < grid.rows; ++row) {
+            const Vector2d center = grid.cell_center(row, column);
+            const Nearest near = buckets.nearest(center, kSearchRadiusSpacings * spacing);
+            if (near.count == 0 || !(std::sqrt(near.squared_distance[0]) <= kMaxNearestSpacings * spacing)) continue;
             if (gridding == Gridding::shepard) {
                 heights(row, column) = shepard(near, buckets.points());
                 continue;
             }
-            kriging.set(lanes, place, near, buckets.points());
+            kriging.set(lanes, center, near, buckets.points());
             rows[lanes++] = row;
-            if (lanes == KrigingOfFour::kLanes) finish();
+            if (lanes == KrigingOfFour::kLanes) solve_lanes();
         }
-        if (lanes > 0) finish();
+        if (lanes > 0) solve_lanes();
     });
     return heights;
 }
 
-} // namespace fettle
+} // namespace fettle::belt

@@ -4,16 +4,15 @@
 
 #include <Eigen/Core>
 
-namespace fettle {
+namespace fettle::belt {
 
-/// How heights between surfels are estimated from the nearest ones: weights by the inverse square of the distance
-/// (Shepard 1968), or ordinary kriging with the variogram γ(d) = d, which also sees how they lie about the place
-/// (Cressie 1993, 3.2).
+/// Interpolation of heights from the nearest surfels: weights by the inverse squared distance (Shepard 1968), or
+/// ordinary kriging with the variogram γ(d) = d, which also takes the arrangement of the surfels into account (Cressie
+/// 1993, 3.2).
 enum class Gridding { shepard, kriging };
 
-/// Heights at the middles of the cells, mm; NaN where no point is near: nearer than twice the mean distance between
-/// neighbours.
-/// @param points  x, y, height
-Eigen::MatrixXd heights_on(const ContactCells& cells, const Eigen::Matrix3Xd& points, Gridding gridding);
+/// Heights at the centres of the cells, mm; NaN where the nearest point is farther than twice the mean spacing.
+/// @param points  3xN: x, y, height, mm
+Eigen::MatrixXd interpolate_heights(const ContactGrid& grid, const Eigen::Matrix3Xd& points, Gridding gridding);
 
-} // namespace fettle
+} // namespace fettle::belt

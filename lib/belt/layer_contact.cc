@@ -7,57 +7,52 @@
 #include <limits>
 #include <numbers>
 
-namespace fettle {
+namespace fettle::belt {
 
 using Eigen::ArrayXXd;
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-/// The cells that may touch.
+/// Cells that may be in contact.
 struct LayerContact::Window {
     Index row = 0, column = 0, rows = 0, columns = 0;
 
-    auto of(const MatrixXd& field) const { return field.block(row, column, rows, columns); }
-    auto of(MatrixXd& field) const { return field.block(row, column, rows, columns); }
+    auto block(const MatrixXd& field) const { return field.block(row, column, rows, columns); }
+    auto block(MatrixXd& field) const { return field.block(row, column, rows, columns); }
 };
 
 namespace {
 
-constexpr int kMostIterations = 1000;
-// A start that is far off may lead round in circles; from no start it takes a few dozen.
-constexpr int kMostFromStart = 100;
+constexpr int kMaxIterations = 1000;
+// From a poor start the iteration may cycle; without a start it needs a few dozen iterations.
+constexpr int kMaxIterationsFromStart = 100;
 
-using Marks = Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic>;
+using Mask = Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic>;
 
-/// Of all cells that are marked.
-std::pair<Index, Index> extent(const Eigen::Array<bool, Eigen::Dynamic, 1>& marks)
+/// First index and length of a window's side: the extent of the mask plus a margin, rounded up to a multiple of
+/// kSizeMultiple so that few sizes of convolutions occur.
+std::pair<Index, Index> window_side(const Eigen::Array<bool, Eigen::Dynamic, 1>& mask)
 {
-    Index first = 0, last = marks.size() - 1;
-    while (first < last && !marks[first]) ++first;
-    while (last > first && !marks[last]) --last;
-    return {first, last};
-}
-
-/// A window's side: as many cells as marked ones and two around, in steps, so that few sizes come up.
-std::pair<Index, Index> side(const Eigen::Array<bool, Eigen::Dynamic, 1>& marks)
-{
-    constexpr Index kAround = 2, kStep = 8;
-    const auto [first, last] = extent(marks);
-    const Index wanted = (last - first + 1 + 2 * kAround + kStep - 1) / kStep * kStep;
-    const Index count = std::min(wanted, marks.size());
-    return {std::clamp<Index>(first - (count - (last - first + 1)) / 2, 0, marks.size() - count), count};
+    constexpr Index kMarginCells = 2, kSizeMultiple = 8;
+    Index first = 0, last = mask.size() - 1;
+    while (first < last && !mask[first]) ++first;
+    while (last > first && !mask[last]) --last;
+    const Index extent = last - first + 1;
+    const Index count =
+        std::min((extent + 2 * kMarginCells + kSizeMultiple - 1) / kSizeMultiple * kSizeMultiple, mask.size());
+    return {std::clamp<Index>(first - (count - extent) / 2, 0, mask.size() - count), count};
 }
 
 } // namespace
 
 LayerContact::LayerContact(const ElasticLayer& layer, const Eigen::Vector2d& cell, Index rows, Index columns)
-    : layer_(layer), cell_area_(cell.prod()), influence_(influence(layer, cell, rows, columns)),
-      least_influence_(std::min(influence_.minCoeff(), 0.0))
+    : layer_(layer), cell_area_(cell.prod()), influence_(influence_coefficients(layer, cell, rows, columns)),
+      min_influence_(std::min(influence_.minCoeff(), 0.0))
 {
 }
 
 LayerContact::LayerContact(const LayerMesh& mesh, Index rows)
-    : layer_(mesh.layer), cell_area_(mesh.cell.prod()), least_influence_(0), fem_(std::in_place, mesh, rows)
+    : layer_(mesh.layer), cell_area_(mesh.cell_size.prod()), min_influence_(0), fem_(std::in_place, mesh, rows)
 {
 }
 
@@ -69,76 +64,76 @@ Convolution& LayerContact::convolution(Index rows, Index columns)
         .first->second;
 }
 
-/// Of the finite elements it is told along the middle's radius: what pressure along each row's own radius comes to
-/// there.
-void LayerContact::give(const MatrixXd& pressure, MatrixXd& displacement)
+/// Displacement along the radius at the middle. The finite elements' pressure and displacement are projected between
+/// that radius and each row's own.
+void LayerContact::compute_displacement(const MatrixXd& pressure, MatrixXd& displacement)
 {
     if (!fem_) return convolution(pressure.rows(), pressure.cols())(pressure, displacement);
-    const auto upright = fem_->upright();
-    displacement = fem_->displacement((pressure.array().colwise() / upright).matrix());
-    displacement.array().colwise() /= upright;
+    const auto cosines = fem_->tilt_cosines();
+    displacement = fem_->displacement((pressure.array().colwise() / cosines).matrix());
+    displacement.array().colwise() /= cosines;
 }
 
-/// Winkler's springs, as stiff as the layer is under a pressure that spreads as far as theirs.
-MatrixXd LayerContact::guess(const MatrixXd& gap, const Contact& wanted, bool is_force_known) const
+/// Winkler foundation with the stiffness of the layer under a pressure of the same extent.
+MatrixXd LayerContact::initial_pressure(const MatrixXd& gap, const Contact& given, bool is_force_known) const
 {
-    const auto pressed = [&](double depth) {
-        const ArrayXXd deep = (depth - gap.array()).max(0);
-        const double radius = std::sqrt(static_cast<double>((deep > 0).count()) * cell_area_ / std::numbers::pi);
+    const auto winkler = [&](double depth) {
+        const ArrayXXd compression = (depth - gap.array()).max(0);
+        const double radius = std::sqrt((compression > 0).count() * cell_area_ / std::numbers::pi);
         const double half_space =
             (1 - layer_.poisson * layer_.poisson) / layer_.young * radius * 16 / (3 * std::numbers::pi);
-        return MatrixXd(deep / std::min(half_space, layer_.thickness / layer_.young));
+        return MatrixXd(compression / std::min(half_space, layer_.thickness / layer_.young));
     };
-    if (!is_force_known) return pressed(wanted.indentation);
-    const double least = gap.minCoeff();
-    double above = layer_.thickness < 1 ? layer_.thickness : 1, below = 0; // mm
-    while (pressed(least + above).sum() * cell_area_ < wanted.force) above *= 2;
+    if (!is_force_known) return winkler(given.indentation);
+    const double min_gap = gap.minCoeff();
+    double high = layer_.thickness < 1 ? layer_.thickness : 1, low = 0; // bracket of the depth, mm
+    while (winkler(min_gap + high).sum() * cell_area_ < given.force) high *= 2;
     for (int i = 0; i < 12; ++i) {
-        const double middle = (above + below) / 2;
-        (pressed(least + middle).sum() * cell_area_ < wanted.force ? below : above) = middle;
+        const double middle = (high + low) / 2;
+        (winkler(min_gap + middle).sum() * cell_area_ < given.force ? low : high) = middle;
     }
-    const MatrixXd p = pressed(least + above);
-    return p * (wanted.force / (p.sum() * cell_area_));
+    const MatrixXd p = winkler(min_gap + high);
+    return p * (given.force / (p.sum() * cell_area_));
 }
 
-/// Solves in the window, whatever is beyond it. @return  whether to tolerance
+/// Solves in the window and ignores the cells outside. @return  whether it converged
 bool LayerContact::iterate(const MatrixXd& gap, const Window& window, double tolerance, bool is_force_known,
-                           int most_iterations, Contact& contact)
+                           int max_iterations, Contact& contact)
 {
-    const ArrayXXd before = window.of(gap).array();
-    const Marks there = before.isFinite();
-    MatrixXd pressure = window.of(contact.pressure), displacement, give_of_step;
+    const ArrayXXd undeformed = window.block(gap).array();
+    const Mask has_workpiece = undeformed.isFinite();
+    MatrixXd pressure = window.block(contact.pressure), displacement, step_displacement;
     MatrixXd step = MatrixXd::Zero(window.rows, window.columns);
-    double last = 0; // squares of the gaps; 0: the next step is along the gaps
-    bool known = false;
-    for (; contact.iterations < most_iterations; ++contact.iterations) {
+    double last_squares = 0; // sum of squared gaps; 0: restart along the gradient
+    bool is_displacement_valid = false;
+    for (; contact.iterations < max_iterations; ++contact.iterations) {
         auto p = pressure.array();
-        if (!known) give(pressure, displacement);
-        known = true;
-        const ArrayXXd open = there.select(before + displacement.array(), std::numeric_limits<double>::max());
-        if (is_force_known) contact.indentation = (p > 0).select(open, 0).sum() / static_cast<double>((p > 0).count());
+        if (!is_displacement_valid) compute_displacement(pressure, displacement);
+        is_displacement_valid = true;
+        const ArrayXXd open =
+            has_workpiece.select(undeformed + displacement.array(), std::numeric_limits<double>::max());
+        if (is_force_known) contact.indentation = (p > 0).select(open, 0).sum() / (p > 0).count();
         const ArrayXXd g = open - contact.indentation;
         if ((p * g).abs().maxCoeff() <= tolerance * p.maxCoeff() * contact.indentation &&
             g.minCoeff() >= -tolerance * contact.indentation) {
-            window.of(contact.pressure) = pressure;
+            window.block(contact.pressure) = pressure;
             return true;
         }
-        const Marks free = p > 0 || g < 0;
-        const double squares = free.select(g.square(), 0).sum();
-        step = free.select((last > 0 ? squares / last : 0) * step.array() - g, 0).matrix();
-        last = squares;
-        give(step, give_of_step);
-        ArrayXXd resists = give_of_step.array();
-        if (is_force_known) resists -= free.select(resists, 0).sum() / static_cast<double>(free.count());
-        const double length = -(free.select(g, 0) * step.array()).sum() / (resists * step.array()).sum();
+        const Mask active = p > 0 || g < 0;
+        const double squares = active.select(g.square(), 0).sum();
+        step = active.select((last_squares > 0 ? squares / last_squares : 0) * step.array() - g, 0).matrix();
+        last_squares = squares;
+        compute_displacement(step, step_displacement);
+        ArrayXXd gradient_change = step_displacement.array();
+        if (is_force_known) gradient_change -= active.select(gradient_change, 0).sum() / active.count();
+        const double length = -(active.select(g, 0) * step.array()).sum() / (gradient_change * step.array()).sum();
         pressure += length * step;
-        const bool clipped = pressure.minCoeff() < 0;
-        if (clipped) {
+        if (pressure.minCoeff() < 0) {
             pressure = pressure.cwiseMax(0);
-            known = false;
-            last = 0;
+            is_displacement_valid = false;
+            last_squares = 0;
         } else {
-            displacement += length * give_of_step;
+            displacement += length * step_displacement;
         }
         if (is_force_known) {
             const double scale = contact.force / (pressure.sum() * cell_area_);
@@ -146,86 +141,91 @@ bool LayerContact::iterate(const MatrixXd& gap, const Window& window, double tol
             displacement *= scale;
         }
     }
-    window.of(contact.pressure) = pressure;
+    window.block(contact.pressure) = pressure;
     return false;
 }
 
-Contact LayerContact::solve(const MatrixXd& from_the_plane, const Contact& wanted, double tolerance,
-                            const MatrixXd& start, bool is_force_known)
+Contact LayerContact::solve(const MatrixXd& input_gap, const Contact& given, double tolerance, const MatrixXd& start,
+                            bool is_force_known)
 {
-    Contact contact = wanted;
-    MatrixXd gap = from_the_plane;
-    if (fem_) gap.array().colwise() /= fem_->upright();
-    const double first = gap.minCoeff(); // where the hub stands when it first touches
-    gap.array() -= first;
-    contact.indentation -= first;
-    if (!is_force_known && !(contact.indentation > 0)) { // nothing touches
-        contact.indentation += first;
+    Contact contact = given;
+    MatrixXd gap = input_gap;
+    if (fem_) gap.array().colwise() /= fem_->tilt_cosines();
+    const double first_touch = gap.minCoeff(); // indentation
+    gap.array() -= first_touch;
+    contact.indentation -= first_touch;
+    if (!is_force_known && !(contact.indentation > 0)) { // no contact
+        contact.indentation += first_touch;
         contact.pressure = MatrixXd::Zero(gap.rows(), gap.cols());
         contact.converged = true;
         return contact;
     }
-    contact.pressure = start.size() > 0 ? start.cwiseMax(0).eval() : guess(gap, contact, is_force_known);
-    if (fem_ && start.size() > 0) contact.pressure.array().colwise() *= fem_->upright();
+    contact.pressure = start.size() > 0 ? start.cwiseMax(0).eval() : initial_pressure(gap, contact, is_force_known);
+    if (fem_ && start.size() > 0) contact.pressure.array().colwise() *= fem_->tilt_cosines();
     contact.pressure = gap.array().isFinite().select(contact.pressure, 0);
     if (is_force_known) {
-        if (!(contact.pressure.sum() > 0)) contact.pressure = guess(gap, contact, is_force_known);
+        if (!(contact.pressure.sum() > 0)) contact.pressure = initial_pressure(gap, contact, is_force_known);
         contact.pressure *= contact.force / (contact.pressure.sum() * cell_area_);
     }
-    Marks touched = contact.pressure.array() > 0;
-    if (!is_force_known) touched = touched || gap.array() < contact.indentation;
+    Mask may_touch = contact.pressure.array() > 0;
+    if (!is_force_known) may_touch = may_touch || gap.array() < contact.indentation;
     contact.converged = true;
     while (contact.converged) {
         Window window{0, 0, gap.rows(), gap.cols()};
         if (!fem_) {
-            std::tie(window.row, window.rows) = side(touched.rowwise().any());
-            std::tie(window.column, window.columns) = side(touched.colwise().any().transpose());
+            std::tie(window.row, window.rows) = window_side(may_touch.rowwise().any());
+            std::tie(window.column, window.columns) = window_side(may_touch.colwise().any().transpose());
         }
         contact.converged = iterate(gap, window, tolerance, is_force_known,
-                                    start.size() > 0 ? kMostFromStart : kMostIterations, contact);
-        const double bulge = least_influence_ * contact.pressure.sum(); // at most, anywhere
+                                    start.size() > 0 ? kMaxIterationsFromStart : kMaxIterations, contact);
+        const double bulge = min_influence_ * contact.pressure.sum(); // lower bound of the displacement at any cell
         const double open = contact.indentation * (1 - tolerance) - bulge;
-        const auto beyond = [&](Marks marks) {
-            marks.block(window.row, window.column, window.rows, window.columns) = false;
-            return marks;
+        const auto outside_window = [&](Mask mask) {
+            mask.block(window.row, window.column, window.rows, window.columns) = false;
+            return mask;
         };
-        if (!beyond(gap.array() < open).any()) break;
-        const Marks crossed = beyond(left(gap, contact).array() < -tolerance * contact.indentation);
-        if (!crossed.any()) break;
-        touched = touched || crossed;
+        if (!outside_window(gap.array() < open).any()) break;
+        const Mask interpenetrating =
+            outside_window(signed_gap(gap, contact).array() < -tolerance * contact.indentation);
+        if (!interpenetrating.any()) break;
+        may_touch = may_touch || interpenetrating;
     }
-    if (!contact.converged && start.size() > 0) return solve(from_the_plane, wanted, tolerance, {}, is_force_known);
-    contact.indentation += first;
+    if (!contact.converged && start.size() > 0) return solve(input_gap, given, tolerance, {}, is_force_known);
+    contact.indentation += first_touch;
     contact.force = contact.pressure.sum() * cell_area_;
-    if (fem_) contact.pressure.array().colwise() /= fem_->upright();
+    if (fem_) contact.pressure.array().colwise() /= fem_->tilt_cosines();
     return contact;
 }
 
-MatrixXd LayerContact::left(const MatrixXd& gap, const Contact& contact)
+MatrixXd LayerContact::signed_gap(const MatrixXd& gap, const Contact& contact)
 {
     if (fem_)
         return gap + fem_->displacement(contact.pressure) -
-               (contact.indentation * fem_->upright()).matrix().replicate(1, gap.cols());
+               (contact.indentation * fem_->tilt_cosines()).matrix().replicate(1, gap.cols());
     MatrixXd displacement;
-    give(contact.pressure, displacement);
+    compute_displacement(contact.pressure, displacement);
     return gap + (displacement.array() - contact.indentation).matrix();
 }
 
-MatrixXd LayerContact::gap_left(const MatrixXd& gap, const Contact& contact) { return left(gap, contact).cwiseMax(0); }
+MatrixXd LayerContact::residual_gap(const MatrixXd& gap, const Contact& contact)
+{
+    return signed_gap(gap, contact).cwiseMax(0);
+}
 
-Contact LayerContact::by_depth(const MatrixXd& gap, double indentation, double tolerance, const MatrixXd& start)
+Contact LayerContact::solve_by_indentation(const MatrixXd& gap, double indentation, double tolerance,
+                                           const MatrixXd& start)
 {
     Contact contact;
     contact.indentation = indentation;
     return solve(gap, contact, tolerance, start, false);
 }
 
-Contact LayerContact::by_force(const MatrixXd& gap, double force, double tolerance, const MatrixXd& start)
+Contact LayerContact::solve_by_force(const MatrixXd& gap, double force, double tolerance, const MatrixXd& start)
 {
-    if (!gap.array().isFinite().any()) throw InputError("contact", "there is nothing to touch");
+    if (!gap.array().isFinite().any()) throw core::InputError("contact", "no workpiece under the wheel");
     Contact contact;
     contact.force = force;
     return solve(gap, contact, tolerance, start, true);
 }
 
-} // namespace fettle
+} // namespace fettle::belt

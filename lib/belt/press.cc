@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-namespace fettle {
+namespace fettle::belt {
 
 namespace {
 
@@ -15,184 +15,184 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::Vector2d;
 
-constexpr Index kCoarse = 24;  // cells to find the contact's extent
-constexpr double kMost = 0.99; // of the radius: the wheel's profile is steep there
+constexpr Index kCoarseCells = 24;       // per side, to find the extent of the contact
+constexpr double kMaxRadiusShare = 0.99; // of the radius for the grid: beyond it the wheel's profile is too steep
 
-/// As long as the wheel dips into a plane by a tenth of its layer, and as wide as it is.
-Vector2d first_half(const ContactWheel& wheel)
+/// Half length of the wheel's intersection with a plane at a tenth of the layer's thickness, and half its width.
+Vector2d initial_half_size(const ContactWheel& wheel)
 {
-    return {std::min(std::sqrt(2 * wheel.radius * wheel.layer.thickness / 10), kMost * wheel.radius), wheel.width / 2};
+    return {std::min(std::sqrt(2 * wheel.radius * wheel.layer.thickness / 10), kMaxRadiusShare * wheel.radius),
+            wheel.width / 2};
 }
 
-ContactCells cells_of(const Vector2d& half, Index count)
-{
-    return {2 * half / static_cast<double>(count), count, count};
-}
+ContactGrid square_grid(const Vector2d& half, Index count) { return {2 * half / count, count, count}; }
 
-/// Places in the tool frame: along the wheel's arc, along its axis, and how far within the arc.
-void lay_along_arc(double radius, Eigen::Matrix3Xd& places)
+/// Converts points from the tool frame to coordinates along the wheel's arc, along its axis, and inwards from the arc.
+void unroll_arc(double radius, Eigen::Matrix3Xd& points)
 {
-    for (auto place : places.colwise()) {
-        const double below = radius - place.z(), across = place.x();
-        place.x() = radius * std::atan2(across, below);
-        place.z() = radius - std::hypot(across, below);
+    for (auto p : points.colwise()) {
+        const double below = radius - p.z(), x = p.x();
+        p.x() = radius * std::atan2(x, below);
+        p.z() = radius - std::hypot(x, below);
     }
 }
 
 } // namespace
 
-WheelPress::WheelPress(const Surfels& surfels, const ContactWheel& wheel, const PressOptions& options)
-    : surfels_(surfels), wheel_(wheel), options_(options), index_(surfels, first_half(wheel).minCoeff() / 4),
-      farthest_(surfels.displacement.array().isNaN().select(0, surfels.displacement.array().abs()).maxCoeff())
+WheelContactSolver::WheelContactSolver(const Surfels& surfels, const ContactWheel& wheel,
+                                       const WheelContactOptions& options)
+    : surfels_(surfels), wheel_(wheel), options_(options), index_(surfels, initial_half_size(wheel).minCoeff() / 4),
+      max_displacement_(surfels.displacement.array().isNaN().select(0, surfels.displacement.array().abs()).maxCoeff())
 {
 }
 
-void WheelPress::set_grid(const ContactCells& cells, LayerSolver solver)
+void WheelContactSolver::set_grid(const ContactGrid& grid, LayerSolver solver)
 {
-    press_.cells = cells;
+    contact_.grid = grid;
     if (solver == LayerSolver::fem) {
-        press_.arc_radius = wheel_.radius;
-        layer_.emplace(mesh_of(wheel_.layer, wheel_.radius, wheel_.width, cells.cell, cells.columns, options_.elements),
-                       cells.rows);
+        contact_.arc_radius = wheel_.radius;
+        layer_.emplace(
+            layer_mesh(wheel_.layer, wheel_.radius, wheel_.width, grid.cell_size, grid.columns, options_.elements),
+            grid.rows);
     } else {
-        press_.arc_radius = std::numeric_limits<double>::infinity();
-        layer_.emplace(wheel_.layer, cells.cell, cells.rows, cells.columns);
+        contact_.arc_radius = std::numeric_limits<double>::infinity();
+        layer_.emplace(wheel_.layer, grid.cell_size, grid.rows, grid.columns);
     }
-    lift();
+    reset();
 }
 
-void WheelPress::lift()
+void WheelContactSolver::reset()
 {
-    press_.contact.pressure.resize(0, 0);
-    last_.resize(0, 0);
+    contact_.contact.pressure.resize(0, 0);
+    previous_pressure_.resize(0, 0);
 }
 
-PressMemory WheelPress::memory() const { return {press_.cells, press_.contact.pressure, last_}; }
+WheelContactState WheelContactSolver::state() const
+{
+    return {contact_.grid, contact_.contact.pressure, previous_pressure_};
+}
 
-void WheelPress::remember(const PressMemory& memory)
+void WheelContactSolver::restore(const WheelContactState& state)
 {
     layer_.reset();
-    press_.cells = memory.cells;
-    if (memory.cells.rows > 0) set_grid(memory.cells, options_.solver);
-    press_.contact.pressure = memory.pressure;
-    last_ = memory.last;
+    contact_.grid = state.grid;
+    if (state.grid.rows > 0) set_grid(state.grid, options_.solver);
+    contact_.contact.pressure = state.pressure;
+    previous_pressure_ = state.previous;
 }
 
-void WheelPress::press_on(const Eigen::Isometry3d& T_part_tool, const Pressing& pressing, Gridding gridding,
-                          double tolerance)
+void WheelContactSolver::solve_on_grid(const Eigen::Isometry3d& T_part_tool, const ContactLoad& load, Gridding gridding,
+                                       double tolerance)
 {
-    const ContactCells& cells = press_.cells;
-    const double deepest = wheel_.layer.thickness;
-    Eigen::Vector3d beside;
-    beside << kBeside * cells.half(), std::hypot(kBeside * cells.half().norm(), deepest);
-    Eigen::Vector3d below(-beside);
-    below.z() = -deepest;
-    const Eigen::Vector3d stock = Eigen::Vector3d::Constant(farthest_);
-    index_.in_box(T_part_tool, {below - stock, beside + stock}, under_);
-    places_ = facing(surfels_, under_, T_part_tool, cells, deepest);
-    ContactWheel over = wheel_;
-    if (std::isfinite(press_.arc_radius)) {
-        lay_along_arc(wheel_.radius, places_);
-        over.radius = std::numeric_limits<double>::infinity();
+    const ContactGrid& grid = contact_.grid;
+    const double max_depth = wheel_.layer.thickness;
+    Eigen::Vector3d upper;
+    upper << kGridMargin * grid.half_size(), std::hypot(kGridMargin * grid.half_size().norm(), max_depth);
+    Eigen::Vector3d lower(-upper);
+    lower.z() = -max_depth;
+    const Eigen::Vector3d margin = Eigen::Vector3d::Constant(max_displacement_); // the index has undisplaced positions
+    index_.box_search(T_part_tool, {lower - margin, upper + margin}, surfels_in_grid_);
+    surfel_coordinates_ = select_facing_surfels(surfels_, surfels_in_grid_, T_part_tool, grid, max_depth);
+    ContactWheel wheel = wheel_; // in the grid's coordinates
+    if (std::isfinite(contact_.arc_radius)) {
+        unroll_arc(wheel_.radius, surfel_coordinates_);
+        wheel.radius = std::numeric_limits<double>::infinity();
     }
-    press_.height = heights_on(cells, places_, gridding);
-    gap_.resize(cells.rows, cells.columns);
-    for (Index j = 0; j < cells.columns; ++j)
-        for (Index i = 0; i < cells.rows; ++i) {
-            const Vector2d at = cells.middle(i, j);
-            const double height = press_.height(i, j);
-            gap_(i, j) =
-                std::isnan(height) ? std::numeric_limits<double>::infinity() : profile(over, at.x(), at.y()) - height;
+    contact_.height = interpolate_heights(grid, surfel_coordinates_, gridding);
+    gap_.resize(grid.rows, grid.columns);
+    for (Index j = 0; j < grid.columns; ++j)
+        for (Index i = 0; i < grid.rows; ++i) {
+            const Vector2d center = grid.cell_center(i, j);
+            const double height = contact_.height(i, j);
+            gap_(i, j) = std::isnan(height) ? std::numeric_limits<double>::infinity()
+                                            : wheel_profile(wheel, center.x(), center.y()) - height;
         }
-    if (!gap_.array().isFinite().any()) throw InputError("there is nothing under the wheel");
-    MatrixXd start = press_.contact.pressure;
-    if (last_.size() > 0) start = (2 * start - last_).eval();
-    last_ = press_.contact.pressure;
-    press_.contact = pressing.by_force ? layer_->by_force(gap_, pressing.amount, tolerance, start)
-                                       : layer_->by_depth(gap_, pressing.amount, tolerance, start);
-    if (!press_.contact.converged) throw InputError("the contact was not found to the tolerance");
+    if (!gap_.array().isFinite().any()) throw core::InputError("there is nothing under the wheel");
+    MatrixXd start = contact_.contact.pressure;
+    if (previous_pressure_.size() > 0) start = (2 * start - previous_pressure_).eval();
+    previous_pressure_ = contact_.contact.pressure;
+    contact_.contact = load.by_force ? layer_->solve_by_force(gap_, load.value, tolerance, start)
+                                     : layer_->solve_by_indentation(gap_, load.value, tolerance, start);
+    if (!contact_.contact.converged) throw core::InputError("the contact did not converge to the tolerance");
 }
 
-Vector2d WheelPress::reach() const
+Vector2d WheelContactSolver::contact_extent() const
 {
-    Vector2d farthest = Vector2d::Zero();
-    for (Index j = 0; j < press_.cells.columns; ++j)
-        for (Index i = 0; i < press_.cells.rows; ++i)
-            if (press_.contact.pressure(i, j) > 0)
-                farthest = farthest.cwiseMax(press_.cells.middle(i, j).cwiseAbs() + press_.cells.cell / 2);
-    return farthest;
+    Vector2d extent = Vector2d::Zero();
+    for (Index j = 0; j < contact_.grid.columns; ++j)
+        for (Index i = 0; i < contact_.grid.rows; ++i)
+            if (contact_.contact.pressure(i, j) > 0)
+                extent = extent.cwiseMax(contact_.grid.cell_center(i, j).cwiseAbs() + contact_.grid.cell_size / 2);
+    return extent;
 }
 
-/// Could the contact go on beyond the grid?
-bool WheelPress::is_at_border() const
+/// Does the contact reach the border of a grid that could be larger?
+bool WheelContactSolver::is_at_border() const
 {
-    const Eigen::Array2d half = press_.cells.half().array(), farthest = reach().array();
-    const Eigen::Array2d most(kMost * wheel_.radius, wheel_.width / 2);
-    return (farthest > half - 1.5 * press_.cells.cell.array() && half < 0.999 * most).any();
+    const Eigen::Array2d half = contact_.grid.half_size().array(), extent = contact_extent().array();
+    const Eigen::Array2d max_half(kMaxRadiusShare * wheel_.radius, wheel_.width / 2);
+    return (extent > half - 1.5 * contact_.grid.cell_size.array() && half < 0.999 * max_half).any();
 }
 
-void WheelPress::find_grid(const Eigen::Isometry3d& T_part_tool, const Pressing& pressing)
+void WheelContactSolver::find_grid(const Eigen::Isometry3d& T_part_tool, const ContactLoad& load)
 {
-    constexpr double kAround = 1.3;
-    constexpr double kRough = 1e-3;
-    const Vector2d most(kMost * wheel_.radius, wheel_.width / 2);
-    Vector2d half = layer_ ? Vector2d(1.5 * press_.cells.half()) : first_half(wheel_);
+    constexpr double kGridPerExtent = 1.3;
+    constexpr double kCoarseTolerance = 1e-3;
+    const Vector2d max_half(kMaxRadiusShare * wheel_.radius, wheel_.width / 2);
+    Vector2d half = layer_ ? Vector2d(1.5 * contact_.grid.half_size()) : initial_half_size(wheel_);
     for (;; half *= 2) {
-        half = half.cwiseMin(most);
-        set_grid(cells_of(half, kCoarse), LayerSolver::layer);
-        press_on(T_part_tool, pressing, Gridding::shepard, kRough);
+        half = half.cwiseMin(max_half);
+        set_grid(square_grid(half, kCoarseCells), LayerSolver::layer);
+        solve_on_grid(T_part_tool, load, Gridding::shepard, kCoarseTolerance);
         if (!is_at_border()) break;
     }
-    half = (kAround * reach() + press_.cells.cell).cwiseMin(most);
-    set_grid(cells_of(half, options_.cells), options_.solver);
+    half = (kGridPerExtent * contact_extent() + contact_.grid.cell_size).cwiseMin(max_half);
+    set_grid(square_grid(half, options_.cells_per_side), options_.solver);
 }
 
-const Press& WheelPress::at(const Eigen::Isometry3d& T_part_tool, const Pressing& pressing)
+const WheelContact& WheelContactSolver::solve(const Eigen::Isometry3d& T_part_tool, const ContactLoad& load)
 {
-    if (!layer_) find_grid(T_part_tool, pressing);
-    press_on(T_part_tool, pressing, options_.gridding, options_.tolerance);
+    if (!layer_) find_grid(T_part_tool, load);
+    solve_on_grid(T_part_tool, load, options_.gridding, options_.tolerance);
     if (is_at_border()) {
-        find_grid(T_part_tool, pressing);
-        press_on(T_part_tool, pressing, options_.gridding, options_.tolerance);
+        find_grid(T_part_tool, load);
+        solve_on_grid(T_part_tool, load, options_.gridding, options_.tolerance);
     }
-    // Thicknesses: there rubber of ν = 0.49 is pressed in 0.5 % farther than without an edge, 5 % at a sixth of it.
-    constexpr double kEdge = 1.5;
-    press_.is_near_edge = reach().y() > wheel_.width / 2 - kEdge * wheel_.layer.thickness;
-    return press_;
+    // At this distance from the edge rubber of ν = 0.49 yields 0.5 % more than without an edge, at a sixth of it 5 %.
+    constexpr double kEdgeZoneThicknesses = 1.5;
+    contact_.is_near_edge = contact_extent().y() > wheel_.width / 2 - kEdgeZoneThicknesses * wheel_.layer.thickness;
+    return contact_;
 }
 
-MatrixXd WheelPress::gap_left() { return layer_->gap_left(gap_, press_.contact); }
+MatrixXd WheelContactSolver::residual_gap() { return layer_->residual_gap(gap_, contact_.contact); }
 
-double Press::area() const { return static_cast<double>((contact.pressure.array() > 0).count()) * cells.cell.prod(); }
+double WheelContact::area() const { return (contact.pressure.array() > 0).count() * grid.cell_size.prod(); }
 
-Cloud to_cloud(const Press& press, const MatrixXd& gap_left, const Eigen::Isometry3d& T_part_tool)
+cloud::Cloud to_cloud(const WheelContact& press, const MatrixXd& gap_left, const Eigen::Isometry3d& T_part_tool)
 {
     std::vector<Eigen::Vector3d> points;
     std::vector<double> pressure, gap;
-    for (Index j = 0; j < press.cells.columns; ++j)
-        for (Index i = 0; i < press.cells.rows; ++i) {
+    for (Index j = 0; j < press.grid.columns; ++j)
+        for (Index i = 0; i < press.grid.rows; ++i) {
             if (std::isnan(press.height(i, j))) continue;
-            const Vector2d at = press.cells.middle(i, j);
-            Eigen::Vector3d place(at.x(), at.y(), press.height(i, j));
+            const Vector2d center = press.grid.cell_center(i, j);
+            Eigen::Vector3d p(center.x(), center.y(), press.height(i, j));
             if (const double radius = press.arc_radius; std::isfinite(radius)) {
-                const double angle = at.x() / radius, r = radius - place.z();
-                place.x() = r * std::sin(angle);
-                place.z() = radius - r * std::cos(angle);
+                const double angle = center.x() / radius, r = radius - p.z();
+                p.x() = r * std::sin(angle);
+                p.z() = radius - r * std::cos(angle);
             }
-            points.push_back(T_part_tool * place);
+            points.push_back(T_part_tool * p);
             pressure.push_back(press.contact.pressure(i, j));
             gap.push_back(gap_left(i, j));
         }
-    Cloud cloud;
+    cloud::Cloud cloud;
     cloud.comment = "frame: part";
-    cloud.xyz.resize(3, static_cast<Index>(points.size()));
-    for (std::size_t i = 0; i < points.size(); ++i) cloud.xyz.col(static_cast<Index>(i)) = points[i];
-    const auto values = [](const std::vector<double>& all) {
-        return Eigen::VectorXd(Eigen::VectorXd::Map(all.data(), static_cast<Index>(all.size())));
-    };
-    set_field(cloud, "pressure", values(pressure));
-    set_field(cloud, "gap", values(gap));
+    cloud.xyz.resize(3, points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) cloud.xyz.col(i) = points[i];
+    cloud::set_field(cloud, "pressure", Eigen::VectorXd::Map(pressure.data(), cloud.size()));
+    cloud::set_field(cloud, "gap", Eigen::VectorXd::Map(gap.data(), cloud.size()));
     return cloud;
 }
 
-} // namespace fettle
+} // namespace fettle::belt

@@ -8,88 +8,91 @@
 #include <limits>
 #include <optional>
 
-namespace fettle {
+namespace fettle::belt {
 
-/// How the layer gives way: as a bonded layer that is flat and has no edges (layer_compliance.h), or as finite elements
-/// of the round one with its sides (fem_layer.h).
+/// Model of the layer's compliance: a flat bonded layer without edges (layer_compliance.h), or finite elements of the
+/// round layer with its sides (fem_layer.h).
 enum class LayerSolver { layer, fem };
 
-/// How the contact is reckoned.
-struct PressOptions {
+struct WheelContactOptions {
     Gridding gridding = Gridding::kriging;
-    Eigen::Index cells = 64; ///< along each side of the grid
-    double tolerance = 1e-6; ///< of the contact (layer_contact.h)
+    Eigen::Index cells_per_side = 64; ///< along each side of the grid
+    double tolerance = 1e-6;          ///< of the contact (layer_contact.h)
     LayerSolver solver = LayerSolver::layer;
-    Eigen::Index elements = 8; ///< from the surface to the hub: of finite elements
+    Eigen::Index elements = 8; ///< of LayerSolver::fem from the surface to the hub
 };
 
-/// How the wheel is pressed on: with a force, or to a depth of its lowest point below the contact point.
-struct Pressing {
+/// Load on the wheel: a force, or a depth of its lowest point below the contact point.
+struct ContactLoad {
     bool by_force = true;
-    double amount = 0; ///< N or mm, > 0
+    double value = 0; ///< N or mm, > 0
 };
 
-/// A contact situation: what lies under the wheel, and how it is pressed.
-struct Press {
-    ContactCells cells;
-    /// Of the wheel's arc that rows lie along, about its lowest point, and heights are measured from, inwards;
-    /// infinite: that is the plane through the contact point.
+/// Contact of the wheel at one pose, on a grid.
+struct WheelContact {
+    ContactGrid grid;
+    /// Radius of the wheel's arc along which rows lie and from which heights are measured inwards, mm. Infinite: rows
+    /// lie in the tangent plane through the contact point.
     double arc_radius = std::numeric_limits<double>::infinity();
-    Eigen::MatrixXd height; ///< mm; NaN: nothing is there
+    Eigen::MatrixXd height; ///< of the workpiece, mm; NaN: no surfels
     Contact contact;
-    /// Nearer than 1.5 thicknesses to the layer's free edge, where it is softer than a layer without edges.
+    /// The contact is nearer than 1.5 thicknesses to the layer's free edge, where it is softer than a layer without
+    /// edges.
     bool is_near_edge = false;
-    double area() const; ///< that touches, mm²
+    double area() const; ///< of the cells in contact, mm²
 };
 
-/// What the next contact begins with.
-struct PressMemory {
-    ContactCells cells;             ///< none: the grid is not known
-    Eigen::MatrixXd pressure, last; ///< of the last contact and the one before it; empty: not known
+/// State from which the next contact starts.
+struct WheelContactState {
+    ContactGrid grid;                   ///< no rows: the grid is not known yet
+    Eigen::MatrixXd pressure, previous; ///< of the last contact and the one before it; empty: none
 };
 
-/// Presses a wheel on surfels at one pose after the other: +z out of the part, the wheel's axis along y. The grid is as
-/// large as the contact and a little more; it grows when a contact comes to its border. Each contact begins with what
-/// the two before it lead to expect.
-class WheelPress {
+/// Presses a wheel on surfels at successive poses: +z out of the part, the wheel's axis along y. The grid is slightly
+/// larger than the contact and grows when a contact reaches its border. Each contact starts from the linear
+/// extrapolation of the last two.
+class WheelContactSolver {
   public:
-    /// All are kept by reference, but for the options.
-    WheelPress(const Surfels& surfels, const ContactWheel& wheel, const PressOptions& options);
+    /// Keeps references to the surfels and the wheel.
+    WheelContactSolver(const Surfels& surfels, const ContactWheel& wheel, const WheelContactOptions& options);
 
-    /// @throws InputError if there is nothing under the wheel, or the contact is not found to tolerance
-    const Press& at(const Eigen::Isometry3d& T_part_tool, const Pressing& pressing);
-    /// The surfels that the last grid was made from, and where they are: as the cells and their heights.
-    const std::vector<Eigen::Index>& under() const { return under_; }
-    const Eigen::Matrix3Xd& places() const { return places_; }
-    /// Farthest edges of cells that touch, along x and y, mm.
-    Eigen::Vector2d reach() const;
-    /// What is left between wheel and surfels, mm.
-    Eigen::MatrixXd gap_left();
-    /// The next contact has nothing to do with the last.
-    void lift();
-    PressMemory memory() const;
-    /// The next contact comes out as it would have done then, to the last digit.
-    void remember(const PressMemory& memory);
+    /// Solves the contact at a pose.
+    /// @throws InputError if there is nothing under the wheel, or the contact does not converge
+    const WheelContact& solve(const Eigen::Isometry3d& T_part_tool, const ContactLoad& load);
+    /// Indices of the surfels from which the last grid was made.
+    const std::vector<Eigen::Index>& surfels_in_grid() const { return surfels_in_grid_; }
+    /// Their coordinates, 3xN, mm: as the cells, and the height.
+    const Eigen::Matrix3Xd& surfel_coordinates() const { return surfel_coordinates_; }
+    /// Largest distances of cells in contact from the contact point along x and y, to their far edges, mm.
+    Eigen::Vector2d contact_extent() const;
+    /// Gap between wheel and surfels after deformation, mm.
+    Eigen::MatrixXd residual_gap();
+    /// Forgets the last contacts; the next one starts without them.
+    void reset();
+    WheelContactState state() const;
+    /// Continues from a state: the next contact is bit for bit what it would have been then.
+    void restore(const WheelContactState& state);
 
   private:
-    void set_grid(const ContactCells& cells, LayerSolver solver);
-    void find_grid(const Eigen::Isometry3d& T_part_tool, const Pressing& pressing);
-    void press_on(const Eigen::Isometry3d& T_part_tool, const Pressing& pressing, Gridding gridding, double tolerance);
+    void set_grid(const ContactGrid& grid, LayerSolver solver);
+    void find_grid(const Eigen::Isometry3d& T_part_tool, const ContactLoad& load);
+    void solve_on_grid(const Eigen::Isometry3d& T_part_tool, const ContactLoad& load, Gridding gridding,
+                       double tolerance);
     bool is_at_border() const;
 
     const Surfels& surfels_;
     const ContactWheel& wheel_;
-    PressOptions options_;
+    WheelContactOptions options_;
     SurfelIndex index_;
-    double farthest_;                   ///< stock from its surfel, mm
-    std::optional<LayerContact> layer_; ///< none: the grid is not known
-    std::vector<Eigen::Index> under_;
-    Eigen::Matrix3Xd places_;
-    Eigen::MatrixXd gap_, last_;
-    Press press_;
+    double max_displacement_;           ///< absolute, of the surfels, mm
+    std::optional<LayerContact> layer_; ///< none: the grid is not known yet
+    std::vector<Eigen::Index> surfels_in_grid_;
+    Eigen::Matrix3Xd surfel_coordinates_;
+    Eigen::MatrixXd gap_, previous_pressure_;
+    WheelContact contact_;
 };
 
-/// A point for each cell that something is under, in the part frame, with fields pressure (MPa) and gap (mm).
-Cloud to_cloud(const Press& press, const Eigen::MatrixXd& gap_left, const Eigen::Isometry3d& T_part_tool);
+/// Points of the workpiece at the cells with surfels, in the part frame, with fields pressure (MPa) and gap (mm).
+cloud::Cloud to_cloud(const WheelContact& press, const Eigen::MatrixXd& gap_left, const Eigen::Isometry3d& T_part_tool);
 
-} // namespace fettle
+} // namespace fettle::belt

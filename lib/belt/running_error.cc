@@ -3,46 +3,41 @@
 #include <algorithm>
 #include <cmath>
 
-namespace fettle {
+namespace fettle::belt {
 
 namespace {
 
-Eigen::Index& count_of(AssessmentCounts& counts, Assessment found)
-{
-    return found == Assessment::gouge ? counts.gouge : found == Assessment::undercut ? counts.undercut : counts.within;
-}
-
-double known(const AssessmentCounts& counts)
+double assessed_count(const AssessmentCounts& counts)
 {
     return static_cast<double>(counts.gouge + counts.within + counts.undercut);
 }
 
 } // namespace
 
-double RunningError::mean() const { return sum / known(counts); }
+double RunningError::mean() const { return sum / assessed_count(counts); }
 
-double RunningError::rms() const { return std::sqrt(std::max(squares, 0.0) / known(counts)); }
+double RunningError::rms() const { return std::sqrt(std::max(sum_squares, 0.0) / assessed_count(counts)); }
 
 RunningError running_error(const Eigen::VectorXd& displacement, const ToleranceRange& range)
 {
-    RunningError error{range, count(displacement, range)};
+    RunningError error{range, count_assessments(displacement, range)};
     for (const double d : displacement) {
         if (std::isnan(d)) continue;
         error.sum += d;
-        error.squares += d * d;
-        error.least = std::min(error.least, d);
+        error.sum_squares += d * d;
+        error.min = std::min(error.min, d);
     }
     return error;
 }
 
-void change(RunningError& error, double before, double after)
+void RunningError::update(double before, double after)
 {
     if (std::isnan(before)) return;
-    --count_of(error.counts, assess(before, error.range));
-    ++count_of(error.counts, assess(after, error.range));
-    error.sum += after - before;
-    error.squares += after * after - before * before;
-    error.least = std::min(error.least, after);
+    --counts[assess(before, range)];
+    ++counts[assess(after, range)];
+    sum += after - before;
+    sum_squares += after * after - before * before;
+    min = std::min(min, after);
 }
 
-} // namespace fettle
+} // namespace fettle::belt

@@ -10,26 +10,28 @@
 #include <utility>
 #include <vector>
 
-namespace fettle {
+namespace fettle::belt {
 
-/// Surfels by where they are on the design surface, in cubes.
+/// Hash grid of the surfels' positions on the design surface. It stays beside geometry::PointIndex because the search
+/// box is long, flat and tilted: the cells that meet it are taken whole, in an order that decides ties in gridding.
 class SurfelIndex {
   public:
-    /// @param side  of the cubes, mm: about the size of what will be asked for
+    /// @param side  of a cell, mm; best about the size of the queries
     SurfelIndex(const Surfels& surfels, double side);
 
-    /// All surfels in a box that is given in a frame, and others near, in the order of the cubes.
-    void in_box(const Eigen::Isometry3d& T_part_frame, const Eigen::AlignedBox3d& box,
-                std::vector<Eigen::Index>& result) const;
+    /// Replaces `result` by all surfels in the cells that meet a box in the given frame, in the order of the cells;
+    /// some are outside the box.
+    void box_search(const Eigen::Isometry3d& T_part_frame, const Eigen::AlignedBox3d& box,
+                    std::vector<Eigen::Index>& result) const;
 
   private:
-    using Cube = Eigen::Matrix<std::int64_t, 3, 1>;
-    Cube cube_of(const Eigen::Vector3d& place) const { return (place / side_).array().floor().cast<std::int64_t>(); }
-    static std::uint64_t key(const Cube& cube);
+    using Cell = Eigen::Matrix<std::int64_t, 3, 1>;
+    Cell cell_of(const Eigen::Vector3d& p) const { return (p / side_).array().floor().cast<std::int64_t>(); }
+    static std::uint64_t key(const Cell& cell);
 
     double side_;
-    std::vector<Eigen::Index> order_;
-    std::unordered_map<std::uint64_t, std::pair<std::size_t, std::size_t>> range_; ///< of order_
+    std::vector<Eigen::Index> order_;                                               ///< surfels sorted by cell
+    std::unordered_map<std::uint64_t, std::pair<std::size_t, std::size_t>> ranges_; ///< by key, in order_
 };
 
-} // namespace fettle
+} // namespace fettle::belt

@@ -8,20 +8,20 @@ namespace CLI {
 class App;
 }
 
-namespace fettle {
+namespace fettle::cli {
 
-/// Refuses options that are unknown (with a guess at what was meant), stand twice, or lack their value, before CLI11
-/// sees them: its own messages speak of its own matters. Says nothing if help is asked for.
+/// Rejects options that are unknown (with a suggestion), given twice, or without their value. It runs before CLI11,
+/// whose messages are about its internals. Accepts everything if help is requested.
 /// @throws InputError
 void check_options(const CLI::App& app, int argc, char** argv);
 
-/// All words; an option that may stand alone has its value attached: the next word if it is one of its choices, else
-/// the first choice. @param alone  names of such options, and their choices
-std::vector<std::string> with_values(int argc, char** argv,
-                                     const std::map<std::string, std::vector<std::string>>& alone);
+/// Attaches values to options whose value is optional: the next word if it is one of the option's choices, else the
+/// first choice. @param choices_of  the choices of such options by name   @return  all words of the command line
+std::vector<std::string> attach_optional_values(int argc, char** argv,
+                                                const std::map<std::string, std::vector<std::string>>& choices_of);
 
-/// Where a file among several arguments is not what it should be: how they follow each other, " (the arguments are JOB
-/// [POINTS])"; empty if it is none of them.
-std::string order_of_arguments(const CLI::App& app, const std::string& file);
+/// Addition to a message about an unsuitable file: the order of the arguments, " (the arguments are JOB [POINTS])".
+/// Empty if the file is not an argument or the only one.
+std::string describe_argument_order(const CLI::App& app, const std::string& file);
 
-} // namespace fettle
+} // namespace fettle::cli

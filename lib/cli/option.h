@@ -11,27 +11,24 @@ class App;
 class Option;
 } // namespace CLI
 
-namespace fettle {
+namespace fettle::cli {
 
-/// Declares an option (or a word without dashes) whose value `parse` reads; what it throws is said with the option's
-/// name before it: "--tolerance: must be positive, got -1".
-/// @param parse  throws InputError for a value that it refuses
+/// Declares an option, or a positional argument, whose value is read by `parse`. The messages of its exceptions get the
+/// option's name: "--tolerance: must be positive, got -1".
+/// @param parse  throws InputError for an invalid value
 CLI::Option* add_option(CLI::App& app, const std::string& names, const std::string& help,
                         const std::function<void(const std::string&)>& parse);
 
-/// @throws InputError if `text` is no number, or one out of range
-double number_in(const std::string& text, const Range& range);
+/// @throws InputError if `text` is not a number or is out of range
+double parse_number_in(const std::string& text, const core::Range& range);
 
-/// @throws InputError if `text` is no whole number from `least` to `most`
-double whole_number_in(const std::string& text, double least, double most);
+/// @throws InputError if `text` is not an integer from `min` to `max`
+double parse_integer_in(const std::string& text, double min, double max);
 
-/// @throws InputError, with a guess at what was meant, if `text` is none of the choices
-const std::string& one_of(const std::vector<std::string>& choices, const std::string& text);
+/// @return  `text`   @throws InputError, with a suggestion, if it is none of the choices
+const std::string& check_choice(const std::vector<std::string>& choices, const std::string& text);
 
-/// "a,b" as "a" and "b"; nothing of an empty text.
-std::vector<std::string> listed(const std::string& text);
+/// Splits at commas: "a,b" into "a" and "b". An empty text has no parts.
+std::vector<std::string> split_list(const std::string& text);
 
-/// "plane|swept|freeform"
-std::string joined(const std::vector<std::string>& words, const std::string& separator);
-
-} // namespace fettle
+} // namespace fettle::cli

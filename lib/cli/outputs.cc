@@ -9,15 +9,14 @@
 #include <system_error>
 #include <unistd.h>
 
-namespace fettle {
+namespace fettle::cli {
 
-// Where stdin, stdout or stderr is closed, the next file that is opened would be taken for it: something else goes
-// there, of which reading, or writing, fails as it should.
-void prepare_to_write()
+void guard_standard_streams()
 {
+    // /dev/null takes the number of a closed stream, opened so that reading or writing fails.
     for (const int number : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
         if (fcntl(number, F_GETFD) == -1) open("/dev/null", number == STDIN_FILENO ? O_WRONLY : O_RDONLY);
-    std::signal(SIGXFSZ, [](int) {}); // programs that are started get it anew
+    std::signal(SIGXFSZ, [](int) {}); // a handler rather than SIG_IGN, which child processes would inherit
 }
 
 void Outputs::declare(const std::string& path, const std::string* may_replace)
@@ -25,57 +24,58 @@ void Outputs::declare(const std::string& path, const std::string* may_replace)
     declared_.push_back({&path, may_replace});
 }
 
-void Outputs::open(const std::string* bulk, const std::string* bulk_input)
+void Outputs::open(const std::string* main_output, const std::string* main_input)
 {
-    if (bulk != nullptr) {
-        claim(*bulk, bulk_input);
-        bulk_ = std::make_unique<OutputFile>(*bulk);
+    if (main_output != nullptr) {
+        reserve(*main_output, main_input);
+        main_ = std::make_unique<core::OutputFile>(*main_output);
     }
     for (const auto& [path, may_replace] : declared_) {
         if (path->empty()) continue;
-        claim(*path, may_replace);
+        reserve(*path, may_replace);
         others_.emplace_back(*path);
     }
 }
 
-void Outputs::claim(const std::string& path, const std::string* may_replace)
+void Outputs::reserve(const std::string& path, const std::string* may_replace)
 {
-    if (path == "/dev/null") return; // as often as one likes
-    for (const std::string& other : claimed_)
-        if (same_file(path, other)) throw InputError(path == "-" ? "stdout" : path, "named for two outputs");
+    if (path == "/dev/null") return; // may be named for several outputs
+    for (const std::string& other : reserved_)
+        if (core::same_file(path, other))
+            throw core::InputError(path == "-" ? "stdout" : path, "named for two outputs");
     if (std::error_code unknown; std::filesystem::is_regular_file(path, unknown))
         for (const std::string* input : inputs_)
-            if (input != may_replace && same_file(path, *input))
-                throw InputError(path, "is an input, which would be lost: another name is needed for the output");
-    claimed_.push_back(path);
+            if (input != may_replace && core::same_file(path, *input))
+                throw core::InputError(path, "is an input, which would be lost: another name is needed for the output");
+    reserved_.push_back(path);
 }
 
-std::ostream& Outputs::bulk()
+std::ostream& Outputs::main()
 {
-    has_bulk_ = true;
-    return bulk_->stream();
+    uses_main_ = true;
+    return main_->stream();
 }
 
 std::ostream& Outputs::file(const std::string& path)
 {
-    auto at = std::find_if(others_.begin(), others_.end(), [&](const Other& other) { return other.path == path; });
-    if (at == others_.end()) {
-        claim(path);
-        at = others_.emplace(others_.end(), path);
+    auto other = std::ranges::find(others_, path, &Other::path);
+    if (other == others_.end()) {
+        reserve(path);
+        other = others_.emplace(others_.end(), path);
     }
-    at->is_used = true;
-    return at->file.stream();
+    other->is_used = true;
+    return other->file.stream();
 }
 
-// Named outputs first, stdout last: a reader of the pipe may rely on the files.
 void Outputs::commit()
 {
     std::erase_if(others_, [](const Other& other) { return !other.is_used; });
-    // All or none, as far as it goes: where one cannot be written none gets its name.
-    for (Other& other : others_) other.file.settle();
-    if (has_bulk_) bulk_->settle();
+    // All data are written before the first file gets its name.
+    for (Other& other : others_) other.file.sync();
+    if (uses_main_) main_->sync();
+    // stdout comes last: the program that reads the pipe may need the other files.
     for (Other& other : others_) other.file.commit();
-    if (has_bulk_) bulk_->commit();
+    if (uses_main_) main_->commit();
 }
 
-} // namespace fettle
+} // namespace fettle::cli

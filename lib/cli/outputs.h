@@ -8,34 +8,34 @@
 #include <string>
 #include <vector>
 
-namespace fettle {
+namespace fettle::cli {
 
-/// For the whole program, before it opens a file: what is closed of stdin, stdout and stderr is not mistaken for one,
-/// and a file that may not grow is a failed write.
-void prepare_to_write();
+/// Prepares the process before it opens a file: a file must not get the number of a closed stdin, stdout or stderr, and
+/// a write beyond the file size limit must fail instead of killing the process.
+void guard_standard_streams();
 
-/// All that a tool writes: the bulk output and the files that options name. They appear whole when all is done, or not
-/// at all; no two have one name, and none takes the place of an input. Names are those on the command line: they may
-/// be filled in until open().
+/// All outputs of a tool: the main output and the files that options name. They are written atomically, all together or
+/// none. No two outputs may name the same file, and none may replace an input. The strings of names are those that the
+/// command line fills in; they must be set before open().
 class Outputs {
   public:
-    /// An input, which no output may replace but as it is said below.
-    void protect(const std::string& input) { inputs_.push_back(&input); }
-    /// @param may_replace  the input that it is made of and whose place it may take, or null
+    /// Declares an input, which no output may replace except as declared.
+    void add_input(const std::string& input) { inputs_.push_back(&input); }
+    /// Declares an output. @param may_replace  the input that it is derived from and may replace, or null
     void declare(const std::string& path, const std::string* may_replace);
-    /// Claims and opens what is declared, before any work. @param bulk  its name, or null: there is none
-    /// @param bulk_input  which the bulk output may replace, or null
-    /// @throws InputError as claim(), or if one could not be written
-    void open(const std::string* bulk, const std::string* bulk_input);
+    /// Reserves and opens all declared outputs.
+    /// @param main_output  its name; null: none   @param main_input  the input that it may replace, or null
+    /// @throws InputError as reserve(), or if an output cannot be written
+    void open(const std::string* main_output, const std::string* main_input);
 
-    /// A file that the work itself writes.
-    /// @throws InputError if it is another output, or an input: that would be lost
-    void claim(const std::string& path) { claim(path, nullptr); }
-    std::ostream& bulk();
-    /// Whether it was declared or not. @throws InputError as claim()
+    /// Reserves a name for a file that is not written through this class.
+    /// @throws InputError if it names another output, or an input, which would be lost
+    void reserve(const std::string& path) { reserve(path, nullptr); }
+    std::ostream& main();
+    /// Stream of another output, declared or not. @throws InputError as reserve()
     std::ostream& file(const std::string& path);
 
-    /// What was written gets its names; where one cannot be written none does. Nothing is left of the others.
+    /// Gives all used outputs their names, or none of them if one cannot be written.
     /// @throws InputError
     void commit();
 
@@ -44,21 +44,20 @@ class Outputs {
         const std::string* path;
         const std::string* may_replace;
     };
-    /// Nothing happens to its file before something is written.
     struct Other {
         explicit Other(const std::string& name) : path(name), file(name) {}
         std::string path;
-        OutputFile file;
+        core::OutputFile file;
         bool is_used = false;
     };
-    void claim(const std::string& path, const std::string* may_replace);
+    void reserve(const std::string& path, const std::string* may_replace);
 
     std::vector<const std::string*> inputs_;
     std::vector<Declared> declared_;
-    std::vector<std::string> claimed_; ///< names
-    std::unique_ptr<OutputFile> bulk_;
-    bool has_bulk_ = false; ///< something is written there
+    std::vector<std::string> reserved_; ///< names
+    std::unique_ptr<core::OutputFile> main_;
+    bool uses_main_ = false;
     std::list<Other> others_;
 };
 
-} // namespace fettle
+} // namespace fettle::cli

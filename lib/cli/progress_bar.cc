@@ -5,9 +5,9 @@
 #include <iostream>
 #include <memory>
 
-namespace fettle {
+namespace fettle::cli {
 
-Progress progress_bar(const std::string& label)
+core::Progress progress_bar(const std::string& label)
 {
     using Clock = std::chrono::steady_clock;
     struct Bar {
@@ -26,4 +26,4 @@ Progress progress_bar(const std::string& label)
     };
 }
 
-} // namespace fettle
+} // namespace fettle::cli

@@ -4,9 +4,9 @@
 
 #include <string>
 
-namespace fettle {
+namespace fettle::cli {
 
-/// A progress bar on stderr, from the second second of the work on: short work shows nothing.
-Progress progress_bar(const std::string& label);
+/// Progress bar on stderr. It appears after one second, so that short computations show nothing.
+core::Progress progress_bar(const std::string& label);
 
-} // namespace fettle
+} // namespace fettle::cli

@@ -9,48 +9,47 @@
 #include <iostream>
 #include <unistd.h>
 
-namespace fettle {
+namespace fettle::cli {
 
-Questions::Questions(bool listens) : listens_(listens), asks_(isatty(STDIN_FILENO) != 0 && isatty(STDERR_FILENO) != 0)
+OperatorPrompt::OperatorPrompt(bool reads_stdin)
+    : reads_stdin_(reads_stdin), is_interactive_(isatty(STDIN_FILENO) != 0 && isatty(STDERR_FILENO) != 0)
 {
 }
 
-void Questions::say(const std::string& text) const
+void OperatorPrompt::print_hint(const std::string& text) const
 {
-    if (asks_) std::cerr << text << std::flush;
+    if (is_interactive_) std::cerr << text << std::flush;
 }
 
-std::string Questions::choose(const std::string& what, const std::vector<std::string>& choices,
-                              const std::string& otherwise)
+std::string OperatorPrompt::ask_choice(const std::string& what, const std::vector<std::string>& choices,
+                                       const std::string& fallback)
 {
-    std::string list;
-    for (const std::string& choice : choices) list += (list.empty() ? "" : ", ") + choice;
-    return ask(what + " (" + list + ")", otherwise, "none of " + list, [&](const std::string& answer) {
-        return std::find(choices.begin(), choices.end(), answer) != choices.end();
-    });
+    const std::string list = core::join(choices, ", ");
+    return ask(what + " (" + list + ")", fallback, "none of " + list,
+               [&](const std::string& answer) { return std::ranges::find(choices, answer) != choices.end(); });
 }
 
-double Questions::number(const std::string& what, double otherwise)
+double OperatorPrompt::ask_number(const std::string& what, double fallback)
 {
-    return *parse_number(ask(what, to_text(otherwise), "no number", [](const std::string& answer) {
-        const auto number = parse_number(answer);
+    return *core::parse_number(ask(what, core::to_text(fallback), "not a number", [](const std::string& answer) {
+        const auto number = core::parse_number(answer);
         return number && std::isfinite(*number);
     }));
 }
 
-std::string Questions::ask(const std::string& what, const std::string& otherwise, const std::string& fault,
-                           const std::function<bool(const std::string&)>& fine)
+std::string OperatorPrompt::ask(const std::string& what, const std::string& fallback, const std::string& fault,
+                                const std::function<bool(const std::string&)>& is_valid)
 {
     std::string line;
     for (;;) {
-        if (listens_) say(what + " [" + otherwise + "]: ");
-        if (!listens_ || !std::getline(std::cin, line)) return otherwise;
-        const auto parts = words(line);
-        if (parts.empty()) return otherwise;
-        if (std::string answer(parts[0]); parts.size() == 1 && fine(answer)) return answer;
-        if (!asks_) throw InputError("stdin", what + ": " + in_quotes(line) + " is " + fault);
-        say(in_quotes(line) + " is " + fault + "\n");
+        if (reads_stdin_) print_hint(what + " [" + fallback + "]: ");
+        if (!reads_stdin_ || !std::getline(std::cin, line)) return fallback;
+        const auto parts = core::words(line);
+        if (parts.empty()) return fallback;
+        if (std::string answer(parts[0]); parts.size() == 1 && is_valid(answer)) return answer;
+        if (!is_interactive_) throw core::InputError("stdin", what + ": " + core::in_quotes(line) + " is " + fault);
+        print_hint(core::in_quotes(line) + " is " + fault + "\n");
     }
 }
 
-} // namespace fettle
+} // namespace fettle::cli

@@ -4,26 +4,28 @@
 #include <string>
 #include <vector>
 
-namespace fettle {
+namespace fettle::cli {
 
-/// Asks the operator, on stderr and stdin where both are terminals; what is no terminal answers unasked, a line each.
-/// An empty line or none: the answer is `otherwise`. A bad answer is asked for again on a terminal, else refused.
-class Questions {
+/// Asks the operator: prompts on stderr and reads answers from stdin if both are terminals. Otherwise nothing is
+/// printed, and each line of stdin is an answer. An empty line or the end of stdin means `fallback`. After an invalid
+/// answer the question is repeated on a terminal; otherwise it is an error.
+class OperatorPrompt {
   public:
-    /// @param listens  else stdin is not read, and every answer is `otherwise`
-    explicit Questions(bool listens);
+    /// @param reads_stdin  if false, stdin is not read and every answer is `fallback`
+    explicit OperatorPrompt(bool reads_stdin);
 
-    /// A hint, if there is somebody to read it.
-    void say(const std::string& text) const;
+    /// Prints a hint if stdin and stderr are terminals.
+    void print_hint(const std::string& text) const;
     /// @throws InputError
-    std::string choose(const std::string& what, const std::vector<std::string>& choices, const std::string& otherwise);
-    double number(const std::string& what, double otherwise);
+    std::string ask_choice(const std::string& what, const std::vector<std::string>& choices,
+                           const std::string& fallback);
+    double ask_number(const std::string& what, double fallback);
 
   private:
-    std::string ask(const std::string& what, const std::string& otherwise, const std::string& fault,
-                    const std::function<bool(const std::string&)>& fine);
+    std::string ask(const std::string& what, const std::string& fallback, const std::string& fault,
+                    const std::function<bool(const std::string&)>& is_valid);
 
-    bool listens_, asks_;
+    bool reads_stdin_, is_interactive_;
 };
 
-} // namespace fettle
+} // namespace fettle::cli

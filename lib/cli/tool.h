@@ -12,116 +12,124 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
-namespace fettle {
+namespace fettle::cli {
 
-/// What a tool answers by its exit status. Bad input and usage (2) are exceptions.
+/// Exit status of a tool that has run. Bad input and usage (2) are exceptions.
 enum class Verdict { yes = 0, no = 1 };
 
-/// The command line of one tool. First declare everything; each declaration returns a reference that holds the value
-/// once parse() has run. Help, defaults and range checks follow from the declarations. Every tool has -o, --report,
-/// --seed, --threads, -q, -v, --help and --version.
+/// Command line and outputs of a tool. All arguments are declared first; each declaration returns a reference to the
+/// value, which parse() sets. Help, defaults and range checks follow from the declarations. Every tool has -o,
+/// --report, --seed,
+/// --threads, -q, -v, --help and --version.
 ///
-/// Names are as on the command line, "-t,--tolerance". An option given twice is refused.
+/// Names are as on the command line, "-t,--tolerance". An option may be given only once.
 class Tool {
   public:
-    /// A named file that must be given, in order of declaration: fettle-fit JOB
-    const std::string& file(const std::string& name, const std::string& help);
-    /// A word out of `choices` that must be given, in order with the named files: fettle-form flatness
-    const std::string& word(const std::string& name, const std::vector<std::string>& choices, const std::string& help);
-    /// The bulk input, after the named files; "-" or nothing is stdin.
-    const std::string& input(const std::string& name, const std::string& help);
+    /// A required positional file, in order of declaration: fettle-fit JOB
+    const std::string& positional_file(const std::string& name, const std::string& help);
+    /// A required positional word out of `choices`, in order with the positional files: fettle-form flatness
+    const std::string& positional_choice(const std::string& name, const std::vector<std::string>& choices,
+                                         const std::string& help);
+    /// The main input, an optional last positional file; "-" or nothing is stdin.
+    const std::string& main_input(const std::string& name, const std::string& help);
 
-    /// A file that an option names, and that is read; it may be left out. What goes on stdin is the bulk input, or "-"
-    /// here.
-    const std::string& other_file(const std::string& names, const std::string& placeholder, const std::string& help);
-    /// As other_file, but it must be given.
-    const std::string& required_file(const std::string& names, const std::string& placeholder, const std::string& help);
+    /// An input file named by an option; empty if not given. "-" is stdin.
+    const std::string& optional_file(const std::string& names, const std::string& placeholder, const std::string& help);
+    /// An input file named by a required option.
+    const std::string& required_file_option(const std::string& names, const std::string& placeholder,
+                                            const std::string& help);
 
-    /// A file that an option names, and that is written with output_file(); it may be left out. parse() looks whether
-    /// it can be, before any work.
-    /// @param may_replace  the input that it is made of and whose place it may take, if there is one
-    const std::string& other_output(const std::string& names, const std::string& help,
-                                    const std::string* may_replace = nullptr);
+    /// An output file named by an option, to be written with output_file(); empty if not given. parse() throws if it
+    /// cannot be written.
+    /// @param may_replace  the input that it is derived from and may replace, if there is one
+    const std::string& optional_output(const std::string& names, const std::string& help,
+                                       const std::string* may_replace = nullptr);
 
     const bool& flag(const std::string& names, const std::string& help);
-    const double& number(const std::string& names, double otherwise, const std::string& unit, const std::string& help,
-                         const Range& range = {});
-    const std::optional<double>& number_if_given(const std::string& names, const std::string& unit,
-                                                 const std::string& help, const Range& range = {});
-    const int& count(const std::string& names, int otherwise, const std::string& help, int least, int most);
-    /// Free text or a file name; `placeholder` stands for it in the help ("FILE").
-    const std::string& text(const std::string& names, const std::string& otherwise, const std::string& placeholder,
+    const double& number(const std::string& names, double fallback, const std::string& unit, const std::string& help,
+                         const core::Range& range = {});
+    const std::optional<double>& optional_number(const std::string& names, const std::string& unit,
+                                                 const std::string& help, const core::Range& range = {});
+    const int& count(const std::string& names, int fallback, const std::string& help, int min, int max);
+    /// Any text. @param placeholder  name of the value in the help
+    const std::string& text(const std::string& names, const std::string& fallback, const std::string& placeholder,
                             const std::string& help);
-    /// As text, but it must be given.
+    /// Any text, of a required option.
     const std::string& required_text(const std::string& names, const std::string& placeholder, const std::string& help);
-    const std::string& choice(const std::string& names, const std::string& otherwise,
+    const std::string& choice(const std::string& names, const std::string& fallback,
                               const std::vector<std::string>& choices, const std::string& help);
-    /// May stand alone, which is the first of the choices, or before one of them; empty: it is not given.
-    const std::string& choice_if_given(const std::string& name, const std::vector<std::string>& choices,
+    /// A choice whose words stand for values, such as those of an enumeration; the first word is the default.
+    template <typename Value>
+    const Value& choice(const std::string& names, const std::vector<std::pair<std::string, Value>>& choices,
+                        const std::string& help)
+    {
+        const auto value = std::make_shared<Value>(choices.front().second); // shared with the parser of the option
+        std::vector<std::string> words;
+        for (const auto& [word, meaning] : choices) words.push_back(word);
+        declare_choice(names, words.front(), words, help, [value, choices](const std::string& given) {
+            for (const auto& [word, meaning] : choices)
+                if (word == given) *value = meaning;
+        });
+        return *value;
+    }
+    /// A choice whose option may be given without a value, which means the first choice; empty if the option is not
+    /// given.
+    const std::string& optional_choice(const std::string& name, const std::vector<std::string>& choices,
                                        const std::string& help);
-    /// mm, in or m: the unit of a file; nothing if not given.
-    const std::optional<Units::Length>& length_unit(const std::string& names, const std::string& help);
+    /// Length unit of a file: mm, in or m; nothing if not given.
+    const std::optional<units::Units::Length>& length_unit(const std::string& names, const std::string& help);
 
-    /// A command line that runs as pasted in the folder samples/, for the help.
+    /// Example for the help: a command line that runs in the folder samples/.
     void example(const std::string& command, const std::string& meaning);
-    /// The paper and its section or equations, for the help.
+    /// Reference for the help: a paper and its section or equations.
     void reference(const std::string& source);
 
-    /// stdout is a conversation: there is no -o.
-    void without_output();
+    /// Declares no option -o, for tools that use stdout for a protocol.
+    void disable_output();
 
-    /// Reads the command line. After it nothing can be declared.
+    /// Parses the command line and opens the outputs. Must follow all declarations.
     void parse();
 
     std::uint64_t seed() const;
 
-    /// The bulk output: -o FILE, or stdout. It appears whole when the tool has ended without an exception, or not at
-    /// all.
+    /// The main output: -o FILE, or stdout. It is written atomically when the tool has ended without an exception.
     std::ostream& output();
-    /// Another output, named by an option; whole or not at all, too.
+    /// Another output, also written atomically.
     /// @throws InputError as claim()
     std::ostream& output_file(const std::string& path);
-    /// A file that is written by the work itself.
-    /// @throws InputError if it is another output, or an input: that would be lost. Only the bulk output may take the
-    /// place of the bulk input.
-    void claim(const std::string& path);
-    /// Numbers about the run, written where --report says.
+    /// Reserves the name of a file that is not written through output() or output_file().
+    /// @throws InputError if it names another output, or an input, which would be lost; only the main output may
+    /// replace the main input
+    void reserve_output(const std::string& path);
+    /// Report of the run, written to the file of --report.
     json::Value& report();
 
-    /// One line on stderr that matters although the work goes on, said when it has ended: a refusal stays one line.
-    /// Silent with -q.
+    /// Prints a warning on stderr, unless -q is given. Warnings are printed at the end and only if the tool succeeds,
+    /// so that an error is a single line.
     void warn(const std::string& message) const;
-    /// One line on stderr with -v.
+    /// Prints a line on stderr if -v is given.
     void note(const std::string& message) const;
-    /// A progress bar on stderr, if that is a terminal and the work takes longer than a second.
-    Progress progress(const std::string& label) const;
+    /// Progress bar on stderr, if that is a terminal and the computation takes longer than a second.
+    core::Progress progress(const std::string& label) const;
 
   private:
     friend int tool_main(int, char**, const std::string&, const std::function<Verdict(Tool&)>&);
     struct State;
     Tool(int argc, char** argv, const std::string& description);
     ~Tool();
+    void declare_choice(const std::string& names, const std::string& fallback, const std::vector<std::string>& choices,
+                        const std::string& help, const std::function<void(const std::string&)>& set);
     void finish();
     std::unique_ptr<State> state_;
 };
 
-/// What work returns; an option's or a file's name goes before what the library has against its value, unless an option
-/// is named already.
-template <typename Work>
-auto named(const std::string& name, const Work& work)
-{
-    try {
-        return work();
-    } catch (const InputError& error) {
-        if (std::string(error.what()).starts_with("--")) throw;
-        throw InputError(name, error.what());
-    }
-}
+using core::with_error_prefix;
 
-/// Runs a tool: catches what the library throws, prints "fettle-NAME: message" in one line and returns the exit status:
-/// 0 or 1 by the verdict, 2 for bad input, usage, or a failed write.
+/// Runs a tool. Exceptions are printed on one line, "fettle-NAME: message".
+/// @return  exit status: 0 or 1 by the verdict, 2 for bad input or usage, or a failed write
 int tool_main(int argc, char** argv, const std::string& description, const std::function<Verdict(Tool&)>& body);
 
-} // namespace fettle
+} // namespace fettle::cli

@@ -2,9 +2,10 @@
 
 #include <string>
 
-namespace fettle {
+namespace fettle::cli {
 
-/// What fettle was built with: the compiler and the libraries, in one line.
-std::string built_with();
+/// Versions of the compiler and of the libraries that this program is made with, on one line: those that every tool
+/// compiles in, and of the heavy ones those that it is linked with.
+std::string describe_build();
 
-} // namespace fettle
+} // namespace fettle::cli

@@ -1,20 +1,13 @@
 #include "cloud/cloud_encoder.h"
 
-#include "cloud/fields.h"
-
-namespace fettle {
+namespace fettle::cloud {
 
 bool is_colour(const Field& field) { return field.name == "rgb" && field.size == 4 && field.count == 1; }
 
-std::vector<Field> converted(const Cloud& part, const Units& units)
+Eigen::Matrix3Xf to_file_coordinates(const Cloud& part, const units::Units& units)
 {
-    std::vector<Field> fields = part.fields;
-    for (Field& field : fields)
-        if (const double factor = to_base(units, field_dimension(field.name)); factor != 1) scale(field, 1, factor);
-    return fields;
+    return (part.xyz / units.mm()).cast<float>();
 }
-
-Eigen::Matrix3Xf places(const Cloud& part, const Units& units) { return (part.xyz / units.mm()).cast<float>(); }
 
 std::vector<std::string> element_names(const Field& field)
 {
@@ -24,4 +17,4 @@ std::vector<std::string> element_names(const Field& field)
     return names;
 }
 
-} // namespace fettle
+} // namespace fettle::cloud

@@ -1,24 +1,18 @@
 #include "cloud/cloud_writer.h"
 
 #include "cloud/cloud_encoder.h"
-#include "cloud/element.h"
 #include "cloud/pcd.h"
 #include "core/text.h"
 
-#include <algorithm>
-#include <bit>
-#include <charconv>
-#include <functional>
 #include <ostream>
-#include <vector>
 
-namespace fettle {
+namespace fettle::cloud {
 
 namespace {
 
 class PcdEncoder : public CloudWriter::Encoder {
   public:
-    PcdEncoder(std::ostream& out, PcdEncoding encoding, const Units& units, std::size_t points)
+    PcdEncoder(std::ostream& out, PcdEncoding encoding, const units::Units& units, std::size_t points)
         : out_(out), encoding_(encoding), units_(units), points_(points)
     {
     }
@@ -28,13 +22,13 @@ class PcdEncoder : public CloudWriter::Encoder {
   private:
     std::ostream& out_;
     PcdEncoding encoding_;
-    Units units_;
+    units::Units units_;
     std::size_t points_;
 };
 
 class CsvEncoder : public CloudWriter::Encoder {
   public:
-    CsvEncoder(std::ostream& out, const Units& units) : out_(out), units_(units) {}
+    CsvEncoder(std::ostream& out, const units::Units& units) : out_(out), units_(units) {}
 
     void begin(const Cloud& first) override
     {
@@ -46,17 +40,16 @@ class CsvEncoder : public CloudWriter::Encoder {
 
     void write(const Cloud& part) override
     {
-        const std::vector<Field> fields = converted(part, units_);
-        const Eigen::Matrix3Xf xyz = places(part, units_);
+        const std::vector<Field> fields = to_file_units(part.fields, units_);
+        const Eigen::Matrix3Xf xyz = to_file_coordinates(part, units_);
         std::string text;
         for (Eigen::Index i = 0; i < part.size(); ++i) {
-            for (int axis = 0; axis < 3; ++axis) text += (axis > 0 ? "," : "") + to_text(xyz(axis, i));
+            for (int axis = 0; axis < 3; ++axis) text += (axis > 0 ? "," : "") + core::to_text(xyz(axis, i));
             for (const Field& field : fields)
                 for (int k = 0; k < field.count; ++k) {
                     text += ',';
-                    append(text, field,
-                           static_cast<std::size_t>(i) * static_cast<std::size_t>(field.count) +
-                               static_cast<std::size_t>(k));
+                    const char type = is_colour(field) ? 'U' : field.type; // 0x00RRGGBB, which as a float may be NaN
+                    append_element(text, field, type, i * field.count + k);
                 }
             text += '\n';
         }
@@ -64,26 +57,12 @@ class CsvEncoder : public CloudWriter::Encoder {
     }
 
   private:
-    static void append(std::string& text, const Field& field, std::size_t index)
-    {
-        const char type = is_colour(field) ? 'U' : field.type; // 0x00RRGGBB, which as a float may be NaN
-        visit_element(type, field.size, [&](auto zero) {
-            const auto value = load<decltype(zero)>(field.bytes.data() + index * sizeof zero);
-            if constexpr (std::is_floating_point_v<decltype(value)>) {
-                text += to_text(value);
-            } else {
-                char digits[24]; // of 64 bits, with a sign
-                text.append(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
-            }
-        });
-    }
-
     std::ostream& out_;
-    Units units_;
+    units::Units units_;
 };
 
-std::unique_ptr<CloudWriter::Encoder> encoder_of(std::ostream& out, CloudFormat format, const Units& units,
-                                                 std::size_t points)
+std::unique_ptr<CloudWriter::Encoder> make_encoder(std::ostream& out, CloudFormat format, const units::Units& units,
+                                                   std::size_t points)
 {
     switch (format) {
     case CloudFormat::ply:
@@ -102,8 +81,8 @@ std::unique_ptr<CloudWriter::Encoder> encoder_of(std::ostream& out, CloudFormat 
 
 } // namespace
 
-CloudWriter::CloudWriter(std::ostream& out, CloudFormat format, const Units& units, std::size_t points)
-    : encoder_(encoder_of(out, format, units, points))
+CloudWriter::CloudWriter(std::ostream& out, CloudFormat format, const units::Units& units, std::size_t points)
+    : encoder_(make_encoder(out, format, units, points))
 {
 }
 CloudWriter::~CloudWriter() = default;
@@ -117,4 +96,4 @@ void CloudWriter::write(const Cloud& part)
 
 void CloudWriter::finish() { encoder_->finish(); }
 
-} // namespace fettle
+} // namespace fettle::cloud

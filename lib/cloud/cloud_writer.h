@@ -6,30 +6,28 @@
 #include <cstddef>
 #include <iosfwd>
 #include <memory>
-#include <string>
 
-namespace fettle {
+namespace fettle::cloud {
 
-/// Formats of points. All carry every field; none but PCD says its units.
+/// File formats of point clouds. All hold every field; only PCD states its units.
 enum class CloudFormat {
     pcd,       ///< binary
     pcd_ascii, ///< PCD as text
-    ply, ///< binary, little endian: field NAME is scalar_NAME, as CloudCompare wants it; normals nx ny nz; red green
-         ///< blue
-    csv, ///< a row of names, then a row for each point; rgb as one whole number
-    vtk, ///< legacy VTK, binary: a vertex for each point, fields as scalars, normals and rgb as such
+    ply, ///< binary, little endian: field NAME is scalar_NAME, as in CloudCompare; normals nx ny nz; red green blue
+    csv, ///< a row of names, then a row per point; rgb as one integer
+    vtk, ///< legacy VTK, binary: a vertex per point, fields as scalars, normals and rgb as such
 };
 
-/// Writes a cloud part by part. In whatever format, x y z are floats.
+/// Writes a cloud part by part. In all formats x y z are floats.
 class CloudWriter {
   public:
-    /// @param points  of all parts   @param units  of the numbers written
-    CloudWriter(std::ostream& out, CloudFormat format, const Units& units, std::size_t points);
+    /// @param points  total of all parts   @param units  of the numbers written
+    CloudWriter(std::ostream& out, CloudFormat format, const units::Units& units, std::size_t points);
     ~CloudWriter();
 
-    /// The first part says what fields there are.
+    /// Writes points; the first part determines the fields.
     void write(const Cloud& part);
-    /// After the last part, of which there is at least one.
+    /// Completes the file after the last part; at least one must have been written.
     void finish();
 
     struct Encoder;
@@ -38,4 +36,4 @@ class CloudWriter {
     std::unique_ptr<Encoder> encoder_;
 };
 
-} // namespace fettle
+} // namespace fettle::cloud

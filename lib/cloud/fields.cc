@@ -3,28 +3,32 @@
 #include "cloud/element.h"
 #include "core/range.h"
 
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include <type_traits>
 
-namespace fettle {
+namespace fettle::cloud {
 
-Dimension field_dimension(const std::string& name)
+units::Dimension field_dimension(const std::string& name)
 {
-    for (const char* length : {"error", "sigma", "clearance", "radius", "displacement", "removed", "foot_x", "foot_y",
-                               "foot_z", "joint7", "clearance_between", "gap", "indentation", "deflection", "depth"})
+    for (const char* length :
+         {"error", "sigma", "clearance", "radius", "displacement", "removed", "foot_x", "foot_y", "foot_z", "joint7",
+          "clearance_between", "gap", "indentation", "deflection", "depth", "retreat"})
         if (name == length) return {1, 0};
+    if (name == "area") return {2, 0};
+    if (name == "removed_volume") return {3, 0};
     if (name == "force" || name == "peak_force") return {0, 1};
-    if (name == "feed") return {1, 0}; // per second, which is the unit of time everywhere
+    if (name == "feed") return {1, 0}; // per second: the unit of time is the same everywhere
     if (name == "pressure") return {-2, 1};
     return {};
 }
 
-Eigen::VectorXi whole_numbers(const Cloud& cloud, const std::string& name)
+Eigen::VectorXi integer_field(const Cloud& cloud, const std::string& name)
 {
-    const Range possible = Range::between(0, std::numeric_limits<int>::max());
-    return field(cloud, name).unaryExpr([&possible](double value) {
-        return possible.contains(value) && value == std::floor(value) ? static_cast<int>(value) : -1;
+    const core::Range integers = core::Range::between(0, std::numeric_limits<int>::max());
+    return field(cloud, name).unaryExpr([&integers](double value) {
+        return integers.contains(value) && value == std::floor(value) ? static_cast<int>(value) : -1;
     });
 }
 
@@ -35,9 +39,22 @@ double element(const Field& field, char type, std::size_t index)
     });
 }
 
-void scale(Field& field, double times, double over)
+void append_element(std::string& text, const Field& field, char type, std::size_t index)
 {
-    const std::size_t elements = field.bytes.size() / static_cast<std::size_t>(field.size);
+    visit_element(type, field.size, [&](auto zero) {
+        const auto value = load<decltype(zero)>(field.bytes.data() + index * sizeof zero);
+        if constexpr (std::is_floating_point_v<decltype(value)>) {
+            text += core::to_text(value);
+        } else {
+            char digits[24]; // enough for 64 bits and a sign
+            text.append(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
+        }
+    });
+}
+
+void scale_field(Field& field, double times, double over)
+{
+    const std::size_t elements = field.bytes.size() / field.size;
     visit_element(field.type, field.size, [&](auto zero) {
         using From = decltype(zero);
         using To = std::conditional_t<std::is_floating_point_v<From>, From, double>;
@@ -52,4 +69,12 @@ void scale(Field& field, double times, double over)
     });
 }
 
-} // namespace fettle
+std::vector<Field> to_file_units(std::vector<Field> fields, const units::Units& units)
+{
+    for (Field& field : fields)
+        if (const double factor = units::base_unit_factor(units, field_dimension(field.name)); factor != 1)
+            scale_field(field, 1, factor);
+    return fields;
+}
+
+} // namespace fettle::cloud

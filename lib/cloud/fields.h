@@ -5,23 +5,27 @@
 
 #include <string>
 
-namespace fettle {
+namespace fettle::cloud {
 
 /// The dimension of a field by its name (docs/conventions.md): error, sigma, clearance, clearance_between, radius,
-/// displacement, removed, deflection, gap, indentation, depth, foot_x, foot_y, foot_z and joint7 (a robot's track) are
-/// lengths; force, peak_force are forces; feed is length per second; pressure is force per area. Any other name is a
-/// plain number.
-Dimension field_dimension(const std::string& name);
+/// displacement, removed, deflection, gap, indentation, depth, retreat, foot_x, foot_y, foot_z and joint7 (a robot's
+/// track) are lengths; area and removed_volume are powers of lengths; force, peak_force are forces; feed is length per
+/// second; pressure is force per area. Any other name is a plain number.
+units::Dimension field_dimension(const std::string& name);
 
-/// A scalar field of whole numbers from 0 (curve, role); -1 for what is none of them (NaN).
+/// Values of a scalar field of integers from 0 (curve, role); -1 for other values (NaN).
 /// @throws InputError as field()
-Eigen::VectorXi whole_numbers(const Cloud& cloud, const std::string& name);
+Eigen::VectorXi integer_field(const Cloud& cloud, const std::string& name);
 
-/// Element `index` of all elements of all points, taken as a number of `type`, usually the field's own.
+/// Element `index` among all elements of all points. @param type  of the element, usually field.type
 double element(const Field& field, char type, std::size_t index);
+/// Appends element `index` as text: an integer, or the shortest text of a float.
+void append_element(std::string& text, const Field& field, char type, std::size_t index);
 
-/// Multiplies all elements of a field by `times` and divides them by `over`. One of whole numbers becomes F8: 1 in is
-/// no whole number of mm.
-void scale(Field& field, double times, double over = 1);
+/// Scales all elements of a field to value * times / over. An integer field becomes F8: 1 in is not an integer in mm.
+void scale_field(Field& field, double times, double over = 1);
+/// Converts fields from base units.
+/// @return  the fields in `units`
+std::vector<Field> to_file_units(std::vector<Field> fields, const units::Units& units);
 
-} // namespace fettle
+} // namespace fettle::cloud

@@ -8,40 +8,43 @@
 #include <string>
 #include <string_view>
 
-namespace fettle {
+namespace fettle::cloud {
 
 enum class PcdEncoding { ascii, binary };
+/// The encoding that the option --ascii of a tool asks for.
+constexpr PcdEncoding pcd_encoding(bool ascii) { return ascii ? PcdEncoding::ascii : PcdEncoding::binary; }
 
-/// A cloud read from a file, and the units that its numbers were in.
+/// A cloud read from a file.
 struct CloudFile {
-    Cloud cloud; ///< mm and N
-    Units units; ///< of the file
+    Cloud cloud;        ///< mm and N
+    units::Units units; ///< units of the file
 };
 
-/// Reads a point cloud: PCD (ascii, binary, binary_compressed), or PLY or XYZ text, told by content. Strict: the header
-/// is checked against the bytes that are there before anything is allocated.
+/// Reads a point cloud from PCD (ascii, binary, binary_compressed), PLY or XYZ text; the content decides which. The
+/// header is checked against the size of the file before memory is allocated.
 /// @param path   a file, or "-" for stdin
-/// @param units  what the file must be in: its `# units` comment may not disagree. Nothing: what the comment says, else
-/// mm
+/// @param units  units of the file, which its `# units` comment may not contradict; without them those of the comment,
+/// else mm
 /// @throws InputError
-CloudFile read_cloud(const std::string& path, std::optional<Units> units = std::nullopt);
+CloudFile read_cloud(const std::string& path, std::optional<units::Units> units = std::nullopt);
 
-/// The same from bytes. @param source  the name for messages
-CloudFile parse_cloud(std::string_view bytes, const std::string& source, std::optional<Units> units = std::nullopt);
+/// Reads a point cloud from the bytes of a file. @param source  its name for messages
+CloudFile parse_cloud(std::string_view bytes, const std::string& source,
+                      std::optional<units::Units> units = std::nullopt);
 
 struct PcdHeader;
 
-/// Points of a binary PCD. @param records  a whole number of points as they stand in the file  @param units  of the
-/// file
-Cloud parse_pcd_records(const PcdHeader& header, std::string_view records, const Units& units);
+/// Decodes points of a binary PCD. @param records  complete points of the file   @param units  of the file
+Cloud parse_pcd_records(const PcdHeader& header, std::string_view records, const units::Units& units);
 
-/// Writes x y z as F4, then the fields in their order, with a `# units` comment.
+/// Writes x y z as F4 and the fields in their order, with a `# units` comment.
 /// @param units  of the numbers written
-void write_pcd(std::ostream& out, const Cloud& cloud, const Units& units, PcdEncoding encoding = PcdEncoding::binary);
+void write_pcd(std::ostream& out, const Cloud& cloud, const units::Units& units,
+               PcdEncoding encoding = PcdEncoding::binary);
 
-/// The same by parts: the header for so many points like those of `some`, then the points, part by part.
-void write_pcd_header(std::ostream& out, const Cloud& some, std::size_t points, const Units& units,
+/// Writes a cloud in parts: first the header for `points` points with the fields of `some`, then the points.
+void write_pcd_header(std::ostream& out, const Cloud& some, std::size_t points, const units::Units& units,
                       PcdEncoding encoding);
-void write_pcd_points(std::ostream& out, const Cloud& part, const Units& units, PcdEncoding encoding);
+void write_pcd_points(std::ostream& out, const Cloud& part, const units::Units& units, PcdEncoding encoding);
 
-} // namespace fettle
+} // namespace fettle::cloud

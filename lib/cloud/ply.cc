@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-namespace fettle {
+namespace fettle::cloud {
 
 namespace {
 
@@ -39,7 +39,7 @@ void skip(Body& body, const Property& property)
 std::string field_name(const std::string& property)
 {
     if (property == "nx" || property == "ny" || property == "nz") return "normal_" + property.substr(1);
-    constexpr std::string_view kScalar = "scalar_"; // CloudCompare's prefix of scalar fields
+    constexpr std::string_view kScalar = "scalar_"; // prefix that CloudCompare gives to scalar fields
     return property.starts_with(kScalar) && property.size() > kScalar.size() ? property.substr(kScalar.size())
                                                                              : property;
 }
@@ -53,19 +53,20 @@ template <typename Body>
 Cloud read_vertices(Body& body, const Element& element, const std::string& source)
 {
     Cloud cloud;
-    cloud.xyz.resize(3, static_cast<Eigen::Index>(element.count));
+    cloud.xyz.resize(3, element.count);
     int axes = 0;
     for (const Property& property : element.properties) {
         if (axis_of(property) >= 0 && !property.list) {
             ++axes;
         } else if (!property.list) {
             if (has_field(cloud, field_name(property.name)))
-                throw InputError(source, "element vertex: field '" + field_name(property.name) + "' stands twice");
+                throw core::InputError(source,
+                                       "element vertex: field '" + field_name(property.name) + "' is duplicated");
             cloud.fields.push_back({field_name(property.name), property.type, property.size, 1, {}});
-            cloud.fields.back().bytes.resize(element.count * static_cast<std::size_t>(property.size));
+            cloud.fields.back().bytes.resize(element.count * property.size);
         }
     }
-    if (axes != 3) throw InputError(source, "element vertex without x, y and z");
+    if (axes != 3) throw core::InputError(source, "element vertex without x, y and z");
     for (std::size_t i = 0; i < element.count; ++i) {
         body.begin_item(element.name, i);
         std::size_t f = 0;
@@ -78,7 +79,7 @@ Cloud read_vertices(Body& body, const Element& element, const std::string& sourc
             visit_element(property.type, property.size, [&](auto zero) {
                 const auto number = body.template value<decltype(zero)>(property);
                 if (axis >= 0)
-                    cloud.xyz(axis, static_cast<Eigen::Index>(i)) = static_cast<double>(number);
+                    cloud.xyz(axis, i) = static_cast<double>(number);
                 else
                     store(cloud.fields[f].bytes.data() + i * sizeof number, number);
             });
@@ -89,7 +90,7 @@ Cloud read_vertices(Body& body, const Element& element, const std::string& sourc
     return cloud;
 }
 
-bool holds_corners(const Property& property)
+bool is_corner_list(const Property& property)
 {
     return property.list && (property.name == "vertex_indices" || property.name == "vertex_index");
 }
@@ -97,9 +98,8 @@ bool holds_corners(const Property& property)
 template <typename Body>
 void read_face(Body& body, const Property& property, std::size_t vertices, Ply& ply)
 {
-    constexpr std::size_t kFewest = 3;
     const std::size_t length = list_length(body, property);
-    if (length < kFewest) body.refuse("a face of " + std::to_string(length) + " corners");
+    if (length < 3) body.refuse("a face of " + std::to_string(length) + " corners");
     for (std::size_t k = 0; k < length; ++k) {
         const auto corner = visit_element(property.type, property.size, [&](auto zero) {
             return static_cast<std::int64_t>(body.template value<decltype(zero)>(property));
@@ -114,9 +114,10 @@ void read_face(Body& body, const Property& property, std::size_t vertices, Ply& 
 template <typename Body>
 void read_faces(Body& body, const Element& element, std::size_t vertices, Ply& ply, const std::string& source)
 {
-    const auto corners = std::find_if(element.properties.begin(), element.properties.end(), holds_corners);
-    if (corners == element.properties.end()) throw InputError(source, "element face without the list vertex_indices");
-    if (corners->type == 'F') throw InputError(source, "element face: vertex_indices are no whole numbers");
+    const auto corners = std::find_if(element.properties.begin(), element.properties.end(), is_corner_list);
+    if (corners == element.properties.end())
+        throw core::InputError(source, "element face without the list vertex_indices");
+    if (corners->type == 'F') throw core::InputError(source, "element face: vertex_indices are not integers");
     for (std::size_t i = 0; i < element.count; ++i) {
         body.begin_item(element.name, i);
         for (const Property& property : element.properties)
@@ -132,12 +133,10 @@ template <typename Body>
 Ply read_body(Body body, const PlyHeader& header, const std::string& source)
 {
     Ply ply;
-    std::size_t vertices = 0;
-    for (const Element& element : header.elements)
-        if (element.name == "vertex") vertices = element.count;
+    const std::size_t vertices = std::ranges::find(header.elements, "vertex", &Element::name)->count;
     for (const Element& element : header.elements) {
         if (element.count > 0 && element.properties.empty())
-            throw InputError(source, "element " + element.name + " without a property");
+            throw core::InputError(source, "element " + element.name + " without a property");
         if (element.count > 0) body.check_room(element);
         if (element.name == "vertex") {
             ply.vertices = read_vertices(body, element, source);
@@ -160,9 +159,8 @@ Ply read_body(Body body, const PlyHeader& header, const std::string& source)
 Ply parse_ply(std::string_view bytes, const std::string& source)
 {
     const PlyHeader header = parse_ply_header(bytes, source);
-    if (std::none_of(header.elements.begin(), header.elements.end(),
-                     [](const Element& element) { return element.name == "vertex"; }))
-        throw InputError(source, "PLY without element vertex");
+    if (std::ranges::find(header.elements, "vertex", &Element::name) == header.elements.end())
+        throw core::InputError(source, "PLY without element vertex");
     const std::string_view body = bytes.substr(header.body);
     if (header.encoding == PlyHeader::Encoding::ascii)
         return read_body(AsciiPlyBody(body, header.lines, source), header, source);
@@ -177,9 +175,9 @@ bool ply_has_faces(std::string_view bytes)
     try {
         for (const Element& element : parse_ply_header(bytes, "").elements)
             if (element.name == "face") return element.count > 0;
-    } catch (const InputError&) { // whoever reads it will say so
+    } catch (const core::InputError&) { // parse_ply() will report it
     }
     return false;
 }
 
-} // namespace fettle
+} // namespace fettle::cloud

@@ -10,22 +10,22 @@
 #include <string>
 #include <string_view>
 
-namespace fettle {
+namespace fettle::cloud {
 
-// The values of a PLY body one after the other, in order of the header; what reads them takes either of the two
-// classes: check_room() before an element, begin_item() and end_item() around each of its items, end() after the last.
-// All throw InputError with the line, or with the item of the element. `source` must outlive them.
+// Two classes with the same interface read the values of a PLY body in order of the header: check_room() is called
+// before an element, begin_item() and end_item() around each of its items, and end() after the last element. All throw
+// InputError with the line, or with the element and the index of the item. `source` must outlive them.
 
-/// One item a line.
-class AsciiPlyBody {
+/// Reads an ascii body, in which an item is a line.
+class AsciiPlyBody : core::FileLines {
   public:
-    /// @param lines_before  of the header, for messages
+    /// @param lines_before  number of header lines, for line numbers in messages
     AsciiPlyBody(std::string_view body, std::size_t lines_before, const std::string& source)
-        : lines_(body, lines_before), left_(body.size()), source_(source)
+        : core::FileLines(body, source, lines_before)
     {
     }
 
-    /// Are there bytes enough for the element, however short its values and lists?
+    /// Checks that the body is long enough for the element even if all values and lists are as short as possible.
     void check_room(const PlyHeader::Element& element) const;
     void begin_item(const std::string& element, std::size_t index);
     void end_item();
@@ -34,28 +34,25 @@ class AsciiPlyBody {
     template <typename T>
     T value(const PlyHeader::Property& property)
     {
-        const std::string_view word = next_word(rest_);
+        const std::string_view word = core::next_word(rest_);
         if (word.empty()) refuse("property " + property.name + " is missing");
         T number{};
         if (!parse_element<T>(word, &number))
-            refuse("property " + property.name + ": " + in_quotes(word) + " is no number of its type");
+            refuse("property " + property.name + ": " + core::in_quotes(word) + " is not a number of its type");
         return number;
     }
 
     void check_list_room(std::size_t length) const;
-    [[noreturn]] void refuse(const std::string& problem) const;
+    using core::FileLines::refuse;
 
   private:
-    Lines lines_;
-    std::size_t left_;
-    std::string_view rest_;
-    const std::string& source_;
+    std::string_view rest_; ///< of the line
 };
 
-/// Without gaps, little or big endian.
+/// Reads a binary body.
 class BinaryPlyBody {
   public:
-    /// @param swap  are the bytes of a value the other way round than in memory?
+    /// @param swap  the byte order of the file is not that of the machine
     BinaryPlyBody(std::string_view body, bool swap, const std::string& source)
         : body_(body), swap_(swap), source_(source)
     {
@@ -88,4 +85,4 @@ class BinaryPlyBody {
     const std::string& source_;
 };
 
-} // namespace fettle
+} // namespace fettle::cloud

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace fettle {
+namespace fettle::cloud {
 
 /// The header of a PLY file.
 struct PlyHeader {
@@ -13,10 +13,10 @@ struct PlyHeader {
 
     struct Property {
         std::string name;
-        char type = 'F'; ///< as in PCD: of the value, or of a list's elements
+        char type = 'F'; ///< as in PCD; for a list that of its elements
         int size = 4;
         bool list = false;
-        int count_size = 1; ///< bytes of a list's length, an unsigned (or non-negative) number
+        int count_size = 1; ///< bytes of a list's length, which is an integer
         bool count_signed = false;
     };
     struct Element {
@@ -28,10 +28,10 @@ struct PlyHeader {
     Encoding encoding = Encoding::ascii;
     std::vector<Element> elements;
     std::size_t body = 0;  ///< offset of the first byte after the header
-    std::size_t lines = 0; ///< of the header
+    std::size_t lines = 0; ///< number of header lines
 };
 
 /// @throws InputError with the line
 PlyHeader parse_ply_header(std::string_view bytes, const std::string& source);
 
-} // namespace fettle
+} // namespace fettle::cloud

@@ -11,54 +11,55 @@
 #include <optional>
 #include <string>
 
-namespace fettle {
+namespace fettle::cloud {
 
-/// Some points of a source, mm.
+/// Consecutive points of a source, mm.
 struct PointBlock {
     Eigen::Matrix3Xd xyz;
-    Eigen::VectorXd roles; ///< as they stand in the file; empty where the source has none
+    Eigen::VectorXd roles; ///< field `role`, unchecked; empty if the source has none
 };
 
-/// Points that are read piece by piece, as often as wanted, by several threads at once.
+/// Points that are read in blocks, repeatedly if needed, by several threads at once.
 struct PointSource {
     std::size_t points = 0;
-    std::size_t block = 1; ///< points to read at a time: a fixed partition, so that sums do not depend on the threads
+    std::size_t block_size = 1; ///< points of a block: a fixed partition, so that sums do not depend on the threads
     bool has_roles = false;
-    /// Reads `count` points from the first-th on.
+    /// Reads `count` points from point `first` on.
     std::function<void(std::size_t first, std::size_t count, PointBlock& into)> read;
 
-    std::size_t blocks() const { return (points + block - 1) / block; }
+    std::size_t block_count() const { return (points + block_size - 1) / block_size; }
 };
 
-/// Calls `use` with the number of each block, from 0, and its points: several at once, in any order.
+/// Calls `use` with the index of each block and its points, in parallel and in any order.
 void for_each_block(const PointSource& points, const std::function<void(std::size_t, const PointBlock&)>& use);
 
-/// The points of a cloud in memory. It holds the cloud.
-PointSource point_source(std::shared_ptr<const Cloud> cloud);
+/// Source of the points of a cloud in memory; it shares ownership of the cloud.
+PointSource make_point_source(std::shared_ptr<const Cloud> cloud);
 
-/// A cloud's file, checked but not yet in memory. A binary PCD is streamed: no more than a block is held at a time, and
-/// a pipe is copied to an unnamed file first (InputFile). Other encodings are read whole.
+/// Validated file of a point cloud. A binary PCD is streamed: only the blocks being processed are in memory, and a pipe
+/// is copied to an unnamed file first (InputFile). Other formats are read entirely.
 class CloudStream {
   public:
-    /// The checks and messages of read_cloud(). @param path  a file, or "-" for stdin
-    /// @throws InputError
-    explicit CloudStream(const std::string& path, std::optional<Units> units = std::nullopt);
+    /// @param path  a file, or "-" for stdin
+    /// @throws InputError as read_cloud()
+    explicit CloudStream(const std::string& path, std::optional<units::Units> units = std::nullopt);
     /// @param name  of the file, for messages
-    CloudStream(std::shared_ptr<const InputFile> file, const std::string& name, std::optional<Units> units);
+    CloudStream(std::shared_ptr<const core::InputFile> file, const std::string& name,
+                std::optional<units::Units> units);
 
     const PointSource& points() const { return points_; }
-    /// Some of the points, with all fields.
-    Cloud part(std::size_t first, std::size_t count) const { return part_(first, count); }
-    /// Of the file.
-    const Units& units() const { return units_; }
-    /// All of it in memory, with all fields.
-    std::shared_ptr<const Cloud> cloud() const;
+    /// Reads consecutive points with all their fields.
+    Cloud slice(std::size_t first, std::size_t count) const { return part_(first, count); }
+    /// Units of the file.
+    const units::Units& units() const { return units_; }
+    /// Reads all points with all their fields.
+    std::shared_ptr<const Cloud> read_all() const;
 
   private:
-    std::function<std::shared_ptr<const Cloud>()> whole_;
+    std::function<std::shared_ptr<const Cloud>()> load_;
     std::function<Cloud(std::size_t first, std::size_t count)> part_;
     PointSource points_;
-    Units units_;
+    units::Units units_;
 };
 
-} // namespace fettle
+} // namespace fettle::cloud

@@ -1,13 +1,14 @@
 #include "cloud/poses.h"
 
 #include "core/error.h"
+#include "core/lines.h"
+#include "core/text.h"
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <string>
 
-namespace fettle {
+namespace fettle::cloud {
 
 namespace {
 
@@ -17,21 +18,20 @@ const char* const kQuaternion[] = {"qw", "qx", "qy", "qz"};
 
 bool has_poses(const Cloud& cloud)
 {
-    return std::all_of(std::begin(kQuaternion), std::end(kQuaternion),
-                       [&](const char* name) { return has_field(cloud, name); });
+    return std::ranges::all_of(kQuaternion, [&](const char* name) { return has_field(cloud, name); });
 }
 
-PosePath path_poses(const Cloud& cloud)
+PosePath read_poses(const Cloud& cloud)
 {
     Eigen::Matrix4Xd q(4, cloud.size());
     for (Eigen::Index k = 0; k < 4; ++k) q.row(k) = field(cloud, kQuaternion[k]);
-    PosePath poses(static_cast<std::size_t>(cloud.size()));
+    PosePath poses(cloud.size());
     for (Eigen::Index i = 0; i < cloud.size(); ++i) {
-        Eigen::Isometry3d& pose = poses[static_cast<std::size_t>(i)];
+        Eigen::Isometry3d& pose = poses[i];
         pose.setIdentity();
         pose.translation() = cloud.xyz.col(i);
         const double norm = q.col(i).stableNorm();
-        if (norm == 0) throw InputError("point " + std::to_string(i) + ": the quaternion qw qx qy qz is 0");
+        if (norm == 0) throw core::InputError("point " + std::to_string(i) + ": the quaternion qw qx qy qz is 0");
         if (!std::isfinite(norm) || !cloud.xyz.col(i).allFinite()) {
             pose.translation().setConstant(NAN);
             continue;
@@ -42,18 +42,29 @@ PosePath path_poses(const Cloud& cloud)
     return poses;
 }
 
-void set_path(Cloud& cloud, const PosePath& poses)
+void set_poses(Cloud& cloud, const PosePath& poses)
 {
     Eigen::Matrix4Xd q(4, cloud.size());
     for (Eigen::Index i = 0; i < cloud.size(); ++i) {
-        const Eigen::Isometry3d& pose = poses[static_cast<std::size_t>(i)];
+        const Eigen::Isometry3d& pose = poses[i];
         cloud.xyz.col(i) = pose.translation();
-        const Eigen::Quaterniond turn(pose.linear());
-        const double sign = turn.w() < 0 ? -1 : 1; // one of two signs
-        q.col(i) << sign * turn.w(), sign * turn.x(), sign * turn.y(), sign * turn.z();
+        const Eigen::Quaterniond rotation(pose.linear());
+        const double sign = rotation.w() < 0 ? -1 : 1; // q and -q are the same rotation
+        q.col(i) << sign * rotation.w(), sign * rotation.x(), sign * rotation.y(), sign * rotation.z();
         if (pose.translation().hasNaN()) q.col(i).setConstant(NAN);
     }
     for (Eigen::Index k = 0; k < 4; ++k) set_field(cloud, kQuaternion[k], q.row(k), 8);
 }
 
-} // namespace fettle
+Eigen::Isometry3d parse_pose(const std::string& text)
+{
+    const Eigen::VectorXd numbers = core::parse_number_list(text);
+    if (numbers.size() != 7 || !numbers.allFinite() || !(numbers.tail<4>().norm() > 0))
+        throw core::InputError("expected x,y,z,qw,qx,qy,qz, got " + core::in_quotes(text));
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    pose.translation() = numbers.head<3>();
+    pose.linear() = Eigen::Quaterniond(numbers[3], numbers[4], numbers[5], numbers[6]).normalized().toRotationMatrix();
+    return pose;
+}
+
+} // namespace fettle::cloud

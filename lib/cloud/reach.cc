@@ -5,17 +5,17 @@
 
 #include <cmath>
 
-namespace fettle {
+namespace fettle::cloud {
 
-void check_reach(const Eigen::Matrix3Xd& xyz, const std::string& source)
+void check_coordinate_range(const Eigen::Matrix3Xd& xyz, const std::string& source)
 {
-    constexpr double kFarthest = 1e12; // mm: the Earth has 1.3e10, as surveyors' coordinates may say
-    if (!(xyz.array().abs() > kFarthest).any()) return;
+    constexpr double kMaxCoordinate = 1e12; // mm; surveyors' coordinates are at most the size of the Earth, 1.3e10
+    if (!(xyz.array().abs() > kMaxCoordinate).any()) return;
     for (Eigen::Index i = 0; i < xyz.cols(); ++i)
         for (const double coordinate : xyz.col(i))
-            if (std::isfinite(coordinate) && std::abs(coordinate) > kFarthest)
-                throw InputError(source, "point " + std::to_string(i) +
-                                             ": no part reaches that far: " + to_short_text(coordinate) + " mm");
+            if (std::isfinite(coordinate) && std::abs(coordinate) > kMaxCoordinate)
+                throw core::InputError(source, "point " + std::to_string(i) + ": no part reaches that far: " +
+                                                   core::to_short_text(coordinate) + " mm");
 }
 
-} // namespace fettle
+} // namespace fettle::cloud

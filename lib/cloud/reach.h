@@ -4,13 +4,13 @@
 
 #include <string>
 
-namespace fettle {
+namespace fettle::cloud {
 
-/// Refuses points that lie farther out than any part or scan does: with them, squares and counts of cells would
-/// overflow. Points that are NaN or infinite pass: they are missing, not far.
+/// Checks that coordinates are no larger than those of any part or scan, so that squares and numbers of cells cannot
+/// overflow. NaN and infinite coordinates pass, because they mark missing points.
 /// @param xyz     3xN, mm
-/// @param source  the name for messages
-/// @throws InputError with the point's number
-void check_reach(const Eigen::Matrix3Xd& xyz, const std::string& source);
+/// @param source  name for messages
+/// @throws InputError with the index of the point
+void check_coordinate_range(const Eigen::Matrix3Xd& xyz, const std::string& source);
 
-} // namespace fettle
+} // namespace fettle::cloud

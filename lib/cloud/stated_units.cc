@@ -3,34 +3,34 @@
 #include "core/error.h"
 #include "core/lines.h"
 
-namespace fettle {
+namespace fettle::cloud {
 
-std::optional<StatedUnits> parse_stated_units(std::string_view comment)
+std::optional<DeclaredUnits> parse_units_comment(std::string_view comment)
 {
-    const std::vector<std::string_view> found = words(comment);
-    if (found.empty() || found[0] != "units") return std::nullopt;
-    if (found.size() != 2 && found.size() != 3)
-        throw InputError("expected '# units LENGTH [FORCE]', got " + in_quotes("#" + std::string(comment)));
-    StatedUnits units;
-    units.length = parse_length_unit(std::string(found[1]));
-    if (found.size() == 3) units.force = parse_force_unit(std::string(found[2]));
+    const std::vector<std::string_view> parts = core::words(comment);
+    if (parts.empty() || parts[0] != "units") return std::nullopt;
+    if (parts.size() != 2 && parts.size() != 3)
+        throw core::InputError("expected '# units LENGTH [FORCE]', got " + core::in_quotes("#" + std::string(comment)));
+    DeclaredUnits units;
+    units.length = units::parse_length_unit(std::string(parts[1]));
+    if (parts.size() == 3) units.force = units::parse_force_unit(std::string(parts[2]));
     return units;
 }
 
-Units agreed_units(const std::optional<StatedUnits>& stated, const std::optional<Units>& wanted,
-                   const std::string& source)
+units::Units resolve_units(const std::optional<DeclaredUnits>& declared, const std::optional<units::Units>& requested,
+                           const std::string& source)
 {
-    Units units = wanted.value_or(Units{});
-    if (!stated) return units;
-    if (wanted && stated->length != wanted->length)
-        throw InputError(source, "units: the file says " + to_string(stated->length) + ", expected " +
-                                     to_string(wanted->length));
-    if (wanted && stated->force && *stated->force != wanted->force)
-        throw InputError(source, "units: the file says " + to_string(*stated->force) + ", expected " +
-                                     to_string(wanted->force));
-    units.length = stated->length;
-    units.force = stated->force.value_or(units.force);
+    units::Units units = requested.value_or(units::Units{});
+    if (!declared) return units;
+    if (requested && declared->length != requested->length)
+        throw core::InputError(source, "units: the file says " + units::to_string(declared->length) + ", expected " +
+                                           units::to_string(requested->length));
+    if (requested && declared->force && *declared->force != requested->force)
+        throw core::InputError(source, "units: the file says " + units::to_string(*declared->force) + ", expected " +
+                                           units::to_string(requested->force));
+    units.length = declared->length;
+    units.force = declared->force.value_or(units.force);
     return units;
 }
 
-} // namespace fettle
+} // namespace fettle::cloud

@@ -6,21 +6,21 @@
 #include <string>
 #include <string_view>
 
-namespace fettle {
+namespace fettle::cloud {
 
-/// Units that a header names: `# units in`, `# units in lbf`. The force may be left out.
-struct StatedUnits {
-    Units::Length length = Units::Length::mm;
-    std::optional<Units::Force> force;
+/// Units in a header comment: `# units in`, `# units in lbf`. The force may be omitted.
+struct DeclaredUnits {
+    units::Units::Length length = units::Units::Length::mm;
+    std::optional<units::Units::Force> force;
 };
 
-/// @param comment  a line's text after its '#'   @return  nothing if it is about something else
-/// @throws InputError for units that there are not; the message has no file name
-std::optional<StatedUnits> parse_stated_units(std::string_view comment);
+/// @param comment  text of a line after its '#'   @return  nothing for comments about something else
+/// @throws InputError for unknown units; the message has no file name
+std::optional<DeclaredUnits> parse_units_comment(std::string_view comment);
 
-/// The units of a file: what it states, else what is wanted, else mm and N.
-/// @throws InputError if the two disagree
-Units agreed_units(const std::optional<StatedUnits>& stated, const std::optional<Units>& wanted,
-                   const std::string& source);
+/// Units of a file: those declared in it, else those requested, else mm and N.
+/// @throws InputError if declared and requested units differ
+units::Units resolve_units(const std::optional<DeclaredUnits>& declared, const std::optional<units::Units>& requested,
+                           const std::string& source);
 
-} // namespace fettle
+} // namespace fettle::cloud

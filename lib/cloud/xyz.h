@@ -5,15 +5,16 @@
 #include <string>
 #include <string_view>
 
-namespace fettle {
+namespace fettle::cloud {
 
-/// XYZ text: a point a line, 3 or more numbers with blanks or tabs between, the same count on every line. Comments (#)
-/// and blank lines are skipped. The first line may name the columns, beginning with x y z (also "//X Y Z …"); without
-/// it the further columns are called column4, column5, …; they are F8. In the units of the file.
+/// Parses XYZ text: a point per line, with 3 or more numbers separated by blanks or tabs, the same number on all lines.
+/// Comments (#) and blank lines are skipped. The first line may name the columns, beginning with x y z (also "//X Y Z
+/// …"); without names the columns after z become fields column4, column5, …, of type F8. The cloud is in the units of
+/// the file.
 /// @throws InputError with the line
 Cloud parse_xyz(std::string_view bytes, const std::string& source);
 
-/// Does the first line that is no comment hold numbers, or names that begin with x y z?
+/// True if the first line that is not a comment begins with a number or names columns x y z.
 bool looks_like_xyz(std::string_view bytes);
 
-} // namespace fettle
+} // namespace fettle::cloud

@@ -9,125 +9,127 @@
 #include <optional>
 #include <vector>
 
-namespace fettle {
+namespace fettle::compare {
 
 namespace {
 
-constexpr double kPointsPerSquare = 16;
+constexpr double kPointsPerBin = 16;
 
-constexpr double kSteepest = 0.1; // least |n_z| for which an area seen from above tells that of the surface: 84°
+constexpr double kMinNormalZ = 0.1; // smallest |n_z| for which a plan area determines the surface area: 84°
 
-// A point further than this from its lattice place, in cells, is not on the lattice. Rounding to float stays far below.
-constexpr double kOffLattice = 0.1;
-// The first estimate of the cell, from two neighbours, is good to about 1e-3: over so many cells it still tells places.
-constexpr double kFirstReach = 50;
+// Largest distance, in cells, of a lattice point from its ideal position. Rounding to float stays far below.
+constexpr double kLatticeToleranceCells = 0.1;
+// The first estimate of the cell, from two neighbours, is good to about 1e-3. Up to this many cells away it still
+// rounds points to the right lattice position.
+constexpr double kFirstFitRadiusCells = 50;
 
-/// p = origin + i a + j b
+/// Lattice p = origin + i a + j b with integers i and j.
 struct Lattice {
     Eigen::Vector2d origin, a, b;
     Eigen::Matrix2d cell() const { return (Eigen::Matrix2d() << a, b).finished(); }
 };
 
-/// What the finite points of each block tell, in the order of the blocks.
-template <typename Told, typename Tell>
-std::vector<Told> of_blocks(const PointSource& points, const Tell& tell)
+/// Accumulates the finite points of each block into a result of its own, in parallel. Returns the results in the order
+/// of the blocks.
+template <typename Result, typename Accumulate>
+std::vector<Result> map_blocks(const cloud::PointSource& points, const Accumulate& accumulate)
 {
-    std::vector<Told> told(points.blocks());
-    for_each_block(points, [&](std::size_t b, const PointBlock& block) {
+    std::vector<Result> results(points.block_count());
+    cloud::for_each_block(points, [&](std::size_t b, const cloud::PointBlock& block) {
         for (const auto& point : block.xyz.colwise())
-            if (point.allFinite()) tell(told[b], Eigen::Vector2d(point.head<2>()));
+            if (point.allFinite()) accumulate(results[b], Eigen::Vector2d(point.head<2>()));
     });
-    return told;
+    return results;
 }
 
-/// The first finite point.
-std::optional<Eigen::Vector2d> first_point(const PointSource& points)
+std::optional<Eigen::Vector2d> first_finite_point(const cloud::PointSource& points)
 {
-    PointBlock block;
-    for (std::size_t first = 0; first < points.points; first += points.block) {
-        points.read(first, std::min(points.block, points.points - first), block);
+    cloud::PointBlock block;
+    for (std::size_t first = 0; first < points.points; first += points.block_size) {
+        points.read(first, std::min(points.block_size, points.points - first), block);
         for (const auto& point : block.xyz.colwise())
             if (point.allFinite()) return point.head<2>();
     }
     return std::nullopt;
 }
 
-/// A step from one point to another; zero: none yet.
-void shorten(Eigen::Vector2d& best, const Eigen::Vector2d& step)
-{
-    if (step.isZero(0)) return;
-    if (best.isZero(0) || step.squaredNorm() < best.squaredNorm()) best = step;
-}
+struct ShortestStep {
+    Eigen::Vector2d step = {0, 0}; ///< zero: none yet
+
+    void include(const Eigen::Vector2d& other)
+    {
+        if (!other.isZero(0) && (step.isZero(0) || other.squaredNorm() < step.squaredNorm())) step = other;
+    }
+};
 
 struct Extent {
     Eigen::AlignedBox2d box;
-    std::size_t finite = 0;
-    Eigen::Vector2d step = {0, 0}; ///< the shortest from the first point to another
+    std::size_t finite_points = 0;
+    ShortestStep shortest; ///< from the first point to another
 };
 
-Extent extent_of(const PointSource& points, const Eigen::Vector2d& first)
+Extent extent_of(const cloud::PointSource& points, const Eigen::Vector2d& first)
 {
+    const auto parts = map_blocks<Extent>(points, [&](Extent& extent, const Eigen::Vector2d& p) {
+        ++extent.finite_points;
+        extent.box.extend(p);
+        extent.shortest.include(p - first);
+    });
     Extent all;
-    for (const Extent& part : of_blocks<Extent>(points, [&](Extent&extent, const Eigen::Vector2d&p) {
-             ++extent.finite;
-             extent.box.extend(p);
-             shorten(extent.step, p - first);
-         })) {
-        all.finite += part.finite;
+    for (const Extent& part : parts) {
+        all.finite_points += part.finite_points;
         all.box.extend(part.box);
-        shorten(all.step, part.step);
+        all.shortest.include(part.shortest.step);
     }
     return all;
 }
 
-/// The shortest step from `from` to another point that is across `a`; none: zero.
-Eigen::Vector2d shortest_across(const PointSource& points, const Eigen::Vector2d& from, const Eigen::Vector2d& a)
+/// The shortest step from `from` to another point that is perpendicular to `a`; zero if there is none.
+Eigen::Vector2d shortest_perpendicular(const cloud::PointSource& points, const Eigen::Vector2d& from,
+                                       const Eigen::Vector2d& a)
 {
-    struct Step {
-        Eigen::Vector2d step = {0, 0};
-    };
-    Eigen::Vector2d best = {0, 0};
-    for (const Step& part : of_blocks<Step>(points, [&](Step&shortest, const Eigen::Vector2d&p) {
-             const Eigen::Vector2d step = p - from;
-             if (std::abs(step.dot(a)) < kOffLattice * a.norm() * step.norm()) shorten(shortest.step, step);
-         }))
-        shorten(best, part.step);
-    return best;
+    const auto parts = map_blocks<ShortestStep>(points, [&](ShortestStep& shortest, const Eigen::Vector2d& p) {
+        const Eigen::Vector2d step = p - from;
+        if (std::abs(step.dot(a)) < kLatticeToleranceCells * a.norm() * step.norm()) shortest.include(step);
+    });
+    ShortestStep best;
+    for (const ShortestStep& part : parts) best.include(part.step);
+    return best.step;
 }
 
-// The shortest step from the first point to another, and the shortest one across it.
-std::optional<Lattice> guess(const PointSource& points, const Eigen::Vector2d& first, const Eigen::Vector2d& step)
+// First estimate: the shortest step from the first point to another, and the shortest one perpendicular to it.
+std::optional<Lattice> guess_lattice(const cloud::PointSource& points, const Eigen::Vector2d& first,
+                                     const Eigen::Vector2d& step)
 {
     if (step.isZero(0)) return std::nullopt;
-    const Eigen::Vector2d across = shortest_across(points, first, step);
-    if (across.isZero(0)) return std::nullopt;
-    return Lattice{first, step, across};
+    const Eigen::Vector2d perpendicular = shortest_perpendicular(points, first, step);
+    if (perpendicular.isZero(0)) return std::nullopt;
+    return Lattice{first, step, perpendicular};
 }
 
-/// Normal equations of a lattice, of the points that lie on it.
-struct LatticeSums {
+struct PlaneEquations {
     Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
     Eigen::Matrix<double, 3, 2> B = Eigen::Matrix<double, 3, 2>::Zero();
 };
 
-// Least squares of the points within `reach` cells; nothing if one of them is off its place.
-std::optional<Lattice> refine(const PointSource& points, const Lattice& lattice, double reach)
+// Least squares fit to the points within `radius` cells of the origin; nothing if one of them is off the lattice.
+std::optional<Lattice> refine(const cloud::PointSource& points, const Lattice& lattice, double radius)
 {
     const Eigen::Matrix2d to_cells = lattice.cell().inverse();
-    std::atomic<bool> off = false; // then all others need not look
-    const auto parts = of_blocks<LatticeSums>(points, [&](LatticeSums& sums, const Eigen::Vector2d& p) {
-        if (off.load(std::memory_order_relaxed)) return;
+    std::atomic<bool> off_lattice = false; // the other threads may stop then
+    const auto parts = map_blocks<PlaneEquations>(points, [&](PlaneEquations& sums, const Eigen::Vector2d& p) {
+        if (off_lattice.load(std::memory_order_relaxed)) return;
         const Eigen::Vector2d cells = to_cells * (p - lattice.origin);
-        if (cells.cwiseAbs().maxCoeff() > reach) return;
-        const Eigen::Vector2d place = cells.array().round();
-        if ((cells - place).cwiseAbs().maxCoeff() > kOffLattice) off = true;
-        const Eigen::Vector3d row(1, place.x(), place.y());
+        if (cells.cwiseAbs().maxCoeff() > radius) return;
+        const Eigen::Vector2d ij = cells.array().round();
+        if ((cells - ij).cwiseAbs().maxCoeff() > kLatticeToleranceCells) off_lattice = true;
+        const Eigen::Vector3d row(1, ij.x(), ij.y());
         sums.A += row * row.transpose();
         sums.B += row * (p - lattice.origin).transpose();
     });
-    if (off) return std::nullopt;
-    LatticeSums all;
-    for (const LatticeSums& part : parts) {
+    if (off_lattice) return std::nullopt;
+    PlaneEquations all;
+    for (const PlaneEquations& part : parts) {
         all.A += part.A;
         all.B += part.B;
     }
@@ -139,7 +141,7 @@ std::optional<Lattice> refine(const PointSource& points, const Lattice& lattice,
 
 } // namespace
 
-Eigen::VectorXd vertex_areas(const Mesh& mesh, const Eigen::Vector3d& direction)
+Eigen::VectorXd vertex_areas(const mesh::Mesh& mesh, const Eigen::Vector3d& direction)
 {
     Eigen::VectorXd areas = Eigen::VectorXd::Zero(mesh.vertices.cols());
     for (const Eigen::Vector3i corners : mesh.triangles.colwise()) {
@@ -152,42 +154,42 @@ Eigen::VectorXd vertex_areas(const Mesh& mesh, const Eigen::Vector3d& direction)
     return areas;
 }
 
-Eigen::VectorXd vertex_areas(const Mesh& mesh) { return vertex_areas(mesh, Eigen::Vector3d::Zero()); }
+Eigen::VectorXd vertex_areas(const mesh::Mesh& mesh) { return vertex_areas(mesh, Eigen::Vector3d::Zero()); }
 
-PlanAreas::PlanAreas(const PointSource& points)
+PlanAreas::PlanAreas(const cloud::PointSource& points)
 {
-    const std::optional<Eigen::Vector2d> first = first_point(points);
+    const std::optional<Eigen::Vector2d> first = first_finite_point(points);
     if (!first) return;
     const Extent extent = extent_of(points, *first);
-    if (extent.finite < 2) return;
-    std::optional<Lattice> lattice = extent.finite < 4 ? std::nullopt : guess(points, *first, extent.step);
-    for (const double reach : {kFirstReach, std::numeric_limits<double>::infinity()})
-        if (lattice) lattice = refine(points, *lattice, reach);
+    if (extent.finite_points < 2) return;
+    std::optional<Lattice> lattice;
+    if (extent.finite_points >= 4) lattice = guess_lattice(points, *first, extent.shortest.step);
+    for (const double radius : {kFirstFitRadiusCells, std::numeric_limits<double>::infinity()})
+        if (lattice) lattice = refine(points, *lattice, radius);
     if (lattice) {
         cell_ = std::abs(lattice->cell().determinant());
         return;
     }
     const Eigen::Array2d sizes = extent.box.sizes();
-    const auto count = static_cast<double>(extent.finite);
-    // Of a strip narrower than its squares no more than its width; no axis is cut finer than there are points.
-    const double square = std::max(std::sqrt(kPointsPerSquare * sizes.prod() / count), sizes.maxCoeff() / count);
-    least_ = extent.box.min();
-    side_ = sizes.min(square);
-    if (!(side_.minCoeff() > 0)) return; // all on one line: no area
-    bins_ = (sizes / side_).cast<Eigen::Index>() + 1;
-    counts_.assign(static_cast<std::size_t>(bins_.prod()), 0);
-    for_each_block(points, [&](std::size_t, const PointBlock& block) {
+    const double count = extent.finite_points;
+    // A strip narrower than its bins gets bins of its own width; no axis is divided finer than there are points.
+    const double square = std::max(std::sqrt(kPointsPerBin * sizes.prod() / count), sizes.maxCoeff() / count);
+    min_ = extent.box.min();
+    bin_size_ = sizes.min(square);
+    if (!(bin_size_.minCoeff() > 0)) return; // all on one line: no area
+    bins_ = (sizes / bin_size_).cast<Eigen::Index>() + 1;
+    counts_.assign(bins_.prod(), 0);
+    cloud::for_each_block(points, [&](std::size_t, const cloud::PointBlock& block) {
         for (const auto& point : block.xyz.colwise())
             if (point.allFinite())
-                std::atomic_ref(counts_[static_cast<std::size_t>(bin(point.head<2>()))])
-                    .fetch_add(1, std::memory_order_relaxed);
+                std::atomic_ref(counts_[bin(point.head<2>())]).fetch_add(1, std::memory_order_relaxed);
     });
 }
 
 Eigen::Index PlanAreas::bin(const Eigen::Vector2d& xy) const
 {
-    const Eigen::Array<Eigen::Index, 2, 1> place = ((xy.array() - least_) / side_).cast<Eigen::Index>();
-    return place.y() * bins_.x() + place.x();
+    const Eigen::Array<Eigen::Index, 2, 1> ij = ((xy.array() - min_) / bin_size_).cast<Eigen::Index>();
+    return ij.y() * bins_.x() + ij.x();
 }
 
 Eigen::VectorXd PlanAreas::operator()(const Eigen::Matrix3Xd& xyz) const
@@ -198,26 +200,26 @@ Eigen::VectorXd PlanAreas::operator()(const Eigen::Matrix3Xd& xyz) const
         if (cell_ > 0)
             areas[i] = cell_;
         else if (!counts_.empty())
-            areas[i] = side_.prod() / counts_[static_cast<std::size_t>(bin(xyz.col(i).head<2>()))];
+            areas[i] = bin_size_.prod() / counts_[bin(xyz.col(i).head<2>())];
     }
     return areas;
 }
 
-Eigen::VectorXd volume_areas(const Eigen::VectorXd& plan_areas, const ErrorMap& map, const DistanceOptions& options)
+Eigen::VectorXd volume_weights(const Eigen::VectorXd& plan_areas, const ErrorMap& map, const DistanceOptions& options)
 {
-    Eigen::VectorXd areas = plan_areas;
-    for (Eigen::Index i = 0; i < areas.size(); ++i) {
-        const double steepness = std::abs(map.normal(2, i));
-        const double seen =
+    Eigen::VectorXd weights = plan_areas;
+    for (Eigen::Index i = 0; i < weights.size(); ++i) {
+        const double normal_z = std::abs(map.normal(2, i));
+        const double projection =
             options.mode == DistanceMode::direction ? std::abs(map.normal.col(i).dot(options.direction)) : 1;
-        areas[i] *= steepness >= kSteepest ? seen / steepness : 0;
+        weights[i] *= normal_z >= kMinNormalZ ? projection / normal_z : 0;
     }
-    return areas;
+    return weights;
 }
 
-Eigen::VectorXd volume_areas(const Mesh& mesh, const DistanceOptions& options)
+Eigen::VectorXd volume_weights(const mesh::Mesh& mesh, const DistanceOptions& options)
 {
     return options.mode == DistanceMode::direction ? vertex_areas(mesh, options.direction) : vertex_areas(mesh);
 }
 
-} // namespace fettle
+} // namespace fettle::compare

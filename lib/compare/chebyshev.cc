@@ -5,17 +5,17 @@
 #include <cmath>
 #include <limits>
 
-namespace fettle {
+namespace fettle::compare {
 
 namespace {
 
 // Exchanges needed are a few times the number of parameters; many more mean that rounding makes it cycle.
-constexpr int kMostExchanges = 2000;
+constexpr int kMaxExchanges = 2000;
 
-// A point closer to the bound than this share of it touches: roundoff of the basis solution, with reserve.
+// A point closer to the bound than this share of it is a contact: roundoff of the basis solution, with reserve.
 constexpr double kRoundoff = 1e-13;
 
-/// One constraint of the basis: a point on one side, or the reach in one coordinate.
+/// A constraint of the basis: a point on one side, or the reach in one coordinate.
 struct Column {
     Eigen::Index point = -1; ///< -1: the reach
     Eigen::VectorXd a;       ///< (s g, 1), or (s e_k, 0)
@@ -45,34 +45,34 @@ struct Basis {
 
     void update()
     {
-        const auto n = static_cast<Eigen::Index>(columns.size());
+        const Eigen::Index n = columns.size();
         Eigen::MatrixXd B(n, n);
         Eigen::VectorXd cost(n);
         for (Eigen::Index j = 0; j < n; ++j) {
-            B.col(j) = columns[static_cast<std::size_t>(j)].a;
-            cost[j] = columns[static_cast<std::size_t>(j)].cost;
+            B.col(j) = columns[j].a;
+            cost[j] = columns[j].cost;
         }
         inverse = B.fullPivLu().inverse();
         multipliers = inverse.col(n - 1);
         y = inverse.transpose() * cost;
     }
 
-    // The column that the entering one drives out first; -1: none.
-    int leaving(const Eigen::VectorXd& entering) const
+    // Ratio test: index of the column that leaves the basis as `entering` enters it; -1: none.
+    int find_leaving(const Eigen::VectorXd& entering) const
     {
         const Eigen::VectorXd change = inverse * entering;
-        int least = -1;
+        int leaving = -1;
         double best = std::numeric_limits<double>::infinity();
         for (Eigen::Index j = 0; j < change.size(); ++j) {
             if (change[j] <= kRoundoff) continue;
             const double ratio = std::max(multipliers[j], 0.0) / change[j];
             // Ties go to the larger pivot: it keeps the basis well conditioned.
-            if (ratio < best || (ratio == best && change[j] > change[least])) {
+            if (ratio < best || (ratio == best && change[j] > change[leaving])) {
                 best = ratio;
-                least = static_cast<int>(j);
+                leaving = j;
             }
         }
-        return least;
+        return leaving;
     }
 };
 
@@ -96,28 +96,28 @@ ChebyshevStep chebyshev_step(const Eigen::VectorXd& r, const Eigen::MatrixXd& G,
     const Eigen::Index m = G.rows();
     Basis basis = first_basis(r, G, reach);
     ChebyshevStep step;
-    for (int exchange = 0; exchange < kMostExchanges && !step.solved; ++exchange) {
+    for (int exchange = 0; exchange < kMaxExchanges && !step.solved; ++exchange) {
         step.x = -basis.y.head(m);
         step.largest = basis.y[m];
-        const Eigen::VectorXd moved = r + G.transpose() * step.x;
-        Eigen::Index worst = 0, beyond = 0;
-        const double excess = moved.cwiseAbs().maxCoeff(&worst) - step.largest;
-        const double over_reach = step.x.cwiseAbs().maxCoeff(&beyond) - reach;
+        const Eigen::VectorXd residuals = r + G.transpose() * step.x;
+        Eigen::Index worst = 0, farthest = 0;
+        const double excess = residuals.cwiseAbs().maxCoeff(&worst) - step.largest;
+        const double over_reach = step.x.cwiseAbs().maxCoeff(&farthest) - reach;
         Column entering;
         if (excess > kRoundoff * (std::abs(step.largest) + r.cwiseAbs().maxCoeff()))
-            entering = point_column(r, G, worst, moved[worst] < 0 ? -1 : 1);
+            entering = point_column(r, G, worst, residuals[worst] < 0 ? -1 : 1);
         else if (over_reach > kRoundoff * reach)
-            entering = reach_column(m, beyond, step.x[beyond] < 0 ? -1 : 1, reach);
+            entering = reach_column(m, farthest, step.x[farthest] < 0 ? -1 : 1, reach);
         else
             step.solved = true;
         if (step.solved) break;
-        const int out = basis.leaving(entering.a);
-        if (out < 0) break;
-        basis.columns[static_cast<std::size_t>(out)] = entering;
+        const int leaving = basis.find_leaving(entering.a);
+        if (leaving < 0) break;
+        basis.columns[leaving] = entering;
         basis.update();
     }
     for (std::size_t j = 0; j < basis.columns.size(); ++j) {
-        if (basis.multipliers[static_cast<Eigen::Index>(j)] <= kRoundoff) continue;
+        if (basis.multipliers[j] <= kRoundoff) continue;
         if (basis.columns[j].point < 0)
             step.bounded = true;
         else
@@ -126,4 +126,4 @@ ChebyshevStep chebyshev_step(const Eigen::VectorXd& r, const Eigen::MatrixXd& G,
     return step;
 }
 
-} // namespace fettle
+} // namespace fettle::compare

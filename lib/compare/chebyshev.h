@@ -4,14 +4,14 @@
 
 #include <vector>
 
-namespace fettle {
+namespace fettle::compare {
 
-/// The step x that makes the largest |r_i + g_iᵀ x| least, within |x_k| <= reach.
+/// The step x within |x_k| <= reach that minimises the largest |r_i + g_iᵀ x|.
 struct ChebyshevStep {
     Eigen::VectorXd x;
     double largest = 0;                 ///< |r + gᵀ x|
-    std::vector<Eigen::Index> contacts; ///< points that hold it there: their multipliers are positive
-    bool bounded = false;               ///< the reach holds it as well
+    std::vector<Eigen::Index> contacts; ///< active points: their multipliers are positive
+    bool bounded = false;               ///< the bound on x is active as well
     bool solved = false;                ///< false: too many exchanges
 };
 
@@ -21,4 +21,4 @@ struct ChebyshevStep {
 /// @param r  n   @param G  m x n, columns g_i; both of similar size, so scale the parameters
 ChebyshevStep chebyshev_step(const Eigen::VectorXd& r, const Eigen::MatrixXd& G, double reach);
 
-} // namespace fettle
+} // namespace fettle::compare

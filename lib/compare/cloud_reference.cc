@@ -1,7 +1,9 @@
 #include "compare/cloud_reference.h"
 
-#include "cloud/neighbours.h"
 #include "core/decompositions.h"
+#include "geometry/local_quadratic.h"
+#include "geometry/point_index.h"
+#include "geometry/quantiles.h"
 
 #include <Eigen/Cholesky>
 
@@ -11,139 +13,127 @@
 #include <numbers>
 #include <vector>
 
-namespace fettle {
+namespace fettle::compare {
 
 namespace {
 
 // The quadratic has six coefficients; four points for each of them average the noise and keep the surface local.
-constexpr Eigen::Index kNeighbours = 24;
-// Nearer to the border than half of the surroundings, or in a gap as wide as the neighbourhood, nothing surrounds the
-// foot: the widest angle without a neighbour, and the nearest one as a share of the farthest.
-constexpr double kWidestGap = 150 * std::numbers::pi / 180;
-constexpr double kNearest = 0.6;
-// Along a direction the heights are taken in it if the surface is not steeper to it than 60°: quadratics are then
-// exact.
-constexpr double kSteepest = 0.5;
-// Tukey's biweight at 95 % efficiency for normal noise, and the factor from the median |residual| to sigma.
-constexpr double kTukey = 4.685;
-constexpr double kMedianToSigma = 1.4826;
+constexpr int kNeighbours = 24;
+// A foot is surrounded unless it lies near the border or in a gap: the widest angle, seen from the foot, between
+// successive neighbours, and the distance of the nearest neighbour as a share of the farthest.
+constexpr double kMaxGapAngle = 150 * std::numbers::pi / 180;
+constexpr double kMaxNearestToFarthest = 0.6;
+// In mode direction the height axis is the direction itself, unless the surface normal is more than 60° from it: a
+// surface that is quadratic along the direction is then met exactly.
+constexpr double kMinNormalAlongDirection = 0.5;
 constexpr int kRobustPasses = 3;
-// The foot moves by the curvature over the way from the first neighbour: it settles in two or three steps.
-constexpr int kFootSteps = 6;
-constexpr double kSettled = 0.05; // of the neighbourhood's radius: so far off its middle a patch is as good
-// A neighbour nearer than this share of the radius is the foot itself, but for rounding: it lies in no direction.
-constexpr double kAtFoot = 1e-3;
-constexpr int kNewton = 20;
+// The search for the foot starts at the nearest point and converges in two or three steps.
+constexpr int kMaxFootSteps = 6;
+// Distance of the foot from the patch's origin, as a share of its radius, within which the patch need not be refitted.
+constexpr double kFootToleranceRadii = 0.05;
+// A neighbour closer to the foot than this share of the radius coincides with it up to rounding: it has no direction.
+constexpr double kCoincidentRadii = 1e-3;
+constexpr int kMaxNewtonSteps = 20;
+constexpr double kNewtonTolerance = 1e-12; // roundoff of coordinates of size 1
 
-using Quadratic = Eigen::Matrix<double, 6, 1>;
+using Neighbourhood = Eigen::Matrix<double, 3, kNeighbours>;
 
-Quadratic terms(double x, double y) { return {1, x, y, x * x, x * y, y * y}; }
-
-using Local = Eigen::Matrix<double, 3, kNeighbours>;
-
-/// z = c·terms(x, y) in a frame of its own; lengths are shares of `radius`.
+/// Quadratic z = c·quadratic_terms(x, y) in a local frame whose unit of length is `radius`.
 struct Patch {
-    Local neighbours;
+    Neighbourhood neighbours;
     Eigen::Vector3d origin;
     Eigen::Matrix3d R_patch_machine; ///< rows x, y, z of the frame
-    double radius = 0;
-    bool covered = false; ///< do the neighbours surround the origin?
-    Quadratic c;
+    double radius = 0;               ///< mm
+    bool surrounded = false;         ///< the neighbours surround the origin
+    geometry::QuadraticTerms c;
     Eigen::Matrix<double, 6, 6> covariance;
 
-    double height(const Eigen::Vector2d& xy) const { return c.dot(terms(xy.x(), xy.y())); }
+    double height(const Eigen::Vector2d& xy) const { return c.dot(geometry::quadratic_terms(xy.x(), xy.y())); }
     Eigen::Vector2d slope(const Eigen::Vector2d& xy) const
     {
         return {c[1] + 2 * c[3] * xy.x() + c[4] * xy.y(), c[2] + c[4] * xy.x() + 2 * c[5] * xy.y()};
     }
-    /// The point of the surface over xy, in M.
-    Eigen::Vector3d at(const Eigen::Vector2d& xy) const
+    /// Point of the surface above xy, in M.
+    Eigen::Vector3d point_at(const Eigen::Vector2d& xy) const
     {
         return origin + radius * (R_patch_machine.transpose() * Eigen::Vector3d(xy.x(), xy.y(), height(xy)));
     }
-    /// Over what xy the foot of `point` lies: the closest one, or along the direction if there is one.
+    /// The xy of the foot of `point`: the closest point of the surface, or its intersection along a direction.
     Eigen::Vector2d foot(const Eigen::Vector3d& point, const Eigen::Vector3d* direction) const;
     Eigen::Vector2d closest(const Eigen::Vector3d& point) const;
-    Eigen::Vector2d crossing(const Eigen::Vector3d& point, const Eigen::Vector3d& direction) const;
+    Eigen::Vector2d intersection(const Eigen::Vector3d& point, const Eigen::Vector3d& direction) const;
 };
 
-double median_of(std::array<double, kNeighbours> values)
-{
-    std::nth_element(values.begin(), values.begin() + kNeighbours / 2, values.end());
-    return values[kNeighbours / 2];
-}
-
-// Least squares, then re-weighted `robust_passes` times. False if the points do not determine a quadratic.
+// Least squares, then `robust_passes` re-weighted ones. Returns whether the points determine a quadratic. Their number
+// is fixed, so Eigen unrolls the products; geometry::QuadraticEquations sums over any number, in another order.
 bool fit_quadratic(Patch& patch, int robust_passes)
 {
-    const Local& local = patch.neighbours;
+    const Neighbourhood& local = patch.neighbours;
     Eigen::Matrix<double, kNeighbours, 6> A;
-    for (Eigen::Index i = 0; i < kNeighbours; ++i) A.row(i) = terms(local(0, i), local(1, i)).transpose();
+    for (int i = 0; i < kNeighbours; ++i) A.row(i) = geometry::quadratic_terms(local(0, i), local(1, i)).transpose();
     const Eigen::Matrix<double, kNeighbours, 1> z = local.row(2).transpose();
     Eigen::Matrix<double, kNeighbours, 1> weight = Eigen::Matrix<double, kNeighbours, 1>::Ones();
     for (int pass = 0; pass <= robust_passes; ++pass) {
         const Eigen::Matrix<double, 6, 6> normal = A.transpose() * weight.asDiagonal() * A;
         const Eigen::LDLT<Eigen::Matrix<double, 6, 6>> solver(normal);
-        // In shares of the radius a well spread neighbourhood has pivots near 1; float coordinates leave 1e-7.
-        constexpr double kLeastPivot = 1e-7;
-        if (!(solver.vectorD().minCoeff() > kLeastPivot)) return false;
+        // A well spread neighbourhood of radius 1 has pivots near 1; rounding of float coordinates leaves 1e-7.
+        constexpr double kMinPivot = 1e-7;
+        if (!(solver.vectorD().minCoeff() > kMinPivot)) return false;
         patch.c = solver.solve(A.transpose() * (weight.asDiagonal() * z));
         if (robust_passes == 0) return true;
         const Eigen::Matrix<double, kNeighbours, 1> residual = z - A * patch.c;
-        std::array<double, kNeighbours> size;
-        for (Eigen::Index i = 0; i < kNeighbours; ++i) size[static_cast<std::size_t>(i)] = std::abs(residual[i]);
-        const double sigma = kMedianToSigma * median_of(size);
+        std::array<double, kNeighbours> sizes;
+        for (int i = 0; i < kNeighbours; ++i) sizes[i] = std::abs(residual[i]);
+        const double sigma = geometry::kMedianToSigma * geometry::median(sizes);
         patch.covariance = sigma * sigma * solver.solve(Eigen::Matrix<double, 6, 6>::Identity());
         if (!(sigma > 0)) break;
-        const auto share = (residual.array() / (kTukey * sigma)).square();
-        weight = (share < 1).select((1 - share).square(), 0);
+        const auto relative = (residual.array() / (geometry::kTukeyCutoff * sigma)).square();
+        weight = (relative < 1).select((1 - relative).square(), 0);
     }
     return true;
 }
 
-// Is there a neighbour in every direction from the origin? One at the origin itself lies in none.
-bool surrounds(const Local& local)
+// Whether there are neighbours in all directions from the origin, without a gap wider than kMaxGapAngle.
+bool surrounds(const Neighbourhood& local)
 {
-    std::vector<double> angle;
-    for (Eigen::Index i = 0; i < kNeighbours; ++i)
-        if (local.col(i).norm() > kAtFoot) angle.push_back(std::atan2(local(1, i), local(0, i)));
-    if (angle.empty()) return false;
-    std::sort(angle.begin(), angle.end());
-    double widest = angle.front() + 2 * std::numbers::pi - angle.back();
-    for (std::size_t i = 1; i < angle.size(); ++i) widest = std::max(widest, angle[i] - angle[i - 1]);
-    return widest <= kWidestGap;
+    std::vector<double> angles;
+    for (int i = 0; i < kNeighbours; ++i)
+        if (local.col(i).norm() > kCoincidentRadii) angles.push_back(std::atan2(local(1, i), local(0, i)));
+    if (angles.empty()) return false;
+    return geometry::widest_gap(angles) <= kMaxGapAngle;
 }
 
-// By Newton from below the point.
+// Newton's method from the origin, where the search has put the foot's first estimate.
 Eigen::Vector2d Patch::closest(const Eigen::Vector3d& point) const
 {
     Eigen::Vector2d xy(0, 0);
     Eigen::Matrix2d second;
     second << 2 * c[3], c[4], c[4], 2 * c[5];
-    for (int i = 0; i < kNewton; ++i) {
-        const double below = height(xy) - point.z();
+    for (int i = 0; i < kMaxNewtonSteps; ++i) {
+        const double dz = height(xy) - point.z();
         const Eigen::Vector2d tilt = slope(xy);
-        const Eigen::Vector2d gradient = xy - point.head<2>() + below * tilt;
-        Eigen::Matrix2d hessian = Eigen::Matrix2d::Identity() + tilt * tilt.transpose();
-        const Eigen::Matrix2d full = hessian + below * second;
-        if (full.determinant() > 0 && full.trace() > 0) hessian = full; // else Gauss-Newton's, always downhill
+        const Eigen::Vector2d gradient = xy - point.head<2>() + dz * tilt;
+        Eigen::Matrix2d hessian =
+            Eigen::Matrix2d::Identity() + tilt * tilt.transpose(); // Gauss-Newton: always downhill
+        const Eigen::Matrix2d full = hessian + dz * second;
+        if (full.determinant() > 0 && full.trace() > 0) hessian = full;
         const Eigen::Vector2d step = -hessian.ldlt().solve(gradient);
         xy += step;
-        if (step.norm() <= 1e-12) break; // roundoff of coordinates of size 1
+        if (step.norm() <= kNewtonTolerance) break;
     }
     return xy;
 }
 
-// Where the line point + t direction meets the surface, from its crossing with the frame's plane.
-Eigen::Vector2d Patch::crossing(const Eigen::Vector3d& point, const Eigen::Vector3d& direction) const
+// Newton's method for the intersection of the line point + t direction with the surface, from that with the xy plane.
+Eigen::Vector2d Patch::intersection(const Eigen::Vector3d& point, const Eigen::Vector3d& direction) const
 {
     double t = -point.z() / direction.z();
-    for (int i = 0; i < kNewton; ++i) {
+    for (int i = 0; i < kMaxNewtonSteps; ++i) {
         const Eigen::Vector3d at = point + t * direction;
         const double rise = direction.z() - slope(at.head<2>()).dot(direction.head<2>());
         const double step = -(at.z() - height(at.head<2>())) / rise;
         t += step;
-        if (!(std::abs(step) > 1e-12)) break; // roundoff of coordinates of size 1
+        if (!(std::abs(step) > kNewtonTolerance)) break;
     }
     return (point + t * direction).head<2>();
 }
@@ -151,42 +141,42 @@ Eigen::Vector2d Patch::crossing(const Eigen::Vector3d& point, const Eigen::Vecto
 Eigen::Vector2d Patch::foot(const Eigen::Vector3d& point, const Eigen::Vector3d* direction) const
 {
     const Eigen::Vector3d local = R_patch_machine * (point - origin) / radius;
-    return direction ? crossing(local, R_patch_machine * *direction) : closest(local);
+    return direction ? intersection(local, R_patch_machine * *direction) : closest(local);
 }
 
 } // namespace
 
 struct CloudReference::State {
-    explicit State(const Cloud& cloud) : points(cloud.xyz), neighbours(cloud.xyz)
+    explicit State(const cloud::Cloud& cloud) : points(cloud.xyz), neighbours(cloud.xyz)
     {
-        if (has_normals(cloud)) outward = normals(cloud);
+        if (cloud::has_normals(cloud)) outward = cloud::normals(cloud);
     }
 
-    std::optional<Patch> quick_patch(const Eigen::Vector3d& foot, const Eigen::Vector3d* direction) const;
+    std::optional<Patch> fit_patch(const Eigen::Vector3d& foot, const Eigen::Vector3d* direction) const;
     std::optional<Foot> find(const Eigen::Vector3d& point, const Eigen::Vector3d* direction) const;
 
     Eigen::Matrix3Xd points;
-    Eigen::Matrix3Xd outward; ///< empty: no normals
-    Neighbours neighbours;
+    Eigen::Matrix3Xd outward; ///< normals; empty if the cloud has none
+    geometry::PointIndex<3> neighbours;
 };
 
-// The surface about `foot` by plain least squares, with the frame's origin beside it.
-std::optional<Patch> CloudReference::State::quick_patch(const Eigen::Vector3d& foot,
-                                                        const Eigen::Vector3d* direction) const
+// Plain least squares fit to the neighbours of `foot`; the frame's origin is the foot projected onto their plane.
+std::optional<Patch> CloudReference::State::fit_patch(const Eigen::Vector3d& foot,
+                                                      const Eigen::Vector3d* direction) const
 {
     const std::vector<Eigen::Index> near = neighbours.nearest(foot, kNeighbours);
-    if (static_cast<Eigen::Index>(near.size()) < kNeighbours) return std::nullopt;
+    if (near.size() < kNeighbours) return std::nullopt;
     Patch patch;
-    Local& local = patch.neighbours;
+    Neighbourhood& local = patch.neighbours;
     local = points(Eigen::all, near);
     const Eigen::Vector3d centroid = local.rowwise().mean();
-    const Local about = local.colwise() - centroid;
-    const SymmetricEigen<3> spread = symmetric_eigen<3>(about * about.transpose());
-    Eigen::Vector3d z = spread.vectors.col(0), x = spread.vectors.col(2);
+    const Neighbourhood centred = local.colwise() - centroid;
+    const core::SymmetricEigen<3> scatter = core::symmetric_eigen<3>(centred * centred.transpose());
+    Eigen::Vector3d z = scatter.vectors.col(0), x = scatter.vectors.col(2);
     Eigen::Vector3d out = direction ? *direction : Eigen::Vector3d::UnitZ();
     if (!direction && outward.cols() > 0) out = outward(Eigen::all, near).rowwise().sum();
     if (z.dot(out) < 0) z = -z;
-    if (direction && z.dot(*direction) >= kSteepest) {
+    if (direction && z.dot(*direction) >= kMinNormalAlongDirection) {
         z = *direction;
         x = z.unitOrthogonal();
     }
@@ -196,7 +186,7 @@ std::optional<Patch> CloudReference::State::quick_patch(const Eigen::Vector3d& f
     patch.radius = local.colwise().norm().maxCoeff();
     if (!(patch.radius > 0)) return std::nullopt;
     local /= patch.radius;
-    patch.covered = local.colwise().norm().minCoeff() <= kNearest && surrounds(local);
+    patch.surrounded = local.colwise().norm().minCoeff() <= kMaxNearestToFarthest && surrounds(local);
     if (!fit_quadratic(patch, 0)) return std::nullopt;
     return patch;
 }
@@ -210,30 +200,31 @@ std::optional<CloudReference::Foot> CloudReference::State::find(const Eigen::Vec
     if (direction) foot = point + direction->dot(foot - point) * *direction;
     std::optional<Patch> surface;
     Eigen::Vector2d xy;
-    for (int step = 0; step < kFootSteps; ++step) {
-        surface = quick_patch(foot, direction);
+    for (int step = 0; step < kMaxFootSteps; ++step) {
+        surface = fit_patch(foot, direction);
         if (!surface) return std::nullopt;
         xy = surface->foot(point, direction);
         if (!xy.allFinite()) return std::nullopt;
-        if (xy.norm() <= kSettled) break;
-        foot = surface->at(xy);
+        if (xy.norm() <= kFootToleranceRadii) break;
+        foot = surface->point_at(xy);
     }
-    // The first foot may be a point of the border; only the last one must be surrounded, and be near its patch's
-    // middle.
-    if (!surface->covered || !fit_quadratic(*surface, kRobustPasses)) return std::nullopt;
+    // Only the final foot must be surrounded and lie within its patch: the first one may be a point of the border.
+    if (!surface->surrounded || !fit_quadratic(*surface, kRobustPasses)) return std::nullopt;
     xy = surface->foot(point, direction);
     if (!(xy.norm() <= 1)) return std::nullopt;
     const Eigen::Vector2d slope = surface->slope(xy);
     const Eigen::Vector3d normal =
         surface->R_patch_machine.transpose() * Eigen::Vector3d(-slope.x(), -slope.y(), 1).normalized();
-    const Quadratic here = terms(xy.x(), xy.y());
-    const double sigma = surface->radius * std::sqrt(here.dot(surface->covariance * here));
-    const Eigen::Vector3d at = surface->at(xy), offset = point - at;
-    if (direction) return Foot{direction->dot(offset), normal, at, sigma};
-    return Foot{std::copysign(offset.norm(), offset.dot(normal)), normal, at, sigma};
+    // The gradient of the height with respect to c.
+    const geometry::QuadraticTerms g = geometry::quadratic_terms(xy.x(), xy.y());
+    const double sigma = surface->radius * std::sqrt(g.dot(surface->covariance * g));
+    foot = surface->point_at(xy);
+    const Eigen::Vector3d offset = point - foot;
+    const double error = direction ? direction->dot(offset) : std::copysign(offset.norm(), offset.dot(normal));
+    return Foot{error, normal, foot, sigma};
 }
 
-CloudReference::CloudReference(const Cloud& cloud) : state_(std::make_unique<State>(cloud)) {}
+CloudReference::CloudReference(const cloud::Cloud& cloud) : state_(std::make_unique<State>(cloud)) {}
 CloudReference::CloudReference(CloudReference&&) noexcept = default;
 CloudReference::~CloudReference() = default;
 
@@ -242,10 +233,10 @@ std::optional<CloudReference::Foot> CloudReference::closest(const Eigen::Vector3
     return state_->find(point, nullptr);
 }
 
-std::optional<CloudReference::Foot> CloudReference::along(const Eigen::Vector3d& point,
-                                                          const Eigen::Vector3d& direction) const
+std::optional<CloudReference::Foot> CloudReference::intersect_line(const Eigen::Vector3d& point,
+                                                                   const Eigen::Vector3d& direction) const
 {
     return state_->find(point, &direction);
 }
 
-} // namespace fettle
+} // namespace fettle::compare

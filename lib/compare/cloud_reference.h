@@ -7,30 +7,31 @@
 #include <memory>
 #include <optional>
 
-namespace fettle {
+namespace fettle::compare {
 
-/// A point cloud as a surface: about each foot a quadratic height over the plane of the nearest points, fitted by
-/// robust least squares (Tukey's biweight). Thread-safe.
+/// Surface through a point cloud: around each foot, a quadratic height over the plane of the nearest points, fitted by
+/// robust least squares (Tukey's biweight). pcl::MovingLeastSquares neither detects gaps nor gives a standard
+/// deviation. Thread-safe.
 class CloudReference {
   public:
-    explicit CloudReference(const Cloud& cloud);
+    explicit CloudReference(const cloud::Cloud& cloud);
     CloudReference(CloudReference&&) noexcept;
     ~CloudReference();
 
     struct Foot {
-        double error;           ///< of the point from the surface, + outward, mm
-        Eigen::Vector3d normal; ///< of the surface, unit, outward
-        Eigen::Vector3d point;  ///< of the surface
-        double sigma;           ///< standard deviation of the fitted surface at the foot, mm
+        double error;           ///< signed distance of the point from the surface, + outward, mm
+        Eigen::Vector3d normal; ///< of the surface at the foot, unit, outward
+        Eigen::Vector3d point;  ///< the foot itself
+        double sigma;           ///< standard deviation of the fitted height at the foot, mm
     };
     /// The point of the surface closest to `point`; nothing where the cloud does not surround it.
     std::optional<Foot> closest(const Eigen::Vector3d& point) const;
-    /// Where the line through `point` meets the surface. @param direction  unit, outward
-    std::optional<Foot> along(const Eigen::Vector3d& point, const Eigen::Vector3d& direction) const;
+    /// Intersection of the surface with the line through `point`; nothing as above. @param direction  unit, outward
+    std::optional<Foot> intersect_line(const Eigen::Vector3d& point, const Eigen::Vector3d& direction) const;
 
   private:
     struct State;
     std::unique_ptr<const State> state_;
 };
 
-} // namespace fettle
+} // namespace fettle::compare

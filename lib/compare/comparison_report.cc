@@ -8,46 +8,47 @@
 #include <string>
 #include <utility>
 
-namespace fettle {
+namespace fettle::compare {
 
 namespace {
 
-/// A name and a number in the unit of a report; volumes have power 3.
+/// A member of the report, in units of length to the given power.
 struct Member {
     const char* name;
-    double Statistics::*value;
+    double geometry::Statistics::*value;
     int power;
 };
-constexpr Member kMembers[] = {{"mean", &Statistics::mean, 1},
-                               {"mean_abs", &Statistics::mean_abs, 1},
-                               {"rms", &Statistics::rms, 1},
-                               {"sd", &Statistics::sd, 1},
-                               {"min", &Statistics::min, 1},
-                               {"max", &Statistics::max, 1},
-                               {"band", &Statistics::band, 1},
-                               {"p01", &Statistics::p01, 1},
-                               {"p05", &Statistics::p05, 1},
-                               {"p50", &Statistics::p50, 1},
-                               {"p95", &Statistics::p95, 1},
-                               {"p99", &Statistics::p99, 1},
-                               {"within", &Statistics::within, 0},
-                               {"over_cut_area", &Statistics::over_cut_area, 2},
-                               {"under_cut_area", &Statistics::under_cut_area, 2},
-                               {"over_cut_volume", &Statistics::over_cut_volume, 3},
-                               {"under_cut_volume", &Statistics::under_cut_volume, 3}};
+constexpr Member kMembers[] = {{"mean", &geometry::Statistics::mean, 1},
+                               {"mean_abs", &geometry::Statistics::mean_abs, 1},
+                               {"rms", &geometry::Statistics::rms, 1},
+                               {"sd", &geometry::Statistics::sd, 1},
+                               {"min", &geometry::Statistics::min, 1},
+                               {"max", &geometry::Statistics::max, 1},
+                               {"band", &geometry::Statistics::band, 1},
+                               {"p01", &geometry::Statistics::p01, 1},
+                               {"p05", &geometry::Statistics::p05, 1},
+                               {"p50", &geometry::Statistics::p50, 1},
+                               {"p95", &geometry::Statistics::p95, 1},
+                               {"p99", &geometry::Statistics::p99, 1},
+                               {"within", &geometry::Statistics::within, 0},
+                               {"over_cut_area", &geometry::Statistics::over_cut_area, 2},
+                               {"under_cut_area", &geometry::Statistics::under_cut_area, 2},
+                               {"over_cut_volume", &geometry::Statistics::over_cut_volume, 3},
+                               {"under_cut_volume", &geometry::Statistics::under_cut_volume, 3}};
 
-struct Place {
+struct PointMember {
     const char* name;
-    Eigen::Vector3d Statistics::*value;
+    Eigen::Vector3d geometry::Statistics::*value;
 };
-constexpr Place kPlaces[] = {{"min_at", &Statistics::min_at}, {"max_at", &Statistics::max_at}};
+constexpr PointMember kPointMembers[] = {{"min_at", &geometry::Statistics::min_at},
+                                         {"max_at", &geometry::Statistics::max_at}};
 
-double in_units(const Statistics& s, const Member& member, const Units& units)
+double in_units(const geometry::Statistics& s, const Member& member, const units::Units& units)
 {
     return s.*member.value / std::pow(units.mm(), member.power);
 }
 
-json::Value to_json(const Histogram& histogram, const Units& units)
+json::Value to_json(const geometry::Histogram& histogram, const units::Units& units)
 {
     json::Value value;
     value.set("limit", histogram.limit / units.mm()).set("below", histogram.below).set("above", histogram.above);
@@ -55,34 +56,34 @@ json::Value to_json(const Histogram& histogram, const Units& units)
     return value;
 }
 
-std::vector<std::pair<std::string, Statistics>> rows_of(const std::vector<Comparison>& comparisons)
+std::vector<std::pair<std::string, geometry::Statistics>> rows_of(const std::vector<Comparison>& comparisons)
 {
-    std::vector<std::pair<std::string, Statistics>> rows;
+    std::vector<std::pair<std::string, geometry::Statistics>> rows;
     for (const Comparison& comparison : comparisons) {
-        const std::string way = rows.empty() ? "" : "reverse ";
-        rows.emplace_back(way + "all", comparison.all);
-        for (const auto& [name, statistics] : comparison.regions) rows.emplace_back(way + name, statistics);
+        const std::string prefix = rows.empty() ? "" : "reverse ";
+        rows.emplace_back(prefix + "all", comparison.all);
+        for (const auto& [name, statistics] : comparison.regions) rows.emplace_back(prefix + name, statistics);
     }
     return rows;
 }
 
-void set_members(json::Value& value, const Statistics& s, const Units& units)
+void set_members(json::Value& value, const geometry::Statistics& s, const units::Units& units)
 {
-    value.set("count", static_cast<std::size_t>(s.count)).set("undefined", static_cast<std::size_t>(s.undefined));
+    value.set("count", s.count).set("undefined", s.undefined);
     for (const Member& member : kMembers) value.set(member.name, in_units(s, member, units));
-    for (const Place& place : kPlaces) value.set(place.name, Eigen::VectorXd(s.*place.value / units.mm()));
+    for (const PointMember& point : kPointMembers) value.set(point.name, Eigen::VectorXd(s.*point.value / units.mm()));
 }
 
 } // namespace
 
-json::Value to_json(const Statistics& s, const Units& units)
+json::Value to_json(const geometry::Statistics& s, const units::Units& units)
 {
     json::Value value;
     set_members(value, s, units);
     return value;
 }
 
-json::Value to_json(const Comparison& comparison, const Units& units)
+json::Value to_json(const Comparison& comparison, const units::Units& units)
 {
     json::Value report;
     report.set("kind", "comparison").set("units", json::to_json(units.length));
@@ -95,41 +96,41 @@ json::Value to_json(const Comparison& comparison, const Units& units)
     return report;
 }
 
-json::Value to_json(const ReferenceRepair& repair, const MeshRepair& reading, const Units& units)
+json::Value to_json(const ReferenceRepair& repair, const mesh::MeshRepair& reading, const units::Units& units)
 {
     json::Value report;
-    report.set("dropped_facets", static_cast<std::size_t>(reading.dropped_triangles));
+    report.set("dropped_facets", reading.dropped_triangles).set("unused_vertices", reading.unused_vertices);
     report.set("weld_tolerance", repair.weld_tolerance / units.mm());
-    report.set("welded_vertices", static_cast<std::size_t>(repair.welded_vertices));
-    report.set("repeated_facets", static_cast<std::size_t>(repair.repeated_facets));
-    return report.set("flipped_facets", static_cast<std::size_t>(repair.flipped_facets));
+    report.set("welded_vertices", repair.welded_vertices);
+    report.set("repeated_facets", repair.repeated_facets).set("opposite_facets", repair.opposite_facets);
+    return report.set("flipped_facets", repair.flipped_facets);
 }
 
-void write_csv(std::ostream& out, const std::vector<Comparison>& comparisons, const Units& units)
+void write_csv(std::ostream& out, const std::vector<Comparison>& comparisons, const units::Units& units)
 {
     out << "points,count,undefined";
     for (const Member& member : kMembers) out << ',' << member.name;
-    for (const Place& place : kPlaces)
-        for (const char* axis : {"_x", "_y", "_z"}) out << ',' << place.name << axis;
+    for (const PointMember& point : kPointMembers)
+        for (const char* axis : {"_x", "_y", "_z"}) out << ',' << point.name << axis;
     out << '\n';
     for (const auto& [name, s] : rows_of(comparisons)) {
         out << name << ',' << s.count << ',' << s.undefined;
-        for (const Member& member : kMembers) out << ',' << to_text(in_units(s, member, units));
-        for (const Place& place : kPlaces)
-            for (const double coordinate : s.*place.value) out << ',' << to_text(coordinate / units.mm());
+        for (const Member& member : kMembers) out << ',' << core::to_text(in_units(s, member, units));
+        for (const PointMember& point : kPointMembers)
+            for (const double coordinate : s.*point.value) out << ',' << core::to_text(coordinate / units.mm());
         out << '\n';
     }
 }
 
-void write_csv(std::ostream& out, const Histogram& histogram, const Units& units)
+void write_csv(std::ostream& out, const geometry::Histogram& histogram, const units::Units& units)
 {
     const double limit = histogram.limit / units.mm();
-    const double width = 2 * limit / static_cast<double>(histogram.counts.size());
-    out << "from,to,count\n-inf," << to_text(-limit) << ',' << histogram.below << '\n';
+    const double width = 2 * limit / histogram.counts.size();
+    out << "from,to,count\n-inf," << core::to_text(-limit) << ',' << histogram.below << '\n';
     for (std::size_t i = 0; i < histogram.counts.size(); ++i)
-        out << to_text(-limit + width * static_cast<double>(i)) << ','
-            << to_text(-limit + width * static_cast<double>(i + 1)) << ',' << histogram.counts[i] << '\n';
-    out << to_text(limit) << ",inf," << histogram.above << '\n';
+        out << core::to_text(-limit + width * i) << ',' << core::to_text(-limit + width * (i + 1)) << ','
+            << histogram.counts[i] << '\n';
+    out << core::to_text(limit) << ",inf," << histogram.above << '\n';
 }
 
-} // namespace fettle
+} // namespace fettle::compare

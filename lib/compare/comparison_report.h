@@ -2,7 +2,7 @@
 
 #include "compare/comparison.h"
 #include "compare/reference_mesh.h"
-#include "compare/statistics.h"
+#include "geometry/statistics.h"
 #include "mesh/mesh.h"
 #include "units/units.h"
 #include "json/document.h"
@@ -10,22 +10,22 @@
 #include <iosfwd>
 #include <vector>
 
-namespace fettle {
+namespace fettle::compare {
 
-/// All of its numbers, and where the extremes are, in `units`, as are all numbers below.
-json::Value to_json(const Statistics& statistics, const Units& units);
+/// All statistics and the points of the extremes. Here and below, lengths are written in `units`.
+json::Value to_json(const geometry::Statistics& statistics, const units::Units& units);
 
-/// The members of a report: of all points, flat; of the regions, under "regions"; and the histogram.
-json::Value to_json(const Comparison& comparison, const Units& units);
+/// Report: the statistics of all points as its own members, those of the regions under "regions", the histogram.
+json::Value to_json(const Comparison& comparison, const units::Units& units);
 
-/// What was mended of a mesh as reference. @param reading  what reading it dropped
-json::Value to_json(const ReferenceRepair& repair, const MeshRepair& reading, const Units& units);
+/// Repairs of a mesh that serves as reference. @param reading  what its reader dropped
+json::Value to_json(const ReferenceRepair& repair, const mesh::MeshRepair& reading, const units::Units& units);
 
-/// A row for all points and for each region of some comparisons, with a row of names; the members of the report, places
-/// as three columns. All comparisons but the first are called reverse.
-void write_csv(std::ostream& out, const std::vector<Comparison>& comparisons, const Units& units);
+/// Header row, then for each comparison a row for all points and one for each region. Columns are the members of the
+/// report, points three columns each. Rows of all comparisons but the first are called reverse.
+void write_csv(std::ostream& out, const std::vector<Comparison>& comparisons, const units::Units& units);
 
-/// A row for each bin, with a row of names.
-void write_csv(std::ostream& out, const Histogram& histogram, const Units& units);
+/// Header row, then a row for each bin.
+void write_csv(std::ostream& out, const geometry::Histogram& histogram, const units::Units& units);
 
-} // namespace fettle
+} // namespace fettle::compare

@@ -2,11 +2,11 @@
 
 #include <Eigen/Geometry>
 
-namespace fettle {
+namespace fettle::compare {
 
 namespace {
 
-Eigen::Vector3d across(const Eigen::Vector3d& from_axis_point, const Eigen::Vector3d& axis)
+Eigen::Vector3d radial_part(const Eigen::Vector3d& from_axis_point, const Eigen::Vector3d& axis)
 {
     return from_axis_point - axis.dot(from_axis_point) * axis;
 }
@@ -18,7 +18,7 @@ double deviation(const FormElement& element, const Eigen::Vector3d& point)
     const Eigen::Vector3d q = point - element.point;
     if (is_flat(element.kind)) return element.direction.dot(q);
     if (element.kind == FormKind::sphericity) return q.norm() - element.radius;
-    return across(q, element.direction).norm() - element.radius;
+    return radial_part(q, element.direction).norm() - element.radius;
 }
 
 Eigen::VectorXd deviations(const FormElement& element, const Eigen::Matrix3Xd& points)
@@ -35,7 +35,7 @@ FormMotion::FormMotion(const FormElement& element, double scale) : element_(elem
     v_ = element.direction.cross(u_);
 }
 
-Eigen::Index FormMotion::parameters() const
+Eigen::Index FormMotion::parameter_count() const
 {
     switch (element_.kind) {
     case FormKind::flatness:
@@ -53,7 +53,7 @@ Eigen::Index FormMotion::parameters() const
 FormVector FormMotion::gradient(const Eigen::Vector3d& point) const
 {
     const Eigen::Vector3d q = point - element_.point;
-    FormVector g(parameters());
+    FormVector g(parameter_count());
     if (element_.kind == FormKind::flatness) {
         g << u_.dot(q) / scale_, v_.dot(q) / scale_, -1;
     } else if (element_.kind == FormKind::straightness) {
@@ -61,14 +61,14 @@ FormVector FormMotion::gradient(const Eigen::Vector3d& point) const
     } else if (element_.kind == FormKind::sphericity) {
         g << -q.normalized(), -1;
     } else {
-        const Eigen::Vector3d outward = across(q, element_.direction).normalized();
+        const Eigen::Vector3d outward = radial_part(q, element_.direction).normalized();
         const double along = element_.direction.dot(q) / scale_;
         g << -outward.dot(u_), -outward.dot(v_), -along * outward.dot(u_), -along * outward.dot(v_), -1;
     }
     return g;
 }
 
-FormElement FormMotion::moved(const FormVector& motion) const
+FormElement FormMotion::apply(const FormVector& motion) const
 {
     FormElement element = element_;
     if (element.kind == FormKind::flatness) {
@@ -88,4 +88,4 @@ FormElement FormMotion::moved(const FormVector& motion) const
     return element;
 }
 
-} // namespace fettle
+} // namespace fettle::compare

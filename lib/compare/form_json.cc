@@ -1,11 +1,11 @@
 #include "compare/form.h"
 #include "json/units.h"
 
-namespace fettle {
+namespace fettle::compare {
 
 namespace {
 
-/// How the standards call a form (ISO 12780-1, 12180-1, 12781-1); they have none for spheres.
+/// Names in the standards (ISO 12780-1, 12180-1, 12781-1), which have none for spheres.
 struct Names {
     const char* form;
     const char* parameter;
@@ -46,16 +46,16 @@ json::Value zone_json(const FormZone& zone, const char* name, const Eigen::Matri
         value.set("peak", zone.peak / mm).set("valley", zone.valley / mm).set("rms", zone.rms / mm);
         return value;
     }
-    Eigen::VectorXd sides(static_cast<Eigen::Index>(zone.contacts.size()));
+    Eigen::VectorXd sides(zone.contacts.size());
     for (Eigen::Index i = 0; i < sides.size(); ++i)
-        sides[i] = deviation(zone.element, points.col(zone.contacts[static_cast<std::size_t>(i)])) < 0 ? -1 : 1;
+        sides[i] = deviation(zone.element, points.col(zone.contacts[i])) < 0 ? -1 : 1;
     value.set("contacts", Eigen::MatrixXd(points(Eigen::all, zone.contacts).transpose() / mm));
     return value.set("sides", sides);
 }
 
 } // namespace
 
-json::Value to_json(const Form& form, const Eigen::Matrix3Xd& points, const Units& units)
+json::Value to_json(const Form& form, const Eigen::Matrix3Xd& points, const units::Units& units)
 {
     const Names names = names_of(form.least_squares.element.kind);
     const double mm = units.mm();
@@ -64,9 +64,9 @@ json::Value to_json(const Form& form, const Eigen::Matrix3Xd& points, const Unit
     elements.set("minimum_zone", zone_json(form.minimum_zone, names.minimum_zone, points, mm));
     value.set("kind", "form").set("units", json::to_json(units.length)).set("form", names.form);
     if (names.parameter != nullptr) value.set("parameter", names.parameter);
-    value.set("count", static_cast<std::size_t>(points.cols()));
+    value.set("count", points.cols());
     value.set("least_squares", form.least_squares.width / mm).set("minimum_zone", form.minimum_zone.width / mm);
     return value.set("elements", elements);
 }
 
-} // namespace fettle
+} // namespace fettle::compare

@@ -7,44 +7,45 @@
 #include <cstdint>
 #include <vector>
 
-namespace fettle {
+namespace fettle::compare {
 
-/// What was mended of a mesh before points are compared to it.
+/// Repairs made to a mesh before points are compared to it.
 struct ReferenceRepair {
-    double weld_tolerance = 0; ///< at the middle of the mesh, mm: the rounding of float coordinates there
+    double weld_tolerance = 0; ///< mm: rounding of float coordinates at the median coordinate of the mesh
     Eigen::Index welded_vertices = 0;
-    Eigen::Index repeated_facets = 0; ///< left out: they stand once
+    Eigen::Index repeated_facets = 0; ///< dropped: duplicates of an earlier facet with the same winding
+    Eigen::Index opposite_facets = 0; ///< dropped: the same corners as an earlier facet, wound the other way
     Eigen::Index flipped_facets = 0;
 };
 
-/// Which way round facets are taken.
+/// Treatment of the facets' windings.
 enum class Winding {
-    mend, ///< as most of their connected piece; closed pieces with their outer side out
-    keep, ///< as they are
-    turn, ///< mended, then all turned over: for an open mesh that is inside out, of which nobody else can know
+    repair, ///< made to agree with the majority of their connected component; closed components face outward
+    keep,   ///< left as they are
+    flip,   ///< repaired, then all flipped: for an open mesh that is inside out, which cannot be detected
 };
 
-/// A mesh as it is compared to: vertices that agree within the rounding of floats count as one, so that cracks are no
-/// borders; what stands twice stands once; windings agree.
+/// A mesh prepared for signed distances: vertices that agree within the rounding of floats are welded, so that cracks
+/// are not taken for borders; duplicate facets are dropped, also those wound the other way, so that a mesh drawn from
+/// both sides has one outer side; windings agree.
 struct ReferenceMesh {
-    Mesh mesh;                       ///< exactly where it was
-    Eigen::Matrix3Xi welded;         ///< its triangles with welded vertices; none: as in `mesh`
-    std::vector<std::uint32_t> from; ///< of its triangles, numbers in the original; none: the same
-    double size = 0;                 ///< how far from the origin it lies: the median of its vertices, mm
+    mesh::Mesh mesh;                             ///< with its original vertices
+    Eigen::Matrix3Xi welded;                     ///< its triangles with welded vertices; empty: as in `mesh`
+    std::vector<std::uint32_t> original_indices; ///< of its triangles, before duplicates were dropped; empty: the same
+    double coordinate = 0;                       ///< median_coordinate(), mm
     ReferenceRepair repair;
+    bool closed = false; ///< no border, and all windings agree
 
     const Eigen::Matrix3Xi& facets() const { return welded.cols() > 0 ? welded : mesh.triangles; }
-    Eigen::Index original(Eigen::Index triangle) const
+    Eigen::Index original_index(Eigen::Index triangle) const
     {
-        return from.empty() ? triangle : from[static_cast<std::size_t>(triangle)];
+        return original_indices.empty() ? triangle : original_indices[triangle];
     }
-    /// Lengths below this, at a place, are the rounding of float coordinates, mm.
-    double rounding(const Eigen::Vector3d& place) const;
+    /// Lengths below this at a point are rounding of float coordinates, mm.
+    double rounding_at(const Eigen::Vector3d& point) const;
 };
 
-/// Only vertices whose facets leave a gap are welded. Of facets that share an edge the way round that most of their
-/// connected area has is taken for right; a closed piece that is inside out and not in another one's box, where it
-/// might be a cavity, is turned.
-ReferenceMesh reference_mesh(Mesh mesh, Winding winding = Winding::mend);
+/// Repairs a mesh. Only open vertices are welded (OpenVertices); windings are repaired as facets_to_flip() says.
+ReferenceMesh reference_mesh(mesh::Mesh mesh, Winding winding = Winding::repair);
 
-} // namespace fettle
+} // namespace fettle::compare

@@ -3,7 +3,7 @@
 #include "compare/cloud_reference.h"
 #include "compare/pseudo_normals.h"
 #include "core/constants.h"
-#include "core/hilbert.h"
+#include "core/morton.h"
 #include "mesh/mesh_index.h"
 
 #include <Eigen/Geometry>
@@ -17,29 +17,29 @@
 #include <utility>
 #include <variant>
 
-namespace fettle {
+namespace fettle::compare {
 
 namespace {
 
-struct Measured {
-    double error = kNaN;
-    Eigen::Vector3d normal = Eigen::Vector3d::Constant(kNaN);
-    Eigen::Vector3d foot = Eigen::Vector3d::Constant(kNaN);
-    double facet = kNaN;
-    double sigma = kNaN;
+/// Result for one point; NaN: undefined.
+struct Measurement {
+    double error = core::kNaN;
+    Eigen::Vector3d normal = Eigen::Vector3d::Constant(core::kNaN);
+    Eigen::Vector3d foot = Eigen::Vector3d::Constant(core::kNaN);
+    double facet = core::kNaN;
+    double sigma = core::kNaN;
 };
 
-/// What a mesh says about one point.
 class MeshReference {
   public:
-    MeshReference(Mesh mesh, const DistanceOptions& options)
+    MeshReference(mesh::Mesh mesh, const DistanceOptions& options)
         : options_(options), mesh_(std::make_unique<ReferenceMesh>(reference_mesh(std::move(mesh), options.winding)))
     {
         tbb::parallel_invoke([&] { index_.emplace(mesh_->mesh); }, [&] { normals_.emplace(*mesh_); });
     }
 
-    /// @param leaf  of the index, where to begin; set to where the foot was found
-    Measured operator()(const Eigen::Vector3d& point, std::uint32_t& leaf) const
+    /// @param leaf  of the index, where the search starts; set to the leaf of the foot
+    Measurement operator()(const Eigen::Vector3d& point, std::uint32_t& leaf) const
     {
         return options_.mode == DistanceMode::normal ? closest(point, leaf) : along_line(point);
     }
@@ -47,58 +47,58 @@ class MeshReference {
     const ReferenceRepair& repair() const { return mesh_->repair; }
 
   private:
-    Measured closest(const Eigen::Vector3d& point, std::uint32_t& leaf) const
+    Measurement closest(const Eigen::Vector3d& point, std::uint32_t& leaf) const
     {
-        const std::optional<MeshIndex::Closest> found = index_->closest(point, options_.max_distance, leaf);
+        const std::optional<mesh::MeshIndex::Closest> found = index_->closest(point, options_.max_distance, leaf);
         if (!found) return {};
         leaf = found->leaf;
         const Eigen::Vector3d offset = point - found->point;
-        if (normals_->beyond_border(*found, offset) > mesh_->rounding(found->point)) return {};
+        if (normals_->beyond_border(*found, offset) > mesh_->rounding_at(found->point)) return {};
         const Eigen::Vector3d normal = normals_->normal(*found);
         if (normal.isZero(0)) return {};
-        return {std::copysign(offset.norm(), offset.dot(normal)), normal, found->point, number(found->triangle)};
+        return {std::copysign(offset.norm(), offset.dot(normal)), normal, found->point, facet_index(found->triangle)};
     }
 
-    Measured along_line(const Eigen::Vector3d& point) const
+    Measurement along_line(const Eigen::Vector3d& point) const
     {
-        // Either ray starts a little on the other side of the point, lest one that lies on the surface be missed.
+        // The two rays start on opposite sides of the point, so that a facet through the point is not missed.
         const Eigen::Vector3d& up = options_.direction;
-        const double start = mesh_->rounding(point);
-        Measured nearest;
+        const double start = mesh_->rounding_at(point);
+        Measurement nearest;
         bool nearest_faces = false;
-        for (const double way : {1.0, -1.0}) {
-            const auto hit = index_->cast(point - way * start * up, way * up);
+        for (const double side : {1.0, -1.0}) {
+            const auto hit = index_->cast(point - side * start * up, side * up);
             if (!hit) continue;
-            const double error = way * (start - hit->distance);
-            const Eigen::Vector3d normal = normals_->facet(hit->triangle);
+            const double error = side * (start - hit->distance);
+            const Eigen::Vector3d normal = normals_->facet_normal(hit->triangle);
             const bool faces = normal.dot(up) > 0;
             const bool better = faces != nearest_faces ? faces : !(std::abs(nearest.error) <= std::abs(error));
             if (std::abs(error) > options_.max_distance || !better) continue;
-            nearest = {error, normal, hit->point, number(hit->triangle)};
+            nearest = {error, normal, hit->point, facet_index(hit->triangle)};
             nearest_faces = faces;
         }
         return nearest;
     }
 
-    double number(Eigen::Index triangle) const { return static_cast<double>(mesh_->original(triangle)); }
+    double facet_index(Eigen::Index triangle) const { return mesh_->original_index(triangle); }
 
     DistanceOptions options_;
-    std::unique_ptr<const ReferenceMesh> mesh_; ///< stays where it is
-    std::optional<MeshIndex> index_;            ///< made at the same time as the normals
+    std::unique_ptr<const ReferenceMesh> mesh_; ///< on the heap: the index refers to it
+    std::optional<mesh::MeshIndex> index_;      ///< optional, to be built at the same time as the normals
     std::optional<PseudoNormals> normals_;
 };
 
-/// What a cloud says about one point.
-class CloudMeasure {
+class QuadraticCloud {
   public:
-    CloudMeasure(const Cloud& cloud, const DistanceOptions& options) : options_(options), surface_(cloud) {}
+    QuadraticCloud(const cloud::Cloud& cloud, const DistanceOptions& options) : options_(options), surface_(cloud) {}
 
-    Measured operator()(const Eigen::Vector3d& point, std::uint32_t&) const
+    Measurement operator()(const Eigen::Vector3d& point, std::uint32_t&) const
     {
-        const std::optional<CloudReference::Foot> foot =
-            options_.mode == DistanceMode::normal ? surface_.closest(point) : surface_.along(point, options_.direction);
+        const std::optional<CloudReference::Foot> foot = options_.mode == DistanceMode::normal
+                                                             ? surface_.closest(point)
+                                                             : surface_.intersect_line(point, options_.direction);
         if (!foot || std::abs(foot->error) > options_.max_distance) return {};
-        return {foot->error, foot->normal, foot->point, kNaN, foot->sigma};
+        return {foot->error, foot->normal, foot->point, core::kNaN, foot->sigma};
     }
 
   private:
@@ -106,53 +106,50 @@ class CloudMeasure {
     CloudReference surface_;
 };
 
-// Of a surface that is scanned line by line the steps from point to point are about its spacing, a share 1/sqrt(N) of
-// its extent; so far above it they still are no leaps.
-constexpr double kCoherent = 4;
+// Points scanned line by line follow each other at about their spacing, which is 1/sqrt(N) of the extent. They count as
+// spatially coherent while the mean step is at most this many spacings.
+constexpr double kMaxCoherentSpacings = 4;
 
-bool coherent(const Eigen::Matrix3Xd& points)
+bool spatially_coherent(const Eigen::Matrix3Xd& points)
 {
     Eigen::AlignedBox3d box;
-    double way = 0;
+    double path_length = 0;
     for (Eigen::Index i = 0; i < points.cols(); ++i) {
         if (!std::isfinite(points.col(i).sum())) continue;
         box.extend(points.col(i));
         if (i > 0) {
             const double step = (points.col(i) - points.col(i - 1)).norm();
-            way += std::isfinite(step) ? step : 0;
+            path_length += std::isfinite(step) ? step : 0;
         }
     }
-    return !(way > kCoherent * box.sizes().norm() * std::sqrt(static_cast<double>(points.cols())));
+    return !(path_length > kMaxCoherentSpacings * box.sizes().norm() * std::sqrt(points.cols()));
 }
 
-/// In what order to measure. Points that follow each other are near each other then: what one of them touched is in the
-/// cache for the next, and its foot is a good guess.
-std::vector<std::uint32_t> order_of(const Eigen::Matrix3Xd& points)
+/// Order of the queries in which successive points are close to each other: the parts of the index that one visits are
+/// in the cache for the next, and its foot is a good start.
+std::vector<std::uint32_t> query_order(const Eigen::Matrix3Xd& points)
 {
-    const auto count = static_cast<std::size_t>(points.cols());
-    if (!coherent(points))
-        return hilbert_order(
-            count, [&](std::size_t i) -> Eigen::Vector3d { return points.col(static_cast<Eigen::Index>(i)); });
-    std::vector<std::uint32_t> order(count);
+    if (!spatially_coherent(points)) return core::morton_order(points);
+    std::vector<std::uint32_t> order(points.cols());
     std::iota(order.begin(), order.end(), 0u);
     return order;
 }
 
-template <typename At>
-ErrorMap measure(const Eigen::Matrix3Xd& points, const At& at, bool mesh)
+template <typename Shape>
+ErrorMap measure(const Eigen::Matrix3Xd& points, const Shape& shape, bool mesh)
 {
     const Eigen::Index count = points.cols();
     ErrorMap map{Eigen::VectorXd(count), Eigen::Matrix3Xd(3, count), Eigen::Matrix3Xd(3, count),
                  Eigen::VectorXd(mesh ? count : 0), Eigen::VectorXd(mesh ? 0 : count)};
-    const std::vector<std::uint32_t> order = order_of(points);
-    constexpr std::size_t kShare = 512; // points of one task: many to a thread, but worth its beginning
+    const std::vector<std::uint32_t> order = query_order(points);
+    constexpr std::size_t kPointsPerTask = 512; // many tasks for each thread, each worth its overhead
     tbb::parallel_for(
-        tbb::blocked_range<std::size_t>(0, order.size(), kShare),
+        tbb::blocked_range<std::size_t>(0, order.size(), kPointsPerTask),
         [&](const tbb::blocked_range<std::size_t>& range) {
             std::uint32_t leaf = 0;
             for (std::size_t k = range.begin(); k < range.end(); ++k) {
                 const Eigen::Index i = order[k];
-                const Measured m = points.col(i).allFinite() ? at(points.col(i), leaf) : Measured{};
+                const Measurement m = points.col(i).allFinite() ? shape(points.col(i), leaf) : Measurement{};
                 map.error[i] = m.error + 0.0; // no negative zeros in files
                 map.normal.col(i) = m.normal.array() + 0.0;
                 map.foot.col(i) = m.foot;
@@ -169,16 +166,16 @@ ErrorMap measure(const Eigen::Matrix3Xd& points, const At& at, bool mesh)
 } // namespace
 
 struct Reference::State {
-    std::variant<MeshReference, CloudMeasure> shape;
-    ReferenceRepair none = {};
+    std::variant<MeshReference, QuadraticCloud> shape;
+    ReferenceRepair no_repair = {};
 };
 
-Reference::Reference(Mesh mesh, const DistanceOptions& options)
+Reference::Reference(mesh::Mesh mesh, const DistanceOptions& options)
     : state_(new State{MeshReference(std::move(mesh), options)})
 {
 }
-Reference::Reference(const Cloud& cloud, const DistanceOptions& options)
-    : state_(new State{CloudMeasure(cloud, options)})
+Reference::Reference(const cloud::Cloud& cloud, const DistanceOptions& options)
+    : state_(new State{QuadraticCloud(cloud, options)})
 {
 }
 Reference::Reference(Reference&&) noexcept = default;
@@ -187,23 +184,23 @@ Reference::~Reference() = default;
 ErrorMap Reference::operator()(const Eigen::Matrix3Xd& points) const
 {
     const bool mesh = std::holds_alternative<MeshReference>(state_->shape);
-    return std::visit([&](const auto& at) { return measure(points, at, mesh); }, state_->shape);
+    return std::visit([&](const auto& shape) { return measure(points, shape, mesh); }, state_->shape);
 }
 
 const ReferenceRepair& Reference::repair() const
 {
     const MeshReference* mesh = std::get_if<MeshReference>(&state_->shape);
-    return mesh ? mesh->repair() : state_->none;
+    return mesh ? mesh->repair() : state_->no_repair;
 }
 
-ErrorMap signed_distance(const Eigen::Matrix3Xd& points, const Mesh& reference, const DistanceOptions& options)
+ErrorMap signed_distance(const Eigen::Matrix3Xd& points, const mesh::Mesh& reference, const DistanceOptions& options)
 {
     return Reference(reference, options)(points);
 }
 
-ErrorMap signed_distance(const Eigen::Matrix3Xd& points, const Cloud& reference, const DistanceOptions& options)
+ErrorMap signed_distance(const Eigen::Matrix3Xd& points, const cloud::Cloud& reference, const DistanceOptions& options)
 {
     return Reference(reference, options)(points);
 }
 
-} // namespace fettle
+} // namespace fettle::compare

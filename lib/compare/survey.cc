@@ -4,41 +4,40 @@
 
 #include <cstddef>
 
-namespace fettle {
+namespace fettle::compare {
 
 namespace {
 
-// Points whose errors set the colours: their 99th percentile is then good to a tenth of the percent beyond it.
-constexpr std::size_t kSample = 1 << 14;
+// Size of the sample whose errors set the colours. The rank of its 99th percentile is good to a tenth of a percent.
+constexpr std::size_t kMaxSamplePoints = 1 << 14;
 
-/// Every so-many-th point.
-Eigen::Matrix3Xd sample(const PointSource& points)
+Eigen::Matrix3Xd sample(const cloud::PointSource& points)
 {
-    const std::size_t step = (points.points + kSample - 1) / kSample;
-    Eigen::Matrix3Xd some(3, static_cast<Eigen::Index>(step == 0 ? 0 : (points.points + step - 1) / step));
-    for_each_block(points, [&](std::size_t b, const PointBlock& block) {
-        const std::size_t first = b * points.block;
+    const std::size_t step = (points.points + kMaxSamplePoints - 1) / kMaxSamplePoints;
+    Eigen::Matrix3Xd chosen(3, step == 0 ? 0 : (points.points + step - 1) / step);
+    cloud::for_each_block(points, [&](std::size_t b, const cloud::PointBlock& block) {
+        const std::size_t first = b * points.block_size;
         for (std::size_t i = (step - first % step) % step; i < static_cast<std::size_t>(block.xyz.cols()); i += step)
-            some.col(static_cast<Eigen::Index>((first + i) / step)) = block.xyz.col(static_cast<Eigen::Index>(i));
+            chosen.col((first + i) / step) = block.xyz.col(i);
     });
-    return some;
+    return chosen;
 }
 
 } // namespace
 
 struct Survey::State {
-    Found found;
+    Results results;
     tbb::task_group task;
 };
 
 Survey::Survey(const TestPoints& test, const DistanceOptions& options, bool sampled) : state_(std::make_unique<State>())
 {
-    state_->task.run([&found = state_->found, &test, options, sampled] {
-        if (sampled) found.sample = sample(test.points);
+    state_->task.run([&results = state_->results, &test, options, sampled] {
+        if (sampled) results.sample = sample(test.points);
         if (test.mesh)
-            found.of_vertices = volume_areas(*test.mesh, options);
+            results.vertex_weights = volume_weights(*test.mesh, options);
         else
-            found.plan.emplace(test.points);
+            results.plan_areas.emplace(test.points);
     });
 }
 
@@ -46,14 +45,14 @@ Survey::~Survey()
 {
     try {
         state_->task.wait();
-    } catch (...) { // nobody asked for it
+    } catch (...) { // results() was not called: nobody needs the error
     }
 }
 
-const Survey::Found& Survey::found()
+const Survey::Results& Survey::results()
 {
     state_->task.wait();
-    return state_->found;
+    return state_->results;
 }
 
-} // namespace fettle
+} // namespace fettle::compare

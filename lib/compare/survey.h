@@ -9,27 +9,27 @@
 #include <memory>
 #include <optional>
 
-namespace fettle {
+namespace fettle::compare {
 
-/// What must be known of all points before the first of them is compared. It is found out in the background, while
-/// the reference is read and made ready.
+/// Background pass over all points, for results that compare() needs before the first block. It runs while the
+/// reference is read and indexed.
 class Survey {
   public:
-    /// @param test  must outlive it   @param sampled  will some of the points be asked for?
+    /// @param test  must outlive the survey   @param sampled  whether results().sample is needed
     Survey(const TestPoints& test, const DistanceOptions& options, bool sampled);
     ~Survey();
 
-    struct Found {
-        Eigen::Matrix3Xd sample;       ///< points at equal distances in the file; none unless `sampled`
-        std::optional<PlanAreas> plan; ///< of a cloud
-        Eigen::VectorXd of_vertices;   ///< areas of a mesh's vertices, mm²
+    struct Results {
+        Eigen::Matrix3Xd sample;             ///< points at equal steps through the file, mm; none unless `sampled`
+        std::optional<PlanAreas> plan_areas; ///< of a cloud
+        Eigen::VectorXd vertex_weights;      ///< volume_weights() of a mesh, mm²
     };
-    /// Waits for it. @throws InputError if the points cannot be read
-    const Found& found();
+    /// Waits for the end of the pass. @throws InputError if the points cannot be read
+    const Results& results();
 
   private:
     struct State;
     std::unique_ptr<State> state_;
 };
 
-} // namespace fettle
+} // namespace fettle::compare

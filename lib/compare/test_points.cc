@@ -7,52 +7,52 @@
 #include <algorithm>
 #include <memory>
 
-namespace fettle {
+namespace fettle::compare {
 
 namespace {
 
-std::string head_of(const InputFile& file)
+std::string read_head(const core::InputFile& file)
 {
-    constexpr std::size_t kHead = 1 << 12; // enough to tell a PCD or a binary STL
-    std::string head(std::min(file.size(), kHead), '\0');
+    constexpr std::size_t kHeadBytes = 1 << 12; // enough to recognise a PCD or a binary STL
+    std::string head(std::min(file.size(), kHeadBytes), '\0');
     file.read(0, head.data(), head.size());
     return head;
 }
 
 } // namespace
 
-TestPoints test_points(const MeshOrCloud& shape, const Units& units)
+TestPoints test_points(const mesh::MeshOrCloud& shape, const units::Units& units)
 {
     TestPoints test;
     test.units = units;
-    auto cloud = std::make_shared<Cloud>();
-    if (const Mesh* mesh = std::get_if<Mesh>(&shape)) {
+    auto cloud = std::make_shared<cloud::Cloud>();
+    if (const mesh::Mesh* mesh = std::get_if<mesh::Mesh>(&shape)) {
         test.mesh = *mesh;
         cloud->xyz = mesh->vertices;
     } else {
-        *cloud = std::get<Cloud>(shape);
+        *cloud = std::get<cloud::Cloud>(shape);
     }
-    test.points = point_source(cloud);
-    test.part = [cloud](std::size_t first, std::size_t count) {
-        return part(*cloud, static_cast<Eigen::Index>(first), static_cast<Eigen::Index>(count));
-    };
+    test.points = cloud::make_point_source(cloud);
+    test.slice = [cloud](std::size_t first, std::size_t count) { return cloud::slice(*cloud, first, count); };
     return test;
 }
 
-TestPoints open_test_points(const std::string& path, const std::optional<Units>& units)
+TestPoints open_test_points(const std::string& path, const std::optional<units::Units>& units)
 {
-    const auto file = std::make_shared<const InputFile>(path);
-    const std::string head = head_of(*file);
-    if (looks_like_pcd(head) && !is_binary_stl(head, file->size())) {
-        const auto stream = std::make_shared<const CloudStream>(file, display_name(path), units);
+    const auto file = std::make_shared<const core::InputFile>(path);
+    const std::string head = read_head(*file);
+    if (cloud::looks_like_pcd(head) && !mesh::is_binary_stl(head, file->size())) {
+        const auto stream = std::make_shared<const cloud::CloudStream>(file, core::display_name(path), units);
         TestPoints test;
         test.points = stream->points();
-        test.part = [stream](std::size_t first, std::size_t count) { return stream->part(first, count); };
+        test.slice = [stream](std::size_t first, std::size_t count) { return stream->slice(first, count); };
         test.units = stream->units();
         return test;
     }
-    const ShapeFile shape = read_shape(*file, display_name(path), units);
-    return test_points(shape.shape, shape.units);
+    const mesh::ShapeFile shape = mesh::read_shape(*file, core::display_name(path), units);
+    TestPoints test = test_points(shape.shape, shape.units);
+    test.repair = shape.repair;
+    return test;
 }
 
-} // namespace fettle
+} // namespace fettle::compare

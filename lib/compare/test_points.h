@@ -10,19 +10,20 @@
 #include <optional>
 #include <string>
 
-namespace fettle {
+namespace fettle::compare {
 
-/// Points to compare: of a cloud, or the vertices of a mesh.
+/// Points to be compared: those of a cloud, or the vertices of a mesh.
 struct TestPoints {
-    std::optional<Mesh> mesh; ///< if it is one
-    PointSource points;
-    /// Some of the points, with all fields.
-    std::function<Cloud(std::size_t first, std::size_t count)> part;
-    Units units; ///< of the file
+    std::optional<mesh::Mesh> mesh; ///< none: a cloud
+    cloud::PointSource points;
+    /// Reads `count` points with all fields.
+    std::function<cloud::Cloud(std::size_t first, std::size_t count)> slice;
+    units::Units units;      ///< of the file
+    mesh::MeshRepair repair; ///< what reading a mesh dropped
 };
-TestPoints test_points(const MeshOrCloud& shape, const Units& units);
+TestPoints test_points(const mesh::MeshOrCloud& shape, const units::Units& units);
 
-/// The same from a file. A binary PCD is not held in memory. @throws InputError as read_shape()
-TestPoints open_test_points(const std::string& path, const std::optional<Units>& units);
+/// Opens a file of points; a binary PCD is streamed, other files are read. @throws InputError as read_shape()
+TestPoints open_test_points(const std::string& path, const std::optional<units::Units>& units);
 
-} // namespace fettle
+} // namespace fettle::compare

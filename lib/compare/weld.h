@@ -6,19 +6,20 @@
 #include <functional>
 #include <vector>
 
-namespace fettle {
+namespace fettle::compare {
 
-/// Lengths below this are the rounding of a float coordinate, mm.
+/// Lengths below this are rounding of a float coordinate of that size, mm.
 double float_rounding(double coordinate);
 
-/// How far from the origin a mesh lies, mm: the median over its vertices of the largest coordinate; a few stray
-/// vertices far away say nothing about the others. 0 without a finite vertex. @param vertices  3xV, mm
-double typical_coordinate(const Eigen::Matrix3Xd& vertices);
+/// Typical distance of a mesh from the origin, mm: the median over its finite vertices of the largest |coordinate|, so
+/// that a few stray vertices have no influence; 0 without a finite vertex. @param vertices  3xV, mm
+double median_coordinate(const Eigen::Matrix3Xd& vertices);
 
-/// For each candidate the lowest of those within `tolerance(candidate)` of it (and of those, and so on).
+/// Welds vertices: maps each candidate to the lowest one in its chain of candidates within `tolerance` of each other.
 /// @param vertices    3xV, mm   @param candidates  columns of `vertices`, ascending, finite
-/// @param tolerance   mm, nearly the same for neighbours
+/// @param tolerance   at a vertex, mm; nearly the same for neighbours
+/// @return  a column of `vertices` for each candidate
 std::vector<std::int32_t> weld(const Eigen::Matrix3Xd& vertices, const std::vector<std::int32_t>& candidates,
                                const std::function<double(const Eigen::Vector3d&)>& tolerance);
 
-} // namespace fettle
+} // namespace fettle::compare

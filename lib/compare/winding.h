@@ -5,19 +5,20 @@
 #include <cstdint>
 #include <vector>
 
-namespace fettle {
+namespace fettle::compare {
 
-/// Where facets are not closed around their vertices.
-struct Gaps {
+/// Open vertices of a mesh: those at an edge that its facets do not run along equally often in both directions, either
+/// because it is a border or because their windings disagree.
+struct OpenVertices {
     std::vector<bool> open;            ///< per vertex
-    std::vector<std::uint32_t> facets; ///< with two open vertices or three, ascending
+    std::vector<std::uint32_t> facets; ///< with two or three open vertices, ascending
 };
 
-/// The facets to turn over so that facets that share an edge agree (where two do) and closed pieces have their outer
-/// side out. Of a connected piece whose facets disagree the side with less area is turned; a closed piece that is
-/// inside out is turned unless it lies within the box of another closed piece, where it may be a cavity.
+/// Facets to flip so that neighbours across an edge agree (where two meet) and closed components face outward. In a
+/// connected component whose facets disagree the side with less area is flipped. A closed component that is inside out
+/// is flipped unless it lies within the box of another one, where it may be a cavity.
 /// @param vertices  3xV, mm   @param facets  3xT
-std::vector<std::uint32_t> wrongly_wound(const Eigen::Matrix3Xd& vertices, const Eigen::Matrix3Xi& facets,
-                                         const Gaps& gaps);
+std::vector<std::uint32_t> facets_to_flip(const Eigen::Matrix3Xd& vertices, const Eigen::Matrix3Xi& facets,
+                                          const OpenVertices& open_vertices);
 
-} // namespace fettle
+} // namespace fettle::compare

@@ -2,19 +2,17 @@
 
 #include "core/error.h"
 
-#include <algorithm>
-#include <cmath>
-
-namespace fettle {
+namespace fettle::core {
 
 namespace {
 
 using Eigen::Index;
 using Eigen::VectorXd;
 
-class Problem {
+/// The problem in unknowns y = x / scale, in which all columns of A have length 1.
+class ScaledProblem {
   public:
-    Problem(const Eigen::SparseMatrix<double>& A, const VectorXd& b, const VectorXd& lower, const VectorXd& upper)
+    ScaledProblem(const Eigen::SparseMatrix<double>& A, const VectorXd& b, const VectorXd& lower, const VectorXd& upper)
         : A_(A), b_(b), scale_(VectorXd::Ones(A.cols()))
     {
         for (Index k = 0; k < A.cols(); ++k)
@@ -25,31 +23,22 @@ class Problem {
 
     VectorXd clamped(const VectorXd& y) const { return y.cwiseMax(lower_).cwiseMin(upper_); }
     VectorXd scaled(const VectorXd& x) const { return x.cwiseQuotient(scale_); }
-    /// Exactly the bounds where y is there.
+    /// x is exactly at a bound wherever y is.
     VectorXd unscaled(const VectorXd& y, const VectorXd& lower, const VectorXd& upper) const
     {
         const VectorXd x = (y.array() >= upper_.array()).select(upper, y.cwiseProduct(scale_));
         return (y.array() <= lower_.array()).select(lower, x).cwiseMax(lower).cwiseMin(upper);
     }
-    VectorXd times(const VectorXd& y)
-    {
-        ++products;
-        return A_ * y.cwiseProduct(scale_);
-    }
-    VectorXd transposed_times(const VectorXd& r)
-    {
-        ++products;
-        return (A_.transpose() * r).cwiseProduct(scale_);
-    }
-    VectorXd residual(const VectorXd& y) { return times(y) - b_; }
-    /// The gradient without what would go through a bound.
-    VectorXd allowed(const VectorXd& y, VectorXd g) const
+    VectorXd times(const VectorXd& y) const { return A_ * y.cwiseProduct(scale_); }
+    VectorXd transposed_times(const VectorXd& r) const { return (A_.transpose() * r).cwiseProduct(scale_); }
+    VectorXd residual(const VectorXd& y) const { return times(y) - b_; }
+    /// Projected gradient: 0 for unknowns at a bound that descent would violate.
+    VectorXd projected_gradient(const VectorXd& y, VectorXd g) const
     {
         for (Index k = 0; k < y.size(); ++k)
             if ((y[k] <= lower_[k] && g[k] > 0) || (y[k] >= upper_[k] && g[k] < 0)) g[k] = 0;
         return g;
     }
-    int products = 0;
 
   private:
     const Eigen::SparseMatrix<double>& A_;
@@ -57,21 +46,21 @@ class Problem {
     VectorXd scale_, lower_, upper_;
 };
 
-/// Where it stands.
-struct State {
+struct Iterate {
     VectorXd y, r, g; ///< unknowns, residual, gradient of half its square
 };
 
-/// Goes along d as far as the residual shrinks, bent by the bounds. @return  did it get anywhere?
-bool advance(Problem& problem, State& at, const VectorXd& d, double step)
+/// Projected line search along d: halves the step until the objective decreases sufficiently (Armijo).
+/// @return  true if the iterate moved
+bool line_search(const ScaledProblem& problem, Iterate& at, const VectorXd& d, double step)
 {
-    constexpr int kHalvings = 30;
-    constexpr double kShare = 1e-3; // of the descent that the gradient promises
-    for (int k = 0; k < kHalvings; ++k, step /= 2) {
-        const VectorXd y = problem.clamped(at.y + step * d), way = y - at.y, change = problem.times(way);
-        const double descent = at.g.dot(way);
-        // not the difference of two sums, which roundoff would decide in the end
-        if (descent + change.squaredNorm() / 2 <= kShare * descent) {
+    constexpr int kMaxHalvings = 30;
+    constexpr double kSufficientDecrease = 1e-3; // share of the decrease that the gradient predicts
+    for (int k = 0; k < kMaxHalvings; ++k, step /= 2) {
+        const VectorXd y = problem.clamped(at.y + step * d), moved = y - at.y, change = problem.times(moved);
+        const double descent = at.g.dot(moved);
+        // The decrease is computed directly: near the solution the difference of two objectives would be roundoff.
+        if (descent + change.squaredNorm() / 2 <= kSufficientDecrease * descent) {
             at = {y, at.r + change, problem.transposed_times(at.r + change)};
             return descent < 0;
         }
@@ -79,16 +68,16 @@ bool advance(Problem& problem, State& at, const VectorXd& d, double step)
     return false;
 }
 
-/// Conjugate gradients over the unknowns where `g` is not 0, the others held.
-VectorXd newton_direction(Problem& problem, const VectorXd& g)
+/// Minimises by conjugate gradients over the free unknowns, where `g` is not 0; the others are fixed.
+VectorXd newton_direction(const ScaledProblem& problem, const VectorXd& g)
 {
-    constexpr int kMost = 60;
-    constexpr double kEnough = 0.05; // of the gradient; the bounds that hold change before more pays
+    constexpr int kMaxIterations = 60;
+    constexpr double kGradientReduction = 0.05; // more does not pay, because the active bounds change first
     const Eigen::ArrayXd is_free = (g.array() != 0).cast<double>();
     VectorXd d = VectorXd::Zero(g.size()), rest = -g, p = rest;
     double size = rest.squaredNorm();
-    const double enough = kEnough * kEnough * size;
-    for (int k = 0; k < kMost && size > enough; ++k) {
+    const double target = kGradientReduction * kGradientReduction * size;
+    for (int k = 0; k < kMaxIterations && size > target; ++k) {
         const VectorXd Ap = problem.times(p);
         const double curvature = Ap.squaredNorm();
         if (!(curvature > 0)) break;
@@ -108,26 +97,26 @@ BoundedSolution bounded_least_squares(const Eigen::SparseMatrix<double>& A, cons
                                       const VectorXd& upper, const VectorXd& start, double tolerance)
 {
     if ((lower.array() > upper.array()).any()) throw InputError("a lower bound is above the upper");
-    constexpr int kMost = 500; // rounds; a few dozen are usual
-    Problem problem(A, b, lower, upper);
-    State at;
+    constexpr int kMaxIterations = 500; // a few dozen are usual
+    const ScaledProblem problem(A, b, lower, upper);
+    Iterate at;
     at.y = problem.clamped(problem.scaled(start));
     at.r = problem.residual(at.y);
     at.g = problem.transposed_times(at.r);
-    const double small = tolerance * problem.transposed_times(b).lpNorm<Eigen::Infinity>();
+    const double gradient_tolerance = tolerance * problem.transposed_times(b).lpNorm<Eigen::Infinity>();
     BoundedSolution solution;
-    for (int round = 0; round < kMost; ++round) {
-        VectorXd g = problem.allowed(at.y, at.g);
-        solution.converged = g.lpNorm<Eigen::Infinity>() <= small;
+    for (int k = 0; k < kMaxIterations; ++k) {
+        VectorXd g = problem.projected_gradient(at.y, at.g);
+        solution.converged = g.lpNorm<Eigen::Infinity>() <= gradient_tolerance;
         if (solution.converged) break;
-        const bool descended = advance(problem, at, -g, g.squaredNorm() / problem.times(g).squaredNorm());
-        g = problem.allowed(at.y, at.g);
-        const bool went = g.lpNorm<Eigen::Infinity>() > small && advance(problem, at, newton_direction(problem, g), 1);
-        if (!descended && !went) break;
+        const bool descended = line_search(problem, at, -g, g.squaredNorm() / problem.times(g).squaredNorm());
+        g = problem.projected_gradient(at.y, at.g);
+        const bool moved = g.lpNorm<Eigen::Infinity>() > gradient_tolerance &&
+                           line_search(problem, at, newton_direction(problem, g), 1);
+        if (!descended && !moved) break;
     }
     solution.x = problem.unscaled(at.y, lower, upper);
-    solution.products = problem.products;
     return solution;
 }
 
-} // namespace fettle
+} // namespace fettle::core

@@ -5,12 +5,12 @@
 
 #include <type_traits>
 
-namespace fettle {
+namespace fettle::core {
 
 template <int kSize>
 SymmetricEigen<kSize> symmetric_eigen(const Eigen::Matrix<double, kSize, kSize>& A)
 {
-    // Eigen has a way of its own for 3, which is called often.
+    // Eigen is faster with the fixed size 3, which is called often.
     using Matrix = std::conditional_t<kSize == 3, Eigen::Matrix3d, Eigen::MatrixXd>;
     const Eigen::SelfAdjointEigenSolver<Matrix> eigen{Matrix(A)};
     return {eigen.eigenvalues(), eigen.eigenvectors()};
@@ -21,14 +21,14 @@ template SymmetricEigen<3> symmetric_eigen(const Eigen::Matrix<double, 3, 3>&);
 template SymmetricEigen<6> symmetric_eigen(const Eigen::Matrix<double, 6, 6>&);
 template SymmetricEigen<Eigen::Dynamic> symmetric_eigen(const Eigen::MatrixXd&);
 
-Orthogonal orthogonal(const Eigen::MatrixXd& A, Eigen::Index columns)
+QrFactors householder_qr(const Eigen::MatrixXd& A, Eigen::Index columns)
 {
     const Eigen::HouseholderQR<Eigen::MatrixXd> qr(A);
     return {qr.householderQ() * Eigen::MatrixXd::Identity(A.rows(), columns),
             qr.matrixQR().topRows(A.cols()).triangularView<Eigen::Upper>()};
 }
 
-std::optional<Eigen::MatrixXd> root_of_inverse(const Eigen::MatrixXd& A, double threshold)
+std::optional<Eigen::MatrixXd> inverse_gram_factor(const Eigen::MatrixXd& A, double threshold)
 {
     Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(A);
     qr.setThreshold(threshold);
@@ -42,7 +42,7 @@ std::optional<Eigen::MatrixXd> root_of_inverse(const Eigen::MatrixXd& A, double 
 namespace {
 
 template <typename Decomposition>
-LeastSquares solved(const Eigen::MatrixXd& A, const Eigen::VectorXd& b, std::optional<double> threshold)
+LeastSquaresSolution solved(const Eigen::MatrixXd& A, const Eigen::VectorXd& b, std::optional<double> threshold)
 {
     Decomposition decomposition;
     if (threshold) decomposition.setThreshold(*threshold);
@@ -52,14 +52,16 @@ LeastSquares solved(const Eigen::MatrixXd& A, const Eigen::VectorXd& b, std::opt
 
 } // namespace
 
-LeastSquares least_squares_by_qr(const Eigen::MatrixXd& A, const Eigen::VectorXd& b, std::optional<double> threshold)
+LeastSquaresSolution least_squares_by_qr(const Eigen::MatrixXd& A, const Eigen::VectorXd& b,
+                                         std::optional<double> threshold)
 {
     return solved<Eigen::ColPivHouseholderQR<Eigen::MatrixXd>>(A, b, threshold);
 }
 
-LeastSquares shortest_least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b, std::optional<double> threshold)
+LeastSquaresSolution min_norm_least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b,
+                                            std::optional<double> threshold)
 {
     return solved<Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>>(A, b, threshold);
 }
 
-} // namespace fettle
+} // namespace fettle::core

@@ -5,9 +5,9 @@
 #include <fcntl.h>
 #include <filesystem>
 
-namespace fettle {
+namespace fettle::core {
 
-ssize_t read_some(const Descriptor& file, char* to, std::size_t count)
+ssize_t read_some(const FileDescriptor& file, char* to, std::size_t count)
 {
     for (;;) {
         const ssize_t got = read(file.get(), to, count);
@@ -15,7 +15,7 @@ ssize_t read_some(const Descriptor& file, char* to, std::size_t count)
     }
 }
 
-bool write_all(const Descriptor& file, std::string_view bytes)
+bool write_all(const FileDescriptor& file, std::string_view bytes)
 {
     while (!bytes.empty()) {
         const ssize_t written = write(file.get(), bytes.data(), bytes.size());
@@ -25,21 +25,21 @@ bool write_all(const Descriptor& file, std::string_view bytes)
     return true;
 }
 
-std::string working_name(const std::string& path)
+std::string temporary_name(const std::string& path)
 {
     const std::filesystem::path target(path);
     return target.parent_path() / (".fettle-" + std::to_string(getpid()) + "-" + target.filename().string());
 }
 
-Descriptor open_unnamed(const std::string& path)
+FileDescriptor open_unnamed(const std::string& path)
 {
-    constexpr mode_t kAsUmaskSays = 0666;
+    constexpr mode_t kMode = 0666; // before umask
     const std::string folder = std::filesystem::path(path).parent_path();
-    Descriptor file(open(folder.empty() ? "." : folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, kAsUmaskSays));
+    FileDescriptor file(open(folder.empty() ? "." : folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, kMode));
     if (file.is_open()) return file;
-    // Not every file system has unnamed files.
-    const std::string name = working_name(path);
-    file = Descriptor(open(name.c_str(), O_CREAT | O_EXCL | O_RDWR | O_CLOEXEC, kAsUmaskSays));
+    // Some file systems lack O_TMPFILE.
+    const std::string name = temporary_name(path);
+    file = FileDescriptor(open(name.c_str(), O_CREAT | O_EXCL | O_RDWR | O_CLOEXEC, kMode));
     if (file.is_open()) unlink(name.c_str());
     return file;
 }
@@ -50,4 +50,4 @@ std::string scratch_path()
     return std::string(folder != nullptr && *folder != '\0' ? folder : "/tmp") + "/scratch";
 }
 
-} // namespace fettle
+} // namespace fettle::core

@@ -9,7 +9,7 @@
 #include <optional>
 #include <sstream>
 
-namespace fettle {
+namespace fettle::core {
 
 Eigen::Vector3d parse_direction(const std::string& text, const std::string& source)
 {
@@ -28,20 +28,20 @@ Eigen::Vector3d parse_direction(const std::string& text, const std::string& sour
     return direction / length;
 }
 
-Eigen::Matrix3d turn_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to)
+Eigen::Matrix3d rotation_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to)
 {
     const Eigen::Vector3d a = from.stableNormalized(), b = to.stableNormalized();
-    // Half a turn about `a`, then half a turn about the middle between both. Of nearly opposite ones rounding leaves
-    // little else than that the middle is at right angles to b - a; of opposite ones any will do.
-    constexpr double kOpposite = 1e-12;
-    const Eigen::Vector3d apart = b - a;
-    Eigen::Vector3d middle = a + b;
-    if (a.dot(b) < 0) middle -= apart * (apart.dot(middle) / apart.squaredNorm());
-    middle = middle.norm() > kOpposite ? middle.normalized() : a.unitOrthogonal();
+    // Half a turn about a, then half a turn about the bisector a + b. For nearly opposite vectors the bisector is
+    // mostly rounding error and is made perpendicular to b - a; for opposite ones any perpendicular to a will do.
+    constexpr double kMinBisectorLength = 1e-12;
+    const Eigen::Vector3d difference = b - a;
+    Eigen::Vector3d bisector = a + b;
+    if (a.dot(b) < 0) bisector -= difference * (difference.dot(bisector) / difference.squaredNorm());
+    bisector = bisector.norm() > kMinBisectorLength ? bisector.normalized() : a.unitOrthogonal();
     const auto half_turn = [](const Eigen::Vector3d& axis) -> Eigen::Matrix3d {
         return 2 * axis * axis.transpose() - Eigen::Matrix3d::Identity();
     };
-    return half_turn(middle) * half_turn(a);
+    return half_turn(bisector) * half_turn(a);
 }
 
-} // namespace fettle
+} // namespace fettle::core

@@ -7,68 +7,71 @@
 #include <memory>
 #include <string>
 
-namespace fettle {
+namespace fettle::core {
 
-/// The most bytes of a JSON document: a million control points of patches, and no more than some GB as a tree.
-inline constexpr std::size_t kMostJson = std::size_t{1} << 26;
+/// Largest JSON document, bytes: enough for a million control points of patches, and at most a few GB as a tree.
+inline constexpr std::size_t kMaxJsonBytes = std::size_t{1} << 26;
 
-/// All bytes of a file, a FIFO or stdin ("-").
-/// @param most  bytes; kMostJson where nothing but JSON will do
-/// @throws InputError if it cannot be opened or read (the reason is named), is a directory, or is stdin and that a
-/// terminal, from which nobody types it; before the rest is read also if it is longer than `most`, begins as JSON and
-/// is longer than kMostJson, or begins with a line of other text of more than 64 KiB
-std::string read_whole(const std::string& path, std::size_t most = std::string::npos);
+/// Contents of a file, a FIFO or stdin ("-").
+/// @param max  largest size, bytes; kMaxJsonBytes for files that must be JSON
+/// @throws InputError if it cannot be opened or read (with the reason), is a directory, or is stdin and a terminal.
+/// Files that are too long are rejected before they are read entirely: longer than `max`, JSON longer than
+/// kMaxJsonBytes, or other text whose first line is longer than 64 KiB
+std::string read_file(const std::string& path, std::size_t max = std::string::npos);
 
-/// A file, a FIFO or stdin ("-") that can be read anywhere, by several threads at once. What cannot be sought is copied
-/// to an unnamed file in $TMPDIR (else /tmp) unless it is small.
+/// A file, a FIFO or stdin ("-") with random access, for several threads at once. A stream is copied to memory if it is
+/// small, else to an unnamed file in $TMPDIR (else /tmp).
 class InputFile {
   public:
-    /// @throws InputError as read_whole()
+    /// @throws InputError as read_file()
     explicit InputFile(const std::string& path);
 
     std::size_t size() const { return size_; }
     /// @throws InputError if it cannot be read or has become shorter
     void read(std::size_t offset, char* to, std::size_t count) const;
+    /// Contents of the whole file. @throws InputError as read()
+    std::string read_all() const;
 
   private:
-    void keep_stream();
+    void copy_stream();
 
     std::string path_;
-    Descriptor file_;
-    std::size_t start_ = 0; ///< stdin may be a file of which some was read
+    FileDescriptor file_;
+    std::size_t start_ = 0; ///< position at opening: stdin may be a file that was read partly
     std::size_t size_ = 0;
-    std::string held_; ///< all of a small stream
+    std::string memory_; ///< contents of a small stream
 };
 
-/// How a path is called in messages: "stdin" for "-".
+/// Name of a path in messages: "stdin" for "-".
 std::string display_name(const std::string& path);
 
-/// Do two names mean the same file, which need not exist? "-" is itself alone.
+/// True if two paths name the same file, which need not exist. "-" equals only itself.
 bool same_file(const std::string& a, const std::string& b);
 
-/// The file that a name leads to, through links: what takes its place leaves them as they are.
-/// @throws InputError if there is none
-std::string link_target(const std::string& path);
+/// Resolves symbolic links, so that the file can be replaced and the links stay.
+/// @throws InputError if the file does not exist
+std::string resolve_links(const std::string& path);
 
-/// A file that appears whole or not at all: what is written goes to an unnamed file in the same folder, which commit()
-/// syncs and gives the name. A link stays one: the file it names is replaced. A target that exists and is no regular
-/// file (/dev/null, a FIFO) and stdout ("-") get nothing before commit(). Without commit(), nothing is left, even if
-/// the program is killed.
+/// Writes a file atomically: data goes to an unnamed file in the same folder, which commit() syncs and names. A
+/// symbolic link stays, and the file it names is replaced. A target that is not a regular file (/dev/null, a FIFO) and
+/// stdout
+/// ("-") receive nothing before commit(). Without commit() nothing is left, even if the program is killed.
 class OutputFile {
   public:
-    /// @throws InputError if it could not be written
+    /// @throws InputError if the file cannot be written
     explicit OutputFile(const std::string& path);
     OutputFile(const OutputFile&) = delete;
     OutputFile& operator=(const OutputFile&) = delete;
     ~OutputFile();
 
-    /// Throws InputError itself if something cannot be written (disk full).
+    /// The stream throws InputError itself if data cannot be written (disk full).
     std::ostream& stream();
-    /// What is written goes to the disk, though without its name yet: commit() then finds room. Nothing can be written
-    /// after it.
-    /// @throws InputError if something cannot be written
-    void settle();
-    /// @throws InputError if something cannot be written; binary data to a terminal
+    /// Writes all data to the disk, still without a name, so that commit() cannot fail for lack of space. Nothing can
+    /// be written afterwards.
+    /// @throws InputError if data cannot be written
+    void sync();
+    /// Gives the file its name, or writes the data to a target that is not a regular file.
+    /// @throws InputError if data cannot be written, or is binary and would go to a terminal
     void commit();
 
   private:
@@ -76,4 +79,4 @@ class OutputFile {
     std::unique_ptr<State> state_;
 };
 
-} // namespace fettle
+} // namespace fettle::core

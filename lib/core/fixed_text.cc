@@ -3,7 +3,7 @@
 #include <array>
 #include <charconv>
 
-namespace fettle {
+namespace fettle::core {
 
 std::string to_fixed_text(double value, int digits)
 {
@@ -17,4 +17,4 @@ std::string to_fixed_text(double value, int digits)
     return result == "-0" ? "0" : result;
 }
 
-} // namespace fettle
+} // namespace fettle::core

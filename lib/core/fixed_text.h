@@ -2,10 +2,10 @@
 
 #include <string>
 
-namespace fettle {
+namespace fettle::core {
 
-/// A number for a machine's program: no exponent, no zeros at its end, no "-0", whatever the locale.
-/// @param digits  after the point
+/// Formats a number for a machine's program: no exponent, no trailing zeros, no "-0", independent of the locale.
+/// @param digits  at most so many after the decimal point
 std::string to_fixed_text(double value, int digits);
 
-} // namespace fettle
+} // namespace fettle::core

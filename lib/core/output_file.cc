@@ -14,127 +14,130 @@
 #include <system_error>
 #include <vector>
 
-namespace fettle {
+namespace fettle::core {
 
 namespace {
 
-[[noreturn]] void fail(const std::string& name, int reason = errno, const std::string& doing = "cannot write")
+[[noreturn]] void fail_write(const std::string& name, int reason = errno, const std::string& action = "cannot write")
 {
-    throw InputError(name, doing + ": " + std::strerror(reason));
+    throw InputError(name, action + ": " + std::strerror(reason));
 }
 
-/// Bytes that are held, and go to an unnamed file where `place` is once they are many.
-class Held : public std::streambuf {
+/// Stream buffer that spills to an unnamed file when it is full.
+class SpillBuffer : public std::streambuf {
   public:
-    explicit Held(std::string name) : name_(std::move(name)), room_(kRoom) { setp(room_.data(), end()); }
-
-    /// To keep them at `place`. @throws InputError if nothing can be written there
-    void keep_at(const std::string& place)
+    explicit SpillBuffer(std::string name) : name_(std::move(name)), buffer_(kBufferBytes)
     {
-        file_ = open_unnamed(place);
-        if (!file_.is_open()) fail(name_, errno, doing_);
+        setp(buffer_.data(), end());
     }
 
-    /// All that was written to the unnamed file, if there is one.
-    const Descriptor& spill()
+    /// Creates the unnamed file on the file system of `path`. @throws InputError if that fails
+    void create_file(const std::string& path)
     {
-        if (!write_all(file_, held())) fail(name_, errno, doing_);
-        setp(room_.data(), end());
+        file_ = open_unnamed(path);
+        if (!file_.is_open()) fail_write(name_, errno, action_);
+    }
+
+    /// Writes the buffered bytes to the unnamed file. @return  the file, which then has all bytes
+    const FileDescriptor& spill()
+    {
+        if (!write_all(file_, buffered())) fail_write(name_, errno, action_);
+        setp(buffer_.data(), end());
         return file_;
     }
 
-    bool is_spilled() const { return file_.is_open(); }
-    std::string_view held() const { return {pbase(), static_cast<std::size_t>(pptr() - pbase())}; }
+    bool has_file() const { return file_.is_open(); }
+    std::string_view buffered() const { return {pbase(), static_cast<std::size_t>(pptr() - pbase())}; }
 
   protected:
     int_type overflow(int_type c) override
     {
-        if (!is_spilled()) {
-            doing_ = "cannot copy to " + scratch_path();
-            keep_at(scratch_path());
+        if (!has_file()) {
+            action_ = "cannot copy to " + scratch_path();
+            create_file(scratch_path());
         }
         const off_t from = lseek(file_.get(), 0, SEEK_CUR);
         spill();
-        // What goes to the disk already, commit() need not wait for.
-        sync_file_range(file_.get(), from, static_cast<off_t>(kRoom), SYNC_FILE_RANGE_WRITE);
+        // Starts writing to the disk now, so that commit() waits less.
+        sync_file_range(file_.get(), from, kBufferBytes, SYNC_FILE_RANGE_WRITE);
         return traits_type::eq_int_type(c, traits_type::eof()) ? traits_type::not_eof(c)
                                                                : sputc(traits_type::to_char_type(c));
     }
 
   private:
-    static constexpr std::size_t kRoom = 1 << 20; // what goes through a pipe is mostly smaller
+    static constexpr std::size_t kBufferBytes = 1 << 20; // most data sent through pipes is smaller
 
-    char* end() { return room_.data() + room_.size(); }
+    char* end() { return buffer_.data() + buffer_.size(); }
 
     std::string name_;
-    std::string doing_ = "cannot write"; ///< what fails, for messages
-    std::vector<char> room_;
-    Descriptor file_;
+    std::string action_ = "cannot write"; ///< what has failed, for messages
+    std::vector<char> buffer_;
+    FileDescriptor file_;
 };
 
-bool copy_all(const Descriptor& from, const Descriptor& to)
+bool copy_all(const FileDescriptor& from, const FileDescriptor& to)
 {
     std::vector<char> chunk(1 << 18);
     if (lseek(from.get(), 0, SEEK_SET) != 0) return false;
     for (;;) {
         const ssize_t got = read_some(from, chunk.data(), chunk.size());
         if (got <= 0) return got == 0;
-        if (!write_all(to, {chunk.data(), static_cast<std::size_t>(got)})) return false;
+        if (!write_all(to, std::string_view(chunk.data(), got))) return false;
     }
 }
 
-bool copy_to(const std::string& path, const Descriptor& file)
+bool copy_to(const std::string& path, const FileDescriptor& file)
 {
-    Descriptor copy(open(path.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666));
+    FileDescriptor copy(open(path.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666));
     return copy.is_open() && copy_all(file, copy) && fsync(copy.get()) == 0 && copy.close();
 }
 
-std::atomic<const char*> working_file = nullptr;
+std::atomic<const char*> temporary_file = nullptr;
 
-extern "C" void remove_working_file(int signal)
+extern "C" void remove_temporary_file(int signal)
 {
-    if (const char* const name = working_file.load()) unlink(name);
+    if (const char* const name = temporary_file.load()) unlink(name);
     std::signal(signal, SIG_DFL);
-    raise(signal); // once the handler has returned
+    raise(signal); // takes effect when the handler has returned
 }
 
-/// While it stands, a signal that ends the program removes a working file first; whoever is ignored stays so.
-class WorkingFile {
+/// While it exists, a signal that terminates the program removes a temporary file first. Ignored signals stay ignored.
+class RemoveOnSignal {
   public:
-    explicit WorkingFile(const std::string& name)
+    explicit RemoveOnSignal(const std::string& name)
     {
-        working_file = name.c_str();
+        temporary_file = name.c_str();
         struct sigaction handler = {};
-        handler.sa_handler = remove_working_file;
-        for (std::size_t i = 0; i < before_.size(); ++i)
-            if (sigaction(kEnding[i], nullptr, &before_[i]) == 0 && before_[i].sa_handler == SIG_DFL)
-                sigaction(kEnding[i], &handler, nullptr);
+        handler.sa_handler = remove_temporary_file;
+        for (std::size_t i = 0; i < previous_.size(); ++i)
+            if (sigaction(kSignals[i], nullptr, &previous_[i]) == 0 && previous_[i].sa_handler == SIG_DFL)
+                sigaction(kSignals[i], &handler, nullptr);
     }
-    WorkingFile(const WorkingFile&) = delete;
-    WorkingFile& operator=(const WorkingFile&) = delete;
-    ~WorkingFile()
+    RemoveOnSignal(const RemoveOnSignal&) = delete;
+    RemoveOnSignal& operator=(const RemoveOnSignal&) = delete;
+    ~RemoveOnSignal()
     {
-        for (std::size_t i = 0; i < before_.size(); ++i) sigaction(kEnding[i], &before_[i], nullptr);
-        working_file = nullptr;
+        for (std::size_t i = 0; i < previous_.size(); ++i) sigaction(kSignals[i], &previous_[i], nullptr);
+        temporary_file = nullptr;
     }
 
   private:
-    static constexpr std::array kEnding = {SIGHUP, SIGINT, SIGTERM};
-    std::array<struct sigaction, kEnding.size()> before_ = {};
+    static constexpr std::array kSignals = {SIGHUP, SIGINT, SIGTERM};
+    std::array<struct sigaction, kSignals.size()> previous_ = {};
 };
 
-/// Gives the unnamed file the name `target`, whose permissions it takes over.
-/// @return  false, and errno, if it cannot be done
-bool publish(const Descriptor& file, const std::string& target)
+/// Gives the unnamed file the name `target` and the permissions of the file that it replaces.
+/// @return  false and errno if that fails
+bool publish(const FileDescriptor& file, const std::string& target)
 {
     struct stat status = {};
     const bool exists = stat(target.c_str(), &status) == 0;
-    const std::string here = "/proc/self/fd/" + std::to_string(file.get()), name = working_name(target);
-    unlink(name.c_str()); // of a program that had the same number and was killed
-    const WorkingFile removed_if_ended(name);
-    // Where unnamed files cannot be given a name, a copy can.
+    const std::string unnamed = "/proc/self/fd/" + std::to_string(file.get()), name = temporary_name(target);
+    unlink(name.c_str()); // left by a killed program with the same process id
+    const RemoveOnSignal remove_on_signal(name);
+    // If the file system cannot name an unnamed file, a copy gets the name.
     const bool named =
-        linkat(AT_FDCWD, here.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0 || copy_to(name, file);
+        linkat(AT_FDCWD, unnamed.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0 || copy_to(name, file);
     if (named && (!exists || chmod(name.c_str(), status.st_mode & 07777) == 0) &&
         rename(name.c_str(), target.c_str()) == 0)
         return true;
@@ -146,64 +149,66 @@ bool publish(const Descriptor& file, const std::string& target)
 
 } // namespace
 
-std::string link_target(const std::string& path)
+std::string resolve_links(const std::string& path)
 {
     std::error_code unresolved;
     std::string target = std::filesystem::canonical(path, unresolved).string();
-    if (unresolved) fail(display_name(path), unresolved.value());
+    if (unresolved) fail_write(display_name(path), unresolved.value());
     return target;
 }
 
 struct OutputFile::State {
     explicit State(const std::string& path) : name(path == "-" ? "stdout" : display_name(path)) {}
 
-    std::string name;   ///< for messages
-    std::string target; ///< what is replaced, links followed; empty if `file` is written directly
-    Descriptor file;    ///< stdout, or a target that is no regular file
-    Held held{name};
-    std::ostream stream{&held};
+    std::string name;    ///< for messages
+    std::string target;  ///< file to replace, links resolved; empty if `file` is written directly
+    FileDescriptor file; ///< stdout, or a target that is not a regular file
+    SpillBuffer buffer{name};
+    std::ostream stream{&buffer};
 };
 
 OutputFile::OutputFile(const std::string& path) : state_(std::make_unique<State>(path))
 {
     State& s = *state_;
-    s.stream.exceptions(std::ios::badbit); // what Held throws comes through
-    if (path.empty()) fail(s.name, ENOENT);
+    s.stream.exceptions(std::ios::badbit); // passes on what SpillBuffer throws
+    if (path.empty()) fail_write(s.name, ENOENT);
     struct stat status = {};
     const bool exists = path != "-" && stat(path.c_str(), &status) == 0;
     if (path == "-" || (exists && !S_ISREG(status.st_mode))) {
-        s.file = Descriptor(path == "-" ? dup(STDOUT_FILENO) : open(path.c_str(), O_WRONLY | O_CLOEXEC));
-        if (!s.file.is_open()) fail(s.name);
+        s.file = FileDescriptor(path == "-" ? dup(STDOUT_FILENO) : open(path.c_str(), O_WRONLY | O_CLOEXEC));
+        if (!s.file.is_open()) fail_write(s.name);
         return;
     }
-    s.target = exists ? link_target(path) : path;
-    s.held.keep_at(s.target);
+    s.target = exists ? resolve_links(path) : path;
+    s.buffer.create_file(s.target);
 }
 
 OutputFile::~OutputFile() = default;
 
 std::ostream& OutputFile::stream() { return state_->stream; }
 
-void OutputFile::settle()
+void OutputFile::sync()
 {
     State& s = *state_;
-    if (!s.target.empty() && fsync(s.held.spill().get()) != 0) fail(s.name);
+    if (!s.target.empty() && fsync(s.buffer.spill().get()) != 0) fail_write(s.name);
 }
 
 void OutputFile::commit()
 {
     State& s = *state_;
-    settle();
+    sync();
+    const bool is_spilled = s.buffer.has_file();
+    const std::string_view bytes = s.buffer.buffered();
     bool written = true;
     if (!s.target.empty())
-        written = publish(s.held.spill(), s.target);
-    else if (isatty(s.file.get()) != 0 && (s.held.is_spilled() || s.held.held().find('\0') != std::string_view::npos))
+        written = publish(s.buffer.spill(), s.target);
+    else if (isatty(s.file.get()) != 0 && (is_spilled || bytes.find('\0') != std::string_view::npos))
         throw InputError(s.name, "is a terminal, and what goes there is binary: -o FILE, or a pipe");
-    else if (s.held.is_spilled())
-        written = copy_all(s.held.spill(), s.file) && s.file.close();
+    else if (is_spilled)
+        written = copy_all(s.buffer.spill(), s.file) && s.file.close();
     else
-        written = write_all(s.file, s.held.held()) && s.file.close();
-    if (!written) fail(s.name);
+        written = write_all(s.file, bytes) && s.file.close();
+    if (!written) fail_write(s.name);
 }
 
-} // namespace fettle
+} // namespace fettle::core

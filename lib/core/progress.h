@@ -2,14 +2,14 @@
 
 #include <functional>
 
-namespace fettle {
+namespace fettle::core {
 
-/// Called by long work with the fraction done, 0 to 1, from one thread. Empty: nobody looks.
+/// Callback for long computations, called from one thread with the fraction done, 0 to 1. It may be empty.
 using Progress = std::function<void(double fraction)>;
 
-inline void tell(const Progress& progress, double fraction)
+inline void report_progress(const Progress& progress, double fraction)
 {
     if (progress) progress(fraction);
 }
 
-} // namespace fettle
+} // namespace fettle::core

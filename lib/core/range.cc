@@ -2,23 +2,23 @@
 
 #include "core/text.h"
 
-namespace fettle {
+namespace fettle::core {
 
 bool Range::contains(double value) const
 {
-    return (least_itself ? value >= least : value > least) && (most_itself ? value <= most : value < most);
+    return (includes_min ? value >= min : value > min) && (includes_max ? value <= max : value < max);
 }
 
 std::string Range::text() const
 {
-    const bool bounded_below = least > std::numeric_limits<double>::lowest();
-    const bool bounded_above = most < std::numeric_limits<double>::max();
+    const bool bounded_below = min > std::numeric_limits<double>::lowest();
+    const bool bounded_above = max < std::numeric_limits<double>::max();
     if (!bounded_below && !bounded_above) return "finite";
     if (!bounded_above)
-        return least == 0 && !least_itself ? "positive" : (least_itself ? "at least " : "above ") + to_text(least);
-    if (!bounded_below) return (most_itself ? "at most " : "below ") + to_text(most);
-    return std::string("in ") + (least_itself ? "[" : "(") + to_text(least) + ", " + to_text(most) +
-           (most_itself ? "]" : ")");
+        return min == 0 && !includes_min ? "positive" : (includes_min ? "at least " : "above ") + to_text(min);
+    if (!bounded_below) return (includes_max ? "at most " : "below ") + to_text(max);
+    return std::string("in ") + (includes_min ? "[" : "(") + to_text(min) + ", " + to_text(max) +
+           (includes_max ? "]" : ")");
 }
 
-} // namespace fettle
+} // namespace fettle::core

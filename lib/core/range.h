@@ -3,23 +3,23 @@
 #include <limits>
 #include <string>
 
-namespace fettle {
+namespace fettle::core {
 
-/// The numbers that an option or a JSON member may have. NaN is never among them.
+/// Permitted values of an option or a JSON member. NaN is never permitted.
 struct Range {
-    double least = std::numeric_limits<double>::lowest();
-    double most = std::numeric_limits<double>::max();
-    bool least_itself = true; ///< is `least` allowed?
-    bool most_itself = true;
+    double min = std::numeric_limits<double>::lowest();
+    double max = std::numeric_limits<double>::max();
+    bool includes_min = true;
+    bool includes_max = true;
 
     bool contains(double value) const;
-    /// "finite", "positive", "at least 0", "in (0, 1)": what it says in messages and help.
+    /// Text for messages and help: "finite", "positive", "at least 0", "in (0, 1)".
     std::string text() const;
 
     static Range positive() { return {0, std::numeric_limits<double>::max(), false, true}; }
-    static Range at_least(double least) { return {least, std::numeric_limits<double>::max(), true, true}; }
-    static Range between(double least, double most) { return {least, most, true, true}; }
-    static Range inside(double least, double most) { return {least, most, false, false}; }
+    static Range at_least(double min) { return {min, std::numeric_limits<double>::max(), true, true}; }
+    static Range between(double min, double max) { return {min, max, true, true}; }
+    static Range strictly_between(double min, double max) { return {min, max, false, false}; }
 };
 
-} // namespace fettle
+} // namespace fettle::core

@@ -7,26 +7,26 @@
 #include <string_view>
 #include <vector>
 
-namespace fettle {
+namespace fettle::core {
 
-/// Bytes that are kept for later: in memory as far as they may, the rest in an unnamed file.
+/// Byte buffer that grows at its end: in memory up to a limit, beyond it in an unnamed file.
 class Spool {
   public:
-    /// @param memory  bytes that may be held
-    explicit Spool(std::size_t memory) : memory_(memory) {}
+    /// @param max_memory  bytes kept in memory
+    explicit Spool(std::size_t max_memory) : max_memory_(max_memory) {}
 
-    /// @throws InputError if the file cannot be made or written
+    /// @throws InputError if the file cannot be created or written
     void append(std::string_view bytes);
-    std::size_t size() const { return held_ + filed_; }
+    std::size_t size() const { return in_memory_ + in_file_; }
     /// @throws InputError if the file cannot be read
     void read(std::size_t offset, char* to, std::size_t count) const;
 
   private:
-    std::size_t memory_;
-    std::size_t held_ = 0;            ///< bytes in memory
-    std::size_t filed_ = 0;           ///< bytes in the file, which follow them
-    std::vector<std::string> chunks_; ///< all but the last of one size: nothing is moved when more come
-    Descriptor file_;
+    std::size_t max_memory_;
+    std::size_t in_memory_ = 0;       ///< bytes in memory
+    std::size_t in_file_ = 0;         ///< bytes in the file, after those in memory
+    std::vector<std::string> chunks_; ///< all but the last full; they never move when the buffer grows
+    FileDescriptor file_;
 };
 
-} // namespace fettle
+} // namespace fettle::core

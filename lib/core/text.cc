@@ -1,11 +1,14 @@
 #include "core/text.h"
 
+#include "core/constants.h"
+#include "core/error.h"
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <numeric>
 
-namespace fettle {
+namespace fettle::core {
 namespace {
 
 template <typename Real>
@@ -48,7 +51,7 @@ std::string to_short_text(double value)
 
 std::optional<double> parse_number(std::string_view text)
 {
-    if (text.starts_with('+')) { // from_chars knows no plus
+    if (text.starts_with('+')) { // from_chars does not accept a plus
         text.remove_prefix(1);
         if (text.starts_with('-')) return std::nullopt;
     }
@@ -58,10 +61,36 @@ std::optional<double> parse_number(std::string_view text)
     return value;
 }
 
+Eigen::VectorXd parse_number_list(std::string_view list)
+{
+    std::vector<double> numbers;
+    for (std::size_t comma = 0; !list.empty(); list.remove_prefix(std::min(comma + 1, list.size()))) {
+        comma = std::min(list.find(','), list.size());
+        numbers.push_back(parse_number(list.substr(0, comma)).value_or(kNaN));
+    }
+    return Eigen::VectorXd::Map(numbers.data(), static_cast<Eigen::Index>(numbers.size()));
+}
+
+Eigen::VectorXd parse_number_list(std::string_view list, const std::vector<std::string>& names)
+{
+    Eigen::VectorXd numbers(names.size());
+    for (std::size_t k = 0; k < names.size(); ++k) {
+        const std::size_t comma = std::min(list.find(','), list.size());
+        const bool last = k + 1 == names.size();
+        const auto number = parse_number(list.substr(0, comma));
+        if (!number || !std::isfinite(*number) || last != (comma == list.size()))
+            throw InputError("expected a number for " + names[k] + (last ? " at the end" : " and a comma") + ", got '" +
+                             std::string(list) + "'");
+        numbers[static_cast<Eigen::Index>(k)] = *number;
+        list.remove_prefix(std::min(comma + 1, list.size()));
+    }
+    return numbers;
+}
+
 std::string nearest_word(std::string_view word, const std::vector<std::string>& candidates)
 {
     std::string best;
-    std::size_t best_distance = 1 + word.size() / 3; // a third of the letters wrong is still a slip
+    std::size_t best_distance = 1 + word.size() / 3; // up to a third of the letters may be wrong
     for (const std::string& candidate : candidates)
         if (const std::size_t distance = edit_distance(word, candidate); distance <= best_distance) {
             if (distance == best_distance && !best.empty()) continue;
@@ -71,4 +100,11 @@ std::string nearest_word(std::string_view word, const std::vector<std::string>& 
     return best;
 }
 
-} // namespace fettle
+std::string join(const std::vector<std::string>& words, const std::string& separator)
+{
+    std::string text;
+    for (const std::string& word : words) text += (text.empty() ? "" : separator) + word;
+    return text;
+}
+
+} // namespace fettle::core

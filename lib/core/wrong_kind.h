@@ -2,16 +2,16 @@
 
 #include "core/error.h"
 
-namespace fettle {
+namespace fettle::core {
 
-/// A file holds something else than it should, as when two arguments of a tool have changed places: tool_main adds
-/// their order.
-class WrongKind : public InputError {
+/// A file has another format or content than expected, as when arguments are swapped; tool_main() adds their order to
+/// the message.
+class WrongFileType : public InputError {
   public:
     /// @param name  of the file, as in messages
-    WrongKind(const std::string& name, const std::string& problem) : InputError(name, problem), file(name) {}
+    WrongFileType(const std::string& name, const std::string& problem) : InputError(name, problem), file(name) {}
 
     std::string file;
 };
 
-} // namespace fettle
+} // namespace fettle::core

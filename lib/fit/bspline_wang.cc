@@ -4,22 +4,21 @@
 #include "fit/estimated.h"
 #include "surface/tensor_bspline.h"
 
-namespace fettle {
+namespace fettle::fit {
 
 Fit fit_bspline_wang(const FitInput& input)
 {
-    constexpr int kLeastPoints = 4;
-    Surface surface = begin_surface(input, "bspline-wang", kSampleAndEstimatedRoles, kLeastPoints);
+    constexpr int kMinPoints = 4;
+    surface::Surface surface = begin_surface(input, "bspline-wang", kSampleAndEstimatedRoles, kMinPoints);
     try {
-        const TensorBsplineSystem system(surface.touches.topRows<2>(), input.job.theta);
+        const surface::TensorBsplineSystem system(surface.touches.topRows<2>(), input.job.theta);
         surface.shape = system.surface(surface.touches.row(2));
-        const Eigen::MatrixXd follow =
-            system.control_heights(dependence(input.job, surface.touches, surface.roles, used_curves(input)));
-        surface.covariance = surface.touch_sigma * surface.touch_sigma * follow * follow.transpose();
-    } catch (const InputError& error) {
-        throw InputError(input.source, error.what());
+        const Eigen::MatrixXd jacobian = system.control_heights(touch_jacobian(input, surface));
+        surface.covariance = surface.touch_sigma * surface.touch_sigma * jacobian * jacobian.transpose();
+    } catch (const core::InputError& error) {
+        throw core::InputError(input.source, error.what());
     }
     return finish_fit(std::move(surface), 0, true, 0);
 }
 
-} // namespace fettle
+} // namespace fettle::fit

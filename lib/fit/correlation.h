@@ -2,21 +2,23 @@
 
 #include <Eigen/Core>
 
-namespace fettle {
+namespace fettle::fit {
 
-/// Smooth without end (squared exponential), or twice differentiable (Matérn's of 5/2), which trusts waves less to go
-/// on beneath the anomaly as they do between the touches.
-enum class Roughness { none, matern };
+/// Stationary kernels of a Gaussian process (Rasmussen and Williams 2006, 4.2). The squared exponential is infinitely
+/// differentiable; Matérn's with ν = 5/2 is twice differentiable and extrapolates waves between the touches less far
+/// into the anomaly.
+enum class Kernel { squared_exponential, matern52 };
 
 struct Correlation {
-    Roughness roughness = Roughness::none;
-    double length = 0; ///< mm
+    Kernel kernel = Kernel::squared_exponential;
+    double length = 0; ///< ℓ, mm
 };
 
-/// At distances whose squares are given, mm²: exp(-|Δ|²/2ℓ²), or Matérn's of 5/2 (Rasmussen and Williams 2006, 4.2).
-Eigen::ArrayXd at(const Correlation& correlation, const Eigen::ArrayXd& squares);
+/// The correlation at distances given by their squares, mm²: exp(-|Δ|²/2ℓ²), or Matérn's.
+Eigen::ArrayXd correlation_at(const Correlation& correlation, const Eigen::ArrayXd& squared_distances);
 
 /// @param a, b  places in x-y, mm  @return  a row for each of a, a column for each of b
-Eigen::MatrixXd correlations(const Correlation& correlation, const Eigen::Matrix2Xd& a, const Eigen::Matrix2Xd& b);
+Eigen::MatrixXd correlation_matrix(const Correlation& correlation, const Eigen::Matrix2Xd& a,
+                                   const Eigen::Matrix2Xd& b);
 
-} // namespace fettle
+} // namespace fettle::fit

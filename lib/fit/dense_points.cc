@@ -3,7 +3,8 @@
 #include "core/decompositions.h"
 #include "core/error.h"
 #include "core/text.h"
-#include "fit/fit.h"
+#include "fit/bspline.h"
+#include "geometry/bounding_box.h"
 
 #include <Eigen/Geometry>
 
@@ -12,7 +13,7 @@
 #include <cmath>
 #include <limits>
 
-namespace fettle {
+namespace fettle::fit {
 
 namespace {
 
@@ -20,175 +21,154 @@ using Eigen::Index;
 using Eigen::Vector2d;
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-constexpr int kMostRole = 5;
-constexpr std::size_t kLeastPoints = 6; // of a quadratic
+constexpr std::size_t kMinPoints = 6; // the coefficients of a quadratic
 
-// Two cells for each point along a side, as far as factorising their equations takes no longer than reading the points:
-// its cost goes with the fourth power of the cells on a side.
-constexpr double kLeastCells = 12;
-constexpr double kMostCells = 64;
-// Share of the longer side that the grid goes beyond the points, on either side: room for the wheel's footprint.
-constexpr double kAround = 1 / 12.0;
+// Two cells for each point along a side, as long as factorising their equations takes no longer than reading the
+// points: its cost grows with the fourth power of the cells on a side.
+constexpr double kMinCells = 12;
+constexpr double kMaxCells = 64;
+// Share of the longer side by which the grid exceeds the points on each side: room for the wheel's footprint.
+constexpr double kBorderShare = 1 / 12.0;
 
-/// Where the points lie, W.
+/// Bounding box and moments of the points, W.
 struct Extent {
-    Vector2d least = Vector2d::Constant(kInfinite), most = Vector2d::Constant(-kInfinite);
-    Vector2d sum = Vector2d::Zero(); ///< from the middle of B
+    Eigen::AlignedBox2d box;
+    Vector2d sum = Vector2d::Zero(); ///< relative to the middle of B
     Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
-    double largest = 0;
+    double max_abs_coordinate = 0;
     std::size_t count = 0;
-    std::size_t bad_role = std::numeric_limits<std::size_t>::max(); ///< first point
-    double role = 0;                                                ///< of it
+    std::size_t bad_role_point = std::numeric_limits<std::size_t>::max(); ///< index of the first such point
+    double bad_role = 0;
 
     void add(const Extent& other)
     {
-        least = least.cwiseMin(other.least);
-        most = most.cwiseMax(other.most);
+        box.extend(other.box);
         sum += other.sum;
         squares += other.squares;
-        largest = std::max(largest, other.largest);
+        max_abs_coordinate = std::max(max_abs_coordinate, other.max_abs_coordinate);
         count += other.count;
-        if (other.bad_role < bad_role) std::tie(bad_role, role) = std::pair(other.bad_role, other.role);
+        add_bad_role(other.bad_role_point, other.bad_role);
+    }
+    void add_bad_role(std::size_t point, double role)
+    {
+        if (point < bad_role_point) std::tie(bad_role_point, bad_role) = std::pair(point, role);
     }
 };
 
 bool finite(const Eigen::Vector3d& p) { return std::isfinite(p.x() + p.y() + p.z()); }
 
-bool wanted(double role, bool use_boundary)
-{
-    return (role == 0 && use_boundary) ||
-           std::find(kSampleRoles.begin(), kSampleRoles.end(), role) != kSampleRoles.end();
-}
-
-Extent extent_of(const DensePoints& points, const Eigen::Matrix2d& rotation, const Vector2d& middle)
+Extent measure_extent(const DensePoints& points, const Eigen::Matrix2d& rotation, const Vector2d& middle)
 {
     const bool bounded = points.region.sampling.cols() > 0;
-    Vector2d low = Vector2d::Constant(-kInfinite), high = Vector2d::Constant(kInfinite);
-    if (bounded) {
-        low = points.region.sampling.rowwise().minCoeff();
-        high = points.region.sampling.rowwise().maxCoeff();
-    }
-    std::array<Extent, kBlockLanes> lanes;
-    for_blocks(points.source, [&](std::size_t lane, std::size_t first, const PointBlock& block) {
+    const Vector2d infinite = Vector2d::Constant(kInfinite);
+    const Eigen::AlignedBox2d bounds =
+        bounded ? geometry::bounding_box(points.region.sampling) : Eigen::AlignedBox2d(-infinite, infinite);
+    std::array<Extent, kNumLanes> lanes;
+    parallel_for_blocks(points.source, [&](std::size_t lane, std::size_t first, const cloud::PointBlock& block) {
         Extent& e = lanes[lane];
         for (Index i = 0; i < block.xyz.cols(); ++i) {
             if (points.source.has_roles) {
                 const double role = block.roles[i];
-                if (!(role >= 0 && role <= kMostRole && role == std::floor(role)) &&
-                    first + static_cast<std::size_t>(i) < e.bad_role)
-                    std::tie(e.bad_role, e.role) = std::pair(first + static_cast<std::size_t>(i), role);
-                if (!wanted(role, points.use_boundary)) continue;
+                if (!(role >= 0 && role <= kMaxRole && role == std::floor(role))) e.add_bad_role(first + i, role);
+                if (!is_used_role(role, kSampleRoles, points.use_boundary)) continue;
             }
             const Eigen::Vector3d p = block.xyz.col(i);
             if (!finite(p)) continue;
             const Vector2d w = rotation * p.head<2>();
-            if (!((w.array() >= low.array()).all() && (w.array() <= high.array()).all())) continue;
-            e.least = e.least.cwiseMin(w);
-            e.most = e.most.cwiseMax(w);
+            if (!bounds.contains(w)) continue;
+            e.box.extend(w);
             const Vector2d d = w - middle;
             e.sum += d;
             e.squares += d * d.transpose();
-            e.largest = std::max(e.largest, p.cwiseAbs().maxCoeff());
+            e.max_abs_coordinate = std::max(e.max_abs_coordinate, p.cwiseAbs().maxCoeff());
             ++e.count;
         }
     });
-    for (std::size_t lane = 1; lane < kBlockLanes; ++lane) lanes[0].add(lanes[lane]);
+    for (std::size_t lane = 1; lane < kNumLanes; ++lane) lanes[0].add(lanes[lane]);
     return lanes[0];
 }
 
-void refuse_few(const Extent& extent, const Job& job, const std::string& name, std::size_t all)
+void check_extent(const Extent& extent, const job::Job& job, const std::string& name, std::size_t all)
 {
-    if (extent.count < kLeastPoints)
-        throw InputError(name, "a bspline fit needs at least " + std::to_string(kLeastPoints) + " touches, got " +
-                                   std::to_string(extent.count) + " of " + std::to_string(all) +
-                                   " points that it may use");
-    const double n = static_cast<double>(extent.count);
+    if (extent.bad_role_point < all)
+        throw core::InputError(name, "point " + std::to_string(extent.bad_role_point) + ": " +
+                                         core::to_text(extent.bad_role) + " is not a role (0 to 5)");
+    if (extent.count < kMinPoints)
+        throw core::InputError(name, "a bspline fit needs at least " + std::to_string(kMinPoints) + " touches, got " +
+                                         std::to_string(extent.count) + " of " + std::to_string(all) +
+                                         " points that it may use");
+    const double n = extent.count;
     const Vector2d mean = extent.sum / n;
-    const SymmetricEigen<2> spread = symmetric_eigen<2>(extent.squares / n - mean * mean.transpose());
+    const core::SymmetricEigen<2> spread = core::symmetric_eigen<2>(extent.squares / n - mean * mean.transpose());
     if (std::sqrt(std::max(spread.values[0], 0.0)) <= job.probe.accuracy)
-        throw InputError(name, "touches lie on one line in x and y");
+        throw core::InputError(name, "touches lie on one line in x and y");
 }
 
-Bspline grid_over(const Extent& extent, const Job& job, const Eigen::Matrix2d& rotation)
+surface::Bspline grid_over(const Extent& extent, const job::Job& job, const Eigen::Matrix2d& rotation)
 {
     const Eigen::Matrix2Xd anomaly = rotation * job.anomaly.topRows<2>();
-    const Vector2d least = extent.least.cwiseMin(anomaly.rowwise().minCoeff());
-    const Vector2d side = extent.most.cwiseMax(anomaly.rowwise().maxCoeff()) - least;
-    const double cells =
-        std::clamp(std::ceil(2 * std::sqrt(static_cast<double>(extent.count))), kLeastCells, kMostCells);
-    const double around = std::ceil(cells * kAround / (1 + 2 * kAround));
-    const double cell = side.maxCoeff() / (cells - 2 * around);
-    const Vector2d counts = (side / cell).array().round().max(2);
-    Bspline grid;
-    grid.angle = job.theta;
-    grid.cell = side.cwiseQuotient(counts);
-    grid.origin = rotation.transpose() * (least - around * grid.cell);
-    const Eigen::Array2i all = (counts.array() + 2 * around).cast<int>() + 3; // a cubic's functions are three more
-    grid.heights.setZero(all.x(), all.y());
-    return grid;
+    const double cells = std::clamp(std::ceil(2 * std::sqrt(extent.count)), kMinCells, kMaxCells);
+    const double border = std::ceil(cells * kBorderShare / (1 + 2 * kBorderShare));
+    return make_spline_grid(extent.box.merged(geometry::bounding_box(anomaly)), cells - 2 * border, border, job.theta);
 }
 
-/// Of the points within `reach` of a place. @param w  W
-DensePoints::Cell kind_about(const Boundaries& region, const Vector2d& w, double reach)
+/// Classifies the disc of a given radius about w. @param w  W
+DensePoints::Cell classify_disc(const job::Boundaries& region, const Vector2d& w, double radius)
 {
-    const Polygon& B = region.anomaly;
-    const Polygon& S = region.sampling;
-    const bool anomaly_near = distance_to_edge(B, w) <= reach;
-    const bool sampling_near = S.cols() > 0 && distance_to_edge(S, w) <= reach;
-    if (anomaly_near && sampling_near) return DensePoints::edge_of_both;
-    if (!anomaly_near && contains(B, w)) return DensePoints::drop_anomaly;
-    if (!sampling_near && S.cols() > 0 && !contains(S, w)) return DensePoints::drop_outside;
-    if (anomaly_near) return DensePoints::edge_of_anomaly;
-    return sampling_near ? DensePoints::edge_of_sampling : DensePoints::take;
+    const job::Polygon& B = region.anomaly;
+    const job::Polygon& S = region.sampling;
+    const bool on_anomaly_edge = job::distance_to_edge(B, w) <= radius;
+    const bool on_sampling_edge = S.cols() > 0 && job::distance_to_edge(S, w) <= radius;
+    if (on_anomaly_edge && on_sampling_edge) return DensePoints::edge_of_both;
+    if (!on_anomaly_edge && job::contains(B, w)) return DensePoints::drop_anomaly;
+    if (!on_sampling_edge && S.cols() > 0 && !job::contains(S, w)) return DensePoints::drop_outside;
+    if (on_anomaly_edge) return DensePoints::edge_of_anomaly;
+    return on_sampling_edge ? DensePoints::edge_of_sampling : DensePoints::take;
 }
 
-/// Whole cells by their middles, as far as no edge comes near; parts of the others likewise.
-void classify(DensePoints& points, const Eigen::Matrix2d& rotation)
+/// Classifies the cells by their circumscribed discs, and the subcells of those that edges may cross.
+void classify_cells(DensePoints& points, const Eigen::Matrix2d& rotation)
 {
-    constexpr int kParts = DensePoints::kParts;
+    constexpr int kSubcells = DensePoints::kSubcells;
     const Index cells_u = points.grid.heights.rows() - 3, cells_v = points.grid.heights.cols() - 3;
-    points.cells.assign(static_cast<std::size_t>(cells_u * cells_v), DensePoints::take);
-    points.first_part.assign(points.cells.size(), -1);
+    points.cells.assign(cells_u * cells_v, DensePoints::take);
+    points.first_subcell.assign(points.cells.size(), -1);
     if (points.region.anomaly.cols() == 0) return;
-    const double reach = points.grid.cell.norm() / 2;
-    const auto kind = [&](std::size_t cell, const Vector2d& inside, double near) {
-        const auto k = static_cast<Index>(cell);
-        const Vector2d corner(static_cast<double>(k % cells_u), static_cast<double>(k / cells_u));
-        return kind_about(points.region, rotation * place_in(points.grid, corner + inside), near);
+    const double radius = points.grid.cell.norm() / 2;
+    const auto classify = [&](Index cell, const Vector2d& offset, double disc_radius) {
+        const Vector2d corner(cell % cells_u, cell / cells_u);
+        return classify_disc(points.region, rotation * machine_from_grid(points.grid, corner + offset), disc_radius);
     };
     tbb::parallel_for(std::size_t{0}, points.cells.size(), [&](std::size_t k) {
-        points.cells[k] = kind(k, {0.5, 0.5}, reach);
+        points.cells[k] = classify(k, {0.5, 0.5}, radius);
     });
     std::vector<std::size_t> crossed;
     for (std::size_t k = 0; k < points.cells.size(); ++k) {
         if (points.cells[k] <= DensePoints::drop_outside) continue;
-        points.first_part[k] = static_cast<std::int32_t>(kParts * kParts * crossed.size());
+        points.first_subcell[k] = kSubcells * kSubcells * crossed.size();
         crossed.push_back(k);
     }
-    points.parts.resize(kParts * kParts * crossed.size());
-    tbb::parallel_for(std::size_t{0}, points.parts.size(), [&](std::size_t part) {
-        const auto i = static_cast<int>(part % (kParts * kParts));
-        const Vector2d middle((i % kParts + 0.5) / kParts, (i / kParts + 0.5) / kParts);
-        points.parts[part] = kind(crossed[part / (kParts * kParts)], middle, reach / kParts);
+    points.subcells.resize(kSubcells * kSubcells * crossed.size());
+    tbb::parallel_for(std::size_t{0}, points.subcells.size(), [&](std::size_t k) {
+        const int i = k % (kSubcells * kSubcells);
+        const Vector2d middle((i % kSubcells + 0.5) / kSubcells, (i / kSubcells + 0.5) / kSubcells);
+        points.subcells[k] = classify(crossed[k / (kSubcells * kSubcells)], middle, radius / kSubcells);
     });
 }
 
 /// A point on the rectangle's far edge belongs to the last cell.
 std::int32_t cell_at(double u, std::int32_t cells) { return std::min(static_cast<std::int32_t>(u), cells - 1); }
 
-/// Of a point in a cell that edges cross. @param u, v  from the cell's corner, in cells  @param w  W
-DensePoints::Cell kind_of(const DensePoints& points, std::int32_t cell, double u, double v, const Vector2d& w)
+/// Classifies a point in a cell that edges cross. @param u, v  from the cell's corner, in cells  @param w  W
+DensePoints::Cell classify_point(const DensePoints& points, std::int32_t cell, double u, double v, const Vector2d& w)
 {
-    constexpr int kParts = DensePoints::kParts;
-    const std::int32_t row = cell_at(kParts * u, kParts), column = cell_at(kParts * v, kParts);
-    const std::int32_t part = points.first_part[static_cast<std::size_t>(cell)] + kParts * column + row;
-    const DensePoints::Cell kind = points.parts[static_cast<std::size_t>(part)];
+    constexpr int kSubcells = DensePoints::kSubcells;
+    const std::int32_t row = cell_at(kSubcells * u, kSubcells), column = cell_at(kSubcells * v, kSubcells);
+    const DensePoints::Cell kind = points.subcells[points.first_subcell[cell] + kSubcells * column + row];
     if (kind <= DensePoints::drop_outside) return kind;
-    const Boundaries& region = points.region;
-    const bool by_anomaly = kind == DensePoints::edge_of_anomaly || kind == DensePoints::edge_of_both;
-    const bool by_sampling = kind == DensePoints::edge_of_sampling || kind == DensePoints::edge_of_both;
-    if (by_anomaly && contains(region.anomaly, w)) return DensePoints::drop_anomaly;
-    if (by_sampling && !contains(region.sampling, w)) return DensePoints::drop_outside;
+    const job::Boundaries& region = points.region;
+    if (kind != DensePoints::edge_of_sampling && job::contains(region.anomaly, w)) return DensePoints::drop_anomaly;
+    if (kind != DensePoints::edge_of_anomaly && !job::contains(region.sampling, w)) return DensePoints::drop_outside;
     return DensePoints::take;
 }
 
@@ -204,38 +184,37 @@ PointCounts& PointCounts::operator+=(const PointCounts& other)
     return *this;
 }
 
-Vector2d place_in(const Bspline& grid, const Vector2d& uv)
+Vector2d machine_from_grid(const surface::Bspline& grid, const Vector2d& uv)
 {
     return grid.origin + Eigen::Rotation2Dd(grid.angle) * uv.cwiseProduct(grid.cell);
 }
 
-DensePoints dense_points(const PointSource& source, const Job& job, bool use_boundary, const std::string& name)
+DensePoints dense_points(const cloud::PointSource& source, const job::Job& job, bool use_boundary,
+                         const std::string& name)
 {
     DensePoints points{source, use_boundary, {}, {}, {}, {}, {}, 0};
-    if (!source.has_roles) points.region = boundaries(job);
-    const Eigen::Matrix2d rotation = rotation_working_machine(job.theta);
-    const Extent extent = extent_of(points, rotation, rotation * job.anomaly.topRows<2>().rowwise().mean());
-    if (extent.bad_role < source.points)
-        throw InputError(name, "point " + std::to_string(extent.bad_role) + ": " + to_text(extent.role) +
-                                   " is no role (0 to 5)");
-    refuse_few(extent, job, name, source.points);
+    if (!source.has_roles) points.region = job::working_boundaries(job);
+    const Eigen::Matrix2d rotation = job::rotation_working_machine(job.theta);
+    const Extent extent = measure_extent(points, rotation, rotation * job.anomaly.topRows<2>().rowwise().mean());
+    check_extent(extent, job, name, source.points);
     points.grid = grid_over(extent, job, rotation);
-    classify(points, rotation);
-    points.largest = extent.largest;
+    classify_cells(points, rotation);
+    points.max_abs_coordinate = extent.max_abs_coordinate;
     return points;
 }
 
-void locate(const DensePoints& points, const PointBlock& block, std::vector<CellPoint>& into, PointCounts& counts)
+void assign_cells(const DensePoints& points, const cloud::PointBlock& block, std::vector<CellPoint>& used,
+                  PointCounts& counts)
 {
-    into.clear();
-    const Bspline& grid = points.grid;
+    used.clear();
+    const surface::Bspline& grid = points.grid;
     const auto cells_u = static_cast<std::int32_t>(grid.heights.rows() - 3);
     const auto cells_v = static_cast<std::int32_t>(grid.heights.cols() - 3);
     const double c = std::cos(grid.angle), s = std::sin(grid.angle);
     const double u_x = c / grid.cell.x(), u_y = s / grid.cell.x(), v_x = -s / grid.cell.y(), v_y = c / grid.cell.y();
     const double* p = block.xyz.data();
     for (Index i = 0; i < block.xyz.cols(); ++i, p += 3) {
-        if (points.source.has_roles && !wanted(block.roles[i], points.use_boundary)) {
+        if (points.source.has_roles && !is_used_role(block.roles[i], kSampleRoles, points.use_boundary)) {
             ++counts.other_role;
             continue;
         }
@@ -251,30 +230,32 @@ void locate(const DensePoints& points, const PointBlock& block, std::vector<Cell
         }
         const std::int32_t row = cell_at(u, cells_u), column = cell_at(v, cells_v);
         const std::int32_t cell = column * cells_u + row;
-        DensePoints::Cell kind = points.cells[static_cast<std::size_t>(cell)];
+        DensePoints::Cell kind = points.cells[cell];
         if (kind > DensePoints::drop_outside)
-            kind = kind_of(points, cell, u - row, v - column, {c * p[0] + s * p[1], c * p[1] - s * p[0]});
+            kind = classify_point(points, cell, u - row, v - column, {c * p[0] + s * p[1], c * p[1] - s * p[0]});
         if (kind == DensePoints::take)
-            into.push_back({cell, u - row - 0.5, v - column - 0.5, p[2]});
+            used.push_back({cell, u - row - 0.5, v - column - 0.5, p[2]});
         else
             ++(kind == DensePoints::drop_anomaly ? counts.anomaly : counts.outside);
     }
-    counts.used += into.size();
+    counts.used += used.size();
 }
 
-void relocate(const std::vector<CellPoint>& points, const Bspline& from, const Bspline& to,
-              std::vector<CellPoint>& into)
+std::vector<CellPoint> regrid(const std::vector<CellPoint>& points, const surface::Bspline& from,
+                              const surface::Bspline& to)
 {
     const auto old_u = static_cast<std::int32_t>(from.heights.rows() - 3);
     const auto cells_u = static_cast<std::int32_t>(to.heights.rows() - 3);
     const auto cells_v = static_cast<std::int32_t>(to.heights.cols() - 3);
     const Vector2d ratio = from.cell.cwiseQuotient(to.cell);
-    into.clear();
+    std::vector<CellPoint> moved;
+    moved.reserve(points.size());
     for (const CellPoint& p : points) {
         const double u = (p.cell % old_u + 0.5 + p.u) * ratio.x(), v = (p.cell / old_u + 0.5 + p.v) * ratio.y();
         const std::int32_t row = cell_at(u, cells_u), column = cell_at(v, cells_v);
-        into.push_back({column * cells_u + row, u - row - 0.5, v - column - 0.5, p.z});
+        moved.push_back({column * cells_u + row, u - row - 0.5, v - column - 0.5, p.z});
     }
+    return moved;
 }
 
-} // namespace fettle
+} // namespace fettle::fit

@@ -15,26 +15,28 @@
 #include <string>
 #include <vector>
 
-namespace fettle {
+namespace fettle::fit {
 
-// Sums over blocks depend on their order: block k always goes to lane k modulo kBlockLanes, each lane adds its blocks
-// in order, and lanes are added in order, whatever the number of threads.
-inline constexpr std::size_t kBlockLanes = 8;
+// Rounding makes sums depend on their order, so it is fixed for any number of threads: block k always goes to lane k
+// modulo kNumLanes, each lane adds its blocks in order, and lanes are added in order.
+inline constexpr std::size_t kNumLanes = 8;
 
-/// Calls work(lane, first, block) for all blocks of a source; lanes run in parallel.
+/// Calls work(lane, first, block) for all blocks of a source, `first` the index of the block's first point. Lanes run
+/// in parallel, the blocks of a lane one after the other.
 template <typename Work>
-void for_blocks(const PointSource& source, const Work& work)
+void parallel_for_blocks(const cloud::PointSource& source, const Work& work)
 {
-    tbb::parallel_for(std::size_t{0}, kBlockLanes, [&](std::size_t lane) {
-        PointBlock block;
-        for (std::size_t first = lane * source.block; first < source.points; first += kBlockLanes * source.block) {
-            source.read(first, std::min(source.block, source.points - first), block);
+    tbb::parallel_for(std::size_t{0}, kNumLanes, [&](std::size_t lane) {
+        cloud::PointBlock block;
+        for (std::size_t first = lane * source.block_size; first < source.points;
+             first += kNumLanes * source.block_size) {
+            source.read(first, std::min(source.block_size, source.points - first), block);
             work(lane, first, block);
         }
     });
 }
 
-/// What became of the points of a scan.
+/// How many points of a scan are used, and how many are left out for which reason.
 struct PointCounts {
     std::size_t undefined = 0;  ///< a coordinate is NaN
     std::size_t other_role = 0; ///< estimated points, corners of B
@@ -46,36 +48,38 @@ struct PointCounts {
     std::size_t ignored() const { return undefined + other_role + anomaly + outside; }
 };
 
-/// Which points of a source say something about the desired surface, and the grid that they are put on. With roles:
-/// those of samples, wherever they lie. Without, the source is a scan that shows the anomaly, too: the points outside B
-/// and inside S.
+/// The points of a source that the desired surface is fitted to, and the spline's grid. If the points have roles, these
+/// are all samples. If not, the source is a scan that includes the anomaly, and these are the points outside B and
+/// inside S.
 struct DensePoints {
-    PointSource source;
-    bool use_boundary = false; ///< take role 0, too
-    Boundaries region;         ///< W; both empty with roles
-    Bspline grid;              ///< aligned with W, around B and the points; its heights are 0
+    cloud::PointSource source;
+    bool use_boundary = false; ///< points of role 0 are used, too
+    job::Boundaries region;    ///< W; both empty with roles
+    surface::Bspline grid;     ///< aligned with W, around B and the points; its heights are 0
 
-    /// Of a cell or a part of one: what its points are, as far as they are all alike; else which edges cross it.
+    /// The class of all points of a cell or subcell, or which edges cross it so that its points differ.
     enum Cell : std::uint8_t { take, drop_anomaly, drop_outside, edge_of_anomaly, edge_of_sampling, edge_of_both };
-    std::vector<Cell> cells;              ///< column-major
-    static constexpr int kParts = 8;      ///< along a side of a cell that edges cross
-    std::vector<Cell> parts;              ///< kParts x kParts of each such cell, column-major
-    std::vector<std::int32_t> first_part; ///< of each cell, in `parts`; -1: it has none
-    double largest = 0;                   ///< |coordinate|, mm
+    std::vector<Cell> cells;                 ///< column-major
+    static constexpr int kSubcells = 8;      ///< along a side of a cell that edges cross
+    std::vector<Cell> subcells;              ///< kSubcells x kSubcells of each such cell, column-major
+    std::vector<std::int32_t> first_subcell; ///< index into `subcells` for each cell; -1: the cell has none
+    double max_abs_coordinate = 0;           ///< mm
 };
 
-/// Reads the points once to see where they lie.
-/// @throws InputError for fewer than 6 that may be used, or points on a line, or a role that is none
-DensePoints dense_points(const PointSource& source, const Job& job, bool use_boundary, const std::string& name);
+/// Reads the points once to determine their extent.
+/// @throws InputError for fewer than 6 points that can be used, points on a line, or an unknown role
+DensePoints dense_points(const cloud::PointSource& source, const job::Job& job, bool use_boundary,
+                         const std::string& name);
 
-/// The points of a block that are used, by their cells; the others are counted.
-void locate(const DensePoints& points, const PointBlock& block, std::vector<CellPoint>& into, PointCounts& counts);
+/// Replaces `used` by those points of a block that are used, each with its cell; adds all points to the counts.
+void assign_cells(const DensePoints& points, const cloud::PointBlock& block, std::vector<CellPoint>& used,
+                  PointCounts& counts);
 
-/// The same points on another grid over the same rectangle.
-void relocate(const std::vector<CellPoint>& points, const Bspline& from, const Bspline& to,
-              std::vector<CellPoint>& into);
+/// Moves points to the cells of another grid over the same rectangle.
+std::vector<CellPoint> regrid(const std::vector<CellPoint>& points, const surface::Bspline& from,
+                              const surface::Bspline& to);
 
-/// M, of a place in the grid, in cells from its corner.
-Eigen::Vector2d place_in(const Bspline& grid, const Eigen::Vector2d& uv);
+/// M, mm. @param uv  coordinates in the grid from its corner, in cells
+Eigen::Vector2d machine_from_grid(const surface::Bspline& grid, const Eigen::Vector2d& uv);
 
-} // namespace fettle
+} // namespace fettle::fit

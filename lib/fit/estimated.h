@@ -2,18 +2,16 @@
 
 #include "fit/fit.h"
 
-namespace fettle {
+namespace fettle::fit {
 
 /// The roles that Wang's two methods use: samples and estimated points.
 inline const std::vector<int> kSampleAndEstimatedRoles = {1, 2, 3, 4, 5};
 
-/// Number of each touch's line for the touches that the surface rests on; empty: unknown.
-Eigen::VectorXi used_curves(const FitInput& input);
+/// Derivatives ∂z_i/∂z_j of all points' heights by those of the touches: unit columns for touches, the weights of the
+/// two cubics for estimated points, which have no error of their own. If input.curves is empty, estimated points count
+/// as touches.
+/// @param surface  begun from `input` with kSampleAndEstimatedRoles
+/// @return points x points; the columns of estimated points are 0
+Eigen::MatrixXd touch_jacobian(const FitInput& input, const surface::Surface& surface);
 
-/// How the z of each point follows the independent touches: unit columns for touches, the weights of the two cubics
-/// for estimated points, which have no error of their own. Without the lines they count as touches.
-/// @return points x touches
-Eigen::MatrixXd dependence(const Job& job, const Eigen::Matrix3Xd& points, const Eigen::VectorXi& roles,
-                           const Eigen::VectorXi& curves);
-
-} // namespace fettle
+} // namespace fettle::fit

@@ -4,15 +4,13 @@
 #include "core/error.h"
 #include "fit/trimmed_touches.h"
 
-#include <boost/math/special_functions/gamma.hpp>
-
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
 #include <numeric>
 
-namespace fettle {
+namespace fettle::fit {
 
 namespace {
 
@@ -20,141 +18,112 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Of columns of unit length: a combination of parameters that moves the touches by less is not determined.
+// Applies to columns of unit length: combinations of parameters that move the touches by less are undetermined.
 constexpr double kRankThreshold = 1e-6;
-// Of the touches that are no slips: one set in a thousand looks worse.
-constexpr double kLeastGoodness = 1e-3;
+// Leverages closer to 1 than this are rounding errors: the fit follows such a touch whatever its height.
+constexpr double kMinRedundancy = 1e-6;
+constexpr double kMinGoodness = 1e-3; // p-value: inliers of a surface of the family look worse once in a thousand fits
+constexpr double kMaxOutlierShare = 0.25;
 
-/// A solution, seen from all touches.
-struct Judged {
-    VectorXd chi;      ///< r/σ
-    VectorXd leverage; ///< of the kept: share of a touch's error that its fitted height follows; others: σ(height)²/σ²
-    MatrixXd moves;    ///< W: Wᵀ W is by how much the heights follow the errors of the kept touches
+/// Residuals and covariances of a solution at all touches.
+struct Evaluation {
+    VectorXd chi;        ///< r/σ
+    VectorXd leverage;   ///< σ(fitted height)²/σ²; for kept touches the diagonal of the hat matrix
+    MatrixXd hat_root;   ///< W with Wᵀ W the hat matrix, the heights' derivatives by those of the kept touches
     MatrixXd covariance; ///< of θ over σ²
     Index parameters = 0;
 };
 
-std::optional<Judged> judge(const FamilySolution& solution, const Touched& touched, const Columns& kept)
+std::optional<Evaluation> evaluate(const FamilySolution& solution, const TouchSet& touches, const TouchIndices& kept)
 {
     if (!solution.gradients.allFinite()) return std::nullopt;
-    const MatrixXd G = solution.free.size() > 0 ? solution.free.transpose() * solution.gradients : solution.gradients;
+    const MatrixXd& free = solution.free_directions;
+    const MatrixXd G = free.size() > 0 ? free.transpose() * solution.gradients : solution.gradients;
     const MatrixXd J = G(Eigen::all, kept).transpose();
     const VectorXd size = J.colwise().norm().cwiseMax(std::numeric_limits<double>::min());
-    const std::optional<MatrixXd> scaled = root_of_inverse(J * size.cwiseInverse().asDiagonal(), kRankThreshold);
+    const std::optional<MatrixXd> scaled =
+        core::inverse_gram_factor(J * size.cwiseInverse().asDiagonal(), kRankThreshold);
     if (!scaled) return std::nullopt;
     const MatrixXd root = size.cwiseInverse().asDiagonal() * *scaled;
-    Judged judged;
-    judged.covariance = root * root.transpose();
-    judged.parameters = J.cols();
-    if (solution.free.size() > 0) judged.covariance = solution.free * judged.covariance * solution.free.transpose();
-    judged.moves = root.transpose() * G;
-    judged.leverage = judged.moves.colwise().squaredNorm();
-    judged.chi = (touched.xyz.row(2).transpose() - heights(solution.shape, touched.xyz.topRows(2))) / touched.sigma;
-    if (!judged.chi.allFinite()) return std::nullopt;
-    return judged;
+    Evaluation result;
+    result.covariance = root * root.transpose();
+    result.parameters = J.cols();
+    if (free.size() > 0) result.covariance = free * result.covariance * free.transpose();
+    result.hat_root = root.transpose() * G;
+    result.leverage = result.hat_root.colwise().squaredNorm();
+    result.chi =
+        (touches.xyz.row(2).transpose() - surface::heights(solution.shape, touches.xyz.topRows(2))) / touches.sigma;
+    if (!result.chi.allFinite()) return std::nullopt;
+    return result;
 }
 
-/// The touch to leave out or to take back: the one that changes the score most. -1: none.
-Index to_change(const Judged& judged, const std::vector<char>& is_kept, bool may_leave_out, double price)
+/// The touch whose change between inlier and outlier lowers the score most; -1 if none lowers it.
+Index best_change(const Evaluation& fit, const std::vector<char>& is_kept, bool may_reject, double penalty)
 {
-    constexpr double kNoFreedom = 1e-6; // such a touch is followed whatever it says
-    Index worst = -1;
-    double best_gain = 1e-9 * price; // more than rounding, or it goes back and forth
-    for (Index i = 0; i < judged.chi.size(); ++i) {
-        const double chi2 = judged.chi[i] * judged.chi[i];
+    Index best = -1;
+    double best_gain = 1e-9 * penalty; // more than rounding, which could repeat changes endlessly
+    for (Index i = 0; i < fit.chi.size(); ++i) {
+        const double chi2 = fit.chi[i] * fit.chi[i];
         double gain = 0;
-        if (is_kept[static_cast<std::size_t>(i)] != 0)
-            gain = may_leave_out && judged.leverage[i] < 1 - kNoFreedom ? chi2 / (1 - judged.leverage[i]) - price : 0;
-        else
-            gain = price - chi2 / (1 + judged.leverage[i]);
+        if (is_kept[i] == 0)
+            gain = penalty - chi2 / (1 + fit.leverage[i]);
+        else if (may_reject && fit.leverage[i] < 1 - kMinRedundancy)
+            gain = chi2 / (1 - fit.leverage[i]) - penalty;
         if (gain > best_gain) {
             best_gain = gain;
-            worst = i;
+            best = i;
         }
     }
-    return worst;
+    return best;
 }
 
-} // namespace
-
-Touched touched_of(const Surface& surface, const Job& job)
+TouchIndices indices_of(const std::vector<char>& marks, char mark)
 {
-    return {surface.touches, surface.touch_sigma, job.theta + job.direction, job.surface == SurfaceType::swept,
-            surface.touch_freedom};
-}
-
-Columns all_touches(const Touched& touched)
-{
-    Columns all(static_cast<std::size_t>(touched.xyz.cols()));
-    std::iota(all.begin(), all.end(), Index{0});
-    return all;
-}
-
-double price_of_a_slip(double sigma, double freedom)
-{
-    // One touch in twenty, and then anywhere within an inch (chips, dust, the anomaly's foot).
-    constexpr double kShare = 0.05;
-    constexpr double kWidth = 25.4; // mm
-    const double price = -2 * std::log(kShare / (1 - kShare) * sigma * std::sqrt(2 * std::numbers::pi) / kWidth);
-    return std::isfinite(freedom) ? freedom * std::expm1(price / (freedom + 1)) : price;
-}
-
-double goodness(double chi2, double freedom)
-{
-    return freedom > 0 && std::isfinite(chi2) ? boost::math::gamma_q(freedom / 2, chi2 / 2) : 1;
-}
-
-namespace {
-
-Columns marked(const std::vector<char>& marks, char mark)
-{
-    Columns columns;
+    TouchIndices indices;
     for (std::size_t i = 0; i < marks.size(); ++i)
-        if (marks[i] == mark) columns.push_back(static_cast<Index>(i));
-    return columns;
+        if (marks[i] == mark) indices.push_back(i);
+    return indices;
 }
 
-/// A family fitted to some of the touches.
-struct Fitted {
+/// A family fitted to the kept touches.
+struct FamilyFit {
     FamilySolution solution;
-    Judged judged;
+    Evaluation evaluation;
     std::vector<char> is_kept;
     double chi2 = 0, freedom = 0;
     int iterations = 0;
 };
 
-std::optional<Fitted> fitted(const std::string& name, const Touched& touched, std::vector<char> is_kept, int iterations)
+std::optional<FamilyFit> fit_kept(const std::string& name, const TouchSet& touches, std::vector<char> is_kept,
+                                  int iterations)
 {
-    const Columns kept = marked(is_kept, 1);
-    std::optional<FamilySolution> solution = solve_family(name, touched, kept);
+    const TouchIndices kept = indices_of(is_kept, 1);
+    std::optional<FamilySolution> solution = solve_family(name, touches, kept);
     if (!solution) return std::nullopt;
-    std::optional<Judged> judged = judge(*solution, touched, kept);
-    if (!judged) return std::nullopt;
-    const double chi2 = judged->chi(kept).squaredNorm();
-    const double freedom = static_cast<double>(static_cast<Index>(kept.size()) - judged->parameters);
+    std::optional<Evaluation> evaluation = evaluate(*solution, touches, kept);
+    if (!evaluation) return std::nullopt;
+    const double chi2 = evaluation->chi(kept).squaredNorm();
+    const double freedom = static_cast<Index>(kept.size()) - evaluation->parameters;
     iterations += solution->iterations;
-    return Fitted{std::move(*solution), std::move(*judged), std::move(is_kept), chi2, freedom, iterations};
+    return FamilyFit{std::move(*solution), std::move(*evaluation), std::move(is_kept), chi2, freedom, iterations};
 }
 
-constexpr double kMostSlips = 0.25; // of the touches
-
-/// Would the others not nearly fit, however many touches are taken for slips? As far as heights are linear in θ,
-/// without touch i the residuals are r - P_i r_i / P_ii, P_i the i-th column of P = I - WᵀW, and P changes likewise
-/// (Cook and Weisberg 1982, 2.2).
-bool hopeless(const Fitted& start, Index most)
+/// True if the inliers would not nearly fit even without the `max_outliers` worst touches. As far as heights are linear
+/// in θ, the residuals without touch i are r - P_i r_i / P_ii, P_i the i-th column of P = I - WᵀW, and P changes
+/// likewise (Cook and Weisberg 1982, 2.2).
+bool cannot_fit(const FamilyFit& start, Index max_outliers)
 {
-    constexpr double kNear = 3; // times the sum of squares that fits: room for what is not linear
-    const Columns kept = marked(start.is_kept, 1);
-    const MatrixXd W = start.judged.moves(Eigen::all, kept);
+    constexpr double kNonlinearityFactor = 3; // factor of χ² to allow for heights that are not linear in θ
+    const TouchIndices kept = indices_of(start.is_kept, 1);
+    const MatrixXd W = start.evaluation.hat_root(Eigen::all, kept);
     MatrixXd P = -W.transpose() * W;
     P.diagonal().array() += 1;
-    VectorXd r = start.judged.chi(kept);
+    VectorXd r = start.evaluation.chi(kept);
     double chi2 = start.chi2;
-    for (Index slips = 0; slips < most; ++slips) {
-        constexpr double kNoFreedom = 1e-6;
+    for (Index outliers = 0; outliers < max_outliers; ++outliers) {
         Index worst = -1;
-        const Eigen::ArrayXd free = P.diagonal().array();
-        const double gain = (free > kNoFreedom).select(r.array().square() / free, 0).maxCoeff(&worst);
+        const Eigen::ArrayXd redundancy = P.diagonal().array();
+        const double gain = (redundancy > kMinRedundancy).select(r.array().square() / redundancy, 0).maxCoeff(&worst);
         if (!(gain > 0)) break;
         const VectorXd column = P.col(worst) / P(worst, worst);
         r -= column * r[worst];
@@ -162,85 +131,106 @@ bool hopeless(const Fitted& start, Index most)
         P(worst, worst) = 0;
         chi2 -= gain;
     }
-    return goodness(std::max(chi2, 0.0) / kNear, start.freedom) < kLeastGoodness;
+    return chi2_p_value(std::max(chi2, 0.0) / kNonlinearityFactor, start.freedom) < kMinGoodness;
 }
 
-/// Slips left out, others taken back, one by one. Slips are few, and the other touches fit; else it is the family that
-/// does not: nothing.
-std::optional<Fitted> without_slips(const std::string& name, const Touched& touched, Fitted now)
+/// Rejects outliers and takes touches back one by one. @return  nothing if the family does not fit: if there are too
+/// many outliers or the inliers do not agree with their noise
+std::optional<FamilyFit> reject_outliers(const std::string& name, const TouchSet& touches, FamilyFit fit)
 {
-    const auto n = static_cast<Index>(touched.xyz.cols());
-    const auto most = static_cast<std::ptrdiff_t>(kMostSlips * static_cast<double>(n));
-    const double price = price_of_a_slip(touched.sigma, touched.freedom);
-    if (hopeless(now, most)) return std::nullopt;
-    for (Index change = 0; change <= 2 * n; ++change) { // they might come and go in turns
-        const std::ptrdiff_t slips = std::count(now.is_kept.begin(), now.is_kept.end(), 0);
-        const Index i = to_change(now.judged, now.is_kept, now.freedom > 1, price);
+    const Index n = touches.xyz.cols();
+    const auto max_outliers = static_cast<std::ptrdiff_t>(kMaxOutlierShare * n);
+    const double penalty = outlier_penalty(touches.sigma, touches.freedom);
+    if (cannot_fit(fit, max_outliers)) return std::nullopt;
+    for (Index change = 0; change <= 2 * n; ++change) { // touches may alternate endlessly
+        const std::ptrdiff_t outliers = std::count(fit.is_kept.begin(), fit.is_kept.end(), 0);
+        const Index i = best_change(fit.evaluation, fit.is_kept, fit.freedom > 1, penalty);
         if (i < 0) {
-            const bool explained = slips <= most && goodness(now.chi2, now.freedom) >= kLeastGoodness;
-            return slips == 0 || explained ? std::optional(std::move(now)) : std::nullopt;
+            const bool fits = outliers <= max_outliers && chi2_p_value(fit.chi2, fit.freedom) >= kMinGoodness;
+            return outliers == 0 || fits ? std::optional(std::move(fit)) : std::nullopt;
         }
-        if (slips > most && now.is_kept[static_cast<std::size_t>(i)] != 0) return std::nullopt;
-        now.is_kept[static_cast<std::size_t>(i)] ^= 1;
-        std::optional<Fitted> next = fitted(name, touched, std::move(now.is_kept), now.iterations);
+        if (outliers > max_outliers && fit.is_kept[i] != 0) return std::nullopt;
+        fit.is_kept[i] ^= 1;
+        std::optional<FamilyFit> next = fit_kept(name, touches, std::move(fit.is_kept), fit.iterations);
         if (!next) return std::nullopt;
-        now = std::move(*next);
+        fit = std::move(*next);
     }
     return std::nullopt;
 }
 
 } // namespace
 
-std::optional<Candidate> fit_family(const std::string& name, const Touched& touched, const Columns& kept)
+TouchSet make_touch_set(const surface::Surface& surface, const job::Job& job)
 {
-    const auto n = static_cast<std::size_t>(touched.xyz.cols());
+    return {surface.touches, surface.touch_sigma, job.theta + job.ruling_direction,
+            job.surface == job::SurfaceType::swept, surface.touch_sigma_dof};
+}
+
+TouchIndices all_touches(const TouchSet& touches)
+{
+    TouchIndices all(touches.xyz.cols());
+    std::iota(all.begin(), all.end(), Index{0});
+    return all;
+}
+
+double outlier_penalty(double sigma, double freedom)
+{
+    // Outlier model: one touch in twenty, uniformly distributed over an inch (chips, dust, the anomaly's foot).
+    constexpr double kOutlierShare = 0.05;
+    constexpr double kOutlierRange = 25.4; // mm
+    const double penalty =
+        -2 * std::log(kOutlierShare / (1 - kOutlierShare) * sigma * std::sqrt(2 * std::numbers::pi) / kOutlierRange);
+    return std::isfinite(freedom) ? freedom * std::expm1(penalty / (freedom + 1)) : penalty;
+}
+
+std::optional<FitCandidate> fit_family(const std::string& name, const TouchSet& touches, const TouchIndices& kept)
+{
+    const std::size_t n = touches.xyz.cols();
     std::vector<char> is_kept(n, 0);
-    for (const Index i : kept) is_kept[static_cast<std::size_t>(i)] = 1;
-    std::optional<Fitted> start = fitted(name, touched, is_kept, 0);
-    std::optional<Fitted> best = start ? without_slips(name, touched, *start) : std::nullopt;
+    for (const Index i : kept) is_kept[i] = 1;
+    std::optional<FamilyFit> start = fit_kept(name, touches, is_kept, 0);
+    std::optional<FamilyFit> best = start ? reject_outliers(name, touches, *start) : std::nullopt;
     if (!best && start && kept.size() == n) best = std::move(start);
     if (!best) return std::nullopt;
-    Candidate candidate;
+    FitCandidate candidate;
     candidate.method = name;
-    candidate.gross_errors = marked(best->is_kept, 0);
+    candidate.outliers = indices_of(best->is_kept, 0);
     candidate.shape = std::move(best->solution.shape);
-    candidate.covariance = touched.sigma * touched.sigma * best->judged.covariance;
+    candidate.covariance = touches.sigma * touches.sigma * best->evaluation.covariance;
     candidate.chi2 = best->chi2;
     candidate.freedom = best->freedom;
     candidate.converged = best->solution.converged;
     candidate.iterations = best->iterations;
-    const auto p = static_cast<double>(best->judged.parameters);
-    candidate.score =
-        candidate.chi2 + p * std::log(static_cast<double>(n)) +
-        price_of_a_slip(touched.sigma, touched.freedom) * static_cast<double>(candidate.gross_errors.size());
+    candidate.score = candidate.chi2 + best->evaluation.parameters * std::log(n) +
+                      outlier_penalty(touches.sigma, touches.freedom) * candidate.outliers.size();
     return candidate;
 }
 
-void refuse_undetermined(const Touched& touched, const std::string& name, const std::string& source)
+void refuse_undetermined(const TouchSet& touches, const std::string& name, const std::string& source)
 {
-    if (!solve_family("plane", touched, all_touches(touched)))
-        throw InputError(source, "touches lie on one line in x and y");
-    throw InputError(source, "touches do not determine a " + name + ": another one goes through them as well");
+    if (!solve_family("plane", touches, all_touches(touches)))
+        throw core::InputError(source, "touches lie on one line in x and y");
+    throw core::InputError(source, "touches do not determine a " + name + ": more than one fits them");
 }
 
 Fit fit_family_by_name(const FitInput& input, const std::string& name)
 {
-    static const std::map<std::string, int> least = {{"sphere", 4}, {"cylinder", 5}, {"cone", 6},
-                                                     {"torus", 7},  {"quadric", 9},  {"quadratic", 6},
-                                                     {"cubic", 10}, {"quartic", 15}, {"swept", 5}};
-    Surface surface = begin_surface(input, name, kSampleRoles, least.at(name));
-    const Touched touched = touched_of(surface, input.job);
-    std::optional<Candidate> best = fit_family(name, touched, all_touches(touched));
-    if (best && (!best->gross_errors.empty() || goodness(best->chi2, best->freedom) < kLeastGoodness)) {
-        std::optional<Candidate> trimmed = fit_family(name, touched, trimmed_touches(touched));
+    static const std::map<std::string, int> min_touches = {{"sphere", 4}, {"cylinder", 5}, {"cone", 6},
+                                                           {"torus", 7},  {"quadric", 9},  {"quadratic", 6},
+                                                           {"cubic", 10}, {"quartic", 15}, {"swept", 5}};
+    surface::Surface surface = begin_surface(input, name, kSampleRoles, min_touches.at(name));
+    const TouchSet touches = make_touch_set(surface, input.job);
+    std::optional<FitCandidate> best = fit_family(name, touches, all_touches(touches));
+    if (best && (!best->outliers.empty() || chi2_p_value(best->chi2, best->freedom) < kMinGoodness)) {
+        std::optional<FitCandidate> trimmed = fit_family(name, touches, trimmed_touches(touches));
         if (trimmed && trimmed->score < best->score) best = std::move(trimmed);
     }
-    if (!best) refuse_undetermined(touched, name, input.source);
+    if (!best) refuse_undetermined(touches, name, input.source);
     surface.shape = std::move(best->shape);
     surface.covariance = std::move(best->covariance);
-    surface.gross_errors = std::move(best->gross_errors);
-    const double all = best->freedom + static_cast<double>(surface.gross_errors.size());
-    return finish_fit(std::move(surface), all, best->converged, best->iterations);
+    surface.outliers = std::move(best->outliers);
+    const double freedom_of_all = best->freedom + surface.outliers.size();
+    return finish_fit(std::move(surface), freedom_of_all, best->converged, best->iterations);
 }
 
-} // namespace fettle
+} // namespace fettle::fit

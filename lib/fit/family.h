@@ -5,49 +5,47 @@
 
 #include <optional>
 
-namespace fettle {
+namespace fettle::fit {
 
-// A family is a set of surfaces with few parameters (family_solution.h). Touches that are better explained as slips
-// (one in twenty, anywhere within an inch) than as touches of the surface are left out one by one, and come back when
-// they fit after all. A family's score is Schwarz's criterion (1978) with the probe's noise known:
-//     Σ (r/σ)² + parameters · ln(touches) + slips · (price of a slip).
+// A family is a set of surfaces with few parameters (family_solution.h). Touches that are better explained as outliers
+// (one in twenty, uniformly distributed over an inch) are left out one by one, and taken back if they fit after all. A
+// family's score is Schwarz's criterion (1978) for known noise:
+//     Σ (r/σ)² + parameters · ln(touches) + outliers · outlier_penalty.
 
-/// One family, fitted.
-struct Candidate {
+/// A fitted family.
+struct FitCandidate {
     std::string method;
-    Shape shape;
+    surface::Shape shape;
     Eigen::MatrixXd covariance;
-    Columns gross_errors;
+    TouchIndices outliers;
     double score = 0;
-    double chi2 = 0;    ///< Σ (r/σ)² of the touches that were not left out
-    double freedom = 0; ///< of that sum
+    double chi2 = 0;    ///< Σ (r/σ)² of the touches that are no outliers
+    double freedom = 0; ///< degrees of freedom of chi2
     bool converged = true;
     int iterations = 0;
 };
 
-/// @param kept  touches to begin with
+/// @param kept  touches to start with; the others start as outliers
 /// @return  nothing if they do not determine such a surface
-std::optional<Candidate> fit_family(const std::string& name, const Touched& touched, const Columns& kept);
+std::optional<FitCandidate> fit_family(const std::string& name, const TouchSet& touches, const TouchIndices& kept);
 
-/// All touches.
-Columns all_touches(const Touched& touched);
+/// The indices of all touches.
+TouchIndices all_touches(const TouchSet& touches);
 
-/// −2 ln of the odds that a touch is a slip, against a touch with no error. With ν degrees of freedom of sigma the
-/// residual's density is Student's t, ∝ (1 + χ²/ν)^(-(ν+1)/2), and the price is the χ² at which that is as improbable.
+/// −2 ln of the odds of an outlier against a touch without error. If sigma has ν degrees of freedom, the residual's
+/// density is Student's t, ∝ (1 + χ²/ν)^(-(ν+1)/2), and the penalty is the χ² at which it is as improbable as an
+/// outlier.
 /// @param sigma  of a touch, mm
-double price_of_a_slip(double sigma, double freedom = std::numeric_limits<double>::infinity());
+double outlier_penalty(double sigma, double freedom = std::numeric_limits<double>::infinity());
 
-/// The probability that χ² is as large by chance.
-double goodness(double chi2, double freedom);
-
-/// The method of a family's name.
+/// Fits one family, for its name as the method.
 /// @throws InputError if the touches do not determine such a surface
 Fit fit_family_by_name(const FitInput& input, const std::string& name);
 
-/// @throws InputError always: what is wrong with touches that determine no such surface
-[[noreturn]] void refuse_undetermined(const Touched& touched, const std::string& name, const std::string& source);
+/// @throws InputError always, for touches that do not determine a surface
+[[noreturn]] void refuse_undetermined(const TouchSet& touches, const std::string& name, const std::string& source);
 
-/// What families are fitted to: the touches and the noise of a surface that begin_surface() made.
-Touched touched_of(const Surface& surface, const Job& job);
+/// The touches and their noise of a surface that begin_surface() made.
+TouchSet make_touch_set(const surface::Surface& surface, const job::Job& job);
 
-} // namespace fettle
+} // namespace fettle::fit

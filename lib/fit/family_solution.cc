@@ -3,6 +3,7 @@
 #include "core/decompositions.h"
 #include "fit/quadric_family.h"
 #include "fit/round_family.h"
+#include "geometry/bounding_box.h"
 #include "surface/shapes.h"
 
 #include <Eigen/Geometry>
@@ -12,89 +13,90 @@
 #include <map>
 #include <numbers>
 
-namespace fettle {
+namespace fettle::fit {
 
 namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-// Of designs with columns of unit length; touches in F4 are rounded by 6e-8 of their size.
-constexpr double kRankThreshold = 1e-5;
+// Applies to design matrices with columns of unit length; single-precision files round touches by 6e-8 of their size.
+constexpr double kSolutionRankThreshold = 1e-5;
 
 // --- families whose height is linear in θ ----------------------------------------------------------------------------
 
-std::optional<VectorXd> linear_fit(const MatrixXd& gradients, const VectorXd& z, const Columns& kept)
+std::optional<VectorXd> linear_fit(const MatrixXd& gradients, const VectorXd& z, const TouchIndices& kept)
 {
     const MatrixXd A = gradients(Eigen::all, kept).transpose();
     const VectorXd size = A.colwise().norm().cwiseMax(std::numeric_limits<double>::min());
-    const LeastSquares scaled = least_squares_by_qr(A * size.cwiseInverse().asDiagonal(), z(kept), kRankThreshold);
+    const core::LeastSquaresSolution scaled =
+        core::least_squares_by_qr(A * size.cwiseInverse().asDiagonal(), z(kept), kSolutionRankThreshold);
     if (scaled.rank < A.cols()) return std::nullopt;
     return scaled.x.cwiseQuotient(size);
 }
 
-Polynomial about_the_middle(const Eigen::Matrix3Xd& touches, int degree)
+/// The zero polynomial in coordinates centred and scaled to the touches.
+surface::Polynomial centred_polynomial(const Eigen::Matrix3Xd& touches, int degree)
 {
-    Polynomial polynomial;
-    const Eigen::Vector2d least = touches.topRows(2).rowwise().minCoeff();
-    const Eigen::Vector2d most = touches.topRows(2).rowwise().maxCoeff();
-    polynomial.origin = (least + most) / 2;
-    polynomial.scale = std::max((most - least).maxCoeff() / 2, std::numeric_limits<double>::min());
-    polynomial.coefficients = VectorXd::Zero(monomials(degree));
+    surface::Polynomial polynomial;
+    const Eigen::AlignedBox2d box = geometry::bounding_box(touches.topRows<2>());
+    polynomial.origin = box.center();
+    polynomial.scale = std::max(box.sizes().maxCoeff() / 2, std::numeric_limits<double>::min());
+    polynomial.coefficients = VectorXd::Zero(surface::monomial_count(degree));
     return polynomial;
 }
 
-std::optional<Polynomial> fit_polynomial(const Touched& touched, const Columns& kept, int degree)
+std::optional<surface::Polynomial> fit_polynomial(const TouchSet& touches, const TouchIndices& kept, int degree)
 {
-    Polynomial polynomial = about_the_middle(touched.xyz, degree);
-    const MatrixXd gradients = height_gradients(polynomial, touched.xyz.topRows(2));
-    const std::optional<VectorXd> theta = linear_fit(gradients, touched.xyz.row(2).transpose(), kept);
+    surface::Polynomial polynomial = centred_polynomial(touches.xyz, degree);
+    const MatrixXd gradients = surface::height_gradients(polynomial, touches.xyz.topRows(2));
+    const std::optional<VectorXd> theta = linear_fit(gradients, touches.xyz.row(2).transpose(), kept);
     if (!theta) return std::nullopt;
     polynomial.coefficients = *theta;
     return polynomial;
 }
 
 template <int kDegree>
-std::optional<FamilySolution> polynomial(const Touched& touched, const Columns& kept)
+std::optional<FamilySolution> polynomial(const TouchSet& touches, const TouchIndices& kept)
 {
-    const std::optional<Polynomial> fitted = fit_polynomial(touched, kept, kDegree);
+    const std::optional<surface::Polynomial> fitted = fit_polynomial(touches, kept, kDegree);
     if (!fitted) return std::nullopt;
-    return FamilySolution{*fitted, height_gradients(*fitted, touched.xyz.topRows(2)), {}, true, 1};
+    return FamilySolution{*fitted, surface::height_gradients(*fitted, touches.xyz.topRows(2)), {}, true, 1};
 }
 
-std::optional<FamilySolution> quadric(const Touched& touched, const Columns& kept)
+std::optional<FamilySolution> quadric(const TouchSet& touches, const TouchIndices& kept)
 {
-    const std::optional<Polynomial> paraboloid = fit_polynomial(touched, kept, 2);
-    return paraboloid ? solve_quadric(touched, kept, *paraboloid) : std::nullopt;
+    const std::optional<surface::Polynomial> paraboloid = fit_polynomial(touches, kept, 2);
+    return paraboloid ? solve_quadric(touches, kept, *paraboloid) : std::nullopt;
 }
 
-std::optional<FamilySolution> plane(const Touched& touched, const Columns& kept)
+std::optional<FamilySolution> plane(const TouchSet& touches, const TouchIndices& kept)
 {
-    const std::optional<Polynomial> fitted = fit_polynomial(touched, kept, 1);
+    const std::optional<surface::Polynomial> fitted = fit_polynomial(touches, kept, 1);
     if (!fitted) return std::nullopt;
-    const Plane plane{fitted->origin, fitted->coefficients[0], fitted->coefficients.tail<2>() / fitted->scale};
-    return FamilySolution{plane, height_gradients(plane, touched.xyz.topRows(2)), {}, true, 1};
+    const surface::Plane plane{fitted->origin, fitted->coefficients[0], fitted->coefficients.tail<2>() / fitted->scale};
+    return FamilySolution{plane, surface::height_gradients(plane, touches.xyz.topRows(2)), {}, true, 1};
 }
 
 // --- round families --------------------------------------------------------------------------------------------------
 
-/// Where to look for round surfaces: the quadratic nearest to the touches.
+/// Initial estimate of round surfaces from the quadratic of least squares.
 struct RoundStart {
-    RoundProblem problem; ///< first axis along the direction of the least curvature
-    double least = 0;     ///< curvatures, > 0 convex, by size
-    double most = 0;
-    bool known = true; ///< does the quadratic determine the directions?
+    RoundProblem problem;      ///< the frame's first axis is the direction of min_curvature
+    double min_curvature = 0;  ///< principal curvatures by absolute value, > 0 convex, 1/mm; with a given direction
+    double max_curvature = 0;  ///< the curvatures along and across it
+    bool is_determined = true; ///< the touches determine the quadratic, and so the directions
 };
 
-RoundStart round_start(const Touched& touched, const Columns& kept)
+RoundStart round_start(const TouchSet& touches, const TouchIndices& kept)
 {
-    const Eigen::Matrix3Xd xyz = touched.xyz(Eigen::all, kept);
-    const Polynomial frame = about_the_middle(xyz, 2);
-    const MatrixXd A = height_gradients(frame, xyz.topRows(2)).transpose();
-    const auto [c, rank] = shortest_least_squares(A, xyz.row(2).transpose(), kRankThreshold);
+    const Eigen::Matrix3Xd xyz = touches.xyz(Eigen::all, kept);
+    const surface::Polynomial frame = centred_polynomial(xyz, 2);
+    const MatrixXd A = surface::height_gradients(frame, xyz.topRows(2)).transpose();
+    const auto [c, rank] = core::min_norm_least_squares(A, xyz.row(2).transpose(), kSolutionRankThreshold);
 
     RoundStart start;
-    start.known = rank == A.cols();
+    start.is_determined = rank == A.cols();
     const Eigen::Vector2d slope = c.segment<2>(1) / frame.scale;
     const Eigen::Vector3d n = Eigen::Vector3d(-slope.x(), -slope.y(), 1).normalized();
     Eigen::Matrix3d& axes = start.problem.frame.axes;
@@ -102,44 +104,45 @@ RoundStart round_start(const Touched& touched, const Columns& kept)
     const auto tangent = [&](const Eigen::Vector2d& along) {
         return Eigen::Vector3d(along.x(), along.y(), slope.dot(along)).normalized();
     };
-    axes.col(0) = tangent({std::cos(touched.direction), std::sin(touched.direction)});
-    // Tilting such a frame along its first axis, across which it lies level, keeps that axis in its vertical plane.
-    if (touched.given_direction) axes.col(2) = (Eigen::Vector3d::UnitZ() - axes(2, 0) * axes.col(0)).normalized();
+    axes.col(0) = tangent({std::cos(touches.direction), std::sin(touches.direction)});
+    // The second axis is horizontal, so that tilting the frame along its first axis keeps that axis in its vertical
+    // plane.
+    if (touches.given_direction) axes.col(2) = (Eigen::Vector3d::UnitZ() - axes(2, 0) * axes.col(0)).normalized();
     axes.col(1) = axes.col(2).cross(axes.col(0));
     start.problem.frame.point << frame.origin, c[0];
-    start.problem.given_direction = touched.given_direction;
+    start.problem.given_direction = touches.given_direction;
     start.problem.touches = xyz;
 
-    // Weingarten map of the quadratic in the tangent plane: H in x-y, seen along the tangents.
+    // Weingarten map of the quadratic: its Hessian in x-y, transformed to the tangents.
     Eigen::Matrix2d hessian;
     hessian << 2 * c[3], c[4], c[4], 2 * c[5];
     hessian *= -n.z() / (frame.scale * frame.scale);
-    const Eigen::Matrix2d flat = axes.topLeftCorner<2, 2>();
-    const Eigen::Matrix2d shape = flat.transpose() * hessian * flat;
-    if (touched.given_direction) {
-        start.least = shape(0, 0);
-        start.most = shape(1, 1);
+    const Eigen::Matrix2d tangents_xy = axes.topLeftCorner<2, 2>();
+    const Eigen::Matrix2d shape = tangents_xy.transpose() * hessian * tangents_xy;
+    if (touches.given_direction) {
+        start.min_curvature = shape(0, 0);
+        start.max_curvature = shape(1, 1);
     } else {
-        const SymmetricEigen<2> eigen = symmetric_eigen(shape);
+        const core::SymmetricEigen<2> eigen = core::symmetric_eigen(shape);
         const int smaller = std::abs(eigen.values[0]) < std::abs(eigen.values[1]) ? 0 : 1;
-        start.least = eigen.values[smaller];
-        start.most = eigen.values[1 - smaller];
+        start.min_curvature = eigen.values[smaller];
+        start.max_curvature = eigen.values[1 - smaller];
         axes.col(0) = (axes.leftCols<2>() * eigen.vectors.col(smaller)).normalized().eval();
         axes.col(1) = n.cross(axes.col(0));
     }
-    // Distance over n_z is the vertical error, to first order.
+    // To first order, the orthogonal distance over n_z is the vertical error.
     start.problem.weight.resize(xyz.cols());
-    Polynomial quadratic = frame;
+    surface::Polynomial quadratic = frame;
     quadratic.coefficients = c;
     for (Index i = 0; i < xyz.cols(); ++i) {
-        const double steepness = fettle::slope(quadratic, xyz.col(i).head<2>()).squaredNorm();
-        start.problem.weight[i] = std::sqrt(1 + steepness) / touched.sigma;
+        const double steepness = fettle::surface::slope(quadratic, xyz.col(i).head<2>()).squaredNorm();
+        start.problem.weight[i] = std::sqrt(1 + steepness) / touches.sigma;
     }
     return start;
 }
 
-/// The frame turned about its normal.
-RoundFrame turned(const RoundFrame& frame, double angle)
+/// The frame rotated about its normal.
+RoundFrame rotated(const RoundFrame& frame, double angle)
 {
     RoundFrame result = frame;
     result.axes.col(0) = std::cos(angle) * frame.axes.col(0) + std::sin(angle) * frame.axes.col(1);
@@ -152,137 +155,121 @@ struct Attempt {
     RoundSolution solution;
 };
 
-/// As near as touches of their standard deviation come? Few touches may be explained in several ways: never.
-bool explains(const Attempt& attempt, int parameters)
+/// True if χ² is as small as the touches' noise lets expect. Never true for few touches, which several surfaces may
+/// fit.
+bool fits_to_noise(const Attempt& attempt, int parameters)
 {
-    constexpr double kSpread = 2; // standard deviations of chi2
-    const auto n = static_cast<double>(attempt.problem.touches.cols());
-    const double freedom = n - parameters;
-    return freedom >= parameters && 2 * attempt.solution.cost <= freedom + kSpread * std::sqrt(2 * freedom);
+    constexpr double kMaxExcessSigmas = 2; // of χ² above its mean
+    const double freedom = attempt.problem.touches.cols() - parameters;
+    return freedom >= parameters && 2 * attempt.solution.cost <= freedom + kMaxExcessSigmas * std::sqrt(2 * freedom);
 }
 
-void attempt(RoundFamily family, RoundProblem problem, double angle, double around, double along,
-             std::optional<Attempt>& best, int& iterations)
+/// Changes of a cylinder's parameters that keep the direction of its axis in x-y. Tilting it along the axis also turns
+/// it, unless its normal has no component across.
+MatrixXd directions_keeping_heading(const surface::Cylinder& cylinder)
 {
-    problem.frame = turned(problem.frame, angle);
-    RoundSolution solution = solve(family, problem, around, along);
-    iterations += solution.iterations;
-    if (!std::isfinite(solution.cost) || (best && !(solution.cost < best->solution.cost))) return;
-    best = Attempt{std::move(problem), std::move(solution)};
-}
-
-/// Changes of a cylinder's parameters that leave the direction of its axis in x-y: tilting it along turns it, too,
-/// unless its normal is level across.
-MatrixXd along_the_direction(const Cylinder& cylinder)
-{
-    const Eigen::Vector3d level = Eigen::Vector3d(-cylinder.axis.y(), cylinder.axis.x(), 0);
+    const Eigen::Vector3d across = Eigen::Vector3d(-cylinder.axis.y(), cylinder.axis.x(), 0);
     MatrixXd free = MatrixXd::Zero(5, 4);
     free(0, 0) = free(1, 1) = free(2, 2) = free(4, 3) = 1;
-    free(3, 2) = -cylinder.normal.dot(level) / cylinder.axis.cross(cylinder.normal).dot(level);
+    free(3, 2) = -cylinder.normal.dot(across) / cylinder.axis.cross(cylinder.normal).dot(across);
     return free;
 }
 
-/// Do all touches lie on one side of the axis of revolution, at a distance of one size? Cones whose apex lies among
-/// them, and tori as narrow or with a pole there, go through a few touches with ease and are no castings.
-bool beside_the_axis(const Shape& shape, const Eigen::Matrix3Xd& touches)
+/// True if the normal points up and all touches lie on one side of the axis of revolution, at similar distances from
+/// it. Cones with their apex among the touches, and tori as narrow or with a pole there, fit a few touches easily but
+/// are no castings.
+bool is_plausible(const surface::Shape& shape, const Eigen::Matrix3Xd& touches)
 {
-    constexpr double kMostChange = 3; // times as far or as near as the frame's point
-    const auto beside = [&](const auto& round) {
-        const Eigen::Vector3d w = std::sin(round.lean) * round.normal + std::cos(round.lean) * round.axis;
-        const Eigen::Vector3d away = std::cos(round.lean) * round.normal - std::sin(round.lean) * round.axis;
-        for (const Eigen::Vector3d& touch : touches.colwise()) {
-            const Eigen::Vector3d from_axis = round.around * (touch - round.point) + away;
-            const double ratio = (from_axis - from_axis.dot(w) * w).norm();
-            if (!(from_axis.dot(away) > 1 / kMostChange && ratio < kMostChange)) return false;
+    constexpr double kMaxDistanceRatio = 3; // to the distance of the frame's origin, and vice versa
+    const auto is_plausible_round = [&](const auto& round) {
+        if constexpr (requires { round.normal; })
+            if (!(round.normal.z() > 0)) return false;
+        if constexpr (requires { round.lean; }) {
+            const Eigen::Vector3d w = std::sin(round.lean) * round.normal + std::cos(round.lean) * round.axis;
+            const Eigen::Vector3d away = std::cos(round.lean) * round.normal - std::sin(round.lean) * round.axis;
+            for (const Eigen::Vector3d& touch : touches.colwise()) {
+                const Eigen::Vector3d from_axis = round.curvature_around * (touch - round.point) + away;
+                const double ratio = (from_axis - from_axis.dot(w) * w).norm();
+                if (!(from_axis.dot(away) > 1 / kMaxDistanceRatio && ratio < kMaxDistanceRatio)) return false;
+            }
         }
         return true;
     };
-    if (const Cone* cone = std::get_if<Cone>(&shape)) return beside(*cone);
-    if (const Torus* torus = std::get_if<Torus>(&shape)) return beside(*torus);
-    return true;
+    return std::visit(is_plausible_round, shape);
+}
+
+/// The best solution from several initial frames.
+template <RoundFamily kFamily>
+std::optional<Attempt> best_attempt(const TouchSet& touches, const TouchIndices& kept)
+{
+    constexpr double kQuarterTurn = std::numbers::pi / 2;
+    const RoundStart start = round_start(touches, kept);
+    const int num_free = parameter_count(kFamily, touches.given_direction);
+    if (static_cast<int>(kept.size()) < num_free) return std::nullopt;
+    std::optional<Attempt> best;
+    int iterations = 0;
+    const auto try_start = [&](double angle, double around, double along) {
+        RoundProblem problem = start.problem;
+        problem.frame = rotated(problem.frame, angle);
+        RoundSolution solution = solve_round(kFamily, problem, around, along);
+        iterations += solution.iterations;
+        if (std::isfinite(solution.cost) && (!best || solution.cost < best->solution.cost))
+            best = Attempt{std::move(problem), std::move(solution)};
+    };
+    if (kFamily == RoundFamily::sphere) {
+        const double mean = (start.min_curvature + start.max_curvature) / 2;
+        try_start(0, mean, mean);
+    } else {
+        const double along = kFamily == RoundFamily::torus ? start.min_curvature : 0;
+        const double across = kFamily == RoundFamily::torus ? start.max_curvature : 0;
+        try_start(0, start.max_curvature, along);
+        // A solution with straight rulings that fits is the only one; tori bend both ways and may have two minima.
+        const bool found = kFamily != RoundFamily::torus && best && fits_to_noise(*best, num_free);
+        if (!touches.given_direction && !found) try_start(kQuarterTurn, start.min_curvature, across);
+        if (!start.is_determined && !touches.given_direction && !found)
+            for (const double angle : {kQuarterTurn / 2, 1.5 * kQuarterTurn})
+                try_start(angle, start.max_curvature, along);
+    }
+    if (best) best->solution.iterations = iterations;
+    return best;
 }
 
 template <RoundFamily kFamily>
-std::optional<FamilySolution> round(const Touched& touched, const Columns& kept)
+std::optional<FamilySolution> round(const TouchSet& touches, const TouchIndices& kept)
 {
-    constexpr double kQuarter = std::numbers::pi / 2;
-    const RoundStart start = round_start(touched, kept);
-    const int free = parameters(kFamily, touched.given_direction);
-    if (static_cast<int>(kept.size()) < free) return std::nullopt;
-    std::optional<Attempt> best;
-    int iterations = 0;
-    if (kFamily == RoundFamily::sphere) {
-        const double mean = (start.least + start.most) / 2;
-        attempt(kFamily, start.problem, 0, mean, mean, best, iterations);
-    } else {
-        const double along = kFamily == RoundFamily::torus ? start.least : 0;
-        const double across = kFamily == RoundFamily::torus ? start.most : 0;
-        attempt(kFamily, start.problem, 0, start.most, along, best, iterations);
-        // A straight ruling that the touches lie along is the only one; tori bend both ways and may have two minima.
-        const bool found = kFamily != RoundFamily::torus && best && explains(*best, free);
-        if (!touched.given_direction && !found)
-            attempt(kFamily, start.problem, kQuarter, start.least, across, best, iterations);
-        if (!start.known && !touched.given_direction && !found)
-            for (const double angle : {kQuarter / 2, 1.5 * kQuarter})
-                attempt(kFamily, start.problem, angle, start.most, along, best, iterations);
-    }
+    const std::optional<Attempt> best = best_attempt<kFamily>(touches, kept);
     if (!best) return std::nullopt;
     FamilySolution result;
     result.shape = round_shape(kFamily, best->problem.frame, best->solution.theta);
-    const bool up = std::visit(
-        [](const auto& shape) {
-            if constexpr (requires { shape.normal; }) return shape.normal.z() > 0;
-            return true;
-        },
-        result.shape);
-    if (!up || !beside_the_axis(result.shape, touched.xyz)) return std::nullopt;
-    result.gradients = height_gradients(result.shape, touched.xyz.topRows(2));
-    if (const Cylinder* cylinder = std::get_if<Cylinder>(&result.shape); cylinder != nullptr && touched.given_direction)
-        result.free = along_the_direction(*cylinder);
+    if (!is_plausible(result.shape, touches.xyz)) return std::nullopt;
+    result.gradients = surface::height_gradients(result.shape, touches.xyz.topRows(2));
+    if (const surface::Cylinder* cylinder = std::get_if<surface::Cylinder>(&result.shape);
+        cylinder != nullptr && touches.given_direction)
+        result.free_directions = directions_keeping_heading(*cylinder);
     result.converged = best->solution.converged;
-    result.iterations = iterations;
+    result.iterations = best->solution.iterations;
     return result;
 }
 
-// --- straight swept (Wang 2007, 4.4.2 and 4.4.4): a cubic section carried along the rulings
-// ----------------------------
+// --- straight swept surfaces (Wang 2007, 4.4.2 and 4.4.4): a cubic section carried along the rulings -----------------
 
-std::optional<FamilySolution> swept(const Touched& touched, const Columns& kept)
+std::optional<FamilySolution> swept(const TouchSet& touches, const TouchIndices& kept)
 {
-    Swept swept;
-    swept.ruling = {std::cos(touched.direction), std::sin(touched.direction)};
+    surface::Swept swept;
+    swept.ruling = {std::cos(touches.direction), std::sin(touches.direction)};
     const Eigen::Vector2d across(-swept.ruling.y(), swept.ruling.x());
-    const VectorXd s = touched.xyz.topRows(2).transpose() * across;
-    const VectorXd t = touched.xyz.topRows(2).transpose() * swept.ruling;
+    const VectorXd s = touches.xyz.topRows(2).transpose() * across;
+    const VectorXd t = touches.xyz.topRows(2).transpose() * swept.ruling;
     swept.origin = (s.maxCoeff() + s.minCoeff()) / 2 * across + t.mean() * swept.ruling;
-    swept.section_most = (s.maxCoeff() - s.minCoeff()) / 2;
-    swept.section_least = -swept.section_most;
-    if (swept.section_most > 0) swept.scale = swept.section_most;
-    MatrixXd gradients = height_gradients(swept, touched.xyz.topRows(2));
-    const std::optional<VectorXd> theta = linear_fit(gradients, touched.xyz.row(2).transpose(), kept);
+    swept.section_max = (s.maxCoeff() - s.minCoeff()) / 2;
+    swept.section_min = -swept.section_max;
+    if (swept.section_max > 0) swept.scale = swept.section_max;
+    MatrixXd gradients = surface::height_gradients(swept, touches.xyz.topRows(2));
+    const std::optional<VectorXd> theta = linear_fit(gradients, touches.xyz.row(2).transpose(), kept);
     if (!theta) return std::nullopt;
     swept.section = theta->head<4>();
     swept.slope = (*theta)[4];
     return FamilySolution{swept, std::move(gradients), {}, true, 1};
-}
-
-using Solver = std::optional<FamilySolution> (*)(const Touched&, const Columns& kept);
-
-const std::map<std::string, Solver>& families()
-{
-    static const std::map<std::string, Solver> table = {
-        {"plane", plane},
-        {"sphere", round<RoundFamily::sphere>},
-        {"cylinder", round<RoundFamily::cylinder>},
-        {"cone", round<RoundFamily::cone>},
-        {"torus", round<RoundFamily::torus>},
-        {"quadric", quadric},
-        {"quadratic", polynomial<2>},
-        {"cubic", polynomial<3>},
-        {"quartic", polynomial<4>},
-        {"swept", swept},
-    };
-    return table;
 }
 
 } // namespace
@@ -294,9 +281,22 @@ const std::vector<std::string>& family_names()
     return names;
 }
 
-std::optional<FamilySolution> solve_family(const std::string& name, const Touched& touched, const Columns& kept)
+std::optional<FamilySolution> solve_family(const std::string& name, const TouchSet& touches, const TouchIndices& kept)
 {
-    return families().at(name)(touched, kept);
+    using Solver = std::optional<FamilySolution> (*)(const TouchSet&, const TouchIndices&);
+    static const std::map<std::string, Solver> solvers = {
+        {"plane", plane},
+        {"sphere", round<RoundFamily::sphere>},
+        {"cylinder", round<RoundFamily::cylinder>},
+        {"cone", round<RoundFamily::cone>},
+        {"torus", round<RoundFamily::torus>},
+        {"quadric", quadric},
+        {"quadratic", polynomial<2>},
+        {"cubic", polynomial<3>},
+        {"quartic", polynomial<4>},
+        {"swept", swept},
+    };
+    return solvers.at(name)(touches, kept);
 }
 
-} // namespace fettle
+} // namespace fettle::fit

@@ -9,24 +9,25 @@
 #include <string>
 #include <vector>
 
-namespace fettle {
+namespace fettle::fit {
 
-using Columns = std::vector<Eigen::Index>;
+/// Indices of touches, the columns of TouchSet::xyz.
+using TouchIndices = std::vector<Eigen::Index>;
 
-/// What every family is fitted to.
-struct Touched {
-    Eigen::Matrix3Xd xyz;                                     ///< M, mm
-    double sigma = 0;                                         ///< standard deviation of a touch, mm
-    double direction = 0;                                     ///< of the rulings, from X_m, rad
-    bool given_direction = false;                             ///< are round surfaces straight along it? (swept jobs)
-    double freedom = std::numeric_limits<double>::infinity(); ///< of sigma, where it is an estimate
+/// The touches that the families are fitted to.
+struct TouchSet {
+    Eigen::Matrix3Xd xyz;         ///< M, mm
+    double sigma = 0;             ///< standard deviation of a touch, mm
+    double direction = 0;         ///< of the rulings, from X_m, rad
+    bool given_direction = false; ///< the rulings of round surfaces run along it (swept jobs)
+    double freedom = std::numeric_limits<double>::infinity(); ///< degrees of freedom of sigma, if it is an estimate
 };
 
 /// The least-squares member of a family.
 struct FamilySolution {
-    Shape shape;
-    Eigen::MatrixXd gradients; ///< ∂z/∂θ at all touches, columns
-    Eigen::MatrixXd free;      ///< directions in which θ may change, columns; empty: all
+    surface::Shape shape;
+    Eigen::MatrixXd gradients;       ///< ∂z/∂θ at all touches, columns
+    Eigen::MatrixXd free_directions; ///< columns span the allowed changes of θ; empty: all changes
     bool converged = true;
     int iterations = 0;
 };
@@ -34,8 +35,9 @@ struct FamilySolution {
 /// plane, sphere, cylinder, cone, torus, quadric; quadratic, cubic, quartic (polynomials); swept.
 const std::vector<std::string>& family_names();
 
-/// Least squares of the vertical errors of some touches; for the round families of the orthogonal distances over n_z of
-/// the quadratic through them, which is the same to first order. Nothing if they do not determine a surface.
-std::optional<FamilySolution> solve_family(const std::string& name, const Touched& touched, const Columns& kept);
+/// Least squares of the vertical errors of the kept touches. The round families use the orthogonal distances over n_z
+/// of the quadratic through them instead, which are the same to first order.
+/// @return  nothing if the touches do not determine a surface
+std::optional<FamilySolution> solve_family(const std::string& name, const TouchSet& touches, const TouchIndices& kept);
 
-} // namespace fettle
+} // namespace fettle::fit

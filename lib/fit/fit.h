@@ -10,65 +10,79 @@
 #include <string>
 #include <vector>
 
-namespace fettle {
+namespace fettle::fit {
 
-/// What a surface is fitted to.
+/// The touches to fit a surface to, and the settings of the fit.
 struct FitInput {
     Eigen::Matrix3Xd xyz;   ///< 3xN, mm, M; columns with NaN are dropped
     Eigen::VectorXi roles;  ///< N; see docs/conventions.md
     Eigen::VectorXi curves; ///< N, number of each touch's line; empty: unknown
-    Job job;
-    bool use_boundary = false;   ///< fit points of role 0, too (take_boundary)
-    bool estimate_noise = false; ///< by the residuals, not by job.probe (noise_estimate.h)
-    double noise_freedom = std::numeric_limits<double>::infinity(); ///< of job.probe's, where it is such an estimate
-    std::optional<double> spacing;  ///< griddata: of its uniform sampling, mm; nothing: by the points' density
-    std::string source = "touches"; ///< their name in messages
+    job::Job job;
+    bool use_boundary = false;   ///< fit points of role 0, too (add_boundary_touches)
+    bool estimate_noise = false; ///< estimate the noise by the residuals instead of job.probe (noise_estimate.h)
+    /// Degrees of freedom of job.probe's accuracy, finite if it is such an estimate.
+    double noise_freedom = std::numeric_limits<double>::infinity();
+    bool is_exact = false;          ///< no fit_dense() even for more than kMaxExactTouches (dense.h)
+    std::optional<double> spacing;  ///< of griddata's uniform sampling, mm; nothing: from the points' density
+    std::string source = "touches"; ///< name of the touches in messages
 };
 
-/// A fitted surface and how it came about.
+/// A fitted surface and statistics of the fit.
 struct Fit {
-    Surface surface;
+    surface::Surface surface;
     Eigen::VectorXd residuals; ///< touch - surface at the same (x, y), one for each of surface.touches, mm;
                                ///< empty for a fit to more points than it keeps (dense.h)
-    double freedom = 0;        ///< degrees of freedom of the residuals; 0: none are known
+    double freedom = 0;        ///< degrees of freedom of the residuals; 0: unknown
     bool converged = true;
     int iterations = 0;
 };
 
-/// The methods by name, "auto" not among them.
+/// The names of the methods, without "auto".
 const std::vector<std::string>& fit_methods();
 
 /// Appends the job's boundary points that have a z, as touches of role 0, and sets use_boundary: the operator touched
-/// good metal there with the same probe. Points of role 0 that are there already stay the only ones.
-/// @throws InputError if there are none at all
-void take_boundary(FitInput& input);
+/// good metal there with the same probe. Nothing is appended if the input already has points of role 0.
+/// @throws InputError if there are none of either
+void add_boundary_touches(FitInput& input);
 
-/// Fits by a method's name; "auto": what explains the touches best (fit_auto() in selection.h).
+/// Fits by the method of a name, or by fit_auto() (selection.h) for "auto".
 /// @throws InputError if the touches do not determine such a surface
 Fit fit_surface(const FitInput& input, const std::string& method);
 
 // --- shared by the fits ----------------------------------------------------------------------------------------------
 
-/// Standard deviation of a touch: 99 % of a normal error lie within the probe's accuracy, mm.
-double touch_sigma(const Probe& probe);
+/// Standard deviation of a touch, mm: 99 % of its normally distributed errors lie within the probe's accuracy.
+double touch_sigma(const job::Probe& probe);
 
-/// Columns of the input that are finite and have a wanted role. Role 0 counts as wanted with use_boundary.
+/// True for a wanted role, and for role 0 with use_boundary.
+bool is_used_role(double role, const std::vector<int>& wanted_roles, bool use_boundary);
+
+/// Indices of the input's columns that are finite and have a used role.
 std::vector<Eigen::Index> usable_points(const FitInput& input, const std::vector<int>& wanted_roles);
 
 /// A surface without shape and covariance: units, method, touch_sigma, and the touches that are usable; the
-/// rest is counted in `ignored`.
-/// @throws InputError for fewer than `least` touches
-Surface begin_surface(const FitInput& input, const std::string& method, const std::vector<int>& wanted_roles,
-                      int least);
+/// other points are counted in `ignored`.
+/// @throws InputError for fewer than `min_touches` touches, or on a line in x and y (check_not_collinear(); not for the
+///         method "plane")
+surface::Surface begin_surface(const FitInput& input, const std::string& method, const std::vector<int>& wanted_roles,
+                               int min_touches);
+
+/// @throws InputError for touches on a line in x and y: across it they spread (rms) by no more than the probe's
+///         accuracy, so a height beside the line would be extrapolated from their noise
+void check_not_collinear(const FitInput& input, const Eigen::Matrix3Xd& touches);
+
+/// Probability that χ² exceeds a value by chance; 1 without degrees of freedom, or if the value is not finite.
+double chi2_p_value(double chi2, double freedom);
 
 /// Fills in residuals, rms and goodness. @param freedom  degrees of freedom of the residuals; 0: no goodness (NaN)
-Fit finish_fit(Surface surface, double freedom, bool converged, int iterations);
+Fit finish_fit(surface::Surface surface, double freedom, bool converged, int iterations);
 
 /// Roles of touches on good metal that were not chosen as corners of B (docs/conventions.md, role).
 inline const std::vector<int> kSampleRoles = {1, 2, 4, 5};
+inline constexpr int kMaxRole = 5;
 
-/// Huber's weight of a residual (1964): 1 within `width`, width/|r| beyond, so that an outlier pulls no more than a
-/// touch at the edge of the probe's accuracy.
+/// Huber's weight of a residual (1964): 1 within `width`, width/|r| beyond, so that an outlier has no more influence
+/// than a touch at the limit of the probe's accuracy.
 double huber_weight(double residual, double width);
 
-} // namespace fettle
+} // namespace fettle::fit

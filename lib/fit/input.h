@@ -3,11 +3,12 @@
 #include "cloud/cloud.h"
 #include "fit/fit.h"
 
-namespace fettle {
+namespace fettle::fit {
 
-/// What a cloud says of its touches: their roles (points without the field are samples) and the numbers of their lines.
-/// @param source  its name in messages
-/// @throws InputError for a role that there is not
-FitInput fit_input(const Job& job, const Cloud& cloud, const std::string& source);
+/// Fit input from a cloud of touches with optional fields `role` (without it, all points are samples) and `curve`, the
+/// numbers of their lines.
+/// @param source  the cloud's name in messages
+/// @throws InputError for an unknown role
+FitInput fit_input(const job::Job& job, const cloud::Cloud& cloud, const std::string& source);
 
-} // namespace fettle
+} // namespace fettle::fit

@@ -10,7 +10,7 @@
 
 #include <map>
 
-namespace fettle {
+namespace fettle::fit {
 
 namespace {
 
@@ -50,4 +50,4 @@ Fit fit_surface(const FitInput& input, const std::string& method)
     return input.estimate_noise ? fit_with_estimated_noise(input, method, fit_by) : fit_by(input, method);
 }
 
-} // namespace fettle
+} // namespace fettle::fit

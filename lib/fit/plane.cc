@@ -9,31 +9,35 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
-namespace fettle {
+namespace fettle::fit {
 
 namespace {
 
-constexpr int kMostIterations = 100;
-constexpr double kSettled = 1e-12; // change of the unit normal: rounding
-// A plane steeper than 89.94° is no height field that a vertical probe could touch.
-constexpr double kLeastUpward = 1e-3;
-// Touches in F4 are rounded by 6e-8 of their size; a spread across the line below that is not there.
-constexpr double kRounding = 1e-6;
+// Touches of a curved part lie on both edges of Huber's width, and the iteration converges slowly: 1500 steps have been
+// met, and they take milliseconds.
+constexpr int kMaxIterations = 10000;
+constexpr double kRelativeChangeTolerance = 1e-6; // change of a touch's distance over the probe's accuracy: irrelevant
+constexpr double kRelativeRounding = 1e-14;       // of distances over the coordinates that they are computed from
+// n_z of 89.94°: a vertical probe cannot touch a steeper plane.
+constexpr double kMinNormalZ = 1e-3;
+// Single-precision files round coordinates by 6e-8 of their size, so smaller relative spreads are roundoff.
+constexpr double kRoundingTolerance = 1e-6;
 
-struct Tls {
+struct TotalLeastSquares {
     Eigen::Vector3d centroid;
     Eigen::Vector3d normal; ///< unit, up
-    double across = 0;      ///< rms spread in the plane, across the direction of the largest spread, mm
-    double along = 0;       ///< largest rms spread, mm
+    double width = 0;       ///< rms spread in the plane, perpendicular to the direction of the largest spread, mm
+    double length = 0;      ///< largest rms spread, mm
 };
 
-Tls total_least_squares(const Eigen::Matrix3Xd& points, const Eigen::VectorXd& weight)
+TotalLeastSquares total_least_squares(const Eigen::Matrix3Xd& points, const Eigen::VectorXd& weight)
 {
     const double sum = weight.sum();
     const Eigen::Vector3d centroid = points * weight / sum;
     const Eigen::Matrix3Xd scaled = (points.colwise() - centroid) * (weight / sum).cwiseSqrt().asDiagonal();
-    const SymmetricEigen<3> spread = symmetric_eigen<3>(scaled * scaled.transpose());
+    const core::SymmetricEigen<3> spread = core::symmetric_eigen<3>(scaled * scaled.transpose());
     const Eigen::Vector3d normal = spread.vectors.col(0);
     return {centroid, normal.z() < 0 ? Eigen::Vector3d(-normal) : normal, std::sqrt(std::max(spread.values[1], 0.0)),
             std::sqrt(spread.values[2])};
@@ -43,34 +47,37 @@ Tls total_least_squares(const Eigen::Matrix3Xd& points, const Eigen::VectorXd& w
 
 Fit fit_plane(const FitInput& input)
 {
-    Surface surface = begin_surface(input, "plane", {0, 1, 2, 4, 5}, 3);
+    surface::Surface surface = begin_surface(input, "plane", {0, 1, 2, 4, 5}, 3);
     const Eigen::Matrix3Xd& touches = surface.touches;
     Eigen::VectorXd weight = Eigen::VectorXd::Ones(touches.cols());
-    Tls tls = total_least_squares(touches, weight);
-    if (tls.across <= std::max(input.job.probe.accuracy, kRounding * tls.along))
-        throw InputError(input.source, "touches lie on a line: across it they spread by only " +
-                                           to_text(tls.across / input.job.units.mm()) + " " +
-                                           to_string(input.job.units.length));
-    bool settled = false;
+    TotalLeastSquares tls = total_least_squares(touches, weight);
+    if (tls.width <= std::max(input.job.probe.accuracy, kRoundingTolerance * tls.length))
+        throw core::InputError(input.source, "touches lie on a line: across it they spread by only " +
+                                                 core::to_text(tls.width / input.job.units.mm()) + " " +
+                                                 units::to_string(input.job.units.length));
+    const auto distances = [&] { return Eigen::VectorXd((touches.colwise() - tls.centroid).transpose() * tls.normal); };
+    const double tolerance = std::max(kRelativeChangeTolerance * input.job.probe.accuracy,
+                                      kRelativeRounding * touches.cwiseAbs().maxCoeff());
+    Eigen::VectorXd distance = distances();
+    bool converged = false;
     int iterations = 0;
-    for (; iterations < kMostIterations && !settled; ++iterations) {
-        const Eigen::VectorXd distance = (touches.colwise() - tls.centroid).transpose() * tls.normal;
+    for (; iterations < kMaxIterations && !converged; ++iterations) {
         weight = distance.unaryExpr([&](double d) { return huber_weight(d, input.job.probe.accuracy); });
-        const Tls next = total_least_squares(touches, weight);
-        settled = (next.normal - tls.normal).norm() < kSettled;
-        tls = next;
+        tls = total_least_squares(touches, weight);
+        const Eigen::VectorXd before = std::exchange(distance, distances());
+        converged = (distance - before).cwiseAbs().maxCoeff() <= tolerance;
     }
-    if (tls.normal.z() < kLeastUpward)
-        throw InputError(input.source, "touches lie on a vertical plane, which has no height over x and y");
+    if (tls.normal.z() < kMinNormalZ)
+        throw core::InputError(input.source, "touches lie on a vertical plane, which has no height over x and y");
 
-    const Plane plane{tls.centroid.head<2>(), tls.centroid.z(), -tls.normal.head<2>() / tls.normal.z()};
+    const surface::Plane plane{tls.centroid.head<2>(), tls.centroid.z(), -tls.normal.head<2>() / tls.normal.z()};
     surface.shape = plane;
-    const Eigen::MatrixXd G = height_gradients(plane, touches.topRows(2)); // columns: touches
+    const Eigen::MatrixXd G = surface::height_gradients(plane, touches.topRows(2)); // columns: touches
     const Eigen::Matrix3d normal_matrix = G * weight.asDiagonal() * G.transpose();
     surface.covariance =
         surface.touch_sigma * surface.touch_sigma * normal_matrix.ldlt().solve(Eigen::Matrix3d::Identity());
-    const auto freedom = static_cast<double>(touches.cols() - 3);
-    return finish_fit(std::move(surface), freedom, settled, iterations);
+    const double freedom = touches.cols() - 3;
+    return finish_fit(std::move(surface), freedom, converged, iterations);
 }
 
-} // namespace fettle
+} // namespace fettle::fit

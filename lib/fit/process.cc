@@ -1,5 +1,7 @@
 #include "fit/process.h"
 
+#include "fit/bspline.h"
+#include "fit/leave_one_out.h"
 #include "fit/process_mixture.h"
 #include "fit/process_spectrum.h"
 #include "surface/shapes.h"
@@ -8,135 +10,140 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
 #include <tuple>
 #include <utility>
 #include <vector>
 
-namespace fettle {
+namespace fettle::fit {
 
 namespace {
 
 using Eigen::Index;
 using Eigen::VectorXd;
 
-/// The touch that is better explained as a slip than by the others, most of all (leave-one-out: Wahba 1990, 4.2); -1.
-/// With P = E (σ² + τ² λ)⁻¹ Eᵀ, touch i is off what the others say by (P z)_i / P_ii, of variance 1 / P_ii.
-Index worst_slip(const std::vector<Spectrum>& all, double sigma)
+/// With P = E (σ² + τ² λ)⁻¹ Eᵀ, touch i deviates from the prediction of the others by (P z)_i / P_ii, of variance
+/// 1 / P_ii (Wahba 1990, 4.2). In units of σ.
+LeaveOneOut leave_one_out(const std::vector<Spectrum>& all)
 {
-    const double best = best_score(all);
-    for (const Spectrum& s : all)
-        for (int i = 0; i < kRatios; ++i) {
-            if (s.score[static_cast<std::size_t>(i)] != best) continue;
-            const VectorXd d = precision(s, ratio_of(i));
-            const Eigen::ArrayXd P = (s.E.cwiseAbs2() * d).array(), Pz = (s.E * d.cwiseProduct(s.y)).array();
-            Index worst = -1;
-            const double gain = (Pz.square() / P - P.log()).maxCoeff(&worst);
-            return gain > price_of_a_slip(sigma) ? worst : -1;
+    const Index n = all.front().E.rows(), models = static_cast<Index>(all.size()) * kNumRatios;
+    LeaveOneOut result{Eigen::MatrixXd(n, models), Eigen::MatrixXd(n, models), Eigen::MatrixXd(n, models)};
+    Index k = 0;
+    for (const Spectrum& s : all) {
+        const Eigen::MatrixXd squares = s.E.cwiseAbs2();
+        for (int i = 0; i < kNumRatios; ++i, ++k) {
+            const VectorXd d = precision(s, amplitude_ratio(i));
+            const Eigen::ArrayXd P = (squares * d).array(), Pz = (s.E * d.cwiseProduct(s.y)).array();
+            result.deviation.col(k) = Pz / P;
+            result.variance.col(k) = P.inverse();
+            result.log_weight.col(k) = (Pz.square() / P - P.log() - s.score[i]) / 2;
         }
-    return -1;
-}
-
-/// The longest cell on which a process is followed: where it is smooth without end, the quasi-interpolant's error is
-/// 0.08 τ (h/ℓ)⁴ (rms), a tenth of σ. Matérn's of 5/2 is rougher than touches can tell within a cell: 0.38 τ
-/// (h/ℓ)^(5/2), 0.4 σ.
-double longest_cell(const Correlation& correlation, double ratio)
-{
-    return correlation.length *
-           (correlation.roughness == Roughness::none ? std::pow(ratio / 1.2, -0.25) : std::pow(ratio, -0.4));
-}
-
-/// The same rectangle in cells up to `longest` mm, no finer than they were.
-Bspline coarsened(const Bspline& grid, double longest)
-{
-    constexpr Index kMore = 3; // functions than cells: cubic
-    constexpr double kFewest = 4;
-    const Eigen::Array2d before(static_cast<double>(grid.heights.rows() - kMore),
-                                static_cast<double>(grid.heights.cols() - kMore));
-    const Eigen::Array2d side = before * grid.cell.array();
-    const Eigen::Array2d after = (side / longest).ceil().max(kFewest).min(before);
-    Bspline result = grid;
-    result.cell = side / after;
-    result.heights.setZero(static_cast<Index>(after.x()) + kMore, static_cast<Index>(after.y()) + kMore);
+    }
     return result;
 }
 
-/// Takes out of `touches` what is better explained as a slip than by the others, one by one, up to `most`.
-/// @return  which of all; `believed` are the spectra of the others
-Columns take_slips(ProcessTouches& touches, std::vector<Spectrum>& believed, std::size_t most)
+Index worst_outlier(const std::vector<Spectrum>& all, double sigma)
 {
-    const ProcessTouches all = touches;
-    Columns kept(static_cast<std::size_t>(all.z.size())), slips;
-    std::iota(kept.begin(), kept.end(), Index{0});
-    for (believed = spectra(touches); slips.size() < most; believed = spectra(touches)) {
-        const Index worst = worst_slip(believed, all.sigma);
-        if (worst < 0) break;
-        slips.push_back(kept[static_cast<std::size_t>(worst)]);
-        kept.erase(kept.begin() + worst);
-        touches = part_of(all, kept);
-    }
-    std::sort(slips.begin(), slips.end());
-    return slips;
+    // The penalty leaves out the constant of the normal density.
+    const double log_outlier = -(outlier_penalty(sigma) + std::log(2 * std::numbers::pi)) / 2;
+    return most_probable_outlier(leave_one_out(all), log_outlier);
 }
 
-/// How probable the correlations and amplitudes are, against the most probable one of all.
+/// The longest cell side that represents a process. The rms error of the quasi-interpolant is 0.08 τ (h/ℓ)⁴ for the
+/// squared exponential, limited to a tenth of σ, and 0.38 τ (h/ℓ)^(5/2) for Matérn's kernel, limited to 0.4 σ: it is
+/// rougher within a cell than touches can resolve.
+double max_cell_side(const Correlation& correlation, double ratio)
+{
+    return correlation.length *
+           (correlation.kernel == Kernel::squared_exponential ? std::pow(ratio / 1.2, -0.25) : std::pow(ratio, -0.4));
+}
+
+/// A grid over the same rectangle with cells up to `max_side` mm, but no finer than before.
+surface::Bspline coarsen(const surface::Bspline& grid, double max_side)
+{
+    constexpr double kMinCells = 4;
+    const Eigen::Array2d before = cell_counts(grid);
+    const Eigen::Array2d side = before * grid.cell.array();
+    return with_cell_counts(grid, (side / max_side).ceil().max(kMinCells).min(before));
+}
+
+/// Removes outliers from `touches` one by one, up to `max_outliers`. `spectra` becomes that of the inliers.
+/// @return  indices of the outliers among the original touches
+TouchIndices reject_outliers(ProcessTouches& touches, std::vector<Spectrum>& spectra, std::size_t max_outliers)
+{
+    const ProcessTouches all = touches;
+    TouchIndices kept(all.z.size()), outliers;
+    std::iota(kept.begin(), kept.end(), Index{0});
+    for (spectra = compute_spectra(touches); outliers.size() < max_outliers; spectra = compute_spectra(touches)) {
+        const Index worst = worst_outlier(spectra, all.sigma);
+        if (worst < 0) break;
+        outliers.push_back(kept[worst]);
+        kept.erase(kept.begin() + worst);
+        touches = subset_of(all, kept);
+    }
+    std::sort(outliers.begin(), outliers.end());
+    return outliers;
+}
+
+/// Likelihoods of the correlations and amplitudes, relative to the largest one.
 struct Weights {
-    std::vector<std::array<double, kRatios>> of; ///< 0 where they change nothing that shows
+    std::vector<std::array<double, kNumRatios>> relative; ///< for each correlation and amplitude; 0 where negligible
     double sum = 0;
-    double cell = 0; ///< mm, on which all correlations are followed that matter
+    double cell = 0; ///< cell side that represents all correlations that matter, mm
 };
 
-Weights weights_of(const std::vector<Spectrum>& believed)
+Weights mixture_weights(const std::vector<Spectrum>& spectra)
 {
-    constexpr double kLeastWeight = 0.01;
-    constexpr double kLeastShare = 0.01; // of the sum, for a correlation to matter
-    const double best = best_score(believed);
-    Weights weights{std::vector<std::array<double, kRatios>>(believed.size()), 0,
+    constexpr double kMinWeight = 0.01; // relative to the largest
+    constexpr double kMinShare = 0.01;  // of the sum, for a correlation to matter
+    const double best = min_score(spectra);
+    Weights weights{std::vector<std::array<double, kNumRatios>>(spectra.size()), 0,
                     std::numeric_limits<double>::infinity()};
-    std::vector<double> shares(believed.size(), 0);
-    for (std::size_t k = 0; k < believed.size(); ++k)
-        for (std::size_t i = 0; i < kRatios; ++i) {
-            const double weight = std::exp((best - believed[k].score[i]) / 2);
-            shares[k] += weight;
-            weights.of[k][i] = weight < kLeastWeight ? 0 : weight;
+    std::vector<double> sums(spectra.size(), 0);
+    for (std::size_t k = 0; k < spectra.size(); ++k)
+        for (int i = 0; i < kNumRatios; ++i) {
+            const double weight = std::exp((best - spectra[k].score[i]) / 2);
+            sums[k] += weight;
+            weights.relative[k][i] = weight < kMinWeight ? 0 : weight;
         }
-    weights.sum = std::accumulate(shares.begin(), shares.end(), 0.0);
-    for (std::size_t k = 0; k < believed.size(); ++k)
-        for (int i = 0; i < kRatios; ++i)
-            if (shares[k] >= kLeastShare * weights.sum && weights.of[k][static_cast<std::size_t>(i)] > 0)
-                weights.cell = std::min(weights.cell, longest_cell(believed[k].correlation, ratio_of(i)));
+    weights.sum = std::accumulate(sums.begin(), sums.end(), 0.0);
+    for (std::size_t k = 0; k < spectra.size(); ++k)
+        for (int i = 0; i < kNumRatios; ++i)
+            if (sums[k] >= kMinShare * weights.sum && weights.relative[k][i] > 0)
+                weights.cell = std::min(weights.cell, max_cell_side(spectra[k].correlation, amplitude_ratio(i)));
     return weights;
 }
 
 } // namespace
 
-std::optional<Candidate> fit_process(const Touched& touched, const Bspline& grid)
+std::optional<FitCandidate> fit_gaussian_process(const TouchSet& touches, const surface::Bspline& grid)
 {
-    std::optional<FamilySolution> trend = solve_family("quadratic", touched, all_touches(touched));
-    if (!trend) trend = solve_family("plane", touched, all_touches(touched));
-    constexpr Index kRest = 2; // touches that nothing has taken up yet
-    const Index n = touched.xyz.cols();
-    if (!trend || n < trend->gradients.rows() + kRest) return std::nullopt;
+    std::optional<FamilySolution> trend = solve_family("quadratic", touches, all_touches(touches));
+    if (!trend) trend = solve_family("plane", touches, all_touches(touches));
+    constexpr Index kMinRedundancy = 2;
+    const Index n = touches.xyz.cols();
+    if (!trend || n < trend->gradients.rows() + kMinRedundancy) return std::nullopt;
     const Index p = trend->gradients.rows();
 
-    ProcessTouches touches{touched.xyz.topRows(2), touched.xyz.row(2).transpose(), touched.sigma,
+    ProcessTouches inliers{touches.xyz.topRows(2), touches.xyz.row(2).transpose(), touches.sigma,
                            trend->gradients.transpose()};
-    Candidate candidate;
+    FitCandidate candidate;
     candidate.method = "gp";
-    std::vector<Spectrum> believed;
-    candidate.gross_errors = take_slips(touches, believed, static_cast<std::size_t>(std::min(n - p - kRest, n / 4)));
-    const Weights weights = weights_of(believed);
-    candidate.score = best_score(believed) -
-                      2 * std::log(weights.sum / static_cast<double>(believed.size() * kRatios)) +
-                      price_of_a_slip(touched.sigma) * static_cast<double>(candidate.gross_errors.size());
-    candidate.freedom = static_cast<double>(touches.z.size() - p);
+    std::vector<Spectrum> spectra;
+    candidate.outliers = reject_outliers(inliers, spectra, std::min(n - p - kMinRedundancy, n / 4));
+    const Weights weights = mixture_weights(spectra);
+    candidate.score = min_score(spectra) - 2 * std::log(weights.sum / (spectra.size() * kNumRatios)) +
+                      outlier_penalty(touches.sigma) * candidate.outliers.size();
+    candidate.freedom = inliers.z.size() - p;
 
-    // Their mean by probability.
-    Bspline spline = coarsened(grid, weights.cell);
+    // The mixture of all correlations and amplitudes, on a grid as coarse as they allow.
+    surface::Bspline spline = coarsen(grid, weights.cell);
     const ControlHeights controls(spline);
-    const Eigen::MatrixXd trend_controls = controls.from(height_gradients(trend->shape, controls.nodes()).transpose());
-    ProcessMixture mixture(touches, controls, trend_controls);
-    for (std::size_t k = 0; k < believed.size(); ++k) mixture.add(believed[k], weights.of[k]);
+    const Eigen::MatrixXd trend_controls =
+        controls.from_values(surface::height_gradients(trend->shape, controls.nodes()).transpose());
+    ProcessMixture mixture(inliers, controls, trend_controls);
+    for (std::size_t k = 0; k < spectra.size(); ++k) mixture.add(spectra[k], weights.relative[k]);
     VectorXd heights;
     std::tie(heights, candidate.covariance) = mixture.result();
     spline.heights = heights.reshaped(spline.heights.rows(), spline.heights.cols());
@@ -144,4 +151,4 @@ std::optional<Candidate> fit_process(const Touched& touched, const Bspline& grid
     return candidate;
 }
 
-} // namespace fettle
+} // namespace fettle::fit

@@ -9,24 +9,24 @@
 #include <utility>
 #include <vector>
 
-namespace fettle {
+namespace fettle::fit {
 
-/// Functions of x and y by their control heights on a grid: c_i = (f_{i-2} - 10 f_{i-1} + 54 f_i - 10 f_{i+1} +
-/// f_{i+2}) / 36 from their values at the Greville abscissae and two beyond each end is exact for cubics
-/// (quasi-interpolant: de Boor 2001, XII) and nearly the interpolant for what bends within four cells.
+/// Control heights of functions of x and y on a grid by a quasi-interpolant (de Boor 2001, XII): c_i = (f_{i-2} - 10
+/// f_{i-1} + 54 f_i - 10 f_{i+1} + f_{i+2}) / 36 with the values at the Greville abscissae and two more beyond each
+/// end. It is exact for cubics and close to the interpolant for functions that bend within four cells.
 class ControlHeights {
   public:
-    explicit ControlHeights(const Bspline& grid);
+    explicit ControlHeights(const surface::Bspline& grid);
 
     Eigen::Index size() const { return rows_ * columns_; }
-    /// Where functions are to be evaluated.
+    /// The places at which the functions must be evaluated, 2xM, M, mm.
     const Eigen::Matrix2Xd& nodes() const { return nodes_; }
-    /// Of functions whose values at the nodes are given, one a column.
-    Eigen::MatrixXd from(const Eigen::MatrixXd& values) const;
-    /// Correlation of two control heights, by how many rows and columns lie between them.
-    Eigen::MatrixXd correlation_between(const Correlation& correlation) const;
-    /// All of them with all: the lower half of the matrix.
-    void add_by_place(Eigen::MatrixXd& sum, const Eigen::MatrixXd& between) const;
+    /// Control heights, one column for each column of function values at the nodes.
+    Eigen::MatrixXd from_values(const Eigen::MatrixXd& values) const;
+    /// Correlation of two control heights; entry (p, q) is for p rows and q columns between them.
+    Eigen::MatrixXd correlation_by_offset(const Correlation& correlation) const;
+    /// Adds the block Toeplitz matrix of correlations by offset to the lower triangle of a covariance.
+    void add_block_toeplitz(Eigen::MatrixXd& sum, const Eigen::MatrixXd& by_offset) const;
 
   private:
     Eigen::Index rows_, columns_;
@@ -34,24 +34,25 @@ class ControlHeights {
     Eigen::Matrix2Xd nodes_;
 };
 
-/// Mean and covariance of control heights, over processes of several correlations and amplitudes. All amplitudes of one
-/// correlation share its decomposition: with the trend F = Q R, K the touches' correlation, C the controls' with the
-/// touches and F_c the trend's controls over R,
+/// Mean and covariance of the control heights of a mixture of processes with several correlations and amplitudes. All
+/// amplitudes of one correlation share its decomposition. With the trend F = Q R, K the correlation matrix of the
+/// touches, C that of the control heights with the touches and F_c the trend's control heights times R⁻¹,
 ///     mean = F_c Qᵀ z + B v,   v = (τ²/σ) (1 + (τ/σ)² λ)⁻¹ y,   B = (C - F_c Qᵀ K) E,
 ///     covariance = τ² (correlation - C Q F_cᵀ - F_c Qᵀ Cᵀ + F_c Qᵀ K Q F_cᵀ) + σ² F_c F_cᵀ - B τ⁴ (σ² + τ² λ)⁻¹ Bᵀ.
 class ProcessMixture {
   public:
-    /// @param trend  control heights of the trend's functions, one a column. All are kept by reference.
+    /// @param trend  control heights of the trend's functions, one column each
+    /// The touches and the control heights are kept by reference.
     ProcessMixture(const ProcessTouches& touches, const ControlHeights& controls, const Eigen::MatrixXd& trend);
 
     /// @param weights  of the amplitudes; they need not sum to 1
-    void add(const Spectrum& s, const std::array<double, kRatios>& weights);
+    void add(const Spectrum& s, const std::array<double, kNumRatios>& weights);
 
     /// @return  mean and covariance
     std::pair<Eigen::VectorXd, Eigen::MatrixXd> result() const;
 
   private:
-    /// covariance = Σ left rightᵀ: many of them are one product in the end.
+    /// A correlation's share of the covariance, left rightᵀ. result() sums all shares in one product.
     struct Part {
         double weight;
         Eigen::VectorXd mean;
@@ -62,8 +63,8 @@ class ProcessMixture {
     const ControlHeights& controls_;
     Eigen::MatrixXd Q_, F_;
     Eigen::VectorXd trend_;
-    Eigen::MatrixXd between_; ///< ControlHeights::correlation_between(), times τ², summed
+    Eigen::MatrixXd by_offset_; ///< Σ τ² correlation_by_offset()
     std::vector<Part> parts_;
 };
 
-} // namespace fettle
+} // namespace fettle::fit

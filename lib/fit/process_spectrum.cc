@@ -9,7 +9,7 @@
 #include <limits>
 #include <utility>
 
-namespace fettle {
+namespace fettle::fit {
 
 namespace {
 
@@ -17,60 +17,61 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// ℓ over half the touched size: shorter waves than the first are beyond the spacing of any touches, longer ones than
-// the last are polynomials to the probe.
-constexpr std::array<double, 9> kLengths = {0.25, 0.35, 0.5, 0.7, 1, 1.4, 2, 2.8, 4};
-constexpr double kLeastRatio = 0.3;
-constexpr double kRatioStep = 1.6487212707001282; // half a unit of ln
+// Correlation lengths ℓ over the touches' radius: no touches resolve shorter waves than the first, and the probe cannot
+// distinguish longer ones than the last from polynomials.
+constexpr std::array<double, 9> kRelativeLengths = {0.25, 0.35, 0.5, 0.7, 1, 1.4, 2, 2.8, 4};
+constexpr double kMinRatio = 0.3;
+constexpr double kRatioStep = 1.6487212707001282; // factor √e
 
-/// Half the touched size, however it is turned.
-double half_size(const Eigen::Matrix2Xd& xy)
+/// The largest distance from the touches' centroid: a size that does not depend on the job's rotation.
+double radius_of(const Eigen::Matrix2Xd& xy)
 {
     return (xy.colwise() - xy.rowwise().mean().eval()).colwise().norm().maxCoeff();
 }
 
 } // namespace
 
-ProcessTouches part_of(const ProcessTouches& all, const Columns& kept)
+ProcessTouches subset_of(const ProcessTouches& all, const TouchIndices& kept)
 {
     return {all.xy(Eigen::all, kept), all.z(kept), all.sigma, all.F(kept, Eigen::all)};
 }
 
-double ratio_of(int i) { return kLeastRatio * std::pow(kRatioStep, i); }
+double amplitude_ratio(int i) { return kMinRatio * std::pow(kRatioStep, i); }
 
 VectorXd precision(const Spectrum& s, double ratio) { return (1 + ratio * ratio * s.lambda.array()).inverse(); }
 
-std::vector<Spectrum> spectra(const ProcessTouches& touches)
+std::vector<Spectrum> compute_spectra(const ProcessTouches& touches)
 {
     std::vector<Spectrum> all;
-    const double half = half_size(touches.xy);
+    const double radius = radius_of(touches.xy);
     const Index n = touches.F.rows(), p = touches.F.cols();
-    const double price = static_cast<double>(p) * std::log(static_cast<double>(n));
-    const MatrixXd Q = orthogonal(touches.F, n).Q;
+    const double trend_penalty = p * std::log(n);
+    const MatrixXd Q = core::householder_qr(touches.F, n).Q;
     const MatrixXd rest = Q.rightCols(n - p);
-    for (const Roughness roughness : {Roughness::none, Roughness::matern})
-        for (const double length : kLengths) {
+    for (const Kernel kernel : {Kernel::squared_exponential, Kernel::matern52})
+        for (const double length : kRelativeLengths) {
             Spectrum s;
-            s.correlation = {roughness, length * half};
-            const MatrixXd K = correlations(s.correlation, touches.xy, touches.xy);
-            const SymmetricEigen<Eigen::Dynamic> eigen = symmetric_eigen<Eigen::Dynamic>(rest.transpose() * K * rest);
+            s.correlation = {kernel, length * radius};
+            const MatrixXd K = correlation_matrix(s.correlation, touches.xy, touches.xy);
+            const core::SymmetricEigen<Eigen::Dynamic> eigen =
+                core::symmetric_eigen<Eigen::Dynamic>(rest.transpose() * K * rest);
             s.E = rest * eigen.vectors;
             s.lambda = eigen.values.cwiseMax(0);
             s.y = s.E.transpose() * touches.z / touches.sigma;
-            for (int i = 0; i < kRatios; ++i) {
-                const Eigen::ArrayXd d = precision(s, ratio_of(i));
-                s.score[static_cast<std::size_t>(i)] = price - d.log().sum() + (s.y.array().square() * d).sum();
+            for (int i = 0; i < kNumRatios; ++i) {
+                const Eigen::ArrayXd d = precision(s, amplitude_ratio(i));
+                s.score[i] = trend_penalty - d.log().sum() + (s.y.array().square() * d).sum();
             }
             all.push_back(std::move(s));
         }
     return all;
 }
 
-double best_score(const std::vector<Spectrum>& all)
+double min_score(const std::vector<Spectrum>& all)
 {
-    double best = std::numeric_limits<double>::infinity();
-    for (const Spectrum& s : all) best = std::min(best, *std::min_element(s.score.begin(), s.score.end()));
-    return best;
+    double result = std::numeric_limits<double>::infinity();
+    for (const Spectrum& s : all) result = std::min(result, *std::min_element(s.score.begin(), s.score.end()));
+    return result;
 }
 
-} // namespace fettle
+} // namespace fettle::fit

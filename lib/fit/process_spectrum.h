@@ -8,40 +8,39 @@
 #include <array>
 #include <vector>
 
-namespace fettle {
+namespace fettle::fit {
 
-/// Touches z = F β + g + e: a trend, a Gaussian process, noise.
+/// Touches z = F β + g + e with a trend F β, a Gaussian process g and noise e.
 struct ProcessTouches {
     Eigen::Matrix2Xd xy; ///< mm
     Eigen::VectorXd z;   ///< mm
-    double sigma = 0;    ///< of e, mm
-    Eigen::MatrixXd F;   ///< n x p, of the trend
+    double sigma = 0;    ///< standard deviation of e, mm
+    Eigen::MatrixXd F;   ///< n x p, the trend's functions at the touches
 };
 
-ProcessTouches part_of(const ProcessTouches& all, const Columns& kept);
+ProcessTouches subset_of(const ProcessTouches& all, const TouchIndices& kept);
 
-inline constexpr int kRatios = 25;
+inline constexpr int kNumRatios = 25;
 
-/// The i-th amplitude τ over σ, i < kRatios: from what the touches cannot see to what bends as much as they do over the
-/// longest correlation.
-double ratio_of(int i);
+/// The i-th amplitude τ over σ, i < kNumRatios: from undetectable in the touches to a curvature like theirs at the
+/// longest correlation length.
+double amplitude_ratio(int i);
 
-/// One correlation, as independent numbers: with E the directions in which the trend cannot move the touches, y = Eᵀ z
-/// / σ, y_i ~ N(0, 1 + (τ/σ)² λ_i).
+/// The touches decorrelated for one correlation: y = Eᵀ z / σ with orthonormal columns E orthogonal to the trend, so
+/// that y_i ~ N(0, 1 + (τ/σ)² λ_i) independently.
 struct Spectrum {
     Correlation correlation;
     Eigen::MatrixXd E; ///< n x (n - p)
     Eigen::VectorXd lambda, y;
-    std::array<double, kRatios> score; ///< for each τ, as the families': -2 ln restricted likelihood + p ln n
+    std::array<double, kNumRatios> score; ///< -2 ln restricted likelihood + p ln n for each τ
 };
 
-/// All correlations and amplitudes: one decomposition a correlation.
-std::vector<Spectrum> spectra(const ProcessTouches& touches);
+/// The spectra of all correlations. One decomposition serves all amplitudes of a correlation.
+std::vector<Spectrum> compute_spectra(const ProcessTouches& touches);
 
-/// Of the y, for each unit of σ².
+/// Inverse variances of the y.
 Eigen::VectorXd precision(const Spectrum& s, double ratio);
 
-/// The least of all.
-double best_score(const std::vector<Spectrum>& all);
+double min_score(const std::vector<Spectrum>& all);
 
-} // namespace fettle
+} // namespace fettle::fit

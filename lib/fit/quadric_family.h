@@ -2,12 +2,12 @@
 
 #include "fit/family_solution.h"
 
-namespace fettle {
+namespace fettle::fit {
 
-/// Least squares of the vertical errors of some touches over all quadrics, by Levenberg and Marquardt (Ceres), from the
-/// paraboloid that goes through them.
-/// @param paraboloid  quadratic polynomial fitted to the touches
-/// @return  nothing if they do not determine a quadric that stays near its shape over all touches
-std::optional<FamilySolution> solve_quadric(const Touched& touched, const Columns& kept, const Polynomial& paraboloid);
+/// The quadric with the least squares of the vertical errors of some touches, by Levenberg and Marquardt (Ceres).
+/// @param paraboloid  quadratic polynomial fitted to the touches, to start from
+/// @return  nothing if they do not determine a quadric whose gradient varies little over all touches
+std::optional<FamilySolution> solve_quadric(const TouchSet& touched, const TouchIndices& kept,
+                                            const surface::Polynomial& paraboloid);
 
-} // namespace fettle
+} // namespace fettle::fit

@@ -1,11 +1,11 @@
 #include "fit/robust_linear.h"
 
-#include "fit/ceres_options.h"
 #include "fit/fit.h"
 
 #include <ceres/ceres.h>
+#include <glog/logging.h>
 
-namespace fettle {
+namespace fettle::fit {
 
 namespace {
 
@@ -35,7 +35,7 @@ class LinearCost : public ceres::CostFunction {
 
 } // namespace
 
-RobustLinearResult solve(const RobustLinear& problem)
+RobustLinearResult solve_robust(const RobustLinear& problem)
 {
     RobustLinearResult result;
     result.x = Eigen::VectorXd::Zero(problem.A.cols());
@@ -46,13 +46,17 @@ RobustLinearResult solve(const RobustLinear& problem)
     const Eigen::MatrixXd prior = problem.prior.asDiagonal();
     ceres_problem.AddResidualBlock(new LinearCost(prior, Eigen::VectorXd::Zero(prior.rows())), nullptr,
                                    result.x.data());
-    ceres::Solver::Options options = quiet_dense_qr();
+    FLAGS_minloglevel = google::GLOG_FATAL; // stderr is for the tool's messages; the summary says the same
+    ceres::Solver::Options options;
+    options.linear_solver_type = ceres::DENSE_QR; // the prior of a nearly quadratic surface is stiff
+    options.num_threads = 1;                      // the same digits for any --threads
+    options.logging_type = ceres::SILENT;
     options.max_num_iterations = 200;
-    options.initial_trust_region_radius = 1e16; // linear between the loss's corners: Gauss-Newton steps are exact
+    options.initial_trust_region_radius = 1e16; // Gauss-Newton steps are exact while no residual crosses the width
     options.max_trust_region_radius = 1e20;
     options.function_tolerance = 1e-15;  // of the cost, which is of the order of the number of touches: rounding
     options.parameter_tolerance = 1e-13; // of x: rounding, enlarged by the condition of the problem
-    options.gradient_tolerance = 1e-12;  // rows are in standard deviations: far below one
+    options.gradient_tolerance = 1e-12;  // far below 1, as rows are in standard deviations
     ceres::Solver::Summary summary;
     ceres::Solve(options, &ceres_problem, &summary);
     result.converged = summary.termination_type == ceres::CONVERGENCE;
@@ -62,4 +66,4 @@ RobustLinearResult solve(const RobustLinear& problem)
     return result;
 }
 
-} // namespace fettle
+} // namespace fettle::fit

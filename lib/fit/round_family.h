@@ -6,40 +6,40 @@
 
 #include <vector>
 
-namespace fettle {
+namespace fettle::fit {
 
-/// Surfaces of revolution with a circular profile (Torus, surface.h), each within the next but for the sphere.
+/// Surfaces of revolution with a circular profile (Torus, surface.h). Cylinders are a subset of cones, cones of tori.
 enum class RoundFamily { sphere, cylinder, cone, torus };
 
-/// A point near the touches, and a frame whose third column points up out of them.
+/// A frame with its origin near the touches.
 struct RoundFrame {
-    Eigen::Vector3d point;
-    Eigen::Matrix3d axes; ///< columns a, b, n
+    Eigen::Vector3d point; ///< M, mm
+    Eigen::Matrix3d axes;  ///< columns a, b, n; n is the upward normal of the touched surface
 };
 
-/// Touches to fit to, seen from a frame.
+/// Touches to fit to, and the frame of the parameters.
 struct RoundProblem {
     RoundFrame frame;
     Eigen::Matrix3Xd touches;     ///< M, mm
     Eigen::VectorXd weight;       ///< of each touch's orthogonal distance, 1/mm: residuals are weight · distance
-    bool given_direction = false; ///< the rulings' direction in the frame's plane is that of a: no turn
+    bool given_direction = false; ///< the rulings run along a in the frame's plane: kTurn is fixed
 };
 
 struct RoundSolution {
     Eigen::VectorXd theta; ///< RevolutionParameters, mm
-    double cost = 0;       ///< half the sum of squares; infinite: no solution
+    double cost = 0;       ///< half the sum of squares; infinite if there is no solution
     bool converged = false;
     int iterations = 0;
 };
 
 /// Least squares of weighted orthogonal distances by Levenberg and Marquardt (Ceres).
-/// @param around, along  the curvatures to start with, 1/mm
-RoundSolution solve(RoundFamily family, const RoundProblem& problem, double around, double along);
+/// @param around, along  initial curvatures, 1/mm
+RoundSolution solve_round(RoundFamily family, const RoundProblem& problem, double around, double along);
 
-/// How many parameters a family has.
-int parameters(RoundFamily family, bool given_direction);
+/// The number of free parameters of a family.
+int parameter_count(RoundFamily family, bool given_direction);
 
-/// The shape: Sphere, Cylinder, Cone or Torus.
-Shape round_shape(RoundFamily family, const RoundFrame& frame, const Eigen::VectorXd& theta);
+/// The Sphere, Cylinder, Cone or Torus with the parameters theta in a frame.
+surface::Shape round_shape(RoundFamily family, const RoundFrame& frame, const Eigen::VectorXd& theta);
 
-} // namespace fettle
+} // namespace fettle::fit

@@ -5,92 +5,88 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 
-namespace fettle {
+namespace fettle::fit {
 
 namespace {
 
 using Eigen::VectorXd;
 
-constexpr double kFree = 6; // quadratics, which have no energy
+constexpr double kNullSpace = 6; // dimension of the quadratics, which have no energy
 
-// λ E against Σ w g gᵀ, by their traces. Below, what bridges a gap is lost in rounding; above, all that differs from a
-// quadratic is gone.
-constexpr double kLeastShare = 1e-4;
-constexpr double kMostShare = 1e8;
+// Range of λ trace(K) / trace(Σ w g gᵀ). Below it rounding swallows the energy that bridges gaps; above it the spline
+// is a quadratic.
+constexpr double kMinTraceRatio = 1e-4;
+constexpr double kMaxTraceRatio = 1e8;
 
 struct Solution {
-    Smoothed result;
+    SmoothedSpline result;
     double cost = 0; ///< -2 ln of the restricted likelihood, without its constant
 };
 
-Solution solve(const NormalEquations& e, const VectorXd& heights, const Energy& energy, double lambda)
+Solution solve(const NormalEquations& e, const VectorXd& heights, const SplineEnergy& energy, double lambda)
 {
-    BandMatrix H = e.matrix;
+    surface::BandMatrix H = e.matrix;
     H.add(energy.K, lambda);
-    const BandCholesky factor(std::move(H));
+    const surface::BandCholesky factor(std::move(H));
     const VectorXd pull = lambda * (energy.K * heights);
-    const VectorXd b = e.right - pull;
+    const VectorXd b = e.right_side - pull;
     const VectorXd step = factor.solve(b);
-    const double least = std::max(e.square + heights.dot(pull) - b.dot(step), e.least_square);
-    const double freedom = std::max(e.weight - kFree, 1.0);
+    const double min_objective = std::max(e.square_sum + heights.dot(pull) - b.dot(step), e.min_square_sum);
+    const double freedom = std::max(e.weight_sum - kNullSpace, 1.0);
     Solution s;
     s.result.heights = heights + step;
     s.result.lambda = lambda;
-    s.result.variance = least / freedom;
-    s.result.change = std::sqrt(step.dot(e.matrix * step) / e.weight);
-    s.cost = freedom * std::log(least) + factor.log_determinant() -
-             (static_cast<double>(step.size()) - kFree) * std::log(lambda);
+    s.result.variance = min_objective / freedom;
+    s.result.change = std::sqrt(step.dot(e.matrix * step) / e.weight_sum);
+    s.cost =
+        freedom * std::log(min_objective) + factor.log_determinant() - (step.size() - kNullSpace) * std::log(lambda);
     return s;
 }
 
 } // namespace
 
-Energy energy_over(const Bspline& grid)
+SplineEnergy spline_energy_matrix(const surface::Bspline& grid)
 {
-    BandMatrix K = band_over(grid);
-    add_energy(K, grid, 1);
+    surface::BandMatrix K = surface::zero_band_matrix(grid);
+    surface::add_derivative_energy(K, grid, 1);
     const double trace = K.trace();
     return {std::move(K), trace};
 }
 
-Smoothed smoothed(const NormalEquations& equations, const VectorXd& heights, const Energy& energy, double lambda)
+SmoothedSpline smooth_spline(const NormalEquations& equations, const VectorXd& heights, const SplineEnergy& energy,
+                             double lambda)
 {
     return solve(equations, heights, energy, lambda).result;
 }
 
-double least_lambda(const NormalEquations& equations, const Energy& energy)
+double min_lambda(const NormalEquations& equations, const SplineEnergy& energy)
 {
-    return kLeastShare * equations.matrix.trace() / energy.trace;
+    return kMinTraceRatio * equations.matrix.trace() / energy.trace;
 }
 
-// Downhill in ln λ to three neighbours with the least in the middle, then to the vertex of their parabola: the
+// Steps in ln λ until three neighbours bracket the minimum of the cost, then goes to the vertex of their parabola; the
 // likelihood is flat about its maximum.
-Smoothed smoothed_by_likelihood(const NormalEquations& equations, const VectorXd& heights, const Energy& energy,
-                                double start)
+SmoothedSpline smooth_spline_by_likelihood(const NormalEquations& equations, const VectorXd& heights,
+                                           const SplineEnergy& energy, double start)
 {
-    constexpr double kStep = 2;    // in ln λ
-    constexpr double kNear = 0.25; // of a step: closer to the vertex nothing changes that matters
-    const double least = least_lambda(equations, energy), most = least / kLeastShare * kMostShare;
-    start = start > 0 ? std::clamp(start, least, most) : least / kLeastShare;
-    const int lowest = static_cast<int>(std::floor(std::log(least / start) / kStep));
-    const int highest = static_cast<int>(std::ceil(std::log(most / start) / kStep));
-    std::map<int, Solution> known;
-    { // the least that it takes, at once
-        std::array<Solution, 3> first;
-        const int from = std::max(lowest, -1), to = std::min(highest, 1);
-        tbb::parallel_for(from, to + 1, [&](int k) {
-            first[static_cast<std::size_t>(k - from)] = solve(equations, heights, energy, start * std::exp(kStep * k));
-        });
-        for (int k = from; k <= to; ++k) known.emplace(k, std::move(first[static_cast<std::size_t>(k - from)]));
-    }
-    const auto at = [&](int k) -> const Solution& {
-        auto found = known.find(k);
-        if (found == known.end())
-            found = known.emplace(k, solve(equations, heights, energy, start * std::exp(kStep * k))).first;
+    constexpr double kLogStep = 2;          // in ln λ
+    constexpr double kStepTolerance = 0.25; // in steps: a vertex as near changes the spline too little to matter
+    const double lower = min_lambda(equations, energy), upper = lower / kMinTraceRatio * kMaxTraceRatio;
+    start = start > 0 ? std::clamp(start, lower, upper) : lower / kMinTraceRatio;
+    const int lowest = static_cast<int>(std::floor(std::log(lower / start) / kLogStep));
+    const int highest = static_cast<int>(std::ceil(std::log(upper / start) / kLogStep));
+    const auto solve_step = [&](double k) { return solve(equations, heights, energy, start * std::exp(kLogStep * k)); };
+    std::map<int, Solution> solutions;
+    // Three neighbours are needed in any case: solve them in parallel.
+    const int from = std::max(lowest, -1), to = std::min(highest, 1);
+    for (int i = from; i <= to; ++i) solutions[i];
+    tbb::parallel_for(from, to + 1, [&](int i) { solutions.at(i) = solve_step(i); });
+    const auto at = [&](int i) -> const Solution& {
+        const auto [found, is_new] = solutions.try_emplace(i);
+        if (is_new) found->second = solve_step(i);
         return found->second;
     };
     int k = 0;
@@ -99,8 +95,8 @@ Smoothed smoothed_by_likelihood(const NormalEquations& equations, const VectorXd
     if (k == lowest || k == highest) return at(k).result;
     const double left = at(k - 1).cost - at(k).cost, right = at(k + 1).cost - at(k).cost;
     const double vertex = left + right > 0 ? (left - right) / (2 * (left + right)) : 0;
-    if (std::abs(vertex) < kNear) return at(k).result;
-    return solve(equations, heights, energy, start * std::exp(kStep * (k + vertex))).result;
+    if (std::abs(vertex) < kStepTolerance) return at(k).result;
+    return solve_step(k + vertex).result;
 }
 
-} // namespace fettle
+} // namespace fettle::fit

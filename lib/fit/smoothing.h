@@ -5,43 +5,45 @@
 
 #include <Eigen/Core>
 
-namespace fettle {
+namespace fettle::fit {
 
-/// Weighted residuals of a spline that is to be improved, as normal equations.
+/// Normal equations of the weighted residuals r of points from a spline, for a correction of its control heights. g are
+/// the basis functions at a point.
 struct NormalEquations {
-    BandMatrix matrix;       ///< Σ w g gᵀ
-    Eigen::VectorXd right;   ///< Σ w r g, r the residuals against `heights`
-    double square = 0;       ///< Σ w r², mm²
-    double weight = 0;       ///< Σ w
-    double least_square = 0; ///< of the residuals that rounding leaves, mm²
+    surface::BandMatrix matrix; ///< Σ w g gᵀ
+    Eigen::VectorXd right_side; ///< Σ w r g, mm
+    double square_sum = 0;      ///< Σ w r², mm²
+    double weight_sum = 0;      ///< Σ w
+    double min_square_sum = 0;  ///< lower bound of Σ w r² due to rounding, mm²
 };
 
-/// E, the energy of the third derivatives, of a grid's control heights (spline_energy.h).
-struct Energy {
-    BandMatrix K;
+/// The matrix K of the third-derivative energy E(f) = cᵀ K c of a grid's control heights c (spline_energy.h).
+struct SplineEnergy {
+    surface::BandMatrix K;
     double trace = 0;
 };
-Energy energy_over(const Bspline& grid);
+SplineEnergy spline_energy_matrix(const surface::Bspline& grid);
 
-struct Smoothed {
+struct SmoothedSpline {
     Eigen::VectorXd heights; ///< control heights
-    double lambda = 0;       ///< σ²/τ²: of the energy against Σ w r²
+    double lambda = 0;       ///< σ²/τ², the weight of the energy against Σ w r²
     double variance = 0;     ///< σ² of a point of weight 1, mm²
-    double change = 0;       ///< root mean square of the change at the points, mm
+    double change = 0;       ///< rms of the correction at the points, mm
 };
 
 /// The spline that minimises Σ w (z - f)² + λ E(f).
-/// @param heights  control heights that the residuals belong to, less a quadratic (which has no energy)
-Smoothed smoothed(const NormalEquations& equations, const Eigen::VectorXd& heights, const Energy& energy,
-                  double lambda);
+/// @param heights  control heights of the spline that the residuals are measured from, minus any quadratic (which has
+///                 no energy)
+SmoothedSpline smooth_spline(const NormalEquations& equations, const Eigen::VectorXd& heights,
+                             const SplineEnergy& energy, double lambda);
 
-/// Below this λ what bridges a gap is lost in rounding.
-double least_lambda(const NormalEquations& equations, const Energy& energy);
+/// The λ below which rounding swallows the energy that bridges gaps.
+double min_lambda(const NormalEquations& equations, const SplineEnergy& energy);
 
-/// smoothed() with the λ of the largest marginal likelihood, σ² being that which is most probable for it (restricted
+/// The spline with the λ of maximum marginal likelihood, σ² being the most probable one for each λ (restricted
 /// likelihood: Patterson and Thompson 1971; of a spline: Wahba 1990, 4.8).
-/// @param start  λ to begin at; 0: anywhere
-Smoothed smoothed_by_likelihood(const NormalEquations& equations, const Eigen::VectorXd& heights, const Energy& energy,
-                                double start);
+/// @param start  initial λ; 0: a default
+SmoothedSpline smooth_spline_by_likelihood(const NormalEquations& equations, const Eigen::VectorXd& heights,
+                                           const SplineEnergy& energy, double start);
 
-} // namespace fettle
+} // namespace fettle::fit

@@ -4,25 +4,26 @@
 
 #include <functional>
 
-namespace fettle {
+namespace fettle::fit {
 
-/// Residuals of few parameters. `jacobian` may be null; it is column by column, a column a parameter.
-struct Residuals {
+/// Residuals as a function of few parameters.
+struct ResidualFunction {
     int count = 0;
     int parameters = 0;
+    /// Column-major `jacobian`, count x parameters; it may be null.
     std::function<void(const double* x, double* residuals, double* jacobian)> evaluate;
 };
 
-/// Where a sum of squares is least.
+/// The minimum of a sum of squares.
 struct Minimum {
     Eigen::VectorXd x;
-    double cost = 0; ///< half the sum
+    double cost = 0; ///< half the sum of squares
     bool converged = false;
     int iterations = 0;
 };
 
-/// Least squares of few parameters by Levenberg and Marquardt (Ceres), polished to rounding.
+/// Least squares of few parameters by Levenberg and Marquardt (ceres::TinySolver), then refined to rounding accuracy.
 /// @param residuals  dimensionless, of parameters of the order of 1
-Minimum least_squares(const Residuals& residuals, const Eigen::VectorXd& start);
+Minimum levenberg_marquardt(const ResidualFunction& residuals, const Eigen::VectorXd& start);
 
-} // namespace fettle
+} // namespace fettle::fit

@@ -8,7 +8,7 @@
 #include <numeric>
 #include <random>
 
-namespace fettle {
+namespace fettle::fit {
 
 namespace {
 
@@ -16,76 +16,60 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Least trimmed squares of a polynomial from random subsets, with concentration steps.
-class TrimmedSearch {
-  public:
-    TrimmedSearch(const MatrixXd& design, const VectorXd& z)
-        : design_(design), z_(z), kept_(static_cast<std::size_t>((3 * z.size() + 3) / 4))
-    {
-    }
+/// A concentration step: replaces the touches by the three quarters nearest to their fit.
+/// @return  the sum of their squared residuals
+double concentrate(const MatrixXd& design, const VectorXd& z, TouchIndices& touches)
+{
+    const VectorXd theta = core::min_norm_least_squares(design(touches, Eigen::all), z(touches)).x;
+    const VectorXd squares = (z - design * theta).cwiseAbs2();
+    touches.resize(z.size());
+    std::iota(touches.begin(), touches.end(), Index{0});
+    std::stable_sort(touches.begin(), touches.end(), [&](Index a, Index b) { return squares[a] < squares[b]; });
+    touches.resize((3 * z.size() + 3) / 4);
+    return squares(touches).sum();
+}
 
-    Columns search()
-    {
-        constexpr int kSubsets = 300; // 8 good ones of 16 touches with 3 slips are found in every tenth
-        constexpr int kSteps = 3;     // a start that leads nowhere shows by then
-        std::mt19937_64 random(1);
-        Columns order(static_cast<std::size_t>(z_.size()));
-        std::iota(order.begin(), order.end(), Index{0});
-        Columns best;
-        double least = std::numeric_limits<double>::infinity();
-        for (int subset = 0; subset < kSubsets; ++subset) {
-            Columns drawn = order;
-            const auto count = static_cast<std::size_t>(design_.cols()) + 1;
-            for (std::size_t i = 0; i < count; ++i) std::swap(drawn[i], drawn[i + random() % (drawn.size() - i)]);
-            drawn.resize(count);
-            double sum = 0;
-            for (int step = 0; step < kSteps; ++step) sum = concentrate(drawn);
-            if (!(sum < least)) continue;
-            for (double before = std::numeric_limits<double>::infinity(); sum < before;) {
-                before = sum;
-                sum = concentrate(drawn);
-            }
-            least = sum;
-            best = drawn;
+/// Least trimmed squares of a polynomial from random subsets with concentration steps.
+TouchIndices least_trimmed_squares(const MatrixXd& design, const VectorXd& z)
+{
+    constexpr int kSubsets = 300;          // one in seven subsets of 7 of 16 touches has none of 3 outliers
+    constexpr int kConcentrationSteps = 3; // they suffice to recognise a bad subset
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    const std::size_t subset_size = design.cols() + 1;
+    std::mt19937_64 random(1);
+    TouchIndices best;
+    double min_sum = kInfinity;
+    for (int subset = 0; subset < kSubsets; ++subset) {
+        TouchIndices touches(z.size());
+        std::iota(touches.begin(), touches.end(), Index{0});
+        for (std::size_t i = 0; i < subset_size; ++i)
+            std::swap(touches[i], touches[i + random() % (touches.size() - i)]);
+        touches.resize(subset_size);
+        double sum = 0;
+        for (int step = 0; step < kConcentrationSteps; ++step) sum = concentrate(design, z, touches);
+        if (!(sum < min_sum)) continue;
+        for (double before = kInfinity; sum < before;) {
+            before = sum;
+            sum = concentrate(design, z, touches);
         }
-        return best;
+        min_sum = sum;
+        best = touches;
     }
-
-  private:
-    /// Replaces the touches by those nearest to their fit. @return  the sum of those squares
-    double concentrate(Columns& touches) const
-    {
-        const VectorXd theta = shortest_least_squares(design_(touches, Eigen::all), z_(touches)).x;
-        const VectorXd squares = (z_ - design_ * theta).cwiseAbs2();
-        Columns order(static_cast<std::size_t>(z_.size()));
-        std::iota(order.begin(), order.end(), Index{0});
-        std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return squares[a] < squares[b]; });
-        order.resize(kept_);
-        touches = order;
-        return squares(touches).sum();
-    }
-
-    const MatrixXd& design_;
-    const VectorXd& z_;
-    std::size_t kept_;
-};
+    std::sort(best.begin(), best.end());
+    return best;
+}
 
 } // namespace
 
-Columns trimmed_touches(const Touched& touched)
+TouchIndices trimmed_touches(const TouchSet& touches)
 {
-    constexpr int kQuadratic = 2;
-    const Columns all = all_touches(touched);
-    for (int degree = kQuadratic; degree >= 1; --degree) {
-        const std::optional<FamilySolution> design = solve_family(degree == 2 ? "quadratic" : "plane", touched, all);
-        if (!design || 2 * design->gradients.rows() > touched.xyz.cols()) continue;
-        const MatrixXd A = design->gradients.transpose();
-        const VectorXd z = touched.xyz.row(2).transpose();
-        Columns kept = TrimmedSearch(A, z).search();
-        std::sort(kept.begin(), kept.end());
-        return kept;
+    const TouchIndices all = all_touches(touches);
+    for (const char* name : {"quadratic", "plane"}) {
+        const std::optional<FamilySolution> design = solve_family(name, touches, all);
+        if (design && 2 * design->gradients.rows() <= touches.xyz.cols())
+            return least_trimmed_squares(design->gradients.transpose(), touches.xyz.row(2).transpose());
     }
     return all;
 }
 
-} // namespace fettle
+} // namespace fettle::fit

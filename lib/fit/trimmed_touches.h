@@ -2,11 +2,11 @@
 
 #include "fit/family_solution.h"
 
-namespace fettle {
+namespace fettle::fit {
 
-/// Three quarters of the touches that lie near one quadratic (plane, if there are few): the least trimmed squares of
-/// many small subsets (Rousseeuw and Van Driessen 2006). Slips that outweigh the others in a least-squares fit are not
-/// among them.
-Columns trimmed_touches(const Touched& touched);
+/// The three quarters of the touches that lie nearest to one quadratic (a plane, if there are few touches): least
+/// trimmed squares from many random subsets (Rousseeuw and Van Driessen 2006). They do not contain outliers, even if
+/// these would dominate a least-squares fit.
+TouchIndices trimmed_touches(const TouchSet& touches);
 
-} // namespace fettle
+} // namespace fettle::fit

@@ -8,101 +8,132 @@
 #include <limits>
 #include <utility>
 
-namespace fettle {
+namespace fettle::gantry {
 namespace {
 
-/// A move's end may be off by what the corners of a machine are rounded by.
-constexpr double kCorner = 5; // mm
-/// Speed and clock of a machine are told to a few digits.
-constexpr double kSpeedTold = 1.01;
-constexpr double kInstant = 0.01; // s
-/// A move may take so many times what its length and speed say.
-constexpr double kSlow = 3;
-/// Until it is there.
-constexpr double kStartTime = 10; // s
-/// Homing and a touch-off by the machine, a new wheel by hand.
-constexpr double kServiceTime = 30, kWheelTime = 3600; // s
-constexpr double kStopTime = 1;                        // s, for the answer to `stop`
+/// A move may end this far from its target, where a machine rounds the corner to the next one.
+constexpr double kPositionTolerance = 5; // mm
+/// Tolerances for the speed and the clock of a machine, which are reported with a few digits.
+constexpr double kSpeedFactor = 1.01;
+constexpr double kTimeTolerance = 0.01; // s
+/// Longest duration of a move relative to its length and speed.
+constexpr double kMaxDurationFactor = 3;
+// Limits in s: for the start of the driver; for homing and a touch-off; for a wheel change by hand; for a stop.
+constexpr double kStartTime = 10, kServiceTime = 30, kWheelTime = 3600, kStopTime = 1;
+/// The clock of a machine that simulates is not ours: what is not a step at a known feed may take as long as the
+/// longest command does.
+constexpr double kMaxSimulatedTime = kMaxDurationFactor * kWheelTime; // s
+/// A machine's clock counts from its start: it has been on for less than a year. The seconds since 1970 are more.
+constexpr double kMaxStartClock = 3e7; // s
+/// F_max comes back as it was sent, but for the digits of its text.
+constexpr double kEchoTolerance = 1e-6; // relative
+/// New wheels are cut to a few percent of their size; one that measures more is another wheel, or no measurement.
+constexpr double kMaxRadiusFactor = 1.1; // relative to the job's
+/// A guarded descent stops for F_max; drives that brake early stop for half of it.
+constexpr double kMinGuardShare = 0.25; // of F_max
 
-std::string words(const Eigen::Vector3d& p) { return to_text(p.x()) + " " + to_text(p.y()) + " " + to_text(p.z()); }
+std::string words(const Eigen::Vector3d& p)
+{
+    return core::to_text(p.x()) + " " + core::to_text(p.y()) + " " + core::to_text(p.z());
+}
 
 } // namespace
 
-DriverGantry::DriverGantry(const std::string& command, const Job& job, double patience)
-    : command_(command), child_(command), patience_(patience), most_force_(job.force.max)
+DriverGantry::DriverGantry(const std::string& command, const job::Job& job, double timeout,
+                           const std::optional<Head>& head)
+    : command_(command), child_(command), timeout_(timeout), head_(head_check(job, head)),
+      height_tolerance_(job.tolerance), new_radius_(job.wheel.radius)
 {
     connect(job);
 }
 
-DriverGantry::DriverGantry(const std::string& name, Descriptor socket, const Job& job, double patience)
-    : command_(name), child_(std::move(socket)), patience_(patience), most_force_(job.force.max)
+DriverGantry::DriverGantry(const std::string& name, core::FileDescriptor socket, const job::Job& job, double timeout)
+    : command_(name), child_(std::move(socket)), timeout_(timeout), head_(head_check(job, std::nullopt)),
+      height_tolerance_(job.tolerance), new_radius_(job.wheel.radius)
 {
     connect(job);
 }
 
-void DriverGantry::connect(const Job& job)
+void DriverGantry::connect(const job::Job& job)
 {
-    const std::string told = ask("connect " + protocol::kVersion, kStartTime);
+    const std::string answer = request("connect " + protocol::kVersion, kStartTime);
     const std::string version = protocol::kVersion + " ";
-    if (told.rfind(version, 0) != 0) fail("speaks something else than " + protocol::kVersion);
-    try {
-        limits_ = protocol::limits_in(std::string_view(told).substr(version.size()));
-    } catch (const GantryFault& fault) {
-        fail(fault.what());
-    }
-    if (!(limits_.speed > 0 && (limits_.least.array() < limits_.most.array()).all()))
-        fail("has no range or no speed: '" + told + "'");
+    if (answer.rfind(version, 0) != 0) fail("speaks another protocol than " + protocol::kVersion);
+    parse_or_fail([&] { limits_ = protocol::parse_limits(std::string_view(answer).substr(version.size())); });
+    if (!(limits_.speed > 0 && (limits_.min.array() < limits_.max.array()).all()))
+        fail("has no range or no speed: '" + answer + "'");
     if (job.force.max > limits_.force)
-        throw InputError(job.source, "force.max is above the " + to_short_text(limits_.force) + " N of the machine");
-    ask("limit " + to_text(job.force.max), 0);
-    obey("home " + to_text(job.theta), kServiceTime);
+        throw core::InputError(job.source,
+                               "force.max is above the " + core::to_short_text(limits_.force) + " N of the machine");
+    set_limit(job.force.max);
+    execute("home " + core::to_text(job.theta), kServiceTime);
+}
+
+/// The answer says the force at which the machine guards its moves from now on.
+void DriverGantry::set_limit(double force)
+{
+    const std::string answer = request("limit " + core::to_text(force), 0);
+    double guarded = 0;
+    parse_or_fail([&] { guarded = protocol::parse_finite_number(answer); });
+    if (std::abs(guarded - force) > kEchoTolerance * force)
+        fail("guards its moves at " + core::to_short_text(guarded) + " N instead of " + core::to_short_text(force));
 }
 
 DriverGantry::~DriverGantry()
 {
     std::string line;
-    if (failed_ || !child_.send(std::to_string(++asked_) + " quit")) return;
-    child_.receive(patience_, line);
-    child_.let_end(patience_); // it may have something to write
+    if (failed_ || !child_.send(std::to_string(++last_number_) + " quit")) return;
+    child_.receive(timeout_, line);
+    child_.terminate(timeout_); // it may have a file to write
 }
 
 GantryStatus DriverGantry::travel(const Eigen::Vector3d& tool_point)
 {
-    const double way = (tool_point - status_.commanded).norm() + 2 * (limits_.most.z() - tool_point.z());
-    return move("travel " + words(tool_point), tool_point, way / limits_.speed, true);
+    const double distance = (tool_point - status_.commanded).norm() + 2 * (limits_.max.z() - tool_point.z());
+    return move("travel " + words(tool_point), tool_point, distance / limits_.speed, true);
 }
 
 GantryStatus DriverGantry::grind(const Eigen::Vector3d& tool_point, double feed)
 {
-    if (!(feed > 0 && feed <= limits_.speed))
-        throw InputError("gantry", "a feed of " + to_text(feed) + " mm/s is not in the machine's range");
-    const double way = (tool_point - status_.commanded).norm();
-    return move("move " + words(tool_point) + " " + to_text(feed), tool_point, way / feed, false);
+    check_feed(feed);
+    const double distance = (tool_point - status_.commanded).norm();
+    return move("move " + words(tool_point) + " " + core::to_text(feed), tool_point, distance / feed, false);
 }
 
 GantryStatus DriverGantry::press(const Eigen::Vector3d& tool_point, double feed, double force)
 {
-    if (!(feed > 0 && feed <= limits_.speed))
-        throw InputError("gantry", "a feed of " + to_text(feed) + " mm/s is not in the machine's range");
-    const double way = (tool_point - status_.commanded).head<2>().norm();
-    return move("press " + words(tool_point) + " " + to_text(feed) + " " + to_text(force), tool_point, way / feed,
-                true);
+    check_feed(feed);
+    const double distance = (tool_point - status_.commanded).head<2>().norm();
+    return move("press " + words(tool_point) + " " + core::to_text(feed) + " " + core::to_text(force), tool_point,
+                distance / feed, true);
 }
 
 GantryStatus DriverGantry::lift(double commanded_z)
 {
     const Eigen::Vector3d target(status_.commanded.x(), status_.commanded.y(), commanded_z);
-    return move("lift " + to_text(commanded_z), target, std::abs(commanded_z - status_.commanded.z()) / limits_.speed,
-                true);
+    return move("lift " + core::to_text(commanded_z), target,
+                std::abs(commanded_z - status_.commanded.z()) / limits_.speed, true);
 }
 
 double DriverGantry::touch_off()
 {
-    const Eigen::Vector3d place = status_.commanded;
+    const Eigen::Vector3d position = status_.commanded;
     const double radius = measure("touch_off", kServiceTime);
-    back_over(place, "touch_off");
-    if (!(radius > 0)) fail("measures a wheel of " + to_text(radius) + " mm");
+    check_position(position, "touch_off");
+    check_radius(radius);
     return radius;
+}
+
+/// A wheel does not grow, and it is not larger than the job's.
+void DriverGantry::check_radius(double radius)
+{
+    const std::string measured = "measures a wheel of " + core::to_short_text(radius) + " mm";
+    if (!(radius > 0)) fail(measured);
+    if (radius > kMaxRadiusFactor * new_radius_)
+        fail(measured + "; a new one has " + core::to_short_text(new_radius_) + " mm");
+    if (last_radius_ > 0 && radius > last_radius_ + height_tolerance_)
+        fail(measured + ", which had " + core::to_short_text(last_radius_) + " mm before");
+    last_radius_ = radius;
 }
 
 double DriverGantry::probe(const Eigen::Vector2d& xy, double lowest)
@@ -111,35 +142,37 @@ double DriverGantry::probe(const Eigen::Vector2d& xy, double lowest)
     check_range(end);
     const std::string command = "probe " + words(end);
     const double z = measure(command, kServiceTime + (end - status_.commanded).norm() / limits_.speed);
-    back_over(end, command);
-    if (z < lowest - kCorner || z > status_.commanded.z() + kCorner)
-        fail("touches at z " + to_text(z) + " after '" + command + "'");
+    check_position(end, command);
+    if (z < lowest - kPositionTolerance || z > status_.commanded.z() + kPositionTolerance)
+        fail("touches at z " + core::to_text(z) + " after '" + command + "'");
     return z;
 }
 
 void DriverGantry::change_wheel()
 {
-    const Eigen::Vector3d place = status_.commanded;
-    obey("change_wheel", kWheelTime);
-    back_over(place, "change_wheel");
+    const Eigen::Vector3d position = status_.commanded;
+    execute("change_wheel", kWheelTime);
+    check_position(position, "change_wheel");
+    last_radius_ = 0;
 }
 
-/// Sends a command and waits for its answer, which is returned without number and "ok".
-std::string DriverGantry::ask(const std::string& command, double duration)
+/// Sends a command and waits for its answer. @return  the answer without number and "ok"
+std::string DriverGantry::request(const std::string& command, double duration)
 {
-    const std::string number = std::to_string(++asked_);
+    const std::string number = std::to_string(++last_number_);
     const bool taken = child_.send(number + " " + command);
-    const double time = patience_ + kSlow * duration;
+    const double time = timeout_ + kMaxDurationFactor * duration;
+    max_duration_ = command.starts_with("move ") ? time : std::max(time, kMaxSimulatedTime);
     std::string line;
     switch (child_.receive(taken ? time : 0, line)) {
-    case Child::Heard::silence:
-        if (taken) fail("does not answer '" + command + "' within " + to_short_text(time) + " s");
+    case ChildProcess::Received::timeout:
+        if (taken) fail("does not answer '" + command + "' within " + core::to_short_text(time) + " s");
         [[fallthrough]];
-    case Child::Heard::end:
-        fail(child_.ending());
-    case Child::Heard::babble:
+    case ChildProcess::Received::closed:
+        fail(child_.exit_description());
+    case ChildProcess::Received::too_long:
         fail("sends a line without an end");
-    case Child::Heard::line:
+    case ChildProcess::Received::line:
         break;
     }
     std::string_view rest = line;
@@ -150,80 +183,115 @@ std::string DriverGantry::ask(const std::string& command, double duration)
     return std::string(rest);
 }
 
-/// A command whose answer is a number, or "none" (NaN), and a status.
+/// Executes a command whose answer is a number, or "none" (NaN), and a status.
 double DriverGantry::measure(const std::string& command, double duration)
 {
-    const std::string told = ask(command, duration);
-    std::string_view rest = told;
+    const std::string answer = request(command, duration);
+    std::string_view rest = answer;
     const std::string_view measured = protocol::next_word(rest);
     double number = std::numeric_limits<double>::quiet_NaN();
-    try {
-        if (measured != "none") number = protocol::number_in(measured);
-        accept(protocol::status_in(rest));
-    } catch (const GantryFault& fault) {
-        fail(fault.what());
-    }
+    parse_or_fail([&] {
+        if (measured != "none") number = protocol::parse_finite_number(measured);
+        accept(protocol::parse_status(rest));
+    });
     return number;
 }
 
-const GantryStatus& DriverGantry::obey(const std::string& command, double duration)
+/// Executes a command whose answer is a status.
+void DriverGantry::execute(const std::string& command, double duration)
 {
-    const std::string told = ask(command, duration);
+    const std::string answer = request(command, duration);
+    parse_or_fail([&] { accept(protocol::parse_status(answer)); });
+}
+
+/// A malformed or implausible answer is the driver's fault.
+template <class Parse>
+void DriverGantry::parse_or_fail(const Parse& parse)
+{
     try {
-        accept(protocol::status_in(told));
+        parse();
     } catch (const GantryFault& fault) {
         fail(fault.what());
     }
-    return status_;
 }
 
 const GantryStatus& DriverGantry::move(const std::string& command, const Eigen::Vector3d& target, double duration,
                                        bool guarded)
 {
     check_range(target);
-    obey(command, duration);
-    if (status_.force >= most_force_) return status_; // the guard has stopped it, wherever that was
+    execute(command, duration);
+    if (status_.force >= head_.max_force) return status_; // the guard has stopped the move early
     const Eigen::Vector3d off = status_.commanded - target;
-    const bool held = guarded && off.z() > 0; // the way down ended early
-    if (off.head<2>().norm() > kCorner || (!held && std::abs(off.z()) > kCorner))
+    const bool held = guarded && off.z() > 0; // the descent ended early
+    if (off.head<2>().norm() > kPositionTolerance || (!held && std::abs(off.z()) > kPositionTolerance))
         fail("stands at " + words(status_.commanded) + " after '" + command + "'");
+    if (held && !command.starts_with("press ")) check_contact(target, command);
     return status_;
+}
+
+/// A guarded descent ends early on metal, and the head must have felt it: or the strategy would take air for metal.
+void DriverGantry::check_contact(const Eigen::Vector3d& target, const std::string& command)
+{
+    const double above = status_.commanded.z() - target.z();
+    if (above > height_tolerance_ && status_.peak_force < kMinGuardShare * head_.max_force)
+        fail("stops " + core::to_short_text(above) + " mm early after '" + command + "', but felt at most " +
+             core::to_short_text(status_.peak_force) + " N");
 }
 
 void DriverGantry::accept(const GantryStatus& status)
 {
-    if (status.force < 0 || status.deflection < 0 || status.peak_force < status.force)
-        throw GantryFault("reports a force of " + to_text(status.force) + " N, at most " + to_text(status.peak_force) +
-                          " N, at a deflection of " + to_text(status.deflection) + " mm");
+    check_head(head_, status);
+    check_time(status.time);
     const double time = status.time - status_.time;
-    const double way = (status.commanded - status_.commanded).norm();
-    if (known_ && time < 0) throw GantryFault("goes back in time, to " + to_text(status.time) + " s");
-    if (known_ && way > kSpeedTold * limits_.speed * (time + kInstant))
-        throw GantryFault("jumps by " + to_short_text(way) + " mm in " + to_short_text(time) + " s");
+    const double distance = (status.commanded - status_.commanded).norm();
+    if (has_status_ && distance > kSpeedFactor * limits_.speed * (time + kTimeTolerance))
+        throw GantryFault("jumps by " + core::to_short_text(distance) + " mm in " + core::to_short_text(time) + " s");
+    if (((status.commanded - limits_.min).array() < -kPositionTolerance).any() ||
+        ((status.commanded - limits_.max).array() > kPositionTolerance).any())
+        throw GantryFault("stands at " + words(status.commanded) + ", out of its range");
     status_ = status;
-    known_ = true;
+    status_clock_ = std::chrono::steady_clock::now();
+    has_status_ = true;
 }
 
-/// The machine is where it was, but for the height.
-void DriverGantry::back_over(const Eigen::Vector3d& place, const std::string& command)
+/// Between two answers the clock advances by the time of the command, and by that in which the client was idle.
+void DriverGantry::check_time(double time) const
 {
-    if ((status_.commanded - place).head<2>().norm() > kCorner)
+    const std::chrono::duration<double> waited = std::chrono::steady_clock::now() - status_clock_;
+    if (!has_status_ && !(std::abs(time) <= kMaxStartClock))
+        throw GantryFault("begins at " + core::to_short_text(time) + " s, which is no time since the machine's start");
+    if (!has_status_) return;
+    if (time < status_.time) throw GantryFault("goes back in time, to " + core::to_text(time) + " s");
+    if (time - status_.time > max_duration_ + waited.count())
+        throw GantryFault("jumps ahead in time by " + core::to_short_text(time - status_.time) + " s");
+}
+
+/// The machine has to be above the expected position, at any height.
+void DriverGantry::check_position(const Eigen::Vector3d& expected, const std::string& command)
+{
+    if ((status_.commanded - expected).head<2>().norm() > kPositionTolerance)
         fail("stands at " + words(status_.commanded) + " after '" + command + "'");
 }
 
-void DriverGantry::check_range(const Eigen::Vector3d& target)
+void DriverGantry::check_range(const Eigen::Vector3d& target) const
 {
-    if ((target.array() >= limits_.least.array()).all() && (target.array() <= limits_.most.array()).all()) return;
-    throw InputError(command_, "the machine does not reach " + words(target) + " mm");
+    if ((target.array() >= limits_.min.array()).all() && (target.array() <= limits_.max.array()).all()) return;
+    throw core::InputError(command_, "the machine does not reach " + words(target) + " mm");
 }
 
-/// Stops the machine as well as the driver still can; the child's destructor ends the driver.
+void DriverGantry::check_feed(double feed) const
+{
+    if (!(feed > 0 && feed <= limits_.speed))
+        throw core::InputError("gantry", "a feed of " + core::to_text(feed) + " mm/s is not in the machine's range");
+}
+
+/// Asks the driver to stop the machine; the destructor of child_ terminates the driver.
 void DriverGantry::fail(const std::string& problem)
 {
     failed_ = true;
     std::string line;
-    if (child_.send(std::to_string(++asked_) + " stop")) child_.receive(kStopTime, line);
+    if (child_.send(std::to_string(++last_number_) + " stop")) child_.receive(kStopTime, line);
     throw GantryFault("driver '" + command_ + "' " + problem + "; stopped");
 }
 
-} // namespace fettle
+} // namespace fettle::gantry

@@ -3,27 +3,32 @@
 #include "core/descriptor.h"
 #include "gantry/child.h"
 #include "gantry/gantry.h"
+#include "gantry/head_check.h"
 #include "gantry/protocol.h"
 #include "job/job.h"
 
+#include <chrono>
+#include <optional>
 #include <string>
 
-namespace fettle {
+namespace fettle::gantry {
 
 /// A machine behind a driver: a program that speaks the protocol of docs/driver.md on its stdin and stdout.
 ///
-/// A driver is not trusted. Its answers carry the number of what they answer, must come in time, hold finite numbers,
-/// go forward in time, be no farther from the last one than the machine is fast, and end where the move should. At the
-/// first that does not, the machine is told to stop, the driver is ended, and GantryFault names the driver and the
-/// fault.
+/// A driver is not trusted. Its answers have to carry the number of their command, come in time, hold finite numbers,
+/// go forward in time, by no more than the move takes, move no farther than the machine is fast, end at the target of
+/// the move, and report a force and a deflection that agree. At the first violation the machine is stopped, the driver
+/// is terminated, and GantryFault names the driver and the fault.
 class DriverGantry final : public Gantry {
   public:
-    /// Connects, tells the head's F_max, and homes: the head turns to θ.
-    /// @param patience  how long an answer may take beyond the time of the move, s
+    /// Connects, sends the head's F_max, and homes: the head turns to θ.
+    /// @param timeout  of an answer beyond the time of the move, s
+    /// @param head     of the machine, if it is known: for what its transducer may read
     /// @throws InputError if the driver cannot be started, GantryFault if it is at fault
-    DriverGantry(const std::string& command, const Job& job, double patience);
-    /// The same with a driver that runs already. @param name  for messages   @param socket  where it is spoken to
-    DriverGantry(const std::string& name, Descriptor socket, const Job& job, double patience);
+    DriverGantry(const std::string& command, const job::Job& job, double timeout,
+                 const std::optional<Head>& head = std::nullopt);
+    /// Connects to a driver that runs already. @param name  for messages   @param socket  connected to the driver
+    DriverGantry(const std::string& name, core::FileDescriptor socket, const job::Job& job, double timeout);
     ~DriverGantry() override;
     DriverGantry(const DriverGantry&) = delete;
     DriverGantry& operator=(const DriverGantry&) = delete;
@@ -39,25 +44,37 @@ class DriverGantry final : public Gantry {
     const protocol::Limits& limits() const { return limits_; }
 
   private:
-    void connect(const Job& job);
-    std::string ask(const std::string& command, double duration);
+    void connect(const job::Job& job);
+    void set_limit(double force);
+    std::string request(const std::string& command, double duration);
     double measure(const std::string& command, double duration);
-    const GantryStatus& obey(const std::string& command, double duration);
+    void execute(const std::string& command, double duration);
     const GantryStatus& move(const std::string& command, const Eigen::Vector3d& target, double duration, bool guarded);
+    template <class Parse>
+    void parse_or_fail(const Parse& parse);
     void accept(const GantryStatus& status); ///< @throws GantryFault with the problem alone
-    void back_over(const Eigen::Vector3d& place, const std::string& command);
-    void check_range(const Eigen::Vector3d& target);
+    void check_time(double time) const;      ///< @throws as accept()
+    void check_radius(double radius);
+    void check_contact(const Eigen::Vector3d& target, const std::string& command);
+    void check_position(const Eigen::Vector3d& expected, const std::string& command);
+    void check_range(const Eigen::Vector3d& target) const;
+    void check_feed(double feed) const;
     [[noreturn]] void fail(const std::string& problem);
 
     std::string command_;
-    Child child_;
-    double patience_;
-    double most_force_; ///< F_max, N
-    int asked_ = 0;
+    ChildProcess child_;
+    double timeout_;
+    HeadCheck head_;
+    double height_tolerance_; ///< of the ground surface, mm
+    double new_radius_;       ///< of a new wheel, mm
+    double last_radius_ = 0;  ///< of this wheel, as measured last, mm; 0: not yet
+    int last_number_ = 0;     ///< of the commands
     protocol::Limits limits_;
     GantryStatus status_;
-    bool known_ = false; ///< has there been a status?
+    bool has_status_ = false;
+    std::chrono::steady_clock::time_point status_clock_; ///< when that status came
+    double max_duration_ = 0;                            ///< of the command under way, on the machine's clock, s
     bool failed_ = false;
 };
 
-} // namespace fettle
+} // namespace fettle::gantry

@@ -4,20 +4,20 @@
 
 #include <cmath>
 
-namespace fettle {
+namespace fettle::gantry {
 namespace {
 
 /// Scaling and squaring: 14 terms of the series leave 2⁻¹⁴ⁿ / 15! < 1e-16 of a matrix below 1/2.
-constexpr int kTerms = 14;
-constexpr double kSmall = 0.5;
+constexpr int kSeriesTerms = 14;
+constexpr double kMaxScaledNorm = 0.5;
 
 Eigen::Matrix4d exponential(Eigen::Matrix4d a)
 {
-    const double size = a.cwiseAbs().rowwise().sum().maxCoeff();
-    const int halvings = size > kSmall ? static_cast<int>(std::ceil(std::log2(size / kSmall))) : 0;
+    const double norm = a.cwiseAbs().rowwise().sum().maxCoeff();
+    const int halvings = norm > kMaxScaledNorm ? static_cast<int>(std::ceil(std::log2(norm / kMaxScaledNorm))) : 0;
     a = a * std::ldexp(1.0, -halvings);
     Eigen::Matrix4d sum = Eigen::Matrix4d::Identity();
-    for (int n = kTerms; n > 0; --n) sum = Eigen::Matrix4d(Eigen::Matrix4d::Identity() + a * sum / n);
+    for (int n = kSeriesTerms; n > 0; --n) sum = Eigen::Matrix4d(Eigen::Matrix4d::Identity() + a * sum / n);
     for (int n = 0; n < halvings; ++n) sum = Eigen::Matrix4d(sum * sum);
     return sum;
 }
@@ -34,10 +34,8 @@ ExactStep::ExactStep(const Oscillator& oscillator, double period)
     a(1, 2) = 1 / m;
     a(2, 3) = 1;
     const Eigen::Matrix4d e = exponential(a * period);
-    for (int k = 0; k < 4; ++k) {
-        p_[k] = e(0, k);
-        v_[k] = e(1, k);
-    }
+    Eigen::RowVector4d::Map(p_) = e.row(0);
+    Eigen::RowVector4d::Map(v_) = e.row(1);
 }
 
-} // namespace fettle
+} // namespace fettle::gantry

@@ -1,8 +1,8 @@
 #pragma once
 
-namespace fettle {
+namespace fettle::gantry {
 
-/// Position and velocity of something that moves along a line: mm, s (of a rotary axis rad, s).
+/// Position and velocity of a linear axis: mm, mm/s (of a rotary axis rad, rad/s).
 struct Motion {
     double p = 0, v = 0;
 };
@@ -12,7 +12,7 @@ struct Oscillator {
     double mass = 1, damping = 0, stiffness = 0;
 };
 
-/// The exact solution over one period under a force that changes evenly: the exponential of the matrix of
+/// The exact solution over one period under a force that changes linearly: the exponential of the matrix of
 /// (p, v, f, ḟ)' (Van Loan 1978).
 class ExactStep {
   public:
@@ -32,4 +32,4 @@ class ExactStep {
     double p_[4], v_[4];
 };
 
-} // namespace fettle
+} // namespace fettle::gantry

@@ -4,50 +4,50 @@
 
 #include <Eigen/Core>
 
-namespace fettle {
+namespace fettle::gantry {
 
 /// The machine has stopped for good: a drive cannot follow, the spindle stalls, the driver has died. One line.
-class GantryFault : public InputError {
+class GantryFault : public core::InputError {
   public:
-    using InputError::InputError;
+    using core::InputError::InputError;
 };
 
-/// What the machine knows: positions in the machine frame M, mm, N, s.
+/// State that the machine reports: positions in the machine frame M, mm, N, s.
 struct GantryStatus {
     double time = 0;                                     ///< since the start, s
-    Eigen::Vector3d commanded = Eigen::Vector3d::Zero(); ///< tool point the drives stand at
+    Eigen::Vector3d commanded = Eigen::Vector3d::Zero(); ///< tool point at the drives' position
     double deflection = 0; ///< of the head's spring, upward: the tool point is `commanded` + deflection · Z
     double force = 0;      ///< along the spring, vertical, at the end of the move; 0 without contact
     double peak_force = 0; ///< the largest during the move
 };
 
 /// A machine that carries the wheel. The tool point is the lowest point of the wheel, at the middle of its width.
-/// strategy/ speaks to this interface and knows no machine; a gantry knows no strategy. Whatever moves may throw
+/// strategy/ uses this interface and knows no machine; a gantry knows no strategy. Every method that moves may throw
 /// GantryFault.
 class Gantry {
   public:
     virtual ~Gantry() = default;
 
-    /// Travels without grinding: up to the safe height, across, down to `tool_point`. The way down is guarded: the
+    /// Travels without grinding: up to the safe height, across, down to `tool_point`. The descent is guarded: the
     /// drives stop early (see `commanded`) where the force reaches the head's F_max.
     virtual GantryStatus travel(const Eigen::Vector3d& tool_point) = 0;
     /// Grinds in a straight line to `tool_point` at `feed`, mm/s. One step of the strategy: a few tenths of a mm to
     /// some mm.
     virtual GantryStatus grind(const Eigen::Vector3d& tool_point, double feed) = 0;
-    /// Grinds in a straight line over x, y of `tool_point` at `feed`, mm/s, held on the part by `force`, N, along the
-    /// spring: the drives go up and down as the force asks, but not below z of `tool_point`. Where nothing is under the
-    /// wheel it comes down in search of it. A machine that cannot throws GantryFault.
+    /// Grinds in a straight line to x, y of `tool_point` at `feed`, mm/s, under force control: the drives move up and
+    /// down so that the force along the spring is `force`, N, but not below z of `tool_point`. Where nothing is under
+    /// the wheel they descend in search of the part. A machine without force control throws GantryFault.
     virtual GantryStatus press(const Eigen::Vector3d& tool_point, double feed, double force);
     /// Lifts straight up, or lowers (guarded, as travel() does), in place, without feed.
     virtual GantryStatus lift(double commanded_z) = 0;
-    /// Touches the calibration plate P0 and measures the wheel's radius, mm; comes back over its place, at the safe
-    /// height. Costs time.
+    /// Touches the calibration plate P0 and measures the wheel's radius, mm; returns above its position, to the safe
+    /// height. Takes time.
     virtual double touch_off() = 0;
-    /// Puts on a new wheel; comes back over its place, at the safe height. Costs time.
+    /// Mounts a new wheel; returns above its position, to the safe height. Takes time.
     virtual void change_wheel() = 0;
-    /// Touches the part with the probe, whose tip stands at the tool point: up to the safe height, across, down in
-    /// search of the surface, fast and then slowly, and back up to the safe height. Costs time.
-    /// @param lowest  z, it goes no deeper
+    /// Touches the part with the probe, whose tip is at the tool point: up to the safe height, across, down in search
+    /// of the surface, fast and then slowly, and back up to the safe height. Takes time.
+    /// @param lowest  lower bound of the tip's z
     /// @return  z of the tip's lowest point at the touch; NaN if it met nothing
     virtual double probe(const Eigen::Vector2d& xy, double lowest) = 0;
     virtual GantryStatus status() const = 0;
@@ -58,4 +58,4 @@ inline GantryStatus Gantry::press(const Eigen::Vector3d& /*tool_point*/, double 
     throw GantryFault("the machine cannot hold a force");
 }
 
-} // namespace fettle
+} // namespace fettle::gantry

@@ -7,295 +7,289 @@
 #include <numbers>
 #include <thread>
 
-namespace fettle {
+namespace fettle::gantry {
 namespace {
 
-// Between two looks: the servo thread's period.
-constexpr std::chrono::milliseconds kLook{1};
-// Down to the work: at 20 mm/s a slow axis of 1000 mm/s² stops within 0.2 mm.
-constexpr double kDown = 20; // mm/s
-// In search of the surface; and the touch that counts: 0.0005 mm in a period of the servo thread.
-constexpr double kSearch = 10, kTouch = 0.5; // mm/s
-// Back from the first touch; and over P0, whose height is known but for the wheel's wear.
-constexpr double kBack = 0.5, kOverPlate = 3; // mm
-constexpr double kCorner = 0.01;              // what a blended corner may cut off, mm
-constexpr double kHere = 1e-4;                // mm: no way to go
-constexpr double kFelt = 0.1;                 // of the deflection to be held: it is on the part
+/// Period of the servo thread.
+constexpr std::chrono::milliseconds kPollPeriod{1};
+/// Descent to the work: at 20 mm/s a slow axis of 1000 mm/s² stops within 0.2 mm.
+constexpr double kDescentSpeed = 20; // mm/s
+/// Speeds of the search for the surface, and of the touch that is measured: 0.0005 mm in a period of the servo thread.
+constexpr double kSearchSpeed = 10, kTouchSpeed = 0.5; // mm/s
+constexpr double kRetract = 0.5;                       // after the first touch, mm
+constexpr double kPlateClearance = 3;                  // start of the search above P0, more than the wheel's wear, mm
+constexpr double kBlendTolerance = 0.01;               // of a blended corner (G64 P), mm
+constexpr double kPositionTolerance = 1e-4;            // mm
+constexpr double kContactShare = 0.1;                  // of the desired deflection, that counts as a contact
 
-std::string word(const char* name, double value) { return std::string(" ") + name + to_fixed_text(value, 5); }
+std::string word(const char* name, double value) { return std::string(" ") + name + core::to_fixed_text(value, 5); }
 
 std::string feed_word(double mm_per_s) { return word("F", 60 * mm_per_s); }
 
 } // namespace
 
-LinuxcncGantry::LinuxcncGantry(const std::string& ini, const Job& job)
-    : link_(ini), job_(job), new_radius_(job.wheel.radius), known_radius_(job.wheel.radius)
+LinuxcncGantry::LinuxcncGantry(const std::string& ini, const job::Job& job)
+    : link_(ini), job_(job), new_radius_(job.wheel.radius), measured_radius_(job.wheel.radius)
 {
     acceleration_ = std::min({link_.setting("AXIS_X", "MAX_ACCELERATION"), link_.setting("AXIS_Y", "MAX_ACCELERATION"),
                               link_.setting("AXIS_Z", "MAX_ACCELERATION")});
     latency_ = link_.setting("FETTLE", "LATENCY");
-    touch_at_ = link_.setting("FETTLE", "TOUCH");
+    touch_deflection_ = link_.setting("FETTLE", "TOUCH");
     plate_ << link_.setting("FETTLE", "PLATE_X"), link_.setting("FETTLE", "PLATE_Y"),
         link_.setting("FETTLE", "PLATE_Z");
-    link_.set_most_force(job.force.max);
+    link_.set_max_force(job.force.max);
     link_.enable();
-    look();
-    rise_to(job_.safe_height);
+    update_status();
+    raise_to(job_.safe_height);
     run("G0" + word("C", job.theta * 180 / std::numbers::pi));
-    look();
+    update_status();
 }
 
 protocol::Limits LinuxcncGantry::limits() const
 {
-    protocol::Limits limits;
+    Eigen::Vector3d min, max;
     for (int k = 0; k < 3; ++k) {
         const std::string axis = std::string("AXIS_") + "XYZ"[k];
-        limits.least[k] = link_.setting(axis, "MIN_LIMIT");
-        limits.most[k] = link_.setting(axis, "MAX_LIMIT");
+        min[k] = link_.setting(axis, "MIN_LIMIT");
+        max[k] = link_.setting(axis, "MAX_LIMIT");
     }
-    limits.speed = link_.setting("TRAJ", "MAX_LINEAR_VELOCITY");
-    limits.force = link_.setting("FETTLE", "MOST_FORCE");
-    return limits;
+    return {min, max, link_.setting("TRAJ", "MAX_LINEAR_VELOCITY"), link_.setting("FETTLE", "MOST_FORCE")};
 }
 
 GantryStatus LinuxcncGantry::travel(const Eigen::Vector3d& tool_point)
 {
-    settle();
-    status_.peak_force = 0;
-    go_over(tool_point.head<2>());
-    down_to(tool_point.z());
+    finish_motion();
+    travel_over(tool_point.head<2>());
+    lower_to(tool_point.z());
     return status_;
 }
 
 GantryStatus LinuxcncGantry::lift(double commanded_z)
 {
-    settle();
-    status_.peak_force = 0;
-    look();
+    finish_motion();
+    update_status();
     if (commanded_z > status_.commanded.z())
-        rise_to(commanded_z);
+        raise_to(commanded_z);
     else
-        down_to(commanded_z);
+        lower_to(commanded_z);
     return status_;
 }
 
 GantryStatus LinuxcncGantry::grind(const Eigen::Vector3d& tool_point, double feed)
 {
-    if (pressing_) settle();
-    const Eigen::Vector3d end = tool_point - worn() * Eigen::Vector3d::UnitZ();
+    if (pressing_) finish_motion();
+    const Eigen::Vector3d end = tool_point - wheel_wear() * Eigen::Vector3d::UnitZ();
     step_to(end, word("X", end.x()) + word("Y", end.y()) + word("Z", end.z()), feed);
     return status_;
 }
 
 GantryStatus LinuxcncGantry::press(const Eigen::Vector3d& tool_point, double feed, double force)
 {
-    const double wanted = (force - job_.force.preload) / job_.force.stiffness;
-    if (!(wanted > 0)) throw GantryFault("the head's spring is preloaded with more than that force");
-    const double lowest = tool_point.z() - worn();
+    const double deflection = (force - job_.force.preload) / job_.force.stiffness;
+    if (!(deflection > 0)) throw GantryFault("the head's spring is preloaded with more than that force");
+    const double lowest = tool_point.z() - wheel_wear();
     if (!pressing_) {
-        settle();
-        rise_to(job_.safe_height);
+        finish_motion();
+        raise_to(job_.safe_height);
         pressing_ = true;
-        come_down(wanted, lowest);
+        approach_part(deflection, lowest);
     }
-    link_.set_press(true, wanted, lowest);
+    link_.set_press(true, deflection, lowest);
     step_to({tool_point.x(), tool_point.y(), 0}, word("X", tool_point.x()) + word("Y", tool_point.y()), feed);
     return status_;
 }
 
-/// In place, until the part is felt.
-void LinuxcncGantry::come_down(double wanted, double lowest)
+/// Descends in place under force control until the wheel is on the part.
+void LinuxcncGantry::approach_part(double deflection, double lowest)
 {
-    link_.set_press(true, wanted, lowest);
+    link_.set_press(true, deflection, lowest);
     link_.set_hold(true);
     do {
-        std::this_thread::sleep_for(kLook);
-        look();
+        std::this_thread::sleep_for(kPollPeriod);
+        update_status();
         link_.done(); // for faults
-    } while (status_.deflection < kFelt * wanted && link_.drives().z() > lowest + kHere);
+    } while (status_.deflection < kContactShare * deflection && link_.drives().z() > lowest + kPositionTolerance);
 }
 
-/// Streams a step, and follows the machine until the next is due.
+/// Sends a step, and waits until the next one is due.
 void LinuxcncGantry::step_to(const Eigen::Vector3d& end, const std::string& words, double feed)
 {
     status_.peak_force = 0;
-    look();
-    if (way_.empty()) way_.push_back(place());
+    update_status();
+    if (path_.empty()) path_.push_back(path_position());
     link_.set_hold(true);
-    const std::string corners = blending_ ? "" : "G64" + word("P", kCorner) + " ";
+    const std::string corners = blending_ ? "" : "G64" + word("P", kBlendTolerance) + " ";
     blending_ = true;
-    link_.say(corners + "G1" + words + feed_word(feed));
-    way_.push_back(end);
-    // With blended corners it slows down at half of the acceleration.
+    link_.send_gcode(corners + "G1" + words + feed_word(feed));
+    path_.push_back(end);
+    // With blended corners LinuxCNC brakes at half of the acceleration.
     const double ahead = feed * feed / acceleration_ + feed * latency_;
-    for (bool done = false; !done && way_to_go() > ahead;) {
-        std::this_thread::sleep_for(kLook);
-        look();
-        if (link_.held() && !pressing_) { // pressed, Z gives way, and then it goes on
+    for (bool done = false; !done && remaining_path_length() > ahead;) {
+        std::this_thread::sleep_for(kPollPeriod);
+        update_status();
+        if (link_.held() && !pressing_) { // under force control Z yields, and the motion continues
             const double force = status_.peak_force;
             link_.abort();
-            way_.clear();
-            look();
-            status_.force = std::max(status_.force, force); // what has stopped it, not what is left of it
+            path_.clear();
+            update_status();
+            status_.force = std::max(status_.force, force); // the force that has stopped it, not what is left of it
             break;
         }
         done = link_.done();
-        if (done) way_.clear();
+        if (done) path_.clear();
     }
 }
 
 double LinuxcncGantry::touch_off()
 {
-    settle();
-    status_.peak_force = 0;
-    look();
-    const Eigen::Vector2d place = status_.commanded.head<2>();
-    go_over(plate_.head<2>());
-    run("G0" + word("Z", plate_.z() + kOverPlate));
+    finish_motion();
+    update_status();
+    const Eigen::Vector2d xy = status_.commanded.head<2>();
+    travel_over(plate_.head<2>());
+    run("G0" + word("Z", plate_.z() + kPlateClearance));
     const double z = touch_down(plate_.z() - new_radius_);
-    if (std::isnan(z)) throw GantryFault("there is no calibration plate where it should be");
-    known_radius_ = z + new_radius_ - plate_.z();
-    go_over(place);
-    return known_radius_;
+    if (std::isnan(z)) throw GantryFault("the calibration plate was not found at its position");
+    measured_radius_ = z + new_radius_ - plate_.z();
+    travel_over(xy);
+    return measured_radius_;
 }
 
 void LinuxcncGantry::change_wheel()
 {
-    settle();
-    status_.peak_force = 0;
-    rise_to(job_.safe_height);
+    finish_motion();
+    raise_to(job_.safe_height);
     wheel_ = 3 - wheel_;
     run("T" + std::to_string(wheel_) + " M6");
-    known_radius_ = new_radius_;
-    rise_to(job_.safe_height);
+    measured_radius_ = new_radius_;
+    raise_to(job_.safe_height);
 }
 
 double LinuxcncGantry::probe(const Eigen::Vector2d& xy, double lowest)
 {
-    settle();
-    status_.peak_force = 0;
-    go_over(xy);
+    finish_motion();
+    travel_over(xy);
     link_.set_tip(true);
     const double z = touch_down(lowest);
-    rise_to(job_.safe_height);
+    raise_to(job_.safe_height);
     link_.set_tip(false);
-    look();
+    update_status();
     return z;
 }
 
-/// Down in search of a contact, from where it stands; then again, slowly. @return  z of the machine; NaN: none
+/// Searches for a contact downwards; then touches again, slowly. @return  z of the machine; NaN: no contact
 double LinuxcncGantry::touch_down(double lowest)
 {
     link_.set_touch(true);
-    run("G61 G38.3" + word("Z", lowest) + feed_word(kSearch));
+    run("G61 G38.3" + word("Z", lowest) + feed_word(kSearchSpeed));
     blending_ = false;
     double z = link_.touched();
     link_.set_touch(false);
     if (std::isnan(z)) return z;
-    run("G0" + word("Z", z + kBack));
+    run("G0" + word("Z", z + kRetract));
     link_.set_touch(true);
-    run("G38.2" + word("Z", z - kBack) + feed_word(kTouch));
-    z = link_.touched() + touch_at_;
+    run("G38.2" + word("Z", z - kRetract) + feed_word(kTouchSpeed));
+    z = link_.touched() + touch_deflection_;
     link_.set_touch(false);
     return z;
 }
 
-void LinuxcncGantry::go_over(const Eigen::Vector2d& xy)
+void LinuxcncGantry::travel_over(const Eigen::Vector2d& xy)
 {
-    rise_to(std::max(job_.safe_height, status_.commanded.z()));
+    raise_to(std::max(job_.safe_height, status_.commanded.z()));
     run("G0" + word("X", xy.x()) + word("Y", xy.y()));
 }
 
-void LinuxcncGantry::rise_to(double z)
+void LinuxcncGantry::raise_to(double z)
 {
-    link_.set_hold(false); // or it could not leave what is too much
+    link_.set_hold(false); // or it could not leave a force above F_max
     const double at = link_.drives().z();
-    if (z - worn() > at + kHere) run("G0" + word("Z", z - worn()));
+    if (z - wheel_wear() > at + kPositionTolerance) run("G0" + word("Z", z - wheel_wear()));
 }
 
-/// Until there, or F_max is reached.
-void LinuxcncGantry::down_to(double z)
+/// Descends until z or F_max is reached.
+void LinuxcncGantry::lower_to(double z)
 {
-    look();
-    const double end = z - worn();
-    if (link_.drives().z() - end < kHere) return;
+    update_status();
+    const double end = z - wheel_wear();
+    if (link_.drives().z() - end < kPositionTolerance) return;
     link_.set_hold(true);
-    link_.say("G61 G1" + word("Z", end) + feed_word(kDown));
+    link_.send_gcode("G61 G1" + word("Z", end) + feed_word(kDescentSpeed));
     blending_ = false;
     while (!link_.done()) {
-        std::this_thread::sleep_for(kLook);
-        look();
+        std::this_thread::sleep_for(kPollPeriod);
+        update_status();
         if (!link_.held()) continue;
         link_.abort();
         break;
     }
-    look();
+    update_status();
 }
 
-/// Until what was said is done.
+/// Executes a line of G-code to its end.
 void LinuxcncGantry::run(const std::string& line)
 {
-    link_.say(line);
+    link_.send_gcode(line);
     while (!link_.done()) {
-        std::this_thread::sleep_for(kLook);
-        look();
+        std::this_thread::sleep_for(kPollPeriod);
+        update_status();
     }
-    look();
+    update_status();
 }
 
-/// The end of the way is ground; if that takes too much force, less of it.
-void LinuxcncGantry::settle()
+/// Waits for the end of the path, which is cut short if the force exceeds F_max, and resets the peak force.
+void LinuxcncGantry::finish_motion()
 {
-    while (!way_.empty() && !link_.done()) {
-        std::this_thread::sleep_for(kLook);
+    while (!path_.empty() && !link_.done()) {
+        std::this_thread::sleep_for(kPollPeriod);
         if (link_.held() && !pressing_) link_.abort();
     }
-    way_.clear();
-    if (pressing_) let_go();
-    look();
+    path_.clear();
+    if (pressing_) end_press();
+    update_status();
+    status_.peak_force = 0;
 }
 
-/// Back up to where Z is commanded: the safe height.
-void LinuxcncGantry::let_go()
+/// Ends the force control: Z returns to its commanded position, the safe height.
+void LinuxcncGantry::end_press()
 {
     link_.set_press(false);
-    while (link_.drives().z() < job_.safe_height - worn() - kHere) {
-        std::this_thread::sleep_for(kLook);
+    while (link_.drives().z() < job_.safe_height - wheel_wear() - kPositionTolerance) {
+        std::this_thread::sleep_for(kPollPeriod);
         link_.done(); // for faults
     }
     pressing_ = false;
 }
 
-void LinuxcncGantry::look()
+void LinuxcncGantry::update_status()
 {
-    status_.time = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun_).count();
-    status_.commanded = link_.drives() + worn() * Eigen::Vector3d::UnitZ();
+    status_.time = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    status_.commanded = link_.drives() + wheel_wear() * Eigen::Vector3d::UnitZ();
     status_.deflection = link_.deflection();
     status_.force = link_.force();
     status_.peak_force = std::max(status_.peak_force, status_.force);
 }
 
-/// On the way.
-Eigen::Vector3d LinuxcncGantry::place() const
+/// Position of the drives as a point of path_.
+Eigen::Vector3d LinuxcncGantry::path_position() const
 {
     Eigen::Vector3d at = link_.drives();
     if (pressing_) at.z() = 0;
     return at;
 }
 
-/// Drops what has been passed.
-double LinuxcncGantry::way_to_go()
+/// Drops the corners of the path that have been passed. @return  mm
+double LinuxcncGantry::remaining_path_length()
 {
-    const Eigen::Vector3d at = place();
-    while (way_.size() > 2) {
-        const Eigen::Vector3d along = way_[1] - way_[0];
-        if ((at - way_[0]).dot(along) < along.squaredNorm() - 2 * kCorner * along.norm()) break;
-        way_.pop_front();
+    const Eigen::Vector3d at = path_position();
+    while (path_.size() > 2) {
+        const Eigen::Vector3d along = path_[1] - path_[0];
+        if ((at - path_[0]).dot(along) < along.squaredNorm() - 2 * kBlendTolerance * along.norm()) break;
+        path_.pop_front();
     }
-    if (way_.size() < 2) return 0;
-    double length = (way_[1] - at).norm();
-    for (std::size_t i = 2; i < way_.size(); ++i) length += (way_[i] - way_[i - 1]).norm();
+    if (path_.size() < 2) return 0;
+    double length = (path_[1] - at).norm();
+    for (std::size_t i = 2; i < path_.size(); ++i) length += (path_[i] - path_[i - 1]).norm();
     return length;
 }
 
-} // namespace fettle
+} // namespace fettle::gantry

@@ -8,23 +8,23 @@
 #include <chrono>
 #include <deque>
 
-namespace fettle {
+namespace fettle::gantry {
 
 /// A gantry behind LinuxCNC, as samples/machines/linuxcnc sets it up.
 ///
-/// The machine's Z stands for the tool point of a new wheel; a smaller one's is higher, by what touch_off() has found.
-/// LinuxCNC slows down where it does not know how it goes on: grind() returns while there is still a way to go, as long
-/// as the machine needs to stop and the next step to come. Everything else ends at rest.
+/// The machine's Z is the tool point of a new wheel; that of a smaller wheel is higher by the wear that touch_off() has
+/// found. LinuxCNC slows down at the end of its program: grind() returns while some of the path is left, as much as the
+/// machine needs to stop and the next step to arrive. Everything else ends at rest.
 class LinuxcncGantry final : public Gantry {
   public:
     /// Switches the machine on, homes it, and turns the head to θ at the safe height.
     /// @throws InputError for a setting that is missing, GantryFault if LinuxCNC does not answer
-    LinuxcncGantry(const std::string& ini, const Job& job);
+    LinuxcncGantry(const std::string& ini, const job::Job& job);
 
     protocol::Limits limits() const;
     GantryStatus travel(const Eigen::Vector3d& tool_point) override;
     GantryStatus grind(const Eigen::Vector3d& tool_point, double feed) override;
-    /// From the safe height, and back to it before anything else is done.
+    /// Starts from the safe height, and returns to it before any other motion.
     GantryStatus press(const Eigen::Vector3d& tool_point, double feed, double force) override;
     GantryStatus lift(double commanded_z) override;
     double touch_off() override;
@@ -33,33 +33,33 @@ class LinuxcncGantry final : public Gantry {
     GantryStatus status() const override { return status_; }
 
   private:
-    void look();
+    void update_status();
     void run(const std::string& line);
-    void settle();
-    void come_down(double wanted, double lowest);
-    void let_go();
+    void finish_motion();
+    void approach_part(double deflection, double lowest);
+    void end_press();
     void step_to(const Eigen::Vector3d& end, const std::string& words, double feed);
-    void down_to(double z);
-    void rise_to(double z);
-    void go_over(const Eigen::Vector2d& xy);
+    void lower_to(double z);
+    void raise_to(double z);
+    void travel_over(const Eigen::Vector2d& xy);
     double touch_down(double lowest);
-    Eigen::Vector3d place() const;
-    double way_to_go();
-    double worn() const { return new_radius_ - known_radius_; }
+    Eigen::Vector3d path_position() const;
+    double remaining_path_length();
+    double wheel_wear() const { return new_radius_ - measured_radius_; }
 
     LinuxcncLink link_;
-    Job job_;
-    double new_radius_, known_radius_; ///< mm
-    double acceleration_;              ///< of the slowest axis, mm/s²
-    double latency_;                   ///< of a step of the strategy, until it is planned, s
-    double touch_at_;                  ///< deflection at which the probe trips, mm
-    Eigen::Vector3d plate_;            ///< P0
-    int wheel_ = 1;                    ///< its number in the tool table: 1 or 2
-    bool blending_ = true;             ///< does the machine go through the corners?
-    bool pressing_ = false;            ///< Z goes as the force asks, and the way is over X and Y
-    std::deque<Eigen::Vector3d> way_;  ///< that is still to go, from its beginning; machine's coordinates
-    std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
+    job::Job job_;
+    double new_radius_, measured_radius_; ///< mm
+    double acceleration_;                 ///< of the slowest axis, mm/s²
+    double latency_;                      ///< from a step of the strategy until it is planned, s
+    double touch_deflection_;             ///< at which the probe trips, mm
+    Eigen::Vector3d plate_;               ///< P0
+    int wheel_ = 1;                       ///< its number in the tool table: 1 or 2
+    bool blending_ = true;                ///< corners are blended (G64)
+    bool pressing_ = false;               ///< Z follows the force, and the path is in X and Y
+    std::deque<Eigen::Vector3d> path_;    ///< corners of the unfinished path, machine coordinates
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
     GantryStatus status_;
 };
 
-} // namespace fettle
+} // namespace fettle::gantry

@@ -21,31 +21,31 @@
 #include <thread>
 #include <unistd.h>
 
-namespace fettle {
+namespace fettle::gantry {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Between two looks at a condition: half a period of the servo thread.
-constexpr std::chrono::microseconds kLook{500};
-// A sixteenth of the guard's patience: it takes many lost beats.
-constexpr std::chrono::milliseconds kBeat{5};
-// Until LinuxCNC is up, and for what it does without motion, s; homing, with motion.
-constexpr double kPatience = 10, kHoming = 60;
+/// Half a period of the servo thread.
+constexpr std::chrono::microseconds kPollPeriod{500};
+/// Period of the heartbeat, a sixteenth of the guard's timeout: a single late beat does not trip it.
+constexpr std::chrono::milliseconds kBeatPeriod{5};
+/// Timeouts for the start of LinuxCNC and commands without motion, and for commands with motion, s.
+constexpr double kCommandTimeout = 10, kMotionTimeout = 60;
 
-const char* const kNmlName = "xemc"; // of any client in the NML file
+const char* const kNmlName = "xemc"; // name of any client in the NML file
 
-bool wait_for(double seconds, const std::function<bool()>& holds)
+bool wait_for(double seconds, const std::function<bool()>& condition)
 {
     const auto end = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
-    while (!holds()) {
+    while (!condition()) {
         if (Clock::now() > end) return false;
-        std::this_thread::sleep_for(kLook);
+        std::this_thread::sleep_for(kPollPeriod);
     }
     return true;
 }
 
-/// A signal of HAL by its name.
+/// Finds a signal of HAL by its name.
 volatile hal_data_u& signal(const char* name, hal_type_t type)
 {
     hal_type_t found = HAL_TYPE_UNSPECIFIED;
@@ -57,40 +57,31 @@ volatile hal_data_u& signal(const char* name, hal_type_t type)
     return *data;
 }
 
-struct Number {
+template <hal_type_t type, auto member, class Value>
+struct Signal {
     volatile hal_data_u& data;
-    explicit Number(const char* name) : data(signal(name, HAL_FLOAT)) {}
-    operator double() const { return data.f; }
-    void set(double value) { data.f = value; }
+    explicit Signal(const char* name) : data(signal(name, type)) {}
+    operator Value() const { return data.*member; }
+    void set(Value value) { data.*member = value; }
 };
-
-struct Flag {
-    volatile hal_data_u& data;
-    explicit Flag(const char* name) : data(signal(name, HAL_BIT)) {}
-    operator bool() const { return data.b; }
-    void set(bool value) { data.b = value; }
-};
-
-struct Count {
-    volatile hal_data_u& data;
-    explicit Count(const char* name) : data(signal(name, HAL_U32)) {}
-    void go_on() { data.u = data.u + 1; }
-};
+using Number = Signal<HAL_FLOAT, &hal_data_u::f, double>;
+using Flag = Signal<HAL_BIT, &hal_data_u::b, bool>;
+using Count = Signal<HAL_U32, &hal_data_u::u, hal_u32_t>;
 
 /// A component of HAL without pins.
 struct Component {
     int id = hal_init(("fettle-" + std::to_string(::getpid())).c_str());
     Component()
     {
-        if (id < 0) throw GantryFault("LinuxCNC's HAL is not to be reached");
+        if (id < 0) throw GantryFault("LinuxCNC's HAL cannot be reached");
         hal_ready(id);
     }
     ~Component() { hal_exit(id); }
 };
 
 struct Head {
-    Number x{"x-at"}, y{"y-at"}, z{"z-at"}, deflection{"deflection"}, force{"force"}, most_force{"client-fmax"};
-    Number wanted{"client-wanted"}, lowest{"client-lowest"};
+    Number x{"x-at"}, y{"y-at"}, z{"z-at"}, deflection{"deflection"}, force{"force"}, max_force{"client-fmax"};
+    Number desired{"client-wanted"}, lowest{"client-lowest"};
     Flag held{"held"}, lost{"lost"}, tripped{"tripped"}, off{"off"};
     Count beat{"client-beat"};
     Flag watch{"client-watch"}, hold{"client-hold"}, touch{"client-touch"}, tip{"client-tip"};
@@ -105,7 +96,7 @@ std::string message_in(NML& errors, NMLTYPE type)
     return "";
 }
 
-std::string beside(const std::string& ini, const std::string& file)
+std::string resolve_path(const std::string& ini, const std::string& file)
 {
     return file.starts_with('/') ? file : ini.substr(0, ini.rfind('/') + 1) + file;
 }
@@ -120,11 +111,11 @@ struct LinuxcncLink::Wires {
     std::unique_ptr<NML> errors;
     std::unique_ptr<Component> component;
     std::unique_ptr<Head> head;
-    std::atomic<bool> over{false};
-    std::thread heart;
-    int serial = 0;
+    std::atomic<bool> ended{false};
+    std::thread heartbeat;
+    int last_serial = 0;
 
-    const EMC_STAT& look()
+    const EMC_STAT& read_status()
     {
         status->peek();
         return *static_cast<EMC_STAT*>(status->get_address());
@@ -132,8 +123,8 @@ struct LinuxcncLink::Wires {
 
     void connect(const std::string& nml)
     {
-        set_rcs_print_destination(RCS_PRINT_TO_NULL); // it would speak on stdout
-        const bool up = wait_for(kPatience, [&] {
+        set_rcs_print_destination(RCS_PRINT_TO_NULL); // its default is stdout
+        const bool up = wait_for(kCommandTimeout, [&] {
             const char* file = nml.c_str();
             if (!commands) commands = std::make_unique<RCS_CMD_CHANNEL>(emcFormat, "emcCommand", kNmlName, file);
             if (!commands->valid()) commands.reset();
@@ -151,15 +142,15 @@ struct LinuxcncLink::Wires {
     void send(RCS_CMD_MSG& message, const char* what)
     {
         if (commands->write(&message) != 0) throw GantryFault("LinuxCNC takes no commands");
-        serial = message.serial_number;
-        if (!wait_for(kPatience, [&] { return look().echo_serial_number - serial >= 0; }))
+        last_serial = message.serial_number;
+        if (!wait_for(kCommandTimeout, [&] { return read_status().echo_serial_number - last_serial >= 0; }))
             throw GantryFault(std::string("LinuxCNC does not take '") + what + "'");
     }
 
-    void obey(RCS_CMD_MSG& message, const char* what)
+    void execute(RCS_CMD_MSG& message, const char* what)
     {
         send(message, what);
-        if (!wait_for(kPatience, [&] { return look().status != RCS_EXEC; }))
+        if (!wait_for(kCommandTimeout, [&] { return read_status().status != RCS_EXEC; }))
             throw GantryFault(std::string("LinuxCNC does not end '") + what + "'");
         check_errors();
     }
@@ -171,7 +162,7 @@ struct LinuxcncLink::Wires {
                 throw GantryFault("LinuxCNC reports: " + text.substr(0, text.find('\n')));
     }
 
-    void forget_errors()
+    void discard_errors()
     {
         while (errors->read() > 0) {
         }
@@ -181,19 +172,19 @@ struct LinuxcncLink::Wires {
     {
         EMC_TASK_SET_STATE message;
         message.state = state;
-        obey(message, "machine on");
+        execute(message, "machine on");
     }
 
     void set_mode(EMC_TASK_MODE_ENUM mode)
     {
         EMC_TASK_SET_MODE message;
         message.mode = mode;
-        obey(message, "mode");
+        execute(message, "mode");
     }
 
     bool homed()
     {
-        const EMC_STAT& now = look();
+        const EMC_STAT& now = read_status();
         for (int j = 0; j < now.motion.traj.joints; ++j)
             if (!now.motion.joint[j].homed) return false;
         return true;
@@ -201,12 +192,12 @@ struct LinuxcncLink::Wires {
 
     void beat()
     {
-        // Before what else there is to do, where that is allowed: a beat that is late stops the machine.
-        const sched_param first{.sched_priority = 1};
-        pthread_setschedparam(pthread_self(), SCHED_FIFO, &first);
-        while (!over) {
-            head->beat.go_on();
-            std::this_thread::sleep_for(kBeat);
+        // Realtime priority, if permitted: a late beat stops the machine.
+        const sched_param priority{.sched_priority = 1};
+        pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority);
+        while (!ended) {
+            head->beat.set(head->beat + 1);
+            std::this_thread::sleep_for(kBeatPeriod);
         }
     }
 };
@@ -214,10 +205,10 @@ struct LinuxcncLink::Wires {
 LinuxcncLink::LinuxcncLink(const std::string& ini) : wires_(std::make_unique<Wires>())
 {
     wires_->source = ini;
-    if (!wires_->ini.Open(ini.c_str())) throw InputError(ini, "cannot be read");
+    if (!wires_->ini.Open(ini.c_str())) throw core::InputError(ini, "cannot be read");
     const char* const nml = wires_->ini.Find("NML_FILE", "EMC");
-    if (nml == nullptr) throw InputError(ini, "[EMC]NML_FILE is missing");
-    wires_->connect(beside(ini, nml));
+    if (nml == nullptr) throw core::InputError(ini, "[EMC]NML_FILE is missing");
+    wires_->connect(resolve_path(ini, nml));
 }
 
 LinuxcncLink::~LinuxcncLink()
@@ -225,29 +216,30 @@ LinuxcncLink::~LinuxcncLink()
     wires_->head->press.set(false);
     wires_->head->watch.set(false);
     wires_->head->hold.set(false);
-    wires_->over = true;
-    if (wires_->heart.joinable()) wires_->heart.join();
+    wires_->ended = true;
+    if (wires_->heartbeat.joinable()) wires_->heartbeat.join();
 }
 
 double LinuxcncLink::setting(const std::string& section, const std::string& key) const
 {
     double value = 0;
     if (wires_->ini.Find(&value, key.c_str(), section.c_str()) != IniFile::ERR_NONE)
-        throw InputError(wires_->source, "[" + section + "]" + key + " is missing, or no number");
+        throw core::InputError(wires_->source, "[" + section + "]" + key + " is missing, or no number");
     return value;
 }
 
 void LinuxcncLink::enable()
 {
     Head& head = *wires_->head;
-    head.press.set(false); // of a client that is gone
+    head.press.set(false); // may be set by an earlier client
     head.watch.set(false);
     head.hold.set(false);
     head.touch.set(false);
     head.tip.set(false);
-    wires_->heart = std::thread([this] { wires_->beat(); });
-    if (!wait_for(kPatience, [&] { return !head.lost && !head.off; })) throw GantryFault("the guard does not let go");
-    wires_->forget_errors();
+    wires_->heartbeat = std::thread([this] { wires_->beat(); });
+    if (!wait_for(kCommandTimeout, [&] { return !head.lost && !head.off; }))
+        throw GantryFault("the guard does not release the machine");
+    wires_->discard_errors();
     wires_->set_state(EMC_TASK_STATE_ESTOP_RESET);
     wires_->set_state(EMC_TASK_STATE_ON);
     if (!wires_->homed()) {
@@ -255,18 +247,20 @@ void LinuxcncLink::enable()
         EMC_JOINT_HOME all;
         all.joint = -1;
         wires_->send(all, "home");
-        if (!wait_for(kHoming, [&] { return wires_->homed(); })) throw GantryFault("LinuxCNC does not find its zeros");
+        if (!wait_for(kMotionTimeout, [&] { return wires_->homed(); }))
+            throw GantryFault("LinuxCNC does not end homing");
     }
     wires_->set_mode(EMC_TASK_MODE_MDI);
     head.watch.set(true);
 }
 
-// A line that is queued behind another waits until all motion has ended; one that is sent when none is queued does not.
-void LinuxcncLink::say(const std::string& line)
+/// A line that is queued behind another one waits until all motion has ended; a line that is sent when none is queued
+/// does not.
+void LinuxcncLink::send_gcode(const std::string& line)
 {
-    const bool free = wait_for(kHoming, [&] {
+    const bool free = wait_for(kMotionTimeout, [&] {
         done(); // for faults
-        const EMC_STAT& now = wires_->look();
+        const EMC_STAT& now = wires_->read_status();
         return now.task.queuedMDIcommands == 0 && now.task.execState == EMC_TASK_EXEC_DONE;
     });
     if (!free) throw GantryFault("LinuxCNC does not come to '" + line + "'");
@@ -278,22 +272,22 @@ void LinuxcncLink::say(const std::string& line)
 void LinuxcncLink::abort()
 {
     EMC_TASK_ABORT message;
-    wires_->obey(message, "abort");
+    wires_->execute(message, "abort");
 }
 
 bool LinuxcncLink::done()
 {
-    const EMC_STAT& now = wires_->look();
+    const EMC_STAT& now = wires_->read_status();
     if (wires_->head->tripped) throw GantryFault("the force has passed the machine's hard limit; it is off");
     if (wires_->head->lost) throw GantryFault("the guard has missed the heartbeat; the machine is off");
     wires_->check_errors();
     if (now.task.state != EMC_TASK_STATE_ON) throw GantryFault("LinuxCNC's machine is off");
-    return now.echo_serial_number == wires_->serial && now.status == RCS_DONE;
+    return now.echo_serial_number == wires_->last_serial && now.status == RCS_DONE;
 }
 
 double LinuxcncLink::touched() const
 {
-    const EMC_TRAJ_STAT& now = wires_->look().motion.traj;
+    const EMC_TRAJ_STAT& now = wires_->read_status().motion.traj;
     return now.probe_tripped ? now.probedPosition.tran.z : std::numeric_limits<double>::quiet_NaN();
 }
 
@@ -306,18 +300,18 @@ Eigen::Vector3d LinuxcncLink::drives() const
 double LinuxcncLink::deflection() const { return wires_->head->deflection; }
 double LinuxcncLink::force() const { return wires_->head->force; }
 bool LinuxcncLink::held() const { return wires_->head->held; }
-void LinuxcncLink::set_most_force(double force) { wires_->head->most_force.set(force); }
+void LinuxcncLink::set_max_force(double force) { wires_->head->max_force.set(force); }
 void LinuxcncLink::set_hold(bool armed) { wires_->head->hold.set(armed); }
 void LinuxcncLink::set_touch(bool armed) { wires_->head->touch.set(armed); }
 void LinuxcncLink::set_tip(bool probe) { wires_->head->tip.set(probe); }
 
-void LinuxcncLink::set_press(bool armed, double wanted, double lowest)
+void LinuxcncLink::set_press(bool armed, double deflection, double lowest)
 {
     if (armed) {
-        wires_->head->wanted.set(wanted);
+        wires_->head->desired.set(deflection);
         wires_->head->lowest.set(lowest);
     }
     wires_->head->press.set(armed);
 }
 
-} // namespace fettle
+} // namespace fettle::gantry

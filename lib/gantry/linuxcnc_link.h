@@ -6,10 +6,10 @@
 #include <memory>
 #include <string>
 
-namespace fettle {
+namespace fettle::gantry {
 
 /// The connection to a running LinuxCNC: commands by NML, the head's signals by HAL (samples/machines/linuxcnc).
-/// Lengths are the machine's, mm. While it stands, the guard's heartbeat goes on; when its process is gone, it stops.
+/// Lengths are the machine's, mm. It sends the heartbeat that the guard requires, as long as this process lives.
 class LinuxcncLink {
   public:
     /// @param ini  the file that LinuxCNC was started with
@@ -21,34 +21,34 @@ class LinuxcncLink {
 
     double setting(const std::string& section, const std::string& key) const;
 
-    /// Switches the machine on, homes it where it is not, and lets the guard watch over the client.
+    /// Switches the machine on, homes it if necessary, and lets the guard watch the heartbeat.
     void enable();
-    /// Sends a line of G-code and returns when it is under way. The last one's motion may be, too.
-    void say(const std::string& line);
-    /// Stops, and forgets what was said.
+    /// Sends a line of G-code and returns when it has started. The motion of the line before may still be running.
+    void send_gcode(const std::string& line);
+    /// Stops, and discards the lines that were sent.
     void abort();
-    /// Has all that was said been done? @throws GantryFault if the machine is off, the guard has struck, or LinuxCNC
-    /// reports an error
+    /// True if all lines are finished.
+    /// @throws GantryFault if the machine is off, the guard has tripped, or LinuxCNC reports an error
     bool done();
-    /// Where the probe tripped last, z; NaN if it did not.
+    /// Z at which the probe tripped last; NaN if it did not.
     double touched() const;
 
-    Eigen::Vector3d drives() const;
-    double deflection() const; ///< mm
-    double force() const;      ///< N
-    bool held() const;         ///< by the guard, for more than F_max
+    Eigen::Vector3d drives() const; ///< position of X, Y, Z, mm
+    double deflection() const;      ///< mm
+    double force() const;           ///< N
+    bool held() const;              ///< by the guard, for more than F_max
 
-    void set_most_force(double force); ///< F_max, N
-    void set_hold(bool armed);         ///< by F_max
-    void set_touch(bool armed);        ///< a contact trips the probe
-    void set_tip(bool probe);          ///< the probe is in the place of the wheel
-    /// Z goes up and down between where it is commanded and `lowest`, as a deflection of `wanted` asks, mm; without, it
-    /// comes back to where it is commanded.
-    void set_press(bool armed, double wanted = 0, double lowest = 0);
+    void set_max_force(double force); ///< F_max, N
+    void set_hold(bool armed);        ///< the guard holds the feed above F_max
+    void set_touch(bool armed);       ///< a contact trips the probe
+    void set_tip(bool probe);         ///< the probe is in the place of the wheel
+    /// Armed, Z moves between its commanded position and `lowest` so that the spring has this deflection, mm; else it
+    /// returns to its commanded position.
+    void set_press(bool armed, double deflection = 0, double lowest = 0);
 
   private:
     struct Wires;
     std::unique_ptr<Wires> wires_;
 };
 
-} // namespace fettle
+} // namespace fettle::gantry

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-namespace fettle {
+namespace fettle::gantry {
 namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double kLowest = 1e-3; // frequency, times the highest
+constexpr double kMinFrequencyShare = 1e-3; // of the Nyquist frequency
 
 } // namespace
 
@@ -21,7 +21,7 @@ LoopResponse::LoopResponse(const std::function<Complex(Complex)>& plant, double 
 {
     parts_.reserve(frequencies + 1);
     for (int n = 0; n <= frequencies; ++n) {
-        const double angle = std::numbers::pi * std::pow(kLowest, 1 - static_cast<double>(n) / frequencies);
+        const double angle = std::numbers::pi * std::pow(kMinFrequencyShare, 1 - double(n) / frequencies);
         const Complex z = std::polar(1.0, angle), g = plant(z);
         parts_.push_back({g, g * response({0, 1, 0}, period, z), g * response({0, 0, 1}, period, z)});
     }
@@ -29,9 +29,9 @@ LoopResponse::LoopResponse(const std::function<Complex(Complex)>& plant, double 
 
 double LoopResponse::sensitivity_peak(const Pid& controller) const
 {
-    double nearest = std::norm(1.0 + loop(parts_.front(), controller)); // to -1, squared
-    for (const Parts& parts : parts_) nearest = std::min(nearest, std::norm(1.0 + loop(parts, controller)));
-    return 1 / std::sqrt(nearest);
+    double min_distance = std::norm(1.0 + loop(parts_.front(), controller)); // from -1, squared
+    for (const Parts& parts : parts_) min_distance = std::min(min_distance, std::norm(1.0 + loop(parts, controller)));
+    return 1 / std::sqrt(min_distance);
 }
 
 Margins LoopResponse::margins(const Pid& controller) const
@@ -50,4 +50,4 @@ Margins LoopResponse::margins(const Pid& controller) const
     return found;
 }
 
-} // namespace fettle
+} // namespace fettle::gantry

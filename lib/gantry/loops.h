@@ -3,21 +3,27 @@
 #include "gantry/machine.h"
 #include "gantry/servo.h"
 #include "job/job.h"
+#include "json/document.h"
 
 #include <string>
 #include <vector>
 
-namespace fettle {
+namespace fettle::gantry {
 
-/// A loop of a machine, as it was tuned for a job.
-struct Loop {
+/// A control loop of a machine, tuned for a job.
+struct ControlLoop {
     std::string name;     ///< "x", "y", "z", "z against the spring", "c", "force"
     double bandwidth = 0; ///< rad/s
     Margins margins;
 };
 
-/// Every loop that a dynamic gantry closes.
+/// Tunes every loop that a dynamic gantry closes.
 /// @throws InputError if there is no controller for one
-std::vector<Loop> loops_of(const Machine& machine, const Job& job);
+std::vector<ControlLoop> tune_loops(const Machine& machine, const job::Job& job);
 
-} // namespace fettle
+/// {"loop": …, "bandwidth": …, "gain_margin": …, "phase_margin_deg": …}.
+json::Value to_json(const ControlLoop& loop);
+/// The same as text, "loop x: bandwidth …".
+std::string to_string(const ControlLoop& loop);
+
+} // namespace fettle::gantry

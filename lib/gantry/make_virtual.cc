@@ -3,14 +3,15 @@
 #include "gantry/dynamic.h"
 #include "gantry/quasi_static.h"
 
-namespace fettle {
+namespace fettle::gantry {
 namespace {
 
-constexpr double kCellsPerWidth = 64; // of the wheel: 0.1 mm for one of 1/4 in
+constexpr double kCellsPerWidth = 64; // of the wheel: cells of 0.1 mm for 1/4 in
 
 } // namespace
 
-std::unique_ptr<VirtualGantry> make_virtual(const HeightField& stock, const Job& job, const VirtualMachine& machine)
+std::unique_ptr<VirtualGantry> make_virtual_gantry(const removal::HeightField& stock, const job::Job& job,
+                                                   const VirtualMachine& machine)
 {
     if (machine.file.empty()) {
         QuasiStaticOptions options;
@@ -23,6 +24,6 @@ std::unique_ptr<VirtualGantry> make_virtual(const HeightField& stock, const Job&
     return std::make_unique<DynamicGantry>(stock, job, read_machine(machine.file), options);
 }
 
-double cell_of(const Job& job, double wanted) { return wanted > 0 ? wanted : job.wheel.width / kCellsPerWidth; }
+double stock_cell_size(const job::Job& job, double cell) { return cell > 0 ? cell : job.wheel.width / kCellsPerWidth; }
 
-} // namespace fettle
+} // namespace fettle::gantry

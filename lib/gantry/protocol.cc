@@ -5,33 +5,34 @@
 #include <cmath>
 #include <initializer_list>
 
-namespace fettle::protocol {
+namespace fettle::gantry::protocol {
 namespace {
 
 std::string join(std::initializer_list<double> numbers)
 {
     std::string text;
-    for (const double number : numbers) text += (text.empty() ? "" : " ") + to_text(number);
+    for (const double number : numbers) text += (text.empty() ? "" : " ") + core::to_text(number);
     return text;
 }
 
-/// The rest of what is no answer, for messages.
-constexpr std::size_t kShown = 60;
+/// A malformed line is quoted up to this length.
+constexpr std::size_t kMaxQuotedLength = 60;
 
 [[noreturn]] void refuse(std::string_view text)
 {
     std::string shown;
-    for (const char c : text.substr(0, kShown)) shown += c >= ' ' && c < 127 ? c : '?';
+    for (const char c : text.substr(0, kMaxQuotedLength)) shown += c >= ' ' && c < 127 ? c : '?';
     throw GantryFault("makes no sense: '" + shown + "'");
 }
 
-std::vector<double> numbers_in(std::string_view text, std::size_t count)
+std::vector<double> parse_numbers(std::string_view text, std::size_t count)
 {
     std::vector<double> numbers;
     for (std::string_view rest = text; !rest.empty();) {
-        const auto number = parse_number(next_word(rest));
+        const auto number = core::parse_number(next_word(rest));
         if (!number) refuse(text);
-        if (!std::isfinite(*number)) throw GantryFault("says " + to_text(*number) + ": '" + std::string(text) + "'");
+        if (!std::isfinite(*number))
+            throw GantryFault("says " + core::to_text(*number) + ": '" + std::string(text) + "'");
         numbers.push_back(*number);
     }
     if (numbers.size() != count) refuse(text);
@@ -48,28 +49,28 @@ std::string_view next_word(std::string_view& line)
     return word;
 }
 
-std::string text_of(const Limits& l)
+std::string to_line(const Limits& l)
 {
-    return join({l.least.x(), l.most.x(), l.least.y(), l.most.y(), l.least.z(), l.most.z(), l.speed, l.force});
+    return join({l.min.x(), l.max.x(), l.min.y(), l.max.y(), l.min.z(), l.max.z(), l.speed, l.force});
 }
 
-std::string text_of(const GantryStatus& s)
+std::string to_line(const GantryStatus& s)
 {
     return join({s.time, s.commanded.x(), s.commanded.y(), s.commanded.z(), s.deflection, s.force, s.peak_force});
 }
 
-Limits limits_in(std::string_view text)
+Limits parse_limits(std::string_view text)
 {
-    const std::vector<double> n = numbers_in(text, 8);
+    const std::vector<double> n = parse_numbers(text, 8);
     return {{n[0], n[2], n[4]}, {n[1], n[3], n[5]}, n[6], n[7]};
 }
 
-GantryStatus status_in(std::string_view text)
+GantryStatus parse_status(std::string_view text)
 {
-    const std::vector<double> n = numbers_in(text, 7);
+    const std::vector<double> n = parse_numbers(text, 7);
     return {n[0], {n[1], n[2], n[3]}, n[4], n[5], n[6]};
 }
 
-double number_in(std::string_view text) { return numbers_in(text, 1).front(); }
+double parse_finite_number(std::string_view text) { return parse_numbers(text, 1).front(); }
 
-} // namespace fettle::protocol
+} // namespace fettle::gantry::protocol

@@ -8,28 +8,28 @@
 #include <string_view>
 #include <vector>
 
-/// Lines between a strategy and the driver of a machine: docs/driver.md. Numbers in mm, N, s, written so that they read
-/// back the same.
-namespace fettle::protocol {
+/// Lines between a strategy and the driver of a machine: docs/driver.md. Numbers are in mm, N, s, with as many digits
+/// as they need to be read back exactly.
+namespace fettle::gantry::protocol {
 
 inline const std::string kVersion = "fettle-gantry 1";
 
-/// What a machine can do; a driver tells it first. The frame is M.
+/// Limits of a machine, in the frame M; a driver reports them first.
 struct Limits {
-    Eigen::Vector3d least, most; ///< of the tool point, mm
-    double speed = 0;            ///< no axis and no combination of axes is faster, mm/s
-    double force = 0;            ///< the largest F_max it can be given, N
+    Eigen::Vector3d min, max; ///< range of the tool point, mm
+    double speed = 0;         ///< of any axis and any combination of axes, mm/s
+    double force = 0;         ///< largest F_max that it accepts, N
 };
 
-std::string text_of(const Limits& limits);
-std::string text_of(const GantryStatus& status);
+std::string to_line(const Limits& limits);
+std::string to_line(const GantryStatus& status);
 
-/// @throws GantryFault with what was said, if that is not what it should be: also for numbers that are not finite
-Limits limits_in(std::string_view text);
-GantryStatus status_in(std::string_view text);
-double number_in(std::string_view text);
+/// All three: @throws GantryFault that quotes the text, if it is malformed or a number is not finite
+Limits parse_limits(std::string_view text);
+GantryStatus parse_status(std::string_view text);
+double parse_finite_number(std::string_view text);
 
-/// A line without its first word, which is returned; words are separated by one blank.
+/// Removes the first word from a line, and returns it; words are separated by one blank.
 std::string_view next_word(std::string_view& line);
 
-} // namespace fettle::protocol
+} // namespace fettle::gantry::protocol

@@ -9,19 +9,18 @@
 #include <csignal>
 #include <optional>
 
-namespace fettle {
+namespace fettle::gantry {
 namespace {
 
-/// The same angle but for the rounding of its text.
-constexpr double kSameAngle = 1e-9;
-/// Slower, a step takes weeks; 0 would take for ever.
-constexpr double kSlowest = 1e-6; // mm/s
-/// No command is longer.
-constexpr std::size_t kLongestLine = 4096;
+constexpr double kAngleTolerance = 1e-9; // rad; rounding of its text
+/// A slower feed takes weeks for a step.
+constexpr double kMinFeed = 1e-6; // mm/s
+constexpr std::size_t kMaxLineLength = 4096;
 
 class Server {
   public:
-    Server(Gantry& gantry, const protocol::Limits& limits, const Job& job) : gantry_(gantry), limits_(limits), job_(job)
+    Server(Gantry& gantry, const protocol::Limits& limits, const job::Job& job)
+        : gantry_(gantry), limits_(limits), job_(job)
     {
     }
 
@@ -29,77 +28,78 @@ class Server {
     std::string answer(std::string_view line)
     {
         try {
-            return "ok " + obey(protocol::next_word(line), line);
-        } catch (const std::runtime_error& error) { // a fault of the machine, or a command that is none
+            return "ok " + execute(protocol::next_word(line), line);
+        } catch (const std::runtime_error& error) { // a fault of the machine, or a malformed command
             return std::string("error ") + error.what();
         }
     }
-    bool over() const { return over_; }
-    /// When nobody speaks any more. A wheel that is worn away by what it grinds on the way up stops nothing then.
-    void leave()
+    bool ended() const { return ended_; }
+    /// Raises the head when the client is gone. A wheel that is worn away on the way up is no reason to fail then.
+    void retract_ignoring_faults()
     {
         try {
-            let_go();
-        } catch (const InputError&) {
+            retract();
+        } catch (const core::InputError&) {
         }
     }
 
   private:
-    void let_go() { gantry_.lift(std::max(job_.safe_height, gantry_.status().commanded.z())); }
+    GantryStatus retract() { return gantry_.lift(std::max(job_.safe_height, gantry_.status().commanded.z())); }
 
-    std::string obey(std::string_view command, std::string_view rest)
+    std::string execute(std::string_view command, std::string_view rest)
     {
-        const auto number = [&] { return protocol::number_in(protocol::next_word(rest)); };
+        const auto number = [&] { return protocol::parse_finite_number(protocol::next_word(rest)); };
         const auto point = [&] {
             const double x = number(), y = number(), z = number();
             return within_reach({x, y, z});
         };
         const auto feed = [&] {
             const double rate = number();
-            if (rate < kSlowest || rate > limits_.speed) throw GantryFault("no feed of " + to_text(rate) + " mm/s");
+            if (rate < kMinFeed || rate > limits_.speed)
+                throw GantryFault("no feed of " + core::to_text(rate) + " mm/s");
             return rate;
         };
         if (command == "connect" && rest == protocol::kVersion)
-            return protocol::kVersion + " " + protocol::text_of(limits_);
+            return protocol::kVersion + " " + protocol::to_line(limits_);
         if (command == "limit") return limit(number());
         if (command == "home") return home(number());
-        if (command == "status") return protocol::text_of(gantry_.status());
-        if (command == "travel") return protocol::text_of(gantry_.travel(point()));
-        if (command == "lift") return protocol::text_of(gantry_.lift(height(number())));
+        if (command == "status") return protocol::to_line(gantry_.status());
+        if (command == "travel") return protocol::to_line(gantry_.travel(point()));
+        if (command == "lift") return protocol::to_line(gantry_.lift(height(number())));
         if (command == "move") {
             const Eigen::Vector3d to = point();
-            return protocol::text_of(gantry_.grind(to, feed()));
+            return protocol::to_line(gantry_.grind(to, feed()));
         }
         if (command == "press") {
             const Eigen::Vector3d to = point();
             const double rate = feed();
-            return protocol::text_of(gantry_.press(to, rate, number()));
+            return protocol::to_line(gantry_.press(to, rate, number()));
         }
         if (command == "touch_off") {
             const double radius = gantry_.touch_off();
-            return to_text(radius) + " " + protocol::text_of(gantry_.status());
+            return core::to_text(radius) + " " + protocol::to_line(gantry_.status());
         }
         if (command == "probe") {
             const Eigen::Vector3d to = point();
             const double z = gantry_.probe(to.head<2>(), to.z());
-            return (std::isnan(z) ? "none" : to_text(z)) + " " + protocol::text_of(gantry_.status());
+            return (std::isnan(z) ? "none" : core::to_text(z)) + " " + protocol::to_line(gantry_.status());
         }
         if (command == "change_wheel") {
             gantry_.change_wheel();
-            return protocol::text_of(gantry_.status());
+            return protocol::to_line(gantry_.status());
         }
         if (command == "stop" || command == "quit") {
-            over_ = true;
-            let_go();
-            return protocol::text_of(gantry_.status());
+            ended_ = true;
+            return protocol::to_line(retract());
         }
         throw GantryFault("no such command: " + std::string(command));
     }
 
     Eigen::Vector3d within_reach(const Eigen::Vector3d& p) const
     {
-        if ((p.array() >= limits_.least.array()).all() && (p.array() <= limits_.most.array()).all()) return p;
-        throw GantryFault("the machine does not reach " + to_text(p.x()) + " " + to_text(p.y()) + " " + to_text(p.z()));
+        if ((p.array() >= limits_.min.array()).all() && (p.array() <= limits_.max.array()).all()) return p;
+        throw GantryFault("the machine does not reach " + core::to_text(p.x()) + " " + core::to_text(p.y()) + " " +
+                          core::to_text(p.z()));
     }
 
     double height(double z) const
@@ -110,54 +110,55 @@ class Server {
 
     std::string limit(double force) const
     {
-        if (force != job_.force.max) throw GantryFault("F_max is " + to_text(job_.force.max) + " N here");
-        return to_text(force);
+        if (force != job_.force.max) throw GantryFault("F_max is " + core::to_text(job_.force.max) + " N here");
+        return core::to_text(force);
     }
 
     std::string home(double theta) const
     {
-        if (std::abs(theta - job_.theta) > kSameAngle)
-            throw GantryFault("the head stands at " + to_text(job_.theta) + " rad");
-        return protocol::text_of(gantry_.status());
+        if (std::abs(theta - job_.theta) > kAngleTolerance)
+            throw GantryFault("the head stands at " + core::to_text(job_.theta) + " rad");
+        return protocol::to_line(gantry_.status());
     }
 
     Gantry& gantry_;
     const protocol::Limits& limits_;
-    const Job& job_;
-    bool over_ = false;
+    const job::Job& job_;
+    bool ended_ = false;
 };
 
 } // namespace
 
-void serve(Gantry& gantry, const protocol::Limits& limits, const Job& job, const Descriptor& in, const Descriptor& out)
+void serve(Gantry& gantry, const protocol::Limits& limits, const job::Job& job, const core::FileDescriptor& in,
+           const core::FileDescriptor& out)
 {
-    // Whoever asked may be gone before the answer; that must not end what is to be left behind in order.
+    // The client may be gone before the answer; the head has to be raised nevertheless.
     std::signal(SIGPIPE, SIG_IGN);
     Server server(gantry, limits, job);
     std::string pending;
-    char some[4096];
-    while (!server.over()) {
+    char buffer[4096];
+    while (!server.ended()) {
         const std::size_t end = pending.find('\n');
         if (end == std::string::npos) {
-            if (pending.size() > kLongestLine) {
-                server.leave();
-                throw InputError("stdin", "a line of more than " + std::to_string(kLongestLine) + " bytes");
+            if (pending.size() > kMaxLineLength) {
+                server.retract_ignoring_faults();
+                throw core::InputError("stdin", "a line of more than " + std::to_string(kMaxLineLength) + " bytes");
             }
-            const ssize_t n = read_some(in, some, sizeof some);
-            if (n <= 0) return server.leave();
-            pending.append(some, static_cast<std::size_t>(n));
+            const ssize_t n = core::read_some(in, buffer, sizeof buffer);
+            if (n <= 0) return server.retract_ignoring_faults();
+            pending.append(buffer, n);
             continue;
         }
         const std::string line = pending.substr(0, end);
         pending.erase(0, end + 1);
         std::string_view rest = line;
         const std::string number(protocol::next_word(rest));
-        if (write_all(out, number + " " + server.answer(rest) + "\n")) continue;
-        const bool is_alone = errno == EPIPE;
-        server.leave();
-        if (is_alone) return;
-        throw InputError("stdout", "cannot be written");
+        if (core::write_all(out, number + " " + server.answer(rest) + "\n")) continue;
+        const bool client_gone = errno == EPIPE;
+        server.retract_ignoring_faults();
+        if (client_gone) return;
+        throw core::InputError("stdout", "cannot be written");
     }
 }
 
-} // namespace fettle
+} // namespace fettle::gantry

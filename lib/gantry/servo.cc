@@ -6,20 +6,20 @@
 #include <cmath>
 #include <complex>
 
-namespace fettle {
+namespace fettle::gantry {
 namespace {
 
 using Complex = std::complex<double>;
 
-constexpr int kFrequencies = 200; // of the response while gains are looked for
-/// The search for ω: from slow to fast, in steps that matter to nobody.
-constexpr double kSlowest = 5, kFastest = 2000, kStep = 1.04; // rad/s
-constexpr double kQuiet = 0.1;                                // of the voltage, by one count
+constexpr int kTuningFrequencies = 200; // of a response during the search
+/// Range, rad/s, and factor of the search for ω, from slow to fast; 4 % are negligible.
+constexpr double kMinOmega = 5, kMaxOmega = 2000, kOmegaFactor = 1.04;
+constexpr double kMaxVoltagePerCount = 0.1; // change of the voltage by one encoder count, relative to its limit
 
 ServoGains place_poles(const Drive& drive, double omega)
 {
-    // m s³ + (d + g K_d) s² + g K_p s + g K_i = m (s + ω)² (s + p): p = ω, or, where the drive's own brake is more than
-    // that takes, what it gives without K_d.
+    // m s³ + (d + g K_d) s² + g K_p s + g K_i = m (s + ω)² (s + p): p = ω, or, where the drive's own damping is larger
+    // than that, the p that follows from K_d = 0.
     const double m = drive.mass / drive.gain, d = drive.damping / drive.gain;
     const double p = std::max(omega, d / m - 2 * omega);
     ServoGains gains;
@@ -48,30 +48,31 @@ LoopResponse servo_response(const Drive& drive, const Oscillator& load, double p
     return {[&](Complex z) { return drive_response(drive.gain, step, z); }, period, frequencies};
 }
 
-ServoGains tune(const Drive& drive, double k, double b, double period)
+ServoGains tune_servo(const Drive& drive, double k, double b, double period)
 {
-    const LoopResponse free = servo_response(drive, {drive.mass, drive.damping, 0}, period, kFrequencies);
-    const LoopResponse sprung = servo_response(drive, {drive.mass, drive.damping + b, k}, period, kFrequencies);
-    const auto good = [&](const ServoGains& gains) {
+    const LoopResponse free = servo_response(drive, {drive.mass, drive.damping, 0}, period, kTuningFrequencies);
+    const LoopResponse sprung = servo_response(drive, {drive.mass, drive.damping + b, k}, period, kTuningFrequencies);
+    const auto acceptable = [&](const ServoGains& gains) {
         const double kick = (gains.kp + gains.kd / period) * drive.encoder;
-        return kick <= kQuiet * std::min(drive.voltage, drive.current) &&
-               free.sensitivity_peak(gains) <= kMostSensitivity && sprung.sensitivity_peak(gains) <= kMostSensitivity;
+        return kick <= kMaxVoltagePerCount * std::min(drive.voltage, drive.current) &&
+               free.sensitivity_peak(gains) <= kMaxSensitivity && sprung.sensitivity_peak(gains) <= kMaxSensitivity;
     };
     ServoGains best;
-    for (double omega = kSlowest; omega < kFastest; omega *= kStep) {
+    for (double omega = kMinOmega; omega < kMaxOmega; omega *= kOmegaFactor) {
         const ServoGains gains = place_poles(drive, omega);
-        if (!good(gains)) break;
+        if (!acceptable(gains)) break;
         best = gains;
     }
     if (best.bandwidth == 0)
-        throw InputError("gantry",
-                         "no controller holds a drive's margins: its encoder is too coarse, or it is too weak "
-                         "for the head's spring");
+        throw core::InputError(
+            "gantry",
+            "no servo controller has the stability margins: the drive's encoder is too coarse, or it is too weak "
+            "for the head's spring");
     return best;
 }
 
 ServoAxis::ServoAxis(const Drive& drive, double k, double b, double period, double at)
-    : drive_(drive), k_(k), b_(b), period_(period), gains_(tune(drive, k, b, period)),
+    : drive_(drive), k_(k), b_(b), period_(period), gains_(tune_servo(drive, k, b, period)),
       free_({drive.mass, drive.damping, 0}, period), sprung_({drive.mass, drive.damping + b, k}, period), motion_{at, 0}
 {
     measure();
@@ -96,20 +97,21 @@ void ServoAxis::step_with_spring(const Reference& reference, double preload, dou
 double ServoAxis::control(const Reference& reference)
 {
     const double error = reference.p - measured_;
-    // In the middle of the period the drive runs as fast as the feed-forward has to.
+    // The feed-forward uses the speed in the middle of the period.
     const double ahead = gains_.kv * (reference.v + reference.a * period_ / 2) + gains_.ka * reference.a + gains_.v0;
-    const double wanted = gains_.kp * error + gains_.kd * (error - last_error_) / period_ + ahead;
+    const double without_integral = gains_.kp * error + gains_.kd * (error - last_error_) / period_ + ahead;
     last_error_ = error;
     const double emf = drive_.emf * motion_.v;
-    const double most = std::min(drive_.voltage, emf + drive_.current);
-    const double least = std::max(-drive_.voltage, emf - drive_.current);
-    // An amplifier at its limit winds nothing up.
+    const double max_voltage = std::min(drive_.voltage, emf + drive_.current);
+    const double min_voltage = std::max(-drive_.voltage, emf - drive_.current);
+    // Anti-windup: no integration towards the limit of the amplifier.
     const double integral = integral_ + gains_.ki * error * period_;
-    const double whole = wanted + integral;
-    if ((whole <= most || integral < integral_) && (whole >= least || integral > integral_)) integral_ = integral;
-    return std::clamp(wanted + integral_, least, most);
+    const double total = without_integral + integral;
+    if ((total <= max_voltage || integral < integral_) && (total >= min_voltage || integral > integral_))
+        integral_ = integral;
+    return std::clamp(without_integral + integral_, min_voltage, max_voltage);
 }
 
 void ServoAxis::measure() { measured_ = std::round(motion_.p / drive_.encoder) * drive_.encoder; }
 
-} // namespace fettle
+} // namespace fettle::gantry

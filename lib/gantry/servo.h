@@ -6,10 +6,10 @@
 
 #include <complex>
 
-namespace fettle {
+namespace fettle::gantry {
 
-/// What a drive is asked to do at the beginning of a period: the acceleration is kept for the whole of it. mm, mm/s,
-/// mm/s² (of a rotary axis rad).
+/// Reference signal of a servo loop at the beginning of a period; the acceleration is constant over the period. mm,
+/// mm/s, mm/s² (of a rotary axis rad).
 struct Reference {
     double p = 0, v = 0, a = 0;
 };
@@ -20,40 +20,39 @@ struct ServoGains : Pid {
     double bandwidth = 0; ///< ω of the slowest poles, rad/s
 };
 
-/// Place per volt, at z, of a drive whose voltage stands for a period.   @param gain  N per volt
+/// Position per volt, at z, of a drive whose voltage is constant over a period.   @param gain  N per volt
 std::complex<double> drive_response(double gain, const ExactStep& step, std::complex<double> z);
 
-/// Frequencies at which a loop's margins are found to a thousandth.
-inline constexpr int kFineFrequencies = 4000;
+/// Number of frequencies that gives a loop's margins to a thousandth.
+inline constexpr int kMarginFrequencies = 4000;
 
-/// Of the loop around a drive, opened at the voltage.
-/// @param load  what the drive carries
+/// Response of the loop around a drive, opened at the voltage.
+/// @param load  mechanical load of the drive
 LoopResponse servo_response(const Drive& drive, const Oscillator& load, double period, int frequencies);
 
 /// Places the poles at −ω (and a third one farther out where the drive brakes itself more), ω as large as two
-/// conditions allow: the sensitivity peak of the sampled loop, free and with the spring (k, b) at work, stays within
-/// kMostSensitivity; one count of the encoder moves the voltage by no more than a tenth of what the amplifier has.
+/// conditions allow: the sensitivity peak of the sampled loop, free and against the spring (k, b), stays within
+/// kMaxSensitivity; one count of the encoder moves the voltage by no more than a tenth of the amplifier's limit.
 /// Feed-forward is the inverse of the drive.
 /// @throws InputError if there is none
-ServoGains tune(const Drive& drive, double k, double b, double period);
+ServoGains tune_servo(const Drive& drive, double k, double b, double period);
 
-/// One axis: drive, encoder and controller. Between two looks of the controller its voltage stands, and the motion is
-/// exact.
+/// One axis: drive, encoder and controller. Between two samples of the controller its voltage is constant, and the
+/// motion is exact.
 class ServoAxis {
   public:
     /// @param k, b  spring and damper that may load the drive, N/mm, N s/mm
     ServoAxis(const Drive& drive, double k, double b, double period, double at);
 
-    /// One period under a constant force (towards +p).
+    /// Simulates one period under a constant force (towards +p).
     void step(const Reference& reference, double force);
-    /// One period against the spring and the damper, whose other end stands at `end` and moves on evenly at `rate`
-    /// (Wang 2007, eq. 6-7; there the damper's share of the other end, K b ż_r, is missing on the right).
+    /// Simulates one period against the spring and the damper, whose other end is at `end` and moves at the constant
+    /// `rate` (Wang 2007, eq. 6-7; there the damper's share of the other end, K b ż_r, is missing on the right).
     void step_with_spring(const Reference& reference, double preload, double end, double rate);
 
     const Motion& motion() const { return motion_; }
     double measured() const { return measured_; } ///< by the encoder
     double voltage() const { return voltage_; }
-    const ServoGains& gains() const { return gains_; }
 
   private:
     double control(const Reference& reference);
@@ -67,4 +66,4 @@ class ServoAxis {
     double measured_, integral_ = 0, last_error_ = 0, voltage_ = 0;
 };
 
-} // namespace fettle
+} // namespace fettle::gantry

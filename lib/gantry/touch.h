@@ -14,48 +14,47 @@
 #include <string>
 #include <vector>
 
-namespace fettle {
+namespace fettle::gantry {
 
-/// Touches the places of plans on a machine, each once: what has been touched is known.
-class GantryTouches {
+/// Probes the points of plans on a machine, each once: its result is kept for later plans.
+class GantryProbe {
   public:
     /// Searches for the surface down to as far below the lowest boundary point as the safe height is above it.
     /// @throws InputError if no boundary point has a z
-    GantryTouches(Gantry& gantry, const Job& job);
+    GantryProbe(Gantry& gantry, const job::Job& job);
 
-    /// As probe() (sampling/probe.h) on a scan. What is new is touched along a short way.
+    /// Result as that of probe() (sampling/probe.h) on a scan. New points are probed in the order of a short path.
     /// @throws GantryFault
-    Eigen::Matrix3Xd operator()(const TouchPlan& plan);
+    Eigen::Matrix3Xd operator()(const sampling::TouchPlan& plan);
 
   private:
-    const Eigen::Vector3d* known(const Eigen::Vector2d& xy) const;
+    const Eigen::Vector3d* find_touch(const Eigen::Vector2d& xy) const;
 
     Gantry& gantry_;
-    const Job& job_;
+    const job::Job& job_;
     double lowest_;                        ///< z, mm
-    std::vector<Eigen::Vector3d> touched_; ///< lowest points of the tip; z is NaN where it met nothing
+    std::vector<Eigen::Vector3d> touches_; ///< lowest points of the tip; z is NaN where it met nothing
 };
 
-/// What is touched: a scan, or the part on a machine.
+/// The part to be probed: a scan, or the part on a machine.
 struct TouchedPart {
-    std::string name;                 ///< for messages
-    std::string doubt;                ///< what may be wrong with it; empty: nothing
-    std::shared_ptr<const Scan> scan; ///< nothing on a machine
-    std::shared_ptr<Gantry> machine;  ///< nothing for a scan
-    ProbePlan touch;
+    std::string name;                           ///< for messages
+    std::string warning;                        ///< warning that it may be the wrong part; empty: none
+    std::shared_ptr<const sampling::Scan> scan; ///< null on a machine
+    std::shared_ptr<Gantry> machine;            ///< null for a scan
+    margin::ProbeFunction touch;
 };
 
-/// How to reach it.
 struct TouchOptions {
-    std::optional<Units::Length> unit; ///< of a scan, if it is not the job's
-    std::string noise;                 ///< of touches on a scan, in the job's unit (sampling/noise.h)
+    std::optional<units::Units::Length> unit; ///< of a scan, if it is not the job's
+    std::string noise;                        ///< of touches on a scan, in the job's unit (sampling/noise.h)
     std::uint64_t seed = 1;
-    double patience = 10; ///< with a driver, s
+    double timeout = 10; ///< of a driver, s
 };
 
 /// @param on  a scan's file, or gantry:exec:COMMAND
 /// @param job  must outlive the part
 /// @throws InputError for a bad file or driver, or a unit or noise for a machine
-TouchedPart touched_part(const std::string& on, const Job& job, const TouchOptions& options);
+TouchedPart open_touched_part(const std::string& on, const job::Job& job, const TouchOptions& options);
 
-} // namespace fettle
+} // namespace fettle::gantry

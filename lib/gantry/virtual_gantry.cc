@@ -9,19 +9,21 @@
 #include <numbers>
 #include <utility>
 
-namespace fettle {
+namespace fettle::gantry {
 
 void check_positive(double value, const char* name)
 {
-    if (!(value > 0)) throw InputError("gantry", std::string(name) + " must be positive, not " + to_text(value));
+    if (!(value > 0))
+        throw core::InputError("gantry", std::string(name) + " must be positive, not " + core::to_text(value));
 }
 
-VirtualGantry::VirtualGantry(HeightField stock, const Job& job, const VirtualOptions& options, const RimForce& rim)
+VirtualGantry::VirtualGantry(removal::HeightField stock, const job::Job& job, const VirtualOptions& options,
+                             const removal::RimForce& rim)
     : stock_(std::move(stock)), wheel_(stock_, job.wheel.width, rim), spring_{job.force.preload, job.force.stiffness},
-      options_(options), R_working_machine_(rotation_working_machine(job.theta)),
-      removal_(job.removal * options.removal_factor), new_radius_(job.wheel.radius), width_(job.wheel.width),
-      safe_height_(job.safe_height), tip_radius_(job.probe.tip_radius), most_force_(job.force.max),
-      radius_(new_radius_), known_radius_(new_radius_)
+      options_(options), R_working_machine_(job::rotation_working_machine(job.theta)),
+      removal_(job.removal_coefficient * options.removal_factor), new_radius_(job.wheel.radius),
+      width_(job.wheel.width), safe_height_(job.safe_height), tip_radius_(job.probe.tip_radius),
+      max_force_(job.force.max), radius_(new_radius_), measured_radius_(new_radius_)
 {
     check_positive(options_.touch_resolution, "resolution of a touch");
     check_positive(options_.grinding_ratio, "grinding ratio");
@@ -35,24 +37,24 @@ double VirtualGantry::touch_off()
 {
     begin_move();
     go_to_safe_height();
-    spend(options_.touch_off_time, totals_.service_time);
+    advance_time(options_.touch_off_time, TimeBucket::service);
     ++totals_.touch_offs;
-    known_radius_ = counted(radius_);
-    return known_radius_;
+    measured_radius_ = round_to_resolution(radius_);
+    return measured_radius_;
 }
 
 double VirtualGantry::probe(const Eigen::Vector2d& xy, double lowest)
 {
     travel({xy.x(), xy.y(), safe_height_});
-    const double height = height_under_ball(stock_, R_working_machine_ * xy, tip_radius_);
+    const double height = removal::height_under_ball(stock_, R_working_machine_ * xy, tip_radius_);
     const bool touched = height >= lowest;
-    const ProbingMachine& speeds = options_.probing;
+    const sampling::ProbingMachine& speeds = options_.probing;
     const double depth = safe_height_ - (touched ? height : lowest);
-    spend(depth / speeds.approach + depth / speeds.travel + speeds.settle, totals_.service_time);
-    return touched ? counted(height) : std::numeric_limits<double>::quiet_NaN();
+    advance_time(depth / speeds.approach_speed + depth / speeds.travel_speed + speeds.dwell, TimeBucket::service);
+    return touched ? round_to_resolution(height) : std::numeric_limits<double>::quiet_NaN();
 }
 
-double VirtualGantry::counted(double length) const
+double VirtualGantry::round_to_resolution(double length) const
 {
     return std::round(length / options_.touch_resolution) * options_.touch_resolution;
 }
@@ -61,25 +63,35 @@ void VirtualGantry::change_wheel()
 {
     begin_move();
     go_to_safe_height();
-    spend(options_.wheel_change_time, totals_.service_time);
+    advance_time(options_.wheel_change_time, TimeBucket::service);
     ++totals_.wheel_changes;
-    radius_ = known_radius_ = new_radius_;
+    radius_ = measured_radius_ = new_radius_;
 }
 
-// dV_wheel = 2πR w dR
+/// dV_wheel = 2πR w dR.
 void VirtualGantry::wear(double removed_volume)
 {
     totals_.removed_volume += removed_volume;
     radius_ -= removed_volume / options_.grinding_ratio / (2 * std::numbers::pi * radius_ * width_);
     if (!(radius_ > 0))
-        throw InputError("gantry", "the wheel is worn away after " + to_text(totals_.removed_volume) +
-                                       " mm³; it was not changed in time");
+        throw core::InputError("gantry", "the wheel is worn away after " + core::to_text(totals_.removed_volume) +
+                                             " mm³; it was not changed in time");
 }
 
-void VirtualGantry::spend(double duration, double& account)
+void VirtualGantry::advance_time(double duration, TimeBucket bucket)
 {
-    account += duration;
+    double& total = bucket == TimeBucket::grinding ? totals_.grinding_time
+                    : bucket == TimeBucket::travel ? totals_.travel_time
+                                                   : totals_.service_time;
+    total += duration;
     status_.time += duration;
 }
 
-} // namespace fettle
+void add_report(json::Value& report, const GrindTotals& totals)
+{
+    report.set("grinding_time", totals.grinding_time)
+        .set("travel_time", totals.travel_time)
+        .set("service_time", totals.service_time);
+}
+
+} // namespace fettle::gantry

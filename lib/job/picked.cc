@@ -1,5 +1,6 @@
 #include "job/picked.h"
 
+#include "core/content.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/lines.h"
@@ -8,13 +9,13 @@
 #include <cmath>
 #include <vector>
 
-namespace fettle {
+namespace fettle::job {
 namespace {
 
-constexpr std::string_view kViewer = "Point index picked:";
+constexpr std::string_view kPclViewerPrefix = "Point index picked:";
 
-/// The last three of some that commas separate; before them one or two: a label, an index.
-std::vector<double> last_three(std::string_view list)
+/// The last three of three to five comma-separated fields; a label and an index may come first. Empty if malformed.
+std::vector<double> parse_coordinates(std::string_view list)
 {
     std::vector<std::string_view> parts;
     for (std::size_t end = 0; end != std::string_view::npos; list.remove_prefix(std::min(end + 1, list.size()))) {
@@ -25,8 +26,8 @@ std::vector<double> last_three(std::string_view list)
     if (parts.size() < 3 || parts.size() > 5) return numbers;
     for (std::size_t n = parts.size() - 3; n < parts.size(); ++n) {
         std::string_view rest = parts[n];
-        const auto number = parse_number(next_word(rest));
-        if (!number || !std::isfinite(*number) || !next_word(rest).empty()) return {};
+        const auto number = core::parse_number(core::next_word(rest));
+        if (!number || !std::isfinite(*number) || !core::next_word(rest).empty()) return {};
         numbers.push_back(*number);
     }
     return numbers;
@@ -34,31 +35,35 @@ std::vector<double> last_three(std::string_view list)
 
 } // namespace
 
-Eigen::Matrix3Xd read_picked(const std::string& path) { return parse_picked(read_whole(path), display_name(path)); }
-
-Eigen::Matrix3Xd parse_picked(std::string_view bytes, const std::string& source)
+Eigen::Matrix3Xd read_picked_points(const std::string& path)
 {
-    const std::string_view text = without_mark(bytes, source);
-    const bool viewer = text.find(kViewer) != std::string_view::npos;
+    return parse_picked_points(core::read_file(path), core::display_name(path));
+}
+
+Eigen::Matrix3Xd parse_picked_points(std::string_view bytes, const std::string& source)
+{
+    core::refuse_other_content(bytes, source, "picked points");
+    const std::string_view text = core::strip_byte_order_mark(bytes, source);
+    const bool viewer = text.find(kPclViewerPrefix) != std::string_view::npos;
     std::vector<double> numbers;
-    Lines lines(text);
+    core::Lines lines(text);
     while (lines.next()) {
         std::string_view line = lines.line();
         if (viewer) {
-            const std::size_t at = line.find(kViewer), from = line.find('['), to = line.find(']');
+            const std::size_t at = line.find(kPclViewerPrefix), from = line.find('['), to = line.find(']');
             if (at == std::string_view::npos) continue;
             line = from < to && to != std::string_view::npos ? line.substr(from + 1, to - from - 1) : "";
-        } else if (words(line).empty()) {
+        } else if (core::words(line).empty()) {
             continue;
         }
-        const std::vector<double> point = last_three(line);
+        const std::vector<double> point = parse_coordinates(line);
         if (point.empty())
-            throw InputError(source, lines.place() + ": " + in_quotes(lines.line()) +
-                                         " is no point of pcd_viewer's or CloudCompare's");
+            throw core::InputError(source, lines.location() + ": " + core::in_quotes(lines.line()) +
+                                               " is not a point as pcd_viewer or CloudCompare writes it");
         numbers.insert(numbers.end(), point.begin(), point.end());
     }
-    if (numbers.empty()) throw InputError(source, "no points were picked");
+    if (numbers.empty()) throw core::InputError(source, "no points were picked");
     return Eigen::Map<const Eigen::Matrix3Xd>(numbers.data(), 3, Eigen::Index(numbers.size() / 3));
 }
 
-} // namespace fettle
+} // namespace fettle::job

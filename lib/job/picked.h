@@ -4,13 +4,13 @@
 
 #include <string>
 
-namespace fettle {
+namespace fettle::job {
 
-/// Points that were picked on a scan in a viewer, in the order of picking, in the scan's unit.
-/// CloudCompare's saved list: a line each, "x,y,z", with index or label before. What pcd_viewer says when points are
-/// picked (shift and click): lines "Point index picked: … - [x, y, z]" among others.
-/// @throws InputError with the line that is none, or if there are none
-Eigen::Matrix3Xd read_picked(const std::string& path);
-Eigen::Matrix3Xd parse_picked(std::string_view bytes, const std::string& source);
+/// Points picked on a scan in a viewer, 3xN, in the order of picking, in the scan's unit. Either CloudCompare's picking
+/// list, lines "x,y,z" with index or label first, or the output of pcd_viewer, in which the lines "Point index picked:
+/// … - [x, y, z]" count and others are skipped.
+/// @throws InputError that names a malformed line, or if there are no points
+Eigen::Matrix3Xd read_picked_points(const std::string& path);
+Eigen::Matrix3Xd parse_picked_points(std::string_view bytes, const std::string& source);
 
-} // namespace fettle
+} // namespace fettle::job

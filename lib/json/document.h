@@ -12,15 +12,17 @@
 #include <string_view>
 #include <vector>
 
-/// JSON behind our own types: strict reading with key paths in every message, and plain writing.
+/// JSON behind types of our own: strict reading with key paths in all messages, and writing. Only json/*.cc compiles
+/// nlohmann::json.
 namespace fettle::json {
 
-/// A value under construction, for writing. Members keep their order. NaN and infinities are written as null.
+/// A JSON value for writing. Members keep their order. NaN and infinities are written as null.
 class Value {
   public:
     Value(); ///< an empty object
     Value(double number);
     Value(int number);
+    Value(Eigen::Index number);
     Value(std::size_t number);
     Value(bool flag);
     Value(const char* text);
@@ -35,7 +37,7 @@ class Value {
 
     /// Adds or replaces a member of an object.
     Value& set(const std::string& key, const Value& value);
-    /// Indented text; arrays of numbers stay on one line. Numbers read back to the same double.
+    /// Indented text with arrays of numbers on one line. Numbers read back as the same double.
     std::string text() const;
 
   private:
@@ -46,60 +48,63 @@ class Value {
 /// Writes `text()` and a newline.
 std::ostream& operator<<(std::ostream& out, const Value& value);
 
-/// One object of a JSON file that is being read. Every member must be asked for: `done()` refuses what nobody asked
-/// for, so a misspelt key never passes silently. All functions throw InputError "FILE: path.to.key: what is wrong".
+/// Reads an object of a JSON file. done() rejects members that were never queried, so that a misspelt key is an error.
+/// All functions throw InputError "FILE: path.to.key: what is wrong".
 class Reader {
   public:
     /// @param path  a file, or "-" for stdin
     static Reader open(const std::string& path);
-    /// @param source  the name for messages
+    /// @param source  name for messages
     static Reader parse(std::string_view text, const std::string& source);
 
-    /// The first member "kind"; refused if it is another one.
+    /// Checks the member "kind", which names the type of document. @throws WrongFileType
     void expect_kind(const std::string& kind);
     bool has(const std::string& key) const;
 
-    double number(const std::string& key, const Range& range = {});
-    double number_or(const std::string& key, double otherwise, const Range& range = {});
-    int integer(const std::string& key, int least, int most);
-    bool flag_or(const std::string& key, bool otherwise);
+    double number(const std::string& key, const core::Range& range = {});
+    double number_or(const std::string& key, double fallback, const core::Range& range = {});
+    int integer(const std::string& key, int min, int max);
+    bool flag_or(const std::string& key, bool fallback);
     std::string text(const std::string& key);
-    std::string text_or(const std::string& key, const std::string& otherwise);
-    /// A word out of `choices`; "did you mean" otherwise.
+    std::string text_or(const std::string& key, const std::string& fallback);
+    /// One of the words in `choices`.
     std::string choice(const std::string& key, const std::vector<std::string>& choices);
-    std::string choice_or(const std::string& key, const std::string& otherwise,
-                          const std::vector<std::string>& choices);
+    std::string choice_or(const std::string& key, const std::string& fallback, const std::vector<std::string>& choices);
 
-    /// An array of finite numbers. @param size  the length it must have; -1: any
+    /// An array of finite numbers. @param size  required length; -1: any
     Eigen::VectorXd vector(const std::string& key, int size = -1);
-    /// An array of equally long arrays of finite numbers, one a row. @param columns  what they must have; -1: any
+    /// An array of rows, which are equally long arrays of finite numbers. @param columns  required length; -1: any
     Eigen::MatrixXd matrix(const std::string& key, int columns = -1);
-    /// As matrix, but rows may have any length between the two; what is missing is NaN.
-    Eigen::MatrixXd ragged(const std::string& key, int least_columns, int most_columns);
+    /// A matrix whose rows may differ in length, between the two limits; missing elements are NaN.
+    Eigen::MatrixXd ragged_matrix(const std::string& key, int min_columns, int max_columns);
 
     /// An array of equally long rows of equally long arrays of finite numbers: [k](i, j) is number k of element j of
     /// row i. @param size  numbers in an element
     std::vector<Eigen::MatrixXd> grid(const std::string& key, int size);
-    /// An array of rows of `size` texts each.
+    /// An array of rows of `size` strings each.
     std::vector<std::vector<std::string>> text_rows(const std::string& key, int size);
-    /// Is the member missing, or null?
-    bool is_null(const std::string& key);
+    /// True if the member is missing or null.
+    bool is_null_or_missing(const std::string& key);
 
     Reader object(const std::string& key);
-    std::optional<Reader> object_or_none(const std::string& key);
+    std::optional<Reader> optional_object(const std::string& key);
     /// An array of objects.
     std::vector<Reader> objects(const std::string& key);
 
-    /// Refuses members that were not asked for.
-    void done() const;
-    /// "FILE: path.to.key: problem", for checks that the caller makes; an empty key means the object itself.
+    /// @throws InputError for a member that was not queried
+    void reject_unknown_keys() const;
+    /// Throws InputError "FILE: path.to.key: problem", for checks by the caller; an empty key means the object itself.
     [[noreturn]] void refuse(const std::string& key, const std::string& problem) const;
     const std::string& source() const { return source_; }
 
   private:
     struct Node;
     Reader(std::shared_ptr<Node> node, std::string source, std::string path);
-    const nlohmann::ordered_json& member(const std::string& key, const char* wanted);
+    /// Marks a key as queried. @return  true if the object has it
+    bool query(const std::string& key);
+    /// @param expected  "a number", for messages
+    const nlohmann::ordered_json& member(const std::string& key, const char* expected);
+    const nlohmann::ordered_json& array(const std::string& key, const char* expected);
     std::string path_of(const std::string& key) const;
 
     std::shared_ptr<Node> node_;

@@ -31,7 +31,7 @@ void collect(const Json& json, const std::string& path, std::vector<Leaf>& found
 
 } // namespace
 
-std::vector<Leaf> leaves(std::string_view text, const std::string& source)
+std::vector<Leaf> flatten(std::string_view text, const std::string& source)
 {
     std::vector<Leaf> found;
     collect(parse_strictly(text, source), "", found);
@@ -40,7 +40,7 @@ std::vector<Leaf> leaves(std::string_view text, const std::string& source)
 
 std::string to_text(const Leaf& leaf)
 {
-    if (const double* number = std::get_if<double>(&leaf.value)) return fettle::to_text(*number);
+    if (const double* number = std::get_if<double>(&leaf.value)) return fettle::core::to_text(*number);
     if (const std::string* text = std::get_if<std::string>(&leaf.value)) return '"' + *text + '"';
     if (const bool* flag = std::get_if<bool>(&leaf.value)) return *flag ? "true" : "false";
     if (const Leaf::Empty* empty = std::get_if<Leaf::Empty>(&leaf.value)) return empty->object ? "{}" : "[]";

@@ -7,8 +7,7 @@
 
 namespace fettle::json {
 
-/// One value of a JSON text that holds no others, with its path: "surface.control[3][0]". Arrays and objects without
-/// elements are leaves too: "[]", "{}".
+/// A scalar value of a JSON document with its path, "surface.control[3][0]". Empty arrays and objects are leaves, too.
 struct Leaf {
     struct Empty {
         bool object = false;
@@ -18,11 +17,11 @@ struct Leaf {
     std::variant<std::nullptr_t, bool, double, std::string, Empty> value;
 };
 
-/// All leaves of a JSON text, in its order.
-/// @throws InputError if it is no strict JSON
-std::vector<Leaf> leaves(std::string_view text, const std::string& source);
+/// Lists all leaves of a JSON text in document order.
+/// @throws InputError if it is not strict JSON
+std::vector<Leaf> flatten(std::string_view text, const std::string& source);
 
-/// As it stands in a message: 0.5, "text", true, null, [].
+/// Text of the value for messages: 0.5, "text", true, null, [].
 std::string to_text(const Leaf& leaf);
 
 } // namespace fettle::json

@@ -7,7 +7,7 @@
 
 namespace fettle::json {
 
-/// Parses a whole JSON text; repeated keys, deep nesting and numbers out of range are refused. For json/*.cc only.
+/// Parses a JSON text strictly: rejects duplicate keys, deep nesting and numbers out of range. Internal to json/*.cc.
 /// @throws InputError with the line and column, or the key
 nlohmann::ordered_json parse_strictly(std::string_view text, const std::string& source);
 

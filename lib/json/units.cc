@@ -4,15 +4,15 @@
 
 namespace fettle::json {
 
-Value to_json(Units::Length length) { return Value().set("length", to_string(length)); }
+Value to_json(units::Units::Length length) { return Value().set("length", units::to_string(length)); }
 
-Value to_json(const Units& units) { return to_json(units.length).set("force", to_string(units.force)); }
+Value to_json(const units::Units& units) { return to_json(units.length).set("force", units::to_string(units.force)); }
 
-Units::Length read_length_unit(Reader& document)
+units::Units::Length read_length_unit(Reader& document)
 {
     Reader units = document.object("units");
-    const Units::Length length = parse_length_unit(units.choice("length", {"mm", "in", "m"}));
-    units.done();
+    const units::Units::Length length = units::parse_length_unit(units.choice("length", {"mm", "in", "m"}));
+    units.reject_unknown_keys();
     return length;
 }
 

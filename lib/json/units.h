@@ -7,13 +7,12 @@ namespace fettle::json {
 class Reader;
 class Value;
 
-/// The member "units" of a document of lengths alone, {"length": "mm"}, and of one with forces, {"length": "mm",
-/// "force": "N"}.
-Value to_json(Units::Length length);
-Value to_json(const Units& units);
+/// Value of a document's member "units": {"length": "mm"}, or {"length": "mm", "force": "N"} if it holds forces.
+Value to_json(units::Units::Length length);
+Value to_json(const units::Units& units);
 
-/// Of the member "units" of a document of lengths alone: mm, in or m.
-/// @throws InputError if it is missing or says something else
-Units::Length read_length_unit(Reader& document);
+/// Reads the member "units" of a document without forces: mm, in or m.
+/// @throws InputError if it is missing or invalid
+units::Units::Length read_length_unit(Reader& document);
 
 } // namespace fettle::json

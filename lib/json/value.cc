@@ -11,8 +11,8 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-// Small objects ({"length": "mm", "force": "N"}) read best on one line, larger ones a member a line.
-constexpr std::size_t kMembersOnALine = 6;
+// Largest object that is written on one line, such as {"length": "mm", "force": "N"}; others take a line per member.
+constexpr std::size_t kMaxMembersPerLine = 6;
 
 Json number_to_json(double number) { return std::isfinite(number) ? Json(number) : Json(nullptr); }
 
@@ -30,7 +30,7 @@ void dump(const Json& json, const std::string& indent, std::string& text)
         return;
     }
     const bool object = json.is_object();
-    const bool small = !object || (!indent.empty() && json.size() <= kMembersOnALine);
+    const bool small = !object || (!indent.empty() && json.size() <= kMaxMembersPerLine);
     const bool one_line = small && is_flat(json);
     const std::string inner = indent + "  ";
     text += object ? '{' : '[';
@@ -38,7 +38,7 @@ void dump(const Json& json, const std::string& indent, std::string& text)
     for (auto member = json.begin(); member != json.end(); ++member) {
         if (!first) text += one_line ? ", " : ",";
         if (!one_line) text += '\n' + inner;
-        if (object) text += Json(member.key()).dump() + ": ";
+        if (object) text += Json(member.key()).dump(-1, ' ', false, Json::error_handler_t::replace) + ": ";
         dump(*member, inner, text);
         first = false;
     }
@@ -51,6 +51,7 @@ void dump(const Json& json, const std::string& indent, std::string& text)
 Value::Value() : json_(std::make_unique<Json>(Json::object())) {}
 Value::Value(double number) : json_(std::make_unique<Json>(number_to_json(number))) {}
 Value::Value(int number) : json_(std::make_unique<Json>(number)) {}
+Value::Value(Eigen::Index number) : json_(std::make_unique<Json>(number)) {}
 Value::Value(std::size_t number) : json_(std::make_unique<Json>(number)) {}
 Value::Value(bool flag) : json_(std::make_unique<Json>(flag)) {}
 Value::Value(const char* text) : json_(std::make_unique<Json>(text)) {}

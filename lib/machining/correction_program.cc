@@ -3,53 +3,52 @@
 #include "machining/nc_block.h"
 #include "machining/nc_writer.h"
 
-#include <algorithm>
 #include <ostream>
 #include <string>
 #include <string_view>
 #include <vector>
 
-namespace fettle {
+namespace fettle::machining {
 namespace {
 
-/// Writes a program's lines anew, one after the other, with the moves that they have now.
-class Rewriting {
+/// Copies a program line by line, with each line's moves replaced by the corrected ones.
+class ProgramRewriter {
   public:
-    Rewriting(std::ostream& out, const ToolPath& path, const std::vector<CutterMove>& moves)
+    ProgramRewriter(std::ostream& out, const ToolPath& path, const std::vector<CutterMove>& moves)
         : out_(out), writer_(out), path_(path), moves_(moves)
     {
     }
 
-    void line(std::string_view line, std::size_t number)
+    void rewrite(std::string_view line, std::size_t number)
     {
         const bool mark = line.find('%') == line.find_first_not_of(" \t\r");
         const NcBlock block = mark ? NcBlock{} : parse_nc_block(line);
         if (block.has(20) || block.has(21)) writer_.set_inches(block.has(20));
-        const bool ends = std::find(block.m.begin(), block.m.end(), 30) != block.m.end();
-        if (ends) move(number);
-        say(without_moves(line), line.empty());
-        if (!ends) move(number);
+        const bool ends = block.ends_program();
+        if (ends) write_moves(number);
+        copy(strip_motion_words(line), line.empty());
+        if (!ends) write_moves(number);
     }
 
   private:
-    void say(const std::string& rest, bool empty)
+    void copy(const std::string& rest, bool empty)
     {
         const bool blank = rest.find_first_not_of(" \t\r") == std::string::npos;
         if (blank && !empty) return;
         out_ << rest << '\n';
-        writer_.forget_motion();
+        writer_.reset_motion_mode();
     }
 
-    void move(std::size_t number)
+    void write_moves(std::size_t number)
     {
-        const auto& unplaced = path_.program.unplaced;
-        const bool any = (next_ < moves_.size() && moves_[next_].place == number) ||
-                         (unplaced_ < unplaced.size() && unplaced[unplaced_].place == number);
+        const auto& unplaced = path_.program.unplaced_rapids;
+        const bool any = (next_ < moves_.size() && moves_[next_].source_line == number) ||
+                         (unplaced_ < unplaced.size() && unplaced[unplaced_].source_line == number);
         if (any && !begun_) out_ << "G90 G17\n";
         begun_ = begun_ || any;
-        for (; unplaced_ < unplaced.size() && unplaced[unplaced_].place == number; ++unplaced_)
-            writer_.go(unplaced[unplaced_].to, 0);
-        for (; next_ < moves_.size() && moves_[next_].place == number; ++next_) writer_.go(moves_[next_]);
+        for (; unplaced_ < unplaced.size() && unplaced[unplaced_].source_line == number; ++unplaced_)
+            writer_.move_to(unplaced[unplaced_].to, 0);
+        for (; next_ < moves_.size() && moves_[next_].source_line == number; ++next_) writer_.move_to(moves_[next_]);
     }
 
     std::ostream& out_;
@@ -64,9 +63,20 @@ class Rewriting {
 
 void write_corrected(std::ostream& out, const ToolPath& path, const CorrectedPath& corrected)
 {
-    Rewriting rewriting(out, path, corrected.moves);
-    Lines lines(without_mark(path.text, ""));
-    while (lines.next()) rewriting.line(lines.line(), lines.number());
+    ProgramRewriter rewriter(out, path, corrected.moves);
+    core::Lines lines(core::strip_byte_order_mark(path.text, ""));
+    while (lines.next()) rewriter.rewrite(lines.line(), lines.number());
 }
 
-} // namespace fettle
+json::Value to_json(const CorrectedPath& corrected)
+{
+    return json::Value()
+        .set("moves", corrected.moves.size())
+        .set("shifted", corrected.shifted)
+        .set("held", corrected.blocked)
+        .set("in_air", corrected.in_air)
+        .set("unknown", corrected.unknown)
+        .set("greatest_shift", corrected.max_shift);
+}
+
+} // namespace fettle::machining

@@ -11,56 +11,54 @@
 #include <cmath>
 #include <tuple>
 
-namespace fettle {
+namespace fettle::machining {
 namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Touch = DropCutter::Touch;
-using Own = std::vector<std::uint8_t>; ///< of each triangle (DropCutter)
 
-constexpr double kNothing = -std::numeric_limits<double>::infinity();
-
-/// The highest touch so far, of a cutter over xy.
+/// The highest touch found so far of a cutter whose axis is at xy.
 template <typename Side>
-struct Drop {
-    Drop(const Cutter& c, const Vector2d& place) : cutter(c), level(c, 0), xy(place) {}
+struct HighestTouch {
+    HighestTouch(const Cutter& c, const Vector2d& axis) : cutter(c), level(c, 0), xy(axis) {}
 
-    void offer(double z, const Vector3d& contact)
+    void update(double z, const Vector3d& contact)
     {
-        if (z > highest.z) highest = {z, contact}; // never NaN
+        if (z > highest.z) highest = {z, contact}; // false for NaN
     }
 
-    /// The cutter rests on a point; NaN or −∞ beyond the cutter.
-    void on_vertex(const Vector3d& vertex)
+    /// Touch of a vertex; the height is NaN or −∞ outside the cutter.
+    void test_vertex(const Vector3d& vertex)
     {
-        offer(vertex.z() - rise_at(level, (xy - vertex.head<2>()).squaredNorm()), vertex);
+        update(vertex.z() - rise_at(level, (xy - vertex.head<2>()).squaredNorm()), vertex);
     }
 
-    /// It rests between the ends of an edge. Over the edge's line the contact is where z − rise is greatest: the least
-    /// of −z + rise, the height of a sweep whose slope is the edge's, turned.
-    void on_edge(const Vector3d& a, const Vector3d& b)
+    /// Touch between the ends of an edge. The contact maximises z − rise along the edge: it minimises −z + rise, the
+    /// height of a sweep with the negative slope of the edge.
+    void test_edge(const Vector3d& a, const Vector3d& b)
     {
         const double length = (b - a).head<2>().norm();
-        if (length == 0) return; // upright: its upper end counts
-        const Vector2d way = (b - a).head<2>() / length, q = xy - a.head<2>();
-        const double along = q.dot(way), across = way.x() * q.y() - way.y() * q.x(), slope = (b.z() - a.z()) / length;
+        if (length == 0) return; // a vertical edge touches with its upper vertex
+        const Vector2d u = (b - a).head<2>() / length, q = xy - a.head<2>();
+        const double along = q.dot(u), across = u.x() * q.y() - u.y() * q.x(), slope = (b.z() - a.z()) / length;
         if (std::abs(across) > cutter.radius) return;
-        // no higher than its higher end at its nearest place
+        // Upper bound: the higher end, placed at the nearest point of the edge.
         const double near = along - std::clamp(along, 0.0, length);
         if (!(std::max(a.z(), b.z()) - rise_at(level, near * near + across * across) > highest.z)) return;
         const Side side(cutter, -slope);
-        const double beside = slope == 0 ? 0 : side.lead(Double4{} + across)[0];
-        const double at = along + beside;
+        const double lead = slope == 0 ? 0 : side.lead(broadcast(across))[0];
+        const double at = along + lead;
         if (!(at >= 0 && at <= length)) return;
-        // the rim of a lead that ends there is within the cutter, but for rounding
-        const double square = std::min(beside * beside + across * across, cutter.radius * cutter.radius);
-        offer(a.z() + slope * at - rise_at(side, square), a + at / length * (b - a));
+        // Rounding must not move a contact on the rim outside the cutter.
+        const double square = std::min(lead * lead + across * across, cutter.radius * cutter.radius);
+        update(a.z() + slope * at - rise_at(side, square), a + at / length * (b - a));
     }
 
-    /// It rests on the inside of a facet, where the lower side has its slope; on a steeper one the rim.
-    /// @return  may it rest higher on a corner or side of it, which lie in its plane?
-    bool on_facet(const Mesh& mesh, Eigen::Index triangle)
+    /// Touch of the inside of a facet: at the point of the lower side with the facet's slope; a facet steeper than the
+    /// cone touches the rim.
+    /// @return  whether a corner or an edge of the facet may touch higher
+    bool test_facet(const mesh::Mesh& mesh, Eigen::Index triangle)
     {
         const Eigen::Vector3i t = mesh.triangles.col(triangle);
         const Vector3d a = mesh.vertices.col(t[0]), ab = mesh.vertices.col(t[1]) - a, ac = mesh.vertices.col(t[2]) - a;
@@ -68,152 +66,162 @@ struct Drop {
         const double area = normal.norm();
         if (normal.z() == 0 || area == 0) return true;
         normal *= (normal.z() > 0 ? 1 : -1) / area;
-        const double out = normal.head<2>().norm();
+        const double horizontal = normal.head<2>().norm();
         const bool has_cone = cutter.cone_from < cutter.radius;
-        const bool steep = has_cone && out > cutter.cone_slope * normal.z();
-        const double offset = steep ? cutter.radius : cutter.flat + cutter.corner * out;
-        const Vector2d outwards = out > 0 ? Vector2d(normal.head<2>() / out) : Vector2d(0, 0);
+        const bool steep = has_cone && horizontal > cutter.cone_slope * normal.z();
+        const double offset = steep ? cutter.radius : cutter.flat + cutter.corner * horizontal;
+        const Vector2d outwards = horizontal > 0 ? Vector2d(normal.head<2>() / horizontal) : Vector2d(0, 0);
         const Vector2d foot = xy - offset * outwards, from = foot - a.head<2>();
-        const double over_contact = steep ? rise(cutter, cutter.radius) : cutter.corner * (1 - normal.z());
-        // On the whole plane, and how far roundings of the normal may turn it, more the narrower the facet.
-        const double whole = a.z() - normal.head<2>().dot(from) / normal.z() - over_contact;
-        constexpr double kRoundings = 8 * std::numeric_limits<double>::epsilon();
-        const double turned = kRoundings * std::sqrt(ab.squaredNorm() * ac.squaredNorm()) / area;
-        if (!(whole + turned * (from.norm() + cutter.radius) / normal.z() > highest.z)) return false;
-        const auto z = FacetFromAbove(mesh, triangle).height(foot);
-        if (z) offer(*z - over_contact, {foot.x(), foot.y(), *z});
+        const double contact_rise = steep ? rise(cutter, cutter.radius) : cutter.corner * (1 - normal.z());
+        // Tip height on the facet's plane, and a bound of the angle by which rounding turns the normal of a sliver.
+        const double on_plane = a.z() - normal.head<2>().dot(from) / normal.z() - contact_rise;
+        constexpr double kAngleRounding = 8 * std::numeric_limits<double>::epsilon();
+        const double turned = kAngleRounding * std::sqrt(ab.squaredNorm() * ac.squaredNorm()) / area;
+        if (!(on_plane + turned * (from.norm() + cutter.radius) / normal.z() > highest.z)) return false;
+        const auto z = mesh::FacetFromAbove(mesh, triangle).height(foot);
+        if (z) update(*z - contact_rise, {foot.x(), foot.y(), *z});
         return !z;
     }
 
-    static double rise_at(const Side& side, double square) { return side.rise(Double4{} + square)[0]; }
+    static double rise_at(const Side& side, double square) { return side.rise(broadcast(square))[0]; }
 
     const Cutter& cutter;
-    const Side level;
+    const Side level; ///< the lower side at slope 0
     const Vector2d xy;
-    Touch highest{kNothing, Vector3d::Zero()};
+    Touch highest{-core::kInfinity, Vector3d::Zero()};
 };
 
-/// A cutter over a place among the boxes of a tree, in its coordinates.
-struct Over {
-    float x, y;
-    float rounding; ///< of a coordinate, of the place, and of a height
+/// A cutter in the coordinates of a box tree.
+struct CutterQuery {
+    float x, y;     ///< of the axis
+    float rounding; ///< bound of the rounding of a coordinate and of a height
     float radius, flat, corner, cone_from, cone_slope;
 };
 
-Over over(const Cutter& c, const Vector2d& xy, const BoxTree& tree)
+CutterQuery make_query(const Cutter& c, const Vector2d& xy, const mesh::BoxTree& tree)
 {
-    const Vector2d place = xy - tree.centre.head<2>();
-    const double reach = std::max(place.cwiseAbs().maxCoeff(), tree.box.sizes().maxCoeff()) + rise(c, c.radius);
+    const Vector2d axis = xy - tree.centre.head<2>();
+    const double size = std::max(axis.cwiseAbs().maxCoeff(), tree.box.sizes().maxCoeff()) + rise(c, c.radius);
     const auto narrow = [](double value) { return static_cast<float>(value); };
-    return {narrow(place.x()),   narrow(place.y()),   narrow(8 * (tree.rounding + kEpsilon * reach)),
+    return {narrow(axis.x()),    narrow(axis.y()),    narrow(8 * (tree.rounding + mesh::kFloatRoundoff * size)),
             narrow(c.radius),    narrow(c.flat),      narrow(c.corner),
             narrow(c.cone_from), narrow(c.cone_slope)};
 }
 
-/// No tip that rests on what is in one of eight boxes is higher than its top less the rise at its nearest place. All
-/// roundings are to the safe side; −∞ for boxes beyond the cutter.
-FETTLE_INLINE Float8 highest_tips(const Float8 (&least)[3], const Float8 (&most)[3], const Over& over)
+/// Upper bounds of the tip's height on the contents of eight boxes: the top of each box less the rise at its nearest
+/// point. All roundings are upwards; −∞ for boxes outside the cutter.
+FETTLE_INLINE mesh::Float8 tip_upper_bounds(const mesh::Float8 (&min)[3], const mesh::Float8 (&max)[3],
+                                            const CutterQuery& query)
 {
-    constexpr auto kLess = static_cast<float>(1 - 16 * kEpsilon), kMore = static_cast<float>(16 * kEpsilon);
-    const Float8 x = larger(larger(least[0] - over.x, over.x - most[0]) - over.rounding, Float8{});
-    const Float8 y = larger(larger(least[1] - over.y, over.y - most[1]) - over.rounding, Float8{});
-    const Float8 distance = kLess * root(x * x + y * y);
-    const Float8 on_torus =
-        smaller(larger(distance - over.flat, Float8{}), all(over.cone_from - over.flat)); // from the disc
-    const float r2 = over.corner * over.corner;
-    const Float8 height = over.corner + root(larger(r2 - on_torus * on_torus, Float8{}) + kMore * r2);
-    const Float8 torus = kLess * on_torus * on_torus / (height + std::numeric_limits<float>::min());
-    const Float8 cone = kLess * over.cone_slope * larger(distance - over.cone_from, Float8{});
-    const Float8 tips = most[2] - torus - cone + over.rounding;
-    return distance <= over.radius ? tips : all(-std::numeric_limits<float>::infinity());
+    constexpr auto kRoundDownFactor = static_cast<float>(1 - 16 * mesh::kFloatRoundoff),
+                   kRelativeRounding = static_cast<float>(16 * mesh::kFloatRoundoff);
+    const mesh::Float8 x =
+        mesh::cwise_max(mesh::cwise_max(min[0] - query.x, query.x - max[0]) - query.rounding, mesh::Float8{});
+    const mesh::Float8 y =
+        mesh::cwise_max(mesh::cwise_max(min[1] - query.y, query.y - max[1]) - query.rounding, mesh::Float8{});
+    const mesh::Float8 distance = kRoundDownFactor * mesh::cwise_sqrt(x * x + y * y);
+    const mesh::Float8 from_disc = mesh::cwise_min(mesh::cwise_max(distance - query.flat, mesh::Float8{}),
+                                                   mesh::broadcast(query.cone_from - query.flat));
+    const float r2 = query.corner * query.corner;
+    const mesh::Float8 height =
+        query.corner +
+        mesh::cwise_sqrt(mesh::cwise_max(r2 - from_disc * from_disc, mesh::Float8{}) + kRelativeRounding * r2);
+    const mesh::Float8 torus = kRoundDownFactor * from_disc * from_disc / (height + std::numeric_limits<float>::min());
+    const mesh::Float8 cone =
+        kRoundDownFactor * query.cone_slope * mesh::cwise_max(distance - query.cone_from, mesh::Float8{});
+    const mesh::Float8 tips = max[2] - torus - cone + query.rounding;
+    return distance <= query.radius ? tips : mesh::broadcast(-std::numeric_limits<float>::infinity());
 }
 
-/// @return  the lanes in which tips may be higher than what is found
-FETTLE_CLONES unsigned promising(const Boxes8& boxes, const Over& over, float found, Float8& tips)
+/// Computes upper bounds of the tip's height. @return  the lanes in which they exceed the height found so far
+FETTLE_CLONES unsigned candidates(const mesh::Boxes8& boxes, const CutterQuery& query, float found, mesh::Float8& tips)
 {
-    tips = highest_tips(boxes.least, boxes.most, over);
-    return lanes_of(tips > found);
+    tips = tip_upper_bounds(boxes.min, boxes.max, query);
+    return mesh::lane_bits(tips > found);
 }
-FETTLE_CLONES unsigned promising(const Triangles8& triangles, const Over& over, float found, Float8& tips)
+FETTLE_CLONES unsigned candidates(const mesh::Triangles8& triangles, const CutterQuery& query, float found,
+                                  mesh::Float8& tips)
 {
     const auto& [a, b, c] = triangles.corner;
-    Float8 least[3], most[3];
+    mesh::Float8 min[3], max[3];
 #pragma GCC unroll 3
     for (int axis = 0; axis < 3; ++axis) {
-        least[axis] = smaller(a[axis], smaller(b[axis], c[axis]));
-        most[axis] = larger(a[axis], larger(b[axis], c[axis]));
+        min[axis] = mesh::cwise_min(a[axis], mesh::cwise_min(b[axis], c[axis]));
+        max[axis] = mesh::cwise_max(a[axis], mesh::cwise_max(b[axis], c[axis]));
     }
-    tips = highest_tips(least, most, over);
-    return lanes_of(tips > found);
+    tips = tip_upper_bounds(min, max, query);
+    return mesh::lane_bits(tips > found);
 }
 
 template <typename Side>
-void look_at(Drop<Side>& drop, const Mesh& mesh, Eigen::Index t, std::uint8_t own)
+void test_triangle(HighestTouch<Side>& touch, const mesh::Mesh& mesh, Eigen::Index t, std::uint8_t owned)
 {
     const Eigen::Vector3i corners = mesh.triangles.col(t);
     const auto z = [&](int k) { return mesh.vertices(2, corners[k]); };
-    if (!(std::max({z(0), z(1), z(2)}) > drop.highest.z)) return;
-    if (!drop.on_facet(mesh, t)) return;
+    if (!(std::max({z(0), z(1), z(2)}) > touch.highest.z)) return;
+    if (!touch.test_facet(mesh, t)) return;
     for (int k = 0; k < 3; ++k) {
         const Vector3d a = mesh.vertices.col(corners[k]);
-        if ((own & (1 << k)) != 0) drop.on_vertex(a);
-        if ((own & (8 << k)) != 0) drop.on_edge(a, mesh.vertices.col(corners[(k + 1) % 3]));
+        if ((owned & (1 << k)) != 0) touch.test_vertex(a);
+        if ((owned & (8 << k)) != 0) touch.test_edge(a, mesh.vertices.col(corners[(k + 1) % 3]));
     }
 }
 
-/// The most promising part of the mesh first; what cannot be higher than what is found is left out.
+/// Branch and bound: the boxes with the highest upper bounds first.
 template <typename Side>
-Touch highest_touch(const BoxTree& tree, const Mesh& mesh, const Own& own, const Cutter& cutter, const Vector2d& xy)
+Touch highest_touch(const mesh::BoxTree& tree, const mesh::Mesh& mesh, const std::vector<std::uint8_t>& owned,
+                    const Cutter& cutter, const Vector2d& xy)
 {
-    Drop<Side> drop(cutter, xy);
-    const Over at = over(cutter, xy, tree);
-    const auto found = [&] { return static_cast<float>(drop.highest.z - tree.centre.z()) - at.rounding; };
-    Stack stack;
+    HighestTouch<Side> touch(cutter, xy);
+    const CutterQuery query = make_query(cutter, xy, tree);
+    const auto found = [&] { return static_cast<float>(touch.highest.z - tree.centre.z()) - query.rounding; };
+    mesh::NodeStack stack;
     stack.push({-std::numeric_limits<float>::infinity(), static_cast<std::int32_t>(tree.levels.size()) - 1, 0});
     while (stack.any()) {
-        const Waiting next = stack.pop();
+        const mesh::StackEntry next = stack.pop();
         if (!(-next.distance > found())) continue;
-        Float8 tips;
+        mesh::Float8 tips;
         if (next.level >= 0) {
-            const Boxes8& boxes = tree.levels[static_cast<std::size_t>(next.level)].boxes[next.index];
-            const unsigned lanes = promising(boxes, at, found(), tips);
+            const mesh::Boxes8& boxes = tree.levels[next.level].boxes[next.index];
+            const unsigned lanes = candidates(boxes, query, found(), tips);
             stack.push(lanes, -tips, next.level - 1, next.index);
             continue;
         }
-        for (Lanes left{promising(tree.leaves[next.index], at, found(), tips)}; left.any(); left.next()) {
+        for (mesh::LaneIterator left{candidates(tree.leaves[next.index], query, found(), tips)}; left.any();
+             left.next()) {
             const Eigen::Index t = tree.triangle(next.index, left.first());
-            if (tips[left.first()] > found()) look_at(drop, mesh, t, own[static_cast<std::size_t>(t)]);
+            if (tips[left.first()] > found()) test_triangle(touch, mesh, t, owned[t]);
         }
     }
-    return drop.highest;
+    return touch.highest;
 }
 
-Own ownership(const Mesh& mesh)
+/// DropCutter::owned_ of a mesh.
+std::vector<std::uint8_t> assign_owners(const mesh::Mesh& mesh)
 {
-    Own own(static_cast<std::size_t>(mesh.triangles.cols()), 0);
-    std::vector<bool> seen(static_cast<std::size_t>(mesh.vertices.cols()), false);
+    std::vector<std::uint8_t> owned(mesh.triangles.cols(), 0);
+    std::vector<bool> has_owner(mesh.vertices.cols(), false);
     std::vector<std::tuple<int, int, std::size_t, int>> edges;
-    for (std::size_t t = 0; t < own.size(); ++t)
+    for (std::size_t t = 0; t < owned.size(); ++t)
         for (int k = 0; k < 3; ++k) {
-            const int a = mesh.triangles(k, static_cast<Eigen::Index>(t));
-            const int b = mesh.triangles((k + 1) % 3, static_cast<Eigen::Index>(t));
-            if (!seen[static_cast<std::size_t>(a)]) own[t] |= static_cast<std::uint8_t>(1 << k);
-            seen[static_cast<std::size_t>(a)] = true;
+            const int a = mesh.triangles(k, t), b = mesh.triangles((k + 1) % 3, t);
+            if (!has_owner[a]) owned[t] |= 1 << k;
+            has_owner[a] = true;
             edges.emplace_back(std::min(a, b), std::max(a, b), t, k);
         }
-    std::sort(edges.begin(), edges.end());
+    std::ranges::sort(edges);
     for (std::size_t i = 0; i < edges.size(); ++i) {
         const auto& [a, b, t, k] = edges[i];
         if (i > 0 && std::get<0>(edges[i - 1]) == a && std::get<1>(edges[i - 1]) == b) continue;
-        own[t] |= static_cast<std::uint8_t>(8 << k);
+        owned[t] |= 8 << k;
     }
-    return own;
+    return owned;
 }
 
 } // namespace
 
-DropCutter::DropCutter(const Mesh& mesh, const Cutter& cutter)
-    : mesh_(mesh), cutter_(cutter), tree_(mesh), own_(ownership(mesh))
+DropCutter::DropCutter(const mesh::Mesh& mesh, const Cutter& cutter)
+    : mesh_(mesh), cutter_(cutter), tree_(mesh), owned_(assign_owners(mesh))
 {
 }
 
@@ -221,9 +229,9 @@ std::optional<Touch> DropCutter::operator()(const Vector2d& xy) const
 {
     if (tree_.levels.empty() || !xy.allFinite()) return std::nullopt;
     const Touch touch =
-        with_side(cutter_, [&]<typename Side>() { return highest_touch<Side>(tree_, mesh_, own_, cutter_, xy); });
-    if (touch.z == kNothing) return std::nullopt;
+        with_side(cutter_, [&]<typename Side>() { return highest_touch<Side>(tree_, mesh_, owned_, cutter_, xy); });
+    if (touch.z == -core::kInfinity) return std::nullopt;
     return touch;
 }
 
-} // namespace fettle
+} // namespace fettle::machining

@@ -10,28 +10,29 @@
 #include <optional>
 #include <vector>
 
-namespace fettle {
+namespace fettle::machining {
 
-/// A cutter that comes down upright onto a mesh until it touches a facet, an edge or a vertex. Thread-safe.
+/// Drop-cutter: the height at which a cutter that comes down along Z touches a facet, an edge or a vertex of a mesh.
+/// Thread-safe.
 class DropCutter {
   public:
-    /// The mesh must outlive it.
-    DropCutter(const Mesh& mesh, const Cutter& cutter);
+    /// The mesh must outlive this object.
+    DropCutter(const mesh::Mesh& mesh, const Cutter& cutter);
 
     struct Touch {
-        double z = 0;            ///< of the tip, mm
-        Eigen::Vector3d contact; ///< where the cutter touches; one of several such places
+        double z = 0;            ///< height of the tip, mm
+        Eigen::Vector3d contact; ///< contact point, mm; if there are several, any of them
     };
-    /// What happens over xy; nothing if the cutter meets nothing.
+    /// The touch of a cutter whose axis is at xy (mm); nothing if it misses the mesh.
     std::optional<Touch> operator()(const Eigen::Vector2d& xy) const;
 
   private:
-    const Mesh& mesh_;
+    const mesh::Mesh& mesh_;
     Cutter cutter_;
-    BoxTree tree_;
-    /// Which corners (bits 0 to 2) and edges, from a corner on, (bits 3 to 5) are looked at with a triangle: each with
-    /// the first that has it.
-    std::vector<std::uint8_t> own_;
+    mesh::BoxTree tree_;
+    /// Corners (bits 0 to 2) and edges from these corners on (bits 3 to 5) that are tested with each triangle. Every
+    /// vertex and edge belongs to the first triangle that has it.
+    std::vector<std::uint8_t> owned_;
 };
 
-} // namespace fettle
+} // namespace fettle::machining

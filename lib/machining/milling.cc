@@ -1,5 +1,9 @@
 #include "machining/milling.h"
 
+#include "core/constants.h"
+#include "core/error.h"
+#include "core/text.h"
+#include "machining/limits.h"
 #include "machining/sweep.h"
 
 #include <tbb/parallel_for.h>
@@ -7,82 +11,81 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <utility>
 
-namespace fettle {
+namespace fettle::machining {
 namespace {
 
-/// Rows that one thread cuts at a time: half of what a cutter spans on a fine grid, and enough bands for all threads.
-constexpr Eigen::Index kRowsOfBand = 64;
+/// Rows that one thread cuts at a time: half the rows that a cutter spans on a fine grid; enough bands for all threads.
+constexpr Eigen::Index kBandRows = 64;
 
-/// A move in a band of rows, and what it met there.
+/// A move in a band of rows, and its engagement there.
 struct Visit {
     std::size_t move;
-    Lowered cut{};
+    RemovedHeight cut{};
     double holder_depth = 0;
 };
 
-/// Rows of the field that a sweep can touch: first and end.
-std::pair<Eigen::Index, Eigen::Index> rows_of(const HeightField& field, const Sweep& sweep)
+/// Range of rows of the field that a sweep can touch: first, and one past the last.
+std::pair<Eigen::Index, Eigen::Index> row_range(const removal::HeightField& field, const Sweep& sweep)
 {
     const auto bounded = [&](double row) {
-        return static_cast<Eigen::Index>(std::clamp(row, 0.0, static_cast<double>(field.rows())));
+        return static_cast<Eigen::Index>(std::clamp<double>(row, 0, field.rows()));
     };
-    const double first = std::ceil((sweep.low.y() - field.origin.y()) / field.cell - 0.5);
-    const double last = std::floor((sweep.high.y() - field.origin.y()) / field.cell - 0.5);
+    const double first = std::ceil((sweep.box_min.y() - field.origin.y()) / field.cell - 0.5);
+    const double last = std::floor((sweep.box_max.y() - field.origin.y()) / field.cell - 0.5);
     return {bounded(first), bounded(last + 1)};
 }
 
-Sweep sweep_of_cutter(const Cutter& cutter, const std::vector<CutterMove>& moves, std::size_t m)
+Sweep cutter_sweep(const Cutter& cutter, const std::vector<CutterMove>& moves, std::size_t m)
 {
-    const bool goes_on = m + 1 < moves.size() && moves[m + 1].rapid() == moves[m].rapid();
-    return sweep_of(cutter, moves[m], m == 0, goes_on ? &moves[m + 1] : nullptr);
+    const bool continues = m + 1 < moves.size() && moves[m + 1].rapid() == moves[m].rapid();
+    return make_sweep(cutter, moves[m], m == 0, continues ? &moves[m + 1] : nullptr);
 }
 
-/// All of the holder's way: what it passes over may be cut later.
-Sweep sweep_of_holder(const Holder& holder, CutterMove move)
+/// The holder's sweep is the whole move: following moves may cut the material that it would have collided with.
+Sweep holder_sweep(const Holder& holder, CutterMove move)
 {
     move.from.z() += holder.height;
     move.to.z() += holder.height;
-    return sweep_of({holder.radius, holder.radius, 0, holder.radius, 0}, move, true, nullptr);
+    return make_sweep({holder.radius, holder.radius, 0, holder.radius, 0}, move, true, nullptr);
 }
 
 void clear_floor(Eigen::Ref<Eigen::ArrayXXd> z, double floor)
 {
     if (!std::isfinite(floor)) return;
-    z = (z <= floor).select(std::numeric_limits<double>::quiet_NaN(), z);
+    z = (z <= floor).select(core::kNaN, z);
 }
 
 class Milling {
   public:
-    Milling(HeightField& stock, const Cutter& cutter, const std::vector<CutterMove>& moves,
+    Milling(removal::HeightField& stock, const Cutter& cutter, const std::vector<CutterMove>& moves,
             const MillingOptions& options)
         : stock_(stock), cutter_(cutter), moves_(moves), options_(options),
-          bands_(static_cast<std::size_t>((stock.rows() + kRowsOfBand - 1) / kRowsOfBand))
+          bands_((stock.rows() + kBandRows - 1) / kBandRows)
     {
         for (std::size_t m = 0; m < moves.size(); ++m) {
-            auto [first, end] = rows_of(stock, sweep_of_cutter(cutter, moves, m));
+            auto [first, end] = row_range(stock, cutter_sweep(cutter, moves, m));
             if (options.holder) {
-                const auto [also, till] = rows_of(stock, sweep_of_holder(*options.holder, moves[m]));
-                if (also < till) {
-                    first = first < end ? std::min(first, also) : also;
-                    end = std::max(end, till);
+                const auto [holder_first, holder_end] = row_range(stock, holder_sweep(*options.holder, moves[m]));
+                if (holder_first < holder_end) {
+                    first = first < end ? std::min(first, holder_first) : holder_first;
+                    end = std::max(end, holder_end);
                 }
             }
-            for (Eigen::Index j = first; j < end; j = (j / kRowsOfBand + 1) * kRowsOfBand)
-                bands_[static_cast<std::size_t>(j / kRowsOfBand)].push_back({m});
+            for (Eigen::Index j = first; j < end; j = (j / kBandRows + 1) * kBandRows)
+                bands_[j / kBandRows].push_back({m});
         }
     }
 
-    std::vector<Bite> cut()
+    std::vector<MoveEngagement> cut()
     {
         tbb::parallel_for(std::size_t{0}, bands_.size(), [this](std::size_t band) { cut_band(band); });
-        std::vector<Bite> bites(moves_.size());
+        std::vector<MoveEngagement> bites(moves_.size());
         const double area = stock_.cell * stock_.cell;
-        for (const auto& band : bands_) // in the order of bands, whatever the threads
+        for (const auto& band : bands_) // summed in the order of the bands: independent of the threads
             for (const Visit& visit : band) {
-                Bite& bite = bites[visit.move];
+                MoveEngagement& bite = bites[visit.move];
                 bite.volume += visit.cut.height * area;
                 bite.depth = std::max(bite.depth, visit.cut.depth);
                 bite.holder_depth = std::max(bite.holder_depth, visit.holder_depth);
@@ -93,31 +96,30 @@ class Milling {
   private:
     void cut_band(std::size_t band)
     {
-        const Eigen::Index begin = static_cast<Eigen::Index>(band) * kRowsOfBand;
-        const Eigen::Index end = std::min(begin + kRowsOfBand, stock_.rows());
-        double top = -std::numeric_limits<double>::infinity(); // of the stock, before
+        const Eigen::Index begin = band * kBandRows, end = std::min(begin + kBandRows, stock_.rows());
+        double top = -core::kInfinity; // highest stock before the cut
         for (const double z : stock_.z.middleCols(begin, end - begin).reshaped())
             if (z > top) top = z;
         const auto within = [&](const Sweep& sweep) {
-            const auto [first, last] = rows_of(stock_, sweep);
+            const auto [first, last] = row_range(stock_, sweep);
             return std::pair(std::max(first, begin), std::min(last, end));
         };
         for (Visit& visit : bands_[band]) {
             const CutterMove& move = moves_[visit.move];
             const double lowest = std::min(move.from.z(), move.to.z());
             if (!(lowest < top)) continue;
-            const Sweep sweep = sweep_of_cutter(cutter_, moves_, visit.move);
+            const Sweep sweep = cutter_sweep(cutter_, moves_, visit.move);
             const auto [first, last] = within(sweep);
-            if (first < last) visit.cut = lower(stock_, sweep, first, last, options_.floor);
+            if (first < last) visit.cut = cut_rows(stock_, sweep, first, last, options_.floor);
             if (!options_.holder || !(lowest + options_.holder->height < top)) continue;
-            const Sweep held = sweep_of_holder(*options_.holder, move);
-            const auto [from, to] = within(held);
-            if (from < to) visit.holder_depth = over_disc(stock_, held, from, to).depth;
+            const Sweep holder = holder_sweep(*options_.holder, move);
+            const auto [from, to] = within(holder);
+            if (from < to) visit.holder_depth = height_above_disc(stock_, holder, from, to).depth;
         }
         clear_floor(stock_.z.middleCols(begin, end - begin), options_.floor);
     }
 
-    HeightField& stock_;
+    removal::HeightField& stock_;
     const Cutter& cutter_;
     const std::vector<CutterMove>& moves_;
     const MillingOptions& options_;
@@ -126,27 +128,36 @@ class Milling {
 
 } // namespace
 
-std::vector<Bite> mill(HeightField& stock, const Cutter& cutter, const std::vector<CutterMove>& moves,
-                       const MillingOptions& options)
+std::vector<MoveEngagement> mill(removal::HeightField& stock, const Cutter& cutter,
+                                 const std::vector<CutterMove>& moves, const MillingOptions& options)
 {
     return Milling(stock, cutter, moves, options).cut();
 }
 
-void mill_each(std::vector<HeightField>& fields, const Cutter& cutter, const std::vector<CutterMove>& moves,
-               double floor)
+void mill_fields(std::vector<removal::HeightField>& fields, const Cutter& cutter, const std::vector<CutterMove>& moves,
+                 double floor)
 {
     std::vector<Sweep> sweeps;
-    for (std::size_t m = 0; m < moves.size(); ++m) sweeps.push_back(sweep_of_cutter(cutter, moves, m));
+    for (std::size_t m = 0; m < moves.size(); ++m) sweeps.push_back(cutter_sweep(cutter, moves, m));
     tbb::parallel_for(std::size_t{0}, fields.size(), [&](std::size_t f) {
-        HeightField& field = fields[f];
-        const double least = field.origin.x(), most = least + field.cell * static_cast<double>(field.columns());
+        removal::HeightField& field = fields[f];
+        const double min_x = field.origin.x(), max_x = min_x + field.cell * field.columns();
         for (const Sweep& sweep : sweeps) {
-            if (sweep.low.x() > most || sweep.high.x() < least) continue;
-            const auto [first, end] = rows_of(field, sweep);
-            if (first < end) lower(field, sweep, first, end, floor);
+            if (sweep.box_min.x() > max_x || sweep.box_max.x() < min_x) continue;
+            const auto [first, end] = row_range(field, sweep);
+            if (first < end) cut_rows(field, sweep, first, end, floor);
         }
         clear_floor(field.z, floor);
     });
 }
 
-} // namespace fettle
+Holder parse_holder(const std::string& text)
+{
+    const Eigen::VectorXd numbers = core::parse_number_list(text, {"the diameter", "the height over the tip"});
+    if (!(numbers[0] > 0 && numbers[1] > 0)) throw core::InputError("both must be positive, got " + text);
+    require_within("the diameter", numbers[0], kLengthRange);
+    require_within("the height", numbers[1], kLengthRange);
+    return {numbers[0] / 2, numbers[1]};
+}
+
+} // namespace fettle::machining

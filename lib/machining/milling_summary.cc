@@ -1,65 +1,72 @@
 #include "machining/milling_summary.h"
 
+#include "core/text.h"
+
 #include <algorithm>
 
-namespace fettle {
+namespace fettle::machining {
 namespace {
 
-/// A cutter that goes back over its own surface meets it, by rounding, a little; no cut is as thin. mm
-constexpr double kContact = 1e-6;
+/// Smaller depths are rounding, as when a cutter passes again over its own surface, mm.
+constexpr double kMinDepth = 1e-6;
 
-void note(Clash& clash, const CutterMove& move, double depth)
+void add_collision(Collisions& collisions, const CutterMove& move, double depth)
 {
-    if (!(depth > kContact)) return;
-    if (clash.moves++ == 0) clash.first_place = move.place;
-    clash.depth = std::max(clash.depth, depth);
+    if (!(depth > kMinDepth)) return;
+    if (collisions.moves++ == 0) collisions.first_source_line = move.source_line;
+    collisions.depth = std::max(collisions.depth, depth);
 }
 
-/// s
-double time_of(const CutterMove& move, double rapid_rate)
+/// Duration of a move, s.
+double duration(const CutterMove& move, double rapid_rate)
 {
     return length(move) / (move.rapid() ? rapid_rate : move.feed);
 }
 
-json::Value to_json(const Clash& clash)
+json::Value to_json(const Collisions& collisions)
 {
-    return json::Value().set("moves", clash.moves).set("first_place", clash.first_place).set("depth", clash.depth);
+    return json::Value()
+        .set("moves", collisions.moves)
+        .set("first_place", collisions.first_source_line)
+        .set("depth", collisions.depth);
 }
 
 } // namespace
 
-MillingSummary summarise(const std::vector<CutterMove>& moves, const std::vector<Bite>& bites, double rapid_rate)
+MillingSummary summarise(const std::vector<CutterMove>& moves, const std::vector<MoveEngagement>& bites,
+                         double rapid_rate)
 {
     MillingSummary sum;
-    double cut_by_feed = 0;
+    double feed_volume = 0;
     for (std::size_t m = 0; m < moves.size(); ++m) {
         const CutterMove& move = moves[m];
-        const Bite& bite = bites[m];
-        const double way = length(move);
+        const MoveEngagement& bite = bites[m];
+        const double distance = length(move), time = duration(move, rapid_rate);
         sum.volume += bite.volume;
-        note(sum.holder, move, bite.holder_depth);
+        add_collision(sum.holder_collisions, move, bite.holder_depth);
         if (move.rapid()) {
             sum.rapid_volume += bite.volume;
-            sum.rapid_length += way;
-            sum.rapid_time += time_of(move, rapid_rate);
-            note(sum.rapid_cuts, move, bite.depth);
+            sum.rapid_length += distance;
+            sum.rapid_time += time;
+            add_collision(sum.rapid_cuts, move, bite.depth);
             continue;
         }
-        const double time = time_of(move, rapid_rate);
-        sum.feed_length += way;
+        sum.feed_length += distance;
         sum.feed_time += time;
         sum.deepest_cut = std::max(sum.deepest_cut, bite.depth);
-        if (!(bite.depth > kContact)) continue;
+        if (!(bite.depth > kMinDepth)) continue;
         sum.cutting_time += time;
-        cut_by_feed += bite.volume;
+        feed_volume += bite.volume;
         if (time > 0) sum.peak_rate = std::max(sum.peak_rate, bite.volume / time);
     }
-    if (sum.cutting_time > 0) sum.mean_rate = cut_by_feed / sum.cutting_time;
+    if (sum.cutting_time > 0) sum.mean_rate = feed_volume / sum.cutting_time;
     return sum;
 }
 
-json::Value to_json(const MillingSummary& sum)
+json::Value to_json(const MillingSummary& sum, const NcProgram& program, const removal::HeightField& left)
 {
+    json::Value words;
+    for (const auto& [word, count] : program.non_motion_words) words.set(word, count);
     return json::Value()
         .set("removed_volume", sum.volume)
         .set("time", sum.feed_time + sum.rapid_time)
@@ -73,35 +80,51 @@ json::Value to_json(const MillingSummary& sum)
         .set("peak_removal_rate", sum.peak_rate)
         .set("rapid_volume", sum.rapid_volume)
         .set("rapid_cuts", to_json(sum.rapid_cuts))
-        .set("holder_collisions", to_json(sum.holder));
+        .set("holder_collisions", to_json(sum.holder_collisions))
+        .set("moves", program.moves.size())
+        .set("unplaced_rapids", program.unplaced_rapids.size())
+        .set("chorded_arcs", program.chorded_arcs)
+        .set("arc_chord_error", kArcChordTolerance)
+        .set("words_without_motion", words)
+        .set("columns", static_cast<int>(left.columns()))
+        .set("rows", static_cast<int>(left.rows()))
+        .set("step", left.cell)
+        .set("cells_without_material", static_cast<double>(left.z.isNaN().count()));
 }
 
-Cloud trace_of(const std::vector<CutterMove>& moves, const std::vector<Bite>& bites, double rapid_rate)
+std::string describe(const Collisions& collisions, const std::string& what, const std::string& place)
 {
-    const auto count = static_cast<Eigen::Index>(moves.size());
-    Cloud cloud;
+    return what + ": " + std::to_string(collisions.moves) + ", the first to " + place + " " +
+           std::to_string(collisions.first_source_line) + "; up to " + core::to_short_text(collisions.depth) +
+           " mm deep";
+}
+
+cloud::Cloud trace_of(const std::vector<CutterMove>& moves, const std::vector<MoveEngagement>& bites, double rapid_rate)
+{
+    const Eigen::Index count = moves.size();
+    cloud::Cloud cloud;
     cloud.xyz.resize(3, count);
     Eigen::VectorXd t(count), feed(count), removed(count), volume(count), holder(count), place(count);
     double now = 0;
     for (Eigen::Index m = 0; m < count; ++m) {
-        const CutterMove& move = moves[static_cast<std::size_t>(m)];
-        const Bite& bite = bites[static_cast<std::size_t>(m)];
+        const CutterMove& move = moves[m];
+        const MoveEngagement& bite = bites[m];
         cloud.xyz.col(m) = move.to;
-        t[m] = now += time_of(move, rapid_rate);
+        t[m] = now += duration(move, rapid_rate);
         feed[m] = move.rapid() ? rapid_rate : move.feed;
         removed[m] = bite.depth;
         volume[m] = bite.volume;
         holder[m] = bite.holder_depth;
-        place[m] = static_cast<double>(move.place);
+        place[m] = move.source_line;
     }
-    constexpr int kDouble = 8; // times and lines beyond what a float tells apart
-    set_field(cloud, "t", t, kDouble);
-    set_field(cloud, "feed", feed);
-    set_field(cloud, "removed", removed);
-    set_field(cloud, "volume", volume);
-    set_field(cloud, "holder", holder);
-    set_field(cloud, "place", place, kDouble);
+    constexpr int kDouble = 8; // bytes: a float is too coarse for times and line numbers
+    cloud::set_field(cloud, "t", t, kDouble);
+    cloud::set_field(cloud, "feed", feed);
+    cloud::set_field(cloud, "removed", removed);
+    cloud::set_field(cloud, "volume", volume);
+    cloud::set_field(cloud, "holder", holder);
+    cloud::set_field(cloud, "place", place, kDouble);
     return cloud;
 }
 
-} // namespace fettle
+} // namespace fettle::machining

@@ -1,6 +1,6 @@
 #pragma once
 
-// Arcs of a machine program. Only for nc_program.
+// Arcs of an NC program. Only for nc_program.
 
 #include "machining/cutter_path.h"
 
@@ -10,19 +10,19 @@
 #include <optional>
 #include <vector>
 
-namespace fettle {
+namespace fettle::machining {
 
-/// An arc as it is programmed, from one point to another.
+/// A programmed arc between two points.
 struct NcArc {
     Eigen::Vector3d from, to; ///< mm
-    std::array<int, 3> axes;  ///< of the plane, the second a quarter turn after the first; then that across it
+    std::array<int, 3> axes; ///< the two axes of the plane, the second 90° counter-clockwise from the first; its normal
     bool counter_clockwise = false;
-    std::optional<double> radius;  ///< mm; below 0: the arc of more than half a turn
-    Eigen::Vector2d centre_offset; ///< from the beginning to the centre, if there is no radius; mm, in the plane
+    std::optional<double> radius;  ///< R word, mm; negative: the arc longer than a semicircle
+    Eigen::Vector2d centre_offset; ///< from the start to the centre in the plane, if there is no radius; mm
 };
 
-/// One exact move for a level arc, else moves along chords (kArcChord).
-/// @throws InputError, without the line's number, for ends that are not on one arc
-std::vector<CutterMove> moves_along(const NcArc& arc);
+/// One exact move for a horizontal circular arc, chords (kArcChordTolerance) for any other.
+/// @throws InputError, without the line number, if the ends are not on one arc
+std::vector<CutterMove> arc_moves(const NcArc& arc);
 
-} // namespace fettle
+} // namespace fettle::machining

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <ostream>
 
-namespace fettle {
+namespace fettle::machining {
 
 std::string NcWriter::number(double mm) const
 {
-    return inches_ ? to_fixed_text(mm / mm_per(Units::Length::in), 7) : to_fixed_text(mm, 5);
+    return inches_ ? core::to_fixed_text(mm / units::mm_per(units::Units::Length::in), 7) : core::to_fixed_text(mm, 5);
 }
 
 void NcWriter::set_inches(bool inches)
@@ -24,29 +24,30 @@ void NcWriter::block(const std::string& motion, const Eigen::Vector3d& tip, doub
     constexpr double kSecondsPerMinute = 60;
     constexpr const char* kNames = "XYZ";
     std::string line;
-    const auto say = [&line](const std::string& word) { line += (line.empty() ? "" : " ") + word; };
-    if (motion != motion_ || !centre.empty()) say(motion);
+    const auto append = [&line](const std::string& word) { line += (line.empty() ? "" : " ") + word; };
+    if (motion != motion_ || !centre.empty()) append(motion);
     bool moves = !centre.empty();
     for (int k = 0; k < 3; ++k) {
         if (std::isnan(tip[k]) || (!std::isnan(at_[k]) && number(tip[k]) == number(at_[k]))) continue;
-        say(kNames[k] + number(tip[k]));
+        append(kNames[k] + number(tip[k]));
         at_[k] = tip[k];
         moves = true;
     }
     if (!moves) return;
     motion_ = motion;
     line += centre;
-    if (feed > 0 && feed != feed_) say("F" + number((feed_ = feed) * kSecondsPerMinute));
+    if (feed > 0 && feed != feed_) append("F" + number((feed_ = feed) * kSecondsPerMinute));
     out_ << line << '\n';
 }
 
-void NcWriter::go(const Eigen::Vector3d& tip, double feed) { block(feed == 0 ? "G0" : "G1", tip, feed, ""); }
+void NcWriter::move_to(const Eigen::Vector3d& tip, double feed) { block(feed == 0 ? "G0" : "G1", tip, feed, ""); }
 
-void NcWriter::go(const CutterMove& move)
+void NcWriter::move_to(const CutterMove& move)
 {
-    if (move.sweep == 0) return go(move.to, move.feed);
+    if (move.sweep_angle == 0) return move_to(move.to, move.feed);
     const Eigen::Vector2d centre = move.centre - move.from.head<2>();
-    block(move.sweep > 0 ? "G3" : "G2", move.to, move.feed, " I" + number(centre.x()) + " J" + number(centre.y()));
+    block(move.sweep_angle > 0 ? "G3" : "G2", move.to, move.feed,
+          " I" + number(centre.x()) + " J" + number(centre.y()));
 }
 
-} // namespace fettle
+} // namespace fettle::machining

@@ -1,30 +1,30 @@
 #pragma once
 
+#include "core/constants.h"
 #include "machining/cutter_path.h"
 
 #include <Eigen/Core>
 
 #include <iosfwd>
-#include <limits>
 #include <string>
 
-namespace fettle {
+namespace fettle::machining {
 
-/// Writes moves as blocks of G-code: places absolute (G90), arcs in the level (G17); words that still hold are left
-/// out. Five decimals, finer than any drive, in inches seven.
+/// Writes moves as blocks of G-code: absolute coordinates (G90), arcs in the XY plane (G17). Modal words and
+/// coordinates that do not change are left out. Five decimals in mm, seven in inches: finer than any drive.
 class NcWriter {
   public:
     explicit NcWriter(std::ostream& out) : out_(out) {}
 
-    /// Goes straight. Coordinates that are NaN are not said.
-    /// @param feed  mm/s; 0: rapid
-    void go(const Eigen::Vector3d& tip, double feed);
-    /// Goes where a move goes, on its line or arc.
-    void go(const CutterMove& move);
-    /// What follows is in inches (G20) or mm.
+    /// Writes a straight move. Coordinates that are NaN are left out.
+    /// @param tip  mm   @param feed  mm/s; 0: rapid
+    void move_to(const Eigen::Vector3d& tip, double feed);
+    /// Writes a move along its line or arc.
+    void move_to(const CutterMove& move);
+    /// Sets the unit of the following blocks: inches (G20) or mm (G21).
     void set_inches(bool inches);
-    /// The next move says its G word.
-    void forget_motion() { motion_.clear(); }
+    /// Makes the next move write its G word.
+    void reset_motion_mode() { motion_.clear(); }
 
   private:
     void block(const std::string& motion, const Eigen::Vector3d& tip, double feed, const std::string& centre);
@@ -32,9 +32,9 @@ class NcWriter {
 
     std::ostream& out_;
     std::string motion_;
-    Eigen::Vector3d at_ = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN()); ///< mm
-    double feed_ = 0;                                                                          ///< mm/s
+    Eigen::Vector3d at_ = Eigen::Vector3d::Constant(core::kNaN); ///< last position, mm; NaN: not known
+    double feed_ = 0;                                            ///< last feed, mm/s; 0: not known
     bool inches_ = false;
 };
 
-} // namespace fettle
+} // namespace fettle::machining

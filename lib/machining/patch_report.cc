@@ -1,28 +1,28 @@
 #include "machining/patch_report.h"
 
-#include "compare/colours.h"
 #include "compare/comparison_report.h"
-#include "compare/statistics.h"
+#include "core/constants.h"
 #include "core/text.h"
+#include "draw/colours.h"
+#include "geometry/statistics.h"
 #include "units/units.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <ostream>
 #include <string>
 
-namespace fettle {
+namespace fettle::machining {
 namespace {
 
-/// N·Z/|N| at 45 degrees: to there the patch method is held against the closest point.
-const double kSteep = std::sqrt(0.5);
+/// N·Z/|N| of a slope of 45 degrees: on flatter patches both errors should agree.
+const double kCosSteepSlope = std::sqrt(0.5);
 
-/// Counts, areas and volumes of the classes; volumes with the sign of their errors.
-json::Value classes_of(const PatchVerdict& verdict)
+/// Counts, areas and volumes of the classes; the volumes have the sign of the errors.
+json::Value class_statistics(const PatchVerdict& verdict)
 {
-    const Eigen::VectorXd& error = verdict.error();
+    const Eigen::VectorXd &error = verdict.error(), area_of_patch = verdict.area();
     json::Value classes;
     for (const ErrorClass wanted : kErrorClasses) {
         std::size_t count = 0;
@@ -30,113 +30,116 @@ json::Value classes_of(const PatchVerdict& verdict)
         for (Eigen::Index t = 0; t < error.size(); ++t) {
             if (std::isnan(error[t]) || classify(error[t], verdict.tolerances) != wanted) continue;
             ++count;
-            if (std::isnan(verdict.patches.area[t])) continue; // on a wall only the closest point is known
-            area += verdict.patches.area[t];
-            volume += verdict.patches.area[t] * error[t];
+            area += area_of_patch[t];
+            volume += area_of_patch[t] * error[t];
         }
         classes.set(to_string(wanted), json::Value().set("count", count).set("area", area).set("volume", volume));
     }
     return classes;
 }
 
-json::Value undefined_of(const PatchErrors& patches)
+json::Value undefined_counts(const PatchErrors& patches)
 {
     json::Value reasons;
     for (const PatchState state : {PatchState::not_hit, PatchState::vertical, PatchState::turned_away})
-        reasons.set(to_string(state),
-                    static_cast<std::size_t>(std::count(patches.state.begin(), patches.state.end(), state)));
+        reasons.set(to_string(state), std::size_t(std::ranges::count(patches.state, state)));
     return reasons;
 }
 
-/// How far mu is from the closest point's error, where both are defined.
-json::Value difference_on(const PatchVerdict& verdict, bool steep)
+/// Absolute difference of mu and the closest point's error, where both are defined.
+json::Value method_difference(const PatchVerdict& verdict, bool steep)
 {
     std::size_t count = 0;
-    double most = 0, sum = 0;
-    Eigen::Vector3d place = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
+    double max = 0, sum = 0;
+    Eigen::Vector3d max_at = Eigen::Vector3d::Constant(core::kNaN);
     for (Eigen::Index t = 0; t < verdict.closest.size(); ++t) {
-        const double off = std::abs(verdict.patches.mu[t] - verdict.closest[t]);
-        if (std::isnan(off) || (verdict.patches.normal.col(t).dot(verdict.patches.up) < kSteep) != steep) continue;
+        const double difference = std::abs(verdict.patches.mu[t] - verdict.closest[t]);
+        if (std::isnan(difference)) continue;
+        if ((verdict.patches.normal.col(t).dot(verdict.patches.up) < kCosSteepSlope) != steep) continue;
         ++count;
-        sum += off;
-        if (!(off > most)) continue;
-        most = off;
-        place = verdict.patches.centre.col(t);
+        sum += difference;
+        if (!(difference > max)) continue;
+        max = difference;
+        max_at = verdict.patches.centre.col(t);
     }
-    const double mean = count > 0 ? sum / static_cast<double>(count) : std::numeric_limits<double>::quiet_NaN();
     return json::Value()
         .set("count", count)
-        .set("mean_abs", mean)
-        .set("max_abs", most)
-        .set("max_at", Eigen::VectorXd(place));
+        .set("mean_abs", count > 0 ? sum / count : core::kNaN)
+        .set("max_abs", max)
+        .set("max_at", Eigen::VectorXd(max_at));
 }
 
 std::string class_name(const PatchVerdict& verdict, Eigen::Index t)
 {
     const double error = verdict.error()[t];
     if (!std::isnan(error)) return to_string(classify(error, verdict.tolerances));
-    const PatchState state = verdict.patches.state[static_cast<std::size_t>(t)];
+    const PatchState state = verdict.patches.state[t];
     return state == PatchState::defined ? "no_closest_point" : to_string(state);
 }
 
 } // namespace
 
-std::size_t over_cut(const PatchVerdict& verdict)
+Eigen::VectorXd PatchVerdict::area() const
 {
-    return static_cast<std::size_t>((verdict.error().array() < -verdict.tolerances.inner).count());
+    return patches.area.array().isNaN().select(patches.machined_area, patches.area);
+}
+
+std::size_t count_over_cut(const PatchVerdict& verdict)
+{
+    return (verdict.error().array() < -verdict.tolerances.inner).count();
 }
 
 json::Value to_json(const PatchVerdict& verdict)
 {
-    Tally tally(std::nullopt);
-    tally.add(verdict.error(), verdict.patches.area, verdict.patches.centre);
-    const Statistics all = tally.statistics();
-    json::Value report = to_json(all, Units{});
+    geometry::StatisticsAccumulator tally(std::nullopt);
+    tally.add(verdict.error(), verdict.area(), verdict.patches.centre);
+    const geometry::Statistics all = tally.statistics();
+    json::Value report = compare::to_json(all, units::Units{});
     std::size_t within = 0;
     for (const double error : verdict.error())
         within += error >= -verdict.tolerances.inner && error <= verdict.tolerances.outer;
     report
-        .set("within", static_cast<double>(within) / static_cast<double>(all.count)) // 0/0 without any: null
-        .set("method", verdict.by_closest ? "closest" : "patch")
+        .set("within", static_cast<double>(within) / all.count) // 0/0 if there are none: null
+        .set("method", verdict.use_closest_point ? "closest" : "patch")
         .set("inner_tolerance", verdict.tolerances.inner)
         .set("outer_tolerance", verdict.tolerances.outer)
-        .set("classes", classes_of(verdict))
-        .set("undefined_by_patch", undefined_of(verdict.patches));
+        .set("classes", class_statistics(verdict))
+        .set("undefined_by_patch", undefined_counts(verdict.patches));
     if (verdict.closest.size() > 0)
-        report.set(
-            "patch_minus_closest",
-            json::Value().set("to_45_deg", difference_on(verdict, false)).set("steeper", difference_on(verdict, true)));
+        report.set("patch_minus_closest", json::Value()
+                                              .set("to_45_deg", method_difference(verdict, false))
+                                              .set("steeper", method_difference(verdict, true)));
     return report;
 }
 
-Cloud to_cloud(const PatchVerdict& verdict)
+cloud::Cloud to_cloud(const PatchVerdict& verdict)
 {
     const PatchErrors& patches = verdict.patches;
     const Eigen::VectorXd& error = verdict.error();
-    Cloud cloud;
+    cloud::Cloud cloud;
     cloud.xyz = patches.centre;
     Eigen::VectorXd classes(error.size());
     Eigen::Matrix<std::uint8_t, 3, Eigen::Dynamic> rgb(3, error.size());
     for (Eigen::Index t = 0; t < error.size(); ++t) {
         const bool defined = !std::isnan(error[t]);
-        const ErrorClass of = classify(error[t], verdict.tolerances);
-        classes[t] = defined ? static_cast<double>(of) : error[t];
-        const Rgb shown = defined ? colour(of) : kUndefinedColour;
+        const ErrorClass error_class = classify(error[t], verdict.tolerances);
+        classes[t] = defined ? static_cast<double>(error_class) : error[t];
+        const draw::Rgb shown = defined ? colour(error_class) : draw::kUndefinedColour;
         rgb.col(t) << shown[0], shown[1], shown[2];
     }
-    set_field(cloud, "error", error);
-    if (verdict.closest.size() > 0) set_field(cloud, "closest", verdict.closest);
-    set_field(cloud, "d", patches.d);
-    set_field(cloud, "class", classes);
-    set_normals(cloud, patches.normal);
-    set_colours(cloud, rgb);
+    cloud::set_field(cloud, "error", error);
+    if (verdict.closest.size() > 0) cloud::set_field(cloud, "closest", verdict.closest);
+    cloud::set_field(cloud, "d", patches.d);
+    cloud::set_field(cloud, "class", classes);
+    cloud::set_normals(cloud, patches.normal);
+    cloud::set_colours(cloud, rgb);
     return cloud;
 }
 
 void write_csv(std::ostream& out, const PatchVerdict& verdict)
 {
     const bool closest = verdict.closest.size() > 0;
-    const auto number = [](double value) { return std::isnan(value) ? std::string() : to_text(value); };
+    const auto number = [](double value) { return std::isnan(value) ? std::string() : core::to_text(value); };
     out << "triangle,x,y,z,d,mu," << (closest ? "closest," : "") << "class\n";
     for (Eigen::Index t = 0; t < verdict.patches.d.size(); ++t) {
         out << t;
@@ -147,4 +150,12 @@ void write_csv(std::ostream& out, const PatchVerdict& verdict)
     }
 }
 
-} // namespace fettle
+cloud::Cloud z_errors_to_cloud(const mesh::Mesh& machined, const Eigen::VectorXd& z_error)
+{
+    cloud::Cloud cloud;
+    cloud.xyz = machined.vertices;
+    cloud::set_field(cloud, "error", z_error);
+    return cloud;
+}
+
+} // namespace fettle::machining

@@ -9,29 +9,35 @@
 #include <cstddef>
 #include <iosfwd>
 
-namespace fettle {
+namespace fettle::machining {
 
-/// A verdict on patches by one error each: mu, or the distance of the centre from the design's closest point.
+/// Patches judged by one error each: mu, or the distance of the centroid from the closest point of the design.
 struct PatchVerdict {
     PatchErrors patches;
-    Eigen::VectorXd closest; ///< signed, mm, of each centre; empty if it was not asked for
-    bool by_closest = false; ///< which of them decides
+    Eigen::VectorXd closest;        ///< closest_errors(), mm; empty if not computed
+    bool use_closest_point = false; ///< whether `closest` is the error; else mu
     PatchTolerances tolerances;
 
-    const Eigen::VectorXd& error() const { return by_closest ? closest : patches.mu; } ///< NaN: undefined
+    const Eigen::VectorXd& error() const { return use_closest_point ? closest : patches.mu; } ///< NaN: undefined
+    /// Areas that belong to the errors, mm²: of the design's triangles; where only the closest point defines an error,
+    /// of the machined ones.
+    Eigen::VectorXd area() const;
 };
 
-/// How many patches are over-cut beyond the tolerance.
-std::size_t over_cut(const PatchVerdict& verdict);
+/// Number of patches that are over-cut beyond the tolerance.
+std::size_t count_over_cut(const PatchVerdict& verdict);
 
-/// Numbers over all patches, by class (count, area, volume), why others are undefined, and how far the two errors are
-/// apart on slopes up to 45 degrees and on steeper ones.
+/// Statistics over all patches and by class (count, area, volume), the counts of undefined patches by reason, and the
+/// difference of both errors on slopes up to 45 degrees and on steeper ones.
 json::Value to_json(const PatchVerdict& verdict);
 
-/// A point at the centre of each patch: error, closest (if there), d, class, normal of the design, rgb.
-Cloud to_cloud(const PatchVerdict& verdict);
+/// One point at the centroid of each patch. Fields: error, closest (if computed), d, class, normal of the design, rgb.
+cloud::Cloud to_cloud(const PatchVerdict& verdict);
 
-/// The data sheet: a row for each patch; why it is undefined stands for the class.
+/// The machined vertices with the field error, along Z. @param z_error  PatchErrors::z_error
+cloud::Cloud z_errors_to_cloud(const mesh::Mesh& machined, const Eigen::VectorXd& z_error);
+
+/// CSV with a row for each patch; for an undefined patch the class is the reason.
 void write_csv(std::ostream& out, const PatchVerdict& verdict);
 
-} // namespace fettle
+} // namespace fettle::machining

@@ -11,35 +11,36 @@
 #include <cstdint>
 #include <vector>
 
-namespace fettle {
+namespace fettle::machining {
 
-inline constexpr double kSteepSquare = 60; // degrees
+inline constexpr double kRefinedSlopeDegrees = 60;
 
-/// Where a machined surface is steep, its heights at more places: on the squares between the centres of four cells. A
-/// square is steep if two of its corners differ in height by more than the way between two cells at kSteepSquare.
+/// Heights of a machined surface on a finer grid where it is steep. The grid is refined on squares between the centres
+/// of four cells: a square is refined if its corners differ in height by more than a slope of kRefinedSlopeDegrees has
+/// over one cell.
 class Refinement {
   public:
-    /// @param piece    as it was before the cut, which knows its heights everywhere
-    /// @param machined what mill() made of it
-    /// @param factor   so many places along a cell's side, a power of two
-    Refinement(const Workpiece& piece, const HeightField& machined, const Cutter& cutter,
+    /// @param piece    before the cut
+    /// @param machined the result of mill(); it must outlive this object
+    /// @param factor   number of grid points along the side of a square, a power of two
+    Refinement(const Workpiece& piece, const removal::HeightField& machined, const Cutter& cutter,
                const std::vector<CutterMove>& moves, int factor);
 
     int factor() const { return factor_; }
-    /// Is the square between cells i, i + 1 and j, j + 1 refined? Squares beyond the map are not.
-    bool refined(Eigen::Index i, Eigen::Index j) const;
-    std::size_t count() const; ///< of refined squares
-    /// A place of a refined square, mm: share a / factor of the way from cell i to i + 1, b / factor from j to j + 1; z
-    /// NaN: no material.
-    Eigen::Vector3d place(Eigen::Index i, Eigen::Index j, int a, int b) const;
+    /// Whether the square between cells i, i + 1 and j, j + 1 is refined; false outside the grid.
+    bool is_refined(Eigen::Index i, Eigen::Index j) const;
+    std::size_t count() const; ///< number of refined squares
+    /// Point (a, b) of the fine grid in a refined square, mm: a / factor of the distance from cell i to i + 1 and b /
+    /// factor from j to j + 1. z is NaN where there is no material.
+    Eigen::Vector3d point(Eigen::Index i, Eigen::Index j, int a, int b) const;
 
   private:
-    const HeightField& machined_;
+    const removal::HeightField& machined_;
     int factor_;
-    Eigen::Index columns_, rows_, tiles_across_; ///< of squares; of tiles
-    std::vector<std::uint8_t> refined_;          ///< of squares, row by row
-    std::vector<std::int32_t> tile_;             ///< of each tile: its field, -1: it has none
-    std::vector<HeightField> fields_;
+    Eigen::Index columns_, rows_, tile_columns_; ///< numbers of squares, and of tiles in a row
+    std::vector<std::uint8_t> refined_;          ///< whether each square is refined, row by row
+    std::vector<std::int32_t> tile_;             ///< index of each tile's field, -1: none
+    std::vector<removal::HeightField> fields_;   ///< fine grids of the tiles that contain refined squares
 };
 
-} // namespace fettle
+} // namespace fettle::machining

@@ -2,36 +2,36 @@
 
 #include <algorithm>
 
-namespace fettle {
+namespace fettle::machining {
 namespace {
 
-/// Points that are thinned at a time; straight moves pass no more.
-constexpr std::size_t kMostThinned = 1000;
+/// Largest number of tips that one straight move replaces: it bounds the cost of a test.
+constexpr std::size_t kMaxThinnedTips = 1000;
 
-bool straight(std::span<const Eigen::Vector3d> tips)
+bool is_straight(std::span<const Eigen::Vector3d> tips)
 {
-    const Eigen::Vector3d way = tips.back() - tips.front();
-    const double length = way.norm();
-    return std::all_of(tips.begin(), tips.end(), [&](const Eigen::Vector3d& tip) {
-        const Eigen::Vector3d off = tip - tips.front();
-        const double share = length > 0 ? std::clamp(off.dot(way) / (length * length), 0.0, 1.0) : 0;
-        return (off - share * way).norm() <= kThinning;
+    const Eigen::Vector3d chord = tips.back() - tips.front();
+    const double length = chord.norm();
+    return std::ranges::all_of(tips, [&](const Eigen::Vector3d& tip) {
+        const Eigen::Vector3d d = tip - tips.front();
+        const double t = length > 0 ? std::clamp(d.dot(chord) / (length * length), 0.0, 1.0) : 0;
+        return (d - t * chord).norm() <= kThinningTolerance;
     });
 }
 
 } // namespace
 
-std::size_t straight_to(std::span<const Eigen::Vector3d> tips)
+std::size_t last_on_line(std::span<const Eigen::Vector3d> tips)
 {
-    const std::size_t last = std::min(tips.size() - 1, kMostThinned);
+    const std::size_t last = std::min(tips.size() - 1, kMaxThinnedTips);
     if (last == 0) return 0;
-    // doubling, then halving: few looks at long straight ways
+    // Exponential, then binary search: few tests on long straight lines.
     std::size_t to = 1, step = 1;
-    const auto goes = [&] { return to + step <= last && straight(tips.first(to + step + 1)); };
-    for (; goes(); step *= 2) to += step;
+    const auto extends = [&] { return to + step <= last && is_straight(tips.first(to + step + 1)); };
+    for (; extends(); step *= 2) to += step;
     for (; step > 0; step /= 2)
-        if (goes()) to += step;
+        if (extends()) to += step;
     return to;
 }
 
-} // namespace fettle
+} // namespace fettle::machining

@@ -5,12 +5,14 @@
 #include <cstddef>
 #include <span>
 
-namespace fettle {
+namespace fettle::machining {
 
-/// Tips that a straight move passes by no farther than this are left out of a path, mm.
-inline constexpr double kThinning = 1e-4;
+/// Tips within this distance of a straight move are left out of a path, mm.
+inline constexpr double kThinningTolerance = 1e-4;
 
-/// The last of some tips, one at least, that one straight move can go to from the first, past those between.
-std::size_t straight_to(std::span<const Eigen::Vector3d> tips);
+/// Index of the last tip such that a straight move from the first to it passes all tips between within
+/// kThinningTolerance. This is greedy polyline simplification, one move at a time.
+/// @param tips  not empty
+std::size_t last_on_line(std::span<const Eigen::Vector3d> tips);
 
-} // namespace fettle
+} // namespace fettle::machining

@@ -6,12 +6,12 @@
 
 #include <utility>
 
-namespace fettle {
+namespace fettle::machining {
 
 Eigen::Matrix3d rotation_tilted_machine(const Eigen::Vector3d& axis)
 {
-    constexpr double kUpsideDown = -1 + 1e-12; // there is no shortest way then
-    if (axis.z() < kUpsideDown) return Eigen::Vector3d(1, -1, -1).asDiagonal();
+    constexpr double kMinAxisZ = -1 + 1e-12; // below it the rotation axis is undefined
+    if (axis.z() < kMinAxisZ) return Eigen::Vector3d(1, -1, -1).asDiagonal();
     // I + [v] + [v]²/(1 + c) with v = axis × Z, c = axis · Z
     const Eigen::Vector3d v = axis.cross(Eigen::Vector3d::UnitZ());
     Eigen::Matrix3d cross;
@@ -19,18 +19,18 @@ Eigen::Matrix3d rotation_tilted_machine(const Eigen::Vector3d& axis)
     return Eigen::Matrix3d::Identity() + cross + cross * cross / (1 + axis.z());
 }
 
-Mesh turned(Mesh mesh, const Eigen::Matrix3d& rotation)
+mesh::Mesh rotated(mesh::Mesh mesh, const Eigen::Matrix3d& rotation)
 {
     if (!rotation.isIdentity(0)) mesh.vertices = (rotation * mesh.vertices).eval();
     return mesh;
 }
 
-Cloud turned(Cloud cloud, const Eigen::Matrix3d& rotation)
+cloud::Cloud rotated(cloud::Cloud cloud, const Eigen::Matrix3d& rotation)
 {
     if (rotation.isIdentity(0)) return cloud;
     Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
     matrix.topLeftCorner<3, 3>() = rotation;
-    return moved(std::move(cloud), matrix, 1);
+    return align::transformed(std::move(cloud), matrix, 1);
 }
 
-} // namespace fettle
+} // namespace fettle::machining

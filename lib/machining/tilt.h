@@ -5,17 +5,17 @@
 
 #include <Eigen/Core>
 
-namespace fettle {
+namespace fettle::machining {
 
-/// Machining with a tilted tool (3+2 axes): everything is turned into the tilted frame T, where the tool's axis points
-/// up; the origin stays. M is turned the shortest way, about an axis that is level; a tool that points straight down
-/// about X.
-/// @param axis  of the tool, from its tip to its holder, unit, M
-/// @return  p_tilted = R · p_machine
+/// Rotation for machining with a tilted tool (3+2 axes): all geometry is rotated into the tilted frame T, whose +z is
+/// the tool's axis and whose origin is that of M. It is the rotation with the smallest angle, about a horizontal axis;
+/// about X for a tool that points straight down.
+/// @param axis  tool axis from the tip to the holder, unit, frame M
+/// @return  R with p_tilted = R · p_machine
 Eigen::Matrix3d rotation_tilted_machine(const Eigen::Vector3d& axis);
 
-/// All places and directions turned; the identity changes no bit.
-Mesh turned(Mesh mesh, const Eigen::Matrix3d& rotation);
-Cloud turned(Cloud cloud, const Eigen::Matrix3d& rotation);
+/// Rotates all points and directions; the identity changes no bit.
+mesh::Mesh rotated(mesh::Mesh mesh, const Eigen::Matrix3d& rotation);
+cloud::Cloud rotated(cloud::Cloud cloud, const Eigen::Matrix3d& rotation);
 
-} // namespace fettle
+} // namespace fettle::machining

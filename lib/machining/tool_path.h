@@ -7,24 +7,26 @@
 #include <optional>
 #include <string>
 
-namespace fettle {
+namespace fettle::machining {
 
-/// A cutter's path as it was given: a program, or points.
+/// The path of a cutter from a file: an NC program, or points.
 struct ToolPath {
-    NcProgram program;           ///< in the tilted frame; of points only the moves
-    std::string text;            ///< of the program
-    std::optional<Cloud> points; ///< if there is no program; in the tilted frame
+    NcProgram program;                  ///< in the tilted frame (tilt.h); for points only its moves are set
+    std::string text;                   ///< text of the program
+    std::optional<cloud::Cloud> points; ///< set if the file has points; in the tilted frame
 };
 
-struct PointMeaning {
-    bool contacts = false; ///< are points where the cutter touches (CC), rather than tips (CL)?
+/// Interpretation of a path.
+struct ToolPathReading {
+    bool contacts = false; ///< of points: true: cutter contacts (CC); false: cutter locations (CL)
     double feed = 10;      ///< of points without one, mm/s
-    Eigen::Vector3d axis = Eigen::Vector3d::UnitZ(); ///< of the tool, M (tilt.h); a program is in the tilted frame
+    Eigen::Vector3d axis = Eigen::Vector3d::UnitZ(); ///< tool axis, frame M (tilt.h); programs are in the tilted frame
+    std::optional<Eigen::Vector3d> start = {};       ///< of a program: the tip before its first move, mm
 };
 
-/// Tells by the content which of them it is.
+/// Parses a program or points, depending on the content.
 /// @throws InputError as parse_nc_program() and moves_through()
 ToolPath parse_tool_path(std::string bytes, const std::string& source, const Cutter& cutter,
-                         const PointMeaning& meaning = {});
+                         const ToolPathReading& options = {});
 
-} // namespace fettle
+} // namespace fettle::machining

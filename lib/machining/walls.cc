@@ -1,40 +1,39 @@
 #include "machining/walls.h"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <utility>
-#include <vector>
+#include <Eigen/Geometry>
 
-namespace fettle {
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace fettle::machining {
 namespace {
 
-/// Cosine of the least angle of a wall's normal to Z: 0.06 degrees, ten times what the rounding of an STL's floats
+/// Largest |z| of a wall's unit normal: 0.06 degrees, ten times the angle by which the rounding of an STL's floats
 /// turns a facet whose size is a thousandth of its distance from the origin.
-constexpr double kUpright = 1e-3;
-/// Of the box that the bins cover: a million of them at most.
-constexpr double kMostBinsOfSide = 1024;
+constexpr double kMaxNormalZ = 1e-3;
+/// Largest number of bins along a side of the grid: at most a million bins.
+constexpr double kMaxBinsPerSide = 1024;
 
 using Segment = std::array<Eigen::Vector2d, 2>;
-using Corners = Eigen::Matrix<double, 2, 3>;
+using WallCorners = Eigen::Matrix<double, 2, 3>;
 
+/// Twice the signed area of the triangle a, b, p: positive if p is left of the line.
 double side(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& p)
 {
     return (b.x() - a.x()) * (p.y() - a.y()) - (b.y() - a.y()) * (p.x() - a.x());
 }
 
-/// Do they touch? By a line that parts them: one along a side of either, or upright or level.
-bool touch(const Segment& s, const Corners& t)
+/// Whether a segment and a triangle have a common point, by the separating axis theorem: the candidate lines are
+/// parallel to the segment, the triangle's edges, or the coordinate axes.
+bool intersect(const Segment& s, const WallCorners& t)
 {
     for (int axis = 0; axis < 2; ++axis)
         if (std::max(s[0][axis], s[1][axis]) < t.row(axis).minCoeff() ||
             std::min(s[0][axis], s[1][axis]) > t.row(axis).maxCoeff())
             return false;
-    const auto apart = [](double least, double most) { return least > 0 || most < 0; };
     const Eigen::Vector3d across(side(s[0], s[1], t.col(0)), side(s[0], s[1], t.col(1)), side(s[0], s[1], t.col(2)));
-    if (apart(across.minCoeff(), across.maxCoeff())) return false;
+    if (across.minCoeff() > 0 || across.maxCoeff() < 0) return false;
     for (int k = 0; k < 3; ++k) {
         const Eigen::Vector2d a = t.col(k), b = t.col((k + 1) % 3);
         const double third = side(a, b, t.col((k + 2) % 3)), p = side(a, b, s[0]), q = side(a, b, s[1]);
@@ -45,71 +44,53 @@ bool touch(const Segment& s, const Corners& t)
 
 } // namespace
 
-struct Walls::State {
-    std::vector<Segment> segments;
-    Eigen::Array2d low{0, 0};
-    double bin = 1;
-    Eigen::Index columns = 0, rows = 0;
-    std::vector<std::vector<std::size_t>> bins;
-
-    template <typename Visit>
-    void visit(const Eigen::Array2d& least, const Eigen::Array2d& most, const Visit& look) const
-    {
-        const auto at = [&](double v, double from, Eigen::Index count) {
-            return static_cast<Eigen::Index>(std::clamp((v - from) / bin, 0.0, static_cast<double>(count - 1)));
-        };
-        for (Eigen::Index j = at(least.y(), low.y(), rows); j <= at(most.y(), low.y(), rows); ++j)
-            for (Eigen::Index i = at(least.x(), low.x(), columns); i <= at(most.x(), low.x(), columns); ++i)
-                look(static_cast<std::size_t>(j * columns + i));
-    }
-};
-
-Walls::Walls(const Mesh& mesh, double cell)
+/// Calls visit(index) for the bins that a box overlaps.
+template <typename Visit>
+void Walls::for_bins(const Eigen::Array2d& min, const Eigen::Array2d& max, const Visit& visit) const
 {
-    auto state = std::make_unique<State>();
-    const Eigen::Matrix3Xd normals = triangle_normals(mesh);
+    const auto bin_at = [this](double offset, Eigen::Index count) {
+        return static_cast<Eigen::Index>(std::clamp<double>(offset / bin_size_, 0, count - 1));
+    };
+    const Eigen::Array2d low = min - origin_, high = max - origin_;
+    for (Eigen::Index j = bin_at(low.y(), rows_); j <= bin_at(high.y(), rows_); ++j)
+        for (Eigen::Index i = bin_at(low.x(), columns_); i <= bin_at(high.x(), columns_); ++i) visit(j * columns_ + i);
+}
+
+Walls::Walls(const mesh::Mesh& mesh, double cell)
+{
+    const Eigen::Matrix3Xd normals = mesh::triangle_normals(mesh);
+    Eigen::AlignedBox2d box;
     for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
-        if (std::abs(normals(2, t)) > kUpright || normals.col(t).isZero()) continue;
+        if (std::abs(normals(2, t)) > kMaxNormalZ || normals.col(t).isZero()) continue;
         Segment longest = {Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
         for (int k = 0; k < 3; ++k) {
             const Segment edge = {mesh.vertices.col(mesh.triangles(k, t)).head<2>(),
                                   mesh.vertices.col(mesh.triangles((k + 1) % 3, t)).head<2>()};
             if ((edge[1] - edge[0]).norm() > (longest[1] - longest[0]).norm()) longest = edge;
         }
-        state->segments.push_back(longest);
+        segments_.push_back(longest);
+        box.extend(longest[0]).extend(longest[1]);
     }
-    if (!state->segments.empty()) {
-        Eigen::Array2d high = state->segments[0][0].array();
-        state->low = high;
-        for (const Segment& s : state->segments)
-            for (const Eigen::Vector2d& end : s) {
-                state->low = state->low.min(end.array());
-                high = high.max(end.array());
-            }
-        const Eigen::Array2d size = high - state->low;
-        state->bin = std::max({cell, size.maxCoeff() / kMostBinsOfSide, std::numeric_limits<double>::min()});
-        state->columns = static_cast<Eigen::Index>(size.x() / state->bin) + 1;
-        state->rows = static_cast<Eigen::Index>(size.y() / state->bin) + 1;
-        state->bins.resize(static_cast<std::size_t>(state->columns * state->rows));
-        for (std::size_t n = 0; n < state->segments.size(); ++n) {
-            const Segment& s = state->segments[n];
-            state->visit(s[0].array().min(s[1].array()), s[0].array().max(s[1].array()),
-                         [&](std::size_t bin) { state->bins[bin].push_back(n); });
-        }
+    if (segments_.empty()) return;
+    origin_ = box.min();
+    bin_size_ = std::max({cell, box.sizes().maxCoeff() / kMaxBinsPerSide, std::numeric_limits<double>::min()});
+    columns_ = static_cast<Eigen::Index>(box.sizes().x() / bin_size_) + 1;
+    rows_ = static_cast<Eigen::Index>(box.sizes().y() / bin_size_) + 1;
+    bins_.resize(columns_ * rows_);
+    for (std::size_t n = 0; n < segments_.size(); ++n) {
+        const auto& [a, b] = segments_[n];
+        for_bins(a.cwiseMin(b), a.cwiseMax(b), [&](Eigen::Index bin) { bins_[bin].push_back(n); });
     }
-    state_ = std::move(state);
 }
 
-Walls::~Walls() = default;
-
-bool Walls::meet(const Corners& triangle) const
+bool Walls::intersects(const WallCorners& triangle) const
 {
-    if (state_->segments.empty()) return false;
-    bool met = false;
-    state_->visit(triangle.rowwise().minCoeff().array(), triangle.rowwise().maxCoeff().array(), [&](std::size_t bin) {
-        for (const std::size_t n : state_->bins[bin]) met = met || touch(state_->segments[n], triangle);
+    if (segments_.empty()) return false;
+    bool hit = false;
+    for_bins(triangle.rowwise().minCoeff(), triangle.rowwise().maxCoeff(), [&](Eigen::Index bin) {
+        for (const std::size_t n : bins_[bin]) hit = hit || intersect(segments_[n], triangle);
     });
-    return met;
+    return hit;
 }
 
-} // namespace fettle
+} // namespace fettle::machining

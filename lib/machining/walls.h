@@ -4,23 +4,30 @@
 
 #include <Eigen/Core>
 
-#include <memory>
+#include <array>
+#include <cstddef>
+#include <vector>
 
-namespace fettle {
+namespace fettle::machining {
 
-/// Where facets of a mesh stand upright: seen from above these are lines. Thread-safe.
+/// The vertical facets of a mesh, as line segments in plan view in a uniform grid. Thread-safe.
 class Walls {
   public:
-    /// @param cell  about the size of the triangles that will be asked for, mm
-    Walls(const Mesh& mesh, double cell);
-    ~Walls();
+    /// @param cell  about the size of the query triangles, mm
+    Walls(const mesh::Mesh& mesh, double cell);
 
-    /// Does a wall run through a triangle (seen from above, 2x3), or along its border?
-    bool meet(const Eigen::Matrix<double, 2, 3>& triangle) const;
+    /// Whether a wall runs through a triangle in plan view (2x3, mm) or along its border.
+    bool intersects(const Eigen::Matrix<double, 2, 3>& triangle) const;
 
   private:
-    struct State;
-    std::unique_ptr<const State> state_;
+    template <typename Visit>
+    void for_bins(const Eigen::Array2d& min, const Eigen::Array2d& max, const Visit& visit) const;
+
+    std::vector<std::array<Eigen::Vector2d, 2>> segments_;
+    Eigen::Array2d origin_{0, 0};
+    double bin_size_ = 1; ///< mm
+    Eigen::Index columns_ = 0, rows_ = 0;
+    std::vector<std::vector<std::size_t>> bins_; ///< indices of the segments whose bounding boxes overlap each bin
 };
 
-} // namespace fettle
+} // namespace fettle::machining

@@ -1,11 +1,15 @@
 #include "machining/workpiece.h"
 
 #include "core/error.h"
-#include "machining/number_list.h"
+#include "core/file.h"
+#include "core/text.h"
+#include "machining/limits.h"
 #include "machining/refinement.h"
 #include "machining/tilt.h"
+#include "mesh/shape_file.h"
 #include "mesh/stl.h"
 
+#include <Eigen/Geometry>
 #include <tbb/parallel_for.h>
 #include <tbb/task_group.h>
 
@@ -17,22 +21,21 @@
 #include <utility>
 #include <vector>
 
-namespace fettle {
+namespace fettle::machining {
 namespace {
 
-/// Rows that are made triangles at a time: some megabytes.
-constexpr Eigen::Index kRowsOfPart = 16;
-/// Parts in the making, whatever the number of threads.
-constexpr Eigen::Index kPartsAtOnce = 16;
+/// Rows triangulated in one chunk: some megabytes of STL.
+constexpr Eigen::Index kRowsPerChunk = 16;
+/// Chunks triangulated in parallel, whatever the number of threads.
+constexpr Eigen::Index kParallelChunks = 16;
 
-/// The sides of a box, outwards. @param numbers  least corner, greatest corner
-Mesh box_mesh(const std::vector<double>& numbers)
+/// The sides of a box, oriented outwards. @param numbers  x, y, z of the minimum corner, then of the maximum corner
+mesh::Mesh box_mesh(const Eigen::VectorXd& numbers)
 {
-    Mesh mesh;
+    mesh::Mesh mesh;
     mesh.vertices.resize(3, 8);
-    for (int k = 0; k < 8; ++k) // bits 0 to 2 of the number: greatest x, y, z
-        for (int axis = 0; axis < 3; ++axis)
-            mesh.vertices(axis, k) = numbers[static_cast<std::size_t>(axis + 3 * (k >> axis & 1))];
+    for (int k = 0; k < 8; ++k) // bits 0 to 2 of k: maximum x, y, z
+        for (int axis = 0; axis < 3; ++axis) mesh.vertices(axis, k) = numbers[axis + 3 * (k >> axis & 1)];
     mesh.triangles.resize(3, 12);
     mesh.triangles << 0, 0, 4, 4, 0, 0, 2, 2, 0, 0, 1, 1, //
         2, 3, 5, 7, 1, 5, 6, 7, 4, 6, 3, 7,               //
@@ -40,8 +43,7 @@ Mesh box_mesh(const std::vector<double>& numbers)
     return mesh;
 }
 
-/// Corners of a triangle.
-using Corners = Eigen::Matrix3d;
+using Corners = Eigen::Matrix3d; ///< columns: corners of a triangle, mm
 
 void add_triangle(std::vector<Corners>& triangles, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                   const Eigen::Vector3d& c)
@@ -51,55 +53,56 @@ void add_triangle(std::vector<Corners>& triangles, const Eigen::Vector3d& a, con
     triangles.back() << a, b, c;
 }
 
-/// The places around a square that has refined neighbours, counter-clockwise from its first corner.
-std::vector<Eigen::Vector3d> around(const Refinement& map, Eigen::Index i, Eigen::Index j)
+/// The vertices on the border of a square with refined neighbours, counter-clockwise from its first corner.
+std::vector<Eigen::Vector3d> border_vertices(const Refinement& fine, Eigen::Index i, Eigen::Index j)
 {
     struct Side {
-        Eigen::Index i, j;      ///< of the neighbour
-        int a, b, da, db;       ///< where the side begins in it, and how it goes on
-        Eigen::Index corner[2]; ///< of the square, where the side begins
+        Eigen::Index i, j;      ///< the neighbour
+        int a, b, da, db;       ///< start and direction of the side in the neighbour's fine grid
+        Eigen::Index corner[2]; ///< corner of the square where the side starts
     };
-    const int f = map.factor();
+    const int f = fine.factor();
     const Side sides[] = {{i, j - 1, 0, f, 1, 0, {0, 0}},
                           {i + 1, j, 0, 0, 0, 1, {1, 0}},
                           {i, j + 1, f, 0, -1, 0, {1, 1}},
                           {i - 1, j, f, f, 0, -1, {0, 1}}};
-    std::vector<Eigen::Vector3d> places;
+    std::vector<Eigen::Vector3d> vertices;
     for (const Side& side : sides) {
-        places.push_back(map.place(i + side.corner[0], j + side.corner[1], 0, 0));
-        if (!map.refined(side.i, side.j)) continue;
+        vertices.push_back(fine.point(i + side.corner[0], j + side.corner[1], 0, 0));
+        if (!fine.is_refined(side.i, side.j)) continue;
         for (int k = 1; k < f; ++k) {
-            const Eigen::Vector3d place = map.place(side.i, side.j, side.a + k * side.da, side.b + k * side.db);
-            if (!std::isnan(place.z())) places.push_back(place);
+            const Eigen::Vector3d vertex = fine.point(side.i, side.j, side.a + k * side.da, side.b + k * side.db);
+            if (!std::isnan(vertex.z())) vertices.push_back(vertex);
         }
     }
-    return places;
+    return vertices;
 }
 
-/// The triangles of a square that is refined, or next to one that is. @return  is it?
-bool add_refined(std::vector<Corners>& triangles, const Refinement& map, Eigen::Index i, Eigen::Index j)
+/// Adds the triangles of a square that is refined or next to a refined one. @return  whether it is
+bool add_refined(std::vector<Corners>& triangles, const Refinement& fine, Eigen::Index i, Eigen::Index j)
 {
-    if (map.refined(i, j)) {
-        for (int b = 0; b < map.factor(); ++b)
-            for (int a = 0; a < map.factor(); ++a) {
-                const Eigen::Vector3d at = map.place(i, j, a, b), beyond = map.place(i, j, a + 1, b + 1);
-                add_triangle(triangles, at, map.place(i, j, a + 1, b), beyond);
-                add_triangle(triangles, at, beyond, map.place(i, j, a, b + 1));
+    if (fine.is_refined(i, j)) {
+        for (int b = 0; b < fine.factor(); ++b)
+            for (int a = 0; a < fine.factor(); ++a) {
+                const Eigen::Vector3d corner = fine.point(i, j, a, b), opposite = fine.point(i, j, a + 1, b + 1);
+                add_triangle(triangles, corner, fine.point(i, j, a + 1, b), opposite);
+                add_triangle(triangles, corner, opposite, fine.point(i, j, a, b + 1));
             }
         return true;
     }
-    if (!(map.refined(i - 1, j) || map.refined(i + 1, j) || map.refined(i, j - 1) || map.refined(i, j + 1)))
+    if (!(fine.is_refined(i - 1, j) || fine.is_refined(i + 1, j) || fine.is_refined(i, j - 1) ||
+          fine.is_refined(i, j + 1)))
         return false;
-    const auto places = around(map, i, j);
-    const Eigen::Vector3d middle = (map.place(i, j, 0, 0) + map.place(i + 1, j, 0, 0) + map.place(i, j + 1, 0, 0) +
-                                    map.place(i + 1, j + 1, 0, 0)) /
+    const auto border = border_vertices(fine, i, j);
+    const Eigen::Vector3d middle = (fine.point(i, j, 0, 0) + fine.point(i + 1, j, 0, 0) + fine.point(i, j + 1, 0, 0) +
+                                    fine.point(i + 1, j + 1, 0, 0)) /
                                    4;
-    for (std::size_t k = 0; k < places.size(); ++k)
-        add_triangle(triangles, places[k], places[(k + 1) % places.size()], middle);
+    for (std::size_t k = 0; k < border.size(); ++k)
+        add_triangle(triangles, border[k], border[(k + 1) % border.size()], middle);
     return true;
 }
 
-std::size_t count_triangles(const HeightField& field, const Refinement* refinement)
+std::size_t count_triangles(const removal::HeightField& field, const Refinement* refinement)
 {
     std::size_t count = 0;
     std::vector<Corners> finer;
@@ -117,85 +120,89 @@ std::size_t count_triangles(const HeightField& field, const Refinement* refineme
     return count;
 }
 
-/// Parts of an STL that are made while others are written.
-class StlParts {
+/// Double buffering: chunks of an STL are triangulated while the previous ones are written.
+class StlChunks {
   public:
-    StlParts(const HeightField& field, const Refinement* refinement, const Eigen::Matrix3d& tilted, Eigen::Index parts)
-        : field_(&field), refinement_(refinement), R_machine_tilted_(tilted.transpose()), parts_(parts),
-          bytes_(static_cast<std::size_t>(std::min(kPartsAtOnce, parts)))
+    StlChunks(const removal::HeightField& field, const Refinement* refinement, const Eigen::Matrix3d& tilted,
+              Eigen::Index chunk_count)
+        : field_(&field), refinement_(refinement), R_machine_tilted_(tilted.transpose()), chunk_count_(chunk_count),
+          buffers_(std::min(kParallelChunks, chunk_count))
     {
     }
-    void make(Eigen::Index begin)
+    void triangulate(Eigen::Index begin)
     {
-        tbb::parallel_for(std::size_t{0}, bytes_.size(), [&](std::size_t k) {
-            bytes_[k].size = 0;
-            const Eigen::Index part = begin + static_cast<Eigen::Index>(k), first = part * kRowsOfPart;
-            if (part >= parts_) return;
-            const Mesh mesh =
-                turned(surface_between(*field_, first, std::min(first + kRowsOfPart, field_->rows() - 1), refinement_),
-                       R_machine_tilted_);
-            bytes_[k].size = kStlTriangle * static_cast<std::size_t>(mesh.triangles.cols());
-            if (bytes_[k].room < bytes_[k].size) { // seldom: fresh memory costs more than the triangles
-                bytes_[k].room = bytes_[k].size;
-                bytes_[k].data = std::make_unique_for_overwrite<char[]>(bytes_[k].room);
+        tbb::parallel_for(std::size_t{0}, buffers_.size(), [&](std::size_t k) {
+            Buffer& buffer = buffers_[k];
+            buffer.size = 0;
+            const Eigen::Index chunk = begin + k, first = chunk * kRowsPerChunk;
+            if (chunk >= chunk_count_) return;
+            const Eigen::Index last = std::min(first + kRowsPerChunk, field_->rows() - 1);
+            const mesh::Mesh mesh = rotated(triangulate_rows(*field_, first, last, refinement_), R_machine_tilted_);
+            buffer.size = mesh::kStlTriangleBytes * mesh.triangles.cols();
+            if (buffer.capacity < buffer.size) { // seldom: page faults of new memory cost more than the triangles
+                buffer.capacity = buffer.size;
+                buffer.data = std::make_unique_for_overwrite<char[]>(buffer.capacity);
             }
-            put_stl_triangles(mesh, Units::Length::mm, bytes_[k].data.get());
+            mesh::encode_stl_triangles(mesh, units::Units::Length::mm, buffer.data.get());
         });
     }
     void write(std::ostream& out) const
     {
-        for (const Bytes& part : bytes_) out.write(part.data.get(), static_cast<std::streamsize>(part.size));
+        for (const Buffer& buffer : buffers_) out.write(buffer.data.get(), buffer.size);
     }
 
   private:
-    struct Bytes {
+    struct Buffer {
         std::unique_ptr<char[]> data;
-        std::size_t size = 0, room = 0;
+        std::size_t size = 0, capacity = 0;
     };
-    const HeightField* field_;
+    const removal::HeightField* field_;
     const Refinement* refinement_;
     Eigen::Matrix3d R_machine_tilted_;
-    Eigen::Index parts_;
-    std::vector<Bytes> bytes_;
+    Eigen::Index chunk_count_;
+    std::vector<Buffer> buffers_;
 };
 
 } // namespace
 
 Workpiece box_workpiece(const std::string& corners, double cell, const Eigen::Matrix3d& rotation_tilted_machine)
 {
-    const auto numbers = numbers_of(corners, {"x0", "y0", "z0", "x1", "y1", "z1"});
-    Eigen::Matrix2d box;
-    box << numbers[0], numbers[3], numbers[1], numbers[4];
-    if (!((box.col(1) - box.col(0)).minCoeff() > 0 && numbers[5] > numbers[2]))
-        throw InputError("a box needs x0 < x1, y0 < y1 and z0 < z1, got " + corners);
+    const Eigen::VectorXd numbers = core::parse_number_list(corners, {"x0", "y0", "z0", "x1", "y1", "z1"});
+    for (const double number : numbers)
+        require_within("a corner's coordinate", number, core::Range::between(-kLengthRange.max, kLengthRange.max));
+    const Eigen::AlignedBox2d box(Eigen::Vector2d(numbers[0], numbers[1]), Eigen::Vector2d(numbers[3], numbers[4]));
+    if (!(box.sizes().minCoeff() > 0 && numbers[5] > numbers[2]))
+        throw core::InputError("a box needs x0 < x1, y0 < y1 and z0 < z1, got " + corners);
     if (!rotation_tilted_machine.isIdentity(0))
-        return scanned_workpiece(Scan(turned(box_mesh(numbers), rotation_tilted_machine)), cell);
-    Workpiece piece{empty_height_field(box, {0, 0}, 0, cell), numbers[2]};
-    piece.lay = [box, top = numbers[5]](HeightField& field) {
+        return scanned_workpiece(sampling::Scan(rotated(box_mesh(numbers), rotation_tilted_machine)), cell);
+    Workpiece piece{removal::empty_height_field(box, {0, 0}, 0, cell), numbers[2]};
+    piece.rasterize = [box, top = numbers[5]](removal::HeightField& field) {
         for (Eigen::Index j = 0; j < field.rows(); ++j)
-            for (Eigen::Index i = 0; i < field.columns(); ++i) {
-                const Eigen::Array2d at = field.centre(i, j).array();
-                if ((at >= box.col(0).array()).all() && (at <= box.col(1).array()).all()) field.z(i, j) = top;
-            }
+            for (Eigen::Index i = 0; i < field.columns(); ++i)
+                if (box.contains(field.centre(i, j))) field.z(i, j) = top;
     };
-    piece.lay(piece.stock);
+    piece.rasterize(piece.stock);
+    piece.size = numbers.tail<3>() - numbers.head<3>();
     return piece;
 }
 
-Workpiece scanned_workpiece(Scan scan, double cell)
+Workpiece scanned_workpiece(sampling::Scan scan, double cell)
 {
-    Workpiece piece{empty_height_field(scan.bounds().topRows<2>(), {0, 0}, 0, cell)};
-    piece.lay = [shared = std::make_shared<const Scan>(std::move(scan))](HeightField& field) {
-        fettle::lay(field, *shared);
+    const Eigen::AlignedBox2d box(scan.bounds().min().head<2>(), scan.bounds().max().head<2>());
+    Workpiece piece{removal::empty_height_field(box, {0, 0}, 0, cell)};
+    piece.size = scan.bounds().sizes();
+    piece.rasterize = [shared = std::make_shared<const sampling::Scan>(std::move(scan))](removal::HeightField& field) {
+        fettle::removal::rasterize(field, *shared);
     };
-    piece.lay(piece.stock);
+    piece.rasterize(piece.stock);
     return piece;
 }
 
-Mesh surface_between(const HeightField& field, Eigen::Index first, Eigen::Index last, const Refinement* refinement)
+mesh::Mesh triangulate_rows(const removal::HeightField& field, Eigen::Index first, Eigen::Index last,
+                            const Refinement* refinement)
 {
     const Eigen::Index columns = field.columns(), rows = last - first + 1;
-    Mesh mesh;
+    mesh::Mesh mesh;
     mesh.vertices.resize(3, columns * rows);
     for (Eigen::Index j = 0; j < rows; ++j)
         for (Eigen::Index i = 0; i < columns; ++i)
@@ -204,46 +211,78 @@ Mesh surface_between(const HeightField& field, Eigen::Index first, Eigen::Index 
     Eigen::Index count = 0;
     const auto add = [&](Eigen::Index a, Eigen::Index b, Eigen::Index c) {
         if (std::isnan(mesh.vertices(2, a) + mesh.vertices(2, b) + mesh.vertices(2, c))) return;
-        mesh.triangles.col(count++) << static_cast<int>(a), static_cast<int>(b), static_cast<int>(c);
+        mesh.triangles.col(count++) = Eigen::Vector3i(a, b, c);
     };
     std::vector<Corners> finer;
     for (Eigen::Index j = 0; j + 1 < rows; ++j)
         for (Eigen::Index i = 0; i + 1 < columns; ++i) {
             if (refinement && add_refined(finer, *refinement, i, first + j)) continue;
-            const Eigen::Index at = j * columns + i, beyond = at + columns;
-            add(at, at + 1, beyond + 1);
-            add(at, beyond + 1, beyond);
+            const Eigen::Index corner = j * columns + i, above = corner + columns;
+            add(corner, corner + 1, above + 1);
+            add(corner, above + 1, above);
         }
-    const auto more = static_cast<Eigen::Index>(finer.size());
+    const Eigen::Index more = finer.size();
     mesh.triangles.conservativeResize(Eigen::NoChange, count + more);
     Eigen::Index vertex = mesh.vertices.cols();
     mesh.vertices.conservativeResize(Eigen::NoChange, vertex + 3 * more);
     for (const Corners& corners : finer) {
-        mesh.triangles.col(count++) =
-            Eigen::Vector3i::LinSpaced(static_cast<int>(vertex), static_cast<int>(vertex) + 2);
+        const int first_corner = vertex;
+        mesh.triangles.col(count++) << first_corner, first_corner + 1, first_corner + 2;
         mesh.vertices.middleCols<3>(vertex) = corners;
         vertex += 3;
     }
     return mesh;
 }
 
-std::size_t write_stl(std::ostream& out, const HeightField& field, const Refinement* refinement,
+std::size_t write_stl(std::ostream& out, const removal::HeightField& field, const Refinement* refinement,
                       const Eigen::Matrix3d& tilted)
 {
     const std::size_t triangles = count_triangles(field, refinement);
-    if (triangles > UINT32_MAX) throw InputError("too many triangles for an STL");
-    out << stl_header(triangles, Units::Length::mm);
-    const Eigen::Index parts = (std::max<Eigen::Index>(field.rows(), 1) - 1 + kRowsOfPart - 1) / kRowsOfPart;
-    StlParts made(field, refinement, tilted, parts), next(field, refinement, tilted, parts);
-    made.make(0);
-    for (Eigen::Index begin = 0; begin < parts; begin += kPartsAtOnce) {
-        tbb::task_group making;
-        making.run([&] { next.make(begin + kPartsAtOnce); });
-        made.write(out);
-        making.wait();
-        std::swap(made, next);
+    if (triangles > UINT32_MAX) throw core::InputError("too many triangles for an STL");
+    out << mesh::make_stl_header(triangles, units::Units::Length::mm);
+    const Eigen::Index chunks = (std::max<Eigen::Index>(field.rows(), 1) - 1 + kRowsPerChunk - 1) / kRowsPerChunk;
+    StlChunks ready(field, refinement, tilted, chunks), next(field, refinement, tilted, chunks);
+    ready.triangulate(0);
+    for (Eigen::Index begin = 0; begin < chunks; begin += kParallelChunks) {
+        tbb::task_group background;
+        background.run([&] { next.triangulate(begin + kParallelChunks); });
+        ready.write(out);
+        background.wait();
+        std::swap(ready, next);
     }
     return triangles;
 }
 
-} // namespace fettle
+Workpiece read_workpiece(const std::string& stock, const std::optional<units::Units::Length>& unit, double cell,
+                         const Eigen::Matrix3d& rotation_tilted_machine)
+{
+    constexpr std::string_view kBox = "box:";
+    if (stock.starts_with(kBox)) {
+        if (unit) throw core::InputError("a box is in mm; --stock-units belongs to a file");
+        return box_workpiece(stock.substr(kBox.size()), cell, rotation_tilted_machine);
+    }
+    mesh::ShapeFile file = mesh::read_shape(stock, units::Units{unit.value_or(units::Units::Length::mm)});
+    std::string warning;
+    if (const auto* mesh = std::get_if<mesh::Mesh>(&file.shape))
+        warning = dropped_facets_warning(file.repair, mesh->triangles.cols(), core::display_name(stock));
+    const auto rasterized = [&](auto& shape) {
+        return scanned_workpiece(sampling::Scan(rotated(std::move(shape), rotation_tilted_machine)), cell);
+    };
+    Workpiece piece = std::visit(rasterized, file.shape);
+    piece.warning = warning;
+    return piece;
+}
+
+PartMesh read_machined_surface(const std::string& path, const std::optional<units::Units::Length>& unit,
+                               const std::optional<double>& step, const Eigen::Matrix3d& rotation_tilted_machine)
+{
+    PartMesh part = read_part_mesh(path, unit, rotation_tilted_machine);
+    if (!step) return part;
+    core::with_error_prefix("--step", [&] {
+        const removal::HeightField field = scanned_workpiece(sampling::Scan(std::move(part.mesh)), *step).stock;
+        part.mesh = triangulate_rows(field, 0, field.rows() - 1);
+    });
+    return part;
+}
+
+} // namespace fettle::machining

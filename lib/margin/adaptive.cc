@@ -3,6 +3,7 @@
 #include "core/constants.h"
 #include "core/error.h"
 #include "fit/fit.h"
+#include "geometry/bounding_box.h"
 #include "job/boundary.h"
 #include "margin/anomaly_grid.h"
 #include "margin/error_band.h"
@@ -14,8 +15,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
-namespace fettle {
+namespace fettle::margin {
 
 namespace {
 
@@ -25,45 +27,47 @@ using Eigen::MatrixXd;
 using Eigen::Vector2d;
 using Eigen::VectorXd;
 
-// Enough to tell a sphere from a plane; the fit is asked from then on.
-constexpr int kFirst = 8;
-// Touches that must leave the band as small as wanted. Few touches are soon explained by the wrong surface; each of
-// these tests it where it would tell most.
+// Enough touches to distinguish a sphere from a plane; later ones are chosen by the fit.
+constexpr int kInitialTouches = 8;
+// Further touches during which the band must stay as small as required. A wrong surface may fit few touches; each of
+// these tests it at the most informative place.
 constexpr int kConfirmations = 4;
-// Places to choose from across the longer side of S; finer ones change a touch's worth by less than its error.
-constexpr int kAcross = 30;
-// Over B: the surface bends between touches that are several of its cells apart.
-constexpr int kAcrossAnomaly = 12;
-constexpr int kDraws = 256;   // of the expected band: known to about 2 %, the same draws for all places
-constexpr int kCompared = 40; // places that lower the variance most, of which the best is looked for
+// Candidates along the longer side of S; a finer grid changes a touch's gain by less than its error.
+constexpr int kCandidatesPerSide = 30;
+// Grid cells along the longer side of B: the surface bends between touches that are several cells apart.
+constexpr int kAnomalyCells = 12;
+constexpr int kDraws = 256;             // give the expected band within about 2 %; the same draws serve all candidates
+constexpr int kMaxBandEvaluations = 40; // candidates with the largest variance reduction whose band is computed
 
-/// Places in S \ B, M.
-std::vector<Vector2d> places_for(const Job& job, const Boundaries& boundaries)
+/// Candidate places in S \ B, M, mm.
+std::vector<Vector2d> candidate_places(const job::Job& job, const job::Boundaries& boundaries)
 {
-    if (boundaries.sampling.cols() == 0) throw InputError(job.source, "touching adaptively needs a sampling boundary");
-    const Vector2d least = boundaries.sampling.rowwise().minCoeff();
-    const Vector2d side = boundaries.sampling.rowwise().maxCoeff() - least;
-    const Eigen::Vector2i count = (side / side.maxCoeff() * kAcross).array().ceil().cast<int>().max(2);
-    const Eigen::Matrix2d R_machine_working = rotation_working_machine(job.theta).transpose();
+    if (boundaries.sampling.cols() == 0)
+        throw core::InputError(job.source, "touching adaptively needs a sampling boundary");
+    const Eigen::AlignedBox2d box = geometry::bounding_box(boundaries.sampling);
+    const Vector2d side = box.sizes();
+    const Eigen::Vector2i count = (side / side.maxCoeff() * kCandidatesPerSide).array().ceil().cast<int>().max(2);
+    const Eigen::Matrix2d R_machine_working = job::rotation_working_machine(job.theta).transpose();
     std::vector<Vector2d> places;
     for (int j = 0; j <= count.y(); ++j)
         for (int i = 0; i <= count.x(); ++i) {
-            const Vector2d p = least + Vector2d(i * side.x() / count.x(), j * side.y() / count.y());
-            if (contains(boundaries.sampling, p) && !contains(boundaries.anomaly, p))
+            const Vector2d p = box.min() + Vector2d(i * side.x() / count.x(), j * side.y() / count.y());
+            if (job::contains(boundaries.sampling, p) && !job::contains(boundaries.anomaly, p))
                 places.push_back(R_machine_working * p);
         }
-    if (static_cast<int>(places.size()) < kFirst) throw InputError(job.source, "no room to touch beside the anomaly");
+    if (static_cast<int>(places.size()) < kInitialTouches)
+        throw core::InputError(job.source, "no room to touch beside the anomaly");
     return places;
 }
 
 Matrix2Xd as_columns(const std::vector<Vector2d>& points)
 {
-    Matrix2Xd columns(2, static_cast<Index>(points.size()));
-    for (Index i = 0; i < columns.cols(); ++i) columns.col(i) = points[static_cast<std::size_t>(i)];
+    Matrix2Xd columns(2, points.size());
+    for (Index i = 0; i < columns.cols(); ++i) columns.col(i) = points[i];
     return columns;
 }
 
-/// The place farthest from all touches; the first one farthest from the middle.
+/// The candidate farthest from all touches, or from the candidates' mean if there are none.
 Index farthest(const std::vector<Vector2d>& places, const Matrix2Xd& touched)
 {
     const Matrix2Xd all = as_columns(places);
@@ -76,13 +80,13 @@ Index farthest(const std::vector<Vector2d>& places, const Matrix2Xd& touched)
     return best;
 }
 
-/// The place whose touch lowers the expected band most.
-Index most_telling(const Surface& surface, const Matrix2Xd& grid, const std::vector<Vector2d>& places)
+/// The candidate whose touch lowers the expected band most.
+Index most_informative(const surface::Surface& surface, const Matrix2Xd& grid, const std::vector<Vector2d>& places)
 {
     const Matrix2Xd all = as_columns(places);
     Matrix2Xd both(2, grid.cols() + all.cols());
     both << grid, all;
-    const MatrixXd draws = draw_fields(surface, both, kDraws, 1); // rows: places
+    const MatrixXd draws = draw_fields(surface, both, kDraws, 1); // one row for each place
     const MatrixXd over_grid = draws.topRows(grid.cols()), over_places = draws.bottomRows(all.cols());
     const MatrixXd covariance = over_grid * over_places.transpose() / kDraws;
     const VectorXd variance = over_places.rowwise().squaredNorm() / kDraws;
@@ -90,14 +94,14 @@ Index most_telling(const Surface& surface, const Matrix2Xd& grid, const std::vec
     const VectorXd gain =
         covariance.colwise().squaredNorm().transpose().cwiseQuotient((variance.array() + noise).matrix());
     std::vector<Index> order(places.size());
-    for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<Index>(i);
+    std::iota(order.begin(), order.end(), Index{0});
     std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return gain[a] > gain[b]; });
-    order.resize(std::min<std::size_t>(order.size(), kCompared));
+    order.resize(std::min<std::size_t>(order.size(), kMaxBandEvaluations));
 
-    VectorXd band(static_cast<Index>(order.size()));
+    VectorXd band(order.size());
     tbb::parallel_for(Index{0}, band.size(), [&](Index k) {
-        const Index c = order[static_cast<std::size_t>(k)];
-        // What remains of each draw once the touch has said its value: the noise adds the same to all places' variance.
+        const Index c = order[k];
+        // Kriging with the new touch leaves these residuals of the draws. Its noise would add to all of them alike.
         const VectorXd weight = covariance.col(c) / (variance[c] + noise);
         double sum = 0;
         for (Index d = 0; d < kDraws; ++d) sum += error_band(over_grid.col(d) - over_places(c, d) * weight);
@@ -105,75 +109,77 @@ Index most_telling(const Surface& surface, const Matrix2Xd& grid, const std::vec
     });
     Index best = 0;
     band.minCoeff(&best);
-    return order[static_cast<std::size_t>(best)];
+    return order[best];
 }
 
-void append(TouchPlan& plan, const Vector2d& xy, const Job& job, const Boundaries& boundaries)
+void append(sampling::TouchPlan& plan, const Vector2d& xy, const job::Job& job, const job::Boundaries& boundaries)
 {
-    const Vector2d working = rotation_working_machine(job.theta) * xy;
-    const bool near = distance_to_edge(boundaries.anomaly, working) <= distance_to_edge(boundaries.sampling, working);
+    const Vector2d working = job::rotation_working_machine(job.theta) * xy;
+    const bool nearer_to_anomaly =
+        job::distance_to_edge(boundaries.anomaly, working) <= job::distance_to_edge(boundaries.sampling, working);
     const Index n = plan.size();
     plan.xy.conservativeResize(2, n + 1);
     plan.xy.col(n) = xy;
     plan.z.conservativeResize(n + 1);
-    plan.z[n] = kNaN;
+    plan.z[n] = core::kNaN;
     plan.curve.conservativeResize(n + 1);
-    plan.curve[n] = kNoLine;
+    plan.curve[n] = sampling::kNoLine;
     plan.role.conservativeResize(n + 1);
-    plan.role[n] = static_cast<int>(near ? Role::near_anomaly : Role::near_sampling_boundary);
+    plan.role[n] =
+        static_cast<int>(nearer_to_anomaly ? sampling::Role::near_anomaly : sampling::Role::near_sampling_boundary);
 }
 
-Surface fit_touches(const Job& job, const TouchPlan& plan, const Eigen::Matrix3Xd& touches)
+surface::Surface fit_touches(const job::Job& job, const sampling::TouchPlan& plan, const Eigen::Matrix3Xd& touches)
 {
-    FitInput input;
+    fit::FitInput input;
     input.job = job;
     input.xyz = touches;
     input.roles = plan.role;
-    return fit_surface(input, "auto").surface;
+    return fit::fit_surface(input, "auto").surface;
 }
 
 } // namespace
 
-AdaptiveTouches touch_adaptively(const Job& job, const AdaptiveLimits& limits, const ProbePlan& probe)
+AdaptiveTouches touch_adaptively(const job::Job& job, const AdaptiveLimits& limits, const ProbeFunction& probe)
 {
-    const Boundaries polygons = boundaries(job);
-    std::vector<Vector2d> places = places_for(job, polygons);
+    const job::Boundaries polygons = job::working_boundaries(job);
+    std::vector<Vector2d> places = candidate_places(job, polygons);
     const Matrix2Xd all = as_columns(places);
-    constexpr double kShare = 50;
-    const double distance = limits.distance > 0
-                                ? limits.distance
-                                : (all.rowwise().maxCoeff() - all.rowwise().minCoeff()).maxCoeff() / kShare;
-    const Matrix2Xd grid = anomaly_grid(job, kAcrossAnomaly);
+    constexpr double kDefaultSpacings = 50; // along the longer side
+    const double distance = limits.min_distance > 0 ? limits.min_distance
+                                                    : geometry::bounding_box(all).sizes().maxCoeff() / kDefaultSpacings;
+    const Matrix2Xd grid = anomaly_grid(job, kAnomalyCells);
     AdaptiveTouches result;
     result.plan.xy.resize(2, 0);
     std::vector<double> bands;
-    Surface surface;
+    surface::Surface surface;
     int confirmed = 0;
-    while (!places.empty() && result.plan.size() < limits.most_touches && !result.enough) {
+    while (!places.empty() && result.plan.size() < limits.max_touches && !result.band_reached) {
         const Index n = result.plan.size();
-        const Index chosen = n < kFirst ? farthest(places, result.plan.xy) : most_telling(surface, grid, places);
-        const Vector2d place = places[static_cast<std::size_t>(chosen)];
-        TouchPlan longer = result.plan;
+        const Index chosen =
+            n < kInitialTouches ? farthest(places, result.plan.xy) : most_informative(surface, grid, places);
+        const Vector2d place = places[chosen];
+        sampling::TouchPlan longer = result.plan;
         append(longer, place, job, polygons);
         Eigen::Matrix3Xd touches = probe(longer);
         const bool found = !std::isnan(touches(2, n));
         if (!found) result.unreachable.push_back(place);
-        const double keep_off = found ? distance : 0;
-        std::erase_if(places, [&](const Vector2d& p) { return (p - place).norm() <= keep_off; });
+        const double exclusion_radius = found ? distance : 0;
+        std::erase_if(places, [&](const Vector2d& p) { return (p - place).norm() <= exclusion_radius; });
         if (!found) continue;
         result.plan = std::move(longer);
         result.touches = std::move(touches);
-        bands.push_back(kNaN);
-        if (result.plan.size() < kFirst) continue;
+        bands.push_back(core::kNaN);
+        if (result.plan.size() < kInitialTouches) continue;
         surface = fit_touches(job, result.plan, result.touches);
         bands.back() = predict_by_posterior(surface, job, limits.confidence, 1).band;
-        confirmed = bands.back() <= limits.band ? confirmed + 1 : 0;
-        result.enough = confirmed > kConfirmations;
+        confirmed = bands.back() <= limits.max_band ? confirmed + 1 : 0;
+        result.band_reached = confirmed > kConfirmations;
     }
-    if (result.plan.size() < std::min(kFirst, limits.most_touches))
-        throw InputError(job.source, "only " + std::to_string(result.plan.size()) + " places could be touched");
-    result.band = Eigen::Map<VectorXd>(bands.data(), static_cast<Index>(bands.size()));
+    if (result.plan.size() < std::min(kInitialTouches, limits.max_touches))
+        throw core::InputError(job.source, "only " + std::to_string(result.plan.size()) + " places could be touched");
+    result.band = Eigen::Map<VectorXd>(bands.data(), bands.size());
     return result;
 }
 
-} // namespace fettle
+} // namespace fettle::margin

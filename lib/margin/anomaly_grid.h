@@ -4,11 +4,11 @@
 
 #include <Eigen/Core>
 
-namespace fettle {
+namespace fettle::margin {
 
-/// Places inside B where its errors are looked at: a grid in W of about `across` points over the longer side, and
-/// points along the edge, as far apart. @return 2xN, M, mm; the corners of B come first (of those much nearer together
-/// than the grid one)
-Eigen::Matrix2Xd anomaly_grid(const Job& job, int across);
+/// Places inside B to evaluate errors at: a grid in W with about `across` points along the longer side, and points
+/// along the edge with the same spacing.
+/// @return 2xN, M, mm; the corners of B come first, of those much closer together than the grid only one
+Eigen::Matrix2Xd anomaly_grid(const job::Job& job, int across);
 
-} // namespace fettle
+} // namespace fettle::margin

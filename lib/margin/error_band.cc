@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace fettle {
+namespace fettle::margin {
 
 double error_band(const Eigen::VectorXd& errors)
 {
@@ -11,4 +11,4 @@ double error_band(const Eigen::VectorXd& errors)
 
 double shift_distance(const Eigen::VectorXd& errors) { return -errors.minCoeff(); }
 
-} // namespace fettle
+} // namespace fettle::margin

@@ -6,12 +6,12 @@
 
 #include <cstdint>
 
-namespace fettle {
+namespace fettle::margin {
 
-/// Errors that a fit leaves possible: height fields drawn from its covariance and its alternatives by their weight,
-/// less their mean. Each is drawn with both signs, one after the other.
-/// @param xy  2xN, M   @param draws  even
-/// @return  N x draws, mm; a member that is not defined all over xy takes no part
-Eigen::MatrixXd draw_fields(const Surface& surface, const Eigen::Matrix2Xd& xy, int draws, std::uint64_t seed);
+/// Draws height errors from the posterior of a fit: from its covariance and its alternatives by their weight, relative
+/// to their common mean. Antithetic draws, of opposite sign about a member's mean, follow each other.
+/// @param xy  2xN, M, mm   @param draws  even
+/// @return  N x draws, mm; members that are not defined at all of xy are left out
+Eigen::MatrixXd draw_fields(const surface::Surface& surface, const Eigen::Matrix2Xd& xy, int draws, std::uint64_t seed);
 
-} // namespace fettle
+} // namespace fettle::margin

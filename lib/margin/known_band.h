@@ -5,27 +5,29 @@
 
 #include <Eigen/Core>
 
-namespace fettle {
+namespace fettle::margin {
 
-/// Touches on a surface that is known also beneath the anomaly: what a search for the best touches looks at.
+/// Candidate touches on a surface that is also known beneath the anomaly, for the search for the best touches.
 struct KnownSurface {
-    Eigen::Matrix3Xd candidates; ///< touches to choose from, M, mm
-    Eigen::Matrix3Xd always;     ///< used with any choice (estimated points, Wang 2007, Table 4-1); may be empty
-    Eigen::Matrix2Xd inside;     ///< places inside B, M, mm
-    Eigen::VectorXd truth;       ///< z of the surface there, mm
-    double angle = 0;            ///< from X_m to X_w, rad
+    Eigen::Matrix3Xd candidates; ///< M, mm
+    Eigen::Matrix3Xd
+        fixed_touches; ///< part of every subset (estimated points, Wang 2007, Table 4-1), M, mm; may be empty
+    Eigen::Matrix2Xd anomaly_places; ///< places inside B, M, mm
+    Eigen::VectorXd true_heights;    ///< z of the surface there, mm
+    double angle = 0;                ///< from X_m to X_w, rad
 };
 
-/// Touches a known surface without error: the part as it is without the anomaly.
-/// @param spacing  of the candidates, mm; 0: as candidate_touches says. Those without a surface beneath are left out.
+/// Touches a known surface, the part without its anomaly, without error.
+/// @param spacing  of the candidates, mm; 0: the default of candidate_touches(). Those off the surface are left out.
 /// @throws InputError naming a place inside B without a surface
-KnownSurface touch_known_surface(const Scan& surface, const Job& job, double spacing);
+KnownSurface touch_known_surface(const sampling::Scan& surface, const job::Job& job, double spacing);
 
 /// The error band inside B (Wang 2007, eq. 4-1) of the modified griddata through a subset of the candidates; infinite
 /// where B is not inside their hull. @param spacing  of its uniform sampling, mm
-SubsetError griddata_band(const KnownSurface& known, double spacing);
+sampling::SubsetError griddata_band(const KnownSurface& known, double spacing);
 
-/// The same of the modified tensor B-spline.
-SubsetError tensor_bspline_band(const KnownSurface& known);
+/// The error band inside B of the modified tensor B-spline through a subset of the candidates; infinite if they do not
+/// determine it.
+sampling::SubsetError tensor_bspline_band(const KnownSurface& known);
 
-} // namespace fettle
+} // namespace fettle::margin

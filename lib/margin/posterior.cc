@@ -1,5 +1,7 @@
 #include "core/error.h"
 #include "core/text.h"
+#include "geometry/bounding_box.h"
+#include "geometry/quantiles.h"
 #include "job/boundary.h"
 #include "margin/anomaly_grid.h"
 #include "margin/error_band.h"
@@ -10,49 +12,60 @@
 #include <cmath>
 #include <vector>
 
-namespace fettle {
+namespace fettle::margin {
 
 namespace {
 
 // The surface bends between touches that are several cells of this grid apart: a finer one changes the extremes by
 // less than the draws' scatter.
-constexpr int kAcross = 16;
-// The 99 % quantile of so many then scatters by about 1 % of itself.
-constexpr int kDraws = 8192;
-
-double quantile(std::vector<double> values, double share)
-{
-    const auto rank = static_cast<std::ptrdiff_t>(std::ceil(share * static_cast<double>(values.size()))) - 1;
-    std::nth_element(values.begin(), values.begin() + rank, values.end());
-    return values[static_cast<std::size_t>(rank)];
-}
+constexpr int kAnomalyCells = 16;
+constexpr int kDraws = 8192; // their 99 % quantile has a relative standard deviation of about 1 %
 
 /// @throws InputError if the most probable shape is not defined all over B
-void refuse_gaps(const Surface& surface, const Eigen::Matrix2Xd& grid, const Units& units, const std::string& source)
+void check_coverage(const surface::Surface& surface, const Eigen::Matrix2Xd& grid, const units::Units& units,
+                    const std::string& source)
 {
-    const Eigen::MatrixXd gradients = height_gradients(surface.shape, grid);
+    const Eigen::MatrixXd gradients = surface::height_gradients(surface.shape, grid);
     for (Eigen::Index i = 0; i < grid.cols(); ++i)
         if (!gradients.col(i).allFinite())
-            throw InputError(source, "the surface does not cover the anomaly: it is not defined at " +
-                                         place(grid.col(i), units));
+            throw core::InputError(source, "the surface does not cover the anomaly: it is not defined at " +
+                                               job::point_text(grid.col(i), units));
 }
 
 } // namespace
 
-Prediction predict_by_posterior(const Surface& surface, const Job& job, double confidence, std::uint64_t seed,
-                                const std::string& source)
+void check_determined(const surface::Prediction& prediction, const job::Job& job, const std::string& source)
 {
-    if (!knows_sigma(surface))
-        throw InputError(source, "the surface has no covariance, so its error cannot be foreseen; use the method wang");
-    const Eigen::Matrix2Xd grid = anomaly_grid(job, kAcross);
-    refuse_gaps(surface, grid, job.units, source);
-    const Eigen::MatrixXd fields = draw_fields(surface, grid, kDraws, seed);
-    std::vector<double> below, bands;
-    for (const auto& field : fields.colwise()) {
-        below.push_back(field.maxCoeff()); // the shift distance of its opposite: the mean's error against it
-        bands.push_back(error_band(field));
-    }
-    return {"posterior", confidence, quantile(bands, confidence), quantile(below, confidence), false};
+    const double length = geometry::bounding_box(job.anomaly.topRows<2>()).sizes().norm();
+    const double largest = std::max(prediction.shift, prediction.band);
+    if (largest <= length) return; // false for NaN
+    throw core::InputError(
+        source, "the touches do not determine the surface beneath the anomaly: its predicted error, " +
+                    core::to_short_text(largest / job.units.mm()) + " " + units::to_string(job.units.length) +
+                    ", exceeds the anomaly's length, " + core::to_short_text(length / job.units.mm()));
 }
 
-} // namespace fettle
+surface::Prediction predict_by_posterior(const surface::Surface& surface, const job::Job& job, double confidence,
+                                         std::uint64_t seed, const std::string& source)
+{
+    if (!surface::has_sigma(surface) && !surface::has_touch_noise_only(surface))
+        throw core::InputError(source,
+                               "the surface has no covariance, so its error cannot be predicted; use the method wang");
+    const Eigen::Matrix2Xd grid = anomaly_grid(job, kAnomalyCells);
+    check_coverage(surface, grid, job.units, source);
+    if (surface::has_touch_noise_only(surface))
+        throw core::InputError(source, "the covariance of an interpolant (" + surface.method +
+                                           ") holds the touches' noise, not what it misses between them, so its error "
+                                           "cannot be predicted; use the method wang");
+    const Eigen::MatrixXd fields = draw_fields(surface, grid, kDraws, seed);
+    std::vector<double> shifts, bands;
+    for (const auto& field : fields.colwise()) {
+        shifts.push_back(field.maxCoeff()); // the fitted surface's error is the negative field
+        bands.push_back(error_band(field));
+    }
+    // The smallest band and shift that suffice in this share of the draws.
+    const auto rank = static_cast<std::size_t>(std::ceil(confidence * bands.size())) - 1;
+    return {"posterior", confidence, geometry::nth_smallest(bands, rank), geometry::nth_smallest(shifts, rank), false};
+}
+
+} // namespace fettle::margin

@@ -15,11 +15,11 @@
 #include <map>
 #include <vector>
 
-namespace fettle {
+namespace fettle::margin {
 
 namespace {
 
-const double kMmPerInch = mm_per(Units::Length::in);
+const double kMmPerInch = units::mm_per(units::Units::Length::in);
 
 Regression regression(std::initializer_list<double> band, std::initializer_list<double> shift)
 {
@@ -29,48 +29,49 @@ Regression regression(std::initializer_list<double> band, std::initializer_list<
     return {vector(band), vector(shift)};
 }
 
-/// The circle through the touches as seen along the rulings, which run across `direction`.
-RoundFit section_round(const Eigen::Matrix3Xd& touches, const Eigen::Vector2d& direction)
+/// The circle through the touches in the section along `direction`, perpendicular to the rulings.
+RoundFit fit_section(const Eigen::Matrix3Xd& touches, const Eigen::Vector2d& direction)
 {
     Eigen::MatrixXd section(2, touches.cols());
     section << direction.transpose() * touches.topRows<2>(), touches.row(2);
     return fit_round(section);
 }
 
-/// Touches of a fitted surface, without estimated points; M, mm.
-Eigen::Matrix3Xd without_estimated(const Surface& surface)
+/// The touches of a fitted surface without its estimated points; M, mm.
+Eigen::Matrix3Xd real_touches(const surface::Surface& surface)
 {
     std::vector<Eigen::Index> used;
     for (Eigen::Index i = 0; i < surface.touches.cols(); ++i)
-        if (surface.roles[i] != static_cast<int>(Role::estimated)) used.push_back(i);
+        if (surface.roles[i] != static_cast<int>(sampling::Role::estimated)) used.push_back(i);
     return surface.touches(Eigen::all, used);
 }
 
-/// W, mm.
-Eigen::Matrix3Xd in_working_frame(Eigen::Matrix3Xd touches, const Job& job)
+/// The touches in W, mm.
+Eigen::Matrix3Xd in_working_frame(Eigen::Matrix3Xd touches, const job::Job& job)
 {
-    touches.topRows<2>() = (rotation_working_machine(job.theta) * touches.topRows<2>()).eval();
+    touches.topRows<2>() = (job::rotation_working_machine(job.theta) * touches.topRows<2>()).eval();
     return touches;
 }
 
-/// Bending of the touches along X_w and Y_w, by a quadratic through them: > 0 concave. The twist is left out, which a
-/// cross of two lines does not determine.
+/// Half the second derivatives of the touched surface along X_w and Y_w by a quadratic fit, > 0 concave, 1/mm. The
+/// twist is left out, since a cross of two lines does not determine it.
 Eigen::Vector2d bending(const Eigen::Matrix3Xd& touches)
 {
     const Eigen::Matrix2Xd xy = touches.topRows<2>().colwise() - touches.topRows<2>().rowwise().mean();
     Eigen::MatrixXd model(touches.cols(), 5);
     model << Eigen::VectorXd::Ones(touches.cols()), xy.transpose(), xy.transpose().cwiseAbs2();
-    const Eigen::VectorXd fit = least_squares_by_qr(model, touches.row(2).transpose()).x;
+    const Eigen::VectorXd fit = core::least_squares_by_qr(model, touches.row(2).transpose()).x;
     return fit.tail<2>();
 }
 
-Prediction worst_case_of_plane(const Surface& surface, const Job& job)
+surface::Prediction worst_case_of_plane(const surface::Surface& surface, const job::Job& job)
 {
-    const Eigen::MatrixXd touched = height_gradients(surface.shape, surface.touches.topRows<2>());
-    const Polygon corners = rotation_working_machine(job.theta).transpose() * boundaries(job).anomaly;
-    // How much each touch moves the plane over each corner (least squares); in between it is less.
-    const Eigen::MatrixXd influence =
-        (touched * touched.transpose()).ldlt().solve(touched).transpose() * height_gradients(surface.shape, corners);
+    const Eigen::MatrixXd touched = surface::height_gradients(surface.shape, surface.touches.topRows<2>());
+    const job::Polygon corners =
+        job::rotation_working_machine(job.theta).transpose() * job::working_boundaries(job).anomaly;
+    // Derivatives of the least-squares plane's height at each corner by each touch; between corners they are smaller.
+    const Eigen::MatrixXd influence = (touched * touched.transpose()).ldlt().solve(touched).transpose() *
+                                      surface::height_gradients(surface.shape, corners);
     double shift = 0, band = 0;
     for (Eigen::Index i = 0; i < influence.cols(); ++i) {
         shift = std::max(shift, influence.col(i).lpNorm<1>());
@@ -79,9 +80,9 @@ Prediction worst_case_of_plane(const Surface& surface, const Job& job)
     return {"wang", 0, job.probe.accuracy * std::max(shift, band), job.probe.accuracy * shift, false};
 }
 
-RegressionKind kind_of(const Eigen::Matrix3Xd& touches, const Job& job)
+RegressionKind classify(const Eigen::Matrix3Xd& touches, const job::Job& job)
 {
-    if (job.surface == SurfaceType::swept) return RegressionKind::swept;
+    if (job.surface == job::SurfaceType::swept) return RegressionKind::swept;
     const Eigen::Vector2d bends = bending(in_working_frame(touches, job));
     if (bends.x() * bends.y() < 0) return RegressionKind::saddle;
     return bends.sum() > 0 ? RegressionKind::concave : RegressionKind::convex;
@@ -112,40 +113,41 @@ const Regression& published_regression(RegressionKind kind)
     return published.at(kind);
 }
 
-Eigen::VectorXd regression_values(RegressionKind kind, const Eigen::Matrix3Xd& touches, const Job& job)
+Eigen::VectorXd regression_values(RegressionKind kind, const Eigen::Matrix3Xd& touches, const job::Job& job)
 {
     const Eigen::Matrix3Xd inches = in_working_frame(touches, job) / kMmPerInch;
-    const Polygon anomaly = boundaries(job).anomaly / kMmPerInch;
+    const job::Polygon anomaly = job::working_boundaries(job).anomaly / kMmPerInch;
     double farthest = 0;
     for (Eigen::Index i = 0; i < inches.cols(); ++i)
-        farthest = std::max(farthest, distance_to_edge(anomaly, inches.col(i).head<2>()));
+        farthest = std::max(farthest, job::distance_to_edge(anomaly, inches.col(i).head<2>()));
 
     Eigen::VectorXd values(std::ssize(regression_terms(kind)));
     if (kind == RegressionKind::saddle) {
-        const RoundFit x = section_round(inches, Eigen::Vector2d::UnitX());
-        const RoundFit y = section_round(inches, Eigen::Vector2d::UnitY());
-        values << x.curvature, y.curvature, std::sqrt(area(anomaly)), farthest, x.variance, y.variance, 1;
+        const RoundFit x = fit_section(inches, Eigen::Vector2d::UnitX());
+        const RoundFit y = fit_section(inches, Eigen::Vector2d::UnitY());
+        values << x.curvature, y.curvature, std::sqrt(job::area(anomaly)), farthest, x.variance, y.variance, 1;
         return values;
     }
-    const Eigen::Vector2d across(-std::sin(job.direction), std::cos(job.direction));
-    const RoundFit round = kind == RegressionKind::swept ? section_round(inches, across) : fit_round(inches);
-    values << round.curvature, area(anomaly), farthest, round.variance, 1;
+    const Eigen::Vector2d across(-std::sin(job.ruling_direction), std::cos(job.ruling_direction));
+    const RoundFit round = kind == RegressionKind::swept ? fit_section(inches, across) : fit_round(inches);
+    values << round.curvature, job::area(anomaly), farthest, round.variance, 1;
     return values;
 }
 
-Prediction predict_by_regression(const Surface& surface, const Job& job, const std::string& source)
+surface::Prediction predict_by_regression(const surface::Surface& surface, const job::Job& job,
+                                          const std::string& source)
 {
-    if (job.surface == SurfaceType::plane) return worst_case_of_plane(surface, job);
-    const Eigen::Matrix3Xd touches = without_estimated(surface);
-    if (touches.cols() < kLeastRoundPoints)
-        throw InputError(source, "Wang's regressions need " + std::to_string(kLeastRoundPoints) +
-                                     " touches or more, the surface holds " + std::to_string(touches.cols()));
-    const RegressionKind kind = kind_of(touches, job);
+    if (job.surface == job::SurfaceType::plane) return worst_case_of_plane(surface, job);
+    const Eigen::Matrix3Xd touches = real_touches(surface);
+    if (touches.cols() < kMinRoundPoints)
+        throw core::InputError(source, "Wang's regressions need " + std::to_string(kMinRoundPoints) +
+                                           " touches or more, the surface holds " + std::to_string(touches.cols()));
+    const RegressionKind kind = classify(touches, job);
     const Eigen::VectorXd values = regression_values(kind, touches, job);
     const double band = kMmPerInch * published_regression(kind).band.dot(values);
     const double shift = kMmPerInch * published_regression(kind).shift.dot(values);
-    const double least = job.probe.accuracy;
-    return {"wang", 0, std::max(band, least), std::max(shift, least), std::min(band, shift) < least};
+    const double accuracy = job.probe.accuracy;
+    return {"wang", 0, std::max(band, accuracy), std::max(shift, accuracy), std::min(band, shift) < accuracy};
 }
 
-} // namespace fettle
+} // namespace fettle::margin

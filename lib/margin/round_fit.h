@@ -2,18 +2,18 @@
 
 #include <Eigen/Core>
 
-namespace fettle {
+namespace fettle::margin {
 
 /// The circle (or sphere) through points of the plane (of space), after Wang 2007, 4.5.
 struct RoundFit {
     double curvature = 0; ///< equivalent curvature, 1/radius; 0 for points on a line or plane
-    double variance = 0;  ///< "surface variance": farthest less nearest distance of a point from the centre
+    double variance = 0;  ///< Wang's "surface variance": range of the points' distances from the centre
 };
 
-inline constexpr int kLeastRoundPoints = 4;
+inline constexpr int kMinRoundPoints = 4;
 
-/// Algebraic fit whose bias is small even for short arcs (Pratt 1987).
-/// @param points  2xN or 3xN, N >= kLeastRoundPoints
+/// Pratt's algebraic fit (1987), whose bias is small even for short arcs.
+/// @param points  2xN or 3xN, N >= kMinRoundPoints
 RoundFit fit_round(const Eigen::MatrixXd& points);
 
-} // namespace fettle
+} // namespace fettle::margin

@@ -1,38 +1,37 @@
 #include "mesh/box_tree.h"
 
+#include "core/parallel_box.h"
 #include "core/simd.h"
 
-#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
-#include <tbb/parallel_reduce.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
 #include <span>
 
-namespace fettle {
+namespace fettle::mesh {
 
 namespace {
 
-constexpr std::size_t kWide = 8;
+constexpr std::size_t kBranching = 8; // children of a node, triangles of a leaf
 
-// So many levels have discs: the children of the next one are of 512 triangles, too many to be flat on most parts.
-constexpr std::size_t kFlatLevels = 2;
+// Number of levels that have discs. Children of the next level hold 512 triangles, which on most parts are not flat.
+constexpr std::size_t kDiscLevels = 2;
 
+/// An axis-aligned box, empty at first. (Eigen's empty AlignedBox3f has finite corners, see Boxes8.)
 struct Box {
-    Eigen::Array3f least = Eigen::Array3f::Constant(std::numeric_limits<float>::infinity());
-    Eigen::Array3f most = -least;
+    Eigen::Array3f min = Eigen::Array3f::Constant(std::numeric_limits<float>::infinity());
+    Eigen::Array3f max = -min;
 };
 
 void set(Boxes8& boxes, std::size_t k, const Box& box)
 {
     for (int axis = 0; axis < 3; ++axis) {
-        boxes.least[axis][k] = box.least[axis];
-        boxes.most[axis][k] = box.most[axis];
+        boxes.min[axis][k] = box.min[axis];
+        boxes.max[axis][k] = box.max[axis];
     }
 }
 
@@ -40,29 +39,20 @@ Box box_of(const Boxes8& boxes)
 {
     Box box;
     for (int axis = 0; axis < 3; ++axis) {
-        box.least[axis] = least_of(boxes.least[axis]);
-        box.most[axis] = most_of(boxes.most[axis]);
+        box.min[axis] = min_lane(boxes.min[axis]);
+        box.max[axis] = max_lane(boxes.max[axis]);
     }
     return box;
 }
 
-Box box_of(const Triangles8& triangles)
-{
-    const auto& [a, b, c] = triangles.corner;
-    Box box;
-    for (int axis = 0; axis < 3; ++axis) {
-        box.least[axis] = least_of(smaller(a[axis], smaller(b[axis], c[axis])));
-        box.most[axis] = most_of(larger(a[axis], larger(b[axis], c[axis])));
-    }
-    return box;
-}
+Box box_of(const Triangles8& triangles) { return box_of(boxes_of(triangles)); }
 
 Box box_of(const Boxes8& boxes, std::size_t k)
 {
     Box box;
     for (int axis = 0; axis < 3; ++axis) {
-        box.least[axis] = boxes.least[axis][k];
-        box.most[axis] = boxes.most[axis][k];
+        box.min[axis] = boxes.min[axis][k];
+        box.max[axis] = boxes.max[axis][k];
     }
     return box;
 }
@@ -79,11 +69,12 @@ void set(Discs8& discs, std::size_t k, const Disc& disc)
         discs.normal[axis][k] = disc.normal[axis];
     }
     discs.radius[k] = disc.radius;
-    discs.half[k] = disc.half;
+    discs.half_thickness[k] = disc.half;
 }
 
-/// The disc about some leaves in a box, across the sum of their areas.
-FETTLE_CLONES Disc disc_about(std::span<const Triangles8> leaves, const Box& box)
+/// Bounding disc of the triangles of some leaves, normal to the sum of their area vectors.
+/// @param box  bounding box of the leaves
+FETTLE_CLONES Disc bounding_disc(std::span<const Triangles8> leaves, const Box& box)
 {
     Point8 area = {};
     for (const Triangles8& t : leaves) {
@@ -91,145 +82,145 @@ FETTLE_CLONES Disc disc_about(std::span<const Triangles8> leaves, const Box& box
         area = area + cross(corner(t, 1) - a, corner(t, 2) - a);
     }
     Disc disc;
-    disc.normal = Eigen::Vector3f(sum_of(area.x), sum_of(area.y), sum_of(area.z)).stableNormalized();
-    if (!(disc.normal.norm() > 0.5f)) disc.normal = Eigen::Vector3f::UnitZ(); // areas that cancel: any will do
-    const Eigen::Vector3f middle = (box.least + box.most) / 2;
-    const Point8 normal = all(disc.normal.data()), origin = all(middle.data());
-    Float8 lowest = all(std::numeric_limits<float>::infinity()), highest = -lowest, beside2 = {};
+    disc.normal = Eigen::Vector3f(sum_lanes(area.x), sum_lanes(area.y), sum_lanes(area.z)).stableNormalized();
+    if (!(disc.normal.norm() > 0.5f)) disc.normal = Eigen::Vector3f::UnitZ(); // the areas cancel: any direction will do
+    const Eigen::Vector3f middle = (box.min + box.max) / 2;
+    const Point8 normal = broadcast(disc.normal.data()), origin = broadcast(middle.data());
+    Float8 lowest = broadcast(std::numeric_limits<float>::infinity()), highest = -lowest, radial2 = {};
     for (const Triangles8& t : leaves)
         for (int k = 0; k < 3; ++k) {
-            const Point8 way = corner(t, k) - origin;
-            const Float8 above = dot(way, normal);
-            lowest = smaller(lowest, above);
-            highest = larger(highest, above);
-            beside2 = larger(beside2, dot(way, way) * (1 + kDiscRoundings) - above * above);
+            const Point8 from_middle = corner(t, k) - origin;
+            const Float8 axial = dot(from_middle, normal);
+            lowest = cwise_min(lowest, axial);
+            highest = cwise_max(highest, axial);
+            radial2 = cwise_max(radial2, dot(from_middle, from_middle) * (1 + kDiscRoundingError) - axial * axial);
         }
-    const float low = least_of(lowest), high = most_of(highest);
-    const float rounding = kDiscRoundings * box.least.abs().max(box.most.abs()).maxCoeff();
+    const float low = min_lane(lowest), high = max_lane(highest);
+    const float rounding = kDiscRoundingError * box.min.abs().max(box.max.abs()).maxCoeff();
     disc.centre = middle + disc.normal * ((low + high) / 2);
-    disc.radius = std::sqrt(most_of(beside2)) + rounding;
+    disc.radius = std::sqrt(max_lane(radial2)) + rounding;
     disc.half = (high - low) / 2 + rounding;
     return disc;
 }
 
 Eigen::AlignedBox3d box_of(const Mesh& mesh)
 {
-    const auto of_range = [&](const tbb::blocked_range<Eigen::Index>& range, Eigen::AlignedBox3d box) {
-        for (Eigen::Index t = range.begin(); t < range.end(); ++t)
-            for (const int corner : mesh.triangles.col(t)) box.extend(Eigen::Vector3d(mesh.vertices.col(corner)));
-        return box;
-    };
-    const auto join = [](const Eigen::AlignedBox3d& a, const Eigen::AlignedBox3d& b) { return a.merged(b); };
-    return tbb::parallel_reduce(tbb::blocked_range<Eigen::Index>(0, mesh.triangles.cols()), Eigen::AlignedBox3d(),
-                                of_range, join);
+    return core::parallel_bounding_box(mesh.triangles.cols(), [&](Eigen::AlignedBox3d& box, std::size_t t) {
+        for (const int corner : mesh.triangles.col(t)) box.extend(mesh.vertices.col(corner));
+    });
 }
 
-/// Nodes over `children`, eight to each.
+/// The level above `children`, with their boxes, eight to a node.
 template <typename Child>
-Level level_over(const LargeArray<Child>& children)
+TreeLevel level_over(const std::vector<Child>& children)
 {
-    Level level;
-    level.boxes.resize((children.size() + kWide - 1) / kWide);
+    TreeLevel level;
+    level.boxes.resize((children.size() + kBranching - 1) / kBranching);
     tbb::parallel_for(std::size_t{0}, level.boxes.size(), [&](std::size_t i) {
-        for (std::size_t k = 0; k < kWide; ++k)
-            set(level.boxes[i], k, kWide * i + k < children.size() ? box_of(children[kWide * i + k]) : Box{});
+        for (std::size_t k = 0; k < kBranching; ++k)
+            set(level.boxes[i], k, kBranching * i + k < children.size() ? box_of(children[kBranching * i + k]) : Box{});
     });
     return level;
 }
 
-/// Adds the discs of children with `each` leaves.
-void add_discs(Level& level, std::span<const Triangles8> leaves, std::size_t each)
+/// Adds the discs of the children of a level.
+/// @param leaves_per_child  the last child may have fewer
+void add_discs(TreeLevel& level, std::span<const Triangles8> leaves, std::size_t leaves_per_child)
 {
     level.discs.resize(level.boxes.size());
     tbb::parallel_for(std::size_t{0}, level.discs.size(), [&](std::size_t i) {
         level.discs[i] = Discs8{};
-        for (std::size_t k = 0; k < kWide; ++k) {
-            const std::size_t first = std::min((kWide * i + k) * each, leaves.size());
-            const std::size_t count = std::min(each, leaves.size() - first);
-            if (count > 0) set(level.discs[i], k, disc_about(leaves.subspan(first, count), box_of(level.boxes[i], k)));
+        for (std::size_t k = 0; k < kBranching; ++k) {
+            const std::size_t first = std::min((kBranching * i + k) * leaves_per_child, leaves.size());
+            const std::size_t count = std::min(leaves_per_child, leaves.size() - first);
+            if (count == 0) break;
+            set(level.discs[i], k, bounding_disc(leaves.subspan(first, count), box_of(level.boxes[i], k)));
         }
     });
 }
 
-/// A triangle on its way to a leaf.
-struct Middle {
-    std::array<float, 3> at; ///< the middle of its corners
+/// A triangle as the tree sorts it.
+struct Item {
+    std::array<float, 3> centroid; ///< mean of the corners
     std::uint32_t triangle;
 };
 
-/// Puts those that are `wanted` first. No branch depends on the data, which no processor could foresee.
-/// @return  how many they are
-template <typename Wanted>
-std::size_t put_first(std::span<Middle> range, const Wanted& wanted)
+/// Moves the items that satisfy the predicate to the front. No branch depends on the data, unlike in std::partition:
+/// the processor would mispredict half of them.
+/// @return  number of such items
+template <typename Predicate>
+std::size_t branchless_partition(std::span<Item> range, const Predicate& predicate)
 {
     std::size_t count = 0;
-    for (Middle& next : range) {
-        const Middle middle = next;
+    for (Item& next : range) {
+        const Item item = next;
         next = range[count];
-        range[count] = middle;
-        count += wanted(middle);
+        range[count] = item;
+        count += predicate(item);
     }
     return count;
 }
 
-/// Where along an axis the `count` lowest probably end: from a sample.
-float probable_end(std::span<const Middle> range, std::size_t count, std::size_t axis)
+/// Estimates from a sample the coordinate below which the `count` lowest items lie.
+float estimate_pivot(std::span<const Item> range, std::size_t count, std::size_t axis)
 {
     std::array<float, 63> sample;
     const std::size_t size = std::clamp<std::size_t>(range.size() / 16 | 1, 3, sample.size());
-    for (std::size_t i = 0; i < size; ++i) sample[i] = range[(2 * i + 1) * range.size() / (2 * size)].at[axis];
-    const auto end = sample.begin() + static_cast<std::ptrdiff_t>(count * size / range.size());
-    std::nth_element(sample.begin(), end, sample.begin() + static_cast<std::ptrdiff_t>(size));
-    return *end;
+    for (std::size_t i = 0; i < size; ++i) sample[i] = range[(2 * i + 1) * range.size() / (2 * size)].centroid[axis];
+    const auto pivot = sample.begin() + count * size / range.size();
+    std::nth_element(sample.begin(), pivot, sample.begin() + size);
+    return *pivot;
 }
 
-/// Puts the `count` lowest along an axis first (Hoare, Algorithm 65: FIND, 1961).
-void put_lowest_first(std::span<Middle> range, std::size_t count, std::size_t axis)
+/// Moves the `count` lowest items along an axis to the front: quickselect (Hoare, Algorithm 65: FIND, 1961).
+void select_lowest(std::span<Item> range, std::size_t count, std::size_t axis)
 {
     while (count > 0 && count < range.size()) {
-        const float end = probable_end(range, count, axis);
-        const std::size_t below = put_first(range, [&](const Middle& middle) { return middle.at[axis] < end; });
+        const float pivot = estimate_pivot(range, count, axis);
+        const std::size_t below =
+            branchless_partition(range, [&](const Item& item) { return item.centroid[axis] < pivot; });
         if (count <= below) {
             range = range.first(below);
             continue;
         }
         range = range.subspan(below);
         count -= below;
-        const std::size_t equal = put_first(range, [&](const Middle& middle) { return middle.at[axis] <= end; });
-        if (count <= equal || equal == 0) return; // none: the end is NaN, and any order will do
+        const std::size_t equal =
+            branchless_partition(range, [&](const Item& item) { return item.centroid[axis] <= pivot; });
+        if (count <= equal || equal == 0) return; // none is equal: the pivot is NaN, and any order will do
         range = range.subspan(equal);
         count -= equal;
     }
 }
 
-/// The axis along which they reach farthest.
-std::size_t longest_side(std::span<const Middle> range)
+/// Axis along which the centroids extend farthest.
+std::size_t longest_axis(std::span<const Item> range)
 {
-    Eigen::Array4f least = Eigen::Array4f::Constant(std::numeric_limits<float>::infinity()), most = -least;
-    for (const Middle& middle : range) { // four lanes at once: the triangle's goes along
-        Eigen::Array4f at;
-        std::memcpy(at.data(), &middle, sizeof at);
-        least = least.min(at);
-        most = most.max(at);
+    Eigen::Array4f min = Eigen::Array4f::Constant(std::numeric_limits<float>::infinity()), max = -min;
+    for (const Item& item : range) { // loads all 16 bytes at once; the fourth lane, the triangle, is ignored
+        Eigen::Array4f lanes;
+        std::memcpy(lanes.data(), &item, sizeof lanes);
+        min = min.min(lanes);
+        max = max.max(lanes);
     }
     int axis = 0;
-    (most - least).head<3>().maxCoeff(&axis);
-    return static_cast<std::size_t>(axis);
+    (max - min).head<3>().maxCoeff(&axis);
+    return axis;
 }
 
-/// Puts what belongs to one subtree together: the range is cut in two across its longer side, at a whole number of the
-/// largest subtrees below it, until it fits a leaf.
-void arrange(std::span<Middle> range)
+/// Sorts the items so that those of each subtree are contiguous. The range is split across its longest axis, at a whole
+/// number of the largest subtrees that fit in it, until it fits a leaf.
+void sort_by_subtree(std::span<Item> range)
 {
-    if (range.size() <= kWide) return;
-    std::size_t whole = kWide;
-    while (whole * kWide < range.size()) whole *= kWide;
-    const std::size_t half = std::max((range.size() / 2 + whole / 2) / whole, std::size_t{1}) * whole;
-    put_lowest_first(range, half, longest_side(range));
-    const auto lower = [&] { arrange(range.first(half)); };
-    const auto upper = [&] { arrange(range.subspan(half)); };
-    constexpr std::size_t kParallel = 1 << 13; // smaller ranges are not worth a task
-    if (range.size() > kParallel) {
+    if (range.size() <= kBranching) return;
+    std::size_t subtree = kBranching;
+    while (subtree * kBranching < range.size()) subtree *= kBranching;
+    const std::size_t half = std::max((range.size() / 2 + subtree / 2) / subtree, std::size_t{1}) * subtree;
+    select_lowest(range, half, longest_axis(range));
+    const auto lower = [&] { sort_by_subtree(range.first(half)); };
+    const auto upper = [&] { sort_by_subtree(range.subspan(half)); };
+    constexpr std::size_t kMinParallelItems = 1 << 13; // a task for fewer costs more than it saves
+    if (range.size() > kMinParallelItems) {
         tbb::parallel_invoke(lower, upper);
     } else {
         lower();
@@ -237,20 +228,20 @@ void arrange(std::span<Middle> range)
     }
 }
 
-/// The triangles in the order of the leaves.
-LargeArray<std::uint32_t> order_of(const Mesh& mesh, const Eigen::Vector3d& centre)
+/// Indices of the triangles in the order of the leaves.
+std::vector<std::uint32_t> leaf_order(const Mesh& mesh, const Eigen::Vector3d& centre)
 {
-    LargeArray<Middle> middles(static_cast<std::size_t>(mesh.triangles.cols()));
-    tbb::parallel_for(std::size_t{0}, middles.size(), [&](std::size_t t) {
-        const Eigen::Vector3i corners = mesh.triangles.col(static_cast<Eigen::Index>(t));
+    std::vector<Item> items(mesh.triangles.cols());
+    tbb::parallel_for(std::size_t{0}, items.size(), [&](std::size_t t) {
+        const Eigen::Vector3i corners = mesh.triangles.col(t);
         const Eigen::Vector3d sum =
             mesh.vertices.col(corners[0]) + mesh.vertices.col(corners[1]) + mesh.vertices.col(corners[2]);
-        Eigen::Vector3f::Map(middles[t].at.data()) = (sum / 3 - centre).cast<float>();
-        middles[t].triangle = static_cast<std::uint32_t>(t);
+        Eigen::Vector3f::Map(items[t].centroid.data()) = (sum / 3 - centre).cast<float>();
+        items[t].triangle = static_cast<std::uint32_t>(t);
     });
-    arrange(middles);
-    LargeArray<std::uint32_t> order(middles.size());
-    tbb::parallel_for(std::size_t{0}, order.size(), [&](std::size_t i) { order[i] = middles[i].triangle; });
+    sort_by_subtree(items);
+    std::vector<std::uint32_t> order(items.size());
+    tbb::parallel_for(std::size_t{0}, order.size(), [&](std::size_t i) { order[i] = items[i].triangle; });
     return order;
 }
 
@@ -262,22 +253,22 @@ BoxTree::BoxTree(const Mesh& mesh) : box(box_of(mesh))
     if (count == 0) return;
     centre = box.center();
     rounding = std::numeric_limits<float>::epsilon() * box.sizes().maxCoeff() / 2;
-    order = order_of(mesh, centre);
-    leaves.resize((count + kWide - 1) / kWide);
+    triangle_order = leaf_order(mesh, centre);
+    leaves.resize((count + kBranching - 1) / kBranching);
     tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t l) {
-        for (std::size_t k = 0; k < kWide; ++k) {
-            const std::uint32_t t = order[std::min(kWide * l + k, count - 1)];
+        for (std::size_t k = 0; k < kBranching; ++k) {
+            const std::uint32_t t = triangle_order[std::min(kBranching * l + k, count - 1)];
             for (int c = 0; c < 3; ++c) {
-                const Eigen::Vector3f at = (mesh.vertices.col(mesh.triangles(c, t)) - centre).cast<float>();
-                for (int axis = 0; axis < 3; ++axis) leaves[l].corner[c][axis][k] = at[axis];
+                const Eigen::Vector3f position = (mesh.vertices.col(mesh.triangles(c, t)) - centre).cast<float>();
+                for (int axis = 0; axis < 3; ++axis) leaves[l].corner[c][axis][k] = position[axis];
             }
         }
     });
     levels.push_back(level_over(leaves));
     while (levels.back().boxes.size() > 1) levels.push_back(level_over(levels.back().boxes));
-    std::size_t each = 1; // leaves of a child
-    for (std::size_t l = 0; l < std::min(kFlatLevels, levels.size()); ++l, each *= kWide)
-        add_discs(levels[l], leaves, each);
+    std::size_t leaves_per_child = 1;
+    for (std::size_t l = 0; l < std::min(kDiscLevels, levels.size()); ++l, leaves_per_child *= kBranching)
+        add_discs(levels[l], leaves, leaves_per_child);
 }
 
-} // namespace fettle
+} // namespace fettle::mesh

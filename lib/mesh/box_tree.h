@@ -1,6 +1,5 @@
 #pragma once
 
-#include "core/large_array.h"
 #include "mesh/lanes.h"
 #include "mesh/mesh.h"
 
@@ -12,56 +11,69 @@
 #include <cstdint>
 #include <vector>
 
-namespace fettle {
+namespace fettle::mesh {
 
-// Operations in float on the way to a distance, or to where a ray meets a box, are fewer than this, each off by a
-// rounding of numbers no larger than the way.
-inline constexpr double kRoundings = 16;
-// The same for making a disc and finding the way to it, of coordinates of the mesh and of the way.
-inline constexpr float kDiscRoundings = static_cast<float>(4 * kRoundings * kEpsilon);
+// Bound on the number of float operations in a distance or a ray-box intersection. Each adds a rounding error of at
+// most kFloatRoundoff times the distance.
+inline constexpr double kMaxRoundings = 16;
+// Relative error of a distance to a disc. Fitting the disc to its triangles adds rounding errors of their coordinates.
+inline constexpr float kDiscRoundingError = static_cast<float>(4 * kMaxRoundings * kFloatRoundoff);
 
-/// Eight boxes; one that is not there has its least corner at +infinity and is far from everything.
+/// Eight axis-aligned boxes. An empty box has its minimum at +infinity, at infinite distance from every point.
 struct Boxes8 {
-    Float8 least[3], most[3];
+    Float8 min[3], max[3];
 };
 
-/// Eight flat cylinders, each about the triangles of a child. Where a surface is flat they lie closer to it than boxes
-/// do: from afar few of them seem to be nearest.
+/// Eight flat cylinders, each the bounding volume of a child's triangles. Where a surface is flat and oblique they are
+/// much tighter than boxes, so a search from afar visits fewer children.
 struct Discs8 {
     Float8 centre[3], normal[3], radius;
-    Float8 half; ///< of the thickness
+    Float8 half_thickness; ///< thickness / 2
 };
 
-/// Nodes that are equally far from the leaves.
-struct Level {
-    LargeArray<Boxes8> boxes;
-    LargeArray<Discs8> discs; ///< none where the children are too large to be flat
+/// All nodes of the same height in the tree.
+struct TreeLevel {
+    std::vector<Boxes8> boxes;
+    std::vector<Discs8> discs; ///< empty at levels whose children are too large to be flat
 };
 
-/// Eight triangles: coordinates of their corners.
+/// Eight triangles; the indices of `corner` are corner and axis.
 struct Triangles8 {
-    Float8 corner[3][3]; ///< corner, axis
+    Float8 corner[3][3];
 };
 FETTLE_INLINE Point8 corner(const Triangles8& t, int k) { return {t.corner[k][0], t.corner[k][1], t.corner[k][2]}; }
 
-/// The triangles of a mesh, eight to a leaf, eight leaves or nodes to a node: a packed tree without pointers (Kamel &
-/// Faloutsos, On packing R-trees, 1993), in the order of a k-d tree. Node i of level l holds the bounds of its
-/// children, nodes 8 i to 8 i + 7 of level l - 1, or leaves for level 0; the last level is the root alone.
-/// Coordinates are floats about `centre`, where floats are finest; each is off by no more than `rounding`.
+FETTLE_INLINE Boxes8 boxes_of(const Triangles8& triangles)
+{
+    const auto& [a, b, c] = triangles.corner;
+    Boxes8 boxes;
+    for (int axis = 0; axis < 3; ++axis) {
+        boxes.min[axis] = cwise_min(a[axis], cwise_min(b[axis], c[axis]));
+        boxes.max[axis] = cwise_max(a[axis], cwise_max(b[axis], c[axis]));
+    }
+    return boxes;
+}
+
+/// Bounding volume hierarchy over the triangles of a mesh, eight triangles to a leaf and eight children to a node: a
+/// packed tree without pointers (Kamel & Faloutsos, On packing R-trees, 1993), in the order of a k-d tree. Node i of
+/// level l holds the bounds of its children, nodes 8 i to 8 i + 7 of level l - 1, or leaves for level 0; the last level
+/// is the root alone. Coordinates are floats relative to `centre`, where floats are finest; the rounding error of each
+/// is at most `rounding`.
 struct BoxTree {
     explicit BoxTree(const Mesh& mesh);
 
+    /// Index in the mesh of the triangle in a lane of a leaf.
     Eigen::Index triangle(std::uint32_t leaf, std::uint32_t lane) const
     {
-        return order[std::min(std::size_t{8} * leaf + lane, order.size() - 1)];
+        return triangle_order[std::min(std::size_t{8} * leaf + lane, triangle_order.size() - 1)];
     }
 
-    Eigen::AlignedBox3d box;                          ///< of the mesh
-    Eigen::Vector3d centre = Eigen::Vector3d::Zero(); ///< of the box
-    double rounding = 0;                              ///< of a coordinate, mm
-    LargeArray<std::uint32_t> order; ///< of the mesh's triangles; triangle k of leaf l is order[8 l + k]
-    LargeArray<Triangles8> leaves;   ///< where there is none, the last triangle stands again
-    std::vector<Level> levels;
+    Eigen::AlignedBox3d box;                          ///< bounding box of the mesh, mm
+    Eigen::Vector3d centre = Eigen::Vector3d::Zero(); ///< centre of `box`
+    double rounding = 0;                              ///< largest rounding error of a coordinate, mm
+    std::vector<std::uint32_t> triangle_order;        ///< order[8 l + k] is the mesh's index of triangle k of leaf l
+    std::vector<Triangles8> leaves;                   ///< the last leaf is filled up with copies of the last triangle
+    std::vector<TreeLevel> levels;
 };
 
-} // namespace fettle
+} // namespace fettle::mesh

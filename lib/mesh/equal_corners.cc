@@ -1,7 +1,5 @@
 #include "mesh/equal_corners.h"
 
-#include "core/large_array.h"
-
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
@@ -12,19 +10,20 @@
 #include <limits>
 #include <memory>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
-// Facets that follow each other in a file mostly share corners. So equal corners are found among the facets of a piece
-// of the file first, in a table that stays in the processor's cache; what is left of all pieces is then dealt out by
-// hash, and found in such tables again. Nothing depends on which thread does what.
+// Consecutive facets of a file mostly share corners. So equal corners are found within each piece of the file first,
+// with a hash table that fits the processor's cache. The distinct corners of all pieces are then partitioned by hash,
+// and equal ones are found within each partition. The result does not depend on the scheduling of threads.
 
-namespace fettle {
+namespace fettle::mesh {
 
 namespace {
 
-constexpr std::size_t kPiece = 8192; // facets
-constexpr std::size_t kParts = 256;  // by the first bits of the hash
-constexpr int kPartShift = 24;
+constexpr std::size_t kPieceFacets = 8192;
+constexpr std::size_t kPartitions = 256; // by the highest bits of the hash
+constexpr int kPartitionShift = 24;
 
 template <typename T>
 bool finite(const Corner<T>& corner)
@@ -32,7 +31,7 @@ bool finite(const Corner<T>& corner)
     return std::isfinite(corner[0]) && std::isfinite(corner[1]) && std::isfinite(corner[2]);
 }
 
-/// @param corner  without -0, which equals +0 but differs in its bits
+/// @param corner  must not contain -0, which equals +0 but has other bits
 template <typename T>
 std::uint32_t hash(const Corner<T>& corner)
 {
@@ -40,169 +39,166 @@ std::uint32_t hash(const Corner<T>& corner)
     std::uint64_t mixed = 0;
     for (const T coordinate : corner) {
         mixed ^= std::bit_cast<Bits>(coordinate);
-        mixed *= 0x9e3779b97f4a7c15; // 2^64 / golden ratio: spreads neighbours (Knuth)
+        mixed *= 0x9e3779b97f4a7c15; // 2^64 / golden ratio: multiplicative hashing (Knuth)
         mixed ^= mixed >> 32;
     }
     return static_cast<std::uint32_t>(mixed);
 }
 
-/// A hash table with open addressing, of numbers that stand for corners. It is used again and again.
-template <typename Number>
-class Table {
+/// Hash set of corners with open addressing. It stores their indices only, and clear() keeps its memory.
+template <typename Index>
+class CornerSet {
   public:
-    /// Makes it empty. @param most  numbers that will be added
-    void clear(std::size_t most)
+    /// Empties the set. @param max_size  number of indices to be added
+    void clear(std::size_t max_size)
     {
-        const std::size_t slots = std::bit_ceil(2 * most + 1);
-        if (slots > room_) slots_ = std::make_unique_for_overwrite<Number[]>(room_ = slots);
+        const std::size_t slots = std::bit_ceil(2 * max_size + 1);
+        if (slots > capacity_) slots_ = std::make_unique_for_overwrite<Index[]>(capacity_ = slots);
         mask_ = slots - 1;
         std::fill_n(slots_.get(), slots, kEmpty);
     }
 
-    /// @param equal  does a number in the table stand for the same corner?   @return  that one, or `number` if there is
-    /// none: then it stands in the table from now on
+    /// Adds an index unless the set has one of an equal corner.
+    /// @param equal  true for indices of an equal corner   @return  the index in the set
     template <typename Equal>
-    Number add(Number number, std::uint32_t hash_of_corner, const Equal& equal)
+    Index add(Index index, std::uint32_t hash_of_corner, const Equal& equal)
     {
         for (std::size_t slot = hash_of_corner & mask_;; slot = (slot + 1) & mask_) {
-            if (slots_[slot] == kEmpty) return slots_[slot] = number;
+            if (slots_[slot] == kEmpty) return slots_[slot] = index;
             if (equal(slots_[slot])) return slots_[slot];
         }
     }
 
   private:
-    static constexpr Number kEmpty = std::numeric_limits<Number>::max();
-    std::unique_ptr<Number[]> slots_;
-    std::size_t room_ = 0, mask_ = 0;
+    static constexpr Index kEmpty = std::numeric_limits<Index>::max();
+    std::unique_ptr<Index[]> slots_;
+    std::size_t capacity_ = 0, mask_ = 0;
 };
 
-/// Some facets that follow each other in the file.
+/// Consecutive facets of the file. The distinct corners of all pieces, piece after piece, are numbered consecutively.
 template <typename T>
 struct Piece {
-    std::vector<Corner<T>> corners;            ///< that differ, as they first appear
-    std::size_t facets = 0;                    ///< without those that are left out
-    std::uint32_t first = 0;                   ///< of all pieces' corners, the number of its first one
-    std::uint32_t vertices = 0;                ///< how many of its corners stand in no piece before it
-    std::array<std::uint32_t, kParts> parts{}; ///< its corners in each part; then where they go
+    std::vector<Corner<T>> corners; ///< distinct corners in order of appearance
+    std::size_t facets = 0;         ///< number of facets with finite corners
+    std::uint32_t first = 0;        ///< number of the first corner
+    std::uint32_t vertices = 0;     ///< number of corners that are in no earlier piece
+    /// Number of corners in each partition; in partition_by_hash() the position at which the next of them goes.
+    std::array<std::uint32_t, kPartitions> partitions{};
 };
 
-/// A corner on its way to a part.
 template <typename T>
-struct Dealt {
+struct NumberedCorner {
     Corner<T> corner;
-    std::uint32_t number; ///< of all pieces' corners
+    std::uint32_t number; ///< among the distinct corners of all pieces
 };
 
-/// What a thread needs to look through a piece.
+/// Memory that a thread reuses for all its pieces.
 template <typename T>
-struct PieceRoom {
-    std::vector<Corner<T>> corners = std::vector<Corner<T>>(3 * kPiece);
-    std::vector<Corner<T>> distinct = std::vector<Corner<T>>(3 * kPiece);
-    Table<std::uint16_t> table;
+struct PieceBuffers {
+    std::vector<Corner<T>> corners = std::vector<Corner<T>>(3 * kPieceFacets);
+    std::vector<Corner<T>> distinct = std::vector<Corner<T>>(3 * kPieceFacets);
+    CornerSet<std::uint16_t> set;
 };
 
-/// Finds the equal corners of a piece. @param triangles  gets the facets' corners, by number in the piece
+/// Finds the equal corners of a piece.
+/// @param facets  number of facets whose corners are in the buffers
+/// @param triangles  receives the facets' corners as indices of the piece's distinct corners
 template <typename T>
-Piece<T> look_through(std::size_t facets, PieceRoom<T>& room, int* triangles)
+Piece<T> weld_piece(std::size_t facets, PieceBuffers<T>& buffers, int* triangles)
 {
-    static_assert(3 * kPiece < std::numeric_limits<std::uint16_t>::max());
+    static_assert(3 * kPieceFacets < std::numeric_limits<std::uint16_t>::max());
     Piece<T> piece;
-    room.table.clear(3 * facets);
+    buffers.set.clear(3 * facets);
     std::size_t count = 0;
     for (std::size_t f = 0; f < facets; ++f) {
-        Corner<T>* const facet = &room.corners[3 * f];
+        Corner<T>* const facet = &buffers.corners[3 * f];
         if (!finite(facet[0]) || !finite(facet[1]) || !finite(facet[2])) continue;
         for (int k = 0; k < 3; ++k) {
             Corner<T>& corner = facet[k];
-            for (T& coordinate : corner) coordinate += 0; // no negative zeros
+            for (T& coordinate : corner) coordinate += 0; // turns -0 into +0
             const std::uint32_t hash_of_corner = hash(corner);
-            const auto number = room.table.add(static_cast<std::uint16_t>(count), hash_of_corner,
-                                               [&](std::uint16_t other) { return room.distinct[other] == corner; });
-            if (number == count) {
-                room.distinct[count++] = corner;
-                ++piece.parts[hash_of_corner >> kPartShift];
+            const auto equal = [&](std::uint16_t other) { return buffers.distinct[other] == corner; };
+            const auto index = buffers.set.add(static_cast<std::uint16_t>(count), hash_of_corner, equal);
+            if (index == count) {
+                buffers.distinct[count++] = corner;
+                ++piece.partitions[hash_of_corner >> kPartitionShift];
             }
-            *triangles++ = number;
+            *triangles++ = index;
         }
         ++piece.facets;
     }
-    piece.corners.assign(room.distinct.begin(), room.distinct.begin() + static_cast<std::ptrdiff_t>(count));
+    piece.corners.assign(buffers.distinct.begin(), buffers.distinct.begin() + count);
     return piece;
 }
 
 template <typename T>
-std::vector<Piece<T>> pieces_of(std::size_t facets, const CornerSource<T>& corners, Eigen::Matrix3Xi& triangles)
+std::vector<Piece<T>> weld_pieces(std::size_t facets, const CornerSource<T>& corners, Eigen::Matrix3Xi& triangles)
 {
-    std::vector<Piece<T>> pieces((facets + kPiece - 1) / kPiece);
-    tbb::enumerable_thread_specific<PieceRoom<T>> rooms;
+    std::vector<Piece<T>> pieces((facets + kPieceFacets - 1) / kPieceFacets);
+    tbb::enumerable_thread_specific<PieceBuffers<T>> thread_buffers;
     tbb::parallel_for(std::size_t{0}, pieces.size(), [&](std::size_t p) {
-        PieceRoom<T>& room = rooms.local();
-        const std::size_t first = p * kPiece, count = std::min(kPiece, facets - first);
-        corners(first, count, room.corners.data());
-        pieces[p] = look_through(count, room, triangles.data() + 3 * first);
+        PieceBuffers<T>& buffers = thread_buffers.local();
+        const std::size_t first = p * kPieceFacets, count = std::min(kPieceFacets, facets - first);
+        corners(first, count, buffers.corners.data());
+        pieces[p] = weld_piece(count, buffers, triangles.data() + 3 * first);
     });
     return pieces;
 }
 
-/// The corners of all pieces, part by part, each part in the order of the pieces.
+/// The distinct corners of all pieces, sorted by partition, within a partition in the order of the pieces.
 template <typename T>
-struct Parts {
-    LargeArray<Dealt<T>> corners;
-    std::array<std::size_t, kParts + 1> first{}; ///< of each part
+struct Partitions {
+    std::vector<NumberedCorner<T>> corners;
+    std::array<std::size_t, kPartitions + 1> first{}; ///< position of each partition's first corner, and the total
 };
 
 template <typename T>
-Parts<T> deal_out(std::vector<Piece<T>>& pieces)
+Partitions<T> partition_by_hash(std::vector<Piece<T>>& pieces)
 {
-    Parts<T> parts;
+    Partitions<T> partitions;
     std::uint32_t count = 0;
     for (Piece<T>& piece : pieces) {
         piece.first = count;
         count += static_cast<std::uint32_t>(piece.corners.size());
     }
-    std::uint32_t place = 0;
-    for (std::size_t part = 0; part < kParts; ++part) {
-        parts.first[part] = place;
-        for (Piece<T>& piece : pieces) {
-            const std::uint32_t here = piece.parts[part];
-            piece.parts[part] = place;
-            place += here;
-        }
+    std::uint32_t position = 0;
+    for (std::size_t p = 0; p < kPartitions; ++p) {
+        partitions.first[p] = position;
+        for (Piece<T>& piece : pieces) position += std::exchange(piece.partitions[p], position);
     }
-    parts.first[kParts] = count;
-    parts.corners.resize(count);
+    partitions.first[kPartitions] = count;
+    partitions.corners.resize(count);
     tbb::parallel_for(std::size_t{0}, pieces.size(), [&](std::size_t p) {
         std::uint32_t number = pieces[p].first;
         for (const Corner<T>& corner : pieces[p].corners)
-            parts.corners[pieces[p].parts[hash(corner) >> kPartShift]++] = {corner, number++};
+            partitions.corners[pieces[p].partitions[hash(corner) >> kPartitionShift]++] = {corner, number++};
     });
-    return parts;
+    return partitions;
 }
 
-/// Of each corner of the pieces the number of the first one that equals it.
+/// For each corner number, the lowest number of an equal corner.
 template <typename T>
-LargeArray<std::uint32_t> first_equal(const Parts<T>& parts)
+std::vector<std::uint32_t> find_first_equal(const Partitions<T>& partitions)
 {
-    LargeArray<std::uint32_t> first(parts.first[kParts]);
-    tbb::enumerable_thread_specific<Table<std::uint32_t>> tables;
-    tbb::parallel_for(std::size_t{0}, kParts, [&](std::size_t p) {
-        const Dealt<T>* const part = parts.corners.data() + parts.first[p];
-        const auto count = static_cast<std::uint32_t>(parts.first[p + 1] - parts.first[p]);
-        Table<std::uint32_t>& table = tables.local();
-        table.clear(count);
+    std::vector<std::uint32_t> first(partitions.first[kPartitions]);
+    tbb::enumerable_thread_specific<CornerSet<std::uint32_t>> thread_sets;
+    tbb::parallel_for(std::size_t{0}, kPartitions, [&](std::size_t p) {
+        const NumberedCorner<T>* const corners = partitions.corners.data() + partitions.first[p];
+        const auto count = static_cast<std::uint32_t>(partitions.first[p + 1] - partitions.first[p]);
+        CornerSet<std::uint32_t>& set = thread_sets.local();
+        set.clear(count);
         for (std::uint32_t i = 0; i < count; ++i) {
-            const std::uint32_t equal = table.add(
-                i, hash(part[i].corner), [&](std::uint32_t other) { return part[other].corner == part[i].corner; });
-            first[part[i].number] = part[equal].number;
+            const auto equal = [&](std::uint32_t other) { return corners[other].corner == corners[i].corner; };
+            first[corners[i].number] = corners[set.add(i, hash(corners[i].corner), equal)].number;
         }
     });
     return first;
 }
 
-constexpr std::uint32_t kNumbered = 1u << 31; // a vertex, no corner
+constexpr std::uint32_t kIsVertex = 1u << 31; // flags a vertex index among corner numbers
 
-/// Makes the first of equal corners the next vertex. @param first  first_equal(); then, with kNumbered, the vertex of
-/// such corners
+/// Makes a vertex of the first of equal corners, in the order of the corners.
+/// @param first  find_first_equal(); for the corners that became vertices it is replaced by kIsVertex | vertex
 template <typename T>
 Eigen::Matrix3Xd make_vertices(std::vector<Piece<T>>& pieces, std::uint32_t* first)
 {
@@ -213,7 +209,7 @@ Eigen::Matrix3Xd make_vertices(std::vector<Piece<T>>& pieces, std::uint32_t* fir
     });
     std::vector<std::uint32_t> next = {0};
     for (const Piece<T>& piece : pieces) next.push_back(next.back() + piece.vertices);
-    Eigen::Matrix3Xd vertices(3, static_cast<Eigen::Index>(next.back()));
+    Eigen::Matrix3Xd vertices(3, next.back());
     tbb::parallel_for(std::size_t{0}, pieces.size(), [&](std::size_t p) {
         const Piece<T>& piece = pieces[p];
         std::uint32_t vertex = next[p];
@@ -222,50 +218,50 @@ Eigen::Matrix3Xd make_vertices(std::vector<Piece<T>>& pieces, std::uint32_t* fir
             if (number != piece.first + c) continue;
             const Corner<T>& corner = piece.corners[c];
             vertices.col(vertex) << corner[0], corner[1], corner[2];
-            number = kNumbered | vertex++;
+            number = kIsVertex | vertex++;
         }
     });
     return vertices;
 }
 
-/// Turns the numbers of a piece's corners into those of vertices.
+/// Replaces indices of a piece's distinct corners by those of vertices.
 template <typename T>
-void name_vertices(const Piece<T>& piece, const std::uint32_t* first, int* triangles)
+void to_vertex_indices(const Piece<T>& piece, const std::uint32_t* first, int* triangles)
 {
     std::vector<int> vertices(piece.corners.size());
     for (std::uint32_t c = 0; c < vertices.size(); ++c) {
         const std::uint32_t number = first[piece.first + c];
-        vertices[c] = static_cast<int>((number & kNumbered ? number : first[number]) & ~kNumbered);
+        vertices[c] = static_cast<int>((number & kIsVertex ? number : first[number]) & ~kIsVertex);
     }
-    for (std::size_t k = 0; k < 3 * piece.facets; ++k) triangles[k] = vertices[static_cast<std::size_t>(triangles[k])];
+    for (std::size_t k = 0; k < 3 * piece.facets; ++k) triangles[k] = vertices[triangles[k]];
 }
 
 } // namespace
 
 template <typename T>
-Mesh welded(std::size_t facets, const CornerSource<T>& corners, MeshRepair& repair)
+Mesh weld_facets(std::size_t facets, const CornerSource<T>& corners, MeshRepair& repair)
 {
     Mesh mesh;
-    mesh.triangles.resize(3, static_cast<Eigen::Index>(facets));
-    std::vector<Piece<T>> pieces = pieces_of(facets, corners, mesh.triangles);
-    LargeArray<std::uint32_t> first = first_equal(deal_out(pieces));
+    mesh.triangles.resize(3, facets);
+    std::vector<Piece<T>> pieces = weld_pieces(facets, corners, mesh.triangles);
+    std::vector<std::uint32_t> first = find_first_equal(partition_by_hash(pieces));
     mesh.vertices = make_vertices(pieces, first.data());
     tbb::parallel_for(std::size_t{0}, pieces.size(), [&](std::size_t p) {
-        name_vertices(pieces[p], first.data(), mesh.triangles.data() + 3 * p * kPiece);
+        to_vertex_indices(pieces[p], first.data(), mesh.triangles.data() + 3 * p * kPieceFacets);
     });
     std::size_t kept = 0;
-    for (std::size_t p = 0; p < pieces.size(); ++p) { // what was left out leaves a gap behind its piece
-        int* const piece = mesh.triangles.data() + 3 * p * kPiece;
-        if (kept < p * kPiece) std::copy_n(piece, 3 * pieces[p].facets, mesh.triangles.data() + 3 * kept);
+    for (std::size_t p = 0; p < pieces.size(); ++p) { // closes the gaps that dropped facets leave at the ends of pieces
+        int* const piece = mesh.triangles.data() + 3 * p * kPieceFacets;
+        if (kept < p * kPieceFacets) std::copy_n(piece, 3 * pieces[p].facets, mesh.triangles.data() + 3 * kept);
         kept += pieces[p].facets;
     }
-    if (kept < facets) mesh.triangles.conservativeResize(3, static_cast<Eigen::Index>(kept));
-    repair.dropped_triangles += static_cast<Eigen::Index>(facets - kept);
+    if (kept < facets) mesh.triangles.conservativeResize(3, kept);
+    repair.dropped_triangles += facets - kept;
     repair.welded_vertices = static_cast<Eigen::Index>(3 * kept) - mesh.vertices.cols();
     return mesh;
 }
 
-template Mesh welded(std::size_t facets, const CornerSource<float>& corners, MeshRepair& repair);
-template Mesh welded(std::size_t facets, const CornerSource<double>& corners, MeshRepair& repair);
+template Mesh weld_facets(std::size_t facets, const CornerSource<float>& corners, MeshRepair& repair);
+template Mesh weld_facets(std::size_t facets, const CornerSource<double>& corners, MeshRepair& repair);
 
-} // namespace fettle
+} // namespace fettle::mesh

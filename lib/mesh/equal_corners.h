@@ -6,23 +6,23 @@
 #include <cstddef>
 #include <functional>
 
-namespace fettle {
+namespace fettle::mesh {
 
-/// The three coordinates of a facet's corner.
+/// Coordinates of a facet's corner.
 template <typename T>
 using Corner = std::array<T, 3>;
 
-/// Copies the corners of `count` facets from the first-th on, three a facet, to where there is room for them. Called by
-/// several threads at once.
+/// Copies the corners of `count` facets from facet `first` on, three per facet, to `to`. Called by several threads at
+/// once.
 template <typename T>
 using CornerSource = std::function<void(std::size_t first, std::size_t count, Corner<T>* to)>;
 
-/// Facets with equal corners made one vertex; the vertices are numbered as they first appear. Facets with NaN or
-/// infinite corners are left out. @param facets  fewer than 2^30 / 3
+/// Merges exactly equal corners of facets into vertices, numbered in order of appearance. Facets with NaN or infinite
+/// corners are dropped. @param facets  less than 2^30 / 3   @param repair  counts both
 template <typename T>
-Mesh welded(std::size_t facets, const CornerSource<T>& corners, MeshRepair& repair);
+Mesh weld_facets(std::size_t facets, const CornerSource<T>& corners, MeshRepair& repair);
 
-extern template Mesh welded(std::size_t facets, const CornerSource<float>& corners, MeshRepair& repair);
-extern template Mesh welded(std::size_t facets, const CornerSource<double>& corners, MeshRepair& repair);
+extern template Mesh weld_facets(std::size_t facets, const CornerSource<float>& corners, MeshRepair& repair);
+extern template Mesh weld_facets(std::size_t facets, const CornerSource<double>& corners, MeshRepair& repair);
 
-} // namespace fettle
+} // namespace fettle::mesh

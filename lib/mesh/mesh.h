@@ -1,30 +1,48 @@
 #pragma once
 
+#include "mesh/triangle.h"
+
 #include <Eigen/Core>
 
-namespace fettle {
+#include <cstdint>
+#include <string>
+#include <vector>
 
-/// Triangles over shared vertices, mm, frame M. Counter-clockwise seen from outside.
+namespace fettle::mesh {
+
+/// Triangles over shared vertices, mm, frame M; counter-clockwise seen from outside.
 struct Mesh {
     Eigen::Matrix3Xd vertices;  ///< 3xV
-    Eigen::Matrix3Xi triangles; ///< 3xT, columns of `vertices`
+    Eigen::Matrix3Xi triangles; ///< 3xT, indices of columns of `vertices`
 };
 
-/// What reading a mesh dropped or mended; goes to the report and to a warning.
+/// The corners of a triangle of a mesh.
+inline Triangle triangle_of(const Mesh& mesh, Eigen::Index index)
+{
+    Triangle corners;
+    for (int k = 0; k < 3; ++k) corners.col(k) = mesh.vertices.col(mesh.triangles(k, index));
+    return corners;
+}
+
+/// What read_mesh() dropped or repaired; tools report it and warn.
 struct MeshRepair {
-    Eigen::Index dropped_triangles = 0; ///< with NaN or infinite vertices
-    Eigen::Index welded_vertices = 0;   ///< equal vertices of neighbouring STL facets made one
+    Eigen::Index dropped_triangles = 0; ///< triangles with NaN or infinite vertices
+    Eigen::Index welded_vertices = 0;   ///< equal vertices of STL facets merged into one
+    Eigen::Index unused_vertices = 0;   ///< vertices of no triangle, dropped
 };
 
-/// Area-weighted unit normals of the triangles; zero for a triangle without area. 3xT
+/// Sentence for a warning about what was dropped; empty if nothing was.
+std::string repair_warning(const MeshRepair& repair);
+
+/// Unit normals of the triangles, 3xT; zero for degenerate triangles.
 Eigen::Matrix3Xd triangle_normals(const Mesh& mesh);
 
-/// Smallest box: column 0 is the least corner, column 1 the greatest. NaN and infinite points do not count; without
-/// points it is NaN. @param points  3xN
-Eigen::Matrix<double, 3, 2> bounding_box(const Eigen::Matrix3Xd& points);
+/// Removes triangles with the same corners and orientation as an earlier one. Otherwise a closest point query would
+/// measure all duplicates. @param triangles  3xT
+Eigen::Matrix3Xi unique_triangles(const Eigen::Matrix3Xi& triangles);
 
-/// The triangles without those that have the corners of an earlier one and face the same way: thousands of them would
-/// each be looked at for every point. @param triangles  3xT
-Eigen::Matrix3Xi distinct(const Eigen::Matrix3Xi& triangles);
+/// Triangles that have the corners of an earlier one in the opposite orientation, as the second sides of a mesh that is
+/// drawn from both sides: where they lie, outside is on neither side. @param triangles  3xT   @return  ascending
+std::vector<std::uint32_t> opposite_triangles(const Eigen::Matrix3Xi& triangles);
 
-} // namespace fettle
+} // namespace fettle::mesh

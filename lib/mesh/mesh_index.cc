@@ -7,195 +7,186 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <limits>
 
-// The tree and a first look at triangles are in float; whatever a rounding might have hidden is looked at in double.
+// Branch and bound. Boxes and triangles are first measured in float, eight at a time, with bounds that allow for the
+// rounding errors; only the triangles that these bounds cannot exclude are measured in double.
 
-namespace fettle {
+namespace fettle::mesh {
 
 namespace {
 
-Triangle triangle_of(const Mesh& mesh, Eigen::Index index)
-{
-    Triangle corners;
-    for (int k = 0; k < 3; ++k) corners.col(k) = mesh.vertices.col(mesh.triangles(k, index));
-    return corners;
-}
+/// Stands for "no triangle yet". It is larger than any index, so that every triangle wins a tie against it.
+constexpr Eigen::Index kNoTriangle = std::numeric_limits<Eigen::Index>::max();
 
-constexpr Eigen::Index kNone = std::numeric_limits<Eigen::Index>::max(); // any triangle has a lower index
-
-/// A triangle that may be the nearest.
+/// A triangle that may be the closest.
 struct Candidate {
-    float least; ///< squared distance
+    float squared_lower_bound; ///< of its distance, mm²
     std::uint32_t leaf, lane;
 };
 
-/// The nearest triangle so far, and how near others must be to matter.
-struct Nearest {
-    /// @param roundings  of the way from the point to a box or triangle, mm
-    Nearest(const Eigen::Vector3d& asked, const Eigen::Vector3d& about_centre, double radius, double roundings)
-        : point(asked), rounding(roundings)
+/// A closest point query: the point, the closest triangle so far, and the candidates not yet measured in double.
+struct ClosestQuery {
+    /// @param centred_point  the query point relative to the tree's centre
+    /// @param distance_error  bound on the error that rounding to float causes in a distance to the point, mm
+    ClosestQuery(const Eigen::Vector3d& query_point, const Eigen::Vector3d& centred_point, double radius,
+                 double distance_error)
+        : point(query_point), error(distance_error)
     {
-        Eigen::Vector3f::Map(place) = about_centre.cast<float>();
-        found.squared_distance = radius * radius;
-        set_bound(radius);
+        Eigen::Vector3f::Map(centred) = centred_point.cast<float>();
+        closest.squared_distance = radius * radius;
+        tighten_bound(radius);
     }
 
     const Eigen::Vector3d& point;
-    float place[3]; ///< of the point, about the tree's centre
-    double rounding;
-    TrianglePoint found;
-    Eigen::Index triangle = kNone;
+    float centred[3];
+    double error;
+    TrianglePoint closest;
+    Eigen::Index triangle = kNoTriangle;
     std::uint32_t leaf = 0;
-    float bound = std::numeric_limits<float>::max(); ///< squared; nearer than a box that is not there
-    std::array<Candidate, 64> candidates;            ///< the first few of them wait, hardly ever more than six
-    std::size_t waiting = 0;
+    float squared_bound = std::numeric_limits<float>::max(); ///< finite, so that it excludes empty boxes
+    std::array<Candidate, 64> candidates;                    ///< the first `pending`, rarely more than six
+    std::size_t pending = 0;
 
-    /// A triangle is known to be no farther than this.
-    void set_bound(double distance)
+    /// Lowers the bound beyond which boxes and triangles are excluded to `distance`, mm, plus rounding errors.
+    void tighten_bound(double distance)
     {
-        const double far = (distance + rounding) * (1 + kRoundings * kEpsilon);
-        if (far * far < bound) bound = static_cast<float>(far * far);
+        const double bound = (distance + error) * (1 + kMaxRoundings * kFloatRoundoff);
+        if (bound * bound < squared_bound) squared_bound = static_cast<float>(bound * bound);
     }
 
-    void offer(const Triangle& corners, Eigen::Index index, std::uint32_t in_leaf)
+    /// Measures a triangle in double and keeps it if it is closer, or equally close with a lower index.
+    void update(const Triangle& corners, Eigen::Index index, std::uint32_t in_leaf)
     {
         const TrianglePoint other = closest_on_triangle(corners, point);
-        if (other.squared_distance > found.squared_distance) return;
-        if (other.squared_distance == found.squared_distance && index >= triangle) return;
-        found = other;
+        if (other.squared_distance > closest.squared_distance) return;
+        if (other.squared_distance == closest.squared_distance && index >= triangle) return;
+        closest = other;
         triangle = index;
         leaf = in_leaf;
-        set_bound(std::sqrt(found.squared_distance));
+        tighten_bound(std::sqrt(closest.squared_distance));
     }
 };
 
-/// Measures the candidates that still matter, in double: the last ones, the nearest as a rule, first.
-void settle(Nearest& nearest, const BoxTree& tree, const Mesh& mesh)
+/// Measures all pending candidates in double, the last one first because it is usually the closest. Candidates that the
+/// bound has excluded in the meantime are skipped.
+void refine_candidates(ClosestQuery& query, const BoxTree& tree, const Mesh& mesh)
 {
-    while (nearest.waiting > 0) {
-        const Candidate& next = nearest.candidates[--nearest.waiting];
-        if (next.least > nearest.bound) continue;
-        const Eigen::Index t = tree.triangle(next.leaf, next.lane);
-        nearest.offer(triangle_of(mesh, t), t, next.leaf);
+    while (query.pending > 0) {
+        const Candidate& candidate = query.candidates[--query.pending];
+        if (candidate.squared_lower_bound > query.squared_bound) continue;
+        const Eigen::Index t = tree.triangle(candidate.leaf, candidate.lane);
+        query.update(triangle_of(mesh, t), t, candidate.leaf);
     }
 }
 
-/// Looks for candidates in a leaf, in float.
-FETTLE_INLINE void look_through(std::uint32_t leaf, Nearest& nearest, const BoxTree& tree, const Mesh& mesh)
+/// Measures the eight triangles of a leaf in float and adds those within the bound to the candidates.
+FETTLE_INLINE void scan_leaf(std::uint32_t leaf, ClosestQuery& query, const BoxTree& tree, const Mesh& mesh)
 {
-    const Bounds8 distances = squared_distances(tree.leaves[leaf], nearest.place);
-    if (lanes_of(distances.most < nearest.bound) != 0)
-        nearest.set_bound(std::sqrt(static_cast<double>(least_of(distances.most))) + nearest.rounding);
-    for (Lanes lanes{lanes_of(distances.least <= nearest.bound)}; lanes.any(); lanes.next()) {
-        if (nearest.waiting == nearest.candidates.size()) settle(nearest, tree, mesh);
-        nearest.candidates[nearest.waiting++] = {distances.least[lanes.first()], leaf, lanes.first()};
+    const Bounds8 distances = squared_distances(tree.leaves[leaf], query.centred);
+    if (lane_bits(distances.upper < query.squared_bound) != 0)
+        query.tighten_bound(std::sqrt(static_cast<double>(min_lane(distances.upper))) + query.error);
+    for (LaneIterator lanes{lane_bits(distances.lower <= query.squared_bound)}; lanes.any(); lanes.next()) {
+        if (query.pending == query.candidates.size()) refine_candidates(query, tree, mesh);
+        query.candidates[query.pending++] = {distances.lower[lanes.first()], leaf, lanes.first()};
     }
 }
 
-/// Goes through what waits.
-FETTLE_INLINE void go_through(Stack& stack, Nearest& nearest, const BoxTree& tree, const Mesh& mesh)
+/// Visits the nodes on the stack and their descendants, depth first, as far as the bound does not exclude them.
+FETTLE_INLINE void traverse(NodeStack& stack, ClosestQuery& query, const BoxTree& tree, const Mesh& mesh)
 {
     while (stack.any()) {
-        const Waiting next = stack.pop();
-        if (next.distance > nearest.bound) continue;
-        if (next.level < 0) {
-            look_through(next.index, nearest, tree, mesh);
+        const StackEntry node = stack.pop();
+        if (node.distance > query.squared_bound) continue;
+        if (node.level < 0) {
+            scan_leaf(node.index, query, tree, mesh);
             continue;
         }
-        const Float8 children =
-            squared_distance(tree.levels[static_cast<std::size_t>(next.level)], next.index, nearest.place);
-        stack.push(lanes_of(children <= nearest.bound), children, next.level - 1, next.index);
+        const Float8 children = squared_distance(tree.levels[node.level], node.index, query.centred);
+        stack.push(lane_bits(children <= query.squared_bound), children, node.level - 1, node.index);
     }
 }
 
-/// From a leaf that is probably near upwards: of most nodes above it no other child is near enough.
-FETTLE_CLONES void find(Nearest& nearest, std::uint32_t leaf, const BoxTree& tree, const Mesh& mesh)
+/// Searches the whole tree, from a leaf that is probably near upwards: its triangles give a bound that excludes most
+/// siblings of the nodes above it.
+FETTLE_CLONES void find_closest(ClosestQuery& query, std::uint32_t leaf, const BoxTree& tree, const Mesh& mesh)
 {
-    look_through(leaf, nearest, tree, mesh);
-    Stack stack;
+    scan_leaf(leaf, query, tree, mesh);
+    NodeStack stack;
     std::uint32_t child = leaf;
     for (std::size_t level = 0; level < tree.levels.size(); ++level) {
-        const std::uint32_t node = child / 8;
-        const Float8 children = squared_distance(tree.levels[level], node, nearest.place);
-        const unsigned others = lanes_of(children <= nearest.bound) & ~(1u << child % 8);
-        stack.push(others, children, static_cast<std::int32_t>(level) - 1, node);
-        go_through(stack, nearest, tree, mesh);
-        child = node;
+        const std::uint32_t parent = child / 8;
+        const Float8 children = squared_distance(tree.levels[level], parent, query.centred);
+        const unsigned siblings = lane_bits(children <= query.squared_bound) & ~(1u << child % 8);
+        stack.push(siblings, children, static_cast<std::int32_t>(level) - 1, parent);
+        traverse(stack, query, tree, mesh);
+        child = parent;
     }
-    settle(nearest, tree, mesh);
+    refine_candidates(query, tree, mesh);
 }
 
-/// The first hit so far of a ray, and the ray as the tree sees it.
-struct FirstHit {
+/// A ray casting query: the ray in double and in float, and the first hit so far.
+struct RayQuery {
     WatertightRay ray;
-    float origin[3];  ///< where the ray enters the box of the mesh, about the tree's centre
-    float inverse[3]; ///< of the direction
-    double entry;     ///< distance at which that is
-    float rounding;   ///< by which boxes are wider
+    float origin[3];            ///< where the ray enters the mesh's bounding box, relative to the tree's centre
+    float inverse_direction[3]; ///< componentwise
+    double entry;               ///< distance along the ray to `origin`, mm
+    float padding;              ///< by which boxes are enlarged to allow for rounding errors, mm
     double distance = std::numeric_limits<double>::infinity();
-    Eigen::Index triangle = kNone;
-    float bound = std::numeric_limits<float>::infinity(); ///< from the entry on
+    Eigen::Index triangle = kNoTriangle;
+    float bound = std::numeric_limits<float>::infinity(); ///< of the distance from `origin`, mm
 
-    void offer(const Triangle& corners, Eigen::Index index)
+    /// Intersects a triangle in double and keeps the hit if it comes earlier, or equally early with a lower index.
+    void update(const Triangle& corners, Eigen::Index index)
     {
         const std::optional<double> hit = ray.hit(corners);
         if (!hit || *hit > distance || (*hit == distance && index >= triangle)) return;
         distance = *hit;
         triangle = index;
-        bound = static_cast<float>((distance - entry) * (1 + kRoundings * kEpsilon)) + rounding;
+        bound = static_cast<float>((distance - entry) * (1 + kMaxRoundings * kFloatRoundoff)) + padding;
     }
 };
 
-/// Where a ray enters eight boxes, from its origin on; infinite for those that it misses.
-FETTLE_INLINE Float8 entries(const Boxes8& boxes, const FirstHit& hit)
+/// Distances from `origin` at which a ray enters eight boxes; infinite for boxes that it misses (slab method).
+FETTLE_INLINE Float8 entry_distances(const Boxes8& boxes, const RayQuery& query)
 {
-    Float8 near = {}, far = all(hit.bound);
+    Float8 near = {}, far = broadcast(query.bound);
     for (int axis = 0; axis < 3; ++axis) {
-        const Float8 to_least = (boxes.least[axis] - hit.rounding - hit.origin[axis]) * hit.inverse[axis];
-        const Float8 to_most = (boxes.most[axis] + hit.rounding - hit.origin[axis]) * hit.inverse[axis];
-        near = larger(near, smaller(to_least, to_most));
-        far = smaller(far, larger(to_least, to_most));
+        const Float8 to_min = (boxes.min[axis] - query.padding - query.origin[axis]) * query.inverse_direction[axis];
+        const Float8 to_max = (boxes.max[axis] + query.padding - query.origin[axis]) * query.inverse_direction[axis];
+        near = cwise_max(near, cwise_min(to_min, to_max));
+        far = cwise_min(far, cwise_max(to_min, to_max));
     }
-    // A box that is not there ends before it begins: as a slab, that is the whole line.
-    const Mask8 there = boxes.least[0] <= boxes.most[0];
-    return ((near <= far) & there) ? near : all(std::numeric_limits<float>::infinity());
+    // The slabs of an empty box, from +infinity to -infinity, would cover the whole ray.
+    const Mask8 not_empty = boxes.min[0] <= boxes.max[0];
+    return ((near <= far) & not_empty) ? near : broadcast(std::numeric_limits<float>::infinity());
 }
 
-FETTLE_INLINE Boxes8 boxes_of(const Triangles8& triangles)
+FETTLE_CLONES void find_first_hit(RayQuery& query, const BoxTree& tree, const Mesh& mesh)
 {
-    const auto& [a, b, c] = triangles.corner;
-    Boxes8 boxes;
-    for (int axis = 0; axis < 3; ++axis) {
-        boxes.least[axis] = smaller(a[axis], smaller(b[axis], c[axis]));
-        boxes.most[axis] = larger(a[axis], larger(b[axis], c[axis]));
-    }
-    return boxes;
-}
-
-FETTLE_CLONES void find(FirstHit& hit, const BoxTree& tree, const Mesh& mesh)
-{
-    const auto met = [](const Float8& entry) { return lanes_of(entry < std::numeric_limits<float>::infinity()); };
-    Stack stack;
+    const auto hit_lanes = [](const Float8& entry) {
+        return lane_bits(entry < std::numeric_limits<float>::infinity());
+    };
+    NodeStack stack;
     stack.push({0, static_cast<std::int32_t>(tree.levels.size()) - 1, 0});
     while (stack.any()) {
-        const Waiting next = stack.pop();
-        if (next.distance > hit.bound) continue;
-        if (next.level >= 0) {
-            const Float8 children = entries(tree.levels[static_cast<std::size_t>(next.level)].boxes[next.index], hit);
-            stack.push(met(children), children, next.level - 1, next.index);
+        const StackEntry node = stack.pop();
+        if (node.distance > query.bound) continue;
+        if (node.level >= 0) {
+            const Float8 children = entry_distances(tree.levels[node.level].boxes[node.index], query);
+            stack.push(hit_lanes(children), children, node.level - 1, node.index);
             continue;
         }
-        for (Lanes lanes{met(entries(boxes_of(tree.leaves[next.index]), hit))}; lanes.any(); lanes.next()) {
-            const Eigen::Index t = tree.triangle(next.index, lanes.first());
-            hit.offer(triangle_of(mesh, t), t);
+        const Float8 triangles = entry_distances(boxes_of(tree.leaves[node.index]), query);
+        for (LaneIterator lanes{hit_lanes(triangles)}; lanes.any(); lanes.next()) {
+            const Eigen::Index t = tree.triangle(node.index, lanes.first());
+            query.update(triangle_of(mesh, t), t);
         }
     }
 }
 
-/// Distance from `origin` to where the ray enters the box; nothing if it misses it.
+/// Distance from `origin` to where the ray enters the box; nothing if it misses the box.
 std::optional<double> entry_distance(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& origin,
                                      const Eigen::Vector3d& direction)
 {
@@ -236,23 +227,24 @@ std::optional<MeshIndex::Hit> MeshIndex::cast(const Eigen::Vector3d& origin,
 {
     const BoxTree& tree = state_->tree;
     if (tree.levels.empty() || !origin.allFinite() || !unit_direction.allFinite()) return std::nullopt;
-    const double slack = kRoundings * (tree.rounding + kEpsilon * tree.box.sizes().maxCoeff());
+    const double padding = kMaxRoundings * (tree.rounding + kFloatRoundoff * tree.box.sizes().maxCoeff());
     Eigen::AlignedBox3d box = tree.box;
-    box.min().array() -= slack;
-    box.max().array() += slack;
+    box.min().array() -= padding;
+    box.max().array() += padding;
     const std::optional<double> entry = entry_distance(box, origin, unit_direction);
     if (!entry) return std::nullopt;
-    FirstHit hit{WatertightRay(origin, unit_direction), {}, {}, *entry, static_cast<float>(slack)};
+    RayQuery query{WatertightRay(origin, unit_direction), {}, {}, *entry, static_cast<float>(padding)};
     const Eigen::Vector3d start = origin + *entry * unit_direction - tree.centre;
     for (int axis = 0; axis < 3; ++axis) {
-        constexpr double kAcross = 1e-30; // instead of 0, whose inverse times 0 is no number
-        const double way = unit_direction[axis];
-        hit.origin[axis] = static_cast<float>(start[axis]);
-        hit.inverse[axis] = static_cast<float>(1 / (std::abs(way) > kAcross ? way : kAcross));
+        constexpr double kMinComponent = 1e-30; // in place of 0: the inverse of 0 times 0 would be NaN
+        const double component = unit_direction[axis];
+        query.origin[axis] = static_cast<float>(start[axis]);
+        query.inverse_direction[axis] =
+            static_cast<float>(1 / (std::abs(component) > kMinComponent ? component : kMinComponent));
     }
-    find(hit, tree, state_->mesh);
-    if (hit.triangle == kNone) return std::nullopt;
-    return Hit{hit.distance, hit.triangle, origin + hit.distance * unit_direction};
+    find_first_hit(query, tree, state_->mesh);
+    if (query.triangle == kNoTriangle) return std::nullopt;
+    return Hit{query.distance, query.triangle, origin + query.distance * unit_direction};
 }
 
 std::optional<MeshIndex::Hit> MeshIndex::highest(double x, double y) const
@@ -266,13 +258,14 @@ std::optional<MeshIndex::Closest> MeshIndex::closest(const Eigen::Vector3d& poin
 {
     const BoxTree& tree = state_->tree;
     if (tree.levels.empty() || !point.allFinite() || !(radius >= 0)) return std::nullopt;
-    const Eigen::Vector3d place = point - tree.centre;
-    const double rounding = 2 * (tree.rounding + kEpsilon * place.cwiseAbs().maxCoeff()); // 2 > sqrt(3): of three axes
-    Nearest nearest(point, place, radius, rounding);
-    find(nearest, std::min<std::uint32_t>(leaf, static_cast<std::uint32_t>(tree.leaves.size()) - 1), tree,
-         state_->mesh);
-    if (nearest.triangle == kNone) return std::nullopt;
-    return Closest{nearest.found.point, nearest.triangle, nearest.found.barycentric, nearest.leaf};
+    const Eigen::Vector3d centred = point - tree.centre;
+    constexpr double kThreeAxes = 2; // > sqrt(3): errors of all coordinates add up to that of a distance
+    const double error = kThreeAxes * (tree.rounding + kFloatRoundoff * centred.cwiseAbs().maxCoeff());
+    ClosestQuery query(point, centred, radius, error);
+    const auto last_leaf = static_cast<std::uint32_t>(tree.leaves.size()) - 1;
+    find_closest(query, std::min(leaf, last_leaf), tree, state_->mesh);
+    if (query.triangle == kNoTriangle) return std::nullopt;
+    return Closest{query.closest.point, query.triangle, query.closest.barycentric, query.leaf};
 }
 
-} // namespace fettle
+} // namespace fettle::mesh

@@ -8,15 +8,15 @@
 #include <memory>
 #include <optional>
 
-namespace fettle {
+namespace fettle::mesh {
 
 struct BoxTree;
 
-/// Rays and closest points against a mesh: exact, whatever the tree. Of equally good triangles the one with the lowest
-/// index wins. Thread-safe.
+/// Ray casting and closest point queries against a mesh. The results are those of an exhaustive search in double; among
+/// equally near triangles the one with the lowest index is returned. Thread-safe.
 class MeshIndex {
   public:
-    /// The mesh must outlive the index. 48 bytes a triangle.
+    /// @param mesh  must outlive the index, which takes another 48 bytes per triangle
     explicit MeshIndex(const Mesh& mesh);
     MeshIndex(MeshIndex&&) noexcept;
     ~MeshIndex();
@@ -26,23 +26,23 @@ class MeshIndex {
         Eigen::Index triangle = 0;
         Eigen::Vector3d point;
     };
-    /// The first hit; edges and vertices are watertight.
+    /// First hit of a ray, which never slips through an edge or a vertex (see WatertightRay).
     std::optional<Hit> cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& unit_direction) const;
-    /// The highest point of the mesh over (x, y).
+    /// Highest point of the mesh over (x, y).
     std::optional<Hit> highest(double x, double y) const;
 
     struct Closest {
         Eigen::Vector3d point;
         Eigen::Index triangle = 0;
         Eigen::Vector3d barycentric; ///< of `point` in the triangle; exactly 0 off a vertex or edge that holds it
-        std::uint32_t leaf = 0;      ///< of the index: where to begin with a point nearby
+        std::uint32_t leaf = 0;      ///< leaf of the triangle: a good start for a query nearby
     };
-    /// The closest point within `radius`, if there is one.
-    /// @param leaf  where to begin; it changes nothing but the time
+    /// Closest point within `radius`, mm, if there is one.
+    /// @param leaf  where the search starts; it affects only the time
     std::optional<Closest> closest(const Eigen::Vector3d& point, double radius, std::uint32_t leaf = 0) const;
 
     const Mesh& mesh() const;
-    /// For searches for something else than points.
+    /// The tree, for searches of other kinds.
     const BoxTree& tree() const;
 
   private:
@@ -50,4 +50,4 @@ class MeshIndex {
     std::unique_ptr<State> state_;
 };
 
-} // namespace fettle
+} // namespace fettle::mesh

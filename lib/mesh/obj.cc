@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-namespace fettle {
+namespace fettle::mesh {
 
 namespace {
 
@@ -16,108 +16,87 @@ constexpr std::string_view kStatements[] = {
     "v",      "vt",     "vn",     "vp",  "f",    "l",     "p",    "g",    "o",    "s",    "mg",  "usemtl", "mtllib",
     "usemap", "maplib", "cstype", "deg", "curv", "curv2", "surf", "parm", "trim", "hole", "end", "bevel",  "lod"};
 
-bool is_statement(std::string_view word)
-{
-    return std::find(std::begin(kStatements), std::end(kStatements), word) != std::end(kStatements);
-}
+bool is_statement(std::string_view word) { return std::ranges::find(kStatements, word) != std::end(kStatements); }
 
-bool is_blank_or_comment(std::string_view line)
-{
-    const std::size_t first = line.find_first_not_of(" \t");
-    return first == std::string_view::npos || line[first] == '#';
-}
-
-class ObjParser {
+class ObjParser : core::FileLines {
   public:
-    ObjParser(std::string_view text, const std::string& source) : lines_(text), source_(source) {}
+    using core::FileLines::FileLines;
 
     Mesh parse()
     {
-        while (lines_.next()) {
-            if (is_blank_or_comment(lines_.line())) continue;
-            std::string_view rest = lines_.line();
-            const std::string_view statement = next_word(rest);
-            if (!is_statement(statement)) refuse("unknown statement " + in_quotes(statement));
-            if (statement == "v") add_vertex(words(rest));
-            if (statement == "f") add_face(words(rest));
+        while (next()) {
+            if (core::is_blank_or_comment(line())) continue;
+            std::string_view rest = line();
+            const std::string_view statement = core::next_word(rest);
+            if (!is_statement(statement)) refuse("unknown statement " + core::in_quotes(statement));
+            if (statement == "v") add_vertex(core::words(rest));
+            if (statement == "f") add_face(core::words(rest));
         }
-        if (largest_ > count())
-            throw InputError(source_, "line " + std::to_string(largest_line_) + ": vertex " + std::to_string(largest_) +
-                                          " of " + std::to_string(count()));
-        return assemble();
+        if (max_vertex_ > count())
+            throw core::InputError(source_, "line " + std::to_string(max_vertex_line_) + ": vertex " +
+                                                std::to_string(max_vertex_) + " of " + std::to_string(count()));
+        Mesh mesh;
+        mesh.vertices = Eigen::Map<const Eigen::Matrix3Xd>(vertices_.data(), 3, count());
+        mesh.triangles = triangulate_polygons(mesh.vertices, corners_, ends_);
+        return mesh;
     }
 
   private:
     std::int64_t count() const { return static_cast<std::int64_t>(vertices_.size() / 3); }
 
-    [[noreturn]] void refuse(const std::string& problem) const
-    {
-        throw InputError(source_, lines_.place() + ": " + problem);
-    }
-
-    // Three coordinates; a weight or a colour may follow.
+    /// A vertex has three coordinates; a weight or a colour may follow.
     void add_vertex(const std::vector<std::string_view>& numbers)
     {
         if (numbers.size() < 3) refuse("a vertex of " + std::to_string(numbers.size()) + " numbers");
         for (std::size_t k = 0; k < 3; ++k) {
-            const std::optional<double> value = parse_number(numbers[k]);
-            if (!value) refuse(in_quotes(numbers[k]) + " is no number");
+            const std::optional<double> value = core::parse_number(numbers[k]);
+            if (!value) refuse(core::in_quotes(numbers[k]) + " is not a number");
             vertices_.push_back(*value);
         }
     }
 
-    std::int64_t index(std::string_view text, std::string_view corner) const
+    std::int64_t parse_index(std::string_view text, std::string_view corner) const
     {
-        const std::optional<std::int64_t> value = parse_whole<std::int64_t>(text);
-        if (!value) refuse(in_quotes(corner) + " is no corner of a face");
+        const std::optional<std::int64_t> value = core::parse_integer<std::int64_t>(text);
+        if (!value) refuse(core::in_quotes(corner) + " is not a corner of a face");
         return *value;
     }
 
-    // "7", "7/1", "7//3", "7/1/3": vertex, texture, normal, each from 1, or from the last one backwards.
-    std::uint32_t corner_index(std::string_view corner)
+    /// Parses "7", "7/1", "7//3" or "7/1/3": vertex, texture and normal, counted from 1, or from -1 backwards.
+    std::uint32_t parse_corner(std::string_view corner)
     {
         const std::size_t end = corner.find('/');
-        const std::int64_t stated = index(corner.substr(0, end), corner);
+        const std::int64_t index = parse_index(corner.substr(0, end), corner);
         if (end != std::string_view::npos) {
             const std::string_view rest = corner.substr(end + 1);
             const std::size_t second = rest.find('/');
-            if (second != 0) index(rest.substr(0, second), corner);
-            if (second != std::string_view::npos) index(rest.substr(second + 1), corner);
+            if (second != 0) parse_index(rest.substr(0, second), corner);
+            if (second != std::string_view::npos) parse_index(rest.substr(second + 1), corner);
         }
-        if (stated == 0) refuse("vertex 0, they count from 1");
-        const std::int64_t absolute = stated > 0 ? stated : count() + 1 + stated;
-        if (absolute < 1) refuse("vertex " + std::to_string(stated) + " is before the first");
+        if (index == 0) refuse("vertex 0, they count from 1");
+        const std::int64_t absolute = index > 0 ? index : count() + 1 + index;
+        if (absolute < 1) refuse("vertex " + std::to_string(index) + " is before the first");
         if (absolute > std::numeric_limits<int>::max()) refuse("vertex " + std::to_string(absolute) + " is too many");
-        if (absolute > largest_) { // it may be defined further down
-            largest_ = absolute;
-            largest_line_ = lines_.number();
+        if (absolute > max_vertex_) { // checked at the end: the vertex may be defined further down
+            max_vertex_ = absolute;
+            max_vertex_line_ = number();
         }
         return static_cast<std::uint32_t>(absolute - 1);
     }
 
     void add_face(const std::vector<std::string_view>& corners)
     {
-        if (corners.size() < 3 || corners.size() > kMostCorners)
+        if (corners.size() < 3 || corners.size() > kMaxPolygonCorners)
             refuse("a face of " + std::to_string(corners.size()) + " corners");
-        for (const std::string_view corner : corners) corners_.push_back(corner_index(corner));
+        for (const std::string_view corner : corners) corners_.push_back(parse_corner(corner));
         ends_.push_back(corners_.size());
     }
 
-    Mesh assemble() const
-    {
-        Mesh mesh;
-        mesh.vertices = Eigen::Map<const Eigen::Matrix3Xd>(vertices_.data(), 3, count());
-        mesh.triangles = cut_polygons(mesh.vertices, corners_, ends_);
-        return mesh;
-    }
-
-    Lines lines_;
-    const std::string& source_;
-    std::vector<double> vertices_;
-    std::vector<std::uint32_t> corners_;
-    std::vector<std::size_t> ends_;
-    std::int64_t largest_ = 0;
-    std::size_t largest_line_ = 0;
+    std::vector<double> vertices_;       ///< x, y, z of one after the other
+    std::vector<std::uint32_t> corners_; ///< vertices of all faces, one after the other
+    std::vector<std::size_t> ends_;      ///< end of each face in `corners_`
+    std::int64_t max_vertex_ = 0;        ///< highest index that a face names, counted from 1
+    std::size_t max_vertex_line_ = 0;    ///< line that names it
 };
 
 } // namespace
@@ -126,12 +105,12 @@ Mesh parse_obj(std::string_view text, const std::string& source) { return ObjPar
 
 bool looks_like_obj(std::string_view text)
 {
-    Lines lines(text);
+    core::Lines lines(text);
     while (lines.next()) {
         std::string_view line = lines.line();
-        if (!is_blank_or_comment(line)) return is_statement(next_word(line));
+        if (!core::is_blank_or_comment(line)) return is_statement(core::next_word(line));
     }
     return false;
 }
 
-} // namespace fettle
+} // namespace fettle::mesh

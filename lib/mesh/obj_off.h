@@ -5,17 +5,19 @@
 #include <string>
 #include <string_view>
 
-namespace fettle {
+namespace fettle::mesh {
 
-/// Wavefront OBJ: `v` and `f` are read, the other statements are skipped. Indices may be relative. In the units of the
-/// file; NaN vertices stay.
+/// Parses Wavefront OBJ: the statements `v` and `f`, also with relative indices; other statements are skipped. The mesh
+/// is in the units of the file and keeps NaN vertices.
 /// @throws InputError with the line
 Mesh parse_obj(std::string_view text, const std::string& source);
+/// True if the first statement is one of OBJ.
 bool looks_like_obj(std::string_view text);
 
-/// OFF and COFF, in text. In the units of the file; NaN vertices stay.
+/// Parses OFF and COFF in text form. The mesh is in the units of the file and keeps NaN vertices.
 /// @throws InputError with the line
 Mesh parse_off(std::string_view text, const std::string& source);
+/// True if the first word is the name of an OFF variant; parse_off() rejects most of them with a message.
 bool looks_like_off(std::string_view text);
 
-} // namespace fettle
+} // namespace fettle::mesh

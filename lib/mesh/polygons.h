@@ -6,25 +6,29 @@
 #include <span>
 #include <vector>
 
-namespace fettle {
+namespace fettle::mesh {
 
-/// No real facet has more corners; more would make the cutting, whose time is quadratic, a trap.
-inline constexpr std::size_t kMostCorners = 4096;
+/// Largest number of corners accepted. No real facet has more, and triangulation takes quadratic time.
+inline constexpr std::size_t kMaxPolygonCorners = 4096;
 
-/// Polygons cut into triangles; those that are triangles stay as they are.
-/// @param corners  of all polygons, one after the other: columns of `vertices`, in range
-/// @param ends     end of each polygon in `corners`; 3 to kMostCorners each
+/// Triangulates polygons.
+/// @param corners  corners of all polygons, one after the other: indices of columns of `vertices`, in range
+/// @param ends     end of each polygon in `corners`; each has 3 to kMaxPolygonCorners
 /// @return  3xT
-Eigen::Matrix3Xi cut_polygons(const Eigen::Matrix3Xd& vertices, std::span<const std::uint32_t> corners,
-                              std::span<const std::size_t> ends);
+Eigen::Matrix3Xi triangulate_polygons(const Eigen::Matrix3Xd& vertices, std::span<const std::uint32_t> corners,
+                                      std::span<const std::size_t> ends);
 
-/// A simple polygon in space cut into triangles by its ears, as seen along its (area) normal; concave ones too. Corners
-/// stay in their order.
-/// @param corners  columns of `vertices`, 3 to kMostCorners, in range
-/// @return  corners.size() - 2 triples, as columns of `vertices`
-std::vector<Eigen::Vector3i> cut_polygon(const Eigen::Matrix3Xd& vertices, std::span<const std::uint32_t> corners);
+/// Triangulates a simple polygon in space, convex or not, by ear clipping in projection along its normal. The triangles
+/// keep the orientation.
+/// @param corners  indices of columns of `vertices`, 3 to kMaxPolygonCorners, in range
+/// @return  corners.size() - 2 triangles, as indices of columns of `vertices`
+std::vector<Eigen::Vector3i> triangulate_polygon(const Eigen::Matrix3Xd& vertices,
+                                                 std::span<const std::uint32_t> corners);
 
-/// Removes triangles with NaN or infinite corners, and such vertices. @return  how many triangles went
-Eigen::Index drop_undefined(Mesh& mesh);
+/// Removes NaN and infinite vertices and the triangles that have such corners. @return  number of triangles removed
+Eigen::Index drop_nonfinite(Mesh& mesh);
 
-} // namespace fettle
+/// Removes vertices that are no triangle's corner. @return  number of vertices removed
+Eigen::Index drop_unused_vertices(Mesh& mesh);
+
+} // namespace fettle::mesh

@@ -9,33 +9,37 @@
 #include <string_view>
 #include <variant>
 
-namespace fettle {
-
+namespace fettle::core {
 class InputFile;
+}
 
-/// A part as points or as triangles, mm.
-using MeshOrCloud = std::variant<Cloud, Mesh>;
+namespace fettle::mesh {
+
+/// Points or triangles of a part, mm.
+using MeshOrCloud = std::variant<cloud::Cloud, Mesh>;
 
 struct ShapeFile {
     MeshOrCloud shape;
-    Units units;       ///< of the file
-    MeshRepair repair; ///< what reading a mesh dropped
+    units::Units units; ///< units of the file
+    MeshRepair repair;  ///< what reading a mesh dropped or repaired
 };
 
-/// Reads a mesh or a cloud, told by content.
+/// Reads a mesh or a point cloud; the content decides which.
 /// @param path   a file, or "-" for stdin
-/// @param units  what the file is in; nothing: what a PCD says of itself, else mm
+/// @param units  units of the file; without them those that a PCD states, else mm
 /// @throws InputError as read_mesh() and read_cloud()
-ShapeFile read_shape(const std::string& path, const std::optional<Units>& units);
-/// The same from an open file, or from bytes. @param source  its name for messages
-ShapeFile read_shape(const InputFile& file, const std::string& source, const std::optional<Units>& units);
-ShapeFile parse_shape(std::string_view bytes, const std::string& source, const std::optional<Units>& units);
+ShapeFile read_shape(const std::string& path, const std::optional<units::Units>& units);
+/// Reads a mesh or a cloud from an open file. @param source  its name for messages
+ShapeFile read_shape(const core::InputFile& file, const std::string& source, const std::optional<units::Units>& units);
+/// Reads a mesh or a cloud from the bytes of a file.
+ShapeFile parse_shape(std::string_view bytes, const std::string& source, const std::optional<units::Units>& units);
 
-/// What a file is in, for read_shape(): the stated length with the other units of `otherwise`, or those alone.
-std::optional<Units> units_of(const std::optional<Units::Length>& stated,
-                              const std::optional<Units>& otherwise = std::nullopt);
+/// Units for read_shape(): the length unit stated on the command line with the force unit of `fallback`; `fallback` if
+/// none is stated.
+std::optional<units::Units> resolve_file_units(const std::optional<units::Units::Length>& stated,
+                                               const std::optional<units::Units>& fallback = std::nullopt);
 
-/// Where its points or its vertices are, 3xN, mm.
-const Eigen::Matrix3Xd& places_of(const MeshOrCloud& shape);
+/// Coordinates of the points or the vertices, 3xN, mm.
+const Eigen::Matrix3Xd& coordinates_of(const MeshOrCloud& shape);
 
-} // namespace fettle
+} // namespace fettle::mesh

@@ -3,16 +3,15 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
-namespace fettle {
+namespace fettle::mesh {
 
 namespace {
 
-// Below this square of height over length a triangle is a needle: rounding (1e-16 over the square of the ratio) would
-// move the foot of the perpendicular by more than the needle is wide, and its edges hold the nearest point as well.
-constexpr double kNeedle = 1e-10;
+// Squared ratio of height to length below which a triangle is treated as its three edges. In such a needle rounding
+// (1e-16 over this ratio) could move the foot of the perpendicular by more than the needle's width.
+constexpr double kMinSquaredAspect = 1e-10;
 
 TrianglePoint closest_on_edge(const Triangle& triangle, int from, int to, const Eigen::Vector3d& point)
 {
@@ -20,12 +19,12 @@ TrianglePoint closest_on_edge(const Triangle& triangle, int from, int to, const 
     const Eigen::Vector3d edge = triangle.col(to) - a;
     const double squared_length = edge.squaredNorm();
     const double t = squared_length > 0 ? std::clamp((point - a).dot(edge) / squared_length, 0.0, 1.0) : 0.0;
-    TrianglePoint found;
-    found.barycentric[from] = 1 - t;
-    found.barycentric[to] = t;
-    found.point = t == 1 ? Eigen::Vector3d(triangle.col(to)) : Eigen::Vector3d(a + t * edge);
-    found.squared_distance = (point - found.point).squaredNorm();
-    return found;
+    TrianglePoint closest;
+    closest.barycentric[from] = 1 - t;
+    closest.barycentric[to] = t;
+    closest.point = t == 1 ? Eigen::Vector3d(triangle.col(to)) : Eigen::Vector3d(a + t * edge);
+    closest.squared_distance = (point - closest.point).squaredNorm();
+    return closest;
 }
 
 } // namespace
@@ -38,7 +37,7 @@ TrianglePoint closest_on_triangle(const Triangle& triangle, const Eigen::Vector3
     const Eigen::Vector3d normal = ab.cross(ac);
     const double squared_area = normal.squaredNorm(); // of the parallelogram
     const double squared_length = std::max({ab.squaredNorm(), ac.squaredNorm(), (ac - ab).squaredNorm()});
-    if (squared_area > kNeedle * squared_length * squared_length) {
+    if (squared_area > kMinSquaredAspect * squared_length * squared_length) {
         const Eigen::Vector3d ap = point - a;
         const double v = ap.cross(ac).dot(normal) / squared_area;
         const double w = ab.cross(ap).dot(normal) / squared_area;
@@ -73,7 +72,7 @@ std::optional<double> WatertightRay::hit(const Triangle& triangle) const
     const Eigen::Matrix3d corners = triangle.colwise() - origin_;
     const Eigen::RowVector3d x = corners.row(kx_) - sx_ * corners.row(kz_);
     const Eigen::RowVector3d y = corners.row(ky_) - sy_ * corners.row(kz_);
-    // Twice the signed areas that the ray makes with the edges opposite to the corners.
+    // Scaled barycentric coordinates: twice the signed areas of the ray with the edges opposite to the corners.
     const double u = x[2] * y[1] - y[2] * x[1];
     const double v = x[0] * y[2] - y[0] * x[2];
     const double w = x[1] * y[0] - y[1] * x[0];
@@ -85,4 +84,4 @@ std::optional<double> WatertightRay::hit(const Triangle& triangle) const
     return distance;
 }
 
-} // namespace fettle
+} // namespace fettle::mesh

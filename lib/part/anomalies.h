@@ -3,9 +3,10 @@
 #include "part/profile.h"
 #include "json/document.h"
 
-namespace fettle {
+namespace fettle::part {
 
-/// One element of a part's "anomalies" (docs/formats.md). @param mm  in one unit of the file   @throws InputError
+/// Reads one element of a part's "anomalies" (docs/formats.md). @param mm  mm per unit of the file
+/// @throws InputError with the key's path
 Anomaly read_anomaly(json::Reader reader, double mm);
 
-} // namespace fettle
+} // namespace fettle::part

@@ -10,39 +10,40 @@
 #include <string>
 #include <vector>
 
-namespace fettle {
+namespace fettle::part {
 
-/// A surface made from a formula over a rectangle of the x-y plane.
-struct MadeSurface {
-    OverPlane z;                ///< mm
+/// A surface defined by a function over a rectangle of the x-y plane.
+struct AnalyticSurface {
+    ScalarField2d z;            ///< mm
     Eigen::AlignedBox2d region; ///< mm
 };
 
-/// A surface that was scanned: a mesh, or a cloud.
+/// A scanned surface: a mesh or a cloud.
 struct ScannedSurface {
-    std::string file; ///< seen from the working folder
-    Units::Length unit = Units::Length::mm;
-    std::optional<Eigen::AlignedBox2d> region; ///< what is kept of it, mm; nothing: all
+    std::string file; ///< path relative to the working folder
+    units::Units::Length unit = units::Units::Length::mm;
+    std::optional<Eigen::AlignedBox2d> region; ///< the part of the scan that is used, mm; nothing: all of it
 };
 
-/// What a casting to be made looks like (docs/formats.md, kind "part").
+/// Specification of a synthetic casting (docs/formats.md, kind "part").
 struct PartSpec {
-    std::string source = "part"; ///< its name in messages
-    Units units;
-    std::variant<MadeSurface, ScannedSurface> surface;
+    std::string source = "part"; ///< name of the file for messages
+    units::Units units;
+    std::variant<AnalyticSurface, ScannedSurface> surface;
     double step = 1; ///< longest side of a triangle in x or y, mm
     std::vector<Anomaly> anomalies;
-    TouchNoise noise; ///< of the scan, along z
+    sampling::TouchNoise noise; ///< noise of the vertices or points, along z
 };
 
-/// @throws InputError with the key's path
+/// Reads a specification from a file. @throws InputError with the key's path
 PartSpec read_part(const std::string& path);
 
-/// The part, seen from above: a mesh; a cloud if the scan is one. Without anomalies and noise it is the truth that a
-/// ground part is compared with: beside the anomalies both are the same surface. On a scan that has an underside only
-/// what is seen from above is lifted. On a cloud the anomaly gets points of its own, `step` apart.
-/// @throws InputError if the surface is not defined somewhere in its region, an anomaly lies beside the part, or the
+/// The upper surface of the part with its anomalies: a mesh, or a cloud if the scan is one. Without anomalies and noise
+/// the result is the reference for a part that was ground; outside the anomalies both are the same surface. On a scan
+/// with an underside only the upper side is lifted. On a cloud the anomaly gets additional points, `step` apart.
+/// @throws InputError if the surface is not defined everywhere in its region, an anomaly is outside the part, or the
 ///         step is too fine
-MeshOrCloud make_part(const PartSpec& spec, std::uint64_t seed);
+/// @param warnings  receives what was left out of a scanned surface, and doubts about its unit, unless null
+mesh::MeshOrCloud make_part(const PartSpec& spec, std::uint64_t seed, std::vector<std::string>* warnings = nullptr);
 
-} // namespace fettle
+} // namespace fettle::part

@@ -1,23 +1,25 @@
 #include "part/profile.h"
 
+#include "core/constants.h"
+#include "geometry/bounding_box.h"
 #include "job/boundary.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
-namespace fettle {
+namespace fettle::part {
 namespace {
 
 using Eigen::Vector2d;
 
-// Room around a box, so that points on its edge count as inside.
+// Margin of a footprint, mm, so that points on its border are inside.
 constexpr double kBoxMargin = 1e-9;
 
 Eigen::AlignedBox2d box_around(const Eigen::Matrix2Xd& points, double margin)
 {
-    const Vector2d rim = Vector2d::Constant(margin + kBoxMargin);
-    return {points.rowwise().minCoeff() - rim, points.rowwise().maxCoeff() + rim};
+    const Vector2d offset = Vector2d::Constant(margin + kBoxMargin);
+    const Eigen::AlignedBox2d box = geometry::bounding_box(points);
+    return {box.min() - offset, box.max() + offset};
 }
 
 double distance_to_segment(const Vector2d& p, const Vector2d& a, const Vector2d& b)
@@ -28,32 +30,32 @@ double distance_to_segment(const Vector2d& p, const Vector2d& a, const Vector2d&
     return (p - a - t * ab).norm();
 }
 
-/// Positive inside.
-double signed_distance(const Polygon& outline, const Vector2d& p)
+/// Distance to the outline, positive inside.
+double signed_distance(const job::Polygon& outline, const Vector2d& p)
 {
-    const double distance = distance_to_edge(outline, p);
-    return contains(outline, p) ? distance : -distance;
+    const double distance = job::distance_to_edge(outline, p);
+    return job::contains(outline, p) ? distance : -distance;
 }
 
-/// @param from_spine  distance to the spine, mm
-Anomaly ridge(const OverPlane& from_spine, const RidgeSection& section, const Eigen::AlignedBox2d& footprint)
+/// @param distance  from the centre line, mm
+Anomaly ridge(const ScalarField2d& distance, const RidgeSection& section, const Eigen::AlignedBox2d& footprint)
 {
     const double half = section.width / 2;
     const double h = section.height;
     Anomaly anomaly;
     anomaly.footprint = footprint;
-    anomaly.creases.push_back([=](const Vector2d& p) { return half - from_spine(p); });
+    anomaly.creases.push_back([=](const Vector2d& p) { return half - distance(p); });
     if (section.round) {
-        // Arc over the chord 2·half with the rise h.
+        // Arc over the chord 2·half with the sagitta h.
         const double radius = (half * half + h * h) / (2 * h);
         anomaly.height = [=](const Vector2d& p) {
-            const double r = from_spine(p);
+            const double r = distance(p);
             return r < half ? std::max(0.0, std::sqrt(radius * radius - r * r) - (radius - h)) : 0.0;
         };
     } else {
         const double lean = std::tan(section.draft);
-        anomaly.height = [=](const Vector2d& p) { return std::clamp((half - from_spine(p)) / lean, 0.0, h); };
-        anomaly.creases.push_back([=](const Vector2d& p) { return half - h * lean - from_spine(p); });
+        anomaly.height = [=](const Vector2d& p) { return std::clamp((half - distance(p)) / lean, 0.0, h); };
+        anomaly.creases.push_back([=](const Vector2d& p) { return half - h * lean - distance(p); });
     }
     return anomaly;
 }
@@ -88,34 +90,34 @@ double smooth_noise(std::uint64_t seed, const Vector2d& at)
 
 Anomaly ridge_along(const Eigen::Matrix2Xd& path, const RidgeSection& section)
 {
-    const OverPlane from_spine = [path](const Vector2d& p) {
-        double least = std::numeric_limits<double>::infinity();
+    const ScalarField2d distance = [path](const Vector2d& p) {
+        double min = core::kInfinity;
         for (Eigen::Index i = 1; i < path.cols(); ++i)
-            least = std::min(least, distance_to_segment(p, path.col(i - 1), path.col(i)));
-        return least;
+            min = std::min(min, distance_to_segment(p, path.col(i - 1), path.col(i)));
+        return min;
     };
-    return ridge(from_spine, section, box_around(path, section.width / 2));
+    return ridge(distance, section, box_around(path, section.width / 2));
 }
 
 Anomaly ring(const Vector2d& centre, double radius, const RidgeSection& section)
 {
-    const OverPlane from_spine = [=](const Vector2d& p) { return std::abs((p - centre).norm() - radius); };
-    return ridge(from_spine, section, box_around(centre, radius + section.width / 2));
+    const ScalarField2d distance = [=](const Vector2d& p) { return std::abs((p - centre).norm() - radius); };
+    return ridge(distance, section, box_around(centre, radius + section.width / 2));
 }
 
 Anomaly dot(const Vector2d& centre, double radius, double height)
 {
-    const OverPlane from_centre = [=](const Vector2d& p) { return (p - centre).norm(); };
-    return ridge(from_centre, {.width = 2 * radius, .height = height}, box_around(centre, radius));
+    const ScalarField2d distance = [=](const Vector2d& p) { return (p - centre).norm(); };
+    return ridge(distance, {.width = 2 * radius, .height = height}, box_around(centre, radius));
 }
 
 Anomaly stub(const Eigen::Matrix2Xd& outline, const SlopedTop& top, double draft)
 {
     const Vector2d along(std::cos(top.direction), std::sin(top.direction));
-    const Eigen::RowVectorXd places = along.transpose() * outline;
-    const double first = places.minCoeff();
-    const double slope = (top.high - top.low) / (places.maxCoeff() - first);
-    const OverPlane top_height = [=](const Vector2d& p) { return top.low + slope * (along.dot(p) - first); };
+    const Eigen::RowVectorXd positions = along.transpose() * outline;
+    const double first = positions.minCoeff();
+    const double slope = (top.high - top.low) / (positions.maxCoeff() - first);
+    const ScalarField2d top_height = [=](const Vector2d& p) { return top.low + slope * (along.dot(p) - first); };
     const double lean = std::tan(draft);
 
     Anomaly anomaly;
@@ -143,16 +145,17 @@ Anomaly blob(const Eigen::Matrix2Xd& outline, double height, double falloff)
 Anomaly hill(const Vector2d& centre, const Vector2d& semi_axes, double angle, double height)
 {
     const Eigen::Matrix2d to_ellipse = Eigen::Rotation2Dd(-angle).toRotationMatrix();
-    const OverPlane rho2 = [=](const Vector2d& p) {
+    const ScalarField2d rho_squared = [=](const Vector2d& p) {
         return (to_ellipse * (p - centre)).cwiseQuotient(semi_axes).squaredNorm();
     };
     Anomaly anomaly;
     anomaly.footprint = box_around(centre, semi_axes.maxCoeff());
     anomaly.height = [=](const Vector2d& p) {
-        const double left = std::max(0.0, 1 - rho2(p));
-        return height * left * left;
+        const double t = std::max(0.0, 1 - rho_squared(p));
+        return height * t * t;
     };
-    anomaly.creases.push_back([=](const Vector2d& p) { return semi_axes.minCoeff() * (1 - std::sqrt(rho2(p))); });
+    anomaly.creases.push_back(
+        [=](const Vector2d& p) { return semi_axes.minCoeff() * (1 - std::sqrt(rho_squared(p))); });
     return anomaly;
 }
 
@@ -174,4 +177,4 @@ double height(const std::vector<Anomaly>& anomalies, const Vector2d& xy)
     return highest;
 }
 
-} // namespace fettle
+} // namespace fettle::part

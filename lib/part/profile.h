@@ -7,60 +7,61 @@
 #include <functional>
 #include <vector>
 
-namespace fettle {
+namespace fettle::part {
 
-/// A number over each point of the x-y plane, mm.
-using OverPlane = std::function<double(const Eigen::Vector2d& xy)>;
+/// A function of a point of the x-y plane; both are in mm.
+using ScalarField2d = std::function<double(const Eigen::Vector2d& xy)>;
 
-/// What is too much on a casting: a height, added along z to the desired surface over a footprint.
+/// Surplus material on a casting: a height that is added along z to the desired surface.
 struct Anomaly {
-    OverPlane height;               ///< mm, at least 0; 0 outside the footprint
-    std::vector<OverPlane> creases; ///< sharp edges of the profile are the zero lines of these, about distances, mm
-    Eigen::AlignedBox2d footprint;
+    ScalarField2d height;               ///< mm, not negative; 0 outside the footprint
+    std::vector<ScalarField2d> creases; ///< zero level sets: the sharp edges; values are approximately distances, mm
+    Eigen::AlignedBox2d footprint;      ///< mm
 };
 
-/// Section of a ridge, across its spine.
+/// Section of a ridge across its centre line.
 struct RidgeSection {
     double width = 0;  ///< at the foot, mm
     double height = 0; ///< mm
     bool round = true; ///< a circular arc (height at most width / 2), else a flat crest between two straight flanks
-    double draft = 0;  ///< of the flanks against the vertical, rad; positive
+    double draft = 0;  ///< angle of the flanks from the vertical, rad; positive
 };
 
 /// A bead or a burr along a polyline. @param path  2xN, N at least 2, mm
 Anomaly ridge_along(const Eigen::Matrix2Xd& path, const RidgeSection& section);
 
-/// A closed ridge over a circle. @param radius  of its spine, mm
+/// A closed ridge along a circle. @param radius  of its centre line, mm
 Anomaly ring(const Eigen::Vector2d& centre, double radius, const RidgeSection& section);
 
 /// A spherical cap. @param radius  of its foot, mm, at least `height`
 Anomaly dot(const Eigen::Vector2d& centre, double radius, double height);
 
-/// A plane top: `low` at the corner of the outline that is least along `direction`, `high` at the farthest.
+/// A plane top: its height is `low` at the first corner of the outline along `direction`, and `high` at the last one.
 struct SlopedTop {
     double low = 0, high = 0; ///< mm
     double direction = 0;     ///< rad, counter-clockwise from X_m
 };
 
-/// A riser stub, a letter: walls that lean inwards by `draft` from the outline (the foot) up to a plane top.
-/// @param outline  2xN, counter-clockwise, mm   @param draft  rad against the vertical, positive
+/// A riser stub or a letter: walls that lean inwards from the outline of the foot up to a plane top.
+/// @param outline  2xN, counter-clockwise, mm   @param draft  angle of the walls from the vertical, rad, positive
 Anomaly stub(const Eigen::Matrix2Xd& outline, const SlopedTop& top, double draft);
 
-/// A lump that rises smoothly from its outline over the distance `falloff` to `height`.
+/// A lump that rises smoothly from its outline to `height` over the distance `falloff`, mm.
 Anomaly blob(const Eigen::Matrix2Xd& outline, double height, double falloff);
 
-/// H (1 - ρ²)², ρ the radius as a fraction of the ellipse: flat at the top and at the foot. Its volume is π a b H / 3.
+/// A hill with the height H (1 - ρ²)², where ρ is 1 on the ellipse with the given semi-axes. Its slope is 0 at the top
+/// and at the foot, its volume π a b H / 3. @param angle  of the first semi-axis from X_m, rad
 Anomaly hill(const Eigen::Vector2d& centre, const Eigen::Vector2d& semi_axes, double angle, double height);
 
-/// Rough: the height is multiplied by 1 + size · noise, noise smooth within ±1.
+/// Smooth noise that multiplies the height by 1 + size · noise, |noise| ≤ 1.
 struct Roughness {
     double size = 0;  ///< below 1
-    double grain = 1; ///< distance over which the noise changes, mm
+    double grain = 1; ///< correlation length of the noise, mm
     std::uint64_t seed = 1;
 };
 Anomaly roughened(const Anomaly& anomaly, const Roughness& roughness);
 
-/// The highest of all anomalies over a point, mm.
+/// Largest height of all anomalies at a point, mm; 0 outside their footprints.
 double height(const std::vector<Anomaly>& anomalies, const Eigen::Vector2d& xy);
 
-} // namespace fettle
+} // namespace fettle::part

@@ -1,69 +1,67 @@
 #include "part/refine.h"
 
 #include "core/error.h"
+#include "geometry/bounding_box.h"
 
 #include <cmath>
 #include <functional>
 #include <optional>
 #include <unordered_map>
 
-namespace fettle {
+namespace fettle::part {
 namespace {
 
 using Eigen::Index;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// Where an edge is to be cut: the fraction of the way from its lower to its higher vertex; nothing: not at all.
-using Cut = std::function<std::optional<double>(int low, int high)>;
+/// Position of the split of an edge, as a fraction of the distance from vertex `low` to `high`; nothing: no split.
+using SplitRule = std::function<std::optional<double>(int low, int high)>;
 
 class EdgeSplitter {
   public:
-    explicit EdgeSplitter(const Mesh& mesh) : mesh_(mesh)
+    EdgeSplitter(const mesh::Mesh& mesh, const SplitRule& rule) : mesh_(mesh), rule_(rule)
     {
         for (Index v = 0; v < mesh.vertices.cols(); ++v) vertices_.push_back(mesh.vertices.col(v));
     }
 
-    /// Cuts each edge at most once. @return whether any was cut
-    bool split(const Cut& cut, Mesh& result)
+    /// Splits each edge at most once. @return  nothing if no edge was split
+    std::optional<mesh::Mesh> split()
     {
-        for (Index t = 0; t < mesh_.triangles.cols(); ++t) {
-            divide(mesh_.triangles.col(t), cut);
-            check_size(static_cast<double>(triangles_.size()));
+        for (const Eigen::Vector3i corners : mesh_.triangles.colwise()) {
+            split_triangle(corners);
+            check_triangle_count(triangles_.size());
         }
-        const bool any = vertices_.size() > static_cast<std::size_t>(mesh_.vertices.cols());
-        if (any) {
-            result.vertices =
-                Eigen::Map<Eigen::Matrix3Xd>(vertices_[0].data(), 3, static_cast<Index>(vertices_.size()));
-            result.triangles =
-                Eigen::Map<Eigen::Matrix3Xi>(triangles_[0].data(), 3, static_cast<Index>(triangles_.size()));
-        }
-        return any;
+        if (Index(vertices_.size()) == mesh_.vertices.cols()) return std::nullopt;
+        mesh::Mesh result;
+        result.vertices = Eigen::Map<Eigen::Matrix3Xd>(vertices_[0].data(), 3, vertices_.size());
+        result.triangles = Eigen::Map<Eigen::Matrix3Xi>(triangles_[0].data(), 3, triangles_.size());
+        return result;
     }
 
   private:
-    /// The new vertex on an edge, -1 if the edge stays whole.
-    int on_edge(int a, int b, const Cut& cut)
+    /// Index of the new vertex on an edge, -1 if the edge is not split.
+    int split_edge(int a, int b)
     {
         const auto [low, high] = std::minmax(a, b);
         const std::uint64_t key = static_cast<std::uint64_t>(low) << 32 | static_cast<std::uint32_t>(high);
-        const auto [place, fresh] = known_.try_emplace(key, -1);
-        if (!fresh) return place->second;
-        const std::optional<double> t = cut(low, high);
+        const auto [entry, is_new] = edge_vertices_.try_emplace(key, -1);
+        if (!is_new) return entry->second;
+        const std::optional<double> t = rule_(low, high);
         if (!t) return -1;
-        place->second = static_cast<int>(vertices_.size());
+        entry->second = vertices_.size();
         vertices_.push_back(mesh_.vertices.col(low) + *t * (mesh_.vertices.col(high) - mesh_.vertices.col(low)));
-        return place->second;
+        return entry->second;
     }
 
     void add(int a, int b, int c) { triangles_.emplace_back(a, b, c); }
 
-    void divide(Eigen::Vector3i corner, const Cut& cut)
+    void split_triangle(Eigen::Vector3i corner)
     {
         Eigen::Vector3i middle; // [k]: on the edge from corner k to the next
-        for (int k = 0; k < 3; ++k) middle[k] = on_edge(corner[k], corner[(k + 1) % 3], cut);
-        const int cuts = static_cast<int>((middle.array() >= 0).count());
-        // Turn the triangle so that one cut is on its first edge, two on its first and last, about corner 0.
+        for (int k = 0; k < 3; ++k) middle[k] = split_edge(corner[k], corner[(k + 1) % 3]);
+        const int cuts = (middle.array() >= 0).count();
+        // Rotate the corners so that a single cut is on the first edge, two cuts are on the first and the last edge.
         const auto in_place = [&] { return cuts == 1 ? middle[0] >= 0 : middle[1] < 0; };
         if (cuts == 1 || cuts == 2)
             while (!in_place()) {
@@ -79,7 +77,7 @@ class EdgeSplitter {
             add(ab, b, c);
         } else if (cuts == 2) {
             add(a, ab, ca);
-            const bool from_b = squared(b, ca) < squared(ab, c); // the quadrangle's shorter diagonal
+            const bool from_b = squared_distance(b, ca) < squared_distance(ab, c); // shorter diagonal of the quad
             add(ab, b, from_b ? ca : c);
             add(from_b ? b : ab, c, ca);
         } else {
@@ -90,62 +88,59 @@ class EdgeSplitter {
         }
     }
 
-    double squared(int a, int b) const
-    {
-        return (vertices_[static_cast<std::size_t>(a)] - vertices_[static_cast<std::size_t>(b)]).squaredNorm();
-    }
+    double squared_distance(int a, int b) const { return (vertices_[a] - vertices_[b]).squaredNorm(); }
 
-    const Mesh& mesh_;
+    const mesh::Mesh& mesh_;
+    const SplitRule& rule_;
     std::vector<Vector3d> vertices_;
     std::vector<Eigen::Vector3i> triangles_;
-    std::unordered_map<std::uint64_t, int> known_;
+    std::unordered_map<std::uint64_t, int> edge_vertices_;
 };
 
-bool split(Mesh& mesh, const Cut& cut)
+/// Splits the edges once by a rule. @return whether any was split
+bool split(mesh::Mesh& mesh, const SplitRule& rule)
 {
-    Mesh result;
-    const bool any = EdgeSplitter(mesh).split(cut, result);
-    if (any) mesh = std::move(result);
-    return any;
+    std::optional<mesh::Mesh> result = EdgeSplitter(mesh, rule).split();
+    if (result) mesh = std::move(*result);
+    return result.has_value();
 }
 
-Vector2d flat(const Mesh& mesh, int vertex) { return mesh.vertices.col(vertex).head<2>(); }
+Vector2d xy(const mesh::Mesh& mesh, int vertex) { return mesh.vertices.col(vertex).head<2>(); }
 
 /// Halves edges until none in the footprint is longer than `step`.
-void halve_long_edges(Mesh& mesh, const std::vector<Anomaly>& anomalies, double step)
+void halve_long_edges(mesh::Mesh& mesh, const std::vector<Anomaly>& anomalies, double step)
 {
-    const Cut cut = [&](int a, int b) -> std::optional<double> {
-        if ((flat(mesh, b) - flat(mesh, a)).norm() <= step) return std::nullopt;
-        Eigen::AlignedBox2d edge(flat(mesh, a));
-        edge.extend(flat(mesh, b));
+    const SplitRule rule = [&](int a, int b) -> std::optional<double> {
+        if ((xy(mesh, b) - xy(mesh, a)).norm() <= step) return std::nullopt;
+        Eigen::AlignedBox2d edge(xy(mesh, a));
+        edge.extend(xy(mesh, b));
         for (const Anomaly& anomaly : anomalies)
             if (anomaly.footprint.intersects(edge)) return 0.5;
         return std::nullopt;
     };
-    while (split(mesh, cut)) {
+    while (split(mesh, rule)) {
     }
 }
 
-/// Makes the zero line of a crease a line of mesh edges.
-void cut_along(Mesh& mesh, const Anomaly& anomaly, const OverPlane& crease, double step)
+/// Makes the zero level set of a crease a polyline of mesh edges.
+void insert_crease(mesh::Mesh& mesh, const Anomaly& anomaly, const ScalarField2d& crease, double step)
 {
-    // A vertex this near to the crease stands for it: no slivers thinner than that.
-    const double near = 1e-3 * step;
+    // A vertex within this distance counts as on the crease, to avoid slivers.
+    const double snap_distance = 1e-3 * step;
     Eigen::VectorXd side(mesh.vertices.cols());
     for (Index v = 0; v < side.size(); ++v) {
-        const Vector2d at = mesh.vertices.col(v).head<2>();
-        // Farther than one edge beyond the footprint no edge can cross the crease.
-        const bool matters = anomaly.footprint.exteriorDistance(at) <= step;
-        side[v] = matters ? crease(at) : -1;
-        if (std::abs(side[v]) < near) side[v] = 0;
+        // Edges of vertices farther than one edge outside the footprint cannot cross the crease.
+        const bool near = anomaly.footprint.exteriorDistance(xy(mesh, v)) <= step;
+        side[v] = near ? crease(xy(mesh, v)) : -1;
+        if (std::abs(side[v]) < snap_distance) side[v] = 0;
     }
     split(mesh, [&](int a, int b) -> std::optional<double> {
         if (side[a] * side[b] >= 0) return std::nullopt;
-        // The crease is about a distance, so the crossing is nearly linear; two secant steps make it exact enough.
-        const Vector2d from = flat(mesh, a), to = flat(mesh, b);
+        // Regula falsi: the crease is approximately a distance, thus nearly linear, and three steps suffice.
+        const Vector2d from = xy(mesh, a), to = xy(mesh, b);
         double low = 0, high = 1, at_low = side[a], at_high = side[b];
         double t = 0.5;
-        for (int round = 0; round < 3; ++round) {
+        for (int step_count = 0; step_count < 3; ++step_count) {
             t = low + (high - low) * at_low / (at_low - at_high);
             const double value = crease(from + t * (to - from));
             if (value == 0) break;
@@ -155,50 +150,50 @@ void cut_along(Mesh& mesh, const Anomaly& anomaly, const OverPlane& crease, doub
     });
 }
 
-/// Halves edges that leave the profile by more than a chord may. @return whether there were any
-bool follow_profile(Mesh& mesh, const std::vector<Anomaly>& anomalies, const Refinement& refinement)
+/// Halves the edges that exceed the chord error. @return whether there were any
+bool halve_coarse_edges(mesh::Mesh& mesh, const std::vector<Anomaly>& anomalies, const RefineOptions& options)
 {
     Eigen::VectorXd heights(mesh.vertices.cols());
-    for (Index v = 0; v < heights.size(); ++v) heights[v] = height(anomalies, mesh.vertices.col(v).head<2>());
+    for (Index v = 0; v < heights.size(); ++v) heights[v] = height(anomalies, xy(mesh, v));
     return split(mesh, [&](int a, int b) -> std::optional<double> {
-        const Vector2d from = flat(mesh, a), to = flat(mesh, b);
-        if ((to - from).norm() < 2 * refinement.least) return std::nullopt;
+        const Vector2d from = xy(mesh, a), to = xy(mesh, b);
+        if ((to - from).norm() < 2 * options.min_edge) return std::nullopt;
         const double error = std::abs(height(anomalies, (from + to) / 2) - (heights[a] + heights[b]) / 2);
-        return error > refinement.chord ? std::optional(0.5) : std::nullopt;
+        return error > options.chord_error ? std::optional(0.5) : std::nullopt;
     });
 }
 
-/// Before the work: what edges of one step make of the plane under each anomaly.
-void check_footprints(const Mesh& mesh, const std::vector<Anomaly>& anomalies, double step)
+/// Fails early if triangles with edges of one step under each anomaly are too many.
+void check_footprints(const mesh::Mesh& mesh, const std::vector<Anomaly>& anomalies, double step)
 {
-    const Eigen::Matrix<double, 3, 2> box = bounding_box(mesh.vertices);
-    const Eigen::AlignedBox2d part(Vector2d(box.col(0).head<2>()), Vector2d(box.col(1).head<2>()));
+    const Eigen::AlignedBox3d box = geometry::finite_bounding_box(mesh.vertices);
+    const Eigen::AlignedBox2d part(box.min().head<2>(), box.max().head<2>());
     for (const Anomaly& anomaly : anomalies) {
         const Eigen::AlignedBox2d under = part.intersection(anomaly.footprint);
-        if (!under.isEmpty()) check_size(2 * (under.sizes() / step).prod());
+        if (!under.isEmpty()) check_triangle_count(2 * (under.sizes() / step).prod());
     }
 }
 
 } // namespace
 
-void check_size(double triangles)
+void check_triangle_count(double triangles)
 {
-    constexpr double kMost = 2e7;
-    if (triangles > kMost) throw InputError("too fine: it makes more than 20 million triangles");
+    constexpr double kMaxTriangles = 2e7;
+    if (triangles > kMaxTriangles) throw core::InputError("too fine: it makes more than 20 million triangles");
 }
 
-Mesh refine(const Mesh& mesh, const std::vector<Anomaly>& anomalies, const Refinement& refinement)
+mesh::Mesh refine(const mesh::Mesh& mesh, const std::vector<Anomaly>& anomalies, const RefineOptions& options)
 {
-    check_footprints(mesh, anomalies, refinement.step);
-    Mesh refined = mesh;
-    halve_long_edges(refined, anomalies, refinement.step);
+    check_footprints(mesh, anomalies, options.step);
+    mesh::Mesh refined = mesh;
+    halve_long_edges(refined, anomalies, options.step);
     for (const Anomaly& anomaly : anomalies)
-        for (const OverPlane& crease : anomaly.creases) cut_along(refined, anomaly, crease, refinement.step);
+        for (const ScalarField2d& crease : anomaly.creases) insert_crease(refined, anomaly, crease, options.step);
 
-    // Halving from step to least takes so many rounds; more would only cut the needles at a crease again and again.
-    for (double edge = refinement.step; edge > refinement.least; edge /= 2)
-        if (!follow_profile(refined, anomalies, refinement)) break;
+    // Halving from step to min_edge takes so many rounds; more rounds would only split the slivers at creases.
+    for (double edge = options.step; edge > options.min_edge; edge /= 2)
+        if (!halve_coarse_edges(refined, anomalies, options)) break;
     return refined;
 }
 
-} // namespace fettle
+} // namespace fettle::part

@@ -5,22 +5,23 @@
 
 #include <vector>
 
-namespace fettle {
+namespace fettle::part {
 
-/// @throws InputError for more triangles than a part may have: they would fill the memory
-void check_size(double triangles);
+/// @throws InputError if a part would have more triangles than fit into the memory
+void check_triangle_count(double triangles);
 
-/// How finely the triangles under anomalies are to follow the profile.
-struct Refinement {
-    double step = 1;     ///< longest edge under an anomaly, mm
-    double chord = 0.02; ///< height of the profile over the middle of an edge, mm
-    double least = 0.05; ///< edges are not halved below it, mm
+/// Resolution of the triangles under anomalies.
+struct RefineOptions {
+    double step = 1;           ///< longest edge under an anomaly, mm
+    double chord_error = 0.02; ///< largest deviation of the profile from the middle of an edge, mm
+    double min_edge = 0.05;    ///< shorter edges do not result from halving, mm
 };
 
-/// Splits triangles, in x-y, so that the profile is represented once the vertices are lifted by it: sharp edges become
-/// mesh edges, elsewhere edges are halved until the chord error is met. New vertices lie on the old triangles: the
-/// surface itself does not change. Neighbours stay matched; a triangle far from every footprint stays as it is.
-/// @throws InputError as check_size()
-Mesh refine(const Mesh& mesh, const std::vector<Anomaly>& anomalies, const Refinement& refinement);
+/// Splits triangles in the x-y plane, so that the mesh represents the anomalies once its vertices are lifted. Sharp
+/// edges of the profile become mesh edges; other edges are halved until the chord error is met. New vertices are on the
+/// old triangles: the surface itself does not change. The mesh stays conforming; triangles far from every footprint
+/// stay.
+/// @throws InputError as check_triangle_count()
+mesh::Mesh refine(const mesh::Mesh& mesh, const std::vector<Anomaly>& anomalies, const RefineOptions& options);
 
-} // namespace fettle
+} // namespace fettle::part

@@ -7,10 +7,10 @@
 
 #include <filesystem>
 
-namespace fettle {
+namespace fettle::part {
 namespace {
 
-// A spec in a file refers to its neighbours, one from stdin to the working folder.
+// File names in a specification are relative to its folder, on stdin to the working folder.
 std::string folder_of(const std::string& path)
 {
     const std::string folder = path == "-" ? "" : std::filesystem::path(path).parent_path().string();
@@ -23,11 +23,11 @@ Eigen::AlignedBox2d read_region(json::Reader reader, double mm)
     for (int axis = 0; axis < 2; ++axis) {
         const std::string key = axis == 0 ? "x" : "y";
         const Eigen::Vector2d ends = mm * reader.vector(key, 2);
-        if (!(ends[0] < ends[1])) reader.refuse(key, "the first must be less than the second");
+        if (!(ends[0] < ends[1])) reader.refuse(key, "the first number must be less than the second");
         region.min()[axis] = ends[0];
         region.max()[axis] = ends[1];
     }
-    reader.done();
+    reader.reject_unknown_keys();
     return region;
 }
 
@@ -35,8 +35,8 @@ ScannedSurface read_scanned(json::Reader reader, const std::string& folder)
 {
     ScannedSurface scanned;
     scanned.file = (std::filesystem::path(folder) / reader.text("file")).string();
-    scanned.unit = parse_length_unit(reader.choice("units", {"mm", "in", "m"}));
-    reader.done();
+    scanned.unit = units::parse_length_unit(reader.choice("units", {"mm", "in", "m"}));
+    reader.reject_unknown_keys();
     return scanned;
 }
 
@@ -47,30 +47,32 @@ PartSpec read_part(const std::string& path)
     json::Reader reader = json::Reader::open(path);
     reader.expect_kind("part");
     PartSpec spec;
-    spec.source = display_name(path);
+    spec.source = core::display_name(path);
     spec.units.length = json::read_length_unit(reader);
     const double mm = spec.units.mm();
 
-    spec.step = mm * reader.number("step", Range::positive());
+    spec.step = mm * reader.number("step", core::Range::positive());
     if (reader.has("scan")) {
-        if (reader.has("surface")) reader.refuse("scan", "stands beside a surface: one of them is enough");
+        if (reader.has("surface")) reader.refuse("scan", "give either scan or surface, not both");
         ScannedSurface scanned = read_scanned(reader.object("scan"), folder_of(path));
         if (reader.has("region")) scanned.region = read_region(reader.object("region"), mm);
         spec.surface = scanned;
     } else {
-        MadeSurface made;
+        AnalyticSurface made;
         made.region = read_region(reader.object("region"), mm);
         made.z = read_part_surface(reader.object("surface"), mm, folder_of(path));
         spec.surface = made;
     }
-    for (const json::Reader& anomaly : reader.objects("anomalies")) spec.anomalies.push_back(read_anomaly(anomaly, mm));
+    if (reader.has("anomalies"))
+        for (const json::Reader& anomaly : reader.objects("anomalies"))
+            spec.anomalies.push_back(read_anomaly(anomaly, mm));
     if (reader.has("noise")) try {
-            spec.noise = parse_noise(reader.text("noise"), mm);
-        } catch (const InputError& error) {
+            spec.noise = sampling::parse_noise(reader.text("noise"), mm);
+        } catch (const core::InputError& error) {
             reader.refuse("noise", error.what());
         }
-    reader.done();
+    reader.reject_unknown_keys();
     return spec;
 }
 
-} // namespace fettle
+} // namespace fettle::part

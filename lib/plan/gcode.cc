@@ -2,39 +2,41 @@
 
 #include "core/fixed_text.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <ostream>
 
-namespace fettle {
+namespace fettle::plan {
 
 namespace {
 
-// 0.0001 mm is finer than any drive.
-std::string fixed(double value) { return to_fixed_text(value, 5); }
+// Five decimals are finer than any drive.
+std::string fixed(double value) { return core::to_fixed_text(value, 5); }
 
 std::string words(const Eigen::Vector3d& point, double mm)
 {
     return "X" + fixed(point.x() / mm) + " Y" + fixed(point.y() / mm) + " Z" + fixed(point.z() / mm);
 }
 
-// How far the points between `from` and `to` are from the straight move.
+// Largest distance of the points between `from` and `to` from the straight move.
 double deviation(const std::vector<Eigen::Vector3d>& points, int from, int to)
 {
     const Eigen::Vector3d direction = (points[to] - points[from]).normalized();
-    double most = 0;
+    double max = 0;
     for (int i = from + 1; i < to; ++i) {
         const Eigen::Vector3d d = points[i] - points[from];
-        most = std::max(most, (d - d.dot(direction) * direction).norm());
+        max = std::max(max, (d - d.dot(direction) * direction).norm());
     }
-    return most;
+    return max;
 }
 
-// Ends of the straight moves over points first … last.
-std::vector<int> thinned(const std::vector<Eigen::Vector3d>& points, int first, int last, double chord_error)
+// Greedy polyline simplification: indices of the ends of the straight moves from the first to the last point.
+std::vector<int> move_ends(const std::vector<Eigen::Vector3d>& points, double chord_error)
 {
+    const int last = int(points.size()) - 1;
     std::vector<int> ends;
-    for (int from = first; from < last;) {
+    for (int from = 0; from < last;) {
         int to = from + 1;
         while (to < last && deviation(points, from, to + 1) <= chord_error) ++to;
         ends.push_back(to);
@@ -43,17 +45,17 @@ std::vector<int> thinned(const std::vector<Eigen::Vector3d>& points, int first, 
     return ends;
 }
 
-// Units, feed and modes on lines of their own: in one line with G20 or G21 an F would still count in the old unit.
+// Units, modes and feed have lines of their own: an F in one line with G20 or G21 would still be in the old unit.
 void write_header(std::ostream& out, const Plan& plan, GcodeDialect dialect, double chord_error)
 {
-    const Job& job = plan.job;
+    const job::Job& job = plan.job;
     const double mm = job.units.mm();
     const std::string theta = fixed(job.theta * 180 / std::numbers::pi);
     out << "(fettle-plan: layer 1, tool points: the wheel's lowest line at mid-width)\n"
         << "(wheel radius " << fixed(job.wheel.radius / mm) << ", width " << fixed(job.wheel.width / mm)
         << ", chord error " << fixed(chord_error / mm) << ")\n"
         << "(machine frame: no offset in G54)\n"
-        << (job.units.length == Units::Length::in ? "G20\n" : "G21\n") << "G17 G40 G49 G54 G80 G90 G94\n";
+        << (job.units.length == units::Units::Length::in ? "G20\n" : "G21\n") << "G17 G40 G49 G54 G80 G90 G94\n";
     if (dialect == GcodeDialect::linuxcnc) out << "G64 P" << fixed(chord_error / mm) << "\n";
     out << "F" << fixed(job.feed.rate * 60 / mm) << "\n"
         << "G0 Z" << fixed(job.safe_height / mm) << "\n";
@@ -78,11 +80,10 @@ void write_gcode(std::ostream& out, const Plan& plan, const ToolPath& path, Gcod
             const int first = pass.starts[i];
             const int last = (i + 1 < intervals ? pass.starts[i + 1] : int(pass.points.size())) - 1;
             std::vector<Eigen::Vector3d> points(pass.points.begin() + first, pass.points.begin() + last + 1);
-            if (!forwards) std::reverse(points.begin(), points.end());
+            if (!forwards) std::ranges::reverse(points);
             out << "G0 X" << fixed(points[0].x() / mm) << " Y" << fixed(points[0].y() / mm) << "\n"
                 << "G1 Z" << fixed(points[0].z() / mm) << "\n";
-            for (const int end : thinned(points, 0, int(points.size()) - 1, chord_error))
-                out << "G1 " << words(points[end], mm) << "\n";
+            for (const int end : move_ends(points, chord_error)) out << "G1 " << words(points[end], mm) << "\n";
             out << "G0 Z" << safe << "\n";
         }
         forwards = !forwards;
@@ -90,4 +91,4 @@ void write_gcode(std::ostream& out, const Plan& plan, const ToolPath& path, Gcod
     out << "M30\n";
 }
 
-} // namespace fettle
+} // namespace fettle::plan

@@ -2,20 +2,18 @@
 
 #include <cmath>
 
-namespace fettle {
+namespace fettle::plan {
 
-Layers layers_of(const ForceRange& force)
+Layers compute_layers(const job::ForceRange& force)
 {
-    // Forces in lbf or N that were meant to be equal differ by rounding.
-    constexpr double kSameForce = 1e-12;
+    // Equal forces may differ by the rounding of the conversion from lbf.
+    constexpr double kRelativeForceRounding = 1e-12;
     const double mean = 0.5 * (force.min + force.max);
-    const bool equal = std::abs(force.down - mean) <= kSameForce * force.max;
-    return {(force.max - force.min) / force.stiffness, (force.max - force.down) / force.stiffness,
-            equal               ? 3
-            : force.down > mean ? 1
-                                : 2};
+    const bool equal = std::abs(force.down - mean) <= kRelativeForceRounding * force.max;
+    const int overlap_case = equal ? 3 : (force.down > mean ? 1 : 2);
+    return {(force.max - force.min) / force.stiffness, (force.max - force.down) / force.stiffness, overlap_case};
 }
 
 double reference_offset(const Layers& layers, int layer) { return (layer - 1) * layers.distance; }
 
-} // namespace fettle
+} // namespace fettle::plan

@@ -11,44 +11,48 @@
 #include <string>
 #include <vector>
 
-namespace fettle {
+namespace fettle::plan {
 
-/// No loop of the strategy is endless: reaching one of these is an error with the state reported.
-struct Bounds {
-    int layers = 0;          ///< the highest; its reference surface is still below the safe height
-    int re_cuts = 200;       ///< of one cut. A cut halves what stands over its reference, give or take
-    int coverings = 100;     ///< of layer 1
-    double time = 48 * 3600; ///< of the machine, s
-    int steps = 5000000;     ///< force readings
+/// Limits of the strategy's loops. Exceeding one is an error, with a report of the state.
+struct StrategyLimits {
+    int layers = 0;          ///< highest layer: its reference surface is still below the safe height
+    int re_cuts = 200;       ///< repetitions of one cut, each of which removes about half of the height error
+    int coverings = 100;     ///< repetitions of layer 1
+    double time = 48 * 3600; ///< machine time, s
+    int steps = 5000000;     ///< number of force readings
 };
 
-/// Between the passes this share of the tolerance may stand; the rest is for what the strategy leaves under the wheel.
-inline constexpr double kLeftoverPerTolerance = 0.5;
+/// Scallop height between the passes as a fraction of the tolerance. The rest is for the error under the wheel.
+inline constexpr double kScallopPerTolerance = 0.5;
 
-/// Everything that the strategy needs to grind one region ("kind": "plan"). mm, N; points in the frame M.
+/// The input of the strategy for one region ("kind": "plan"). mm, N; points in the frame M.
 struct Plan {
-    Job job;
-    Surface surface; ///< desired, after the shift
+    job::Job job;
+    surface::Surface surface; ///< desired surface, after the shift
     Layers layers;
     Eigen::Vector3d start;    ///< initial point, on the boundary of B (Wang 2007, eq. 5-4 to 5-6)
     std::vector<Pass> passes; ///< in the pass frame (plan/wheel_section.h)
-    double step = 0.5;        ///< between two readings of the force, mm: 50 a second at 1 in/s
-    Bounds bounds;
+    double step = 0.5;        ///< distance between force readings, mm: 50 per second at 1 in/s
+    StrategyLimits bounds;
 };
 
-/// @throws InputError if the wheel does not fit the surface, or the safe height does not clear it
-Plan make_plan(const Job& job, const Surface& surface);
+/// Plans the layers and passes of a job.
+/// @throws InputError if the wheel does not fit the surface, or the safe height is not above it
+Plan make_plan(const job::Job& job, const surface::Surface& surface);
 
+/// @throws InputError with the key's path; also if layers or passes do not agree with the job
 Plan read_plan(const std::string& path);
 Plan parse_plan(json::Reader reader);
 
-/// What a machine is set up for: a plan's job, or a job for which there is no plan yet.
-struct Work {
-    Job job;
-    bool planned = false;
+/// A job from a file of either kind, "job" or "plan".
+struct JobOrPlan {
+    job::Job job;
+    bool is_plan = false;
 };
-/// Reads a plan or a job.
-Work read_work(const std::string& path);
+JobOrPlan read_job_or_plan(const std::string& path);
 json::Value to_json(const Plan& plan);
 
-} // namespace fettle
+/// Report of a plan: layers, passes, and the length and the time of one covering, in the job's units.
+json::Value report_json(const Plan& plan);
+
+} // namespace fettle::plan

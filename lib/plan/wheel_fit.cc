@@ -2,39 +2,39 @@
 
 #include "core/error.h"
 #include "core/text.h"
+#include "geometry/bounding_box.h"
 #include "job/boundary.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace fettle {
+namespace fettle::plan {
 
 namespace {
 
-// B is looked at every quarter of the wheel's smaller dimension, but no finer than this across.
-constexpr double kPlacesPerWheel = 4;
-constexpr int kMostPlacesAcross = 64;
-// Curvature is taken over this share of the wheel's dimension: shorter bumps, the wheel bridges.
-constexpr double kCurvatureSpan = 0.03125;
-// Surfaces are fitted to touches; a radius equal to the wheel's within rounding fits.
-constexpr double kRounding = 1e-9;
+// Number of test points per smaller dimension of the wheel, and their largest number along a side of B.
+constexpr double kPointsPerWheel = 4;
+constexpr int kMaxPointsPerSide = 64;
+// Step of the finite differences for curvatures, relative to the wheel's dimension.
+constexpr double kRelativeStep = 0.03125;
+// Relative rounding: a fitted surface with exactly the wheel's radius must pass.
+constexpr double kRelativeRounding = 1e-9;
 
-// Points of W inside B: its corners and a lattice.
-Eigen::Matrix2Xd places_inside(const Polygon& region, double spacing)
+// Test points in W: the corners of B and a lattice inside.
+Eigen::Matrix2Xd test_points(const job::Polygon& region, double spacing)
 {
-    const Eigen::Vector2d low = region.rowwise().minCoeff(), size = region.rowwise().maxCoeff() - low;
-    const double step = std::max(spacing, size.maxCoeff() / kMostPlacesAcross);
-    std::vector<Eigen::Vector2d> places;
-    for (Eigen::Index i = 0; i < region.cols(); ++i) places.emplace_back(region.col(i));
+    const Eigen::AlignedBox2d box = geometry::bounding_box(region);
+    const Eigen::Vector2d low = box.min(), size = box.sizes();
+    const double step = std::max(spacing, size.maxCoeff() / kMaxPointsPerSide);
+    std::vector<Eigen::Vector2d> points;
+    for (Eigen::Index i = 0; i < region.cols(); ++i) points.emplace_back(region.col(i));
     for (double y = low.y(); y <= low.y() + size.y(); y += step)
         for (double x = low.x(); x <= low.x() + size.x(); x += step)
-            if (contains(region, {x, y})) places.emplace_back(x, y);
-    Eigen::Matrix2Xd result(2, Eigen::Index(places.size()));
-    for (std::size_t i = 0; i < places.size(); ++i) result.col(Eigen::Index(i)) = places[i];
-    return result;
+            if (job::contains(region, {x, y})) points.emplace_back(x, y);
+    return Eigen::Map<Eigen::Matrix2Xd>(points[0].data(), 2, points.size());
 }
 
-// Of the vertical sections through the points, positive in a hollow, 1/mm. @param h  distance of before, here, after
+// Curvatures of vertical sections through the points, positive if concave, 1/mm. @param h  step of the differences, mm
 Eigen::ArrayXd curvatures(const Eigen::ArrayXd& here, const Eigen::ArrayXd& before, const Eigen::ArrayXd& after,
                           double h)
 {
@@ -44,37 +44,39 @@ Eigen::ArrayXd curvatures(const Eigen::ArrayXd& here, const Eigen::ArrayXd& befo
 
 } // namespace
 
-void check_wheel_fits(const Job& job, const Surface& surface)
+void check_wheel_fits(const job::Job& job, const surface::Surface& surface)
 {
     const double radius = job.wheel.radius, width = job.wheel.width;
-    const Eigen::Matrix2d machine_working = rotation_working_machine(job.theta).transpose();
+    const Eigen::Matrix2d machine_working = job::rotation_working_machine(job.theta).transpose();
     const Eigen::Matrix2Xd xy =
-        machine_working * places_inside(boundaries(job).anomaly, std::min(radius, width) / kPlacesPerWheel);
-    const Eigen::VectorXd z = heights(surface, xy);
+        machine_working * test_points(job::working_boundaries(job).anomaly, std::min(radius, width) / kPointsPerWheel);
+    const Eigen::VectorXd z = surface::heights(surface, xy);
     for (Eigen::Index i = 0; i < z.size(); ++i)
         if (std::isnan(z[i]))
-            throw InputError(job.source,
-                             "the surface is not defined at " + place(xy.col(i), job.units) + " inside the anomaly");
+            throw core::InputError(job.source, "the surface is not defined at " +
+                                                   job::point_text(xy.col(i), job.units) + " inside the anomaly");
 
-    const auto beside = [&](int axis, double distance) -> Eigen::VectorXd {
-        return heights(surface, xy.colwise() + distance * machine_working.col(axis));
+    const auto curvatures_along = [&](int axis, double h) {
+        const Eigen::Vector2d step = h * machine_working.col(axis);
+        return curvatures(z, surface::heights(surface, xy.colwise() - step),
+                          surface::heights(surface, xy.colwise() + step), h);
     };
-    const Eigen::ArrayXd hollow =
-        curvatures(z, beside(1, -kCurvatureSpan * radius), beside(1, kCurvatureSpan * radius), kCurvatureSpan * radius);
-    const Eigen::ArrayXd bend =
-        curvatures(z, beside(0, -kCurvatureSpan * width), beside(0, kCurvatureSpan * width), kCurvatureSpan * width);
-    const auto in_units = [&](double length) { return to_short_text(length / job.units.mm()); };
+    const Eigen::ArrayXd in_plane = curvatures_along(1, kRelativeStep * radius);
+    const Eigen::ArrayXd along_axis = curvatures_along(0, kRelativeStep * width);
+    const auto in_units = [&](double length) { return core::to_short_text(length / job.units.mm()); };
     for (Eigen::Index i = 0; i < z.size(); ++i) {
-        if (hollow[i] * radius > 1 + kRounding)
-            throw InputError(job.source, "wheel.radius: " + in_units(radius) + " does not fit the hollow of radius " +
-                                             in_units(1 / hollow[i]) + " at " + place(xy.col(i), job.units));
-        const double sag = width * width * std::abs(bend[i]) / 8;
-        if (sag > job.tolerance * (1 + kRounding))
-            throw InputError(job.source, "wheel.width: " + in_units(width) + " across a curvature of radius " +
-                                             in_units(1 / std::abs(bend[i])) + " at " + place(xy.col(i), job.units) +
-                                             " stands off by " + in_units(sag) + ", more than the tolerance " +
-                                             in_units(job.tolerance));
+        if (in_plane[i] * radius > 1 + kRelativeRounding)
+            throw core::InputError(job.source, "wheel.radius: " + in_units(radius) +
+                                                   " does not fit the hollow of radius " + in_units(1 / in_plane[i]) +
+                                                   " at " + job::point_text(xy.col(i), job.units));
+        const double sag = width * width * std::abs(along_axis[i]) / 8;
+        if (sag > job.tolerance * (1 + kRelativeRounding))
+            throw core::InputError(job.source, "wheel.width: " + in_units(width) + " across a curvature of radius " +
+                                                   in_units(1 / std::abs(along_axis[i])) + " at " +
+                                                   job::point_text(xy.col(i), job.units) + " stands off by " +
+                                                   in_units(sag) + ", more than the tolerance " +
+                                                   in_units(job.tolerance));
     }
 }
 
-} // namespace fettle
+} // namespace fettle::plan

@@ -3,12 +3,12 @@
 #include "job/job.h"
 #include "surface/surface.h"
 
-namespace fettle {
+namespace fettle::plan {
 
-/// Can the wheel grind this surface inside B (Wang 2007, 3.4)? Its radius must not exceed the radius of a hollow in its
-/// plane, and on a surface that is curved along its axis, radius R, its edges may stand off (or in) by the tolerance at
-/// most: width²/8R.
-/// @throws InputError if not, with the place and the two values; also if the surface is not defined inside B
-void check_wheel_fits(const Job& job, const Surface& surface);
+/// Checks that the wheel can grind this surface inside B (Wang 2007, 3.4). Its radius must not exceed the radius of a
+/// concave section in its plane. On a surface with the radius of curvature R along its axis, the sag over its width,
+/// width²/8R, must be within the tolerance.
+/// @throws InputError if not, with the position and the two values; also if the surface is not defined inside B
+void check_wheel_fits(const job::Job& job, const surface::Surface& surface);
 
-} // namespace fettle
+} // namespace fettle::plan

@@ -4,13 +4,13 @@
 #include <cmath>
 #include <limits>
 
-namespace fettle {
+namespace fettle::removal {
 namespace {
 
-/// Newton's method on a piecewise linear function ends exactly, up to a few roundings of heights.
-constexpr double kRounding = 32 * std::numeric_limits<double>::epsilon();
-/// Each step either ends or leaves cells behind for good; a few suffice. A bound against NaN.
-constexpr int kMostSteps = 200;
+/// Newton's method on a piecewise linear function ends exactly, up to a few roundings relative to the heights.
+constexpr double kRelativeRounding = 32 * std::numeric_limits<double>::epsilon();
+/// Each step either ends or excludes cells for good, so a few suffice. The bound guards against NaN.
+constexpr int kMaxNewtonSteps = 200;
 
 } // namespace
 
@@ -20,19 +20,18 @@ Balance press(const WheelInStock& wheel, const Spring& spring, double z_stop, do
 
     // g(z) = lift(z) − c dt F(z) is convex and falls: from its left Newton's method climbs to the root without
     // passing it, from its right the first step lands on the left or at the stop.
-    const double rounding = kRounding * (std::abs(z_stop) + std::abs(wheel.touch()) + 1);
+    const double rounding = kRelativeRounding * (std::abs(z_stop) + std::abs(wheel.touch()) + 1);
     double z = std::clamp(guess, z_stop, wheel.touch());
     for (int step = 0;; ++step) {
         const WheelInStock::Overlap overlap = wheel.overlap(z);
-        const double wanted = c_dt * spring.force(z - z_stop);
-        const double g = overlap.lift - wanted;
+        const double g = overlap.lift - c_dt * spring.force(z - z_stop);
         const double push = overlap.push / c_dt;
         if (z <= z_stop && g <= 0) return {z_stop, overlap.lift / c_dt, overlap.volume, push};
         const double next = std::max(z + g / (overlap.area + c_dt * spring.stiffness), z_stop);
-        if (std::abs(next - z) <= rounding || step == kMostSteps)
+        if (std::abs(next - z) <= rounding || step == kMaxNewtonSteps)
             return {z, spring.force(z - z_stop), overlap.volume, push};
         z = next;
     }
 }
 
-} // namespace fettle
+} // namespace fettle::removal

@@ -2,18 +2,18 @@
 
 #include "removal/wheel.h"
 
-namespace fettle {
+namespace fettle::removal {
 
 /// The spring of the head, compressed in its housing: it can only be compressed more (Wang 2007, 6.1.3).
 struct Spring {
     double preload = 0;   ///< N
     double stiffness = 0; ///< N/mm
 
-    /// With the wheel off its stop by `deflection` ≥ 0, upward.
+    /// Force with the wheel off its stop by `deflection` ≥ 0, upward.
     double force(double deflection) const { return preload + stiffness * deflection; }
 };
 
-/// Where the wheel comes to rest against the stock.
+/// Equilibrium of the wheel against the stock.
 struct Balance {
     double z_tip = 0;  ///< of the wheel's lowest line, mm
     double force = 0;  ///< N
@@ -31,4 +31,4 @@ struct Balance {
 /// @param guess   of z_tip
 Balance press(const WheelInStock& wheel, const Spring& spring, double z_stop, double c_dt, double guess);
 
-} // namespace fettle
+} // namespace fettle::removal

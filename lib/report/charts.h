@@ -1,32 +1,33 @@
 #pragma once
 
 #include "cloud/cloud.h"
+#include "draw/html.h"
 #include "job/job.h"
-#include "report/html.h"
 #include "report/run_files.h"
 
 #include <optional>
 #include <string>
 
-/// The charts of a page, as drawings in SVG.
-namespace fettle {
+/// Charts of a report page, as SVG drawings.
+namespace fettle::report {
 
-/// Where the judged errors lie between the tolerances: the whole range, the middle 98 %, the mean.
-Html error_gauge(const Figures& judged, double tolerance, const std::string& unit);
+/// Range, 1st to 99th percentile and mean of the judged errors relative to the tolerance. @param unit  for the labels
+draw::Html error_gauge(const NamedNumbers& judged, double tolerance, const std::string& unit);
 
-/// How many errors lie where. @param limit  the bins are of equal width from -limit to limit; no fewer than one bin
+/// Histogram of the errors.
+/// @param counts  of bins of equal width from -limit to limit, at least one   @param below, above  counts beyond them
 /// @param tolerance  0: none
-Html error_histogram(const std::vector<double>& counts, double limit, double below, double above, double tolerance,
-                     const std::string& unit);
+draw::Html error_histogram(const std::vector<double>& counts, double limit, double below, double above,
+                           double tolerance, const std::string& unit);
 
-/// Force, layer and feed of a trace against the time, with what happened besides. @param job  for the force's bounds
-Html trace_chart(const Cloud& trace, const std::optional<Job>& job, const Units& units);
+/// Force, layer and feed of a trace over time, with the events. @param job  gives the force limits
+draw::Html trace_chart(const cloud::Cloud& trace, const std::optional<job::Job>& job, const units::Units& units);
 
-/// B, S, touches and passes, from above and to scale; the run has a job.
 struct Sketch {
-    Html drawing;
-    bool narrow = false; ///< as wide as half of the page
+    draw::Html drawing;
+    bool narrow = false; ///< half as wide as the page
 };
+/// The boundaries B and S, the touches and the passes in plan view, to scale. The run must have a job.
 Sketch job_sketch(const RunFiles& run);
 
-} // namespace fettle
+} // namespace fettle::report

@@ -4,13 +4,13 @@
 
 #include <string>
 
-namespace fettle {
+namespace fettle::report {
 
-/// One self-contained page (HTML 5, UTF-8) about a run: verdict, job, touches and fit, margin, plan, grinding, maps,
-/// statistics, provenance. What was not read is left out. Every number that an input holds carries its key and its full
-/// value (`data-key`, `data-value`). The same bytes for the same input.
-/// @param title  headline; empty: a plain one   @param version  of the suite
+/// Self-contained report page (HTML 5, UTF-8) of a run: verdict, job, touches and fit, margin, plan, grinding, maps,
+/// statistics, provenance. Sections without data are left out. Every number from an input has its key and its full
+/// value as attributes (`data-key`, `data-value`). The output is deterministic.
+/// @param title  headline; empty: a default   @param version  version of the suite
 /// @throws InputError if a part or an error map has no point that can be drawn
 std::string report_page(const RunFiles& run, const std::string& title, const std::string& version);
 
-} // namespace fettle
+} // namespace fettle::report

@@ -1,68 +1,76 @@
 #include "report/run_files.h"
 
 #include "cloud/pcd.h"
+#include "cloud/pcd_header.h"
 #include "core/constants.h"
+#include "core/digest.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/text.h"
 #include "diff/diff.h"
-#include "report/checksum.h"
+#include "strategy/trace_file.h"
 #include "json/document.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace fettle {
+namespace fettle::report {
 namespace {
 
-/// Reads a file once, for all that is told of it.
+const std::string kTraceRole = "trace";
+
+/// Reads each file once, for its content, size and checksum.
 class Files {
   public:
     struct Content {
         std::string bytes, source;
     };
-    Content read(const std::string& what, const std::string& path, std::size_t most = std::string::npos)
+    Content read(const std::string& role, const std::string& path, std::size_t max_bytes = std::string::npos)
     {
-        Content content = {read_whole(path, most), display_name(path)};
-        known_.push_back({what, content.source, content.bytes.size(), sha256(content.bytes)});
+        Content content = {core::read_file(path, max_bytes), core::display_name(path)};
+        sources_.push_back({role, content.source, content.bytes.size(), core::sha256(content.bytes)});
         return content;
     }
-    json::Reader json(const std::string& what, const std::string& path)
+    json::Reader json(const std::string& role, const std::string& path)
     {
-        const Content content = read(what, path, kMostJson);
+        const Content content = read(role, path, core::kMaxJsonBytes);
         return json::Reader::parse(content.bytes, content.source);
     }
-    std::vector<SourceFile> known() && { return std::move(known_); }
+    std::vector<SourceFile> sources() && { return std::move(sources_); }
 
   private:
-    std::vector<SourceFile> known_;
+    std::vector<SourceFile> sources_;
 };
 
 double number_or_nan(json::Reader& reader, const std::string& key)
 {
-    return reader.has(key) && reader.is_null(key) ? kNaN : reader.number(key);
+    return reader.has(key) && reader.is_null_or_missing(key) ? core::kNaN : reader.number(key);
 }
 
-Figures statistics_of(json::Reader& reader)
+NamedNumbers read_numbers(json::Reader& reader, std::initializer_list<const char*> keys)
 {
-    Figures numbers;
-    for (const char* key :
-         {"count", "undefined", "mean", "mean_abs", "rms", "sd", "min", "max", "band", "p01", "p05", "p50", "p95",
-          "p99", "within", "over_cut_area", "under_cut_area", "over_cut_volume", "under_cut_volume"})
-        numbers[key] = number_or_nan(reader, key);
+    NamedNumbers numbers;
+    for (const char* key : keys) numbers[key] = number_or_nan(reader, key);
     return numbers;
 }
 
-ComparisonReport comparison_of(json::Reader& reader)
+NamedNumbers read_statistics(json::Reader& reader)
+{
+    return read_numbers(reader, {"count", "undefined", "mean", "mean_abs", "rms", "sd", "min", "max", "band", "p01",
+                                 "p05", "p50", "p95", "p99", "within", "over_cut_area", "under_cut_area",
+                                 "over_cut_volume", "under_cut_volume"});
+}
+
+ComparisonReport read_comparison(json::Reader& reader)
 {
     ComparisonReport report;
-    report.regions.emplace_back("all", statistics_of(reader));
-    if (std::optional<json::Reader> regions = reader.object_or_none("regions"))
+    report.regions.emplace_back("all", read_statistics(reader));
+    if (std::optional<json::Reader> regions = reader.optional_object("regions"))
         for (const char* name : {"inside", "around", "outside"})
-            if (std::optional<json::Reader> region = regions->object_or_none(name))
-                report.regions.emplace_back(name, statistics_of(*region));
-    if (std::optional<json::Reader> histogram = reader.object_or_none("histogram")) {
-        report.limit = histogram->number("limit", Range::positive());
+            if (std::optional<json::Reader> region = regions->optional_object(name))
+                report.regions.emplace_back(name, read_statistics(*region));
+    if (std::optional<json::Reader> histogram = reader.optional_object("histogram")) {
+        report.limit = histogram->number("limit", core::Range::positive());
         report.below = histogram->number("below");
         report.above = histogram->number("above");
         const Eigen::VectorXd counts = histogram->vector("counts");
@@ -72,159 +80,178 @@ ComparisonReport comparison_of(json::Reader& reader)
     report.within = reader.choice("verdict", {"within", "out of tolerance"}) == "within";
     report.reversed = reader.has("reverse");
     report.judged = reader.choice("judged", {"all", "inside"});
-    report.tolerance = reader.number("tolerance", Range::at_least(0));
+    report.tolerance = reader.number("tolerance", core::Range::at_least(0));
     report.worst = number_or_nan(reader, "worst");
     if (report.judged == "inside" && (report.regions.size() == 1 || report.regions[1].first != report.judged))
         reader.refuse("judged", "there is no region 'inside'");
     return report;
 }
 
-AlignmentReport alignment_of(json::Reader& reader)
+AlignmentReport read_alignment(json::Reader& reader)
 {
-    AlignmentReport report;
-    for (const char* key : {"count", "overlap", "max_distance", "median", "p95", "rms", "determined"})
-        report.numbers[key] = number_or_nan(reader, key);
+    const NamedNumbers numbers =
+        read_numbers(reader, {"count", "overlap", "max_distance", "median", "p95", "rms", "determined"});
     const Eigen::MatrixXd rows = reader.matrix("transform", 4);
     if (rows.rows() != 4) reader.refuse("transform", "expected 4 rows");
-    report.transform = rows;
-    return report;
+    return {numbers, rows, reader.text_or("doubt", "")};
 }
 
-FormReport form_of(json::Reader& reader)
+FormReport read_form(json::Reader& reader)
 {
     FormReport report;
     report.form = reader.text("form");
     report.parameter = reader.text_or("parameter", "");
-    for (const char* key : {"count", "dropped", "outliers", "least_squares", "minimum_zone"})
-        report.numbers[key] = number_or_nan(reader, key);
+    report.numbers = read_numbers(reader, {"count", "dropped", "outliers", "least_squares", "minimum_zone"});
     return report;
 }
 
-GrindReport grinding_of(json::Reader& reader)
+GrindReport read_grinding(json::Reader& reader)
 {
     GrindReport report;
     if (!reader.has("finished")) reader.refuse("finished", "missing");
     report.finished = reader.flag_or("finished", false);
-    for (const char* key :
-         {"removed_volume", "machine_time", "grinding_time", "travel_time", "service_time", "layers", "coverings",
-          "re_cuts", "raises", "passes", "steps", "peak_force", "touch_offs", "wheel_changes", "wheel_radius"})
-        report.numbers[key] = number_or_nan(reader, key);
+    report.numbers = read_numbers(reader, {"removed_volume", "machine_time", "grinding_time", "travel_time",
+                                           "service_time", "layers", "coverings", "re_cuts", "raises", "passes",
+                                           "steps", "peak_force", "touch_offs", "wheel_changes", "wheel_radius"});
     return report;
 }
 
-void require(const Cloud& cloud, const std::vector<std::string>& fields, const std::string& source)
+void require(const cloud::Cloud& cloud, const std::vector<std::string>& fields, const std::string& source)
 {
     try {
-        for (const std::string& name : fields) field(cloud, name);
-    } catch (const InputError& error) {
-        throw InputError(source, error.what());
+        for (const std::string& name : fields) cloud::field(cloud, name);
+    } catch (const core::InputError& error) {
+        throw core::InputError(source, error.what());
     }
 }
 
-/// Time goes on, and layers are numbers from 1.
-void check_trace(const Cloud& trace, const std::string& source)
+/// Checks that time does not decrease and that layers are numbered from 1.
+void check_trace(const cloud::Cloud& trace, const std::string& source)
 {
-    const Eigen::VectorXd t = field(trace, "t"), layer = field(trace, "layer");
-    constexpr double kMostLayers = 1e6; // a plan's are bounded by the safe height
+    const Eigen::VectorXd t = cloud::field(trace, "t"), layer = cloud::field(trace, "layer");
+    constexpr double kMaxLayers = 1e6; // far above those of a plan, which the safe height bounds
     for (Eigen::Index i = 0; i < t.size(); ++i) {
         const std::string point = "point " + std::to_string(i) + ": ";
         if (!(t[i] >= (i == 0 ? 0 : t[i - 1])) || !std::isfinite(t[i]))
-            throw InputError(source, point + "t does not go on: " + to_short_text(t[i]));
-        if (!(layer[i] >= 1 && layer[i] <= kMostLayers))
-            throw InputError(source, point + "there is no layer " + to_short_text(layer[i]));
+            throw core::InputError(source, point + "t decreases or is not finite: " + core::to_short_text(t[i]));
+        if (!(layer[i] >= 1 && layer[i] <= kMaxLayers))
+            throw core::InputError(source, point + "there is no layer " + core::to_short_text(layer[i]));
     }
 }
 
-/// Do two documents say the same, but for what changes of units round?
-bool same(const json::Value& a, const json::Value& b)
+/// Are two documents equal up to the rounding of unit conversions?
+bool equal(const json::Value& a, const json::Value& b)
 {
-    constexpr Tolerance kRounding = {.absolute = 0, .relative = 1e-9};
-    return difference(a.text(), "", b.text(), "", kRounding).equal();
+    constexpr diff::Tolerance kTolerance = {.absolute = 0, .relative = 1e-9};
+    return diff::compare_contents(a.text(), "", b.text(), "", kTolerance).equal();
 }
 
-/// A plan carries its job and its surface: those that are named should be the same.
-std::vector<std::string> doubts(const RunFiles& run, const RunFileNames& names)
+/// A plan contains its job and its surface. Warns if the given files differ from them.
+std::vector<std::string> mismatch_warnings(const RunFiles& run, const RunFileNames& names)
 {
-    std::vector<std::string> found;
-    if (!run.plan) return found;
-    if (run.job && !same(to_json(*run.job), to_json(run.plan->job)))
-        found.push_back(names.plan + ": made for another job than " + names.job);
-    if (run.surface && !same(to_json(*run.surface), to_json(run.plan->surface)))
-        found.push_back(names.plan + ": made for another surface than " + names.surface);
-    return found;
+    std::vector<std::string> warnings;
+    if (!run.plan) return warnings;
+    if (run.job && !equal(job::to_json(*run.job), job::to_json(run.plan->job)))
+        warnings.push_back(names.plan + ": made for another job than " + names.job);
+    if (run.surface && !equal(surface::to_json(*run.surface), surface::to_json(run.plan->surface)))
+        warnings.push_back(names.plan + ": made for another surface than " + names.surface);
+    return warnings;
+}
+
+/// What a run has completed of its trace. Warns if that is not all of it: the run was killed, or the file was cut.
+std::string take_whole_rows(const std::string& bytes, const std::string& source, std::vector<std::string>& warnings)
+{
+    if (!cloud::looks_like_pcd(bytes)) return bytes;
+    strategy::WholeRows whole = strategy::whole_rows(bytes, source);
+    if (!whole.cut.empty()) warnings.push_back(source + ": " + whole.cut);
+    return std::move(whole.pcd);
+}
+
+/// The last point of a run that was killed says where the machine was to go, not what it did.
+void drop_unfinished_action(cloud::Cloud& trace, const std::string& source, std::vector<std::string>& warnings)
+{
+    const Eigen::VectorXd event = cloud::field(trace, "event");
+    if (event.size() == 0 || event[event.size() - 1] != double(strategy::Event::in_progress)) return;
+    trace = cloud::slice(trace, 0, trace.size() - 1);
+    warnings.push_back(source + ": the run was killed in the middle of a move, which is left out");
 }
 
 } // namespace
 
-const Figures& ComparisonReport::region(const std::string& name) const
+const NamedNumbers& ComparisonReport::region(const std::string& name) const
 {
-    return std::find_if(regions.begin(), regions.end(), [&](const auto& of) { return of.first == name; })->second;
+    return std::ranges::find(regions, name, &std::pair<std::string, NamedNumbers>::first)->second;
 }
 
 RunFiles read_run(const RunFileNames& names)
 {
     Files files;
     RunFiles run;
-    std::optional<Units> units; // once a file has said them
-    const auto agree = [&](const Units& stated, const std::string& path) {
+    std::optional<units::Units> units; // those of the first file that states them
+    const auto agree = [&](const units::Units& stated, const std::string& path) {
         if (units && units->length != stated.length)
-            throw InputError(display_name(path),
-                             "in " + to_string(stated.length) + ", but the run is in " + to_string(units->length));
+            throw core::InputError(core::display_name(path), "in " + units::to_string(stated.length) +
+                                                                 ", but the run is in " +
+                                                                 units::to_string(units->length));
         if (!units) units = stated;
     };
-    const auto cloud = [&](const std::string& what, const std::string& path, const std::vector<std::string>& fields) {
-        const Files::Content content = files.read(what, path);
-        CloudFile file = parse_cloud(content.bytes, content.source, units);
+    const auto cloud = [&](const std::string& role, const std::string& path, const std::vector<std::string>& fields) {
+        Files::Content content = files.read(role, path);
+        if (role == kTraceRole) content.bytes = take_whole_rows(content.bytes, content.source, run.warnings);
+        cloud::CloudFile file = cloud::parse_cloud(content.bytes, content.source, units);
         agree(file.units, path);
         require(file.cloud, fields, content.source);
         return std::move(file.cloud);
     };
-    const auto part = [&](const std::string& what, const std::string& path,
-                          const std::optional<Units::Length>& stated) -> MeshOrCloud {
-        const Files::Content content = files.read(what, path);
-        return parse_shape(content.bytes, content.source, units_of(stated, units)).shape;
+    const auto part = [&](const std::string& role, const std::string& path,
+                          const std::optional<units::Units::Length>& stated) -> mesh::MeshOrCloud {
+        const Files::Content content = files.read(role, path);
+        return mesh::parse_shape(content.bytes, content.source, mesh::resolve_file_units(stated, units)).shape;
     };
-    const auto report = [&](const std::string& what, const std::string& kind, const std::string& path,
+    const auto report = [&](const std::string& role, const std::string& kind, const std::string& path,
                             const auto& content) {
-        json::Reader reader = files.json(what, path);
+        json::Reader reader = files.json(role, path);
         reader.expect_kind(kind);
         json::Reader stated = reader.object("units");
-        agree({parse_length_unit(stated.choice("length", {"mm", "in", "m"})),
-               stated.has("force") ? parse_force_unit(stated.choice("force", {"N", "lbf"})) : Units{}.force},
+        agree({units::parse_length_unit(stated.choice("length", {"mm", "in", "m"})),
+               stated.has("force") ? units::parse_force_unit(stated.choice("force", {"N", "lbf"}))
+                                   : units::Units{}.force},
               path);
         return content(reader);
     };
     if (!names.job.empty()) {
-        run.job = parse_job(files.json("job", names.job));
+        run.job = job::parse_job(files.json("job", names.job));
         units = run.job->units;
     }
     if (!names.plan.empty()) {
-        run.plan = parse_plan(files.json("plan", names.plan));
+        run.plan = plan::parse_plan(files.json("plan", names.plan));
         agree(run.plan->job.units, names.plan);
     }
     if (!names.surface.empty()) {
-        run.surface = parse_surface(files.json("desired surface", names.surface));
+        run.surface = surface::parse_surface(files.json("desired surface", names.surface));
         agree(run.surface->units, names.surface);
     }
-    run.doubts = doubts(run, names);
+    run.warnings = mismatch_warnings(run, names);
     if (run.plan && !run.job) run.job = run.plan->job;
     if (run.plan && !run.surface) run.surface = run.plan->surface;
     if (!names.samples.empty()) run.samples = cloud("touches", names.samples, {});
-    if (!names.grinding.empty()) run.grinding = report("grinding", "grinding", names.grinding, grinding_of);
+    if (!names.grinding.empty()) run.grinding = report("grinding", "grinding", names.grinding, read_grinding);
     if (!names.trace.empty()) {
-        run.trace = cloud("trace", names.trace, {"t", "layer", "event", "force", "feed"});
-        check_trace(*run.trace, display_name(names.trace));
+        run.trace = cloud(kTraceRole, names.trace, {"t", "layer", "event", "force", "feed"});
+        drop_unfinished_action(*run.trace, core::display_name(names.trace), run.warnings);
+        check_trace(*run.trace, core::display_name(names.trace));
     }
     if (!names.errors.empty()) run.errors = cloud("error map", names.errors, {"error"});
-    if (!names.comparison.empty()) run.comparison = report("comparison", "comparison", names.comparison, comparison_of);
-    if (!names.alignment.empty()) run.alignment = report("registration", "alignment", names.alignment, alignment_of);
-    if (!names.form.empty()) run.form = report("form", "form", names.form, form_of);
+    if (!names.comparison.empty())
+        run.comparison = report("comparison", "comparison", names.comparison, read_comparison);
+    if (!names.alignment.empty()) run.alignment = report("registration", "alignment", names.alignment, read_alignment);
+    if (!names.form.empty()) run.form = report("form", "form", names.form, read_form);
     if (!names.before.empty()) run.before = part("part before", names.before, names.before_units);
     if (!names.after.empty()) run.after = part("part after", names.after, std::nullopt);
-    run.units = units.value_or(Units{});
-    run.sources = std::move(files).known();
-    if (run.sources.empty()) throw InputError("nothing to report: name at least one file of the run");
+    run.units = units.value_or(units::Units{});
+    run.sources = std::move(files).sources();
+    if (run.sources.empty()) throw core::InputError("nothing to report: name at least one file of the run");
     return run;
 }
 
-} // namespace fettle
+} // namespace fettle::report

@@ -13,80 +13,80 @@
 #include <utility>
 #include <vector>
 
-namespace fettle {
+namespace fettle::report {
 
-/// Numbers of a report by their keys, as they stand there: in the units of its file. What was null is NaN.
-using Figures = std::map<std::string, double>;
+/// Numbers of a JSON report by key, in the units of its file; null is NaN.
+using NamedNumbers = std::map<std::string, double>;
 
-/// What fettle-compare reports.
+/// Report of fettle-compare.
 struct ComparisonReport {
-    std::vector<std::pair<std::string, Figures>> regions; ///< "all" first, then those of the job
-    std::string judged;                                   ///< the region; empty: no tolerance, no verdict
-    bool reversed = false;                                ///< the verdict is about both directions
-    bool within = false;
+    std::vector<std::pair<std::string, NamedNumbers>> regions; ///< "all" first, then the regions of the job
+    std::string judged;                                        ///< judged region; empty: no tolerance, no verdict
+    bool reversed = false;                                     ///< the verdict includes both directions of comparison
+    bool within = false;                                       ///< is the worst error within the tolerance?
     double tolerance = 0, worst = 0;
-    double limit = 0; ///< of the histogram, whose bins are equally wide from -limit to limit
-    std::vector<double> counts;
-    double below = 0, above = 0;
+    double limit = 0;            ///< of the histogram, whose bins have equal widths from -limit to limit
+    std::vector<double> counts;  ///< of the bins
+    double below = 0, above = 0; ///< errors beyond the limit
 
-    /// @param name  of one that there is: "all", or what is judged
-    const Figures& region(const std::string& name) const;
+    /// @param name  an existing region: "all" or the judged one
+    const NamedNumbers& region(const std::string& name) const;
 };
 
-/// What fettle-grind reports.
+/// Report of fettle-grind.
 struct GrindReport {
     bool finished = false;
-    Figures numbers;
+    NamedNumbers numbers;
 };
 
-/// What fettle-align reports.
+/// Report of fettle-align.
 struct AlignmentReport {
-    Figures numbers; ///< lengths in the run's units
+    NamedNumbers numbers; ///< lengths in the run's units
     Eigen::Matrix4d transform;
+    std::string doubt; ///< why the result may be wrong; empty: no known reason
 };
 
-/// What fettle-form measures.
+/// Report of fettle-form.
 struct FormReport {
-    std::string form, parameter; ///< "flatness", "FLTt"; the second may be empty
-    Figures numbers;
+    std::string form, parameter; ///< such as "flatness" and "FLTt"; the second may be empty
+    NamedNumbers numbers;
 };
 
-/// Where something was read.
+/// A file that was read.
 struct SourceFile {
-    std::string what, name;
+    std::string role, name; ///< role in the run ("job"), file name
     std::size_t bytes = 0;
     std::string sha256;
 };
 
-/// Everything that a page may tell of one run. Clouds, meshes, job, surface and plan in base units; reports in `units`.
+/// The data of one run. Clouds, meshes, job, surface and plan are in base units; reports are in `units`.
 struct RunFiles {
-    Units units;
-    std::optional<Job> job;
-    std::optional<Cloud> samples;
-    std::optional<Surface> surface;
-    std::optional<Plan> plan;
+    units::Units units;
+    std::optional<job::Job> job;
+    std::optional<cloud::Cloud> samples;
+    std::optional<surface::Surface> surface;
+    std::optional<plan::Plan> plan;
     std::optional<AlignmentReport> alignment;
     std::optional<FormReport> form;
     std::optional<GrindReport> grinding;
-    std::optional<Cloud> trace;
-    std::optional<MeshOrCloud> before;
-    std::optional<MeshOrCloud> after;
-    std::optional<Cloud> errors;
+    std::optional<cloud::Cloud> trace;
+    std::optional<mesh::MeshOrCloud> before;
+    std::optional<mesh::MeshOrCloud> after;
+    std::optional<cloud::Cloud> errors;
     std::optional<ComparisonReport> comparison;
-    std::vector<SourceFile> sources; ///< in the order of reading
-    std::vector<std::string> doubts; ///< about files that are not of one run
+    std::vector<SourceFile> sources;   ///< in the order of reading
+    std::vector<std::string> warnings; ///< warnings about files that do not belong to the same run
 };
 
-/// The names of the files; empty: there is none.
+/// Names of the files; empty: not given.
 struct RunFileNames {
     std::string job, samples, surface, plan, grinding, trace, before, after, errors, comparison, alignment, form;
-    std::optional<Units::Length> before_units; ///< if not the run's
+    std::optional<units::Units::Length> before_units; ///< units of `before`, if not those of the run
 };
 
-/// Reads them. The units are those of the job, else of the plan, the surface, the first point file or report that
-/// states some, else mm.
-/// @throws InputError for a file that is not what it is named as (a trace without its fields, an error map without
-///         `error`), units that disagree, or if none is named
+/// Reads the files. The units are those of the job, else of the plan, of the surface, of the first point file or report
+/// that states units, else mm.
+/// @throws InputError for a file without its required fields, for contradictory units, or if no file is given
 RunFiles read_run(const RunFileNames& names);
 
-} // namespace fettle
+} // namespace fettle::report

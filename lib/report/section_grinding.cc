@@ -1,6 +1,6 @@
+#include "draw/figures.h"
 #include "plan/layers.h"
 #include "report/charts.h"
-#include "report/figures.h"
 #include "report/sections.h"
 #include "strategy/layer_switching.h"
 
@@ -8,27 +8,28 @@
 #include <cmath>
 #include <map>
 
-namespace fettle {
+namespace fettle::report {
 namespace {
 
 using Eigen::Index;
 
-/// What a trace says about one layer.
+/// Totals of a trace over one layer.
 struct LayerWork {
     double time = 0;    ///< s
-    double ground = 0;  ///< with the feed on, s
+    double ground = 0;  ///< time with feed, s
     double impulse = 0; ///< ∫ force dt while grinding, N s
     double peak = 0;    ///< N
     int raised = 0, lowered = 0, re_cuts = 0;
 };
 
-std::map<int, LayerWork> layer_work(const Cloud& trace)
+std::map<int, LayerWork> layer_work(const cloud::Cloud& trace)
 {
-    const Eigen::VectorXd t = field(trace, "t"), force = field(trace, "force"), feed = field(trace, "feed");
-    const Eigen::VectorXd layer = field(trace, "layer"), event = field(trace, "event");
+    const Eigen::VectorXd t = cloud::field(trace, "t"), force = cloud::field(trace, "force"),
+                          feed = cloud::field(trace, "feed");
+    const Eigen::VectorXd layer = cloud::field(trace, "layer"), event = cloud::field(trace, "event");
     std::map<int, LayerWork> layers;
     for (Index i = 0; i < t.size(); ++i) {
-        LayerWork& work = layers[static_cast<int>(layer[i])];
+        LayerWork& work = layers[layer[i]];
         const double took = i == 0 ? t[i] : t[i] - t[i - 1];
         work.time += took;
         if (std::isfinite(force[i])) work.peak = std::max(work.peak, force[i]);
@@ -36,94 +37,96 @@ std::map<int, LayerWork> layer_work(const Cloud& trace)
             work.ground += took;
             work.impulse += took * force[i];
         }
-        work.raised += event[i] == static_cast<int>(Event::up);
-        work.lowered += event[i] == static_cast<int>(Event::down);
-        work.re_cuts += event[i] == static_cast<int>(Event::re_cut);
+        work.raised += event[i] == static_cast<int>(strategy::Event::up);
+        work.lowered += event[i] == static_cast<int>(strategy::Event::down);
+        work.re_cuts += event[i] == static_cast<int>(strategy::Event::re_cut);
     }
     return layers;
 }
 
-Html layer_table(const RunFiles& run)
+draw::Html layer_table(const RunFiles& run)
 {
-    const Units& units = run.units;
-    const std::string force = ", " + to_string(units.force);
-    std::vector<Html> names = {"Layer", "Time", "Grinding", "Mean force" + force, "Peak force" + force};
-    if (run.job) names.insert(names.end(), {"Peak of " + symbol("F_max"), "Height, " + to_string(units.length)});
+    const units::Units& units = run.units;
+    const std::string force = ", " + units::to_string(units.force);
+    std::vector<draw::Html> names = {"Layer", "Time", "Grinding", "Mean force" + force, "Peak force" + force};
+    if (run.job)
+        names.insert(names.end(),
+                     {"Peak of " + draw::symbol_with_subscript("F_max"), "Height, " + units::to_string(units.length)});
     for (const char* name : {"Raised to", "Lowered to", "Re-cuts"}) names.emplace_back(name);
-    std::vector<std::vector<Html>> rows;
+    std::vector<std::vector<draw::Html>> rows;
     for (const auto& [number, work] : layer_work(*run.trace)) {
         const std::string key = "trace.layers." + std::to_string(number) + ".";
         const double peak = work.peak / units.newton();
-        std::vector<Html> row = {std::to_string(number), figure(key + "time", work.time, duration_text(work.time)),
-                                 duration_text(work.ground),
-                                 work.ground > 0 ? short_text(work.impulse / work.ground / units.newton()) : "\u2013",
-                                 figure(key + "peak_force", peak, short_text(peak))};
+        std::vector<draw::Html> row = {
+            std::to_string(number), draw::number_element(key + "time", work.time, draw::duration_text(work.time)),
+            draw::duration_text(work.ground),
+            work.ground > 0 ? draw::short_text(work.impulse / work.ground / units.newton()) : "\u2013",
+            number_figure(key + "peak_force", peak)};
         if (run.job) {
-            const double height = reference_offset(layers_of(run.job->force), number) / units.mm();
-            row.push_back(fixed_text(100 * work.peak / run.job->force.max, 0) + " %");
-            row.push_back(short_text(height));
+            const double height = plan::reference_offset(plan::compute_layers(run.job->force), number) / units.mm();
+            row.push_back(draw::fixed_text(100 * work.peak / run.job->force.max, 0) + " %");
+            row.push_back(draw::short_text(height));
         }
-        for (const int count : {work.raised, work.lowered, work.re_cuts}) row.push_back(count_text(count));
+        for (const int count : {work.raised, work.lowered, work.re_cuts}) row.push_back(draw::count_text(count));
         rows.push_back(row);
     }
-    return table("Layers, from the lowest. Height: of the layer's reference over the desired surface. A force beyond "
-                 "the largest raises the wheel by a layer.",
+    return table("Layers, from the lowest. Height: of the layer's reference above the desired surface. A force above "
+                 "the limit raises the wheel by one layer.",
                  names, rows, 1);
 }
 
-Html time_shares(const Figures& n)
+draw::Html time_shares(const NamedNumbers& n)
 {
-    const double whole = n.at("machine_time");
-    Html bar, key;
+    const double total = n.at("machine_time");
+    draw::Html bar, key;
     const std::pair<const char*, std::pair<const char*, const char*>> parts[] = {
         {"a", {"grinding_time", "grinding"}},
         {"b", {"travel_time", "travel"}},
         {"c", {"service_time", "wheel service"}}};
     for (const auto& [style, part] : parts) {
-        const double share = whole > 0 ? n.at(part.first) / whole : 0;
-        bar += element("i", {{"class", style}, {"style", "width:" + fixed_text(100 * share, 2) + "%"}});
-        key += element(
-            "li", element("i", Attributes{{"class", style}}) + std::string(part.second) + " " +
-                      figure("grinding." + std::string(part.first), n.at(part.first), duration_text(n.at(part.first))) +
-                      " (" + fixed_text(100 * share, 0) + " %)");
+        const double share = total > 0 ? n.at(part.first) / total : 0;
+        bar += draw::element("i", {{"class", style}, {"style", "width:" + draw::fixed_text(100 * share, 2) + "%"}});
+        key += draw::element("li", draw::element("i", draw::Attributes{{"class", style}}) + std::string(part.second) +
+                                       " " +
+                                       draw::number_element("grinding." + std::string(part.first), n.at(part.first),
+                                                            draw::duration_text(n.at(part.first))) +
+                                       " (" + draw::fixed_text(100 * share, 0) + " %)");
     }
-    return element("div", {{"class", "share"}}, bar) + element("ul", {{"class", "key"}}, key);
+    return draw::element("div", {{"class", "share"}}, bar) + draw::element("ul", {{"class", "key"}}, key);
 }
 
-Html totals(const RunFiles& run)
+draw::Html totals(const RunFiles& run)
 {
-    const Figures& n = run.grinding->numbers;
-    const std::string length = to_string(run.units.length), force = to_string(run.units.force);
-    const auto number = [&](const char* key) {
-        return figure("grinding." + std::string(key), n.at(key), short_text(n.at(key)));
-    };
-    const auto count = [&](const char* key) {
-        return figure("grinding." + std::string(key), n.at(key), count_text(n.at(key)));
-    };
-    Html peak = number("peak_force") + " " + force;
+    const NamedNumbers& n = run.grinding->numbers;
+    const std::string length = units::to_string(run.units.length), force = units::to_string(run.units.force);
+    const auto number = [&](const char* key) { return number_figure("grinding." + std::string(key), n.at(key)); };
+    const auto count = [&](const char* key) { return count_figure("grinding." + std::string(key), n.at(key)); };
+    draw::Html peak = number("peak_force") + " " + force;
     if (run.job)
-        peak += " (" + fixed_text(100 * n.at("peak_force") * run.units.newton() / run.job->force.max, 0) + " % of " +
-                symbol("F_max") + ")";
-    const Html left = facts({{"Removed", number("removed_volume") + " " + length + "\u00B3"},
-                             {"Peak force", peak},
-                             {"Layers, the highest", count("layers")},
-                             {"Coverings of layer 1", count("coverings")}});
-    const Html right = facts({{"Passes begun", count("passes")},
-                              {"Force readings", count("steps")},
-                              {"Wheel measured, changed", count("touch_offs") + ", " + count("wheel_changes")},
-                              {"Wheel radius at the end", number("wheel_radius") + " " + length}});
-    return element("p",
-                   "Machine time " +
-                       figure("grinding.machine_time", n.at("machine_time"), duration_text(n.at("machine_time"))) +
-                       (run.grinding->finished ? ", finished." : ", not finished: a bound of the plan was reached.")) +
-           time_shares(n) + element("div", {{"class", "columns"}}, left + right);
+        peak += " (" + draw::fixed_text(100 * n.at("peak_force") * run.units.newton() / run.job->force.max, 0) +
+                " % of " + draw::symbol_with_subscript("F_max") + ")";
+    const draw::Html left = property_table({{"Removed", number("removed_volume") + " " + length + "\u00B3"},
+                                            {"Peak force", peak},
+                                            {"Highest layer", count("layers")},
+                                            {"Coverings of layer 1", count("coverings")}});
+    const draw::Html right =
+        property_table({{"Passes started", count("passes")},
+                        {"Force readings", count("steps")},
+                        {"Wheel measurements, changes", count("touch_offs") + ", " + count("wheel_changes")},
+                        {"Wheel radius at the end", number("wheel_radius") + " " + length}});
+    return draw::element(
+               "p", "Machine time " +
+                        draw::number_element("grinding.machine_time", n.at("machine_time"),
+                                             draw::duration_text(n.at("machine_time"))) +
+                        (run.grinding->finished ? ", finished." : ", not finished: a limit of the plan was reached.")) +
+           time_shares(n) + draw::element("div", {{"class", "columns"}}, left + right);
 }
 
 } // namespace
 
-Html grinding_section(const RunFiles& run)
+draw::Html grinding_section(const RunFiles& run)
 {
-    Html html;
+    draw::Html html;
     if (run.grinding) html += totals(run);
     if (run.trace) {
         html +=
@@ -133,4 +136,4 @@ Html grinding_section(const RunFiles& run)
     return section("grinding", "Grinding", html);
 }
 
-} // namespace fettle
+} // namespace fettle::report

@@ -1,52 +1,52 @@
-#include "report/figures.h"
+#include "draw/figures.h"
 #include "report/sections.h"
 
-namespace fettle {
+namespace fettle::report {
 
-Html registration_section(const RunFiles& run)
+draw::Html registration_section(const RunFiles& run)
 {
     if (!run.alignment) return {};
-    const Figures& n = run.alignment->numbers;
-    const std::string unit = " " + to_string(run.units.length);
-    const auto shown = [&](const std::string& key, const std::string& text) {
-        return figure("alignment." + key, n.at(key), text);
-    };
-    const auto length = [&](const std::string& key) { return shown(key, short_text(n.at(key))) + unit; };
-    const Html numbers = facts({{"Points on the reference", shown("overlap", fixed_text(100 * n.at("overlap"), 1)) +
-                                                                " % of " + shown("count", count_text(n.at("count")))},
-                                {"Distance, median", length("median")},
-                                {"Distance, 95th percentile", length("p95")},
-                                {"Distance, root mean square", length("rms")},
-                                {"Motions determined", shown("determined", short_text(n.at("determined"))) + " of 6"}});
-    std::vector<std::vector<Html>> rows;
+    const NamedNumbers& n = run.alignment->numbers;
+    const std::string unit = " " + units::to_string(run.units.length);
+    const auto number = [&](const std::string& key) { return number_figure("alignment." + key, n.at(key)); };
+    Properties properties = {
+        {"Points on the reference",
+         draw::number_element("alignment.overlap", n.at("overlap"), draw::fixed_text(100 * n.at("overlap"), 1)) +
+             " % of " + count_figure("alignment.count", n.at("count"))},
+        {"Distance, median", number("median") + unit},
+        {"Distance, 95th percentile", number("p95") + unit},
+        {"Distance, root mean square", number("rms") + unit},
+        {"Degrees of freedom determined", number("determined") + " of 6"}};
+    if (!run.alignment->doubt.empty()) properties.push_back({"Doubtful", run.alignment->doubt});
+    const draw::Html numbers = property_table(properties);
+    std::vector<std::vector<draw::Html>> rows;
     for (Eigen::Index i = 0; i < 4; ++i) {
-        std::vector<Html> row;
+        std::vector<draw::Html> row;
         for (Eigen::Index j = 0; j < 4; ++j) {
             const std::string key = "alignment.transform." + std::to_string(i) + "." + std::to_string(j);
-            row.push_back(figure(key, run.alignment->transform(i, j), fixed_text(run.alignment->transform(i, j), 5)));
+            row.push_back(draw::number_element(key, run.alignment->transform(i, j),
+                                               draw::fixed_text(run.alignment->transform(i, j), 5)));
         }
         rows.push_back(row);
     }
-    const Html matrix = table("Transform: reference = matrix \u00B7 scan, lengths in" + unit, {}, rows, 0);
-    return section("registration", "Registration", element("div", {{"class", "columns"}}, numbers + matrix));
+    const draw::Html matrix = table("Transform: reference = matrix \u00B7 scan, lengths in" + unit, {}, rows, 0);
+    return section("registration", "Registration", draw::element("div", {{"class", "columns"}}, numbers + matrix));
 }
 
-Html form_section(const RunFiles& run)
+draw::Html form_section(const RunFiles& run)
 {
     if (!run.form) return {};
-    const Figures& n = run.form->numbers;
-    const std::string unit = " " + to_string(run.units.length);
-    const auto shown = [&](const std::string& key, const std::string& text) {
-        return figure("form." + key, n.at(key), text);
-    };
-    const Html name = run.form->form + (run.form->parameter.empty() ? "" : " (" + run.form->parameter + ")");
-    const Html left = facts({{"Form error", name},
-                             {"Minimum zone", shown("minimum_zone", short_text(n.at("minimum_zone"))) + unit},
-                             {"Least squares", shown("least_squares", short_text(n.at("least_squares"))) + unit}});
-    const Html right = facts({{"Points", shown("count", count_text(n.at("count")))},
-                              {"Without coordinates", shown("dropped", count_text(n.at("dropped")))},
-                              {"Outliers left out", shown("outliers", count_text(n.at("outliers")))}});
-    return section("form", "Form", element("div", {{"class", "columns"}}, left + right));
+    const NamedNumbers& n = run.form->numbers;
+    const std::string unit = " " + units::to_string(run.units.length);
+    const auto length = [&](const std::string& key) { return number_figure("form." + key, n.at(key)) + unit; };
+    const auto count = [&](const std::string& key) { return count_figure("form." + key, n.at(key)); };
+    const draw::Html name = run.form->form + (run.form->parameter.empty() ? "" : " (" + run.form->parameter + ")");
+    const draw::Html left = property_table(
+        {{"Form error", name}, {"Minimum zone", length("minimum_zone")}, {"Least squares", length("least_squares")}});
+    const draw::Html right = property_table({{"Points", count("count")},
+                                             {"Points without coordinates", count("dropped")},
+                                             {"Outliers, left out", count("outliers")}});
+    return section("form", "Form", draw::element("div", {{"class", "columns"}}, left + right));
 }
 
-} // namespace fettle
+} // namespace fettle::report

@@ -1,59 +1,69 @@
 #include "report/sections.h"
 
-#include "report/figures.h"
+#include "draw/figures.h"
 
 #include <algorithm>
 
-namespace fettle {
+namespace fettle::report {
 
-Html section(const std::string& id, const std::string& heading, const Html& content)
+draw::Html section(const std::string& id, const std::string& heading, const draw::Html& content)
 {
     if (content.empty()) return {};
-    return element("section", {{"id", id}}, element("h2", heading) + content) + Html::markup("\n");
+    return draw::element("section", {{"id", id}}, draw::element("h2", heading) + content) +
+           draw::Html::from_markup("\n");
 }
 
-Html facts(const Facts& rows)
+draw::Html property_table(const Properties& rows)
 {
-    Html body;
-    for (const auto& [name, value] : rows) body += element("tr", element("th", name) + element("td", value));
-    return element("table", {{"class", "facts"}}, element("tbody", body));
+    draw::Html body;
+    for (const auto& [name, value] : rows)
+        body += draw::element("tr", draw::element("th", name) + draw::element("td", value));
+    return draw::element("table", {{"class", "facts"}}, draw::element("tbody", body));
 }
 
-Html table(const std::string& caption, const std::vector<Html>& names, const std::vector<std::vector<Html>>& rows,
-           std::size_t numbers)
+draw::Html table(const std::string& caption, const std::vector<draw::Html>& names,
+                 const std::vector<std::vector<draw::Html>>& rows, std::size_t numbers)
 {
-    const auto row_of = [&](const std::vector<Html>& cells, bool heading) {
-        Html row;
+    const auto row_of = [&](const std::vector<draw::Html>& cells, bool heading) {
+        draw::Html row;
         for (std::size_t i = 0; i < cells.size(); ++i) {
-            const Attributes right = i >= numbers ? Attributes{{"class", "number"}} : Attributes{};
-            row += element(heading || i < std::min<std::size_t>(numbers, 1) ? "th" : "td", right, cells[i]);
+            const draw::Attributes right = i >= numbers ? draw::Attributes{{"class", "number"}} : draw::Attributes{};
+            row += draw::element(heading || i < std::min<std::size_t>(numbers, 1) ? "th" : "td", right, cells[i]);
         }
-        return element("tr", row);
+        return draw::element("tr", row);
     };
-    Html body;
-    for (const std::vector<Html>& cells : rows) body += row_of(cells, false);
-    Html content = caption.empty() ? Html() : element("caption", caption);
-    if (!names.empty()) content += element("thead", row_of(names, true));
-    content += element("tbody", body);
-    return element("div", {{"class", "scroll"}}, element("table", content));
+    draw::Html body;
+    for (const std::vector<draw::Html>& cells : rows) body += row_of(cells, false);
+    draw::Html content = caption.empty() ? draw::Html() : draw::element("caption", caption);
+    if (!names.empty()) content += draw::element("thead", row_of(names, true));
+    content += draw::element("tbody", body);
+    return draw::element("div", {{"class", "scroll"}}, draw::element("table", content));
 }
 
-Html drawing_with_caption(const Html& drawing, const std::string& caption)
+draw::Html drawing_with_caption(const draw::Html& drawing, const std::string& caption)
 {
     if (drawing.empty()) return {};
-    return element("figure", drawing + (caption.empty() ? Html() : element("figcaption", caption)));
+    return draw::element("figure", drawing + (caption.empty() ? draw::Html() : draw::element("figcaption", caption)));
 }
 
-Html length_figure(const std::string& key, double mm, const Units& units)
+draw::Html number_figure(const std::string& key, double value)
 {
-    const double value = mm / units.mm();
-    return figure(key, value, short_text(value)) + " " + to_string(units.length);
+    return draw::number_element(key, value, draw::short_text(value));
 }
 
-Html force_figure(const std::string& key, double newton, const Units& units)
+draw::Html count_figure(const std::string& key, double count)
 {
-    const double value = newton / units.newton();
-    return figure(key, value, short_text(value)) + " " + to_string(units.force);
+    return draw::number_element(key, count, draw::count_text(count));
 }
 
-} // namespace fettle
+draw::Html length_figure(const std::string& key, double mm, const units::Units& units)
+{
+    return number_figure(key, mm / units.mm()) + " " + units::to_string(units.length);
+}
+
+draw::Html force_figure(const std::string& key, double newton, const units::Units& units)
+{
+    return number_figure(key, newton / units.newton()) + " " + units::to_string(units.force);
+}
+
+} // namespace fettle::report

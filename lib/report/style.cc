@@ -1,10 +1,10 @@
 #include "report/style.h"
 
-namespace fettle {
+namespace fettle::report {
 
 namespace {
 
-// Colours: Okabe and Ito (2008) for what stands side by side, the ends of the error maps for over- and under-cut.
+// Colours: Okabe and Ito (2008) for categories; the ends of the error maps' scale for over- and under-cut.
 constexpr const char* kStyle = R"css(
 :root { --ink: #1c2733; --soft: #5a6672; --rule: #d9dfe5; --pale: #f4f6f8; --blue: #0072b2; --orange: #d55e00;
         --green: #007a5a; --purple: #7a4a9c; --over: #b2182b; --under: #2166ac; }
@@ -76,7 +76,7 @@ svg .whisker { stroke: var(--ink); stroke-width: 1.4; } svg .spread { fill: #567
 svg .edge-b { fill: #1c27330a; stroke: var(--ink); stroke-width: 2; } svg .edge-s { fill: none; stroke: var(--purple); stroke-width: 1.2; }
 svg .pass { fill: none; stroke: #b4bdc5; stroke-width: .8; } svg .start { fill: none; stroke: var(--green); stroke-width: 2; }
 svg .touch { fill: var(--blue); } svg .touch-edge { fill: #fff; stroke: var(--blue); stroke-width: 1.4; }
-svg .slip { fill: none; stroke: var(--orange); stroke-width: 1.8; } svg .scale-bar { fill: var(--ink); } svg .axis-w { stroke: var(--ink); stroke-width: 1.4; }
+svg .outlier { fill: none; stroke: var(--orange); stroke-width: 1.8; } svg .scale-bar { fill: var(--ink); } svg .axis-w { stroke: var(--ink); stroke-width: 1.4; }
 @media (max-width: 44rem) { body { padding: 1.2rem; } .columns { grid-template-columns: 1fr; } .scroll { overflow-x: auto; } }
 @page { size: A4; margin: 15mm 15mm 17mm; @bottom-right { content: counter(page) " / " counter(pages); font: 8pt sans-serif; color: #5a6672; } }
 @media print {
@@ -92,6 +92,6 @@ svg .slip { fill: none; stroke: var(--orange); stroke-width: 1.8; } svg .scale-b
 
 } // namespace
 
-Html style_sheet() { return Html::markup("<style>" + std::string(kStyle) + "</style>\n"); }
+draw::Html style_sheet() { return draw::Html::from_markup("<style>" + std::string(kStyle) + "</style>\n"); }
 
-} // namespace fettle
+} // namespace fettle::report

@@ -1,10 +1,10 @@
 #pragma once
 
-#include "report/html.h"
+#include "draw/html.h"
 
-namespace fettle {
+namespace fettle::report {
 
-/// The style sheet of a page, for the screen and for A4.
-Html style_sheet();
+/// Style sheet of a report page, for screen and A4 print.
+draw::Html style_sheet();
 
-} // namespace fettle
+} // namespace fettle::report

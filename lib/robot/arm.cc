@@ -4,25 +4,25 @@
 #include <cmath>
 #include <numbers>
 
-namespace fettle {
+namespace fettle::robot {
 
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-// Below this sine of the wrist's angle the pose says nothing about joints 4 and 6 but their sum; what taking any sum
-// does to the pose is no more than this.
-constexpr double kStraight = 1e-10;
-// A wrist centre no farther from axis 1 lies on it, mm.
-constexpr double kOnAxis = 1e-10;
-// A cosine beyond 1 by no more is one that was rounded: 1e-12 moves a wrist centre 1 m away by less than 1e-9 mm.
+// Below this sine of joint 5 the pose determines only the sum of joints 4 and 6. Any split of the sum changes the pose
+// by no more than this, rad.
+constexpr double kMinWristSine = 1e-10;
+// A wrist centre no farther from axis 1 counts as on it, mm.
+constexpr double kAxisDistanceTolerance = 1e-10;
+// A cosine that exceeds 1 by no more counts as rounded: 1e-12 moves a wrist centre 1 m away by less than 1e-9 mm.
 constexpr double kCosineRounding = 1e-12;
 
-struct Angle {
+struct CosSin {
     double cosine, sine;
 };
 
-// By whole turns to within half a turn of `middle`; the angle is at most a few turns away.
-double nearest_turn(double angle, double middle)
+// Shifts an angle by whole turns to within half a turn of `middle`; it is at most a few turns away.
+double wrap_about(double angle, double middle)
 {
     while (angle - middle > kPi) angle -= 2 * kPi;
     while (middle - angle > kPi) angle += 2 * kPi;
@@ -31,25 +31,26 @@ double nearest_turn(double angle, double middle)
 
 } // namespace
 
-struct Arm::Reach {
-    const Eigen::Matrix3d& R; ///< of frame 5, turned by theta6, in the base
-    Eigen::Vector3d wrist;    ///< its centre, base frame
-    const Joints& near;
+/// What the inverse is to reach, with the choice of the shoulder.
+struct Arm::Target {
+    const Eigen::Matrix3d& R;     ///< R_base_5 R_z(theta6)
+    Eigen::Vector3d wrist_centre; ///< base frame, mm
+    const Joints& seed;
     Ranges ranges;
-    double across; ///< distance of the wrist centre from axis 1 in the arm's plane; behind it negative
-    Angle turn;    ///< theta1
+    double across; ///< signed distance of the wrist centre from axis 1 in the arm's plane, negative behind the axis
+    CosSin turn1;  ///< of theta1
 };
 
-double Singularity::least() const { return std::min({shoulder, elbow, wrist}); }
+double Singularity::min() const { return std::min({shoulder, elbow, wrist}); }
 
 Arm::Arm(const Robot& robot) : dh_(robot.dh), coupling_(robot.coupling)
 {
     for (std::size_t i = 0; i < 5; ++i) sin_alpha_[i] = std::sin(dh_[i].alpha);
     const Eigen::Vector2d forearm(dh_[2].a, -sin_alpha_[2] * dh_[3].d);
-    forearm_ = forearm.norm();
+    forearm_length_ = forearm.norm();
     forearm_angle_ = std::atan2(forearm.y(), forearm.x());
-    tilt_ = Eigen::AngleAxisd(-dh_[5].alpha, Eigen::Vector3d::UnitX()).toRotationMatrix();
-    hand_ = tilt_ * Eigen::Vector3d(dh_[5].a, 0, dh_[5].d);
+    R_alpha6_ = Eigen::AngleAxisd(-dh_[5].alpha, Eigen::Vector3d::UnitX()).toRotationMatrix();
+    wrist_to_flange_ = R_alpha6_ * Eigen::Vector3d(dh_[5].a, 0, dh_[5].d);
 }
 
 std::array<Eigen::Isometry3d, 7> Arm::frames(const Joints& joints) const
@@ -57,7 +58,7 @@ std::array<Eigen::Isometry3d, 7> Arm::frames(const Joints& joints) const
     std::array<Eigen::Isometry3d, 7> T;
     T[0].setIdentity();
     for (std::size_t i = 0; i < 6; ++i) {
-        double theta = joints[static_cast<Eigen::Index>(i)] + dh_[i].offset;
+        double theta = joints[i] + dh_[i].offset;
         if (i == 2 && coupling_ == Coupling::parallelogram) theta -= joints[1];
         T[i + 1] = T[i] * dh_transform(theta, dh_[i].d, dh_[i].a, dh_[i].alpha);
     }
@@ -69,55 +70,54 @@ Singularity Arm::singularity(const Joints& joints) const
     const double theta2 = joints[1] + dh_[1].offset;
     const double theta3 = joints[2] + dh_[2].offset - (coupling_ == Coupling::parallelogram ? joints[1] : 0);
     const double bend = theta3 + forearm_angle_;
-    const double across = dh_[0].a + dh_[1].a * std::cos(theta2) + forearm_ * std::cos(theta2 + bend);
-    return {std::abs(across) / (std::abs(dh_[1].a) + forearm_), std::abs(std::sin(bend)),
+    const double across = dh_[0].a + dh_[1].a * std::cos(theta2) + forearm_length_ * std::cos(theta2 + bend);
+    return {std::abs(across) / (std::abs(dh_[1].a) + forearm_length_), std::abs(std::sin(bend)),
             std::abs(std::sin(joints[4] + dh_[4].offset))};
 }
 
 bool Arm::in_range(const Joints& joints) const
 {
     for (std::size_t i = 0; i < 6; ++i)
-        if (!within(dh_[i].range, joints[static_cast<Eigen::Index>(i)])) return false;
+        if (!dh_[i].range.contains(joints[i])) return false;
     return true;
 }
 
-bool Arm::settle(Joints& joints, Eigen::Index k, Ranges ranges) const
+bool Arm::wrap(Joints& joints, Eigen::Index k, Ranges ranges) const
 {
-    const JointRange& range = dh_[static_cast<std::size_t>(k)].range;
-    joints[k] = nearest_turn(joints[k], (range.least + range.most) / 2);
-    return ranges == Ranges::ignore || within(range, joints[k]);
+    const JointRange& range = dh_[k].range;
+    joints[k] = wrap_about(joints[k], (range.min + range.max) / 2);
+    return ranges == Ranges::ignore || range.contains(joints[k]);
 }
 
-ArmSolutions Arm::solve(const Eigen::Isometry3d& T_base_flange, const Joints& near, Ranges ranges) const
+ArmSolutions Arm::solve(const Eigen::Isometry3d& T_base_flange, const Joints& seed, Ranges ranges) const
 {
     ArmSolutions found;
-    const Eigen::Matrix3d R = T_base_flange.linear() * tilt_;
-    const Eigen::Vector3d wrist = T_base_flange.translation() - T_base_flange.linear() * hand_;
-    // The wrist centre is R_z(theta1) (across, beside, .): `beside` by the offsets of axes 2 and 3 alone.
-    const double beside = -sin_alpha_[0] * (dh_[1].d + dh_[2].d);
-    const double squared = wrist.head<2>().squaredNorm(), across2 = squared - beside * beside;
-    const bool on_axis = squared < kOnAxis * kOnAxis;
+    const Eigen::Matrix3d R = T_base_flange.linear() * R_alpha6_;
+    const Eigen::Vector3d wrist = T_base_flange.translation() - T_base_flange.linear() * wrist_to_flange_;
+    // The wrist centre is R_z(theta1) (across, offset, .), where only the offsets of axes 2 and 3 enter `offset`.
+    const double offset = -sin_alpha_[0] * (dh_[1].d + dh_[2].d);
+    const double squared = wrist.head<2>().squaredNorm(), across2 = squared - offset * offset;
+    const bool on_axis = squared < kAxisDistanceTolerance * kAxisDistanceTolerance;
     if (!on_axis && across2 < 0) return found;
     const double across = on_axis ? 0 : std::sqrt(across2);
     for (int shoulder = 0; shoulder < 2; ++shoulder) {
         const double u = shoulder == 0 ? across : -across;
-        const double cosine = (wrist.x() * u + wrist.y() * beside) / squared;
-        const double sine = (wrist.y() * u - wrist.x() * beside) / squared;
+        CosSin turn1 = {(wrist.x() * u + wrist.y() * offset) / squared, (wrist.y() * u - wrist.x() * offset) / squared};
+        double theta1 = std::atan2(turn1.sine, turn1.cosine);
         if (on_axis) {
-            const double theta1 = near[0] + dh_[0].offset + shoulder * kPi;
-            add_elbows({R, wrist, near, ranges, u, {std::cos(theta1), std::sin(theta1)}}, theta1, shoulder, found);
-        } else {
-            add_elbows({R, wrist, near, ranges, u, {cosine, sine}}, std::atan2(sine, cosine), shoulder, found);
+            theta1 = seed[0] + dh_[0].offset + shoulder * kPi;
+            turn1 = {std::cos(theta1), std::sin(theta1)};
         }
+        add_elbow_solutions({R, wrist, seed, ranges, u, turn1}, theta1, shoulder, found);
     }
     return found;
 }
 
-// Axes 2 and 3 and the wrist centre are a triangle with sides a2 and L in the plane of the arm.
-void Arm::add_elbows(const Reach& reach, double theta1, int shoulder, ArmSolutions& found) const
+// Axes 2 and 3 and the wrist centre form a triangle with sides a2 and L in the plane of the arm.
+void Arm::add_elbow_solutions(const Target& target, double theta1, int shoulder, ArmSolutions& found) const
 {
-    const double a2 = dh_[1].a, L = forearm_;
-    const double x = reach.across - dh_[0].a, y = sin_alpha_[0] * (reach.wrist.z() - dh_[0].d);
+    const double a2 = dh_[1].a, L = forearm_length_;
+    const double x = target.across - dh_[0].a, y = sin_alpha_[0] * (target.wrist_centre.z() - dh_[0].d);
     const double r2 = x * x + y * y, r = std::sqrt(r2), twice = 2 * a2 * L;
     const double from_straight = (a2 + L - r) * (a2 + L + r) / twice; // 1 - cosine of the bend
     const double from_folded = (r - (a2 - L)) * (r + (a2 - L)) / twice;
@@ -125,45 +125,45 @@ void Arm::add_elbows(const Reach& reach, double theta1, int shoulder, ArmSolutio
     found.reachable = true;
     Joints joints;
     joints[0] = theta1 - dh_[0].offset;
-    if (!settle(joints, 0, reach.ranges)) return;
+    if (!wrap(joints, 0, target.ranges)) return;
     const double sine = std::sqrt(std::max(from_straight * from_folded, 0.0)),
                  cosine = (from_folded - from_straight) / 2;
     const double bend = std::atan2(sine, cosine);
     for (int elbow = 0; elbow < 2; ++elbow) {
-        if (elbow == 1 && sine == 0) return; // straight or folded: both are one
+        if (elbow == 1 && sine == 0) return; // straight or folded: both solutions coincide
         const double s = elbow == 0 ? sine : -sine;
         const double k1 = a2 + L * cosine, k2 = L * s;
-        // On axis 2 (only if |a2| = L) any theta2 will do.
-        const double theta2 = r2 > 0 ? std::atan2(y * k1 - x * k2, x * k1 + y * k2) : reach.near[1] + dh_[1].offset;
+        // With the wrist centre on axis 2 (only if |a2| = L) any theta2 is a solution.
+        const double theta2 = r2 > 0 ? std::atan2(y * k1 - x * k2, x * k1 + y * k2) : target.seed[1] + dh_[1].offset;
         const double theta3 = (elbow == 0 ? bend : -bend) - forearm_angle_;
         joints[1] = theta2 - dh_[1].offset;
         joints[2] = theta3 - dh_[2].offset + (coupling_ == Coupling::parallelogram ? joints[1] : 0);
-        if (!settle(joints, 1, reach.ranges) || !settle(joints, 2, reach.ranges)) continue;
+        if (!wrap(joints, 1, target.ranges) || !wrap(joints, 2, target.ranges)) continue;
         const double c = std::cos(theta2 + theta3), sn = std::sin(theta2 + theta3);
         const double s1 = sin_alpha_[0], s3 = sin_alpha_[2];
         Eigen::Matrix3d R_base_3; // R_z(theta1) R_x(alpha1) R_z(theta2 + theta3) R_x(alpha3)
-        R_base_3 << reach.turn.cosine * c, reach.turn.sine * s1 * s3, reach.turn.cosine * s3 * sn, //
-            reach.turn.sine * c, -reach.turn.cosine * s1 * s3, reach.turn.sine * s3 * sn,          //
+        const auto [c1, sn1] = target.turn1;
+        R_base_3 << c1 * c, sn1 * s1 * s3, c1 * s3 * sn, //
+            sn1 * c, -c1 * s1 * s3, sn1 * s3 * sn,       //
             s1 * sn, 0, -s1 * s3 * c;
-        const Eigen::Matrix3d R_3_5 = R_base_3.transpose() * reach.R;
-        add_wrists(reach, joints, R_3_5, 4 * shoulder + 2 * elbow, found);
+        add_wrist_solutions(target, joints, R_base_3.transpose() * target.R, 4 * shoulder + 2 * elbow, found);
     }
 }
 
-// M = R_z(theta4) R_x(alpha4) R_z(theta5) R_x(alpha5) R_z(theta6): its third column gives theta4 and theta5. theta6 is
-// read from what they leave, so that the three make up the pose also where theta4 is uncertain.
-void Arm::add_wrists(const Reach& reach, const Joints& arm, const Eigen::Matrix3d& M, int branch,
-                     ArmSolutions& found) const
+// M = R_z(theta4) R_x(alpha4) R_z(theta5) R_x(alpha5) R_z(theta6): its third column gives theta4 and theta5. theta6
+// follows from M with these two taken out, so that the product is right even where theta4 is uncertain.
+void Arm::add_wrist_solutions(const Target& target, const Joints& arm, const Eigen::Matrix3d& M, int branch,
+                              ArmSolutions& found) const
 {
     const double s4 = sin_alpha_[3], s5 = sin_alpha_[4];
     const double sine5 = std::hypot(M(0, 2), M(1, 2)), cosine5 = -s4 * s5 * M(2, 2);
     double theta4;
-    Angle turn4;
-    if (sine5 > kStraight) {
+    CosSin turn4;
+    if (sine5 > kMinWristSine) {
         turn4 = {s5 * M(0, 2) / sine5, s5 * M(1, 2) / sine5};
         theta4 = std::atan2(turn4.sine, turn4.cosine);
     } else {
-        theta4 = reach.near[3] + dh_[3].offset;
+        theta4 = target.seed[3] + dh_[3].offset;
         turn4 = {std::cos(theta4), std::sin(theta4)};
     }
     const double theta5 = std::atan2(sine5, cosine5);
@@ -175,9 +175,9 @@ void Arm::add_wrists(const Reach& reach, const Joints& arm, const Eigen::Matrix3
         joints[3] = theta4 + wrist * kPi - dh_[3].offset;
         joints[4] = (wrist == 0 ? theta5 : -theta5) - dh_[4].offset;
         joints[5] = theta6 + wrist * kPi - dh_[5].offset;
-        if (settle(joints, 3, reach.ranges) && settle(joints, 4, reach.ranges) && settle(joints, 5, reach.ranges))
+        if (wrap(joints, 3, target.ranges) && wrap(joints, 4, target.ranges) && wrap(joints, 5, target.ranges))
             found.solutions[found.count++] = {joints, branch + wrist};
     }
 }
 
-} // namespace fettle
+} // namespace fettle::robot

@@ -6,18 +6,24 @@
 #include "json/document.h"
 
 #include <optional>
+#include <string>
 
-namespace fettle {
+namespace fettle::robot {
 
-/// Adds counts of poses by state, jumps, distance from singularities, and for each joint its extent on the path; with
-/// times, its largest speed and acceleration. Angles in degrees, lengths in `units`.
-/// @param singular  poses nearer to a singularity are counted
-/// @param times  of the poses, s; nothing: no rates
-/// @return  can the robot run the path: all poses reached, no jump, no joint too fast?
-bool add_report(json::Value& report, const Robot& robot, const FollowedPath& path, double singular,
-                const std::optional<Eigen::VectorXd>& times, const Units& units);
+/// Adds to a report the counts of poses by state, the jumps, the distance from singularities, and for each joint its
+/// smallest and largest value, with times also its largest speed and acceleration. Angles in degrees, lengths in
+/// `units`.
+/// @param singularity_threshold  poses nearer to a singularity (Singularity::min) are counted
+/// @param times  at which the poses are reached, s; without them no speeds and accelerations are reported
+/// @return  true if the robot can run the path: all poses are reached, there is no jump, and no joint is too fast
+bool add_report(json::Value& report, const Robot& robot, const FollowedPath& path, double singularity_threshold,
+                const std::optional<Eigen::VectorXd>& times, const units::Units& units);
 
-/// {"follows": …, "value": …}. @param unit  rad in a degree, or mm in a length unit
-json::Value to_json(const AxisRule& rule, double unit);
+/// Why a robot cannot run a path: the first pose in the way, with the joint and the reason ("pose 3: joint 5 is out of
+/// its range"); empty if it can.
+std::string path_obstacle(const Robot& robot, const FollowedPath& path, const std::optional<Eigen::VectorXd>& times);
 
-} // namespace fettle
+/// Adds the rules of track and table, where the robot has them, as {"follows": …, "value": …}; degrees and `units`.
+void add_report(json::Value& report, const Robot& robot, const ExternalChoice& externals, const units::Units& units);
+
+} // namespace fettle::robot

@@ -3,194 +3,184 @@
 #include "core/constants.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
-namespace fettle {
+namespace fettle::robot {
 
 namespace {
 
-using Eigen::Index;
-
-// A path while it is led around.
+// The path in its present state, with what it is checked against.
 struct Work {
     const Robot& robot;
     const Workpiece* workpiece;
     const SolvedPath& solved;
     const AvoidOptions& options;
     const CollisionOptions& collision;
-    const Eigen::Matrix3Xd& away;
-    Led led;
-    CheckedPath checked;
+    const Eigen::Matrix3Xd& retreat_directions;
+    ChangedPath path;
+    CheckedPath checked; ///< clearances of `path`
 
-    Trials trials() const { return {robot, workpiece, collision, solved, away}; }
+    ChangeChecker trials() const { return {robot, workpiece, collision, solved, retreat_directions}; }
     bool collides(const CellClearance& c) const { return c.clearance < -collision.tolerance; }
 };
 
-// Looks again at some poses and at the ways to and from them, as at a path of its own whose pieces NaN keeps apart.
-void look_again(Work& work, const std::vector<bool>& changed)
+// Renews the clearances of the poses whose changes differ from `before`, and of the motions to and from them: together
+// they are checked as one path, with a NaN pose between sections that are not connected.
+void recheck(Work& work, const std::vector<PoseChange>& before)
 {
-    const std::size_t count = changed.size();
-    const auto seen = [&](std::size_t i) {
-        return changed[i] || (i > 0 && changed[i - 1]) || (i + 1 < count && changed[i + 1]);
-    };
-    std::vector<std::size_t> from; // count: a gap
+    const std::size_t count = before.size(), gap = count;
+    const auto changed = [&](std::size_t i) { return work.path.changes[i] != before[i]; };
+    std::vector<std::size_t> indices; // of the poses to check
     for (std::size_t i = 0; i < count; ++i)
-        if (seen(i))
-            from.push_back(i);
-        else if (!from.empty() && from.back() != count)
-            from.push_back(count);
-    CellJointsPath joints(8, static_cast<Index>(from.size()));
-    for (std::size_t k = 0; k < from.size(); ++k) {
-        auto column = joints.col(static_cast<Index>(k));
-        column.setConstant(std::numeric_limits<double>::quiet_NaN());
-        if (from[k] < count) column = work.led.joints.col(static_cast<Index>(from[k]));
-    }
+        if (changed(i) || (i > 0 && changed(i - 1)) || (i + 1 < count && changed(i + 1)))
+            indices.push_back(i);
+        else if (!indices.empty() && indices.back() != gap)
+            indices.push_back(gap);
+    if (indices.empty()) return;
+    CellJointsPath joints = CellJointsPath::Constant(8, indices.size(), core::kNaN);
+    for (std::size_t k = 0; k < indices.size(); ++k)
+        if (indices[k] != gap) joints.col(k) = work.path.joints.col(indices[k]);
     const CheckedPath again = check_path(work.robot, work.workpiece, joints, work.collision);
-    for (std::size_t k = 0; k < from.size(); ++k) {
-        if (from[k] == count) continue;
-        work.checked.pose[from[k]] = again.pose[k];
-        if (k > 0 && from[k - 1] != count) work.checked.between[from[k]] = again.between[k];
+    for (std::size_t k = 0; k < indices.size(); ++k) {
+        if (indices[k] == gap) continue;
+        work.checked.at_poses[indices[k]] = again.at_poses[k];
+        if (k > 0 && indices[k - 1] != gap) work.checked.between_poses[indices[k]] = again.between_poses[k];
     }
-    work.checked.looks += again.looks;
+    work.checked.midpoint_count += again.midpoint_count;
 }
 
-std::vector<bool> changed_from(const Work& work, const std::vector<PoseChange>& before)
-{
-    std::vector<bool> changed(before.size());
-    for (std::size_t i = 0; i < before.size(); ++i) changed[i] = work.led.changes[i] != before[i];
-    return changed;
-}
-
-// How deep each pose collides, mm; infinite where it is not reached, 0 where there is nothing to do.
+// Penetration depth of each pose beyond the tolerance, mm: infinite if it is not reached, 0 if it need not change.
 std::vector<double> depths(const Work& work)
 {
-    std::vector<double> depth(work.led.changes.size(), 0);
+    std::vector<double> depth(work.path.changes.size(), 0);
     for (std::size_t i = 0; i < depth.size(); ++i) {
         const PoseState state = work.solved.path.state[i];
         if (state == PoseState::undefined) continue;
-        if (state != PoseState::reached && work.led.changes[i] == PoseChange())
-            depth[i] = kInfinity;
+        if (state != PoseState::reached && work.path.changes[i] == PoseChange())
+            depth[i] = core::kInfinity;
         else
-            depth[i] = std::max(0.0, -work.collision.tolerance - work.checked.pose[i].clearance);
+            depth[i] = std::max(0.0, -work.collision.tolerance - work.checked.at_poses[i].clearance);
     }
     return depth;
 }
 
-// One search for tilts, from the poses as they are.
 void tilt(Work& work, bool smooth)
 {
-    const Trials trials = work.trials();
-    const std::vector<PoseChange> before = work.led.changes;
+    const ChangeChecker trials = work.trials();
+    const std::vector<PoseChange> before = work.path.changes;
     const std::vector<double> depth = depths(work);
     if (smooth) {
-        tilt_smoothly(trials, depth, work.options, work.led);
+        tilt_smoothly(trials, depth, work.options, work.path);
     } else {
-        std::vector<bool> trouble(depth.size());
-        std::transform(depth.begin(), depth.end(), trouble.begin(), [](double d) { return d > 0; });
-        tilt_by_pose(trials, trouble, work.options, work.led);
+        std::vector<bool> must_change(depth.size());
+        std::transform(depth.begin(), depth.end(), must_change.begin(), [](double d) { return d > 0; });
+        tilt_by_pose(trials, must_change, work.options, work.path);
     }
-    look_again(work, changed_from(work, before));
+    recheck(work, before);
 }
 
-// Ways that collide although their ends do not, by the pose behind.
-std::vector<std::size_t> bad_ways(const Work& work)
+// Motions that collide between poses that do not, by the index of the second pose.
+std::vector<std::size_t> colliding_motions(const Work& work)
 {
-    std::vector<std::size_t> ways;
-    for (std::size_t i = 1; i < work.led.changes.size(); ++i)
-        if (work.collides(work.checked.between[i]) && !work.collides(work.checked.pose[i]) &&
-            !work.collides(work.checked.pose[i - 1]))
-            ways.push_back(i);
-    return ways;
+    std::vector<std::size_t> motions;
+    for (std::size_t i = 1; i < work.path.changes.size(); ++i)
+        if (work.collides(work.checked.between_poses[i]) && !work.collides(work.checked.at_poses[i]) &&
+            !work.collides(work.checked.at_poses[i - 1]))
+            motions.push_back(i);
+    return motions;
 }
 
-// Changes a pose, if it is clear so.
-void change(Work& work, const Trials& trials, std::size_t pose, const PoseChange& change)
+// Changes a pose, unless it would then collide or not be reached.
+void try_change(Work& work, const ChangeChecker& trials, std::size_t pose, const PoseChange& change)
 {
-    const auto column = static_cast<Index>(pose);
-    Blocked blocked;
-    const CellJoints q = trials.look(column, change, work.led.joints.col(column), blocked);
+    CollidingChanges colliding;
+    const CellJoints q = trials.find_clear_joints(pose, change, work.path.joints.col(pose), colliding);
     if (q.hasNaN()) return;
-    work.led.changes[pose] = change;
-    work.led.joints.col(column) = q;
+    work.path.changes[pose] = change;
+    work.path.joints.col(pose) = q;
 }
 
-// Ends of ways that touch the workpiece draw back one step more. On others along which the tilt changes, the end that
-// leans less takes the tilt of the other: the change comes earlier or later.
+// If a motion collides with the workpiece, both of its poses retreat one more step. If it collides otherwise and the
+// tilt changes on it, the pose with the smaller tilt takes the tilt of the other, which moves the change of tilt.
 void change_ends(Work& work, const std::vector<CellPair>& pairs)
 {
-    const Trials trials = work.trials();
-    std::size_t drawn_back = 0; // this pose has been so by the way before
-    for (const std::size_t i : bad_ways(work)) {
-        const PoseChange &a = work.led.changes[i - 1], &b = work.led.changes[i];
-        if (pairs[work.checked.between[i].pair].b == work.robot.bodies.size()) {
+    const ChangeChecker trials = work.trials();
+    std::size_t retreated = 0; // the last pose that retreated because of the motion before
+    for (const std::size_t i : colliding_motions(work)) {
+        const PoseChange &a = work.path.changes[i - 1], &b = work.path.changes[i];
+        if (pairs[work.checked.between_poses[i].pair].b == work.robot.bodies.size()) {
             for (const std::size_t end : {i - 1, i}) {
-                PoseChange back = work.led.changes[end];
-                back.retreat += kRetreatStep;
-                if (end != drawn_back && back.retreat <= work.options.most_retreat * (1 + 1e-9))
-                    change(work, trials, end, back);
+                PoseChange change = work.path.changes[end];
+                change.retreat += kRetreatStep;
+                if (end != retreated && change.retreat <= work.options.max_retreat * (1 + 1e-9))
+                    try_change(work, trials, end, change);
             }
-            drawn_back = i;
+            retreated = i;
         } else if (a.tilt != b.tilt) {
             const bool first = a.tilt.norm() < b.tilt.norm();
-            change(work, trials, first ? i - 1 : i, {first ? b.tilt : a.tilt, first ? a.retreat : b.retreat});
+            try_change(work, trials, first ? i - 1 : i, {first ? b.tilt : a.tilt, first ? a.retreat : b.retreat});
         }
     }
 }
 
-// A retreat that has not helped is taken back.
-void take_back(Work& work, const Led& before)
+// Undoes the retreats of motions that still collide.
+void undo_retreats(Work& work, const std::vector<PoseChange>& before)
 {
-    for (const std::size_t way : bad_ways(work))
-        for (const std::size_t i : {way - 1, way})
-            change(work, work.trials(), i, {work.led.changes[i].tilt, before.changes[i].retreat});
+    const ChangeChecker trials = work.trials();
+    for (const std::size_t motion : colliding_motions(work))
+        for (const std::size_t i : {motion - 1, motion})
+            try_change(work, trials, i, {work.path.changes[i].tilt, before[i].retreat});
 }
 
-void part_ways(Work& work)
+void clear_motions(Work& work)
 {
-    const Led before = work.led;
+    const std::vector<PoseChange> before = work.path.changes;
     const std::vector<CellPair> pairs = checked_pairs(work.robot);
-    const auto rounds = static_cast<int>(work.options.most_retreat / kRetreatStep * (1 + 1e-9)) + 1;
+    const int rounds = int(work.options.max_retreat / kRetreatStep * (1 + 1e-9)) + 1;
     for (int k = 0; k <= rounds; ++k) {
-        const std::vector<PoseChange> last = work.led.changes;
+        const std::vector<PoseChange> last = work.path.changes;
         if (k < rounds)
             change_ends(work, pairs);
         else
-            take_back(work, before);
-        const std::vector<bool> changed = changed_from(work, last);
-        if (std::find(changed.begin(), changed.end(), true) == changed.end()) continue;
-        look_again(work, changed);
+            undo_retreats(work, before);
+        recheck(work, last);
     }
 }
 
-FollowedPath followed(const Work& work)
+// The states of the changed path. Poses without joints keep their state, unchanged poses their branch.
+FollowedPath changed_states(const Work& work)
 {
-    FollowedPath path = judge(work.robot, work.led.joints, work.options.jump);
+    FollowedPath path = evaluate_joints(work.robot, work.path.joints, work.options.jump_threshold);
     const FollowedPath& given = work.solved.path;
-    path.blocked.setZero();
+    path.out_of_range_counts.setZero();
     for (std::size_t i = 0; i < path.state.size(); ++i) {
         if (path.state[i] == PoseState::undefined) path.state[i] = given.state[i];
-        if (work.led.changes[i] == PoseChange()) path.branch[i] = given.branch[i];
+        if (work.path.changes[i] == PoseChange()) path.branch[i] = given.branch[i];
     }
     return path;
 }
 
 } // namespace
 
-AvoidedPath avoid(const Robot& robot, const Workpiece* workpiece, const SolvedPath& solved, const CheckedPath& before,
-                  const Eigen::Matrix3Xd& away, const AvoidOptions& options, const CollisionOptions& collision)
+AvoidedPath avoid_collisions(const Robot& robot, const Workpiece* workpiece, const SolvedPath& solved,
+                             const CheckedPath& before, const Eigen::Matrix3Xd& retreat_directions,
+                             const AvoidOptions& options, const CollisionOptions& collision)
 {
     const std::size_t count = solved.poses.size();
-    Work work{robot, workpiece, solved, options, collision, away, {std::vector<PoseChange>(count), solved.path.joints},
+    Work work{robot,
+              workpiece,
+              solved,
+              options,
+              collision,
+              retreat_directions,
+              {std::vector<PoseChange>(count), solved.path.joints},
               before};
     tilt(work, options.smooth);
     if (options.smooth) tilt(work, false);
-    part_ways(work);
-    AvoidedPath avoided{{}, followed(work), work.checked, work.led.changes};
-    const Trials trials = work.trials();
-    for (std::size_t i = 0; i < count; ++i)
-        avoided.poses.push_back(trials.pose(static_cast<Index>(i), work.led.changes[i]));
+    clear_motions(work);
+    AvoidedPath avoided{{}, changed_states(work), work.checked, work.path.changes};
+    const ChangeChecker trials = work.trials();
+    for (std::size_t i = 0; i < count; ++i) avoided.poses.push_back(trials.tool_pose(i, work.path.changes[i]));
     return avoided;
 }
 
-} // namespace fettle
+} // namespace fettle::robot

@@ -6,32 +6,32 @@
 
 #include <Eigen/Core>
 
-#include <cstddef>
 #include <vector>
 
-namespace fettle {
+namespace fettle::robot {
 
-/// A path after what collided was led around.
+/// A path after its collisions were avoided.
 struct AvoidedPath {
-    PosePath poses;                  ///< N
+    cloud::PosePath poses;           ///< N
     FollowedPath path;               ///< N
     CheckedPath checked;             ///< N
     std::vector<PoseChange> changes; ///< N
 };
 
-/// Leads a path around its collisions by tilting the tool, and where that is not enough by retreating from the part.
-/// Track and table stay as they are. What cannot be solved stays as it was.
+/// Avoids the collisions of a path by tilting the tool, and where that is not enough by retreating from the part. Track
+/// and table keep their values. Poses for which nothing is found keep their place.
 ///
 /// Pose by pose (Chen & Wei, algorithm 1 and 5.3): where a pose collides or is not reached, tilts on cones about the
-/// point of contact (robot/tilt.h) are tried, 5 degrees wider from one to the next and 5 degrees apart around each,
-/// first those nearest to the tilt of the pose before, up to the largest; then again 0.1 mm farther away, and so on.
-/// The first one that is clear, and reached without a jump, is taken.
+/// pivot (robot/tilt.h) are tried. The cones are 5 degrees apart, and so are the tilts on each, those nearest to the
+/// tilt of the pose before first; after the largest cone the same with a retreat of 0.1 mm, and so on. The first change
+/// that is free of collisions and reached without a jump is taken.
 ///
-/// Smooth: see tilt_smoothly(). Then, both: ways between clear poses that collide are parted from the workpiece by
-/// retreats of their ends.
+/// Smooth: see tilt_smoothly(). In both cases motions between collision-free poses that collide with the workpiece are
+/// then freed by retreats of the two poses.
 /// @param before  check_path() of `solved`
-/// @param away  3xN, unit, part frame: where a retreat leads
-AvoidedPath avoid(const Robot& robot, const Workpiece* workpiece, const SolvedPath& solved, const CheckedPath& before,
-                  const Eigen::Matrix3Xd& away, const AvoidOptions& options, const CollisionOptions& collision);
+/// @param retreat_directions  3xN, unit, part frame
+AvoidedPath avoid_collisions(const Robot& robot, const Workpiece* workpiece, const SolvedPath& solved,
+                             const CheckedPath& before, const Eigen::Matrix3Xd& retreat_directions,
+                             const AvoidOptions& options, const CollisionOptions& collision);
 
-} // namespace fettle
+} // namespace fettle::robot

@@ -1,115 +1,119 @@
+#include "core/constants.h"
 #include "robot/avoid_tilts.h"
 
 #include <tbb/parallel_for.h>
 
 #include <cmath>
-#include <limits>
 
-namespace fettle {
+namespace fettle::robot {
 
 namespace {
 
-using Eigen::Index, Eigen::Vector2d;
+using Eigen::Vector2d;
 
-// From cone to cone, and around each (Chen & Wei, 5.3).
+// Angle between cones, and between tilts on a cone, rad (Chen & Wei, 5.3).
 constexpr double kTiltStep = std::numbers::pi / 36;
 
-// Poses that are in trouble and no more than so many apart are led around one after the other.
-constexpr std::size_t kApart = 32;
+// Poses that must change form a group if no more than this many poses lie between them. Groups are changed in parallel.
+constexpr std::size_t kMaxGapInGroup = 32;
 
-// The tool leans towards the azimuth, counted from its x.
+// A tilt towards the azimuth, counted from the tool's x.
 Vector2d tilt_towards(double azimuth, double angle) { return angle * Vector2d(-std::sin(azimuth), std::cos(azimuth)); }
 
-// All tilts up to the largest, cone by cone; on each those first that are nearest to the azimuth of another.
-std::vector<Vector2d> cones(const Vector2d& near, double most)
+// All tilts up to the largest, cone by cone; on each cone those nearest to the azimuth of `start` come first.
+std::vector<Vector2d> tilts_on_cones(const Vector2d& start, double max_tilt)
 {
-    const long around = std::lround(2 * std::numbers::pi / kTiltStep);
-    const long first = near.isZero(0) ? 0 : std::lround(std::atan2(-near.x(), near.y()) / kTiltStep);
+    const long count = std::lround(2 * std::numbers::pi / kTiltStep);
+    const long first = start.isZero(0) ? 0 : std::lround(std::atan2(-start.x(), start.y()) / kTiltStep);
     std::vector<Vector2d> tilts = {Vector2d::Zero()};
-    for (int cone = 1; cone * kTiltStep <= most * (1 + 1e-9); ++cone)
-        for (long k = 0; k < around; ++k) {
+    for (int cone = 1; cone * kTiltStep <= max_tilt * (1 + 1e-9); ++cone)
+        for (long k = 0; k < count; ++k) {
             const long azimuth = first + (k % 2 == 0 ? -k / 2 : (k + 1) / 2);
             tilts.push_back(tilt_towards(double(azimuth) * kTiltStep, cone * kTiltStep));
         }
     return tilts;
 }
 
-class ByPose {
+class PoseByPose {
   public:
-    ByPose(const Trials& trials, const std::vector<bool>& trouble, const AvoidOptions& options, Led& led)
-        : trials_(trials), trouble_(trouble), options_(options), led_(led), given_(led)
+    PoseByPose(const ChangeChecker& trials, const std::vector<bool>& must_change, const AvoidOptions& options,
+               ChangedPath& path)
+        : trials_(trials), must_change_(must_change), options_(options), path_(path), given_(path)
     {
     }
 
-    /// Poses first to end - 1, one after the other.
-    /// @param alone  as if the pose before the first one were as it was
-    void run(std::size_t first, std::size_t end, bool alone)
+    /// Changes the poses from `first` to `end` - 1, one after the other.
+    /// @param ignore_previous  true: the pose before the first one counts as it was given
+    void run(std::size_t first, std::size_t end, bool ignore_previous)
     {
-        Way before = first > 0 ? way(alone ? given_ : led_, first - 1) : Way();
+        Solution previous = first > 0 ? solution(ignore_previous ? given_ : path_, first - 1) : Solution();
         for (std::size_t i = first; i < end; ++i) {
-            const bool as_given = i == 0 || before.change == given_.changes[i - 1];
-            const Way given = way(given_, i);
-            before = !trouble_[i] && (as_given || !jumps(before.joints, given.joints)) ? given : solved(i, before);
-            led_.changes[i] = before.change;
-            led_.joints.col(static_cast<Index>(i)) = before.joints;
+            const bool previous_as_given = i == 0 || previous.change == given_.changes[i - 1];
+            const Solution given = solution(given_, i);
+            const bool keep = !must_change_[i] && (previous_as_given || !jumps(previous.joints, given.joints));
+            previous = keep ? given : find_change(i, previous);
+            path_.changes[i] = previous.change;
+            path_.joints.col(i) = previous.joints;
         }
     }
 
   private:
-    struct Way {
+    struct Solution {
         PoseChange change;
-        CellJoints joints = CellJoints::Constant(std::numeric_limits<double>::quiet_NaN());
+        CellJoints joints = CellJoints::Constant(core::kNaN);
     };
 
-    static Way way(const Led& led, std::size_t i) { return {led.changes[i], led.joints.col(static_cast<Index>(i))}; }
+    static Solution solution(const ChangedPath& path, std::size_t i) { return {path.changes[i], path.joints.col(i)}; }
 
-    bool jumps(const CellJoints& before, const CellJoints& q) const
+    /// False if one of the poses is not reached.
+    bool jumps(const CellJoints& previous, const CellJoints& q) const
     {
-        return (q - before).head<6>().cwiseAbs().maxCoeff() > options_.jump; // false for NaN: nothing to keep to
+        return (q - previous).head<6>().cwiseAbs().maxCoeff() > options_.jump_threshold;
     }
 
-    Way solved(std::size_t i, const Way& before) const
+    /// The first change of pose i that is free of collisions and reached without a jump; else the given one.
+    Solution find_change(std::size_t i, const Solution& previous) const
     {
-        const auto column = static_cast<Index>(i);
-        const CellJoints near = before.joints.hasNaN() ? trials_.near(column) : before.joints;
-        Blocked blocked;
-        const int retreats = static_cast<int>(std::floor(options_.most_retreat / kRetreatStep * (1 + 1e-9)));
-        const std::vector<Vector2d> tilts = cones(before.change.tilt, options_.most_tilt);
+        const CellJoints seed = previous.joints.hasNaN() ? trials_.seed_joints(i) : previous.joints;
+        CollidingChanges blocked;
+        const int retreats = int(std::floor(options_.max_retreat / kRetreatStep * (1 + 1e-9)));
+        const std::vector<Vector2d> tilts = tilts_on_cones(previous.change.tilt, options_.max_tilt);
         for (int k = 0; k <= retreats; ++k)
             for (const Vector2d& tilt : tilts) {
                 const PoseChange change{tilt, k * kRetreatStep};
-                if (blocked.holds(change)) continue;
-                const CellJoints q = trials_.look(column, change, near, blocked);
-                if (!q.hasNaN() && !jumps(before.joints, q)) return {change, q};
+                if (blocked.contains(change)) continue;
+                const CellJoints q = trials_.find_clear_joints(i, change, seed, blocked);
+                if (!q.hasNaN() && !jumps(previous.joints, q)) return {change, q};
             }
-        return way(given_, i);
+        return solution(given_, i);
     }
 
-    const Trials& trials_;
-    const std::vector<bool>& trouble_;
+    const ChangeChecker& trials_;
+    const std::vector<bool>& must_change_;
     const AvoidOptions& options_;
-    Led& led_;
-    const Led given_;
+    ChangedPath& path_;
+    const ChangedPath given_;
 };
 
 } // namespace
 
-void tilt_by_pose(const Trials& trials, const std::vector<bool>& trouble, const AvoidOptions& options, Led& led)
+void tilt_by_pose(const ChangeChecker& trials, const std::vector<bool>& must_change, const AvoidOptions& options,
+                  ChangedPath& path)
 {
-    std::vector<std::size_t> starts;
+    std::vector<std::size_t> starts; // first pose of each group
     std::size_t last = 0;
-    for (std::size_t i = 0; i < trouble.size(); ++i) {
-        if (!trouble[i]) continue;
-        if (starts.empty() || i - last > kApart) starts.push_back(i);
+    for (std::size_t i = 0; i < must_change.size(); ++i) {
+        if (!must_change[i]) continue;
+        if (starts.empty() || i - last > kMaxGapInGroup) starts.push_back(i);
         last = i;
     }
-    const std::vector<PoseChange> given = led.changes;
-    ByPose by_pose(trials, trouble, options, led);
-    const auto end = [&](std::size_t k) { return k + 1 < starts.size() ? starts[k + 1] : trouble.size(); };
-    tbb::parallel_for(std::size_t{0}, starts.size(), [&](std::size_t k) { by_pose.run(starts[k], end(k), true); });
-    // One that still leans otherwise than given where the next begins hands its tilt on.
+    const std::vector<PoseChange> given = path.changes;
+    PoseByPose search(trials, must_change, options, path);
+    const auto end = [&](std::size_t k) { return k + 1 < starts.size() ? starts[k + 1] : must_change.size(); };
+    tbb::parallel_for(std::size_t{0}, starts.size(), [&](std::size_t k) { search.run(starts[k], end(k), true); });
+    // A group that is still changed where the next one starts affects the next one: that is searched again.
     for (std::size_t k = 1; k < starts.size(); ++k)
-        if (led.changes[starts[k] - 1] != given[starts[k] - 1]) by_pose.run(starts[k], end(k), false);
+        if (path.changes[starts[k] - 1] != given[starts[k] - 1]) search.run(starts[k], end(k), false);
 }
 
-} // namespace fettle
+} // namespace fettle::robot

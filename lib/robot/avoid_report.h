@@ -5,19 +5,20 @@
 #include "units/units.h"
 #include "json/document.h"
 
-namespace fettle {
+namespace fettle::robot {
 
-/// Fields avoided (0 as it was, 1 tilted, 2 drawn back, 3 both, 4 not solved), tilt (degrees), tilt_towards (degrees
-/// about the tool's z from its x) and retreat (mm).
-/// @param tolerance  as CollisionOptions, mm
-void set_changes(Cloud& cloud, const AvoidedPath& avoided, double tolerance);
+/// Sets the fields avoided (0 unchanged, 1 tilted, 2 retreated, 3 both, 4 not solved), tilt (degrees), tilt_towards
+/// (azimuth of the tilt, degrees about the tool's z from its x; NaN without a tilt) and retreat (mm).
+/// @param tolerance  CollisionOptions::tolerance, mm
+void set_changes(cloud::Cloud& cloud, const AvoidedPath& avoided, double tolerance);
 
-/// Where a retreat leads: along normal_x normal_y normal_z where a path has them, else along the tool's axis. 3xN
-Eigen::Matrix3Xd retreat_directions(const Cloud& cloud, const PosePath& poses);
+/// Directions of retreats: the fields normal_x normal_y normal_z where a path has them, else the tool's axis.
+/// @return  3xN, unit, part frame
+Eigen::Matrix3Xd retreat_directions(const cloud::Cloud& cloud, const cloud::PosePath& poses);
 
-/// Adds `avoidance`: counts, the largest tilt, retreat and change of tilt from pose to pose, each change, and what is
-/// not solved.
+/// Adds `avoidance` to a report: counts, the largest tilt, retreat and change of tilt from pose to pose, each changed
+/// pose, and each pose that is not solved.
 void add_report(json::Value& report, const Robot& robot, const AvoidedPath& avoided, const CheckedPath& before,
-                const AvoidOptions& options, const CollisionOptions& collision, const Units& units);
+                const AvoidOptions& options, const CollisionOptions& collision, const units::Units& units);
 
-} // namespace fettle
+} // namespace fettle::robot

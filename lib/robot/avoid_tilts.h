@@ -2,38 +2,42 @@
 
 #include "robot/avoid_trial.h"
 
-#include <cstddef>
 #include <numbers>
 #include <vector>
 
-namespace fettle {
+namespace fettle::robot {
 
 struct AvoidOptions {
-    bool smooth = false;                     ///< else pose by pose
-    double most_tilt = std::numbers::pi / 4; ///< rad (Chen & Wei, 5.3)
-    double most_retreat = 1;                 ///< mm: Chen & Wei go on for ever
-    double jump = std::numbers::pi / 6;      ///< as FollowOptions
+    bool smooth = false;                          ///< false: pose by pose
+    double max_tilt = std::numbers::pi / 4;       ///< rad (Chen & Wei, 5.3)
+    double max_retreat = 1;                       ///< mm; Chen & Wei have no bound
+    double jump_threshold = std::numbers::pi / 6; ///< FollowOptions::jump_threshold, rad
 };
 
-/// A retreat goes by such steps, mm (Chen & Wei, 5.3).
+/// Step of retreats, mm (Chen & Wei, 5.3).
 inline constexpr double kRetreatStep = 0.1;
 
-/// How the poses of a path are changed, and the joints that go with it.
-struct Led {
+/// The changes of a path's poses, with the joints of the changed poses.
+struct ChangedPath {
     std::vector<PoseChange> changes; ///< N
     CellJointsPath joints;           ///< N; NaN: not reached
 };
 
 /// Chen & Wei's algorithm 1, see avoid().
-/// @param trouble  N: must it be led around?
-void tilt_by_pose(const Trials& trials, const std::vector<bool>& trouble, const AvoidOptions& options, Led& led);
+/// @param must_change  N: the poses that collide or are not reached
+/// @param path  input and output
+void tilt_by_pose(const ChangeChecker& trials, const std::vector<bool>& must_change, const AvoidOptions& options,
+                  ChangedPath& path);
 
-/// Tilts t of a whole path with the least sum of |t_i - t_i-1|² + |t_i|² / kRamp², by dynamic programming: so the tool
-/// begins to lean some kRamp poses before it must. First every sixteenth pose has a say (of sixteen that one which
-/// collides deepest), with tilts 7.5 degrees apart; then every eighth, fourth, second and at last each, with tilts ever
-/// closer together around those found so far. Only those that lie on a shortest way are tried, until it is clear.
-/// Where none is clear tilt_by_pose() has its turn.
-/// @param depth  N: how deep each pose collides, mm; 0: it does not; infinite: it is not reached
-void tilt_smoothly(const Trials& trials, const std::vector<double>& depth, const AvoidOptions& options, Led& led);
+/// Finds the tilts t of a path that minimise the sum of |t_i - t_i-1|² + |t_i|² / kRampPoses² without a collision, by
+/// dynamic programming: the tool begins to tilt some kRampPoses poses before it must. The search goes from coarse to
+/// fine: first with one pose of each sixteen (the one that collides deepest) and tilts 7.5 degrees apart, then with one
+/// of eight, four, two and at last each pose, with tilts ever closer together around those found before. Only tilts on
+/// an optimal path are checked for collisions, until one is free of them. Poses where this fails are left to
+/// tilt_by_pose().
+/// @param depth  N: penetration depth of each pose, mm; 0: it does not collide; infinite: it is not reached
+/// @param path  input and output
+void tilt_smoothly(const ChangeChecker& trials, const std::vector<double>& depth, const AvoidOptions& options,
+                   ChangedPath& path);
 
-} // namespace fettle
+} // namespace fettle::robot

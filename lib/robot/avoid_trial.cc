@@ -5,16 +5,16 @@
 #include <cmath>
 #include <numbers>
 
-namespace fettle {
+namespace fettle::robot {
 
 namespace {
 
 using Eigen::Isometry3d, Eigen::Vector3d;
 
-// Whether a body stands still, whatever the arm does, once track and table stand.
-bool stands(const Robot& robot, std::size_t body)
+// Does the body's place not depend on the arm's joints, but on track and table only?
+bool is_off_arm(const Robot& robot, std::size_t body)
 {
-    if (body == robot.bodies.size()) return true;
+    if (body == robot.bodies.size()) return true; // the workpiece
     const int on = robot.bodies[body].link;
     return on == link::kCell || on == link::kBase || on == link::kTable;
 }
@@ -24,103 +24,105 @@ bool on_tool(const Robot& robot, std::size_t body)
     return body < robot.bodies.size() && robot.bodies[body].link == link::kTool;
 }
 
-// How far the body's points lie from the pivot, mm; 0 for a ball about it, which turns in its place.
+// Distance of the body's farthest point from the pivot, mm; 0 for a sphere about it, which a tilt leaves in its place.
 double lever_of(const Solid& solid, const Vector3d& pivot)
 {
     const auto* ball = std::get_if<solid::Sphere>(&solid);
     if (ball != nullptr && ball->centre == pivot) return 0;
-    const Eigen::AlignedBox3d box = PlacedSolid(solid, Isometry3d::Identity()).box();
+    const Eigen::AlignedBox3d box = PlacedSolid(solid, Isometry3d::Identity()).bounding_box();
     return ((box.max() - pivot).cwiseAbs()).cwiseMax((box.min() - pivot).cwiseAbs()).norm();
 }
 
-CollisionOptions just_enough(CollisionOptions options)
+// Options for the question whether something collides: larger clearances need not be known.
+CollisionOptions decision_options(CollisionOptions options)
 {
-    options.beyond = options.tolerance; // more is not asked for
+    options.max_clearance = options.tolerance;
     return options;
 }
 
-// The whole turns of each joint that are nearest to others, where the range allows them.
-Joints turned_near(const Robot& robot, Joints q, const CellJoints& near)
+// Shifts each joint by whole turns to be nearest to `seed`, where the range allows it.
+Joints wrap_near(const Robot& robot, Joints q, const CellJoints& seed)
 {
     for (Eigen::Index k = 0; k < 6; ++k) {
-        const double nearer = q[k] + 2 * std::numbers::pi * std::round((near[k] - q[k]) / (2 * std::numbers::pi));
-        if (within(robot.dh[static_cast<std::size_t>(k)].range, nearer)) q[k] = nearer;
+        const double nearest = q[k] + 2 * std::numbers::pi * std::round((seed[k] - q[k]) / (2 * std::numbers::pi));
+        if (robot.dh[k].range.contains(nearest)) q[k] = nearest;
     }
     return q;
 }
 
 } // namespace
 
-Trials::Trials(const Robot& robot, const Workpiece* workpiece, const CollisionOptions& options,
-               const SolvedPath& solved, const Eigen::Matrix3Xd& away)
-    : robot_(robot), solved_(solved), away_(away), options_(just_enough(options)), cell_(robot, workpiece, options_),
-      arm_(robot), pivot_(tilt_pivot(robot))
+ChangeChecker::ChangeChecker(const Robot& robot, const Workpiece* workpiece, const CollisionOptions& options,
+                             const SolvedPath& solved, const Eigen::Matrix3Xd& retreat_directions)
+    : robot_(robot), solved_(solved), retreat_directions_(retreat_directions), options_(decision_options(options)),
+      cell_(robot, workpiece, options_), arm_(robot), pivot_(tilt_pivot(robot))
 {
-    for (const std::size_t i : cell_.looked_at()) {
+    for (const std::size_t i : cell_.active_pairs()) {
         const CellPair& pair = cell_.pairs()[i];
-        const bool tool_alone =
-            (on_tool(robot, pair.a) && stands(robot, pair.b)) || (on_tool(robot, pair.b) && stands(robot, pair.a));
-        (tool_alone ? of_tool_ : of_arm_).push_back(i);
+        const bool is_tool_pair = (on_tool(robot, pair.a) && is_off_arm(robot, pair.b)) ||
+                                  (on_tool(robot, pair.b) && is_off_arm(robot, pair.a));
+        (is_tool_pair ? tool_pairs_ : arm_pairs_).push_back(i);
     }
-    for (const Body& body : robot.bodies) lever_.push_back(lever_of(body.solid, {0, 0, pivot_}));
+    for (const Body& body : robot.bodies) levers_.push_back(lever_of(body.solid, {0, 0, pivot_}));
 }
 
-Isometry3d Trials::pose(Eigen::Index i, const PoseChange& change) const
+Isometry3d ChangeChecker::tool_pose(Eigen::Index i, const PoseChange& change) const
 {
-    return changed_pose(solved_.poses[static_cast<std::size_t>(i)], change, pivot_, away_.col(i));
+    return changed_pose(solved_.poses[i], change, pivot_, retreat_directions_.col(i));
 }
 
-CellJoints Trials::near(Eigen::Index i) const
+CellJoints ChangeChecker::seed_joints(Eigen::Index i) const
 {
     for (Eigen::Index k = i; k >= 0; --k)
         if (!solved_.path.joints.col(k).hasNaN()) return solved_.path.joints.col(k);
     return CellJoints::Zero();
 }
 
-CellJoints Trials::joints(Eigen::Index i, const PoseChange& change, const CellJoints& near) const
+CellJoints ChangeChecker::nearest_joints(Eigen::Index i, const PoseChange& change, const CellJoints& seed) const
 {
     const Eigen::Vector2d external = solved_.external_values.col(i);
-    CellJoints nearest = CellJoints::Constant(kNaN);
-    if (robot_.track && !within(robot_.track->range, external[0])) return nearest;
-    if (robot_.table && !within(robot_.table->range, external[1])) return nearest;
-    const Isometry3d flange = flange_for(robot_, pose(i, change), external[0], external[1]);
-    double least = std::numeric_limits<double>::infinity();
-    for (const ArmSolution& solution : arm_.solve(flange, near.head<6>(), Ranges::respect)) {
-        const Joints q = turned_near(robot_, solution.joints, near);
-        const double motion = (q - near.head<6>()).squaredNorm();
-        if (motion >= least) continue;
-        least = motion;
+    CellJoints nearest = CellJoints::Constant(core::kNaN);
+    if (robot_.track && !robot_.track->range.contains(external[0])) return nearest;
+    if (robot_.table && !robot_.table->range.contains(external[1])) return nearest;
+    const Isometry3d flange = flange_target(robot_, tool_pose(i, change), external[0], external[1]);
+    double min_motion = core::kInfinity;
+    for (const ArmSolution& solution : arm_.solve(flange, seed.head<6>(), Ranges::respect)) {
+        const Joints q = wrap_near(robot_, solution.joints, seed);
+        const double motion = (q - seed.head<6>()).squaredNorm();
+        if (motion >= min_motion) continue;
+        min_motion = motion;
         nearest << q, external;
     }
     return nearest;
 }
 
-bool Trials::clear_of_arm(const CellJoints& joints) const
+bool ChangeChecker::arm_is_clear(const CellJoints& joints) const
 {
-    Stance stance = cell_.stand(joints);
-    for (const std::size_t i : of_arm_) {
-        cell_.look(stance, i);
-        if (stance.pairs[i].clearance < -options_.tolerance) return false;
+    CellState state = cell_.place_bodies(joints);
+    for (const std::size_t i : arm_pairs_) {
+        cell_.measure_clearance(state, i);
+        if (state.clearances[i].clearance < -options_.tolerance) return false;
     }
     return true;
 }
 
-CellJoints Trials::look(Eigen::Index i, const PoseChange& change, const CellJoints& near, Blocked& blocked) const
+CellJoints ChangeChecker::find_clear_joints(Eigen::Index i, const PoseChange& change, const CellJoints& seed,
+                                            CollidingChanges& blocked) const
 {
-    const CellJoints q = joints(i, change, near);
+    const CellJoints q = nearest_joints(i, change, seed);
     if (q.hasNaN()) return q;
-    Stance stance = cell_.stand(q);
-    for (const std::size_t k : of_tool_) {
-        cell_.look(stance, k);
+    CellState state = cell_.place_bodies(q);
+    for (const std::size_t k : tool_pairs_) {
+        cell_.measure_clearance(state, k);
         const CellPair& pair = cell_.pairs()[k];
-        const double depth = -stance.pairs[k].clearance - options_.tolerance;
+        const double depth = -state.clearances[k].clearance - options_.tolerance;
         if (!(depth > 0)) continue;
-        // With the tool another part of a model turns into triangles: what is known of one tilt says nothing of others.
+        // A workpiece model changes its geometry with the tool's pose: one tilt tells nothing about others.
         if (options_.model == nullptr || pair.b < robot_.bodies.size())
-            blocked.add(change, depth, lever_[on_tool(robot_, pair.a) ? pair.a : pair.b]);
-        return CellJoints::Constant(kNaN);
+            blocked.add(change, depth, levers_[on_tool(robot_, pair.a) ? pair.a : pair.b]);
+        return CellJoints::Constant(core::kNaN);
     }
-    return clear_of_arm(q) ? q : CellJoints::Constant(kNaN);
+    return arm_is_clear(q) ? q : CellJoints::Constant(core::kNaN);
 }
 
-} // namespace fettle
+} // namespace fettle::robot

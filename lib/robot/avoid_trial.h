@@ -7,68 +7,76 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
-namespace fettle {
+namespace fettle::robot {
 
-/// Changes of one pose that are known to collide.
-class Blocked {
+/// A set of changes of one pose that are known to collide.
+class CollidingChanges {
   public:
-    /// The change was found to be `depth` mm deeper than allowed in a body whose points are up to `lever` mm from the
-    /// pivot, both of them fixed to tool and part or cell: tilts within depth / lever of it are no better, as no point
-    /// moves farther, and a retreat takes away at most its own length.
-    void add(const PoseChange& change, double depth, double lever) { found_.push_back({change, depth, lever}); }
+    /// Adds a change and all others that must collide, too.
+    /// @param depth  penetration of two bodies beyond the tolerance, mm; one is fixed to the tool, the other to the
+    /// part
+    ///               or the cell
+    /// @param lever  distance of the tool body's farthest point from the pivot, mm: with a tilt that differs by an
+    /// angle
+    ///               no point moves farther than lever · angle, and with another retreat no farther than the difference
+    void add(const PoseChange& change, double depth, double lever) { colliding_.push_back({change, depth, lever}); }
 
-    bool holds(const PoseChange& change) const
+    bool contains(const PoseChange& change) const
     {
-        for (const Found& f : found_)
-            if ((change.tilt - f.change.tilt).norm() * f.lever + std::abs(change.retreat - f.change.retreat) < f.depth)
-                return true;
-        return false;
+        return std::ranges::any_of(colliding_, [&](const Colliding& c) {
+            return (change.tilt - c.change.tilt).norm() * c.lever + std::abs(change.retreat - c.change.retreat) <
+                   c.depth;
+        });
     }
 
   private:
-    struct Found {
+    struct Colliding {
         PoseChange change;
         double depth, lever;
     };
-    std::vector<Found> found_;
+    std::vector<Colliding> colliding_;
 };
 
-/// Tries changes of poses of a path. Thread-safe.
-class Trials {
+/// Checks changes of a path's poses for reach and collisions. Thread-safe.
+class ChangeChecker {
   public:
-    /// All must outlive it.
-    /// @param away  3xN, unit, part frame: where a retreat leads
-    Trials(const Robot& robot, const Workpiece* workpiece, const CollisionOptions& options, const SolvedPath& solved,
-           const Eigen::Matrix3Xd& away);
+    /// All arguments must outlive it.
+    /// @param retreat_directions  3xN, unit, part frame
+    ChangeChecker(const Robot& robot, const Workpiece* workpiece, const CollisionOptions& options,
+                  const SolvedPath& solved, const Eigen::Matrix3Xd& retreat_directions);
 
-    Eigen::Isometry3d pose(Eigen::Index i, const PoseChange& change) const;
+    /// T_part_tool of the changed pose i.
+    Eigen::Isometry3d tool_pose(Eigen::Index i, const PoseChange& change) const;
 
-    /// Joints of a changed pose that lie nearest to others; NaN if none are in range.
-    CellJoints joints(Eigen::Index i, const PoseChange& change, const CellJoints& near) const;
+    /// The joints of a changed pose nearest to `seed`; NaN if no solution is in range.
+    CellJoints nearest_joints(Eigen::Index i, const PoseChange& change, const CellJoints& seed) const;
 
-    /// Is the changed pose reached with joints near to others, and clear?
-    /// @param blocked  what is learnt is added
-    /// @return  the joints; NaN: no
-    CellJoints look(Eigen::Index i, const PoseChange& change, const CellJoints& near, Blocked& blocked) const;
+    /// The joints of a changed pose nearest to `seed`, if they are free of collisions; else NaN.
+    /// @param blocked  output: if the tool collides, the change is added
+    CellJoints find_clear_joints(Eigen::Index i, const PoseChange& change, const CellJoints& seed,
+                                 CollidingChanges& blocked) const;
 
-    /// Joints of the path, or of the pose before that has any; else 0.
-    CellJoints near(Eigen::Index i) const;
+    /// The joints of the unchanged pose i, or of the last pose before it that is reached; else 0.
+    CellJoints seed_joints(Eigen::Index i) const;
 
   private:
-    bool clear_of_arm(const CellJoints& joints) const;
+    bool arm_is_clear(const CellJoints& joints) const;
 
     const Robot& robot_;
     const SolvedPath& solved_;
-    const Eigen::Matrix3Xd& away_;
+    const Eigen::Matrix3Xd& retreat_directions_;
     CollisionOptions options_;
     Cell cell_;
     Arm arm_;
     double pivot_;
-    std::vector<std::size_t> of_tool_, of_arm_; ///< pairs whose clearance the pose alone tells, and the others
-    std::vector<double> lever_;                 ///< of the bodies
+    std::vector<std::size_t> tool_pairs_; ///< pairs whose clearance depends on the pose alone, not on the arm's joints
+    std::vector<std::size_t> arm_pairs_;  ///< the other pairs
+    std::vector<double> levers_;          ///< by body, see CollidingChanges::add()
 };
 
-} // namespace fettle
+} // namespace fettle::robot

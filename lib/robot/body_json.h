@@ -4,23 +4,23 @@
 
 #include "json/document.h"
 
-// How the parts of a robot file are read; for robot.cc.
-namespace fettle {
+// Readers for the parts of a robot file, used by robot.cc. `mm` is the file's length unit in mm.
+namespace fettle::robot {
 
-// 100 m: no cell is larger, and a length in another unit shows.
-inline constexpr double kLongest = 1e5;
+/// Bound of all lengths in a robot file, mm: no cell is larger than 100 m, so a wrong length unit is noticed.
+inline constexpr double kMaxLength = 1e5;
 
-/// A length, mm. @throws InputError beyond kLongest
-double length_in(json::Reader& reader, const std::string& key, double mm);
-/// @throws InputError as length_in
-Eigen::Vector3d point_in(json::Reader& reader, const std::string& key, double mm);
-/// A unit vector. @throws InputError if its length is 0
-Eigen::Vector3d direction_in(json::Reader& reader, const std::string& key);
-/// "position" [x, y, z] and "quaternion" [w, x, y, z], both of which may be left out.
-Eigen::Isometry3d placement_in(json::Reader reader, double mm);
+/// Reads a length. @return  mm @throws InputError beyond kMaxLength
+double read_length(json::Reader& reader, const std::string& key, double mm);
+/// Reads three coordinates. @return  mm @throws InputError beyond kMaxLength
+Eigen::Vector3d read_point(json::Reader& reader, const std::string& key, double mm);
+/// Reads a vector and normalises it. @throws InputError if its length is 0
+Eigen::Vector3d read_direction(json::Reader& reader, const std::string& key);
+/// Reads "position" [x, y, z] and "quaternion" [w, x, y, z] of any length but 0; both are optional.
+Eigen::Isometry3d read_placement(json::Reader reader, double mm);
 
-/// "bodies", "allowed" and "margins".
-/// @param path  of the robot file: hulls lie beside it
+/// Reads "bodies", "allowed", "margins" and "calibration_error" into `robot`.
+/// @param path  of the robot file; the mesh files of hulls are relative to its folder
 void parse_bodies(json::Reader& reader, const std::string& path, double mm, Robot& robot);
 
-} // namespace fettle
+} // namespace fettle::robot

@@ -1,38 +1,31 @@
 #include "robot/cell.h"
 
+#include "geometry/bounding_box.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <variant>
 
-namespace fettle {
+namespace fettle::robot {
 
 namespace {
 
 using Eigen::Isometry3d, Eigen::Vector3d;
 
-bool same_pair(const BodyPair& p, std::size_t a, std::size_t b) { return p.first == a && p.second == b; }
-
-// The links of two bodies that need not be held against each other.
-bool never_meet(const Robot& robot, int a, int b)
+// Can bodies on these two links never collide: do the links not move against each other, or are they neighbours?
+bool never_collide(const Robot& robot, int a, int b)
 {
-    const auto stands = [&](int on) { return on == link::kCell || (on == link::kBase && !robot.track); };
-    if (a == b || (stands(a) && stands(b))) return true;
+    const auto is_fixed = [&](int on) { return on == link::kCell || (on == link::kBase && !robot.track); };
+    if (a == b || (is_fixed(a) && is_fixed(b))) return true;
     const auto on_arm = [](int on) { return on >= link::kBase && on <= link::kTool; };
     return on_arm(a) && on_arm(b) && std::abs(a - b) == 1;
 }
 
-double margin_of(const Robot& robot, std::size_t a, std::size_t b)
+double margin_of(const Robot& robot, const BodyPair& pair)
 {
-    for (const Robot::Margin& margin : robot.margins)
-        if (same_pair(margin.pair, a, b)) return margin.distance;
-    return 0;
-}
-
-Eigen::AlignedBox3d mesh_box(const Mesh& mesh)
-{
-    const Eigen::Matrix<double, 3, 2> box = bounding_box(mesh.vertices);
-    return {box.col(0), box.col(1)};
+    const auto found = std::ranges::find(robot.margins, pair, &Robot::Margin::pair);
+    return found == robot.margins.end() ? 0 : found->distance;
 }
 
 } // namespace
@@ -43,12 +36,12 @@ std::vector<CellPair> checked_pairs(const Robot& robot)
     const std::size_t count = robot.bodies.size();
     for (std::size_t a = 0; a < count; ++a)
         for (std::size_t b = a + 1; b <= count; ++b) {
-            const int under_part = robot.table ? link::kTable : link::kCell;
-            const int on_b = b == count ? under_part : robot.bodies[b].link;
-            const bool allowed = std::any_of(robot.allowed.begin(), robot.allowed.end(),
-                                             [&](const BodyPair& p) { return same_pair(p, a, b); });
-            if (!allowed && !never_meet(robot, robot.bodies[a].link, on_b))
-                pairs.push_back({a, b, margin_of(robot, a, b)});
+            const int workpiece_link = robot.table ? link::kTable : link::kCell;
+            const int link_b = b == count ? workpiece_link : robot.bodies[b].link;
+            const BodyPair pair(a, b);
+            const bool allowed = std::ranges::find(robot.allowed, pair) != robot.allowed.end();
+            if (!allowed && !never_collide(robot, robot.bodies[a].link, link_b))
+                pairs.push_back({a, b, margin_of(robot, pair)});
         }
     return pairs;
 }
@@ -57,18 +50,19 @@ std::array<Isometry3d, 10> link_frames(const Robot& robot, const Arm& arm, const
 {
     std::array<Isometry3d, 10> frames;
     frames[0].setIdentity();
-    const Isometry3d base = cell_base(robot, joints[6]);
+    const Isometry3d base = base_in_cell(robot, joints[6]);
     const std::array<Isometry3d, 7> links = arm.frames(joints.head<6>());
     for (std::size_t k = 0; k < links.size(); ++k) frames[k + 1] = base * links[k];
     frames[8] = frames[7] * robot.T_flange_tool;
-    frames[9] = cell_part(robot, joints[7]);
+    frames[9] = part_in_cell(robot, joints[7]);
     return frames;
 }
 
-Cell::Around Cell::around(const Eigen::AlignedBox3d& box)
+Cell::BoundingBall Cell::bounding_ball(const Eigen::AlignedBox3d& box)
 {
     const Vector3d farthest = box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs());
-    return {box.center(), box.diagonal().norm() / 2, farthest.norm()};
+    const double radius = box.diagonal().norm() / 2;
+    return {box.center(), radius, farthest.norm(), radius};
 }
 
 Cell::Cell(const Robot& robot, const Workpiece* workpiece, const CollisionOptions& options)
@@ -77,83 +71,191 @@ Cell::Cell(const Robot& robot, const Workpiece* workpiece, const CollisionOption
 {
     for (const DhRow& row : robot.dh) reach_ += std::abs(row.a) + std::abs(row.d);
     for (std::size_t i = 0; i < pairs_.size(); ++i)
-        if (workpiece != nullptr || pairs_[i].b < robot.bodies.size()) looked_at_.push_back(i);
+        if (workpiece != nullptr || pairs_[i].b < robot.bodies.size()) active_pairs_.push_back(i);
     for (const Body& body : robot.bodies) {
-        around_.push_back(around(PlacedSolid(body.solid, Isometry3d::Identity()).box()));
-        if (std::holds_alternative<solid::Sphere>(body.solid)) around_.back().radius = 0;
+        bounding_balls_.push_back(bounding_ball(PlacedSolid(body.solid, Isometry3d::Identity()).bounding_box()));
+        if (const auto* sphere = std::get_if<solid::Sphere>(&body.solid)) {
+            bounding_balls_.back().radius = 0;
+            bounding_balls_.back().size = sphere->radius;
+        }
     }
-    if (workpiece != nullptr) around_.push_back(around(mesh_box(workpiece->mesh())));
+    if (workpiece != nullptr) {
+        const Eigen::AlignedBox3d box = geometry::finite_bounding_box(workpiece->mesh().vertices);
+        bounding_balls_.push_back(bounding_ball(box));
+        workpiece_box_ = solid::Box{Isometry3d(Eigen::Translation3d(box.center())), box.sizes() / 2};
+    }
+    for (std::size_t body = 0; body < body_count(); ++body) axis_distances_.push_back(axis_distances(body));
 }
 
-Stance Cell::stand(const CellJoints& joints) const
+int Cell::link_of(std::size_t body) const
 {
-    Stance stance;
-    stand(joints, stance);
-    return stance;
+    if (body < robot_.bodies.size()) return robot_.bodies[body].link;
+    return robot_.table ? link::kTable : link::kCell;
 }
 
-void Cell::stand(const CellJoints& joints, Stance& stance) const
+// The links behind an axis, stretched, and the body. Its own link's offset along the axis does not count.
+Eigen::Array<double, 6, 1> Cell::axis_distances(std::size_t body) const
+{
+    Eigen::Array<double, 6, 1> distances = Eigen::Array<double, 6, 1>::Zero();
+    const int on = link_of(body);
+    if (on <= link::kBase || on > link::kTool) return distances;
+    double behind = bounding_balls_[body].extent;
+    if (on == link::kTool) behind += robot_.T_flange_tool.translation().norm();
+    for (int joint = std::min(on, 6); joint >= 1; --joint) {
+        const DhRow& row = robot_.dh[joint - 1];
+        distances[joint - 1] = behind + std::abs(row.a);
+        behind += std::hypot(row.a, row.d);
+    }
+    return distances;
+}
+
+CellState Cell::place_bodies(const CellJoints& joints) const
+{
+    CellState state;
+    place_bodies(joints, state);
+    return state;
+}
+
+void Cell::place_bodies(const CellJoints& joints, CellState& state) const
 {
     const std::array<Isometry3d, 10> frames = link_frames(robot_, arm_, joints);
-    stance.T_cell_body.resize(bodies());
-    for (std::size_t b = 0; b < robot_.bodies.size(); ++b)
-        stance.T_cell_body[b] = frames[static_cast<std::size_t>(robot_.bodies[b].link + 1)];
-    if (workpiece_ != nullptr) stance.T_cell_body.back() = frames[9];
-    stance.pairs.assign(pairs_.size(), CellClearance{});
-    stance.leaf.resize(pairs_.size());
+    state.T_cell_body.resize(body_count());
+    for (std::size_t b = 0; b < robot_.bodies.size(); ++b) state.T_cell_body[b] = frames[robot_.bodies[b].link + 1];
+    if (workpiece_ != nullptr) state.T_cell_body.back() = frames[9];
+    state.clearances.resize(pairs_.size());
+    state.start_leaf.resize(pairs_.size());
     if (workpiece_ != nullptr && options_.model != nullptr)
-        stance.zone = options_.model->zone(robot_, frames[9].inverse() * frames[8]);
+        state.tool_zone = options_.model->tool_zone(robot_, frames[9].inverse() * frames[8]);
 }
 
-double Cell::look(Stance& stance, std::size_t index, double beyond) const
+double Cell::measure_clearance(CellState& state, std::size_t index, double max_clearance) const
 {
     const CellPair& pair = pairs_[index];
-    const Isometry3d& T_a = stance.T_cell_body[pair.a];
-    CellClearance& found = stance.pairs[index];
+    const Isometry3d& T_a = state.T_cell_body[pair.a];
+    CellClearance& found = state.clearances[index];
     found.pair = index;
     Clearance c;
     if (pair.b == robot_.bodies.size()) {
-        const Isometry3d& T_cell_part = stance.T_cell_body.back();
+        const Isometry3d& T_cell_part = state.T_cell_body.back();
         const Solid& solid = robot_.bodies[pair.a].solid;
         const Isometry3d T_part_a = T_cell_part.inverse() * T_a;
         const Workpiece::Nearest nearest =
             options_.model != nullptr
-                ? options_.model->nearest(solid, T_part_a, stance.zone, beyond + pair.margin)
-                : workpiece_->nearest(PlacedSolid(solid, T_part_a), beyond + pair.margin, stance.leaf[index]);
-        stance.leaf[index] = nearest.leaf;
+                ? options_.model->nearest(solid, T_part_a, state.tool_zone, max_clearance + pair.margin)
+                : workpiece_->nearest(PlacedSolid(solid, T_part_a), max_clearance + pair.margin,
+                                      state.start_leaf[index]);
+        state.start_leaf[index] = nearest.leaf;
         c = nearest.clearance;
         found.point = T_cell_part * c.on_a;
     } else {
         const PlacedSolid a(robot_.bodies[pair.a].solid, T_a);
-        const PlacedSolid b(robot_.bodies[pair.b].solid, stance.T_cell_body[pair.b]);
-        c = clearance(a, b, beyond + pair.margin);
+        const PlacedSolid b(robot_.bodies[pair.b].solid, state.T_cell_body[pair.b]);
+        c = clearance(a, b, max_clearance + pair.margin);
         found.point = c.on_a;
     }
-    found.clearance = std::min(c.distance - pair.margin, beyond);
+    found.clearance = std::min(c.distance - pair.margin, max_clearance);
     return c.distance - pair.margin;
 }
 
-// By the centre's way and the turn: |R1 - R0| is the Frobenius norm over root 2.
-double Cell::chord(std::size_t body, const Stance& s0, const Stance& s1) const
+// The displacement of the ball's centre, and the chord of the rotation at the ball's radius: the spectral norm of
+// R1 - R0 is its Frobenius norm over root 2.
+double Cell::displacement_bound(const BoundingBall& ball, const Isometry3d& T0, const Isometry3d& T1)
 {
-    const Isometry3d &T0 = s0.T_cell_body[body], &T1 = s1.T_cell_body[body];
     const Eigen::Matrix3d turn = T1.linear() - T0.linear();
-    const Vector3d way = turn * around_[body].centre + (T1.translation() - T0.translation());
-    return way.norm() + around_[body].radius * turn.norm() * std::numbers::sqrt2 / 2;
+    const Vector3d displacement = turn * ball.centre + (T1.translation() - T0.translation());
+    return displacement.norm() + ball.radius * turn.norm() * std::numbers::sqrt2 / 2;
 }
 
-double Cell::motion(std::size_t body, const CellJoints& q0, const Stance& s0, const CellJoints& q1,
-                    const Stance& s1) const
+double Cell::displacement_bound(std::size_t body, const CellState& s0, const CellState& s1) const
 {
-    const CellJoints move = (q1 - q0).cwiseAbs();
-    double turns = move.head<6>().sum(); // of joint 3 with joint 2, if they are coupled, it is at most their sum
-    if (robot_.coupling == Coupling::parallelogram) turns += move[1];
-    const int on = body == robot_.bodies.size() ? link::kTable : robot_.bodies[body].link;
-    double bend = 0; // what an arc is longer than its chord
-    if (on == link::kTable && robot_.table)
-        bend = move[7] * move[7] * (around_[body].extent + robot_.table->point.norm()) / 2;
-    if (on > link::kBase && on <= link::kTool) bend = turns * turns * (around_[body].extent + reach_) / 2;
-    return chord(body, s0, s1) + bend;
+    return displacement_bound(bounding_balls_[body], s0.T_cell_body[body], s1.T_cell_body[body]);
 }
 
-} // namespace fettle
+// With turns the sum of the joints' turns and R the distance from their axes it is turns² R / 2.
+double Cell::arc_excess(std::size_t body, const CellJoints& change) const
+{
+    const int on = body == robot_.bodies.size() ? link::kTable : robot_.bodies[body].link;
+    const double extent = bounding_balls_[body].extent;
+    if (on == link::kTable && robot_.table) return change[7] * change[7] * (extent + robot_.table->point.norm()) / 2;
+    if (on <= link::kBase || on > link::kTool) return 0;
+    double turns = change.head<6>().cwiseAbs().sum(); // with a parallelogram joint 3 turns by at most both, 2 and 3
+    if (robot_.coupling == Coupling::parallelogram) turns += std::abs(change[1]);
+    return turns * turns * (extent + reach_) / 2;
+}
+
+double Cell::rough_clearance(const CellState& state, std::size_t index) const
+{
+    const CellPair& pair = pairs_[index];
+    const BoundingBall &a = bounding_balls_[pair.a], &b = bounding_balls_[pair.b];
+    const Vector3d between = state.T_cell_body[pair.a] * a.centre - state.T_cell_body[pair.b] * b.centre;
+    const double of_balls = between.norm() - a.size - b.size - pair.margin;
+    if (!is_of_workpiece(index)) return of_balls;
+    const PlacedSolid body(robot_.bodies[pair.a].solid, state.T_cell_body[pair.a]);
+    const Clearance to_box = clearance(body, PlacedSolid(workpiece_box_, state.T_cell_body.back()));
+    return to_box.distance > 0 ? std::max(of_balls, to_box.distance - pair.margin) : of_balls;
+}
+
+// Bound of the second derivative of the paths of a body's points along a motion of the arm, the motion being 1, mm. Of
+// a point p behind axes z_m at o_m it is the sum of z_m x (z_n x (p - o_n)) dq_m dq_n over all m and n, n being the one
+// nearer to p. Joints before the first one rest.
+double Cell::acceleration_bound(std::size_t body, const CellJoints& change, int first_joint) const
+{
+    const Eigen::Array<double, 6, 1>& distances = axis_distances_[body];
+    double sum = 0, turns = 0; // turns of the joints so far
+    for (int joint = first_joint; joint <= 6; ++joint) {
+        double turn = change[joint - 1];
+        if (joint == 3 && robot_.coupling == Coupling::parallelogram) turn -= change[1];
+        turn = std::abs(turn);
+        sum += distances[joint - 1] * turn * (turn + 2 * turns);
+        turns += turn;
+    }
+    return sum;
+}
+
+// A point p(t) of a body whose acceleration is at most A is no farther than t |p1 - p0| + t (1 - t) A / 2 from p0, and
+// than (1 - t) |p1 - p0| + t (1 - t) A / 2 from p1. The sum of both is at most |p1 - p0| + A / 4.
+double Cell::relative_motion_bound(std::size_t index, const CellJoints& q0, const CellState& s0, const CellJoints& q1,
+                                   const CellState& s1) const
+{
+    const CellJoints change = q1 - q0;
+    const auto on_arm = [](int on) { return on >= link::kBase && on <= link::kTool; };
+    std::size_t near = pairs_[index].a, far = pairs_[index].b; // from the base
+    if (link_of(near) > link_of(far)) std::swap(near, far);
+    if (on_arm(link_of(near)) && on_arm(link_of(far))) {
+        const Isometry3d T0 = s0.T_cell_body[near].inverse() * s0.T_cell_body[far];
+        const Isometry3d T1 = s1.T_cell_body[near].inverse() * s1.T_cell_body[far];
+        return displacement_bound(bounding_balls_[far], T0, T1) +
+               acceleration_bound(far, change, link_of(near) + 1) / 4;
+    }
+    double bound = 0;
+    for (const std::size_t body : {near, far}) {
+        bound += displacement_bound(body, s0, s1) + acceleration_bound(body, change, 1) / 4;
+        if (link_of(body) == link::kTable)
+            bound += change[7] * change[7] * (bounding_balls_[body].extent + robot_.table->point.norm()) / 4;
+    }
+    return bound;
+}
+
+// The centre's path departs from its chord by at most A / 8, A being the bound of its acceleration. A ball that is
+// outside at an end is not wholly inside between unless it meets the surface.
+std::optional<double> Cell::swept_ball_clearance(std::size_t index, const CellJoints& q0, const CellState& s0,
+                                                 const CellJoints& q1, const CellState& s1, double at_ends) const
+{
+    // Triangles that come nearer than the ends by less than this share of the tolerance need not be measured exactly.
+    constexpr double kSlackTolerances = 0.1;
+    const CellPair& pair = pairs_[index];
+    const CellJoints change = q1 - q0;
+    if (!is_of_workpiece(index) || options_.model != nullptr || change[7] != 0) return std::nullopt;
+    const auto* ball = std::get_if<solid::Sphere>(&robot_.bodies[pair.a].solid);
+    if (ball == nullptr) return std::nullopt;
+    const auto centre = [&](const CellState& state) {
+        return Vector3d(state.T_cell_body.back().inverse() * (state.T_cell_body[pair.a] * ball->centre));
+    };
+    const PlacedSolid swept(solid::Capsule{centre(s0), centre(s1), ball->radius}, Isometry3d::Identity());
+    const double max_distance = at_ends + pair.margin - kSlackTolerances * options_.tolerance;
+    const double distance =
+        workpiece_->nearest_of_surface(swept, max_distance, s0.start_leaf[index]).clearance.distance;
+    return distance - pair.margin - acceleration_bound(pair.a, change, 1) / 8;
+}
+
+} // namespace fettle::robot

@@ -12,50 +12,52 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
-namespace fettle {
+namespace fettle::robot {
 
-/// Two bodies of a cell that are held against each other; `b` is the robot's number of bodies for the workpiece.
+/// Two bodies of a cell whose clearance is checked, by their index in Robot::bodies. `b` may be bodies.size(), the
+/// workpiece.
 struct CellPair {
     std::size_t a, b;
-    double margin = 0; ///< they must stay that far apart, mm
+    double margin = 0; ///< required minimum distance, mm
 };
 
-/// All pairs but those of bodies on one link or on neighbouring links, that never move against each other, or that the
-/// robot file allows. The workpiece lies on the table, or in the cell if there is none.
+/// All pairs except those of bodies on one link or on neighbouring links, those that never move against each other, and
+/// those that the robot file allows to touch. The workpiece is on the table, or fixed in the cell if there is none.
 std::vector<CellPair> checked_pairs(const Robot& robot);
 
 struct CollisionOptions {
-    /// What goes no deeper is a contact, no collision, mm (Chen & Wei: the accuracy of machining).
+    /// An overlap no deeper is a contact and no collision, mm (Chen & Wei: the accuracy of machining).
     double tolerance = 0.01;
-    /// Clearances are told up to here, mm.
-    double beyond = 50;
-    /// Between poses the bodies move no farther from one look to the next, mm, where it matters.
+    /// Larger clearances are reported as this one, mm.
+    double max_clearance = 50;
+    /// Largest relative motion of two bodies between checked configurations where it decides about a collision, mm.
     double resolution = 0.1;
-    /// How the workpiece is seen; else by all of its triangles.
-    const Heterogeneous* model = nullptr;
+    /// Model that replaces the triangles of the workpiece; nullptr: all triangles count.
+    const HeterogeneousModel* model = nullptr;
 };
 
-/// The least clearance of a cell, its margin taken off.
+/// A clearance in a cell with the pair that it belongs to. Its margin is subtracted.
 struct CellClearance {
-    double clearance = kNaN;                                 ///< mm; NaN: not looked at
-    std::size_t pair = 0;                                    ///< of checked_pairs()
-    Eigen::Vector3d point = Eigen::Vector3d::Constant(kNaN); ///< on body a, cell frame
+    double clearance = core::kNaN;                                 ///< mm; NaN: not measured
+    std::size_t pair = 0;                                          ///< index in checked_pairs()
+    Eigen::Vector3d point = Eigen::Vector3d::Constant(core::kNaN); ///< on body a, cell frame, mm
 };
 
-/// Where the frame of each link stands, by link + 1 (robot.h: cell, base, 1 to 6, tool, table).
+/// The frame of each link in the cell frame, by link + 1 (robot.h: cell, base, 1 to 6, tool, table).
 std::array<Eigen::Isometry3d, 10> link_frames(const Robot& robot, const Arm& arm, const CellJoints& joints);
 
-/// A cell as it stands with given joints.
-struct Stance {
-    std::vector<Eigen::Isometry3d> T_cell_body; ///< the workpiece's after the bodies'
-    std::vector<CellClearance> pairs;           ///< those that were asked for
-    std::vector<std::uint32_t> leaf;            ///< of the pairs: where in the workpiece to begin
-    ToolZone zone;                              ///< if the workpiece is seen by a model
+/// The placements of all bodies for some joints, and the clearances measured there.
+struct CellState {
+    std::vector<Eigen::Isometry3d> T_cell_body; ///< by body; the workpiece's is the last one
+    std::vector<CellClearance> clearances;      ///< by pair; NaN until measured
+    std::vector<std::uint32_t> start_leaf;      ///< by pair: where the search in the workpiece's tree starts
+    ToolZone tool_zone;                         ///< only with CollisionOptions::model
 };
 
-/// A robot's bodies and the workpiece, to be looked at with any joints. Thread-safe.
+/// The robot's bodies and the workpiece for distance queries with any joints. Thread-safe.
 class Cell {
   public:
     /// Robot, workpiece and model must outlive it. @param workpiece  nullptr: none
@@ -63,44 +65,71 @@ class Cell {
 
     const CollisionOptions& options() const { return options_; }
     const std::vector<CellPair>& pairs() const { return pairs_; }
-    /// Numbers of the pairs: without a workpiece not all.
-    const std::vector<std::size_t>& looked_at() const { return looked_at_; }
-    /// How many: the workpiece is the last one, if there is one.
-    std::size_t bodies() const { return around_.size(); }
+    /// Indices of the pairs that exist: without a workpiece not all do.
+    const std::vector<std::size_t>& active_pairs() const { return active_pairs_; }
+    /// Number of bodies, including the workpiece if there is one.
+    std::size_t body_count() const { return bounding_balls_.size(); }
 
-    /// Nothing is looked at yet.
-    Stance stand(const CellJoints& joints) const;
-    /// The same, where there is room already.
-    void stand(const CellJoints& joints, Stance& stance) const;
+    /// The placements of all bodies; no clearance is measured yet.
+    CellState place_bodies(const CellJoints& joints) const;
+    /// Reuses the memory of `state`; its clearances stay what they were until they are measured.
+    void place_bodies(const CellJoints& joints, CellState& state) const;
 
-    /// Looks at one pair.
-    void look(Stance& stance, std::size_t pair) const { look(stance, pair, options_.beyond); }
-    /// The same, but clearances from `beyond` on need not be told apart. @return  a lower bound of the clearance
-    double look(Stance& stance, std::size_t pair, double beyond) const;
+    /// Measures the clearance of one pair into `state.pairs`, up to CollisionOptions::max_clearance.
+    void measure_clearance(CellState& state, std::size_t pair) const
+    {
+        measure_clearance(state, pair, options_.max_clearance);
+    }
+    /// Measures it only up to `max_clearance`, mm. @return  a lower bound of the clearance, mm
+    double measure_clearance(CellState& state, std::size_t pair, double max_clearance) const;
+    /// Lower bound of a clearance from balls around the bodies and a box around the workpiece, mm: it costs little.
+    double rough_clearance(const CellState& state, std::size_t pair) const;
+    bool is_of_workpiece(std::size_t pair) const { return pairs_[pair].b == robot_.bodies.size(); }
 
-    /// No point of the body is farther from where it was.
-    double chord(std::size_t body, const Stance& s0, const Stance& s1) const;
-    /// No point of the body moves farther on the way between two stances, joints moving evenly.
-    double motion(std::size_t body, const CellJoints& q0, const Stance& s0, const CellJoints& q1,
-                  const Stance& s1) const;
+    /// Upper bound of the distance of a body's points in one state from where they are in another, mm.
+    double displacement_bound(std::size_t body, const CellState& s0, const CellState& s1) const;
+    /// Bound of what the paths of a body's points are longer than their chords, joints moving linearly, mm. With
+    /// displacement_bound() it bounds how far they are at any time of a motion from where they were.
+    /// @param change  of the joints during the motion
+    double arc_excess(std::size_t body, const CellJoints& change) const;
+    /// Bound of how far a pair's bodies move against each other on such a motion, mm: with clearances c0 and c1 at its
+    /// ends the clearance between is at least (c0 + c1 - bound) / 2. Of two bodies on the arm only the joints between
+    /// them count, and each joint only with the part of the arm behind it.
+    double relative_motion_bound(std::size_t pair, const CellJoints& q0, const CellState& s0, const CellJoints& q1,
+                                 const CellState& s1) const;
+    /// Lower bound of the clearance of a ball from the workpiece on a motion between two states, mm, from the capsule
+    /// that it sweeps on a straight line: however near and long the motion is, one measurement bounds it.
+    /// @param at_ends  the smaller of the clearances at the ends, mm: the result is less
+    /// @return  nothing for other pairs, for a model of the workpiece, and while the table turns
+    std::optional<double> swept_ball_clearance(std::size_t pair, const CellJoints& q0, const CellState& s0,
+                                               const CellJoints& q1, const CellState& s1, double at_ends) const;
 
   private:
-    /// A ball around a body, in its own frame. One about the centre of a ball turns in its place.
-    struct Around {
+    /// A ball around a body, body frame, mm.
+    struct BoundingBall {
         Eigen::Vector3d centre;
-        double radius; ///< 0 of a ball
-        double extent; ///< from the frame's origin
+        double radius; ///< 0 for a sphere: a turn about its centre moves no part of its surface
+        double extent; ///< distance of its farthest point from the frame's origin
+        double size;   ///< `radius`, but of a sphere its radius
     };
-    static Around around(const Eigen::AlignedBox3d& box);
+    static BoundingBall bounding_ball(const Eigen::AlignedBox3d& box);
+    static double displacement_bound(const BoundingBall& ball, const Eigen::Isometry3d& T0,
+                                     const Eigen::Isometry3d& T1);
+    int link_of(std::size_t body) const;
+    Eigen::Array<double, 6, 1> axis_distances(std::size_t body) const;
+    double acceleration_bound(std::size_t body, const CellJoints& change, int first_joint) const;
 
     const Robot& robot_;
     const Workpiece* workpiece_;
     CollisionOptions options_;
     const Arm arm_;
-    double reach_; ///< of the links, joint by joint, and the tool
+    Solid workpiece_box_; ///< around the workpiece, part frame
+    double reach_;        ///< length of the stretched chain of links, with the tool, mm
     std::vector<CellPair> pairs_;
-    std::vector<std::size_t> looked_at_;
-    std::vector<Around> around_;
+    std::vector<std::size_t> active_pairs_;
+    std::vector<BoundingBall> bounding_balls_;
+    /// By body: bounds of the distances of its points from the axes of joints 1 to 6, mm; 0 where they do not move it.
+    std::vector<Eigen::Array<double, 6, 1>> axis_distances_;
 };
 
-} // namespace fettle
+} // namespace fettle::robot

@@ -1,114 +1,116 @@
 #include "robot/cell_scene.h"
 
-#include "compare/raster.h"
+#include "draw/raster.h"
 #include "robot/cell.h"
 
 #include <cmath>
 #include <numbers>
 
-namespace fettle {
+namespace fettle::robot {
 
 namespace {
 
 using Eigen::Index, Eigen::Vector3d;
 
-// Of the directions in which solids are sampled: odd, so that none lies along an axis, where a box has many points.
-constexpr int kAround = 121, kUp = 61;
+// Directions in which solids are sampled, by azimuth and elevation: odd numbers, so that none is along an axis, where
+// all points of a box's face are support points.
+constexpr int kAzimuths = 121, kElevations = 61;
 
-struct Pieces {
-    std::vector<Vector3d> corners; ///< three a triangle
-    std::vector<std::size_t> body;
+/// Triangles with the body that each belongs to.
+struct TriangleSoup {
+    std::vector<Vector3d> corners; ///< three for each triangle
+    std::vector<std::size_t> bodies;
 
-    void add(const Vector3d& a, const Vector3d& b, const Vector3d& c, std::size_t of)
+    void add(const Vector3d& a, const Vector3d& b, const Vector3d& c, std::size_t body)
     {
         corners.insert(corners.end(), {a, b, c});
-        body.push_back(of);
+        bodies.push_back(body);
     }
-    void add(const Mesh& mesh, const Eigen::Isometry3d& T, std::size_t of)
+    void add(const mesh::Mesh& mesh, const Eigen::Isometry3d& T, std::size_t body)
     {
         for (const auto t : mesh.triangles.colwise())
-            add(T * mesh.vertices.col(t[0]), T * mesh.vertices.col(t[1]), T * mesh.vertices.col(t[2]), of);
+            add(T * mesh.vertices.col(t[0]), T * mesh.vertices.col(t[1]), T * mesh.vertices.col(t[2]), body);
     }
 };
 
-void add_floor(Pieces& pieces, double side, std::size_t body)
+void add_floor(TriangleSoup& soup, double side, std::size_t body)
 {
     Eigen::AlignedBox2d box;
-    for (const Vector3d& corner : pieces.corners) box.extend(corner.head<2>());
-    const Eigen::Array2d least = (box.min().array() / side).floor(), most = (box.max().array() / side).ceil();
-    for (double x = least.x(); x < most.x(); ++x)
-        for (double y = least.y(); y < most.y(); ++y) {
+    for (const Vector3d& corner : soup.corners) box.extend(corner.head<2>());
+    const Eigen::Array2d min = (box.min().array() / side).floor(), max = (box.max().array() / side).ceil();
+    for (double x = min.x(); x < max.x(); ++x)
+        for (double y = min.y(); y < max.y(); ++y) {
             const Vector3d a(x * side, y * side, 0), right(side, 0, 0), far(0, side, 0);
             const std::size_t shade = body + (std::fmod(std::abs(x + y), 2) == 0 ? 0 : 1);
-            pieces.add(a, a + right, a + right + far, shade);
-            pieces.add(a, a + right + far, a + far, shade);
+            soup.add(a, a + right, a + right + far, shade);
+            soup.add(a, a + right + far, a + far, shade);
         }
 }
 
-CellScene scene_of(const Pieces& pieces)
+CellScene make_scene(const TriangleSoup& soup)
 {
     CellScene scene;
-    scene.body = pieces.body;
-    const auto count = static_cast<Index>(pieces.corners.size());
+    scene.body = soup.bodies;
+    const Index count = soup.corners.size();
     scene.mesh.vertices.resize(3, count);
     scene.mesh.triangles.resize(3, count / 3);
     for (Index i = 0; i < count; ++i) {
-        scene.mesh.vertices.col(i) = pieces.corners[static_cast<std::size_t>(i)];
-        scene.mesh.triangles(i % 3, i / 3) = static_cast<int>(i);
+        scene.mesh.vertices.col(i) = soup.corners[i];
+        scene.mesh.triangles(i % 3, i / 3) = i;
     }
-    const Eigen::Matrix3Xd normals = triangle_normals(scene.mesh);
+    const Eigen::Matrix3Xd normals = mesh::triangle_normals(scene.mesh);
     for (Index i = 0; i < normals.cols(); ++i) scene.normal.emplace_back(normals.col(i));
     return scene;
 }
 
 } // namespace
 
-Mesh solid_mesh(const Solid& solid)
+mesh::Mesh solid_mesh(const Solid& solid)
 {
     const PlacedSolid placed(solid, Eigen::Isometry3d::Identity());
-    Mesh mesh;
-    mesh.vertices.resize(3, (kUp + 1) * kAround);
-    for (int u = 0; u <= kUp; ++u)
-        for (int k = 0; k < kAround; ++k) {
-            const double up = std::numbers::pi * (double(u) / kUp - 0.5);
-            const double azimuth = 2 * std::numbers::pi * k / kAround;
+    mesh::Mesh mesh;
+    mesh.vertices.resize(3, (kElevations + 1) * kAzimuths);
+    for (int u = 0; u <= kElevations; ++u)
+        for (int k = 0; k < kAzimuths; ++k) {
+            const double up = std::numbers::pi * (double(u) / kElevations - 0.5);
+            const double azimuth = 2 * std::numbers::pi * k / kAzimuths;
             const Vector3d direction(std::cos(up) * std::cos(azimuth), std::cos(up) * std::sin(azimuth), std::sin(up));
-            mesh.vertices.col(u * kAround + k) = placed.farthest(direction) + placed.radius() * direction;
+            mesh.vertices.col(u * kAzimuths + k) = placed.support(direction) + placed.radius() * direction;
         }
-    mesh.triangles.resize(3, 2 * kUp * kAround);
-    for (int u = 0, t = 0; u < kUp; ++u)
-        for (int k = 0; k < kAround; ++k) {
-            const int a = u * kAround + k, b = u * kAround + (k + 1) % kAround;
-            mesh.triangles.col(t++) << a, b, b + kAround;
-            mesh.triangles.col(t++) << a, b + kAround, a + kAround;
+    mesh.triangles.resize(3, 2 * kElevations * kAzimuths);
+    for (int u = 0, t = 0; u < kElevations; ++u)
+        for (int k = 0; k < kAzimuths; ++k) {
+            const int a = u * kAzimuths + k, b = u * kAzimuths + (k + 1) % kAzimuths;
+            mesh.triangles.col(t++) << a, b, b + kAzimuths;
+            mesh.triangles.col(t++) << a, b + kAzimuths, a + kAzimuths;
         }
     return mesh;
 }
 
-CellScene cell_scene(const Robot& robot, const Mesh* workpiece, const Mesh* cuboids, const CellJoints& joints,
-                     double floor)
+CellScene make_cell_scene(const Robot& robot, const mesh::Mesh* workpiece, const mesh::Mesh* cuboids,
+                          const CellJoints& joints, double floor)
 {
     const auto frames = link_frames(robot, Arm(robot), joints);
-    Pieces pieces;
+    TriangleSoup soup;
     for (std::size_t i = 0; i < robot.bodies.size(); ++i) {
         const Body& body = robot.bodies[i];
-        pieces.add(solid_mesh(body.solid), frames[static_cast<std::size_t>(body.link + 1)], i);
+        soup.add(solid_mesh(body.solid), frames[body.link + 1], i);
     }
-    if (workpiece != nullptr) pieces.add(*workpiece, frames.back(), robot.bodies.size());
-    if (cuboids != nullptr) pieces.add(*cuboids, frames.back(), cuboids_body(robot));
-    if (floor > 0) add_floor(pieces, floor, floor_body(robot));
-    return scene_of(pieces);
+    if (workpiece != nullptr) soup.add(*workpiece, frames.back(), robot.bodies.size());
+    if (cuboids != nullptr) soup.add(*cuboids, frames.back(), cuboids_body(robot));
+    if (floor > 0) add_floor(soup, floor, floor_body(robot));
+    return make_scene(soup);
 }
 
-Eigen::ArrayXXi seen_triangles(const CellScene& scene, const Eigen::Matrix3d& rotation_view_cell, const View& view,
-                               Eigen::ArrayXXd& depth)
+Eigen::ArrayXXi visible_triangles(const CellScene& scene, const Eigen::Matrix3d& rotation_view_cell,
+                                  const draw::View& view, Eigen::ArrayXXd& depth)
 {
-    const Mesh seen{rotation_view_cell * scene.mesh.vertices, scene.mesh.triangles};
-    Eigen::VectorXd number(seen.vertices.cols());
-    for (Index i = 0; i < number.size(); ++i) number[i] = static_cast<double>(i / 3);
-    const Raster raster = rasterise(view, seen, number);
+    const mesh::Mesh in_view{rotation_view_cell * scene.mesh.vertices, scene.mesh.triangles};
+    Eigen::VectorXd triangle(in_view.vertices.cols()); // by vertex
+    for (Index i = 0; i < triangle.size(); ++i) triangle[i] = i / 3;
+    const draw::Raster raster = draw::rasterise(view, in_view, triangle);
     depth = raster.depth;
     return raster.covered.select(raster.value.round(), -1).cast<int>();
 }
 
-} // namespace fettle
+} // namespace fettle::robot

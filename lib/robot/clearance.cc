@@ -3,30 +3,28 @@
 #include "robot/depth.h"
 #include "robot/simplex.h"
 
-#include <algorithm>
-#include <cmath>
-
-namespace fettle {
+namespace fettle::robot {
 
 namespace {
 
 using Eigen::Vector3d;
 
-// Two curved rims need some fifty steps, corners a dozen.
-constexpr int kMostSteps = 200;
-// Upper and lower bound of a distance agree to within this, mm; nearer cores touch.
-constexpr double kGap = 1e-9;
-// Points of the difference that are nearer to each other than this share of their size are one.
-constexpr double kSame = 1e-14;
+// Two curved rims need some fifty steps, polytopes a dozen.
+constexpr int kMaxSteps = 200;
+// The search ends when the upper and lower bound of a distance differ by no more, mm. Cores as near as that touch.
+constexpr double kDistanceTolerance = 1e-9;
+// Points of the Minkowski difference count as equal within this fraction of their size.
+constexpr double kDuplicatePointTolerance = 1e-14;
 
-bool holds(const Simplex& simplex, const Vector3d& w)
+bool contains(const Simplex& simplex, const Vector3d& w)
 {
-    const double near = kSame * w.squaredNorm();
+    const double tolerance = kDuplicatePointTolerance * w.squaredNorm();
     for (int i = 0; i < simplex.count; ++i)
-        if ((simplex.point[static_cast<std::size_t>(i)].w - w).squaredNorm() <= near * kSame) return true;
+        if ((simplex.point[i].w - w).squaredNorm() <= tolerance * kDuplicatePointTolerance) return true;
     return false;
 }
 
+// From the clearance of the cores to that of the solids.
 Clearance with_radii(Clearance cores, const PlacedSolid& a, const PlacedSolid& b)
 {
     cores.distance -= a.radius() + b.radius();
@@ -37,30 +35,30 @@ Clearance with_radii(Clearance cores, const PlacedSolid& a, const PlacedSolid& b
 
 } // namespace
 
-Clearance clearance(const PlacedSolid& a, const PlacedSolid& b, double beyond)
+Clearance clearance(const PlacedSolid& a, const PlacedSolid& b, double max_distance)
 {
     const double radii = a.radius() + b.radius();
     Simplex simplex;
-    simplex.add(farthest_difference(a, b, Vector3d::UnitX()));
+    simplex.add(difference_support(a, b, Vector3d::UnitX()));
     reduce(simplex);
     Vector3d v = simplex.nearest();
-    for (int step = 0; step < kMostSteps; ++step) {
+    for (int step = 0; step < kMaxSteps; ++step) {
         const double length = v.norm();
-        if (length <= kGap) return with_radii(core_depth(a, b, simplex), a, b);
-        const DifferencePoint next = farthest_difference(a, b, -v);
-        const double lower = v.dot(next.w) / length; // the plane there parts them by as much
-        if (length - lower <= kGap || holds(simplex, next.w)) break;
-        if (lower - radii > beyond) return {lower - radii, v / length, simplex.on_a(), simplex.on_b()};
+        if (length <= kDistanceTolerance) return with_radii(core_depth(a, b, simplex), a, b);
+        const DifferencePoint next = difference_support(a, b, -v);
+        const double lower = v.dot(next.w) / length; // the supporting plane separates the cores by as much
+        if (length - lower <= kDistanceTolerance || contains(simplex, next.w)) break;
+        if (lower - radii > max_distance) return {lower - radii, v / length, simplex.on_a(), simplex.on_b()};
         Simplex larger = simplex;
         larger.add(next);
         if (reduce(larger)) {
             if (!(lower > 0)) return with_radii(core_depth(a, b, larger), a, b);
-            larger = simplex; // a plane parts them: the tetrahedron is as flat as roundings
+            larger = simplex; // a plane separates the cores: the tetrahedron is flat to rounding
             larger.add(next);
             reduce(larger, true);
         }
         const Vector3d nearer = larger.nearest();
-        if (!(nearer.squaredNorm() < v.squaredNorm())) break; // roundings: no step leads nearer
+        if (!(nearer.squaredNorm() < v.squaredNorm())) break; // no progress beyond rounding
         simplex = larger;
         v = nearer;
     }
@@ -68,4 +66,4 @@ Clearance clearance(const PlacedSolid& a, const PlacedSolid& b, double beyond)
     return with_radii({length, v / length, simplex.on_a(), simplex.on_b()}, a, b);
 }
 
-} // namespace fettle
+} // namespace fettle::robot

@@ -1,70 +1,75 @@
 #include "robot/cell_picture.h"
 
-#include "compare/canvas.h"
-#include "compare/chart.h"
+#include "draw/canvas.h"
+#include "draw/chart.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-namespace fettle {
+namespace fettle::robot {
 
 namespace {
 
-// The least of so many stretches of the path is drawn: more would fall on the same pixels.
-constexpr std::size_t kStretches = 800;
+// Points of a curve: more would fall on the same pixels.
+constexpr std::size_t kMaxCurvePoints = 800;
 
-Curve curve_of(const std::vector<CellClearance>& list, const std::string& name, const Rgb& colour, double mm)
+// A curve over the poses with the minimum of each section of the path; NaN values are left out.
+// @param value_of  (pose) -> its value
+template <typename ValueOf>
+draw::Curve min_curve(std::size_t poses, const std::string& name, const draw::Rgb& colour, const ValueOf& value_of)
 {
-    const std::size_t count = std::min(kStretches, list.size());
-    Curve curve{name, Eigen::Matrix2Xd(2, static_cast<Eigen::Index>(count)), colour, false};
+    const std::size_t count = std::min(kMaxCurvePoints, poses);
+    draw::Curve curve{name, Eigen::Matrix2Xd(2, count), colour, false};
     for (std::size_t k = 0; k < count; ++k) {
-        const std::size_t first = k * list.size() / count, end = (k + 1) * list.size() / count;
-        double least = NAN;
-        for (std::size_t i = first; i < end; ++i) least = std::fmin(least, list[i].clearance);
-        curve.points.col(static_cast<Eigen::Index>(k)) << double(first), least / mm;
+        const std::size_t first = k * poses / count, end = (k + 1) * poses / count;
+        double min = NAN;
+        for (std::size_t i = first; i < end; ++i) min = std::fmin(min, value_of(i));
+        curve.points.col(k) << double(first), min;
     }
     return curve;
 }
 
-// The largest tilt of each stretch, degrees.
-Chart tilt_chart(const std::vector<PoseChange>& changes)
+draw::Curve clearance_curve(const std::vector<CellClearance>& list, const std::string& name, const draw::Rgb& colour,
+                            double mm)
 {
-    const std::size_t count = std::min(kStretches, changes.size());
-    Curve curve{"", Eigen::Matrix2Xd(2, static_cast<Eigen::Index>(count)), curve_colour(1), false};
-    for (std::size_t k = 0; k < count; ++k) {
-        const std::size_t first = k * changes.size() / count, end = (k + 1) * changes.size() / count;
-        double most = 0;
-        for (std::size_t i = first; i < end; ++i) most = std::max(most, changes[i].tilt.norm());
-        curve.points.col(static_cast<Eigen::Index>(k)) << double(first), most * 180 / std::numbers::pi;
-    }
+    return min_curve(list.size(), name, colour, [&](std::size_t i) { return list[i].clearance / mm; });
+}
+
+// The largest tilt of each section.
+draw::Chart tilt_chart(const std::vector<PoseChange>& changes)
+{
+    const auto negative_degrees = [&](std::size_t i) { return -(changes[i].tilt.norm() * 180 / std::numbers::pi); };
+    draw::Curve curve = min_curve(changes.size(), "", draw::curve_colour(1), negative_degrees);
+    curve.points.row(1) *= -1;
     return {"", "pose", "tilt, degrees", {curve}};
 }
 
 } // namespace
 
-std::string clearance_chart(const CheckedPath& checked, const CheckedPath* before,
-                            const std::vector<PoseChange>* changes, const Units& units)
+std::string draw_clearance_chart(const CheckedPath& checked, const CheckedPath* before,
+                                 const std::vector<PoseChange>* changes, const units::Units& units)
 {
-    constexpr int kWidth = 1100, kHeight = 460, kTilts = 280;
-    constexpr Rgb kFaint = {205, 205, 205}, kGrey = {150, 150, 150}, kRed = {200, 30, 40};
-    Chart chart;
+    constexpr int kWidth = 1100, kHeight = 460, kTiltHeight = 280;
+    constexpr draw::Rgb kFaint = {205, 205, 205}, kGrey = {150, 150, 150}, kRed = {200, 30, 40};
+    draw::Chart chart;
     chart.title = "Clearance along the path";
     chart.x_label = "pose";
-    chart.y_label = std::string("least clearance, ") + to_string(units.length) + "; below the red line it collides";
+    chart.y_label =
+        std::string("minimum clearance, ") + units::to_string(units.length) + "; below the red line it collides";
     if (before != nullptr) {
-        chart.curves.push_back(curve_of(before->between, "before, between", kFaint, units.mm()));
-        chart.curves.push_back(curve_of(before->pose, "before, at poses", kGrey, units.mm()));
+        chart.curves.push_back(clearance_curve(before->between_poses, "before, between", kFaint, units.mm()));
+        chart.curves.push_back(clearance_curve(before->at_poses, "before, at poses", kGrey, units.mm()));
     }
-    chart.curves.push_back(curve_of(checked.between, "between poses", curve_colour(5), units.mm()));
-    chart.curves.push_back(curve_of(checked.pose, "at poses", curve_colour(0), units.mm()));
-    Eigen::Matrix2d zero; // last: a curve that runs along it does not hide it
-    zero << 0, static_cast<double>(checked.pose.size()), 0, 0;
+    chart.curves.push_back(clearance_curve(checked.between_poses, "between poses", draw::curve_colour(5), units.mm()));
+    chart.curves.push_back(clearance_curve(checked.at_poses, "at poses", draw::curve_colour(0), units.mm()));
+    Eigen::Matrix2d zero; // drawn last, so that no curve along it hides it
+    zero << 0, double(checked.at_poses.size()), 0, 0;
     chart.curves.push_back({"", zero, kRed, false});
-    Canvas canvas(kWidth, kHeight + (changes == nullptr ? 0 : kTilts));
-    draw_chart(canvas, {0, 0}, {kWidth, kHeight}, chart);
-    if (changes != nullptr) draw_chart(canvas, {0, kHeight}, {kWidth, kTilts}, tilt_chart(*changes));
+    draw::Canvas canvas(kWidth, kHeight + (changes == nullptr ? 0 : kTiltHeight));
+    draw::draw_chart(canvas, {0, 0}, {kWidth, kHeight}, chart);
+    if (changes != nullptr) draw::draw_chart(canvas, {0, kHeight}, {kWidth, kTiltHeight}, tilt_chart(*changes));
     return canvas.png();
 }
 
-} // namespace fettle
+} // namespace fettle::robot

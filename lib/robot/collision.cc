@@ -7,39 +7,39 @@
 #include <algorithm>
 #include <atomic>
 
-namespace fettle {
+namespace fettle::robot {
 
 CheckedPath check_path(const Robot& robot, const Workpiece* workpiece, const CellJointsPath& joints,
-                       const CollisionOptions& options, const Progress& progress)
+                       const CollisionOptions& options, const core::Progress& progress)
 {
     const Cell cell(robot, workpiece, options);
-    const auto count = static_cast<std::size_t>(joints.cols());
+    const std::size_t count = joints.cols();
     CheckedPath checked{std::vector<CellClearance>(count), std::vector<CellClearance>(count), 0};
-    std::atomic<std::size_t> looks = 0;
-    constexpr std::size_t kBlock = 256; // poses for one thread: the first of each is looked at twice
-    constexpr std::size_t kTold = 64 * kBlock;
-    for (std::size_t from = 0; from < count; from += kTold) {
-        tell(progress, static_cast<double>(from) / static_cast<double>(count));
-        const std::size_t blocks = (std::min(kTold, count - from) + kBlock - 1) / kBlock;
-        tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t block) {
-            const std::size_t first = from + block * kBlock, end = std::min(first + kBlock, count);
-            Walk walk(cell);
+    std::atomic<std::size_t> midpoint_count = 0;
+    constexpr std::size_t kPosesPerTask = 256; // the pose before each task's first is measured twice
+    constexpr std::size_t kPosesPerProgress = 64 * kPosesPerTask;
+    for (std::size_t from = 0; from < count; from += kPosesPerProgress) {
+        core::report_progress(progress, double(from) / double(count));
+        const std::size_t tasks = (std::min(kPosesPerProgress, count - from) + kPosesPerTask - 1) / kPosesPerTask;
+        tbb::parallel_for(std::size_t{0}, tasks, [&](std::size_t task) {
+            const std::size_t first = from + task * kPosesPerTask, end = std::min(first + kPosesPerTask, count);
+            ClearanceTracker tracker(cell);
             for (std::size_t i = first == 0 ? 0 : first - 1; i < end; ++i) {
-                const CellJoints q = joints.col(static_cast<Eigen::Index>(i));
+                const CellJoints q = joints.col(i);
                 if (q.hasNaN()) {
-                    walk.leave();
+                    tracker.reset();
                     continue;
                 }
-                const CellClearance least = walk.step(q);
+                const CellClearance minimum = tracker.advance(q);
                 if (i < first) continue;
-                checked.pose[i] = least;
-                if (walk.steps() > 1) checked.between[i] = walk.way();
+                checked.at_poses[i] = minimum;
+                if (tracker.step_count() > 1) checked.between_poses[i] = tracker.swept_clearance();
             }
-            looks += walk.looks();
+            midpoint_count += tracker.midpoint_count();
         });
     }
-    checked.looks = looks;
+    checked.midpoint_count = midpoint_count;
     return checked;
 }
 
-} // namespace fettle
+} // namespace fettle::robot

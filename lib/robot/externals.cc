@@ -11,75 +11,69 @@
 #include <cmath>
 #include <numbers>
 
-namespace fettle {
+namespace fettle::robot {
 
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-// Rules are weighed by so many poses of the path: each costs an inverse for every rule.
-constexpr std::size_t kPosesWeighed = 64;
-// Places along the track: 50 mm on the paper's 2 m. Angles of the table: 15 degrees.
-constexpr int kPlaces = 41, kAngles = 24;
-// A tip nearer to the table's axis has no azimuth worth following, mm.
-constexpr double kOnAxis = 1e-6;
+// Number of poses that rules are evaluated on: each needs the inverse kinematics for every rule.
+constexpr std::size_t kMaxPosesEvaluated = 64;
+// Positions of the track: 50 mm apart on the paper's 2 m. Angles of the table: 15 degrees apart.
+constexpr int kTrackPositions = 41, kTableAngles = 24;
+// The azimuth of a tip nearer to the table's axis is undetermined, mm.
+constexpr double kMinAzimuthRadius = 1e-6;
 
 bool is_pose(const Eigen::Isometry3d& T) { return !T.translation().hasNaN(); }
 
-std::vector<double> spread(double least, double most, int count)
+// Rules for one axis at values evenly spaced over two intervals: first those that stay, then those that follow.
+std::vector<AxisRule> candidates(const std::optional<AxisRule>& given, const JointRange& stay, const JointRange& follow,
+                                 int count)
 {
-    std::vector<double> values;
-    for (int i = 0; i < count; ++i) values.push_back(least + (most - least) * i / (count - 1));
-    return values;
-}
-
-// Rules for one axis, those that stand before those that follow.
-std::vector<AxisRule> candidates(const std::optional<AxisRule>& wanted, const std::vector<double>& stand,
-                                 const std::vector<double>& follow)
-{
-    if (wanted) return {*wanted};
+    if (given) return {*given};
     std::vector<AxisRule> rules;
-    for (const double value : stand) rules.push_back({false, value});
-    for (const double value : follow) rules.push_back({true, value});
+    for (const bool follows : {false, true}) {
+        const auto& [min, max] = follows ? follow : stay;
+        for (int i = 0; i < count; ++i) rules.push_back({follows, min + (max - min) * i / (count - 1)});
+    }
     return rules;
 }
 
-std::vector<AxisRule> track_rules(const Robot& robot, const ExternalRules& wanted)
+std::vector<AxisRule> track_rules(const Robot& robot, const ExternalRules& given)
 {
     if (!robot.track) return {AxisRule{}};
-    const JointRange& range = robot.track->range;
     const double reach = robot.dh[0].a + std::abs(robot.dh[1].a) + std::hypot(robot.dh[2].a, robot.dh[3].d);
-    return candidates(wanted.track, spread(range.least, range.most, kPlaces), spread(-reach, reach, kPlaces));
+    return candidates(given.track, robot.track->range, {-reach, reach}, kTrackPositions);
 }
 
-std::vector<AxisRule> table_rules(const Robot& robot, const ExternalRules& wanted)
+std::vector<AxisRule> table_rules(const Robot& robot, const ExternalRules& given)
 {
     if (!robot.table) return {AxisRule{}};
-    const JointRange& range = robot.table->range;
-    const double most = std::min(range.most, range.least + 2 * kPi);
-    return candidates(wanted.table, spread(range.least, most, kAngles + 1), spread(-kPi, kPi, kAngles + 1));
+    JointRange turn = robot.table->range;
+    turn.max = std::min(turn.max, turn.min + 2 * kPi);
+    return candidates(given.table, turn, {-kPi, kPi}, kTableAngles + 1);
 }
 
-PosePath some_of(const PosePath& poses)
+cloud::PosePath sample_poses(const cloud::PosePath& poses)
 {
-    PosePath some;
-    for (std::size_t i = 0; i < kPosesWeighed; ++i) {
-        const std::size_t k = poses.size() <= kPosesWeighed ? i : i * (poses.size() - 1) / (kPosesWeighed - 1);
-        if (k < poses.size() && is_pose(poses[k])) some.push_back(poses[k]);
+    cloud::PosePath sample;
+    for (std::size_t i = 0; i < kMaxPosesEvaluated; ++i) {
+        const std::size_t k =
+            poses.size() <= kMaxPosesEvaluated ? i : i * (poses.size() - 1) / (kMaxPosesEvaluated - 1);
+        if (k < poses.size() && is_pose(poses[k])) sample.push_back(poses[k]);
     }
-    return some;
+    return sample;
 }
 
-ExternalChoice weigh(const Robot& robot, const Arm& arm, const PosePath& poses, const AxisRule& track,
-                     const AxisRule& table)
+ExternalChoice evaluate_rules(const Robot& robot, const Arm& arm, const cloud::PosePath& poses, const AxisRule& track,
+                              const AxisRule& table)
 {
     ExternalChoice choice = {track, table, 0, INFINITY};
     const Eigen::Matrix2Xd values = external_values(robot, poses, track, table);
     for (std::size_t i = 0; i < poses.size(); ++i) {
-        const auto k = static_cast<Eigen::Index>(i);
         double best = -1;
         for (const ArmSolution& solution :
-             arm.solve(flange_for(robot, poses[i], values(0, k), values(1, k)), Joints::Zero(), Ranges::respect))
-            best = std::max(best, arm.singularity(solution.joints).least());
+             arm.solve(flange_target(robot, poses[i], values(0, i), values(1, i)), Joints::Zero(), Ranges::respect))
+            best = std::max(best, arm.singularity(solution.joints).min());
         if (best < 0)
             ++choice.unreached;
         else
@@ -88,11 +82,10 @@ ExternalChoice weigh(const Robot& robot, const Arm& arm, const PosePath& poses, 
     return choice;
 }
 
-bool better(const ExternalChoice& a, const ExternalChoice& b)
+bool is_better(const ExternalChoice& a, const ExternalChoice& b)
 {
     if (a.unreached != b.unreached) return a.unreached < b.unreached;
-    const int following_a = int(a.track.follows) + int(a.table.follows);
-    const int following_b = int(b.track.follows) + int(b.table.follows);
+    const int following_a = a.track.follows + a.table.follows, following_b = b.track.follows + b.table.follows;
     if (following_a != following_b) return following_a < following_b;
     return a.singularity > b.singularity;
 }
@@ -100,22 +93,23 @@ bool better(const ExternalChoice& a, const ExternalChoice& b)
 double track_value(const Track& track, const AxisRule& rule, const Eigen::Vector3d& base, const Eigen::Vector3d& tip)
 {
     if (!rule.follows) return rule.value;
-    return std::clamp((tip - base).dot(track.axis) - rule.value, track.range.least, track.range.most);
+    return std::clamp((tip - base).dot(track.axis) - rule.value, track.range.min, track.range.max);
 }
 
-// The turn nearest to `before` that brings the tip to the wanted azimuth, within the range if one is.
-double table_value(const Table& table, const AxisRule& rule, const Eigen::Vector3d& tip, double before)
+// The table's angle nearest to the previous one that brings the tip to the azimuth of the rule; shifted by whole turns
+// towards the range if it is out of it.
+double table_value(const Table& table, const AxisRule& rule, const Eigen::Vector3d& tip, double previous)
 {
     if (!rule.follows) return rule.value;
     const bool along_x = std::abs(table.axis.x()) > 1 - 1e-9;
     const Eigen::Vector3d reference = along_x ? Eigen::Vector3d::UnitY() : Eigen::Vector3d::UnitX();
     const Eigen::Vector3d x = (reference - reference.dot(table.axis) * table.axis).normalized();
     const Eigen::Vector3d y = table.axis.cross(x), r = tip - table.point;
-    if (std::hypot(x.dot(r), y.dot(r)) < kOnAxis) return before;
+    if (std::hypot(x.dot(r), y.dot(r)) < kMinAzimuthRadius) return previous;
     const double turn = rule.value - std::atan2(y.dot(r), x.dot(r));
-    double nearest = before + std::remainder(turn - before, 2 * kPi);
-    if (nearest > table.range.most) nearest -= 2 * kPi * std::ceil((nearest - table.range.most) / (2 * kPi));
-    if (nearest < table.range.least) nearest += 2 * kPi * std::ceil((table.range.least - nearest) / (2 * kPi));
+    double nearest = previous + std::remainder(turn - previous, 2 * kPi);
+    if (nearest > table.range.max) nearest -= 2 * kPi * std::ceil((nearest - table.range.max) / (2 * kPi));
+    if (nearest < table.range.min) nearest += 2 * kPi * std::ceil((table.range.min - nearest) / (2 * kPi));
     return nearest;
 }
 
@@ -126,59 +120,60 @@ std::optional<AxisRule> parse_axis_rule(const std::string& text, double unit)
     if (text == "auto") return std::nullopt;
     const std::string follow = "follow:";
     const bool follows = text.starts_with(follow);
-    const std::optional<double> number = parse_number(follows ? text.substr(follow.size()) : text);
+    const std::optional<double> number = core::parse_number(follows ? text.substr(follow.size()) : text);
     if (!number || !std::isfinite(*number))
-        throw InputError("expected auto, a number or follow:NUMBER, got " + in_quotes(text));
+        throw core::InputError("expected auto, a number or follow:NUMBER, got " + core::in_quotes(text));
     return AxisRule{follows, *number * unit};
 }
 
-Eigen::Isometry3d cell_base(const Robot& robot, double track)
+Eigen::Isometry3d base_in_cell(const Robot& robot, double track)
 {
     Eigen::Isometry3d T = robot.T_cell_base;
     if (robot.track) T.translation() += track * robot.track->axis;
     return T;
 }
 
-Eigen::Isometry3d cell_part(const Robot& robot, double table)
+Eigen::Isometry3d part_in_cell(const Robot& robot, double table)
 {
     if (!robot.table) return Eigen::Isometry3d::Identity();
     const Eigen::Translation3d to(robot.table->point);
     return to * Eigen::AngleAxisd(table, robot.table->axis) * to.inverse();
 }
 
-Eigen::Isometry3d flange_for(const Robot& robot, const Eigen::Isometry3d& T_part_tool, double track, double table)
+Eigen::Isometry3d flange_target(const Robot& robot, const Eigen::Isometry3d& T_part_tool, double track, double table)
 {
-    return cell_base(robot, track).inverse() * cell_part(robot, table) * T_part_tool * robot.T_flange_tool.inverse();
+    return base_in_cell(robot, track).inverse() * part_in_cell(robot, table) * T_part_tool *
+           robot.T_flange_tool.inverse();
 }
 
-Eigen::Matrix2Xd external_values(const Robot& robot, const PosePath& poses, const AxisRule& track,
+Eigen::Matrix2Xd external_values(const Robot& robot, const cloud::PosePath& poses, const AxisRule& track,
                                  const AxisRule& table)
 {
-    Eigen::Matrix2Xd values(2, static_cast<Eigen::Index>(poses.size()));
-    double before = robot.table ? std::clamp(0.0, robot.table->range.least, robot.table->range.most) : 0;
+    Eigen::Matrix2Xd values(2, poses.size());
+    double previous = robot.table ? std::clamp(0.0, robot.table->range.min, robot.table->range.max) : 0;
     for (std::size_t i = 0; i < poses.size(); ++i) {
         Eigen::Vector2d value(NAN, NAN);
         if (is_pose(poses[i])) {
             const Eigen::Vector3d tip = poses[i].translation();
-            value[1] = before = robot.table ? table_value(*robot.table, table, tip, before) : 0;
-            const Eigen::Vector3d in_cell = cell_part(robot, value[1]) * tip;
-            value[0] = robot.track ? track_value(*robot.track, track, robot.T_cell_base.translation(), in_cell) : 0;
+            value[1] = previous = robot.table ? table_value(*robot.table, table, tip, previous) : 0;
+            const Eigen::Vector3d tip_in_cell = part_in_cell(robot, value[1]) * tip;
+            value[0] = robot.track ? track_value(*robot.track, track, robot.T_cell_base.translation(), tip_in_cell) : 0;
         }
-        values.col(static_cast<Eigen::Index>(i)) = value;
+        values.col(i) = value;
     }
     return values;
 }
 
-ExternalChoice choose_externals(const Robot& robot, const PosePath& poses, const ExternalRules& wanted)
+ExternalChoice choose_externals(const Robot& robot, const cloud::PosePath& poses, const ExternalRules& rules)
 {
     const Arm arm(robot);
-    const PosePath some = some_of(poses);
-    const std::vector<AxisRule> tracks = track_rules(robot, wanted), tables = table_rules(robot, wanted);
+    const cloud::PosePath sample = sample_poses(poses);
+    const std::vector<AxisRule> tracks = track_rules(robot, rules), tables = table_rules(robot, rules);
     std::vector<ExternalChoice> choices(tracks.size() * tables.size());
     tbb::parallel_for(std::size_t{0}, choices.size(), [&](std::size_t i) {
-        choices[i] = weigh(robot, arm, some, tracks[i / tables.size()], tables[i % tables.size()]);
+        choices[i] = evaluate_rules(robot, arm, sample, tracks[i / tables.size()], tables[i % tables.size()]);
     });
-    return *std::min_element(choices.begin(), choices.end(), &better);
+    return *std::ranges::min_element(choices, &is_better);
 }
 
-} // namespace fettle
+} // namespace fettle::robot

@@ -8,53 +8,54 @@
 
 #include <optional>
 #include <string>
-#include <vector>
 
-namespace fettle {
+namespace fettle::robot {
 
-/// Joints 1 to 6 (rad), the track (mm), the table (rad); 0 for one that the robot lacks.
+/// Joints 1 to 6 (rad), the track (mm), the table (rad); 0 for an axis that the robot lacks.
 using CellJoints = Eigen::Matrix<double, 8, 1>;
+/// Joints along a path of N poses, 8xN.
 using CellJointsPath = Eigen::Matrix<double, 8, Eigen::Dynamic>;
 
-/// How an axis beyond the arm's six is led along a path: it stands at `value`, or it follows the tip. The track then
-/// keeps the base `value` mm behind the tip along its axis, as far as it reaches; the table turns the tip to the
-/// azimuth `value` (rad) about its axis, counted from the cell's x (from y if the axis lies along x).
+/// Rule for an external axis (track or table) along a path: it stays at `value`, or it follows the tip. A track that
+/// follows keeps the base `value` mm behind the tip along its axis, within its range. A table that follows turns the
+/// tip to the azimuth `value` (rad) about its axis, counted from the cell's x (from y if the axis is along x).
 struct AxisRule {
     bool follows = false;
     double value = 0;
 };
 
-/// "auto" (nothing: to be chosen), a number, or "follow:NUMBER". @param unit  of the number, rad or mm
+/// Parses "auto" (nothing: the rule is to be chosen), a number, or "follow:NUMBER".
+/// @param unit  of the number, in rad or mm
 /// @throws InputError for anything else
 std::optional<AxisRule> parse_axis_rule(const std::string& text, double unit);
 
-/// Rules for the axes that the robot has; nothing: to be chosen.
+/// Rules for the axes that the robot has; nothing: the rule is to be chosen.
 struct ExternalRules {
     std::optional<AxisRule> track, table;
 };
 
-/// Rules, and how good they are over the path.
+/// Rules, and how good they are on the path.
 struct ExternalChoice {
     AxisRule track, table;
-    Eigen::Index unreached = 0; ///< of the poses looked at
-    double singularity = 0;     ///< the least distance of the best solutions from a singularity (robot/arm.h)
+    Eigen::Index unreached = 0; ///< number of evaluated poses without a solution
+    double singularity = 0;     ///< minimum over the poses of the best solution's Singularity::min
 };
 
-/// The rules under which the fewest poses have no solution in range, axes standing still before those that follow,
-/// and then those with the greatest least distance from a singularity. Looks at poses spread over the path, and at
-/// places spread over the ranges.
-ExternalChoice choose_externals(const Robot& robot, const PosePath& poses, const ExternalRules& wanted);
+/// Chooses the rules with the fewest poses that have no solution in range, then with the fewest axes that follow, then
+/// with the largest distance from a singularity. Evaluates a sample of the poses and of the axes' ranges.
+ExternalChoice choose_externals(const Robot& robot, const cloud::PosePath& poses, const ExternalRules& rules);
 
-/// Track and table at each pose: 2xN, mm and rad; NaN where there is no pose. An axis that the robot lacks stays at 0.
-Eigen::Matrix2Xd external_values(const Robot& robot, const PosePath& poses, const AxisRule& track,
+/// Values of track (mm) and table (rad) at each pose, 2xN; NaN where there is no pose. An axis that the robot lacks is
+/// 0.
+Eigen::Matrix2Xd external_values(const Robot& robot, const cloud::PosePath& poses, const AxisRule& track,
                                  const AxisRule& table);
 
-/// Where the base stands with the track there, mm. @return  T_cell_base
-Eigen::Isometry3d cell_base(const Robot& robot, double track);
-/// Where the part stands with the table there, rad. @return  T_cell_part
-Eigen::Isometry3d cell_part(const Robot& robot, double table);
+/// T_cell_base with the track at a position, mm.
+Eigen::Isometry3d base_in_cell(const Robot& robot, double track);
+/// T_cell_part with the table at an angle, rad.
+Eigen::Isometry3d part_in_cell(const Robot& robot, double table);
 
-/// Where the flange must be so that the tool is at a pose in the part. @return  T_base_flange
-Eigen::Isometry3d flange_for(const Robot& robot, const Eigen::Isometry3d& T_part_tool, double track, double table);
+/// T_base_flange that brings the tool to a pose in the part, with track (mm) and table (rad).
+Eigen::Isometry3d flange_target(const Robot& robot, const Eigen::Isometry3d& T_part_tool, double track, double table);
 
-} // namespace fettle
+} // namespace fettle::robot

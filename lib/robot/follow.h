@@ -8,42 +8,44 @@
 #include <numbers>
 #include <vector>
 
-namespace fettle {
+namespace fettle::robot {
 
 struct FollowOptions {
-    Joints start = Joints::Zero();      ///< the path begins with the solution nearest to these
-    double jump = std::numbers::pi / 6; ///< more between two poses is no motion along the path, rad
+    Joints start = Joints::Zero();                ///< the path starts with the solution nearest to these, rad
+    double jump_threshold = std::numbers::pi / 6; ///< a larger change of a joint between two poses is a jump, rad
 };
 
 enum class PoseState {
     reached = 0,
-    unreachable = 1,  ///< beyond the arm's length
-    out_of_range = 2, ///< a joint would leave its range
-    undefined = 3     ///< NaN
+    unreachable = 1,  ///< out of reach of the arm
+    out_of_range = 2, ///< every solution has a joint out of its range
+    undefined = 3     ///< the pose or the joints are NaN
 };
 
 /// Joints along a path of N poses.
 struct FollowedPath {
-    CellJointsPath joints;                     ///< rad and mm; NaN where the pose is not reached
-    std::vector<PoseState> state;              ///< N
-    std::vector<int> branch;                   ///< N, as ArmSolution; -1 where the pose is not reached
-    Eigen::VectorXd singularity;               ///< N, distance from one (Singularity::least)
-    std::vector<Eigen::Index> jumps;           ///< poses that lie a jump of a joint or the table from the one before
-    Eigen::Matrix<Eigen::Index, 8, 1> blocked; ///< of the poses out of range: which joint is in the way, how often
+    CellJointsPath joints;               ///< rad and mm; NaN where the pose is not reached
+    std::vector<PoseState> state;        ///< N
+    std::vector<int> branch;             ///< N, ArmSolution::branch; -1 where the pose is not reached
+    Eigen::VectorXd singularity;         ///< N, distance from a singularity (Singularity::min)
+    std::vector<Eigen::Index> jumps;     ///< poses with a jump of a joint or the table from the pose before
+    std::vector<int> joint_out_of_range; ///< N, index of the joint that puts the pose out of range; -1: none does
+    Eigen::Matrix<Eigen::Index, 8, 1> out_of_range_counts; ///< by joint: number of poses that it puts out of range
 };
 
-/// The way through all solutions in range, their whole turns included, with the fewest jumps and of these the one with
-/// the least sum of squared joint motions: a shortest path (Viterbi). Poses that are not reached part it.
-/// @param externals  2xN, as external_values()
-FollowedPath follow(const Robot& robot, const PosePath& poses, const Eigen::Matrix2Xd& externals,
-                    const FollowOptions& options = {});
+/// Inverse kinematics along a path: of all sequences of solutions in range, whole turns included, the one with the
+/// fewest jumps, and of these the one with the smallest sum of squared joint motions (Viterbi). A pose that is not
+/// reached interrupts the path.
+/// @param externals  2xN, see external_values()
+FollowedPath follow_path(const Robot& robot, const cloud::PosePath& poses, const Eigen::Matrix2Xd& externals,
+                         const FollowOptions& options = {});
 
-/// Joints that are given, judged as a path's: their states, distances from singularities and jumps.
+/// States, distances from singularities and jumps of given joints. Branches are not determined.
 /// @param joints  rad and mm; NaN: undefined
-/// @param jump  as FollowOptions
-FollowedPath judge(const Robot& robot, const CellJointsPath& joints, double jump);
+/// @param jump_threshold  FollowOptions::jump_threshold, rad
+FollowedPath evaluate_joints(const Robot& robot, const CellJointsPath& joints, double jump_threshold);
 
-/// All solutions in range of one pose, in the order of their branches and turns.
+/// All solutions in range of one pose as (branch, joints), whole turns included, in the order of branches and turns.
 std::vector<std::pair<int, Joints>> all_solutions(const Robot& robot, const Eigen::Isometry3d& T_base_flange);
 
-} // namespace fettle
+} // namespace fettle::robot

@@ -11,10 +11,10 @@
 #include <span>
 #include <vector>
 
-namespace fettle {
+namespace fettle::robot {
 
-/// Formulas that Chen & Wei print and that are wrong are kept beside right ones.
-enum class Formulas { right, published };
+/// Chen & Wei's formulas as published, some of which are wrong, or corrected.
+enum class Formulas { corrected, published };
 
 /// A rectangle in the plane of a grid, mm.
 struct Footprint {
@@ -23,46 +23,44 @@ struct Footprint {
     double half_along, half_across;
 };
 
-/// Chen & Wei's grid height array (eq. 8) over the plane across the tool's direction: each cell has the height of what
-/// projects onto it and the triangles that do (eq. 12).
+/// Chen & Wei's grid height array (eq. 8) in the plane perpendicular to the tool's axis: each cell has the largest
+/// height of the mesh over it, and each triangle the cells that it projects to (eq. 12).
 struct HeightGrid {
     /// @param up  unit, from the tip to the holder, in the part's frame
-    /// @param cell  its side, mm
-    /// @param formulas  right: a triangle occupies each cell that it touches. Published: those with a corner in it, or,
-    ///                  if there are none, those of its box; so it misses cells that only an edge crosses
-    /// @throws InputError if that were more than 2^24 cells
-    HeightGrid(const Mesh& mesh, const Eigen::Vector3d& up, double cell, Formulas formulas);
+    /// @param side  of a cell, mm
+    /// @param formulas  corrected: a triangle occupies each cell that it touches. Published: those with a corner in it,
+    ///                  or, if there are none, those of its bounding box; this misses cells that only an edge crosses
+    /// @throws InputError for more than 2^24 cells
+    HeightGrid(const mesh::Mesh& mesh, const Eigen::Vector3d& up, double side, Formulas formulas);
 
-    Eigen::Isometry3d T_grid_part; ///< z is up, and 0 where the mesh is lowest; cell (0, 0) begins at the origin
-    double cell = 0;
-    Eigen::Index columns = 0, rows = 0;               ///< along x and y
-    std::vector<double> heights;                      ///< column + columns * row; negative: nothing is there
-    std::vector<std::vector<std::uint32_t>> cells_of; ///< of each triangle
-    /// No point of a cuboid's top is farther from the surface, mm; nor are others, where the surface can be seen from
-    /// above.
+    Eigen::Isometry3d T_grid_part;      ///< z is up, and 0 where the mesh is lowest; cell (0, 0) begins at the origin
+    double cell_size = 0;               ///< side of a cell, mm
+    Eigen::Index columns = 0, rows = 0; ///< along x and y
+    std::vector<double> heights;        ///< by index(), mm; negative for an empty cell
+    std::vector<std::vector<std::uint32_t>> triangle_cells; ///< by triangle: indices of its cells
+    /// Bound of the distance of a cuboid's top from the surface, mm; where the surface is visible from above, of all
+    /// points of the cuboid.
     double accuracy = 0;
 
-    std::size_t index(Eigen::Index column, Eigen::Index row) const
-    {
-        return static_cast<std::size_t>(column + columns * row);
-    }
-    /// Where a solid projects to: the smallest rectangle along its axis, of a tilted cylinder 2 R wide and
-    /// L sin(tilt) + 2 R cos(tilt) long. Published (eq. 21, 22): of a cylinder (L + R) sin(tilt) long, upright a
-    /// square.
+    std::size_t index(Eigen::Index column, Eigen::Index row) const { return column + columns * row; }
+    /// The projection of a solid: the smallest rectangle along its axis. For a tilted cylinder it is 2 R wide and
+    /// L sin(tilt) + 2 R cos(tilt) long. Published (eq. 21, 22): (L + R) sin(tilt) long, and a square if it is upright.
     Footprint footprint(const Solid& solid, const Eigen::Isometry3d& T_part_body, Formulas formulas) const;
-    /// Marks the cells that a rectangle touches.
+    /// Sets `cells` to 1 where a rectangle touches the cell.
     void mark(const Footprint& footprint, std::span<char> cells) const;
-    /// A box for each cell, from the floor to its height: triangles 12 i to 12 i + 11 are those of occupied()[i].
-    Mesh cuboids() const;
-    /// Cells that have a height.
+    /// A box for each occupied cell, from z = 0 to its height: triangles 12 i to 12 i + 11 belong to occupied()[i].
+    mesh::Mesh cuboids() const;
+    /// Indices of the cells that are not empty.
     std::vector<std::size_t> occupied() const;
 };
 
-/// Chen & Wei, eq. 19: spheres of radius R no farther apart leave of a cylinder's side no more than a tolerance.
+/// Chen & Wei, eq. 19: the largest spacing at which spheres of a cylinder's radius leave out no more of its side than a
+/// tolerance. All in mm.
 double sphere_spacing(double radius, double tolerance);
-/// Eq. 20: of spheres along a length. Published: rounded to the nearest number, and none where the length is small.
+/// Chen & Wei, eq. 20: the number of spheres along a length. Published: rounded to the nearest number, 0 for a short
+/// one.
 int sphere_count(double length, double spacing, Formulas formulas);
-/// The spheres of a cylinder, at (i + 1/2) L / k.
+/// The spheres that replace a cylinder, at (i + 1/2) L / k along its axis.
 std::vector<solid::Sphere> sphere_row(const solid::Cylinder& cylinder, double tolerance, Formulas formulas);
 
-} // namespace fettle
+} // namespace fettle::robot

@@ -12,66 +12,68 @@
 #include <span>
 #include <vector>
 
-namespace fettle {
+namespace fettle::robot {
 
-/// The tool's axes along a path, from tip to holder.
-std::vector<Eigen::Vector3d> tool_directions(const PosePath& poses);
+/// Directions of the tool's axis along a path, from tip to holder, unit, part frame; poses that are NaN are left out.
+std::vector<Eigen::Vector3d> tool_axes(const cloud::PosePath& poses);
 
 struct HeterogeneousOptions {
-    double cell = 1;                     ///< side of the grids' cells, mm
-    Formulas formulas = Formulas::right; ///< published: cylinders are rows of spheres against triangles
-    double tolerance = 0.01;             ///< that these may leave, mm (Chen & Wei, eq. 19)
+    double cell_size = 1; ///< side of the cells of the grids, mm
+    Formulas formulas =
+        Formulas::corrected; ///< published: against triangles, cylinders are replaced by rows of spheres
+    double tolerance = 0.01; ///< largest depth of the cylinder that the spheres leave out, mm (eq. 19)
 };
 
-/// Where a tool stands over a grid: its cells count by their triangles, all others by their cuboids.
+/// The cells of a grid that the tool projects to. These are represented by their triangles, all others by cuboids.
 struct ToolZone {
     std::size_t grid = 0;
-    std::vector<char> cells; ///< of the grid: 1 for those that the tool projects to
+    std::vector<char> cells; ///< by cell of the grid: 1 if the tool projects to it
 };
 
-/// A workpiece as Chen & Wei's heterogeneous resolution (section 4): triangles where the tool projects to, cuboids
-/// elsewhere. Their grids stand across the tool's directions: one more wherever the path turns too far from those there
-/// are.
-class Heterogeneous {
+/// A workpiece by Chen & Wei's heterogeneous resolution (section 4): triangles where the tool projects to, cuboids
+/// elsewhere. The grids are perpendicular to directions of the tool's axis; a path that turns farther has several.
+class HeterogeneousModel {
   public:
     /// @param workpiece  must outlive it
-    /// @param ups  unit, from tip to holder, in the part's frame, along the path
-    /// @throws InputError if there is none, if a grid would be too large, or for spheres without a tolerance
-    Heterogeneous(const Workpiece& workpiece, std::span<const Eigen::Vector3d> ups,
-                  const HeterogeneousOptions& options = {});
+    /// @param axes  of the tool along the path, see tool_axes()
+    /// @throws InputError if there is no axis, if a grid would be too large, or for spheres without a tolerance
+    HeterogeneousModel(const Workpiece& workpiece, std::span<const Eigen::Vector3d> axes,
+                       const HeterogeneousOptions& options = {});
 
-    /// @param T_part_tool  of the path's tool frame
-    ToolZone zone(const Robot& robot, const Eigen::Isometry3d& T_part_tool) const;
-    /// As Workpiece::nearest(). By the right formulas it is never farther than that, and, where the surface can be seen
-    /// along the tool, nearer by no more than accuracy(); in the zone it is the same.
+    /// The cells that the tool's bodies project to, in the grid whose normal is nearest to the tool's axis.
+    ToolZone tool_zone(const Robot& robot, const Eigen::Isometry3d& T_part_tool) const;
+    /// Minimum signed distance of the model from a body, see Workpiece::nearest(). With the corrected formulas it is
+    /// never larger than that, and, where the surface is visible along the tool's axis, smaller by no more than
+    /// accuracy(). In the zone it is the same.
     Workpiece::Nearest nearest(const Solid& solid, const Eigen::Isometry3d& T_part_body, const ToolZone& zone,
-                               double beyond) const;
+                               double max_distance) const;
 
-    /// What counts with the tool there, in the part's frame: to be drawn (Chen & Wei, figure 6).
-    struct Parts {
-        Mesh triangles; ///< of the workpiece
-        Mesh cuboids;
+    /// The geometry that represents the workpiece for a zone, in the part's frame, for drawing (Chen & Wei, figure 6).
+    struct Geometry {
+        mesh::Mesh triangles; ///< of the workpiece
+        mesh::Mesh cuboids;
     };
-    Parts parts(const ToolZone& zone) const;
+    Geometry geometry(const ToolZone& zone) const;
 
-    std::size_t grids() const { return grids_.size(); }
-    double cell() const { return options_.cell; }
-    double accuracy() const; ///< the worst of all grids, mm
+    std::size_t grid_count() const { return grids_.size(); }
+    double cell_size() const { return options_.cell_size; } ///< mm
+    double accuracy() const;                                ///< the largest HeightGrid::accuracy, mm
 
   private:
     struct Grid {
         HeightGrid heights;
         std::vector<std::size_t> occupied;
-        std::unique_ptr<Mesh> cuboids;
-        std::unique_ptr<Workpiece> workpiece; ///< of the cuboids
-        Eigen::Vector3d up;
+        std::unique_ptr<mesh::Mesh> cuboids;
+        std::unique_ptr<Workpiece> workpiece; ///< for distances from the cuboids
+        Eigen::Vector3d normal;               ///< unit, part frame
     };
-    Workpiece::Nearest to_triangles(const Solid& solid, const Eigen::Isometry3d& T_part_body, const ToolZone& zone,
-                                    double beyond) const;
+    static bool touches_zone(const Grid& grid, std::size_t triangle, const ToolZone& zone);
+    Workpiece::Nearest nearest_triangle(const Solid& solid, const Eigen::Isometry3d& T_part_body, const ToolZone& zone,
+                                        double max_distance) const;
 
     const Workpiece& workpiece_;
     HeterogeneousOptions options_;
     std::vector<Grid> grids_;
 };
 
-} // namespace fettle
+} // namespace fettle::robot

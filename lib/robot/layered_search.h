@@ -1,73 +1,72 @@
 #pragma once
 
+#include <algorithm>
 #include <compare>
 #include <cstddef>
 #include <limits>
+#include <ranges>
 #include <vector>
 
-namespace fettle {
+namespace fettle::robot {
 
-/// The shortest way through layers of stations, one of each (Viterbi). Of equally long ones that with the lower
-/// numbers, from the end.
-class LayeredSearch {
+/// Viterbi's algorithm: the cheapest path through a sequence of layers, one state of each. Of equally cheap paths the
+/// one with the lower index in the last layer where they differ.
+class ViterbiSearch {
   public:
-    /// Fewer faults are shorter, whatever the length.
-    struct Length {
-        int faults = 0;
+    /// Cost of a path: the number of violated constraints first, the length second.
+    struct Cost {
+        int violations = 0; ///< violated constraints
         double length = 0;
 
-        auto operator<=>(const Length&) const = default;
+        auto operator<=>(const Cost&) const = default;
     };
 
-    /// Adds a layer of `count` stations, at least one.
-    /// @param way  (from, to) -> Length of the way from a station of the layer before, or, in the first layer, of the
-    /// way to begin with (from is 0)
-    template <class Way>
-    void add(std::size_t count, const Way& way)
+    /// Adds a layer of `count` states, at least one.
+    /// @param transition_cost  (from, to) -> Cost of going from a state of the previous layer to one of this layer; in
+    /// the
+    ///                         first layer of starting there (from is 0)
+    template <class TransitionCost>
+    void add(std::size_t count, const TransitionCost& transition_cost)
     {
-        const std::size_t before = layers_.empty() ? 0 : layers_.back(), end = stations_.size();
+        const std::size_t previous = layers_.empty() ? 0 : layers_.back(), end = states_.size();
         layers_.push_back(end);
         for (std::size_t to = 0; to < count; ++to) {
-            Station best{{std::numeric_limits<int>::max(), 0}, 0};
-            if (end == 0) best = {way(std::size_t{0}, to), 0};
-            for (std::size_t from = before; from < end; ++from) {
-                const Length last = way(from - before, to), &so_far = stations_[from].length;
-                const Length length{so_far.faults + last.faults, so_far.length + last.length};
-                if (length < best.length) best = {length, from};
+            State best{{std::numeric_limits<int>::max(), 0}, 0};
+            if (end == 0) best = {transition_cost(std::size_t{0}, to), 0};
+            for (std::size_t from = previous; from < end; ++from) {
+                const Cost last = transition_cost(from - previous, to), &so_far = states_[from].cost;
+                const Cost cost{so_far.violations + last.violations, so_far.length + last.length};
+                if (cost < best.cost) best = {cost, from};
             }
-            stations_.push_back(best);
+            states_.push_back(best);
         }
     }
 
-    bool empty() const { return layers_.empty(); }
-    std::size_t layers() const { return layers_.size(); }
-
-    /// Number in the last layer of the station where the shortest way ends.
-    std::size_t best() const
+    /// Index in the last layer of the state where the cheapest path ends.
+    std::size_t best_end() const
     {
-        std::size_t best = layers_.back();
-        for (std::size_t i = best; i < stations_.size(); ++i)
-            if (stations_[i].length < stations_[best].length) best = i;
-        return best - layers_.back();
+        const auto first = states_.begin() + layers_.back();
+        return std::min_element(first, states_.end(), [](const State& a, const State& b) { return a.cost < b.cost; }) -
+               first;
     }
 
-    /// The stations of the shortest way: of each layer the number.
+    /// The cheapest path: for each layer the index of its state.
     std::vector<std::size_t> path() const
     {
-        std::vector<std::size_t> numbers(layers_.size());
-        if (empty()) return numbers;
-        std::size_t at = layers_.back() + best();
-        for (std::size_t k = layers_.size(); k-- > 0; at = stations_[at].from) numbers[k] = at - layers_[k];
-        return numbers;
+        std::vector<std::size_t> indices(layers_.size());
+        if (layers_.empty()) return indices;
+        std::size_t at = layers_.back() + best_end();
+        for (std::size_t k = layers_.size(); k-- > 0; at = states_[at].from) indices[k] = at - layers_[k];
+        return indices;
     }
 
   private:
-    struct Station {
-        Length length;    ///< of the shortest way to it
-        std::size_t from; ///< station before
+    struct State {
+        Cost cost;        ///< of the cheapest path to it
+        std::size_t from; ///< the previous state on that path
     };
-    std::vector<Station> stations_;
-    std::vector<std::size_t> layers_; ///< first station of each
+    std::vector<State> states_;
+    std::vector<std::size_t> layers_; ///< first state of each layer
 };
 
-} // namespace fettle
+} // namespace fettle::robot

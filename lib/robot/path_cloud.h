@@ -5,20 +5,28 @@
 #include "robot/follow.h"
 #include "robot/robot.h"
 
-namespace fettle {
+#include <Eigen/Core>
 
-/// Fields joint1 to joint6 in degrees, joint7 (track, mm) and joint8 (table, degrees) if the robot has them.
-/// @return  rad and mm; a column of NaN where one is not finite
-/// @throws InputError if one of them is missing
-CellJointsPath path_joints(const Cloud& cloud, const Robot& robot);
+#include <optional>
 
-/// The same fields, F8; only those that the robot has.
-void set_joints(Cloud& cloud, const Robot& robot, const CellJointsPath& joints);
+namespace fettle::robot {
 
-/// Fields state (PoseState) and singularity.
-void set_states(Cloud& cloud, const FollowedPath& path);
+/// Reads the fields joint1 to joint6 (degrees), and joint7 (track, mm) and joint8 (table, degrees) if the robot has
+/// them.
+/// @return  rad and mm; a column of NaN where a value is not finite
+/// @throws InputError if one of them is missing, or beyond what a robot file allows (kMaxJointDegrees, kMaxLength)
+CellJointsPath path_joints(const cloud::Cloud& cloud, const Robot& robot);
 
-/// Where joints take the tool: T_part_tool.
-PosePath forward(const Robot& robot, const CellJointsPath& joints);
+/// Sets these fields, as doubles; only those that the robot has.
+void set_joints(cloud::Cloud& cloud, const Robot& robot, const CellJointsPath& joints);
 
-} // namespace fettle
+/// Sets the fields state (PoseState) and singularity.
+void set_states(cloud::Cloud& cloud, const FollowedPath& path);
+
+/// The field t, s: when the poses are reached; nothing if there is none.
+std::optional<Eigen::VectorXd> pose_times(const cloud::Cloud& cloud);
+
+/// Forward kinematics of a path. @return  T_part_tool; a NaN translation for NaN joints
+cloud::PosePath forward_kinematics(const Robot& robot, const CellJointsPath& joints);
+
+} // namespace fettle::robot

@@ -1,10 +1,12 @@
 #include "robot/rates.h"
 
+#include "core/constants.h"
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
-namespace fettle {
+namespace fettle::robot {
 
 namespace {
 
@@ -15,29 +17,29 @@ std::optional<double> max_speed(const Robot& robot, std::size_t joint)
     return robot.table ? robot.table->max_speed : std::nullopt;
 }
 
-// Mean speed on the way to each pose; NaN where there is none.
-Eigen::VectorXd speeds(const FollowedPath& path, const Eigen::VectorXd& times, Eigen::Index joint)
+// Mean speed of the motion to each pose; NaN where there is none.
+Eigen::VectorXd mean_speeds(const FollowedPath& path, const Eigen::VectorXd& times, Eigen::Index joint)
 {
-    Eigen::VectorXd speed = Eigen::VectorXd::Constant(times.size(), std::numeric_limits<double>::quiet_NaN());
+    Eigen::VectorXd speed = Eigen::VectorXd::Constant(times.size(), core::kNaN);
     for (Eigen::Index i = 1; i < times.size(); ++i) {
-        const double way = path.joints(joint, i) - path.joints(joint, i - 1);
-        speed[i] = way == 0 ? 0 : way / (times[i] - times[i - 1]);
+        const double change = path.joints(joint, i) - path.joints(joint, i - 1);
+        speed[i] = change == 0 ? 0 : change / (times[i] - times[i - 1]);
     }
-    for (const Eigen::Index i : path.jumps) speed[i] = std::numeric_limits<double>::quiet_NaN();
+    for (const Eigen::Index i : path.jumps) speed[i] = core::kNaN;
     return speed;
 }
 
 } // namespace
 
-Eigen::VectorXd arrival_times(const PosePath& poses, const Feedrate& feed)
+Eigen::VectorXd arrival_times(const cloud::PosePath& poses, const Feedrate& feed)
 {
-    Eigen::VectorXd times = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(poses.size()));
+    Eigen::VectorXd times = Eigen::VectorXd::Zero(poses.size());
     for (std::size_t i = 1; i < poses.size(); ++i) {
-        const double way = (poses[i].translation() - poses[i - 1].translation()).norm();
+        const double distance = (poses[i].translation() - poses[i - 1].translation()).norm();
         const double turn =
             Eigen::Quaterniond(poses[i].linear()).angularDistance(Eigen::Quaterniond(poses[i - 1].linear()));
-        const double time = std::isnan(way) ? 0 : std::max(way / feed.tip, turn / feed.turn);
-        times[static_cast<Eigen::Index>(i)] = times[static_cast<Eigen::Index>(i) - 1] + time;
+        const double time = std::isnan(distance) ? 0 : std::max(distance / feed.tip_speed, turn / feed.turn_rate);
+        times[i] = times[i - 1] + time;
     }
     return times;
 }
@@ -47,10 +49,10 @@ std::array<JointRate, 8> joint_rates(const Robot& robot, const FollowedPath& pat
     std::array<JointRate, 8> rates;
     for (std::size_t joint = 0; joint < 8; ++joint) {
         JointRate& rate = rates[joint];
-        const double most = max_speed(robot, joint).value_or(std::numeric_limits<double>::infinity());
-        const Eigen::VectorXd speed = speeds(path, times, static_cast<Eigen::Index>(joint));
+        const double limit = max_speed(robot, joint).value_or(core::kInfinity);
+        const Eigen::VectorXd speed = mean_speeds(path, times, joint);
         for (Eigen::Index i = 1; i < times.size(); ++i) {
-            if (std::abs(speed[i]) > most) ++rate.too_fast;
+            if (std::abs(speed[i]) > limit && rate.over_limit_count++ == 0) rate.first_over_limit = i;
             if (std::abs(speed[i]) > rate.speed) {
                 rate.speed = std::abs(speed[i]);
                 rate.speed_at = i;
@@ -67,4 +69,4 @@ std::array<JointRate, 8> joint_rates(const Robot& robot, const FollowedPath& pat
     return rates;
 }
 
-} // namespace fettle
+} // namespace fettle::robot

@@ -6,30 +6,30 @@
 #include <Eigen/Core>
 
 #include <numbers>
-#include <vector>
 
-namespace fettle {
+namespace fettle::robot {
 
-/// Speeds of the tool along its path, in the part.
+/// Speed limits of the tool along its path, relative to the part.
 struct Feedrate {
-    double tip = 0;                             ///< mm/s
-    double turn = 500 * std::numbers::pi / 180; ///< rad/s: what RAPID's own speeds (v5 to v7000) have
+    double tip_speed = 0;                            ///< mm/s
+    double turn_rate = 500 * std::numbers::pi / 180; ///< rad/s: the value of RAPID's predefined speeds (v5 to v7000)
 };
 
-/// When each pose is reached: the tip goes at the feed, and where the tool turns faster than it may, slower. From 0,
-/// s; a pose without a place takes no time.
-Eigen::VectorXd arrival_times(const PosePath& poses, const Feedrate& feed);
+/// Times at which the poses are reached, s, from 0: the tip moves at its feed, or slower where the tool would turn too
+/// fast. The motions to and from a NaN pose take no time.
+Eigen::VectorXd arrival_times(const cloud::PosePath& poses, const Feedrate& feed);
 
-/// Rates of one joint along a path; rad/s and rad/s², of the track mm/s and mm/s².
+/// Largest speed and acceleration of one joint along a path; rad/s and rad/s² (track: mm/s and mm/s²).
 struct JointRate {
-    double speed = 0, acceleration = 0;               ///< the largest, without sign
-    Eigen::Index speed_at = -1, acceleration_at = -1; ///< the pose that the fastest motion leads to; the pose
-    Eigen::Index too_fast = 0;                        ///< motions faster than the robot's max_speed
+    double speed = 0, acceleration = 0;               ///< maximum magnitude
+    Eigen::Index speed_at = -1, acceleration_at = -1; ///< the pose at the end of the fastest motion; the pose
+    Eigen::Index over_limit_count = 0;                ///< number of motions faster than the robot's max_speed
+    Eigen::Index first_over_limit = -1;               ///< the pose at the end of the first of them
 };
 
-/// By differences between neighbouring poses that are both reached without a jump, and of these about the pose between
-/// them. No time between two places that differ is infinite speed.
-/// @param times  of each pose, s, not descending
+/// Finite differences: speeds between neighbouring poses that are both reached without a jump, and accelerations
+/// between neighbouring speeds. A motion that takes no time has infinite speed.
+/// @param times  of the poses, s, not decreasing
 std::array<JointRate, 8> joint_rates(const Robot& robot, const FollowedPath& path, const Eigen::VectorXd& times);
 
-} // namespace fettle
+} // namespace fettle::robot

@@ -3,7 +3,6 @@
 #include "core/constants.h"
 #include "robot/body_json.h"
 
-#include "core/error.h"
 #include "core/text.h"
 #include "json/document.h"
 #include "json/units.h"
@@ -11,55 +10,54 @@
 #include <cmath>
 #include <numbers>
 
-namespace fettle {
+namespace fettle::robot {
 
 namespace {
 
 using json::Reader;
 
-// A right angle written with six digits is one.
-constexpr double kRightAngle = 1e-6;
+// Angles written with six digits count as right angles, rad.
+constexpr double kRightAngleTolerance = 1e-6;
 
-JointRange range_in(Reader& reader, const std::string& least, const std::string& most, double unit, double limit)
+JointRange read_range(Reader& reader, const std::string& min_key, const std::string& max_key, double unit, double limit)
 {
-    const JointRange range = {reader.number(least, Range::between(-limit, limit)) * unit,
-                              reader.number(most, Range::between(-limit, limit)) * unit};
-    if (range.least > range.most)
-        reader.refuse(most, "must be at least " + least + ", " + to_short_text(range.least / unit) + ", got " +
-                                to_short_text(range.most / unit));
+    const JointRange range = {reader.number(min_key, core::Range::between(-limit, limit)) * unit,
+                              reader.number(max_key, core::Range::between(-limit, limit)) * unit};
+    if (range.min > range.max)
+        reader.refuse(max_key, "must be at least " + min_key + ", " + core::to_short_text(range.min / unit) + ", got " +
+                                   core::to_short_text(range.max / unit));
     return range;
 }
 
-std::optional<double> speed_in(Reader& reader, const std::string& key, double unit)
+std::optional<double> read_speed(Reader& reader, const std::string& key, double unit)
 {
-    const double nothing = 0;
-    const double speed = reader.number_or(key, nothing, Range::positive());
-    return speed > nothing ? std::optional(speed * unit) : std::nullopt;
+    const double speed = reader.number_or(key, 0, core::Range::positive());
+    return speed > 0 ? std::optional(speed * unit) : std::nullopt;
 }
 
-DhRow row_in(Reader reader, double mm)
+DhRow read_dh_row(Reader reader, double mm)
 {
     DhRow row;
-    row.alpha = reader.number("alpha_deg", Range::between(-180, 180)) * kRadPerDegree;
-    row.a = length_in(reader, "a", mm);
-    row.d = length_in(reader, "d", mm);
-    row.offset = reader.number_or("theta_offset_deg", 0, Range::between(-360, 360)) * kRadPerDegree;
-    row.range = range_in(reader, "min_deg", "max_deg", kRadPerDegree, kMostJointDegrees);
-    row.max_speed = speed_in(reader, "max_speed_deg", kRadPerDegree);
-    reader.done();
+    row.alpha = reader.number("alpha_deg", core::Range::between(-180, 180)) * core::kRadPerDegree;
+    row.a = read_length(reader, "a", mm);
+    row.d = read_length(reader, "d", mm);
+    row.offset = reader.number_or("theta_offset_deg", 0, core::Range::between(-360, 360)) * core::kRadPerDegree;
+    row.range = read_range(reader, "min_deg", "max_deg", core::kRadPerDegree, kMaxJointDegrees);
+    row.max_speed = read_speed(reader, "max_speed_deg", core::kRadPerDegree);
+    reader.reject_unknown_keys();
     return row;
 }
 
-bool right_angle(double angle) { return std::abs(std::abs(angle) - std::numbers::pi / 2) <= kRightAngle; }
+bool is_right_angle(double angle) { return std::abs(std::abs(angle) - std::numbers::pi / 2) <= kRightAngleTolerance; }
 
-// The closed form of robot/arm.h rests on these.
+// The closed form of the inverse (robot/arm.h) assumes these conditions. Nearly right twists are set to right angles.
 void check_closed_form(Reader& reader, std::array<DhRow, 6>& dh)
 {
     const auto refuse = [&](std::size_t row, const std::string& key, const std::string& wanted) {
         reader.refuse("dh[" + std::to_string(row) + "]." + key, "the inverse has a closed form only " + wanted);
     };
     for (const std::size_t i : {0u, 2u, 3u, 4u}) {
-        if (!right_angle(dh[i].alpha)) refuse(i, "alpha_deg", "with 90 or -90 here");
+        if (!is_right_angle(dh[i].alpha)) refuse(i, "alpha_deg", "with 90 or -90 here");
         dh[i].alpha = std::copysign(std::numbers::pi / 2, dh[i].alpha);
     }
     if (dh[1].alpha != 0) refuse(1, "alpha_deg", "with axes 2 and 3 parallel: 0");
@@ -75,39 +73,39 @@ void parse_dh(Reader& reader, double mm, Robot& robot)
     std::vector<Reader> rows = reader.objects("dh");
     if (rows.size() != robot.dh.size())
         reader.refuse("dh", "expected a row for each of 6 joints, got " + std::to_string(rows.size()));
-    for (std::size_t i = 0; i < rows.size(); ++i) robot.dh[i] = row_in(std::move(rows[i]), mm);
+    for (std::size_t i = 0; i < rows.size(); ++i) robot.dh[i] = read_dh_row(std::move(rows[i]), mm);
     check_closed_form(reader, robot.dh);
 }
 
-Eigen::Isometry3d tool_in(Reader reader, double mm)
+Eigen::Isometry3d read_tool(Reader reader, double mm)
 {
-    const double alpha = reader.number_or("alpha_deg", 0, Range::between(-180, 180)) * kRadPerDegree;
-    const double theta = reader.number_or("theta_deg", 0, Range::between(-360, 360)) * kRadPerDegree;
-    const double a = length_in(reader, "a", mm);
-    const double d = length_in(reader, "d", mm);
-    reader.done();
+    const double alpha = reader.number_or("alpha_deg", 0, core::Range::between(-180, 180)) * core::kRadPerDegree;
+    const double theta = reader.number_or("theta_deg", 0, core::Range::between(-360, 360)) * core::kRadPerDegree;
+    const double a = read_length(reader, "a", mm);
+    const double d = read_length(reader, "d", mm);
+    reader.reject_unknown_keys();
     return dh_transform(theta, d, a, alpha);
 }
 
-Track track_in(Reader reader, double mm)
+Track read_track(Reader reader, double mm)
 {
     Track track;
-    track.axis = direction_in(reader, "axis");
-    track.range = range_in(reader, "min", "max", mm, kLongest / mm);
-    track.max_speed = speed_in(reader, "max_speed", mm);
-    reader.done();
+    track.axis = read_direction(reader, "axis");
+    track.range = read_range(reader, "min", "max", mm, kMaxLength / mm);
+    track.max_speed = read_speed(reader, "max_speed", mm);
+    reader.reject_unknown_keys();
     return track;
 }
 
-Table table_in(Reader reader, double mm)
+Table read_table(Reader reader, double mm)
 {
     Table table;
-    table.point = point_in(reader, "point", mm);
-    table.axis = direction_in(reader, "axis");
-    table.range = range_in(reader, "min_deg", "max_deg", kRadPerDegree, kMostJointDegrees);
-    table.max_speed = speed_in(reader, "max_speed_deg", kRadPerDegree);
+    table.point = read_point(reader, "point", mm);
+    table.axis = read_direction(reader, "axis");
+    table.range = read_range(reader, "min_deg", "max_deg", core::kRadPerDegree, kMaxJointDegrees);
+    table.max_speed = read_speed(reader, "max_speed_deg", core::kRadPerDegree);
     table.unit = reader.text_or("unit", "");
-    reader.done();
+    reader.reject_unknown_keys();
     return table;
 }
 
@@ -115,7 +113,7 @@ Table table_in(Reader reader, double mm)
 
 std::string body_name(const Robot& robot, std::size_t body)
 {
-    return body < robot.bodies.size() ? robot.bodies[body].name : kWorkpiece;
+    return body < robot.bodies.size() ? robot.bodies[body].name : kWorkpieceName;
 }
 
 Eigen::Isometry3d dh_transform(double theta, double d, double a, double alpha)
@@ -132,21 +130,20 @@ Robot read_robot(const std::string& path)
 {
     Reader reader = Reader::open(path);
     Robot robot;
-    robot.source = reader.source();
     reader.expect_kind("robot");
-    const double mm = mm_per(json::read_length_unit(reader));
+    const double mm = units::mm_per(json::read_length_unit(reader));
     parse_dh(reader, mm, robot);
     const std::string coupling = reader.choice("coupling", {"serial", "parallelogram"});
     robot.coupling = coupling == "serial" ? Coupling::serial : Coupling::parallelogram;
     const Eigen::AngleAxisd half_turn(std::numbers::pi, Eigen::Vector3d::UnitX());
-    const auto tool = reader.object_or_none("tool");
-    robot.T_flange_tool = (tool ? tool_in(*tool, mm) : Eigen::Isometry3d::Identity()) * half_turn;
-    if (const auto base = reader.object_or_none("base")) robot.T_cell_base = placement_in(*base, mm);
-    if (const auto track = reader.object_or_none("track")) robot.track = track_in(*track, mm);
-    if (const auto table = reader.object_or_none("table")) robot.table = table_in(*table, mm);
+    const auto tool = reader.optional_object("tool");
+    robot.T_flange_tool = (tool ? read_tool(*tool, mm) : Eigen::Isometry3d::Identity()) * half_turn;
+    if (const auto base = reader.optional_object("base")) robot.T_cell_base = read_placement(*base, mm);
+    if (const auto track = reader.optional_object("track")) robot.track = read_track(*track, mm);
+    if (const auto table = reader.optional_object("table")) robot.table = read_table(*table, mm);
     parse_bodies(reader, path, mm, robot);
-    reader.done();
+    reader.reject_unknown_keys();
     return robot;
 }
 
-} // namespace fettle
+} // namespace fettle::robot

@@ -12,28 +12,35 @@
 #include <utility>
 #include <vector>
 
-namespace fettle {
+namespace fettle::robot {
 
 /// Angles of the six joints as the robot's own controller counts them, rad.
 using Joints = Eigen::Matrix<double, 6, 1>;
 
-/// A closed interval: rad, of a track mm.
-struct JointRange {
-    double least = 0, most = 0;
+/// Tolerance at the ends of a joint range, rad or mm: a pose that was made from joints at an end keeps them in range
+/// despite rounding.
+inline constexpr double kJointRangeTolerance = 1e-9;
 
-    bool holds(double value) const { return value >= least && value <= most; }
+/// A closed interval of a joint, rad (a track's: mm).
+struct JointRange {
+    double min = 0, max = 0;
+
+    bool contains(double value) const
+    {
+        return value >= min - kJointRangeTolerance && value <= max + kJointRangeTolerance;
+    }
 };
 
 /// One row of a Denavit-Hartenberg table, Chen & Wei eq. 1: A = R_z(theta) T_z(d) T_x(a) R_x(alpha), mm and rad, with
 /// theta = q + offset (but see Coupling).
 struct DhRow {
     double alpha = 0, a = 0, d = 0, offset = 0;
-    JointRange range;                ///< of q
-    std::optional<double> max_speed; ///< of q, rad/s
+    JointRange range;                ///< allowed values of q, rad
+    std::optional<double> max_speed; ///< limit of |dq/dt|, rad/s
 };
 
-/// What the controller calls joint 3: the angle of the forearm to the upper arm (serial), or, with a parallelogram
-/// linkage, to the horizon: theta3 = q3 - q2 + offset.
+/// Meaning of the controller's joint 3: the angle of the forearm to the upper arm (serial), or, with a parallelogram
+/// linkage, to the horizontal: theta3 = q3 - q2 + offset.
 enum class Coupling { serial, parallelogram };
 
 /// A linear track that carries the base: joint 7.
@@ -45,17 +52,17 @@ struct Track {
 
 /// A rotary table that carries the workpiece: joint 8. At 0 the part frame is the cell frame.
 struct Table {
-    Eigen::Vector3d point; ///< on the axis, cell frame, mm
+    Eigen::Vector3d point; ///< a point on the axis, cell frame, mm
     Eigen::Vector3d axis;  ///< unit, cell frame
     JointRange range;      ///< rad, right-handed about the axis
     std::optional<double> max_speed;
-    std::string unit; ///< the controller's name for it, for RAPID; may be empty
+    std::string unit; ///< the controller's name of the mechanical unit, for RAPID; may be empty
 };
 
-/// What a body is fixed to. 1 to 6 are the frames behind these joints (Denavit-Hartenberg).
+/// Links that a body can be fixed to. Links 1 to 6 are the Denavit-Hartenberg frames behind joints 1 to 6.
 namespace link {
-inline constexpr int kCell = -1; ///< fixtures
-inline constexpr int kBase = 0;  ///< of the robot, on the track
+inline constexpr int kCell = -1; ///< fixtures, which do not move
+inline constexpr int kBase = 0;  ///< the robot's base, on the track if there is one
 inline constexpr int kTool = 7;  ///< tip at the origin, +z from the tip to the holder
 inline constexpr int kTable = 8;
 } // namespace link
@@ -66,22 +73,21 @@ struct Body {
     Solid solid;
 };
 
-/// No joint turns farther, either way: no cable follows more than twice round.
-inline constexpr double kMostJointDegrees = 720;
+/// Bound of joint angles in either direction, degrees: no cable survives more than two turns.
+inline constexpr double kMaxJointDegrees = 720;
 
-/// How robot files call what is machined; no body may be called so.
-inline constexpr const char* kWorkpiece = "workpiece";
+/// Name of the workpiece in robot files and reports; bodies may not use it.
+inline constexpr const char* kWorkpieceName = "workpiece";
 
-/// Two bodies, by their numbers, the lower one first; the number after the last one is the workpiece's.
+/// Two bodies by their index in Robot::bodies, the lower one first. The index bodies.size() means the workpiece.
 using BodyPair = std::pair<std::size_t, std::size_t>;
 
 /// A robot cell ("kind": "robot"), mm and rad. The arm has a spherical wrist and parallel axes 2 and 3, so that its
-/// inverse has a closed form (robot/arm.h).
+/// inverse kinematics have a closed form (robot/arm.h).
 struct Robot {
-    std::string source = "robot"; ///< the file's name, for messages
     std::array<DhRow, 6> dh;
     Coupling coupling = Coupling::serial;
-    /// The path's tool frame: the tool's D-H frame, whose z points out of the robot, turned half about its x.
+    /// Tool frame of the path: the tool's D-H frame, whose z points out of the robot, after half a turn about its x.
     Eigen::Isometry3d T_flange_tool = Eigen::Isometry3d::Identity();
     Eigen::Isometry3d T_cell_base = Eigen::Isometry3d::Identity(); ///< with the track at 0
     std::optional<Track> track;
@@ -89,22 +95,22 @@ struct Robot {
     std::vector<Body> bodies;
     std::vector<BodyPair> allowed; ///< pairs that may touch
 
-    /// Least distances asked for; of all other pairs 0. mm
+    /// Required minimum distance of a pair.
     struct Margin {
         BodyPair pair;
-        double distance;
+        double distance; ///< mm
     };
-    std::vector<Margin> margins;
+    std::vector<Margin> margins; ///< 0 for pairs that are not listed
 };
 
-/// Reads a robot file ("-": stdin). Hulls are read from mesh files beside it.
-/// @throws InputError with the key's path: also for an arm whose inverse has no closed form
+/// Reads a robot file ("-": stdin). Hulls are read from mesh files in the same folder.
+/// @throws InputError with the key's path, also for an arm whose inverse kinematics have no closed form
 Robot read_robot(const std::string& path);
 
-/// Of a body by its number, or kWorkpiece.
+/// Name of the body with that index; bodies.size() gives kWorkpieceName.
 std::string body_name(const Robot& robot, std::size_t body);
 
-/// A = R_z(theta) T_z(d) T_x(a) R_x(alpha), Chen & Wei eq. 1.
+/// A = R_z(theta) T_z(d) T_x(a) R_x(alpha), Chen & Wei eq. 1; angles in rad, lengths in mm.
 Eigen::Isometry3d dh_transform(double theta, double d, double a, double alpha);
 
-} // namespace fettle
+} // namespace fettle::robot

@@ -7,38 +7,39 @@
 
 #include <optional>
 
-namespace fettle {
+namespace fettle::robot {
 
 /// A solid of revolution about z in its own frame: all points within `rounding` of a frustum from z = 0 to `length`,
-/// mm. Of a capsule the frustum is a segment.
+/// mm. The frustum of a capsule is a segment, that of a sphere a point.
 struct RoundSolid {
-    Eigen::Isometry3d T; ///< of its frame
+    Eigen::Isometry3d T; ///< T_cell_solid
     double radius_from = 0, radius_to = 0, length = 0, rounding = 0;
 };
 
-/// Signed distance in the plane of the axis and the point, mm. It is convex and never shrinks with r.
+/// Signed distance in the half-plane through the axis and the point. It is convex and does not decrease with r.
 struct ProfileDistance {
-    double value = 0;
-    double along_r = 0, along_z = 0; ///< its gradient: unit
+    double value = 0;                      ///< mm, negative inside
+    double gradient_r = 0, gradient_z = 0; ///< unit
 };
 
-/// Of the point at radius r and height z. The solid must have a length.
-ProfileDistance distance(const RoundSolid& solid, double r, double z);
+/// Signed distance of the point at radius r and height z, mm, in the solid's frame. The solid must have a length.
+ProfileDistance profile_distance(const RoundSolid& solid, double r, double z);
 
 /// The point of a triangle that is nearest to a solid or deepest in it.
 struct TriangleFoot {
-    double distance = 0; ///< from the solid's surface, mm; negative inside
-    Eigen::Vector3d gradient;
+    double distance = 0;      ///< from the solid's surface, mm; negative inside
+    Eigen::Vector3d gradient; ///< of the signed distance, unit
     Eigen::Vector3d point;
 };
 
-/// What is found is nearer than any other point but for this, mm, a hundredth of kClearanceTolerance.
-inline constexpr double kFootTolerance = 1e-7;
+/// Error bound of the distance of a TriangleFoot, mm, a hundredth of kClearanceAccuracy.
+inline constexpr double kFootAccuracy = 1e-7;
 
-/// The least signed distance of a triangle's points, certain to kFootTolerance. Of each height of the triangle the
-/// point nearest to the axis is the best one, in closed form; along the height what remains is convex, and its tangents
-/// bound it from below.
-/// @return  nothing if no point is nearer than `below` by more than kFootTolerance
-std::optional<TriangleFoot> nearest_of_triangle(const RoundSolid& solid, const Triangle& triangle, double below);
+/// The minimum signed distance of a triangle's points, to kFootAccuracy. At each height the point nearest to the axis
+/// is the best one, in closed form; the distance of these points is convex along the height, and its tangents bound it
+/// from below.
+/// @return  nothing if no point is nearer than `upper_bound`, mm, by more than kFootAccuracy
+std::optional<TriangleFoot> nearest_point_of_triangle(const RoundSolid& solid, const mesh::Triangle& triangle,
+                                                      double upper_bound);
 
-} // namespace fettle
+} // namespace fettle::robot

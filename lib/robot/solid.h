@@ -5,8 +5,8 @@
 
 #include <variant>
 
-/// Convex solids, mm, in the frame of the body they belong to.
-namespace fettle::solid {
+/// Convex solids in the frame of the body that they belong to, mm.
+namespace fettle::robot::solid {
 
 struct Sphere {
     Eigen::Vector3d centre;
@@ -19,7 +19,7 @@ struct Capsule {
     double radius;
 };
 
-/// With flat ends at `from` and `to`.
+/// A cylinder with flat ends at `from` and `to`.
 struct Cylinder {
     Eigen::Vector3d from, to;
     double radius;
@@ -32,8 +32,8 @@ struct Cone {
 };
 
 struct Box {
-    Eigen::Isometry3d T_body_box; ///< the box's frame stands at its centre, along its sides
-    Eigen::Vector3d half;         ///< of the sides
+    Eigen::Isometry3d T_body_box; ///< origin at the centre of the box, axes along its sides
+    Eigen::Vector3d half;         ///< half the sides
 };
 
 /// The convex hull of points.
@@ -41,10 +41,10 @@ struct Hull {
     Eigen::Matrix3Xd points;
 };
 
-} // namespace fettle::solid
+} // namespace fettle::robot::solid
 
-namespace fettle {
+namespace fettle::robot {
 
 using Solid = std::variant<solid::Sphere, solid::Capsule, solid::Cylinder, solid::Cone, solid::Box, solid::Hull>;
 
-} // namespace fettle
+} // namespace fettle::robot

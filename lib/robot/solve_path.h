@@ -9,32 +9,36 @@
 
 #include <string>
 
-namespace fettle {
+namespace fettle::robot {
 
-/// What a command line says about how a path is to be run, as it stands there.
-struct PathWishes {
-    std::string track = "auto", table = "auto"; ///< parse_axis_rule()
-    std::string start = "0,0,0,0,0,0";          ///< degrees
-    double jump_deg = 30;
+/// Texts of the command-line options for the kinematics of a path.
+struct PathArguments {
+    std::string track = "auto", table = "auto"; ///< see parse_axis_rule()
+    std::string start = "0,0,0,0,0,0";          ///< joints, degrees
+    double jump_threshold_deg = 30;             ///< FollowOptions::jump_threshold, degrees
 };
 
-/// Poses of a path, and how the robot runs along them.
+/// Poses of a path with the joints that reach them.
 struct SolvedPath {
-    PosePath poses;
+    cloud::PosePath poses;
     ExternalChoice externals;
     Eigen::Matrix2Xd external_values; ///< 2xN
     FollowedPath path;
 };
 
-/// From the fields of path_poses() to joints. @param mm  in a length unit of the wishes
-/// @throws InputError if there are no points, or for a wish, with the option's name before it
-SolvedPath solve_path(const Robot& robot, const Cloud& cloud, const PathWishes& wishes, double mm);
+/// Finds joints for the poses of a cloud, see cloud::read_poses().
+/// @param mm  in the length unit of the options
+/// @throws InputError if there are no points, or for an option, then starting with its name
+SolvedPath path_from_poses(const Robot& robot, const cloud::Cloud& cloud, const PathArguments& options, double mm);
 
-/// From the fields of path_joints() to poses.
+/// Finds the poses for the joints of a cloud, see path_joints(). `externals` is not set.
 /// @throws InputError if there are no points, or a field is missing
-SolvedPath given_path(const Robot& robot, const Cloud& cloud, double jump_deg);
+SolvedPath path_from_joints(const Robot& robot, const cloud::Cloud& cloud, double jump_deg);
 
-/// Numbers with commas between; NaN for what is none.
-Eigen::VectorXd numbers_in(const std::string& text);
+/// Finds joints for the poses of a cloud, or the poses for its joints if it has these. @throws as both functions above
+SolvedPath solve_path(const Robot& robot, const cloud::Cloud& cloud, const PathArguments& options, double mm);
 
-} // namespace fettle
+/// Every solution of every pose: the points of the path, repeated, with the fields of the joints, pose and branch.
+cloud::Cloud all_solutions(const Robot& robot, const cloud::Cloud& cloud, const SolvedPath& solved);
+
+} // namespace fettle::robot

@@ -5,135 +5,193 @@
 #include <algorithm>
 #include <cmath>
 
-namespace fettle {
+namespace fettle::robot {
 
 namespace {
 
-// Between two steps the way is halved at most so often: 1 m to the hundredth of a micrometre.
-constexpr std::size_t kMostHalvings = 26;
-// A pair is looked at as far ahead as it would move in so many steps: it is then left alone for about as many.
-constexpr double kStepsAhead = 16;
+// Bound of the bisections between two steps: they divide 1 m into hundredths of a micrometre.
+constexpr std::size_t kMaxBisections = 26;
+// A clearance is measured as far as the pair would travel in this many steps like the last one. Pairs farther apart are
+// then not measured again for about as many steps.
+constexpr double kLookAheadSteps = 16;
 
 } // namespace
 
-Walk::Walk(const Cell& cell)
-    : cell_(cell), middle_(kMostHalvings), gone_(cell.bodies()), apart_(cell.pairs().size()),
-      last_(cell.looked_at().empty() ? 0 : cell.looked_at().front())
+ClearanceTracker::ClearanceTracker(const Cell& cell)
+    : cell_(cell), midpoints_(kMaxBisections + 1), distance_travelled_(cell.body_count()),
+      clearance_bound_at_reset_(cell.pairs().size()),
+      nearest_pair_(cell.active_pairs().empty() ? 0 : cell.active_pairs().front())
 {
 }
 
-void Walk::leave() { steps_ = 0; }
-
-void Walk::look(Place& place, std::size_t pair, double beyond)
+// Measures a pair. At the current state the result renews the pair's lower bound.
+void ClearanceTracker::measure(State& state, std::size_t pair, double max_clearance)
 {
-    beyond = std::min(beyond, cell_.options().beyond);
-    const double bound = cell_.look(place.stance, pair, beyond);
-    place.exact[pair] = bound < beyond || beyond == cell_.options().beyond;
-    if (&place != &here_) return;
-    const CellPair& p = cell_.pairs()[pair];
-    apart_[pair] = bound + gone_[p.a] + gone_[p.b];
+    CellClearance& found = state.cell_state.clearances[pair];
+    const double bound = cell_.measure_clearance(state.cell_state, pair, max_clearance);
+    found.clearance = std::min(found.clearance, cell_.options().max_clearance);
+    state.bounds[pair] = {bound, max_clearance};
+    if (&state != &current_) return;
+    const auto& [a, b, margin] = cell_.pairs()[pair];
+    clearance_bound_at_reset_[pair] = bound + distance_travelled_[a] + distance_travelled_[b];
 }
 
-CellClearance Walk::step(const CellJoints& joints)
+double ClearanceTracker::clearance_lower_bound(std::size_t pair) const
 {
-    std::swap(before_, here_);
-    here_.joints = joints;
-    cell_.stand(joints, here_.stance);
-    here_.exact.assign(cell_.pairs().size(), 0);
-    std::vector<double> chords(cell_.bodies(), 0.0);
-    if (steps_++ == 0) {
-        std::fill(gone_.begin(), gone_.end(), 0.0);
-        std::fill(apart_.begin(), apart_.end(), -kInfinity);
+    const auto& [a, b, margin] = cell_.pairs()[pair];
+    return clearance_bound_at_reset_[pair] - distance_travelled_[a] - distance_travelled_[b];
+}
+
+CellClearance ClearanceTracker::advance(const CellJoints& joints)
+{
+    std::swap(previous_, current_);
+    current_.joints = joints;
+    cell_.place_bodies(joints, current_.cell_state);
+    current_.bounds.assign(cell_.pairs().size(), Bound());
+    std::vector<double>& displacement = step_displacement_;
+    displacement.assign(cell_.body_count(), 0.0);
+    if (step_count_++ == 0) {
+        std::ranges::fill(distance_travelled_, 0.0);
+        std::ranges::fill(clearance_bound_at_reset_, -core::kInfinity);
     } else {
-        here_.stance.leaf = before_.stance.leaf;
-        for (std::size_t b = 0; b < chords.size(); ++b) {
-            chords[b] = cell_.chord(b, before_.stance, here_.stance);
-            gone_[b] += chords[b];
+        current_.cell_state.start_leaf = previous_.cell_state.start_leaf;
+        for (std::size_t body = 0; body < displacement.size(); ++body) {
+            displacement[body] = cell_.displacement_bound(body, previous_.cell_state, current_.cell_state);
+            distance_travelled_[body] += displacement[body];
         }
     }
-    CellClearance least;
-    least.clearance = kInfinity;
-    if (cell_.looked_at().empty()) return least;
-    look(here_, last_, kInfinity);
-    least = here_.stance.pairs[last_];
-    const double most = cell_.options().beyond;
-    for (const std::size_t i : cell_.looked_at()) {
-        if (i == last_) continue;
-        const CellPair& pair = cell_.pairs()[i];
-        const double way = chords[pair.a] + chords[pair.b], bound = apart_[i] - gone_[pair.a] - gone_[pair.b];
-        // A body may come to lie wholly inside the workpiece only where it touched it.
-        if (bound > 0 && bound >= std::min(least.clearance + way, most)) {
-            here_.stance.pairs[i].clearance = std::min(bound, most);
-            here_.stance.pairs[i].pair = i;
+    CellClearance minimum;
+    minimum.clearance = core::kInfinity;
+    if (cell_.active_pairs().empty()) return minimum;
+    // The nearest pair of the last step comes first: its clearance is probably the minimum and spares the other pairs.
+    const double max_clearance = cell_.options().max_clearance;
+    measure(current_, nearest_pair_, max_clearance);
+    minimum = current_.cell_state.clearances[nearest_pair_];
+    for (const std::size_t pair : cell_.active_pairs()) {
+        if (pair == nearest_pair_) continue;
+        const auto& [a, b, margin] = cell_.pairs()[pair];
+        const double relative_motion = displacement[a] + displacement[b], lower_bound = clearance_lower_bound(pair);
+        CellClearance& found = current_.cell_state.clearances[pair];
+        // While the bound is positive a body cannot have moved into the workpiece without touching its surface.
+        if (lower_bound > 0 && lower_bound >= std::min(minimum.clearance + relative_motion, max_clearance)) {
+            found.clearance = std::min(lower_bound, max_clearance);
+            found.pair = pair;
+            current_.bounds[pair].clearance = lower_bound;
             continue;
         }
-        look(here_, i, steps_ == 1 ? most : std::max(least.clearance, 0.0) + kStepsAhead * way);
-        if (here_.stance.pairs[i].clearance < least.clearance) least = here_.stance.pairs[i];
+        const double look_ahead = std::max(minimum.clearance, 0.0) + kLookAheadSteps * relative_motion;
+        measure(current_, pair, step_count_ == 1 ? max_clearance : std::min(look_ahead, max_clearance));
+        if (found.clearance < minimum.clearance) minimum = found;
     }
-    last_ = least.pair;
-    return least;
+    nearest_pair_ = minimum.pair;
+    return minimum;
 }
 
-CellClearance Walk::way() { return between(before_, here_, cell_.looked_at(), 0); }
-
-double Walk::motion(const Place& from, Place& to, std::size_t pair) const
+CellClearance ClearanceTracker::swept_clearance()
 {
-    const auto of_body = [&](std::size_t b) {
-        double& known = to.motions[b];
-        if (std::isnan(known)) known = cell_.motion(b, from.joints, from.stance, to.joints, to.stance);
-        return known;
-    };
-    return of_body(cell_.pairs()[pair].a) + of_body(cell_.pairs()[pair].b);
+    Sweep result;
+    result.minimum.clearance = core::kInfinity;
+    sweep(previous_, current_, cell_.active_pairs(), 0, result);
+    return result.minimum;
 }
 
-CellClearance Walk::between(Place& from, Place& to, std::vector<std::size_t> some, std::size_t halvings)
+// Bound of the sum of what the pair's bodies move between two states, mm.
+double ClearanceTracker::body_motion_bound(const State& from, State& to, std::size_t pair) const
+{
+    const auto of_body = [&](std::size_t body) {
+        double& bound = to.motion_bounds[body];
+        if (!std::isnan(bound)) return bound;
+        const bool is_step = &from == &previous_ && &to == &current_;
+        const double displacement =
+            is_step ? step_displacement_[body] : cell_.displacement_bound(body, from.cell_state, to.cell_state);
+        return bound = displacement + cell_.arc_excess(body, to.joints - from.joints);
+    };
+    const auto& [a, b, margin] = cell_.pairs()[pair];
+    return of_body(a) + of_body(b);
+}
+
+// Raises the pair's lower bound to a rough one, if it is not measured.
+void ClearanceTracker::raise_bound(State& state, std::size_t pair) const
+{
+    double& bound = state.bounds[pair].clearance;
+    if (state.bounds[pair].measured_to == -core::kInfinity)
+        bound = std::max(bound, cell_.rough_clearance(state.cell_state, pair));
+}
+
+// Takes the clearance of a pair on the motion between two states into the result, if it decides about a collision.
+// @return  false if it does not: the motion is to be divided
+bool ClearanceTracker::sweep_pair(State& from, State& to, std::size_t pair, std::size_t bisections, Sweep& result)
 {
     const CollisionOptions& options = cell_.options();
-    to.motions.assign(cell_.bodies(), std::numeric_limits<double>::quiet_NaN());
-    // The one that is probably least comes first: the others need then not be looked at so well.
-    const auto nearest = std::min_element(some.begin(), some.end(), [&](std::size_t i, std::size_t k) {
-        return to.stance.pairs[i].clearance < to.stance.pairs[k].clearance;
-    });
-    if (nearest != some.end()) std::swap(*nearest, some.front());
-    CellClearance least;
-    least.clearance = kInfinity;
-    double least_seen = kInfinity; // what is told will be no more
-    std::vector<std::size_t> unclear;
-    for (const std::size_t i : some) {
-        const double way = motion(from, to, i);
-        const CellClearance &c0 = from.stance.pairs[i], &c1 = to.stance.pairs[i];
-        const auto bound = [&] {
-            return std::min({(c0.clearance + c1.clearance - way) / 2, c0.clearance, c1.clearance});
-        };
-        if (bound() >= least_seen) continue;
-        for (Place* place : {&from, &to})
-            if (!place->exact[i]) look(*place, i, kInfinity);
-        const CellClearance& nearer = c1.clearance < c0.clearance ? c1 : c0;
-        least_seen = std::min(least_seen, nearer.clearance);
-        const bool known = nearer.clearance < -options.tolerance; // it collides at a look already
-        if (bound() < -options.tolerance && !known && way > options.resolution && halvings < kMostHalvings) {
-            unclear.push_back(i);
-            continue;
-        }
-        // What cannot be resolved further is told as it was seen.
-        CellClearance told = nearer;
-        if (!known && way > options.resolution) told.clearance = bound();
-        if (told.clearance < least.clearance) least = told;
+    const Bound &c0 = from.bounds[pair], &c1 = to.bounds[pair];
+    double motion = body_motion_bound(from, to, pair);
+    const bool divisible = motion > options.resolution && bisections < kMaxBisections;
+    const auto lower_bound = [&] {
+        return std::min({(c0.clearance + c1.clearance - motion) / 2, c0.clearance, c1.clearance});
+    };
+    if (lower_bound() >= result.upper_bound) return true;
+    double reach = options.max_clearance;
+    if (options.model == nullptr) { // a model's geometry depends on the pose: nothing is known of it from afar
+        motion =
+            std::min(motion, cell_.relative_motion_bound(pair, from.joints, from.cell_state, to.joints, to.cell_state));
+        for (State* end : {&from, &to}) raise_bound(*end, pair);
+        if (lower_bound() >= result.upper_bound) return true;
+        // A clearance as large as the motion decides, whatever the other one is. Of a workpiece the rough bound serves.
+        if (!cell_.is_of_workpiece(pair)) reach = std::max(reach, motion);
     }
-    if (unclear.empty()) return least;
-    Place& middle = middle_[halvings];
-    middle.joints = (from.joints + to.joints) / 2;
-    cell_.stand(middle.joints, middle.stance);
-    middle.stance.leaf = from.stance.leaf;
-    middle.exact.assign(cell_.pairs().size(), 0);
-    for (const std::size_t i : unclear) look(middle, i, kInfinity);
-    ++looks_;
-    for (const bool second : {false, true}) {
-        const CellClearance c =
-            second ? between(middle, to, unclear, halvings + 1) : between(from, middle, unclear, halvings + 1);
-        if (c.clearance < least.clearance) least = c;
+    for (State* end : {&from, &to})
+        if (!end->bounds[pair].is_known_to(reach)) measure(*end, pair, reach);
+    const CellClearance &at0 = from.cell_state.clearances[pair], &at1 = to.cell_state.clearances[pair];
+    CellClearance nearer_end = at1.clearance < at0.clearance ? at1 : at0;
+    result.upper_bound = std::min(result.upper_bound, nearer_end.clearance);
+    // Where an end collides, and below the resolution, the result is the clearance measured at the nearer end.
+    if (nearer_end.clearance >= -options.tolerance && divisible) {
+        double bound = lower_bound();
+        if (bound < -options.tolerance)
+            bound = cell_
+                        .swept_ball_clearance(pair, from.joints, from.cell_state, to.joints, to.cell_state,
+                                              nearer_end.clearance)
+                        .value_or(bound);
+        if (bound < -options.tolerance) return false;
+        nearer_end.clearance = std::min(nearer_end.clearance, bound);
     }
-    return least;
+    if (nearer_end.clearance < result.minimum.clearance) result.minimum = nearer_end;
+    return true;
 }
 
-} // namespace fettle
+// Its clearances are measured when they are needed.
+void ClearanceTracker::place_midpoint(const State& from, const State& to, State& middle)
+{
+    middle.joints = (from.joints + to.joints) / 2;
+    cell_.place_bodies(middle.joints, middle.cell_state);
+    middle.bounds.resize(cell_.pairs().size());
+    for (const std::size_t pair : middle.pairs) {
+        middle.bounds[pair] = Bound();
+        middle.cell_state.start_leaf[pair] = from.cell_state.start_leaf[pair];
+    }
+    ++midpoint_count_;
+}
+
+void ClearanceTracker::sweep(State& from, State& to, std::span<const std::size_t> pairs, std::size_t bisections,
+                             Sweep& result)
+{
+    if (pairs.empty()) return;
+    to.motion_bounds.assign(cell_.body_count(), core::kNaN);
+    // The pair that probably has the minimum comes first: its clearance spares measuring others exactly.
+    const std::size_t nearest =
+        *std::ranges::min_element(pairs, {}, [&](std::size_t i) { return to.bounds[i].clearance; });
+    State& middle = midpoints_[bisections];
+    middle.pairs.clear();
+    const auto decide = [&](std::size_t pair) {
+        if (!sweep_pair(from, to, pair, bisections, result)) middle.pairs.push_back(pair);
+    };
+    decide(nearest);
+    for (const std::size_t pair : pairs)
+        if (pair != nearest) decide(pair);
+    if (middle.pairs.empty()) return;
+    place_midpoint(from, to, middle);
+    sweep(from, middle, middle.pairs, bisections + 1, result);
+    sweep(middle, to, middle.pairs, bisections + 1, result);
+}
+
+} // namespace fettle::robot

@@ -2,49 +2,71 @@
 
 #include "robot/cell.h"
 
-#include <Eigen/Core>
-
 #include <cstddef>
-#include <limits>
+#include <span>
 #include <vector>
 
-namespace fettle {
+namespace fettle::robot {
 
-/// Goes along a path of joints and keeps what it learns: a pair that was far apart is not looked at again before its
-/// bodies have moved so far that they could be the nearest. What it tells does not depend on that.
-class Walk {
+/// Minimum clearance of a cell at the steps of a path and between them, by conservative advancement: a clearance that
+/// was measured, less the distance that the pair's bodies have travelled since, is a lower bound. A pair is measured
+/// again only when its bound falls below the smallest clearance of the step; the results are those of measuring all
+/// pairs at every step. FCL has conservative advancement for one pair of bodies; here the smallest clearance of one
+/// pair spares the others.
+class ClearanceTracker {
   public:
     /// The cell must outlive it.
-    explicit Walk(const Cell& cell);
+    explicit ClearanceTracker(const Cell& cell);
 
-    /// The least clearance with these joints, up to CollisionOptions::beyond.
-    CellClearance step(const CellJoints& joints);
-    /// The least on the way to the last step from the one before it: as check_path(). There must be two steps.
-    CellClearance way();
-    /// The next step does not follow the last one.
-    void leave();
+    /// Advances to the next joints of the path. @return  the minimum clearance there, as far as
+    /// CollisionOptions::max_clearance
+    CellClearance advance(const CellJoints& joints);
+    /// Minimum clearance on the motion from the previous step to the last one, joints moving linearly: a lower bound,
+    /// see check_path(). There must have been two steps since the last reset.
+    CellClearance swept_clearance();
+    /// Forgets the path: the next step is not connected to the last one.
+    void reset() { step_count_ = 0; }
 
-    std::size_t steps() const { return steps_; } ///< since it was left
-    std::size_t looks() const { return looks_; } ///< between steps
+    std::size_t step_count() const { return step_count_; }         ///< since the last reset
+    std::size_t midpoint_count() const { return midpoint_count_; } ///< configurations measured between steps
 
   private:
-    struct Place {
-        CellJoints joints = CellJoints::Zero();
-        Stance stance;
-        std::vector<char> exact;     ///< of the pairs: or else the clearance is a lower bound
-        std::vector<double> motions; ///< of the bodies on the way here; NaN: not asked for yet
+    /// What is known of a clearance. It is exact if it is below `measured_to`.
+    struct Bound {
+        double clearance = -core::kInfinity;   ///< lower bound, mm; not cut off at CollisionOptions::max_clearance
+        double measured_to = -core::kInfinity; ///< larger clearances were not measured, mm
+
+        bool is_known_to(double distance) const { return clearance < measured_to || measured_to >= distance; }
     };
-    void look(Place& place, std::size_t pair, double beyond);
-    double motion(const Place& from, Place& to, std::size_t pair) const;
-    CellClearance between(Place& from, Place& to, std::vector<std::size_t> some, std::size_t halvings);
+    struct State {
+        CellJoints joints = CellJoints::Zero();
+        CellState cell_state;
+        std::vector<Bound> bounds;         ///< by pair
+        std::vector<double> motion_bounds; ///< by body: of its motion to this state, mm; NaN: not yet
+        std::vector<std::size_t> pairs;    ///< of a midpoint: those that it is to decide about
+    };
+    /// Result of a motion so far.
+    struct Sweep {
+        CellClearance minimum;
+        double upper_bound = core::kInfinity; ///< of the result: the smallest clearance measured on the motion, mm
+    };
+    void measure(State& state, std::size_t pair, double max_clearance);
+    double clearance_lower_bound(std::size_t pair) const;
+    double body_motion_bound(const State& from, State& to, std::size_t pair) const;
+    void raise_bound(State& state, std::size_t pair) const;
+    void sweep(State& from, State& to, std::span<const std::size_t> pairs, std::size_t bisections, Sweep& result);
+    bool sweep_pair(State& from, State& to, std::size_t pair, std::size_t bisections, Sweep& result);
+    void place_midpoint(const State& from, const State& to, State& middle);
 
     const Cell& cell_;
-    Place before_, here_;
-    std::vector<Place> middle_; ///< by the number of halvings
-    std::vector<double> gone_;  ///< of the bodies: how far they have moved at most, mm
-    std::vector<double> apart_; ///< of the pairs: a lower bound of the clearance, plus how far both had gone
-    std::size_t last_ = 0;      ///< the pair that was least
-    std::size_t steps_ = 0, looks_ = 0;
+    State previous_, current_;
+    std::vector<State> midpoints_;                 ///< by the number of bisections
+    std::vector<double> step_displacement_;        ///< by body: upper bound since the previous step, mm
+    std::vector<double> distance_travelled_;       ///< by body: upper bound since the last reset, mm
+    std::vector<double> clearance_bound_at_reset_; ///< by pair: lower bound of the clearance, mm, after the distances
+                                                   ///< that both bodies have travelled since the reset are subtracted
+    std::size_t nearest_pair_ = 0;                 ///< the pair with the minimum clearance at the last step
+    std::size_t step_count_ = 0, midpoint_count_ = 0;
 };
 
-} // namespace fettle
+} // namespace fettle::robot

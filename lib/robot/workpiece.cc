@@ -3,6 +3,7 @@
 #include "core/simd.h"
 #include "mesh/box_search.h"
 #include "mesh/box_tree.h"
+#include "robot/deepest_point.h"
 #include "robot/wide_solid.h"
 
 #include <algorithm>
@@ -10,283 +11,261 @@
 #include <cmath>
 #include <utility>
 
-// The tree and a first look at triangles are in float; whatever a rounding might have hidden is looked at in double.
+// The tree and the first bounds of triangles are in float. What remains possible within rounding is measured in double.
 
-namespace fettle {
+namespace fettle::robot {
 
 namespace {
 
 using Eigen::Vector3d;
 
-// Distances are told to this, mm.
+// Accuracy of distances, mm.
 constexpr double kDistanceTolerance = 1e-9;
-// Depths inside boxes and hulls are told to this, mm, a tenth of what machining asks for: where the way out changes
-// sides, every halving costs twice as many pieces.
-constexpr double kDepthTolerance = 1e-3;
 
-void take(const PlacedSolid& body, const Vector3d& point, Clearance& best, bool& nearer)
+// Lower bound of the distance of a triangle's points, from the tangent plane of the distance at its centroid. The
+// corner where that plane is lowest becomes `best` if it is nearer.
+double lower_bound(const PlacedSolid& body, const mesh::Triangle& t, Clearance& best, bool& improved)
 {
-    const PointDistance at = body.distance(point);
-    if (!(at.value < best.distance)) return;
-    best = {at.value, at.gradient, point - at.value * at.gradient, point};
-    nearer = true;
-}
-
-// No point of the triangle is nearer, by the tangent plane at its middle. The corner that is nearest by it is tried.
-double lower_bound(const PlacedSolid& body, const Triangle& t, Clearance& best, bool& nearer)
-{
-    const Vector3d middle = t.rowwise().mean();
-    const PointDistance at = body.distance(middle);
-    Eigen::Index corner = 0;
-    const double slope = (at.gradient.transpose() * (t.colwise() - middle)).minCoeff(&corner);
-    if (at.value + slope < best.distance) take(body, t.col(corner), best, nearer);
+    const Vector3d centroid = t.rowwise().mean();
+    const PointDistance at = body.signed_distance(centroid);
+    Eigen::Index k = 0;
+    const double slope = (at.gradient.transpose() * (t.colwise() - centroid)).minCoeff(&k);
+    if (at.value + slope < best.distance) {
+        const Vector3d corner = t.col(k);
+        const PointDistance d = body.signed_distance(corner);
+        if (d.value < best.distance) {
+            best = {d.value, d.gradient, corner - d.value * d.gradient, corner};
+            improved = true;
+        }
+    }
     return at.value + slope;
 }
 
-// The deepest point of a triangle, by halving its sides where a tangent plane leaves room for a deeper one than is
-// known.
-void find_deepest(const PlacedSolid& body, const Triangle& whole, Clearance& best, bool& nearer)
-{
-    std::vector<Triangle> waiting = {whole};
-    while (!waiting.empty()) {
-        const Triangle t = waiting.back();
-        waiting.pop_back();
-        if (lower_bound(body, t, best, nearer) >= best.distance - kDepthTolerance) continue;
-        const Vector3d a = (t.col(1) + t.col(2)) / 2, b = (t.col(2) + t.col(0)) / 2, c = (t.col(0) + t.col(1)) / 2;
-        Triangle part;
-        for (const auto& corners :
-             {std::array<Vector3d, 3>{t.col(0), c, b}, {c, t.col(1), a}, {b, a, t.col(2)}, {a, b, c}}) {
-            part << corners[0], corners[1], corners[2];
-            waiting.push_back(part);
-        }
-    }
-}
-
-Triangle triangle_of(const Mesh& mesh, Eigen::Index index)
-{
-    Triangle corners;
-    for (int k = 0; k < 3; ++k) corners.col(k) = mesh.vertices.col(mesh.triangles(k, index));
-    return corners;
-}
-
-void offer(const RoundSolid& solid, const PlacedSolid& body, const Triangle& t, Clearance& best, bool& nearer)
+// The triangle's nearest point to a round solid becomes `best` if it is nearer.
+void measure(const RoundSolid& solid, const PlacedSolid& body, const mesh::Triangle& t, Clearance& best, bool& improved)
 {
     if (body.is_sphere()) {
         const Vector3d centre = solid.T.translation();
-        const TrianglePoint foot = closest_on_triangle(t, centre);
+        const mesh::TrianglePoint foot = mesh::closest_on_triangle(t, centre);
         const double length = std::sqrt(foot.squared_distance), distance = length - solid.rounding;
         if (distance < best.distance) {
             const Vector3d normal = length > 0 ? Vector3d((foot.point - centre) / length) : Vector3d::UnitZ();
             best = {distance, normal, centre + solid.rounding * normal, foot.point};
-            nearer = true;
+            improved = true;
         }
-        if (foot.barycentric.minCoeff() > 0) return; // else it may be one of the two sides of a needle
+        if (foot.barycentric.minCoeff() > 0) return; // on an edge of a needle the other edge may be nearer
     }
-    if (const auto foot = nearest_of_triangle(solid, t, best.distance)) {
+    if (const auto foot = nearest_point_of_triangle(solid, t, best.distance)) {
         best = {foot->distance, foot->gradient, foot->point - foot->distance * foot->gradient, foot->point};
-        nearer = true;
+        improved = true;
     }
 }
 
-void offer(const BoxSolid&, const PlacedSolid& body, const Triangle& t, Clearance& best, bool& nearer)
+// The triangle's nearest point to a box, hull or triangle becomes `best` if it is nearer.
+void measure(const BoxSolid&, const PlacedSolid& body, const mesh::Triangle& t, Clearance& best, bool& improved)
 {
-    if (lower_bound(body, t, best, nearer) >= best.distance - kDistanceTolerance) return;
+    if (lower_bound(body, t, best, improved) >= best.distance - kDistanceTolerance) return;
     const Clearance c = clearance(body, PlacedSolid(t), best.distance);
     if (c.distance <= 0) {
-        find_deepest(body, t, best, nearer);
+        improved = find_deepest(body, t, best) || improved;
     } else if (c.distance < best.distance) {
         best = c;
-        nearer = true;
+        improved = true;
     }
 }
 
 /// A triangle that may be the nearest.
 struct Candidate {
-    float lower; ///< no point of it is nearer, but for roundings
+    float lower_bound; ///< of its distance, within rounding
     std::uint32_t leaf, lane;
 };
 
-/// A body on its way through the tree.
+/// The search for the triangle nearest to a body. Outline is the body's shape in double, Wide the same in float.
 template <typename Outline, typename Wide>
-struct Search {
-    Search(const Outline& of_body, const PlacedSolid& placed, const Mesh& of, const BoxTree& in,
-           const std::function<bool(Eigen::Index)>* only, Workpiece::Nearest& found)
-        : outline(of_body), body(placed), wide(of_body, in.centre), mesh(of), tree(in), wanted(only), best(found),
-          rounding(kRoundings * (in.rounding + kEpsilon * (wide.size + in.box.diagonal().norm())))
+struct TreeSearch {
+    TreeSearch(const Outline& shape, const PlacedSolid& placed, const mesh::Mesh& of, const mesh::BoxTree& in,
+               const std::function<bool(Eigen::Index)>* selection, Workpiece::Nearest& found)
+        : outline(shape), body(placed), mesh(of), tree(in), is_selected(selection), best(found)
     {
-        set_bound(best.clearance.distance);
     }
 
     const Outline& outline;
     const PlacedSolid& body;
-    const Wide wide;
-    const Mesh& mesh;
-    const BoxTree& tree;
-    const std::function<bool(Eigen::Index)>* wanted; ///< nullptr: all
+    const mesh::Mesh& mesh;
+    const mesh::BoxTree& tree;
+    const std::function<bool(Eigen::Index)>* is_selected; ///< nullptr: all triangles count
     Workpiece::Nearest& best;
-    const double rounding;                           ///< of distances in float, mm
-    float bound = std::numeric_limits<float>::max(); ///< what is not nearer than this does not matter
-    std::array<Candidate, 64> candidates;            ///< hardly ever more than ten wait
-    std::size_t waiting = 0;
+    const Wide wide = Wide(outline, tree.centre);
+    /// Error bound of distances in float, mm.
+    const double rounding =
+        mesh::kMaxRoundings * (tree.rounding + mesh::kFloatRoundoff * (wide.size + tree.box.diagonal().norm()));
+    /// Upper bound of the minimum distance in float, mm: triangles above it are not nearest in double either.
+    float upper_bound = std::min(std::numeric_limits<float>::max(), float(best.clearance.distance + 2 * rounding));
+    std::array<Candidate, 64> candidates; ///< rarely more than ten at a time
+    std::size_t candidate_count = 0;
 
-    /// A point is known to be no farther than this.
-    void set_bound(double distance)
-    {
-        const auto far = static_cast<float>(distance + 2 * rounding);
-        if (far < bound) bound = far;
-    }
+    void set_upper_bound(double distance) { upper_bound = std::min(upper_bound, float(distance + 2 * rounding)); }
 
-    /// Measures the candidates that still matter, in double: the last ones, the nearest as a rule, first.
-    void settle()
+    /// Measures the candidates that are still possible in double. The last one, usually the nearest, comes first.
+    void refine_candidates()
     {
-        while (waiting > 0) {
-            const Candidate& next = candidates[--waiting];
-            if (next.lower > bound) continue;
+        while (candidate_count > 0) {
+            const Candidate& next = candidates[--candidate_count];
+            if (next.lower_bound > upper_bound) continue;
             const Eigen::Index t = tree.triangle(next.leaf, next.lane);
-            if (wanted != nullptr && !(*wanted)(t)) continue;
-            bool nearer = false;
-            offer(outline, body, triangle_of(mesh, t), best.clearance, nearer);
-            if (!nearer) continue;
+            if (is_selected != nullptr && !(*is_selected)(t)) continue;
+            bool improved = false;
+            measure(outline, body, mesh::triangle_of(mesh, t), best.clearance, improved);
+            if (!improved) continue;
             best.triangle = t;
             best.leaf = next.leaf;
-            set_bound(best.clearance.distance);
+            set_upper_bound(best.clearance.distance);
         }
     }
 
-    FETTLE_INLINE void look_through(std::uint32_t leaf)
+    FETTLE_INLINE void scan_leaf(std::uint32_t leaf)
     {
-        const Least8 least = least_of_triangles(wide, tree.leaves[leaf]);
-        if (wide.exact && wanted == nullptr && lanes_of(least.upper < bound) != 0)
-            set_bound(static_cast<double>(least_of(least.upper)));
-        for (Lanes lanes{lanes_of(least.lower <= bound)}; lanes.any(); lanes.next()) {
-            if (waiting == candidates.size()) settle();
-            candidates[waiting++] = {least.lower[lanes.first()], leaf, lanes.first()};
+        const MinDistance8 distances = min_distances(wide, tree.leaves[leaf]);
+        if (wide.exact && is_selected == nullptr && mesh::lane_bits(distances.upper < upper_bound) != 0)
+            set_upper_bound(mesh::min_lane(distances.upper));
+        for (mesh::LaneIterator lanes{mesh::lane_bits(distances.lower <= upper_bound)}; lanes.any(); lanes.next()) {
+            if (candidate_count == candidates.size()) refine_candidates();
+            candidates[candidate_count++] = {distances.lower[lanes.first()], leaf, lanes.first()};
         }
     }
 
-    FETTLE_INLINE void go_through(Stack& stack)
+    FETTLE_INLINE void traverse(mesh::NodeStack& stack)
     {
         while (stack.any()) {
-            const Waiting next = stack.pop();
-            if (next.distance > bound) continue;
+            const mesh::StackEntry next = stack.pop();
+            if (next.distance > upper_bound) continue;
             if (next.level < 0) {
-                look_through(next.index);
+                scan_leaf(next.index);
                 continue;
             }
-            const Float8 children = lower_bound(wide, tree.levels[static_cast<std::size_t>(next.level)], next.index);
-            stack.push(lanes_of(children <= bound), children, next.level - 1, next.index);
+            const mesh::Float8 children = lower_bound(wide, tree.levels[next.level], next.index);
+            stack.push(mesh::lane_bits(children <= upper_bound), children, next.level - 1, next.index);
         }
     }
 
-    /// From a leaf that is probably near upwards: of most nodes above it no other child is near enough.
-    FETTLE_INLINE void begin_at(std::uint32_t leaf)
+    /// Searches upwards from a leaf that is probably near: most nodes above it have no other child that is near enough.
+    FETTLE_INLINE void run_from(std::uint32_t leaf)
     {
-        look_through(leaf);
-        settle();
-        Stack stack;
+        scan_leaf(leaf);
+        refine_candidates();
+        mesh::NodeStack stack;
         std::uint32_t child = leaf;
         for (std::size_t level = 0; level < tree.levels.size(); ++level) {
             const std::uint32_t node = child / 8;
-            const Float8 children = lower_bound(wide, tree.levels[level], node);
-            const unsigned others = lanes_of(children <= bound) & ~(1u << child % 8);
-            stack.push(others, children, static_cast<std::int32_t>(level) - 1, node);
-            go_through(stack);
+            const mesh::Float8 children = lower_bound(wide, tree.levels[level], node);
+            const unsigned siblings = mesh::lane_bits(children <= upper_bound) & ~(1u << child % 8);
+            stack.push(siblings, children, static_cast<std::int32_t>(level) - 1, node);
+            traverse(stack);
             child = node;
         }
-        settle();
+        refine_candidates();
     }
 };
 
-using SphereSearch = Search<RoundSolid, WideSphere>;
-using RoundSearch = Search<RoundSolid, WideRound>;
-using BoxSearch = Search<BoxSolid, WideBox>;
+using SphereSearch = TreeSearch<RoundSolid, WideSphere>;
+using RoundSearch = TreeSearch<RoundSolid, WideRound>;
+using BoxSearch = TreeSearch<BoxSolid, WideBox>;
 
-FETTLE_CLONES void begin_at(SphereSearch& search, std::uint32_t leaf) { search.begin_at(leaf); }
-FETTLE_CLONES void begin_at(RoundSearch& search, std::uint32_t leaf) { search.begin_at(leaf); }
-FETTLE_CLONES void begin_at(BoxSearch& search, std::uint32_t leaf) { search.begin_at(leaf); }
+// Functions with clones for several processors cannot be templates.
+FETTLE_CLONES void run_from(SphereSearch& search, std::uint32_t leaf) { search.run_from(leaf); }
+FETTLE_CLONES void run_from(RoundSearch& search, std::uint32_t leaf) { search.run_from(leaf); }
+FETTLE_CLONES void run_from(BoxSearch& search, std::uint32_t leaf) { search.run_from(leaf); }
 
 } // namespace
 
-bool is_closed(const Mesh& mesh)
+bool is_closed(const mesh::Mesh& mesh)
 {
-    std::vector<std::pair<int, int>> sides;
+    std::vector<std::pair<int, int>> edges; // directed
     for (const auto t : mesh.triangles.colwise())
-        for (int k = 0; k < 3; ++k) sides.emplace_back(t[k], t[(k + 1) % 3]);
-    std::sort(sides.begin(), sides.end());
-    if (std::adjacent_find(sides.begin(), sides.end()) != sides.end()) return false;
-    return std::all_of(sides.begin(), sides.end(), [&](const auto& side) {
-        return std::binary_search(sides.begin(), sides.end(), std::pair(side.second, side.first));
-    });
+        for (int k = 0; k < 3; ++k) edges.emplace_back(t[k], t[(k + 1) % 3]);
+    std::ranges::sort(edges);
+    if (std::ranges::adjacent_find(edges) != edges.end()) return false;
+    return std::ranges::all_of(
+        edges, [&](const auto& edge) { return std::ranges::binary_search(edges, std::pair(edge.second, edge.first)); });
 }
 
-Workpiece::Workpiece(const Mesh& mesh) : closed_(is_closed(mesh)), index_(mesh) {}
+Workpiece::Workpiece(const mesh::Mesh& mesh) : closed_(is_closed(mesh)), index_(mesh) {}
 
-// A ray out of a closed mesh first meets a triangle from behind. One that only grazes it is drawn again.
+// A ray from inside a closed mesh first hits a triangle from behind. A grazing hit decides nothing: another ray is
+// cast.
 bool Workpiece::is_inside(const Nearest& nearest, const Vector3d& point) const
 {
     if (nearest.triangle >= 0) {
-        // Nearest to the inner of a triangle, not to its rim: the side of that triangle tells.
-        constexpr double kInner = 1e-3; // barycentric
-        const Triangle t = triangle_of(mesh(), nearest.triangle);
-        const TrianglePoint foot = closest_on_triangle(t, nearest.clearance.on_b);
-        if (foot.barycentric.minCoeff() > kInner)
+        // If the nearest point is away from the triangle's edges, the side of its plane decides.
+        constexpr double kMinBarycentric = 1e-3;
+        const mesh::Triangle t = mesh::triangle_of(mesh(), nearest.triangle);
+        const mesh::TrianglePoint foot = mesh::closest_on_triangle(t, nearest.clearance.on_b);
+        if (foot.barycentric.minCoeff() > kMinBarycentric)
             return (t.col(1) - t.col(0)).cross(t.col(2) - t.col(0)).dot(nearest.clearance.normal) > 0;
     }
-    constexpr double kGrazing = 1e-6;
+    constexpr double kMinSineToPlane = 1e-6;
     for (const Vector3d& direction : {Vector3d::UnitZ().eval(), Vector3d(0.8, 0, 0.6), Vector3d(-0.36, 0.48, 0.8)}) {
         const auto hit = index_.cast(point, direction);
         if (!hit) return false;
-        const Triangle t = triangle_of(mesh(), hit->triangle);
+        const mesh::Triangle t = mesh::triangle_of(mesh(), hit->triangle);
         const Vector3d normal = (t.col(1) - t.col(0)).cross(t.col(2) - t.col(0));
         const double along = normal.dot(direction);
-        if (std::abs(along) > kGrazing * normal.norm()) return along > 0;
+        if (std::abs(along) > kMinSineToPlane * normal.norm()) return along > 0;
     }
     return false;
 }
 
-void Workpiece::find(const PlacedSolid& body, const std::function<bool(Eigen::Index)>* wanted, Nearest& best) const
+void Workpiece::search(const PlacedSolid& body, const std::function<bool(Eigen::Index)>* is_selected,
+                       Nearest& best) const
 {
-    const BoxTree& tree = index_.tree();
+    const mesh::BoxTree& tree = index_.tree();
     if (tree.leaves.empty()) return;
     best.leaf = std::min<std::uint32_t>(best.leaf, static_cast<std::uint32_t>(tree.leaves.size()) - 1);
-    const auto outline = body.outline();
-    const auto search = [&](auto&& begun) { begin_at(begun, best.leaf); };
+    const auto outline = body.primitive_shape();
+    const auto run = [&](auto&& search) { run_from(search, best.leaf); };
     if (const auto* box = std::get_if<BoxSolid>(&outline))
-        search(BoxSearch(*box, body, mesh(), tree, wanted, best));
+        run(BoxSearch(*box, body, mesh(), tree, is_selected, best));
     else if (body.is_sphere())
-        search(SphereSearch(std::get<RoundSolid>(outline), body, mesh(), tree, wanted, best));
+        run(SphereSearch(std::get<RoundSolid>(outline), body, mesh(), tree, is_selected, best));
     else
-        search(RoundSearch(std::get<RoundSolid>(outline), body, mesh(), tree, wanted, best));
+        run(RoundSearch(std::get<RoundSolid>(outline), body, mesh(), tree, is_selected, best));
 }
 
-bool Workpiece::holds(const Vector3d& point) const
+bool Workpiece::contains(const Vector3d& point) const
 {
     return closed_ && index_.tree().box.contains(point) && is_inside({}, point);
 }
 
-Workpiece::Nearest Workpiece::nearest_of(const PlacedSolid& body, double beyond,
-                                         const std::function<bool(Eigen::Index)>& wanted) const
+Workpiece::Nearest Workpiece::nearest_of(const PlacedSolid& body, double max_distance,
+                                         const std::function<bool(Eigen::Index)>& is_selected) const
 {
     Nearest best;
-    best.clearance.distance = beyond;
-    find(body, &wanted, best);
+    best.clearance.distance = max_distance;
+    search(body, &is_selected, best);
     return best;
 }
 
-Workpiece::Nearest Workpiece::nearest(const PlacedSolid& body, double beyond, std::uint32_t leaf) const
+Workpiece::Nearest Workpiece::nearest_of_surface(const PlacedSolid& body, double max_distance,
+                                                 std::uint32_t start_leaf) const
 {
     Nearest best;
-    best.clearance.distance = beyond;
-    best.leaf = leaf;
-    find(body, nullptr, best);
-    // A body that touches the surface is not wholly inside; of a ball its centre tells how deep.
-    const bool apart = best.triangle < 0 || best.clearance.distance > 0;
-    if (!closed_ || !(apart || body.is_sphere())) return best;
-    const Vector3d point = body.farthest(Vector3d::UnitZ());
+    best.clearance.distance = max_distance;
+    best.leaf = start_leaf;
+    search(body, nullptr, best);
+    return best;
+}
+
+Workpiece::Nearest Workpiece::nearest(const PlacedSolid& body, double max_distance, std::uint32_t start_leaf) const
+{
+    Nearest best = nearest_of_surface(body, max_distance, start_leaf);
+    // A body that touches the surface is not completely inside; but a sphere's depth depends on where its centre is.
+    const bool touches = best.triangle >= 0 && best.clearance.distance <= 0;
+    if (!closed_ || (touches && !body.is_sphere())) return best;
+    const Vector3d point = body.support(Vector3d::UnitZ());
     if (!index_.tree().box.contains(point) || !is_inside(best, point)) return best;
-    if (best.triangle < 0) return nearest(body); // how far out it is must be told
+    if (best.triangle < 0) return nearest(body); // the depth exceeds max_distance: measured without that bound
     Clearance& c = best.clearance;
-    const double width = (body.farthest(c.normal) - body.farthest(-c.normal)).dot(c.normal) + 2 * body.radius();
+    const double width = (body.support(c.normal) - body.support(-c.normal)).dot(c.normal) + 2 * body.radius();
     best.inside = true;
     c.distance = -c.distance - width;
     c.normal = -c.normal;
@@ -294,4 +273,4 @@ Workpiece::Nearest Workpiece::nearest(const PlacedSolid& body, double beyond, st
     return best;
 }
 
-} // namespace fettle
+} // namespace fettle::robot

@@ -5,58 +5,60 @@
 #include "robot/clearance.h"
 
 #include <Eigen/Core>
-#include <Eigen/Geometry>
 
 #include <cstdint>
 #include <functional>
 #include <limits>
-#include <vector>
 
-namespace fettle {
+namespace fettle::robot {
 
-/// Is every side of a triangle shared with just one other, the other way round? Then the mesh has an inside.
-bool is_closed(const Mesh& mesh);
+/// Is each edge of a triangle shared with exactly one other triangle, in the opposite direction? Then the mesh has an
+/// inside.
+bool is_closed(const mesh::Mesh& mesh);
 
-/// A mesh that bodies are held against: every triangle counts, those that cannot be nearest are passed over by a tree
-/// of boxes. Thread-safe.
+/// A mesh for distance queries of bodies. Every triangle counts; a tree of boxes spares those that cannot be nearest.
+/// Thread-safe. FCL decides overlaps with a mesh, too, but does not give their depth.
 class Workpiece {
   public:
     /// The mesh must outlive it.
-    explicit Workpiece(const Mesh& mesh);
+    explicit Workpiece(const mesh::Mesh& mesh);
 
     struct Nearest {
         Clearance clearance;        ///< a is the body, b the triangle
-        Eigen::Index triangle = -1; ///< -1: none within `beyond`, the distance is a bound
-        bool inside = false;        ///< the body, or the centre of a ball, lies inside
-        std::uint32_t leaf = 0;     ///< of the tree: where to begin with a body that is moved a little
+        Eigen::Index triangle = -1; ///< -1: none within `max_distance`, and the distance is that bound
+        bool inside = false;        ///< the body, or the centre of a sphere, lies inside a closed mesh
+        std::uint32_t leaf = 0;     ///< of the tree, a good start for a query with the body moved a little
     };
-    /// The least signed distance of the mesh's points from the body: apart, how far; overlapping, how deep the deepest
-    /// of them lies inside it, whatever the triangles' size, to kClearanceTolerance (of boxes and hulls to 1e-3 mm). A
-    /// body that lies wholly inside a closed mesh, and a ball whose centre does, must go through the nearest point of
-    /// the surface to come out: the way to beyond its plane, negative.
+    /// The minimum signed distance of the mesh's points from the body, mm: if they overlap, the negative depth of the
+    /// deepest point inside the body, whatever the size of the triangles. Accurate to kClearanceAccuracy. A body that
+    /// lies completely inside a closed mesh, and a sphere whose centre does, must leave through the nearest point of
+    /// the surface: the result is the negative distance that it moves until it is beyond the plane there.
     /// @param body  in the mesh's frame
-    /// @param beyond  clearances beyond it need not be told apart
-    /// @param leaf  where to begin: Nearest::leaf of a body nearby. It changes nothing but the time, and the last
-    ///              digits
-    Nearest nearest(const PlacedSolid& body, double beyond = std::numeric_limits<double>::infinity(),
-                    std::uint32_t leaf = 0) const;
+    /// @param max_distance  larger distances are reported as this one
+    /// @param start_leaf  where the search starts, Nearest::leaf of a body nearby. It affects the time, and the result
+    ///                    only within its accuracy
+    Nearest nearest(const PlacedSolid& body, double max_distance = std::numeric_limits<double>::infinity(),
+                    std::uint32_t start_leaf = 0) const;
 
-    /// Of those triangles alone that are asked for, as far as they lie outside the body or pierce it: nothing is
-    /// inside.
-    Nearest nearest_of(const PlacedSolid& body, double beyond, const std::function<bool(Eigen::Index)>& wanted) const;
+    /// The same of the surface alone: of a body that is known not to lie wholly inside.
+    Nearest nearest_of_surface(const PlacedSolid& body, double max_distance, std::uint32_t start_leaf) const;
+
+    /// The minimum signed distance of a subset of the triangles. As a subset bounds no volume, `inside` stays false.
+    Nearest nearest_of(const PlacedSolid& body, double max_distance,
+                       const std::function<bool(Eigen::Index)>& is_selected) const;
 
     /// Does the point lie inside a closed mesh?
-    bool holds(const Eigen::Vector3d& point) const;
+    bool contains(const Eigen::Vector3d& point) const;
 
     bool closed() const { return closed_; }
-    const Mesh& mesh() const { return index_.mesh(); }
+    const mesh::Mesh& mesh() const { return index_.mesh(); }
 
   private:
-    void find(const PlacedSolid& body, const std::function<bool(Eigen::Index)>* wanted, Nearest& best) const;
+    void search(const PlacedSolid& body, const std::function<bool(Eigen::Index)>* is_selected, Nearest& best) const;
     bool is_inside(const Nearest& nearest, const Eigen::Vector3d& point) const;
 
     bool closed_;
-    MeshIndex index_;
+    mesh::MeshIndex index_;
 };
 
-} // namespace fettle
+} // namespace fettle::robot

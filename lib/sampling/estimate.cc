@@ -1,49 +1,51 @@
 #include "sampling/estimate.h"
 
 #include "cloud/fields.h"
+#include "core/constants.h"
 #include "core/error.h"
+#include "geometry/bounding_box.h"
 #include "sampling/touch_plan.h"
 #include "sampling/trend.h"
 
-#include <cmath>
-#include <limits>
+#include <cstring>
 #include <map>
 
-namespace fettle {
+namespace fettle::sampling {
 
 namespace {
 
-// Touches of one line, in W: t along it, z; the line lies at `offset` across.
+// The four touches of one line, in W: coordinate t along the line, and z. `offset` is the line's other coordinate.
 struct SampledLine {
     bool along_y = false;
     double offset = 0;
     Eigen::Vector4d t, z;
 };
 
-SampledLine sampled_line(const Eigen::Matrix3Xd& working, const Trend& trend, double theta, int number)
+SampledLine sampled_line(const Eigen::Matrix3Xd& touches, const Trend& trend, double theta, int number)
 {
     const std::string name = "curve " + std::to_string(number);
-    if (working.cols() != 4)
-        throw InputError(name + ": " + std::to_string(working.cols()) + " touches near the boundaries, 4 are needed");
+    if (touches.cols() != 4)
+        throw core::InputError(name + ": " + std::to_string(touches.cols()) +
+                               " touches near the boundaries, 4 are needed");
     SampledLine line;
-    const Eigen::Vector3d extent = working.rowwise().maxCoeff() - working.rowwise().minCoeff();
+    const Eigen::Vector3d extent = geometry::bounding_box(touches).sizes();
     line.along_y = extent.y() > extent.x();
     const int along = line.along_y ? 1 : 0, across = 1 - along;
-    line.offset = working.row(across).mean();
-    line.t = working.row(along);
-    const Eigen::Matrix2d to_machine = rotation_working_machine(theta).transpose();
+    line.offset = touches.row(across).mean();
+    line.t = touches.row(along);
+    const Eigen::Matrix2d to_machine = job::rotation_working_machine(theta).transpose();
     for (int i = 0; i < 4; ++i) {
-        const Eigen::Vector2d touched = working.col(i).head<2>();
+        const Eigen::Vector2d touched = touches.col(i).head<2>();
         Eigen::Vector2d on_line = touched;
         on_line[across] = line.offset;
-        line.z[i] = working(2, i) + trend.height(to_machine * on_line) - trend.height(to_machine * touched);
+        line.z[i] = touches(2, i) + trend.height(to_machine * on_line) - trend.height(to_machine * touched);
         for (int j = 0; j < i; ++j)
-            if (line.t[i] == line.t[j]) throw InputError(name + ": two touches at the same place");
+            if (line.t[i] == line.t[j]) throw core::InputError(name + ": two touches at the same place");
     }
     return line;
 }
 
-// The cubic through the four touches (Lagrange), at t.
+// Lagrange interpolation of the four touches at t.
 double cubic(const SampledLine& line, double t)
 {
     double z = 0;
@@ -56,30 +58,28 @@ double cubic(const SampledLine& line, double t)
     return z;
 }
 
-// What an appended point has in a field that says nothing of it.
-std::vector<std::byte> no_value(const Field& field)
+// The bytes of a point's missing value: NaN in floating-point fields, 0 in integer fields.
+std::vector<std::byte> missing_value(const cloud::Field& field)
 {
-    std::vector<std::byte> bytes(static_cast<std::size_t>(field.size) * static_cast<std::size_t>(field.count));
-    const float single = std::numeric_limits<float>::quiet_NaN();
-    const double twice = std::numeric_limits<double>::quiet_NaN();
-    const std::byte* nan = reinterpret_cast<const std::byte*>(&single);
-    if (field.size == 8) nan = reinterpret_cast<const std::byte*>(&twice);
-    if (field.type == 'F')
-        for (std::size_t k = 0; k < bytes.size(); ++k) bytes[k] = nan[k % static_cast<std::size_t>(field.size)];
+    std::vector<std::byte> bytes(field.size * field.count);
+    const float single_nan = core::kNaN;
+    for (int k = 0; field.type == 'F' && k < field.count; ++k)
+        std::memcpy(&bytes[k * field.size], field.size == 8 ? static_cast<const void*>(&core::kNaN) : &single_nan,
+                    field.size);
     return bytes;
 }
 
 } // namespace
 
-Eigen::Matrix3Xd estimated_points(const Job& job, const Eigen::Matrix3Xd& touches, const Eigen::VectorXi& curve,
+Eigen::Matrix3Xd estimated_points(const job::Job& job, const Eigen::Matrix3Xd& touches, const Eigen::VectorXi& curve,
                                   const Eigen::VectorXi& role)
 {
     std::map<int, std::vector<Eigen::Index>> curves;
     std::vector<Eigen::Index> used;
     for (Eigen::Index i = 0; i < touches.cols(); ++i) {
-        const bool near = role[i] == static_cast<int>(Role::near_anomaly) ||
-                          role[i] == static_cast<int>(Role::near_sampling_boundary);
-        if (!near || !touches.col(i).allFinite()) continue;
+        const bool near_boundary = role[i] == static_cast<int>(Role::near_anomaly) ||
+                                   role[i] == static_cast<int>(Role::near_sampling_boundary);
+        if (!near_boundary || !touches.col(i).allFinite()) continue;
         curves[curve[i]].push_back(i);
         used.push_back(i);
     }
@@ -87,43 +87,43 @@ Eigen::Matrix3Xd estimated_points(const Job& job, const Eigen::Matrix3Xd& touche
 
     const Trend trend(job, touches(Eigen::all, used));
     Eigen::Matrix3Xd working = touches;
-    working.topRows<2>() = rotation_working_machine(job.theta) * touches.topRows<2>();
+    working.topRows<2>() = job::rotation_working_machine(job.theta) * touches.topRows<2>();
     std::vector<SampledLine> along_y, along_x;
     for (const auto& [number, members] : curves) {
         const SampledLine line = sampled_line(working(Eigen::all, members), trend, job.theta, number);
         (line.along_y ? along_y : along_x).push_back(line);
     }
-    Eigen::Matrix3Xd points(3, static_cast<Eigen::Index>(along_y.size() * along_x.size()));
+    Eigen::Matrix3Xd points(3, along_y.size() * along_x.size());
     Eigen::Index i = 0;
     for (const SampledLine& p : along_y)
         for (const SampledLine& q : along_x)
             points.col(i++) << p.offset, q.offset, (cubic(p, q.offset) + cubic(q, p.offset)) / 2;
-    points.topRows<2>() = rotation_working_machine(job.theta).transpose() * points.topRows<2>();
+    points.topRows<2>() = job::rotation_working_machine(job.theta).transpose() * points.topRows<2>();
     return points;
 }
 
-Cloud with_estimated_points(const Job& job, const Cloud& samples)
+cloud::Cloud with_estimated_points(const job::Job& job, const cloud::Cloud& samples)
 {
-    const Eigen::VectorXi curve = whole_numbers(samples, "curve"), role = whole_numbers(samples, "role");
+    const Eigen::VectorXi curve = cloud::integer_field(samples, "curve"), role = cloud::integer_field(samples, "role");
     if ((role.array() == static_cast<int>(Role::estimated)).any())
-        throw InputError("holds estimated points already (role 3)");
-    if (job.surface != SurfaceType::freeform || (curve.array() == kNoLine).all()) return samples;
+        throw core::InputError("already has estimated points (role 3)");
+    if (job.surface != job::SurfaceType::freeform || (curve.array() == kNoLine).all()) return samples;
 
     const Eigen::Matrix3Xd estimated = estimated_points(job, samples.xyz, curve, role);
-    if (estimated.cols() == 0) throw InputError("no touches of role 1 and 2, which a free-form job has");
-    Cloud result = samples;
+    if (estimated.cols() == 0) throw core::InputError("no touches of role 1 and 2, which a free-form job has");
+    cloud::Cloud result = samples;
     result.width = 0;
     result.xyz.conservativeResize(3, samples.size() + estimated.cols());
     result.xyz.rightCols(estimated.cols()) = estimated;
-    for (Field& extended : result.fields) {
-        const std::vector<std::byte> missing = no_value(extended);
+    for (cloud::Field& extended : result.fields) {
+        const std::vector<std::byte> missing = missing_value(extended);
         for (Eigen::Index i = 0; i < estimated.cols(); ++i)
             extended.bytes.insert(extended.bytes.end(), missing.begin(), missing.end());
     }
-    Eigen::VectorXd roles = field(result, "role");
+    Eigen::VectorXd roles = cloud::field(result, "role");
     roles.tail(estimated.cols()).setConstant(static_cast<double>(Role::estimated));
-    set_field(result, "role", roles);
+    cloud::set_field(result, "role", roles);
     return result;
 }
 
-} // namespace fettle
+} // namespace fettle::sampling

@@ -2,66 +2,68 @@
 
 #include "core/error.h"
 #include "core/text.h"
+#include "geometry/bounding_box.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace fettle {
+namespace fettle::sampling {
 
 namespace {
 
-// Wang 2007, eq. 4-3: estimated points needed for each square inch of the rectangle.
+// Estimated points needed per square inch of the rectangle, Wang 2007, eq. 4-3.
 constexpr double kPointsPerSquareMm = 0.22 / 645.16;
 
-// Taken off before rounding up: a change from inches to mm and back must not add a line.
-constexpr double kBeforeCeiling = 1e-9;
+// Subtracted before rounding up: the rounding of inches to mm must not add a line.
+constexpr double kCeilingTolerance = 1e-9;
 
-// Keeps the number of lines across a needle within the range of int.
-constexpr double kCountless = 1e9;
+// Limits the number of lines across a very narrow rectangle to the range of int.
+constexpr double kMaxCount = 1e9;
 
-void check_count(const Job& job, const LineCount& count, const Eigen::Vector2d& sides)
+void check_count(const job::Job& job, const LineCount& count, const Eigen::Vector2d& sides)
 {
-    const int most = std::max(count.across_a, count.across_b);
-    if (most <= kMostLines) return;
-    const auto side = [&](double length) { return to_short_text(length / job.units.mm()); };
-    throw InputError(job.source, "anomaly: its rectangle in the working frame, " + side(sides.x()) + " x " +
-                                     side(sides.y()) + " " + to_string(job.units.length) + ", needs " +
-                                     std::to_string(most) + " lines across a side, at most " +
-                                     std::to_string(kMostLines) + " are probed: choose a smaller or a wider region");
+    const int lines = std::max(count.across_a, count.across_b);
+    if (lines <= kMaxProbingLines) return;
+    const auto side = [&](double length) { return core::to_short_text(length / job.units.mm()); };
+    throw core::InputError(job.source, "anomaly: its rectangle in the working frame, " + side(sides.x()) + " x " +
+                                           side(sides.y()) + " " + units::to_string(job.units.length) + ", needs " +
+                                           std::to_string(lines) + " lines across a side, at most " +
+                                           std::to_string(kMaxProbingLines) +
+                                           " are probed: choose a smaller or a wider region");
 }
 
 } // namespace
 
 LineCount line_count(double a, double b)
 {
-    const auto up = [](double number) {
-        return static_cast<int>(std::ceil(std::min(number, kCountless) - kBeforeCeiling));
+    const auto round_up = [](double number) {
+        return static_cast<int>(std::ceil(std::min(number, kMaxCount) - kCeilingTolerance));
     };
-    const int n_a = up(std::sqrt(kPointsPerSquareMm * a * a + a / b));
-    return {n_a, up(n_a * b / a)};
+    const int n_a = round_up(std::sqrt(kPointsPerSquareMm * a * a + a / b));
+    return {n_a, round_up(n_a * b / a)};
 }
 
-TouchPlan plan_freeform(const Job& job, const std::optional<LineCount>& lines)
+TouchPlan plan_freeform(const job::Job& job, const std::optional<LineCount>& lines)
 {
-    const Boundaries both = boundaries(job);
-    const Eigen::Vector2d least = both.anomaly.rowwise().minCoeff();
-    const Eigen::Vector2d sides = both.anomaly.rowwise().maxCoeff() - least;
+    const job::Boundaries both = job::working_boundaries(job);
+    const Eigen::AlignedBox2d box = geometry::bounding_box(both.anomaly);
+    const Eigen::Vector2d min = box.min(), sides = box.sizes();
     const LineCount count = lines.value_or(line_count(sides.x(), sides.y()));
-
     check_count(job, count, sides);
 
     TouchPlan plan;
     int curve = 0;
     const auto add_lines = [&](int across, const Eigen::Vector2d& along_side, const Eigen::Vector2d& direction) {
         for (int i = 1; i <= across; ++i) {
-            const Eigen::Vector2d start = least + along_side * i / (across + 1.0);
-            // nearer together than the probe is exact, two touches tell nothing of the slope
+            const Eigen::Vector2d start = min + along_side * i / (across + 1.0);
+            // The difference of two touches closer than the probe's accuracy does not determine a slope.
             const auto t = crossings_around(both, start, direction, job.probe.accuracy);
             if (!t)
-                throw InputError(job.source,
-                                 "sampling: no room to touch on both sides of the anomaly, on the line through " +
-                                     place(rotation_working_machine(job.theta).transpose() * start, job.units) +
-                                     ": widen the sampling boundary there");
+                throw core::InputError(
+                    job.source,
+                    "sampling: no room to touch on both sides of the anomaly, on the line through " +
+                        job::point_text(job::rotation_working_machine(job.theta).transpose() * start, job.units) +
+                        ": widen the sampling boundary there");
             const Eigen::Matrix2Xd points = start.replicate<1, 4>() + direction * t->transpose();
             append_line(
                 plan, points, job.theta, curve++,
@@ -73,4 +75,4 @@ TouchPlan plan_freeform(const Job& job, const std::optional<LineCount>& lines)
     return plan;
 }
 
-} // namespace fettle
+} // namespace fettle::sampling

@@ -2,20 +2,21 @@
 
 #include "core/error.h"
 
-namespace fettle {
+namespace fettle::sampling {
 
 namespace {
-// Three points fix a plane with nothing left to tell a bad touch; Wang 2007, table 4-2.
-constexpr Eigen::Index kLeastTouches = 4;
+// Three points determine a plane without residuals that could reveal a bad touch; Wang 2007, table 4-2.
+constexpr Eigen::Index kMinTouches = 4;
 } // namespace
 
-TouchPlan plan_plane(const Job& job)
+TouchPlan plan_plane(const job::Job& job)
 {
     const Eigen::Index n = job.anomaly.cols();
-    if (n < kLeastTouches)
-        throw InputError(job.source, "anomaly: " + std::to_string(n) + " boundary points, a plane needs at least " +
-                                         std::to_string(kLeastTouches) + ": touch " +
-                                         std::to_string(kLeastTouches - n) + " more around the anomaly");
+    if (n < kMinTouches)
+        throw core::InputError(job.source, "anomaly: " + std::to_string(n) +
+                                               " boundary points, a plane needs at least " +
+                                               std::to_string(kMinTouches) + ": touch " +
+                                               std::to_string(kMinTouches - n) + " more around the anomaly");
     TouchPlan plan;
     plan.xy = job.anomaly.topRows<2>();
     plan.z = job.anomaly.row(2);
@@ -24,4 +25,4 @@ TouchPlan plan_plane(const Job& job)
     return plan;
 }
 
-} // namespace fettle
+} // namespace fettle::sampling

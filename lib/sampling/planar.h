@@ -2,10 +2,10 @@
 
 #include "sampling/touch_plan.h"
 
-namespace fettle {
+namespace fettle::sampling {
 
-/// Plane (Wang 2007, 4.4.4, 1): the anomaly's boundary points are the touches.
-/// @throws InputError for fewer than 4 points, asking for the missing ones
-TouchPlan plan_plane(const Job& job);
+/// Touch plan of a plane (Wang 2007, 4.4.4, 1): the touches are the anomaly's boundary points.
+/// @throws InputError for fewer than 4 points
+TouchPlan plan_plane(const job::Job& job);
 
-} // namespace fettle
+} // namespace fettle::sampling

@@ -1,13 +1,13 @@
 #include "sampling/point_surface.h"
 
-#include <Eigen/Cholesky>
+#include "geometry/local_quadratic.h"
+#include "geometry/quantiles.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 
-namespace fettle {
+namespace fettle::sampling {
 
 namespace {
 
@@ -16,105 +16,87 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Points = std::vector<Vector3d>;
 
-constexpr double kNearSpacings = 3; // of the points that the local quadratic is fitted to: some 28 on a regular scan
+constexpr double kFitRadiusSpacings = 3; // radius of the local quadratic: about 28 points of a regular scan
 
-// Points for the estimate of the spacing: so many around each that a scan of lines five times as far apart as the
-// points on them still counts several lines.
+// Estimate of the spacing: with that many neighbours, a scan whose lines are five times as far apart as the points on
+// them still counts several lines.
 constexpr Index kNeighbours = 16;
-constexpr Index kProbedForSpacing = 1000; // a median of so many is exact to a few per cent
+constexpr Index kSpacingSamples = 1000; // a median of so many is exact to a few per cent
 
 constexpr double kPointsPerCell = 4;
 
-// The points must surround the line: no empty sector of half a circle or more.
-constexpr double kWidestSector = std::numbers::pi;
+// The points must surround the vertical line: no empty sector of half a circle or more.
+constexpr double kMaxEmptySector = std::numbers::pi;
 
-// Two sheets are told apart by a gap in z; on one sheet of 45 degrees, heights follow each other within a spacing.
+// A larger gap in z separates two sheets. Successive heights of a sheet at 45 degrees differ by less than a spacing.
 constexpr double kSheetGapSpacings = 3;
 
-// Points farther from the quadratic than that many standard deviations are outliers (as estimated by the median).
+// Residuals above that many standard deviations, estimated by the median, are outliers.
 constexpr double kOutlierSigmas = 4;
-constexpr double kSigmaPerMedian = 1.4826; // of the absolute deviations of a normal distribution
-constexpr int kMedianSteps = 12;           // of reweighting towards least absolute deviations: enough for three digits
+constexpr int kMaxReweightings = 12; // towards least absolute deviations: enough for three digits
 
-// Below that share of the spacing residuals are roundoff of float coordinates, not noise.
-constexpr double kExact = 1e-6;
+// Smaller residuals are roundoff of float coordinates, not noise.
+constexpr double kRoundoffSpacings = 1e-6;
 
-constexpr int kUnknowns = 6;
-using Unknowns = Eigen::Matrix<double, kUnknowns, 1>;
-using Normal = Eigen::Matrix<double, kUnknowns, kUnknowns>;
+constexpr Index kUnknowns = geometry::QuadraticTerms::SizeAtCompileTime;
 
-/// Of a term's square, what the terms before it do not explain must be more than this share: the points may lie on one
-/// line or a circle, where a quadratic is not determined. A millionth of the length, as float coordinates are rounded.
-constexpr double kIndependent = 1e-12;
-
-Unknowns quadratic(double u, double v) { return (Unknowns() << 1, u, v, u * u, u * v, v * v).finished(); }
+/// Minimum share of a term's square that the terms before it do not explain. On one line or circle the points do not
+/// determine a quadratic. It is the square of 1e-6, the rounding of float coordinates.
+constexpr double kMinPivotShare = 1e-12;
 
 bool surrounded(const Points& points, const Vector2d& xy)
 {
     std::vector<double> angles;
     for (const Vector3d& point : points) {
         const Vector2d from = point.head<2>() - xy;
-        if (from.isZero(0)) return true; // measured right there
+        if (from.isZero(0)) return true; // the point is on the line
         angles.push_back(std::atan2(from.y(), from.x()));
     }
-    std::sort(angles.begin(), angles.end());
-    double widest = angles.front() + 2 * std::numbers::pi - angles.back();
-    for (std::size_t i = 1; i < angles.size(); ++i) widest = std::max(widest, angles[i] - angles[i - 1]);
-    return widest < kWidestSector;
+    return geometry::widest_gap(angles) < kMaxEmptySector;
 }
 
-double median(Eigen::VectorXd values)
-{
-    const Index middle = values.size() / 2;
-    std::nth_element(values.begin(), values.begin() + middle, values.end());
-    return values[middle];
-}
-
-// z of the quadratic at its origin xy. Least absolute deviations by reweighting show which points are outliers; the
-// others then count alike. By normal equations: within 3 spacings the terms are of one size, and only the last of the
-// solutions is more than weights for the next.
+// z of the local quadratic at its origin xy. Iteratively reweighted least squares, towards least absolute deviations,
+// detects the outliers; the others then have equal weights. Normal equations suffice: within 3 spacings the terms have
+// about the same size, and all solutions but the last only give weights.
 std::optional<double> robust_height(const Points& points, const Vector2d& xy, double spacing)
 {
-    const Index n = static_cast<Index>(points.size());
+    const Index n = points.size();
     Eigen::Matrix<double, kUnknowns, Eigen::Dynamic> terms(kUnknowns, n);
     Eigen::ArrayXd z(n), residuals(n), weights = Eigen::ArrayXd::Ones(n);
     for (Index i = 0; i < n; ++i) {
-        const Vector3d& point = points[static_cast<std::size_t>(i)];
-        const Vector2d uv = (point.head<2>() - xy) / (kNearSpacings * spacing);
-        terms.col(i) = quadratic(uv.x(), uv.y());
+        const Vector3d& point = points[i];
+        const Vector2d uv = (point.head<2>() - xy) / (kFitRadiusSpacings * spacing);
+        terms.col(i) = geometry::quadratic_terms(uv.x(), uv.y());
         z[i] = point.z();
     }
-    const double middle = z.mean(); // far from z = 0 digits would be lost
+    const double middle = z.mean(); // subtracted, or digits are lost far from z = 0
     z -= middle;
-    Unknowns coefficients;
+    geometry::QuadraticTerms coefficients;
     const auto solve = [&] {
-        Normal A = Normal::Zero();
-        Unknowns b = Unknowns::Zero();
-        for (Index i = 0; i < n; ++i) {
-            const Unknowns weighted = weights[i] * terms.col(i);
-            A.noalias() += weighted * terms.col(i).transpose();
-            b += weighted * z[i];
-        }
-        const Eigen::LLT<Normal> cholesky(A);
-        const Unknowns pivots = cholesky.matrixLLT().diagonal();
-        const auto independent = pivots.array().square() > kIndependent * A.diagonal().array();
-        if (cholesky.info() != Eigen::Success || !independent.all()) return false;
-        coefficients = cholesky.solve(b);
+        geometry::QuadraticEquations<1> equations;
+        for (Index i = 0; i < n; ++i) equations.add_point(terms.col(i), Eigen::Matrix<double, 1, 1>(z[i]), weights[i]);
+        const auto fit = equations.solve();
+        if (!fit) return false;
+        const auto min_squares = kMinPivotShare * equations.A.diagonal().array();
+        if (!(fit->pivots.array().square() > min_squares).all()) return false;
+        coefficients = fit->coefficients;
         residuals = ((coefficients.transpose() * terms).transpose().array() - z).abs();
         return true;
     };
-    for (int step = 0; step < kMedianSteps; ++step) {
+    for (int step = 0; step < kMaxReweightings; ++step) {
         if (!solve()) return std::nullopt;
-        if (residuals.maxCoeff() <= kExact * spacing) break; // without an outlier
-        weights = residuals.max(std::max(kExact * spacing, kExact * residuals.maxCoeff())).inverse();
+        if (residuals.maxCoeff() <= kRoundoffSpacings * spacing) break; // no outliers
+        weights =
+            residuals.max(std::max(kRoundoffSpacings * spacing, kRoundoffSpacings * residuals.maxCoeff())).inverse();
     }
-    const double limit = std::max(kOutlierSigmas * kSigmaPerMedian * median(residuals), kExact * spacing);
+    const double limit = std::max(kOutlierSigmas * geometry::kMedianToSigma * geometry::median_absolute(residuals),
+                                  kRoundoffSpacings * spacing);
     weights = (residuals <= limit).cast<double>();
     if (weights.sum() < kUnknowns || !solve()) return std::nullopt;
     return middle + coefficients[0];
 }
 
-// The points of the highest sheet that surrounds the line; none if no sheet does.
+// The points of the highest sheet that surrounds the vertical line; empty if there is none.
 Points highest_sheet(Points points, const Vector2d& xy, double spacing)
 {
     std::sort(points.begin(), points.end(), [](const Vector3d& a, const Vector3d& b) { return a.z() > b.z(); });
@@ -123,7 +105,7 @@ Points highest_sheet(Points points, const Vector2d& xy, double spacing)
         sheet.push_back(points[i]);
         const bool ends = i + 1 == points.size() || points[i].z() - points[i + 1].z() > kSheetGapSpacings * spacing;
         if (!ends) continue;
-        if (sheet.size() >= std::size_t{kUnknowns} && surrounded(sheet, xy)) return sheet;
+        if (std::ssize(sheet) >= kUnknowns && surrounded(sheet, xy)) return sheet;
         sheet.clear();
     }
     return sheet;
@@ -136,86 +118,53 @@ PointSurface::PointSurface(const Eigen::Matrix3Xd& points)
     std::vector<Index> kept;
     for (Index i = 0; i < points.cols(); ++i)
         if (points.col(i).allFinite()) kept.push_back(i);
-    if (kept.empty()) {
-        size_.setZero();
-        return;
-    }
+    if (kept.empty()) return;
     const Eigen::Matrix3Xd all = points(Eigen::all, kept);
-    const Index n = all.cols();
-    origin_ = all.topRows<2>().rowwise().minCoeff();
-    const Vector2d extent = all.topRows<2>().rowwise().maxCoeff() - origin_;
-    const double longest = std::max(extent.maxCoeff(), std::numeric_limits<double>::min());
-    cell_ = std::max(std::sqrt(extent.prod() * kPointsPerCell / static_cast<double>(n)),
-                     longest * kPointsPerCell / static_cast<double>(n));
-    size_ = (extent / cell_).array().floor().cast<int>() + 1;
-
-    std::vector<Index> cells(static_cast<std::size_t>(n)), order(static_cast<std::size_t>(n));
-    start_.assign(static_cast<std::size_t>(size_.x()) * size_.y() + 1, 0);
-    for (Index i = 0; i < n; ++i) {
-        const Eigen::Array2i cell =
-            ((all.col(i).head<2>() - origin_) / cell_).array().floor().cast<int>().min(size_.array() - 1);
-        cells[static_cast<std::size_t>(i)] = static_cast<Index>(cell.y()) * size_.x() + cell.x();
-        ++start_[static_cast<std::size_t>(cells[static_cast<std::size_t>(i)]) + 1];
-    }
-    std::partial_sum(start_.begin(), start_.end(), start_.begin());
-    std::iota(order.begin(), order.end(), Index{0});
-    std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
-        return cells[static_cast<std::size_t>(a)] < cells[static_cast<std::size_t>(b)];
-    });
-    points_ = all(Eigen::all, order);
-    spacing_ = density_spacing();
+    grid_ = geometry::planar_grid(all.topRows<2>(), kPointsPerCell);
+    points_ = all(Eigen::all, grid_.order);
+    spacing_ = median_spacing();
 }
 
-Points PointSurface::near(const Vector2d& xy, double radius) const
+Points PointSurface::points_within(const Vector2d& xy, double radius) const
 {
     Points found;
-    const auto cell = [&](double x, double least, int size) {
-        return static_cast<int>(std::clamp(std::floor((x - least) / cell_), 0.0, size - 1.0));
-    };
-    if (size_.minCoeff() == 0) return found;
-    const int from_x = cell(xy.x() - radius, origin_.x(), size_.x()),
-              to_x = cell(xy.x() + radius, origin_.x(), size_.x());
-    const int from_y = cell(xy.y() - radius, origin_.y(), size_.y()),
-              to_y = cell(xy.y() + radius, origin_.y(), size_.y());
-    for (int y = from_y; y <= to_y; ++y) {
-        const std::size_t row = static_cast<std::size_t>(y) * size_.x();
-        for (Index i = start_[row + from_x]; i < start_[row + to_x + 1]; ++i)
-            if ((points_.col(i).head<2>() - xy).squaredNorm() <= radius * radius) found.push_back(points_.col(i));
-    }
+    if (points_.cols() == 0) return found;
+    geometry::visit_cells(grid_, xy.array() - radius, xy.array() + radius, [&](Index i) {
+        if ((points_.col(i).head<2>() - xy).squaredNorm() <= radius * radius) found.push_back(points_.col(i));
+    });
     return found;
 }
 
-double PointSurface::density_spacing() const
+double PointSurface::median_spacing() const
 {
     const Index n = points_.cols();
     const Index k = std::min(kNeighbours, n - 1);
     if (k == 0) return 0;
-    const Index step = std::max<Index>(1, n / kProbedForSpacing);
+    const Index step = std::max<Index>(1, n / kSpacingSamples);
     std::vector<double> spacings;
     for (Index i = 0; i < n; i += step) {
         std::vector<double> distances;
-        // distances in space: on a steep flank points lie close together seen from above
-        for (double radius = cell_;; radius *= 2) {
+        // Distances in space, because on a steep flank points are close together in plan view.
+        for (double radius = grid_.side;; radius *= 2) {
             distances.clear();
-            for (const Vector3d& point : near(points_.col(i).head<2>(), radius)) {
+            for (const Vector3d& point : points_within(points_.col(i).head<2>(), radius)) {
                 const double d = (point - points_.col(i)).norm();
                 if (d <= radius) distances.push_back(d);
             }
-            if (static_cast<Index>(distances.size()) > k) break; // the point itself is among them
-            if (static_cast<Index>(distances.size()) == n) break;
+            const Index count = distances.size(); // the point itself is counted
+            if (count > k || count == n) break;
         }
-        const auto kth =
-            distances.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(k, distances.size() - 1));
+        const auto kth = distances.begin() + std::min<std::size_t>(k, distances.size() - 1);
         std::nth_element(distances.begin(), kth, distances.end());
         spacings.push_back(*kth * std::sqrt(std::numbers::pi / static_cast<double>(k)));
     }
-    return median(Eigen::Map<Eigen::VectorXd>(spacings.data(), static_cast<Index>(spacings.size())));
+    return geometry::median(spacings);
 }
 
 std::optional<double> PointSurface::height(const Vector2d& xy) const
 {
     if (!(spacing_ > 0)) return std::nullopt;
-    const Points sheet = highest_sheet(near(xy, kNearSpacings * spacing_), xy, spacing_);
+    const Points sheet = highest_sheet(points_within(xy, kFitRadiusSpacings * spacing_), xy, spacing_);
     if (sheet.empty()) return std::nullopt;
     return robust_height(sheet, xy, spacing_);
 }
@@ -223,16 +172,16 @@ std::optional<double> PointSurface::height(const Vector2d& xy) const
 std::optional<double> PointSurface::highest(const Eigen::Vector2d& xy, double radius) const
 {
     std::optional<double> z;
-    for (const Eigen::Vector3d& point : near(xy, radius)) z = std::max(z.value_or(point.z()), point.z());
+    for (const Eigen::Vector3d& point : points_within(xy, radius)) z = std::max(z.value_or(point.z()), point.z());
     return z;
 }
 
-// The ball's lowest point is at the largest z(q) + sqrt(R^2 - |q - xy|^2) - R over the disc of its shadow: found on a
-// square lattice first, then by steps that are halved.
+// The ball's lowest point is at the maximum of z(q) + sqrt(R^2 - |q - xy|^2) - R over the disc |q - xy| <= R: a search
+// over a square lattice, then a pattern search whose steps are halved.
 std::optional<double> PointSurface::drop_ball(const Vector2d& xy, double radius) const
 {
-    constexpr int kHalfLattice = 8;    // a bump narrower than an eighth of the radius may be missed
-    constexpr double kLastStep = 1e-6; // of the radius: the height is then exact to its square
+    constexpr int kHalfLattice = 8;   // a bump narrower than an eighth of the radius may be missed
+    constexpr double kMinStep = 1e-6; // relative to the radius; the error of the height is of second order
     if (!(spacing_ > 0)) return std::nullopt;
 
     Vector2d best = xy;
@@ -249,14 +198,14 @@ std::optional<double> PointSurface::drop_ball(const Vector2d& xy, double radius)
     const int half = static_cast<int>(radius / step);
     for (int j = -half; j <= half; ++j)
         for (int i = -half; i <= half; ++i) try_at(xy + step * Vector2d(i, j));
-    for (; lowest && step > kLastStep * radius; step /= 2)
+    for (; lowest && step > kMinStep * radius; step /= 2)
         for (bool moved = true; moved;) {
             moved = false;
             const Vector2d from = best;
-            for (const Vector2d& way : {Vector2d(1, 0), Vector2d(-1, 0), Vector2d(0, 1), Vector2d(0, -1)})
-                moved |= try_at(from + step * way);
+            for (const Vector2d& direction : {Vector2d(1, 0), Vector2d(-1, 0), Vector2d(0, 1), Vector2d(0, -1)})
+                moved |= try_at(from + step * direction);
         }
     return lowest;
 }
 
-} // namespace fettle
+} // namespace fettle::sampling

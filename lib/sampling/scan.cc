@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "geometry/bounding_box.h"
 #include "mesh/shape_file.h"
 #include "sampling/point_surface.h"
 #include "sampling/triangle_grid.h"
@@ -9,29 +10,39 @@
 #include <mutex>
 #include <optional>
 
-namespace fettle {
+namespace fettle::sampling {
 
-/// Either of points or of triangles.
+/// Either points or a mesh.
 struct Scan::State {
-    explicit State(Mesh triangles) : bounds(bounding_box(triangles.vertices)), mesh(std::move(triangles)) {}
-    explicit State(const Cloud& cloud) : bounds(bounding_box(cloud.xyz)), points(std::in_place, cloud.xyz) {}
+    State(mesh::Mesh triangles, const mesh::MeshRepair& repair)
+        : bounds(geometry::finite_bounding_box(triangles.vertices)), mesh(std::move(triangles)),
+          dropped_triangles(repair.dropped_triangles)
+    {
+    }
+    explicit State(const cloud::Cloud& cloud)
+        : bounds(geometry::finite_bounding_box(cloud.xyz)), points(std::in_place, cloud.xyz)
+    {
+    }
 
     const TriangleGrid& grid() const
     {
-        std::call_once(grid_made, [this] { made_grid.emplace(mesh); });
-        return *made_grid;
+        std::call_once(grid_once, [this] { lazy_grid.emplace(mesh); });
+        return *lazy_grid;
     }
 
-    Eigen::Matrix<double, 3, 2> bounds;
+    Eigen::AlignedBox3d bounds;
     std::optional<PointSurface> points;
-    Mesh mesh;
-    // Made when the first touch asks for it: who grinds needs the triangles alone.
-    mutable std::once_flag grid_made;
-    mutable std::optional<TriangleGrid> made_grid;
+    mesh::Mesh mesh;
+    Eigen::Index dropped_triangles = 0;
+    // Created at the first touch: grinding uses the triangles only.
+    mutable std::once_flag grid_once;
+    mutable std::optional<TriangleGrid> lazy_grid;
 };
 
-Scan::Scan(Mesh mesh) : state_(std::make_unique<State>(std::move(mesh))) {}
-Scan::Scan(Cloud cloud) : state_(std::make_unique<State>(cloud)) {}
+Scan::Scan(mesh::Mesh mesh, const mesh::MeshRepair& repair) : state_(std::make_unique<State>(std::move(mesh), repair))
+{
+}
+Scan::Scan(cloud::Cloud cloud) : state_(std::make_unique<State>(cloud)) {}
 Scan::Scan(Scan&&) noexcept = default;
 Scan::~Scan() = default;
 
@@ -53,17 +64,20 @@ std::optional<double> Scan::highest_point(const Eigen::Vector2d& xy, double radi
     return state_->points ? state_->points->highest(xy, radius) : std::nullopt;
 }
 
-const Mesh* Scan::mesh() const { return state_->points ? nullptr : &state_->mesh; }
+const mesh::Mesh* Scan::mesh() const { return state_->points ? nullptr : &state_->mesh; }
 
-Eigen::Matrix<double, 3, 2> Scan::bounds() const { return state_->bounds; }
+Eigen::Index Scan::dropped_triangles() const { return state_->dropped_triangles; }
 
-Scan read_scan(const std::string& path, const Units& units, std::optional<Units::Length> stated)
+Eigen::AlignedBox3d Scan::bounds() const { return state_->bounds; }
+
+Scan read_scan(const std::string& path, const units::Units& units, std::optional<units::Units::Length> stated)
 {
-    ShapeFile file =
-        parse_shape(read_whole(path), display_name(path), Units{stated.value_or(units.length), units.force});
-    if (Mesh* mesh = std::get_if<Mesh>(&file.shape)) return Scan(std::move(*mesh));
-    if (!bounding_box(places_of(file.shape)).allFinite()) throw InputError(display_name(path), "no points");
-    return Scan(std::get<Cloud>(std::move(file.shape)));
+    mesh::ShapeFile file = mesh::parse_shape(core::read_file(path), core::display_name(path),
+                                             units::Units{stated.value_or(units.length), units.force});
+    if (mesh::Mesh* mesh = std::get_if<mesh::Mesh>(&file.shape)) return Scan(std::move(*mesh), file.repair);
+    if (!geometry::finite_bounding_box(mesh::coordinates_of(file.shape)).min().allFinite())
+        throw core::InputError(core::display_name(path), "no points");
+    return Scan(std::get<cloud::Cloud>(std::move(file.shape)));
 }
 
-} // namespace fettle
+} // namespace fettle::sampling

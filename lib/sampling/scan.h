@@ -10,38 +10,42 @@
 #include <optional>
 #include <string>
 
-namespace fettle {
+namespace fettle::sampling {
 
-/// A part as it lies on the table, to be touched from above: a mesh or a point cloud. Thread-safe.
+/// A part on the machine table that is touched from above: a mesh or a point cloud. Thread-safe.
 class Scan {
   public:
-    explicit Scan(Mesh mesh);
-    explicit Scan(Cloud cloud);
+    /// @param repair  what reading the mesh has dropped
+    explicit Scan(mesh::Mesh mesh, const mesh::MeshRepair& repair = {});
+    explicit Scan(cloud::Cloud cloud);
     Scan(Scan&&) noexcept;
     ~Scan();
 
-    /// z of a touch over xy with a point: on a mesh the vertical ray's highest hit; on a cloud the local quadratic of
-    /// the points within 3 spacings of the vertical line. Nothing there: no touch.
+    /// z of a touch over xy with a point probe: on a mesh the highest intersection of the vertical line, on a cloud the
+    /// local quadratic (see PointSurface). Nothing if there is no surface.
     std::optional<double> height(const Eigen::Vector2d& xy) const;
-    /// z of the lowest point of a ball of `radius` that comes down over xy, when it first touches. On a mesh exact
-    /// (facets, edges, vertices); on a cloud against the local quadratics.
+    /// z of the lowest point of a ball that is lowered over xy until it first touches. On a mesh it is exact (facets,
+    /// edges, vertices); on a cloud it touches the local quadratics.
     std::optional<double> drop_ball(const Eigen::Vector2d& xy, double radius) const;
-    /// z of a cloud's highest point within `radius` of the vertical line: beside a wall there is no local quadratic.
+    /// z of a cloud's highest point within `radius` of the vertical line, for places without a local quadratic, such as
+    /// beside a wall. Nothing for a mesh.
     std::optional<double> highest_point(const Eigen::Vector2d& xy, double radius) const;
-    /// The triangles; nothing for a cloud.
-    const Mesh* mesh() const;
-    /// Column 0 the least corner, column 1 the greatest, mm.
-    Eigen::Matrix<double, 3, 2> bounds() const;
+    /// The mesh; null for a cloud.
+    const mesh::Mesh* mesh() const;
+    /// Triangles of the file that the mesh does not have: their vertices are not finite.
+    Eigen::Index dropped_triangles() const;
+    /// Bounding box, mm: column 0 is the min corner, column 1 the max corner.
+    Eigen::AlignedBox3d bounds() const;
 
   private:
     struct State;
     std::unique_ptr<State> state_;
 };
 
-/// Reads a mesh or a cloud, told by content.
-/// @param units   of the job
-/// @param stated  the file's length unit; nothing: the job's
+/// Reads a mesh or a cloud; the content decides which.
+/// @param units   units of the job
+/// @param stated  length unit of the file; nothing: that of the job
 /// @throws InputError as read_shape() (mesh/shape_file.h), or if no point of a cloud is finite
-Scan read_scan(const std::string& path, const Units& units, std::optional<Units::Length> stated);
+Scan read_scan(const std::string& path, const units::Units& units, std::optional<units::Units::Length> stated);
 
-} // namespace fettle
+} // namespace fettle::sampling

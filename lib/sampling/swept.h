@@ -2,16 +2,15 @@
 
 #include "sampling/touch_plan.h"
 
-namespace fettle {
+namespace fettle::sampling {
 
-/// Straight swept surface (Wang 2007, 4.4.2 and 4.4.4, 2). Three touches on the ruling line: both ends and the middle
-/// of the longest stretch along the rulings in S \ B. Four on the section curve, across the rulings:
-///   (a) a line is free over the whole width of the anomaly: four uniform points over exactly that width;
-///   (b) lines are free over a part of it: the ends of the two stretches that together cover most of it;
-///   (c) no line is: the longest line across, where it crosses S and B.
-/// Where Wang leaves the choice to chance, the line nearest to the anomaly is taken; then that with the smallest
-/// coordinate.
-/// @throws InputError if there is neither, asking for another sampling boundary
-TouchPlan plan_swept(const Job& job);
+/// Touch plan of a straight swept surface (Wang 2007, 4.4.2 and 4.4.4, 2). Three touches on the ruling line: the ends
+/// and the middle of the longest interval along the rulings in S \ B. Four touches on the section curve:
+///   (a) if a line is free over the whole width of the anomaly, four uniform points over exactly that width;
+///   (b) if lines are free over a part of it, the ends of the two intervals that together cover its largest part;
+///   (c) otherwise the longest line across, at its crossings with S and B.
+/// Where Wang's choice is arbitrary, it is the line closest to the anomaly, then the one with the smallest coordinate.
+/// @throws InputError if there is no such line; the message asks for another sampling boundary
+TouchPlan plan_swept(const job::Job& job);
 
-} // namespace fettle
+} // namespace fettle::sampling

@@ -1,51 +1,50 @@
 #include "sampling/touch_plan.h"
 
+#include "core/constants.h"
 #include "sampling/freeform.h"
 #include "sampling/planar.h"
 #include "sampling/swept.h"
 
-#include <limits>
+namespace fettle::sampling {
 
-namespace fettle {
-
-void append_line(TouchPlan& plan, const Eigen::Matrix2Xd& working, double theta, int curve,
+void append_line(TouchPlan& plan, const Eigen::Matrix2Xd& points, double theta, int curve,
                  const std::vector<Role>& roles)
 {
-    const Eigen::Index before = plan.size(), count = working.cols();
+    const Eigen::Index before = plan.size(), count = points.cols();
     plan.xy.conservativeResize(2, before + count);
     plan.z.conservativeResize(before + count);
     plan.curve.conservativeResize(before + count);
     plan.role.conservativeResize(before + count);
-    plan.xy.rightCols(count) = rotation_working_machine(theta).transpose() * working;
-    plan.z.tail(count).setConstant(std::numeric_limits<double>::quiet_NaN());
+    plan.xy.rightCols(count) = job::rotation_working_machine(theta).transpose() * points;
+    plan.z.tail(count).setConstant(core::kNaN);
     plan.curve.tail(count).setConstant(curve);
-    for (Eigen::Index i = 0; i < count; ++i)
-        plan.role[before + i] = static_cast<int>(roles[static_cast<std::size_t>(i)]);
+    for (Eigen::Index i = 0; i < count; ++i) plan.role[before + i] = static_cast<int>(roles[i]);
 }
 
-TouchPlan plan_touches(const Job& job)
+TouchPlan plan_touches(const job::Job& job)
 {
     switch (job.surface) {
-    case SurfaceType::plane:
+    case job::SurfaceType::plane:
         return plan_plane(job);
-    case SurfaceType::swept:
+    case job::SurfaceType::swept:
         return plan_swept(job);
-    case SurfaceType::freeform:
+    case job::SurfaceType::freeform:
         break;
     }
     return plan_freeform(job);
 }
 
-std::optional<Crossings> crossings_around(const Boundaries& boundaries, const Eigen::Vector2d& origin,
-                                          const Eigen::Vector2d& direction, double least)
+std::optional<Crossings> crossings_around(const job::Boundaries& boundaries, const Eigen::Vector2d& origin,
+                                          const Eigen::Vector2d& direction, double min_length)
 {
-    const std::vector<Interval> anomaly = inside(boundaries.anomaly, origin, direction);
+    const std::vector<job::Interval> anomaly = job::intervals_inside(boundaries.anomaly, origin, direction);
     if (anomaly.empty()) return std::nullopt;
-    const std::vector<Interval> free = subtract(inside(boundaries.sampling, origin, direction), anomaly, least);
+    const std::vector<job::Interval> free =
+        job::subtract(job::intervals_inside(boundaries.sampling, origin, direction), anomaly, min_length);
 
     Crossings t;
     bool before = false, after = false;
-    for (const Interval& stretch : free) {
+    for (const job::Interval& stretch : free) {
         if (stretch.second <= anomaly.front().first) {
             if (!before) t[0] = stretch.first;
             t[1] = stretch.second;
@@ -60,4 +59,4 @@ std::optional<Crossings> crossings_around(const Boundaries& boundaries, const Ei
     return t;
 }
 
-} // namespace fettle
+} // namespace fettle::sampling

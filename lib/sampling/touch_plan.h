@@ -8,9 +8,9 @@
 #include <optional>
 #include <vector>
 
-namespace fettle {
+namespace fettle::sampling {
 
-/// What a touch is for; the numbers are those of the field `role`.
+/// Purpose of a touch; the numbers are the values of the field `role`.
 enum class Role {
     anomaly_boundary = 0,
     near_anomaly = 1,
@@ -20,34 +20,35 @@ enum class Role {
     section_curve = 5
 };
 
-/// The `curve` of a touch that is on no line.
+/// Value of `curve` for a touch that is on no line.
 inline constexpr int kNoLine = -1;
 
-/// Where to touch the part, in the order of the lines that the touches belong to.
+/// Planned touches, ordered by the lines that they belong to.
 struct TouchPlan {
     Eigen::Matrix2Xd xy;   ///< M, mm
-    Eigen::VectorXd z;     ///< where the operator has touched already, mm; NaN elsewhere
+    Eigen::VectorXd z;     ///< heights already measured by the operator, mm; NaN elsewhere
     Eigen::VectorXi curve; ///< number of the line, from 0, or kNoLine
-    Eigen::VectorXi role;  ///< as Role
+    Eigen::VectorXi role;  ///< values of Role
 
     Eigen::Index size() const { return xy.cols(); }
 };
 
-/// Appends touches of one line. @param working  2xN, W, mm
-void append_line(TouchPlan& plan, const Eigen::Matrix2Xd& working, double theta, int curve,
+/// Appends the touches of one line.
+/// @param points  2xN, mm, in a frame that is M rotated by `theta`   @param roles  N
+void append_line(TouchPlan& plan, const Eigen::Matrix2Xd& points, double theta, int curve,
                  const std::vector<Role>& roles);
 
-/// Chooses the touch points of a job as Wang 2007, 4.4.4 does: plan_plane, plan_swept or plan_freeform.
+/// Plans the touches of a job after Wang 2007, 4.4.4: plan_plane, plan_swept or plan_freeform.
 /// @throws InputError if the boundaries leave no room for them; the message asks for other boundary points
-TouchPlan plan_touches(const Job& job);
+TouchPlan plan_touches(const job::Job& job);
 
-/// Where a line crosses S and B on either side of the anomaly, parameters of the line: S, B, B, S.
+/// Crossings of a line with S and B on either side of the anomaly, as parameters t in the order S, B, B, S.
 using Crossings = Eigen::Vector4d;
 
-/// The line origin + t · direction in the free area S \ B: on either side of the anomaly the outermost free point and
-/// the one next to the anomaly. Non-convex polygons cross more often; the crossings between are left out.
-/// Nothing if the line misses B, or if either side has no free stretch longer than `least`.
-std::optional<Crossings> crossings_around(const Boundaries& boundaries, const Eigen::Vector2d& origin,
-                                          const Eigen::Vector2d& direction, double least);
+/// Crossings of the line origin + t · direction with the free area S \ B: on either side of the anomaly the outermost
+/// free point and the one closest to the anomaly. Further crossings with non-convex polygons, in between, are left out.
+/// @return  nothing if the line misses B or if either side has no free interval of at least `min_length`, mm
+std::optional<Crossings> crossings_around(const job::Boundaries& boundaries, const Eigen::Vector2d& origin,
+                                          const Eigen::Vector2d& direction, double min_length);
 
-} // namespace fettle
+} // namespace fettle::sampling

@@ -7,22 +7,22 @@
 #include <optional>
 #include <vector>
 
-namespace fettle {
+namespace fettle::sampling {
 
-/// The triangles of a mesh sorted into square columns of the x-y plane: what a point or a ball that comes down
-/// vertically can meet, exactly and without a ray tracer.
+/// The triangles of a mesh in the square cells of a grid in the x-y plane, for exact contacts of a point or a ball that
+/// is lowered vertically; a ray tracer has no contact of a ball.
 class TriangleGrid {
   public:
     /// The mesh must outlive the grid.
-    explicit TriangleGrid(const Mesh& mesh);
-    explicit TriangleGrid(Mesh&&) = delete;
+    explicit TriangleGrid(const mesh::Mesh& mesh);
+    explicit TriangleGrid(mesh::Mesh&&) = delete;
 
     /// Highest z of the mesh over xy.
     std::optional<double> highest(const Eigen::Vector2d& xy) const;
-    /// z of the centre of a ball that comes down over xy, when it first touches a facet, an edge or a vertex.
+    /// z of the centre of a ball that is lowered over xy until it first touches a facet, an edge or a vertex.
     std::optional<double> ball_centre(const Eigen::Vector2d& xy, double radius) const;
 
-    /// Calls visit(triangle) for the triangles that may lie over a box, some of them several times.
+    /// Calls visit(triangle) for the triangles of the cells that overlap a box, for some of them several times.
     template <typename Visit>
     void visit(const Eigen::Vector2d& low, const Eigen::Vector2d& high, Visit&& visit) const
     {
@@ -37,7 +37,7 @@ class TriangleGrid {
   private:
     Eigen::Vector2i cell_of(const Eigen::Vector2d& xy) const;
 
-    const Mesh& mesh_;
+    const mesh::Mesh& mesh_;
     Eigen::Vector2d origin_;
     double cell_ = 1;      ///< side, mm
     Eigen::Vector2i size_; ///< cells in x and y
@@ -46,4 +46,4 @@ class TriangleGrid {
     std::vector<int> entries_;
 };
 
-} // namespace fettle
+} // namespace fettle::sampling

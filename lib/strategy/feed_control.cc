@@ -3,28 +3,29 @@
 #include <algorithm>
 #include <cmath>
 
-namespace fettle {
+namespace fettle::strategy {
 namespace {
 
-/// Of what may remain. The rest is for the transducer's noise and the drives' errors.
-constexpr double kTarget = 0.75;
-constexpr double kPeriod = 0.02; // s, 0.5 mm at 1 in/s: as often as a plan lets the force be read
-constexpr double kTwoStrokes = 0.5;
+/// Target height relative to the height that may remain; the rest is for the transducer's noise and the drives' errors.
+constexpr double kFeedTargetShare = 0.75;
+constexpr double kFeedPeriod = 0.02;  // s; 0.5 mm at 1 in/s: as often as a plan lets the force be read
+constexpr double kMinFeedShare = 0.5; // of the job's feed; two strokes remove more than one slower stroke
 
 } // namespace
 
-FeedControl::FeedControl(const Job& job, double remaining)
-    : preload_(job.force.preload), stiffness_(job.force.stiffness), target_(force(kTarget * remaining)),
-      yield_(job.removal / (std::sqrt(2 * job.wheel.radius * kTarget * remaining) * job.wheel.width)),
-      most_(job.feed.rate), period_(kPeriod), feed_(job.feed.rate)
+FeedControl::FeedControl(const job::Job& job, double max_remaining)
+    : preload_(job.force.preload), stiffness_(job.force.stiffness), target_(force(kFeedTargetShare * max_remaining)),
+      removal_rate_(job.removal_coefficient /
+                    (std::sqrt(2 * job.wheel.radius * kFeedTargetShare * max_remaining) * job.wheel.width)),
+      max_feed_(job.feed.rate), period_(kFeedPeriod), feed_(job.feed.rate)
 {
 }
 
 void FeedControl::update(double before, double after, double duration)
 {
-    const double taken = force(after) + (after - before) / (yield_ * duration);
-    const double wanted = taken > 0 ? feed_ * target_ / taken : most_;
-    feed_ = wanted < kTwoStrokes * most_ ? most_ : std::min(wanted, most_);
+    const double ground_force = force(after) + (after - before) / (removal_rate_ * duration);
+    const double feed = ground_force > 0 ? feed_ * target_ / ground_force : max_feed_;
+    feed_ = feed < kMinFeedShare * max_feed_ ? max_feed_ : std::min(feed, max_feed_);
 }
 
-} // namespace fettle
+} // namespace fettle::strategy

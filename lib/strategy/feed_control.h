@@ -2,29 +2,30 @@
 
 #include "job/job.h"
 
-namespace fettle {
+namespace fettle::strategy {
 
-/// Feed-rate control in layer 1 (Wang 2007, 6.1.4.2): more material left, slower; less, faster. The machine's own loops
-/// hold the feed, this one is around them: once in a period it reads the spring's deflection δ, which is what stands
-/// over the reference surface, and sets the feed.
+/// Feed-rate control in layer 1 (Wang 2007, 6.1.4.2): the more material is left, the slower the feed. It is an outer
+/// loop around the machine's own feed control: once in a period it reads the spring's deflection δ, which is the height
+/// of the stock above the reference surface, and sets the feed.
 ///
-/// The wheel climbs by s v, s the slope it meets, and sinks by what it grinds off its contact area A:
-/// dδ/dt = s v − c F / A, F = preload + k δ. The last period at the feed v tells s v; the feed that holds the target is
+/// The wheel climbs by s v, where s is the slope of the stock, and sinks by what it grinds off its contact area A:
+/// dδ/dt = s v − c F / A, F = preload + k δ. The last period at the feed v yields s v; the feed that holds the target
+/// is
 ///
 ///   v' = v F_target / (F + A Δδ / (c T)).
 ///
-/// In logarithms this is an integral controller with the removal law as feed-forward: at rest it depends on neither c
-/// nor A. If the metal yields m times as fast as c / A says, a share of 1 − m of an error of the feed is left in the
-/// next period: stable for m below 2. A is taken as small as it gets, for the least contact length, so that m is
-/// below 1.
+/// In logarithms this is an integral controller with the removal law as feed-forward: in steady state it depends on
+/// neither c nor A. If the metal is removed m times as fast as c / A predicts, the share 1 − m of a feed error is left
+/// in the next period: stable for m below 2. A is the smallest possible contact area, that of the shortest contact
+/// length, so m is below 1.
 ///
-/// Slow is not thorough: the force falls with what is left, so two strokes at the job's feed take off more than one at
-/// half of it. Where the target needs less than half of the job's feed, the job's is kept: another stroke is due
-/// anyway.
+/// A slow feed is not thorough: the force falls with what is left, so two strokes at the job's feed remove more than
+/// one at half of it. Where the target needs less than half of the job's feed, the job's feed is kept: another stroke
+/// is due anyway.
 class FeedControl {
   public:
-    /// @param remaining  the most that may be left, mm
-    FeedControl(const Job& job, double remaining);
+    /// @param max_remaining  largest height that may be left above the reference surface, mm
+    FeedControl(const job::Job& job, double max_remaining);
 
     double feed() const { return feed_; }     ///< mm/s
     double period() const { return period_; } ///< s
@@ -36,11 +37,11 @@ class FeedControl {
     double force(double deflection) const { return deflection > 0 ? preload_ + stiffness_ * deflection : 0; }
 
     double preload_, stiffness_;
-    double target_; ///< N
-    double yield_;  ///< c / A, mm/(N s)
-    double most_;   ///< feed, mm/s
+    double target_;       ///< N
+    double removal_rate_; ///< c / A, mm/(N s)
+    double max_feed_;     ///< mm/s
     double period_;
     double feed_;
 };
 
-} // namespace fettle
+} // namespace fettle::strategy

@@ -4,111 +4,111 @@
 #include <cmath>
 #include <limits>
 
-namespace fettle {
+namespace fettle::strategy {
 namespace {
 
-/// Of what may remain: as far from grinding too deep as from leaving too much.
-constexpr double kTarget = 0.5;
-/// What q may be over what was seen of it: readings are noisy, and the edges of metal lie between places.
-constexpr double kSofter = 1.25;
+/// Target height relative to the height that may remain: as far from grinding too deep as from leaving too much.
+constexpr double kForceTargetShare = 0.5;
+/// Upper bound of q relative to its estimate: readings are noisy, and the edges of metal lie between points.
+constexpr double kMaxQRatio = 1.25;
 
 } // namespace
 
-ForceControl::ForceControl(const Job& job, double remaining)
+ForceControl::ForceControl(const job::Job& job, double max_remaining)
     : radius_(job.wheel.radius), preload_(job.force.preload), stiffness_(job.force.stiffness), feed_(job.feed.rate),
-      most_force_(job.force.down), target_(kTarget * remaining), least_yield_(job.removal / job.wheel.width),
-      near_(std::sqrt(2 * job.wheel.radius * remaining)), steepest_(remaining / near_)
+      max_force_(job.force.down), target_(kForceTargetShare * max_remaining),
+      min_q_(job.removal_coefficient / job.wheel.width),
+      contact_length_(std::sqrt(2 * job.wheel.radius * max_remaining)),
+      max_offset_slope_(max_remaining / contact_length_)
 {
 }
 
 void ForceControl::begin_pass(const std::vector<double>& along)
 {
     along_ = along;
-    known_.assign(along.size(), {std::numeric_limits<double>::quiet_NaN(), 0, 0});
-    set_down();
+    points_.assign(along.size(), {std::numeric_limits<double>::quiet_NaN(), 0, 0});
+    interrupt_stroke();
 }
 
-void ForceControl::set_down()
+void ForceControl::interrupt_stroke()
 {
-    at_ = -1;
-    pressed_ = 0;
+    last_point_ = -1;
+    force_offset_ = 0;
 }
 
-void ForceControl::arrived(int point, double remaining, double impulse)
+void ForceControl::record(int point, double remaining, double impulse)
 {
-    Known& known = known_[static_cast<std::size_t>(point)];
-    if (at_ >= 0 && std::isfinite(known.remaining)) {
-        const double way = along_[static_cast<std::size_t>(point)] - along_[static_cast<std::size_t>(at_)];
-        const double cut = depth(point, way > 0 ? +1 : -1, remaining);
-        // A wheel that climbs takes less than stands before it, one that sinks takes more, all along its contact.
-        const double climbed = remaining - known_[static_cast<std::size_t>(at_)].remaining;
-        known.taken = std::max(cut * std::abs(way) - climbed * std::sqrt(2 * radius_ * cut), 0.0);
-        known.impulse = impulse;
+    PointState& state = points_[point];
+    if (last_point_ >= 0 && std::isfinite(state.remaining)) {
+        const double distance = along_[point] - along_[last_point_];
+        const double cut = cut_depth(point, distance > 0 ? +1 : -1, remaining);
+        // A wheel that climbs removes less than the depth of cut, one that sinks removes more, all along its contact.
+        const double climbed = remaining - points_[last_point_].remaining;
+        state.removed = std::max(cut * std::abs(distance) - climbed * std::sqrt(2 * radius_ * cut), 0.0);
+        state.impulse = impulse;
     }
-    known.remaining = remaining;
-    at_ = point;
+    state.remaining = remaining;
+    last_point_ = point;
 }
 
-double ForceControl::press(int point, int direction)
+double ForceControl::next_force_offset(int point, int direction)
 {
-    const double way =
-        at_ < 0 ? 0 : std::abs(along_[static_cast<std::size_t>(point)] - along_[static_cast<std::size_t>(at_)]);
-    pressed_ = std::min(wanted(point, direction), pressed_ + steepest_ * way);
-    return pressed_;
+    const double distance = last_point_ < 0 ? 0 : std::abs(along_[point] - along_[last_point_]);
+    force_offset_ = std::min(desired_offset(point, direction), force_offset_ + max_offset_slope_ * distance);
+    return force_offset_;
 }
 
-double ForceControl::wanted(int point, int direction) const
+double ForceControl::desired_offset(int point, int direction) const
 {
-    const double seen = yield(point);
-    if (!(seen > 0)) return 0;
-    const double q = std::max(kSofter * seen, least_yield_);
-    const double force = std::min(depth(point, direction, target_) * feed_ / q, most_force_);
+    const double learned = learned_q(point);
+    if (!(learned > 0)) return 0;
+    const double q = std::max(kMaxQRatio * learned, min_q_);
+    const double force = std::min(cut_depth(point, direction, target_) * feed_ / q, max_force_);
     return std::max((force - preload_) / stiffness_ - target_, 0.0);
 }
 
-/// 0: not known.
-double ForceControl::yield(int point) const
+/// Estimates q around a point from the last stroke; 0: not known.
+double ForceControl::learned_q(int point) const
 {
-    const double here = along_[static_cast<std::size_t>(point)];
-    if (!(known_[static_cast<std::size_t>(point)].impulse > 0)) return 0;
-    double taken = 0, impulse = 0;
+    const double here = along_[point];
+    if (!(points_[point].impulse > 0)) return 0;
+    double removed = 0, impulse = 0;
     for (std::size_t n = 0; n < along_.size(); ++n) {
-        if (std::abs(along_[n] - here) > near_) continue;
-        taken += known_[n].taken;
-        impulse += known_[n].impulse;
+        if (std::abs(along_[n] - here) > contact_length_) continue;
+        removed += points_[n].removed;
+        impulse += points_[n].impulse;
     }
-    return taken / impulse;
+    return removed / impulse;
 }
 
-/// Of the cut of a wheel whose lowest line stands at `tip`.
-double ForceControl::depth(int point, int direction, double tip) const
+/// Depth of cut of a wheel whose lowest line is at `tip`.
+double ForceControl::cut_depth(int point, int direction, double tip) const
 {
-    const double here = along_[static_cast<std::size_t>(point)];
-    const int count = static_cast<int>(along_.size());
+    const double here = along_[point];
+    const int count = int(along_.size());
     double depth = 0;
     for (int n = point; n >= 0 && n < count; n += direction) {
-        const double over = stock(n) - tip;
-        if (!(over > depth)) break;
+        const double height = stock_height(n) - tip;
+        if (!(height > depth)) break;
         const int next = n + direction;
         const bool last = next < 0 || next >= count;
-        depth = last ? over : std::min(over, rim(along_[static_cast<std::size_t>(next)] - here));
+        depth = last ? height : std::min(height, rim(along_[next] - here));
     }
     return depth;
 }
 
-/// Over the reference: under every rim that stood nearby.
-double ForceControl::stock(int point) const
+/// Upper bound of the stock's height above the reference: it is below the rim of the wheel at every point.
+double ForceControl::stock_height(int point) const
 {
-    const double here = along_[static_cast<std::size_t>(point)];
-    double z = known_[static_cast<std::size_t>(point)].remaining;
+    const double here = along_[point];
+    double z = points_[point].remaining;
     for (const int direction : {-1, +1})
         for (int n = point + direction; n >= 0 && n < int(along_.size()); n += direction) {
-            const auto k = static_cast<std::size_t>(n);
-            const double rise = rim(along_[k] - here);
+            const double rise = rim(along_[n] - here);
             if (rise >= z) break;
-            z = std::min(z, known_[k].remaining + rise);
+            z = std::min(z, points_[n].remaining + rise);
         }
     return z;
 }
 
-} // namespace fettle
+} // namespace fettle::strategy

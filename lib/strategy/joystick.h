@@ -4,10 +4,10 @@
 
 #include <linux/joystick.h>
 
-namespace fettle {
+namespace fettle::strategy {
 
-/// What an event of a Linux joystick changes: axes 0 and 1 say the way, button 0 held: up, button 1: end, 2: record,
+/// Applies an event of a Linux joystick: axes 0 and 1 set the direction; button 0 held: up, button 1: end, 2: record,
 /// 3: next.
-void hear(const js_event& event, Stick& stick);
+void apply_event(const js_event& event, Stick& stick);
 
-} // namespace fettle
+} // namespace fettle::strategy

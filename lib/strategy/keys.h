@@ -5,28 +5,30 @@
 #include <string>
 #include <termios.h>
 
-namespace fettle {
+namespace fettle::strategy {
 
-/// The keys of a terminal as a stick: it stands where an arrow points for 0.1 s, and on while the key repeats; so it
-/// rests when the key is let go. Blank: it rests at once. u: up, or down again; r: record, n: next, q: end; these three
-/// wait until it rests.
+/// The keys of a terminal as a stick. An arrow key deflects it for 0.1 s, and longer while the key repeats, so it
+/// centres when the key is released; the space bar centres it at once. u: up, or down again; r: record, n: next, q:
+/// end; these three take effect when the stick is centred.
 class Keys {
   public:
-    /// Until the end keys come one by one and are not shown. @param terminal  must outlive the keys
+    /// Switches the terminal to unbuffered input without echo, and back at the end.
+    /// @param terminal  must outlive the keys
     explicit Keys(int terminal);
     ~Keys();
     Keys(const Keys&) = delete;
     Keys& operator=(const Keys&) = delete;
 
-    void tell(double time, Stick& stick);
+    /// Applies what has been typed up to now. @param time  of the steering, s
+    void update(double time, Stick& stick);
 
   private:
-    void read_waiting(Stick& stick);
+    void read_terminal(Stick& stick);
 
     int terminal_;
-    termios before_ = {};
-    std::string waiting_;
-    double rest_at_ = 0; ///< of the steering, s
+    termios saved_settings_ = {};
+    std::string input_;       ///< typed, not yet applied
+    double release_time_ = 0; ///< of the arrow key, steering time, s
 };
 
-} // namespace fettle
+} // namespace fettle::strategy

@@ -5,14 +5,15 @@
 #include <algorithm>
 #include <cmath>
 
-namespace fettle {
-
+namespace fettle::strategy {
 namespace {
-// Lines are read from a file: a step-over equal to their distance within rounding reaches the next one.
-constexpr double kSameLine = 1e-6;
+
+/// Lines are read from a file: a step-over that equals their distance within rounding reaches the next one.
+constexpr double kRelativeLineTolerance = 1e-6;
+
 } // namespace
 
-LayerSwitching::LayerSwitching(const std::vector<ToolPass>& passes, const Settings& settings)
+LayerSwitching::LayerSwitching(const std::vector<plan::ToolPass>& passes, const Settings& settings)
     : passes_(passes), settings_(settings)
 {
     levels_.push_back({});
@@ -24,58 +25,59 @@ Action LayerSwitching::next(const Measurement& measurement)
 {
     ++counts_.steps;
     Level& level = levels_.back();
-    level.most_force = std::max(level.most_force, measurement.force);
+    level.max_force = std::max(level.max_force, measurement.force);
     if (counts_.steps > settings_.bounds.steps) return fail("steps " + std::to_string(settings_.bounds.steps));
-    if (measurement.time > settings_.bounds.time) return fail("time " + to_short_text(settings_.bounds.time) + " s");
+    if (measurement.time > settings_.bounds.time)
+        return fail("time " + core::to_short_text(settings_.bounds.time) + " s");
 
     if (cut_ended_) return end_cut();
-    if (measurement.force > settings_.force_max) return go_up();
-    if (layer() > 1) return go_on_above(measurement.force);
-    return go_on_in_layer_1(measurement.remaining);
+    if (measurement.force > settings_.force_max) return raise_layer();
+    if (layer() > 1) return advance_above_layer_1(measurement.force);
+    return advance_in_layer_1(measurement.remaining);
 }
 
-Action LayerSwitching::fail(const std::string& bound)
+Action LayerSwitching::fail(const std::string& limit)
 {
     const Level& level = levels_.back();
-    failure_ = "bound reached: " + bound + "; in layer " + std::to_string(layer()) + ", pass " +
+    failure_ = "bound reached: " + limit + "; in layer " + std::to_string(layer()) + ", pass " +
                std::to_string(level.at.pass + 1) + ", covering " + std::to_string(counts_.coverings + 1) + ", re-cut " +
                std::to_string(level.re_cuts);
-    return act(Action::Kind::fail, Event::bound);
+    return act(Action::Kind::fail, Event::limit_reached);
 }
 
-// Rule 1.
-Action LayerSwitching::go_up()
+/// Rule 1.
+Action LayerSwitching::raise_layer()
 {
-    if (layer() >= settings_.bounds.layers) return fail("layers " + std::to_string(settings_.bounds.layers));
-    const Level& left = levels_.back();
-    levels_.push_back({left.at, left.direction, left.at, left.direction, true, along(left.at), 0, 0});
+    if (layer() >= settings_.bounds.layers)
+        return fail("layers " + std::to_string(settings_.bounds.layers) +
+                    (settings_.ends_at_safe_height ? ": the next one is above the safe height" : ""));
+    levels_.push_back(level_from(levels_.back().at, levels_.back().direction, true, 0));
     ++counts_.raises;
     counts_.highest_layer = std::max(counts_.highest_layer, layer());
     return act(Action::Kind::lift, Event::up);
 }
 
-// Rule 2.
-Action LayerSwitching::go_on_in_layer_1(double remaining)
+/// Rule 2.
+Action LayerSwitching::advance_in_layer_1(double remaining)
 {
     Level& level = levels_.back();
     if (!settings_.finish_passes)
-        worst_remaining_ = std::max(worst_remaining_, remaining);
+        max_remaining_ = std::max(max_remaining_, remaining);
     else if (turn_back(remaining) && strokes_ > settings_.bounds.re_cuts)
         return fail("strokes of a pass " + std::to_string(settings_.bounds.re_cuts));
-    const ToolPass& pass = passes_[level.at.pass];
     const int point = level.at.point + level.direction;
-    if (point >= 0 && point < int(pass.along.size())) {
+    if (point >= 0 && point <= last_point()) {
         const bool gap = interval_of(level.at.pass, point) != interval_of(level.at.pass, level.at.point);
         level.at.point = point;
         return act(gap ? Action::Kind::travel : Action::Kind::grind, Event::none);
     }
     if (level.at.pass + 1 < int(passes_.size())) {
         const int next = level.at.pass + 1;
-        const Action action = step_over_to(next, level.direction > 0 ? int(passes_[next].along.size()) - 1 : 0, true);
+        const Action action = step_over_to(next, level.direction > 0 ? last_point(next) : 0, true);
         begin_pass();
         return action;
     }
-    const bool within = worst_remaining_ <= settings_.remaining;
+    const bool within = max_remaining_ <= settings_.max_remaining;
     if (!within && counts_.coverings + 1 >= settings_.bounds.coverings)
         return fail("coverings of layer 1 " + std::to_string(settings_.bounds.coverings));
     ++counts_.coverings;
@@ -83,21 +85,19 @@ Action LayerSwitching::go_on_in_layer_1(double remaining)
     return start_covering(Event::covering_done);
 }
 
-// Rule 3.
-Action LayerSwitching::go_on_above(double force)
+/// Rule 3.
+Action LayerSwitching::advance_above_layer_1(double force)
 {
     Level& level = levels_.back();
     const bool in_range = force >= settings_.force_min;
-    bool pass_over = false;
-    if (in_range)
-        level.met_metal = true;
-    else
-        pass_over = level.met_metal || std::abs(along(level.at) - level.pass_begun) >= settings_.step_over;
+    const bool pass_ended =
+        !in_range && (level.met_metal || std::abs(along(level.at) - level.pass_start) >= settings_.step_over);
+    level.met_metal = level.met_metal || in_range;
 
     const int point = level.at.point + level.direction;
-    const bool inside = point >= 0 && point < int(passes_[level.at.pass].along.size()) &&
+    const bool inside = point >= 0 && point <= last_point() &&
                         interval_of(level.at.pass, point) == interval_of(level.at.pass, level.at.point);
-    if (!pass_over && inside) {
+    if (!pass_ended && inside) {
         level.at.point = point;
         return act(Action::Kind::grind, Event::none);
     }
@@ -108,24 +108,24 @@ Action LayerSwitching::go_on_above(double force)
     return act(Action::Kind::stay, Event::cut_end);
 }
 
-// At the end of a stroke, where too much was left on it: back over that stretch and a point around it, to its farther
-// end. Where nothing was: on to the nearer end of the pass.
+/// At the end of a stroke on which too much was left: turns back over the stretch where it was, plus a point on either
+/// side, towards its farther end. If nothing was left: goes on to the nearer end of the pass.
 bool LayerSwitching::turn_back(double remaining)
 {
     const int here = levels_.back().at.point, last = last_point();
-    const bool high = remaining > settings_.remaining;
+    const bool high = remaining > settings_.max_remaining;
     if (high) {
-        high_first_ = std::min(high_first_, here);
-        high_last_ = std::max(high_last_, here);
+        first_high_ = std::min(first_high_, here);
+        last_high_ = std::max(last_high_, here);
     }
     if (here != stroke_end_) return false;
-    if (high_last_ < 0) {
+    if (last_high_ < 0) {
         if (here != 0 && here != last) start_stroke(here > last - here ? last : 0);
         return false;
     }
-    const int first = std::max(high_first_ - 1, 0), end = std::min(high_last_ + 1, last);
+    const int first = std::max(first_high_ - 1, 0), end = std::min(last_high_ + 1, last);
     start_stroke(std::abs(here - first) >= std::abs(end - here) ? first : end);
-    if (high) high_first_ = high_last_ = here; // it is not on the new stroke
+    if (high) first_high_ = last_high_ = here; // the new stroke does not visit this point
     ++strokes_;
     ++counts_.strokes;
     return true;
@@ -142,27 +142,20 @@ void LayerSwitching::start_stroke(int end)
     Level& level = levels_.back();
     stroke_end_ = end;
     if (end != level.at.point) level.direction = end > level.at.point ? +1 : -1;
-    high_first_ = last_point() + 1;
-    high_last_ = -1;
+    first_high_ = last_point() + 1;
+    last_high_ = -1;
 }
-
-int LayerSwitching::last_point() const { return int(passes_[levels_.back().at.pass].along.size()) - 1; }
 
 Action LayerSwitching::end_cut()
 {
     cut_ended_ = false;
     Level& level = levels_.back();
-    if (level.most_force > settings_.force_down) {
+    if (level.max_force > settings_.force_down) {
         if (level.re_cuts >= settings_.bounds.re_cuts)
             return fail("re-cuts " + std::to_string(settings_.bounds.re_cuts));
-        ++level.re_cuts;
         ++counts_.re_cuts;
         ++counts_.passes;
-        level.at = level.entered;
-        level.direction = level.entry_direction;
-        level.met_metal = false;
-        level.pass_begun = along(level.at);
-        level.most_force = 0;
+        level = level_from(level.entered, level.entry_direction, false, level.re_cuts + 1);
         return act(Action::Kind::travel, Event::re_cut);
     }
     levels_.pop_back();
@@ -171,9 +164,8 @@ Action LayerSwitching::end_cut()
 
 Action LayerSwitching::start_covering(Event event)
 {
-    const Place start{};
-    levels_.back() = {start, +1, start, +1, true, along(start), 0, 0};
-    worst_remaining_ = 0;
+    levels_.back() = level_from({}, +1, true, 0);
+    max_remaining_ = 0;
     begin_pass();
     ++counts_.passes;
     return act(Action::Kind::travel, event);
@@ -185,16 +177,16 @@ Action LayerSwitching::step_over_to(int pass, int point, bool met_metal)
     level.at = {pass, point};
     level.direction = -level.direction;
     level.met_metal = met_metal;
-    level.pass_begun = along(level.at);
+    level.pass_start = along(level.at);
     ++counts_.passes;
     return act(Action::Kind::grind, Event::step_over);
 }
 
-// The farthest line within the step-over, but at least the next one.
+/// The farthest line within the step-over, but at least the next one.
 int LayerSwitching::next_pass() const
 {
     const int here = levels_.back().at.pass;
-    const double reach = passes_[here].line + settings_.step_over * (1 + kSameLine);
+    const double reach = passes_[here].line + settings_.step_over * (1 + kRelativeLineTolerance);
     int next = here + 1;
     while (next + 1 < int(passes_.size()) && passes_[next + 1].line <= reach) ++next;
     return next;
@@ -202,11 +194,11 @@ int LayerSwitching::next_pass() const
 
 int LayerSwitching::nearest_point(int pass, double along) const
 {
-    const std::vector<double>& places = passes_[pass].along;
-    const auto after = std::lower_bound(places.begin(), places.end(), along);
-    if (after == places.end()) return int(places.size()) - 1;
-    if (after == places.begin()) return 0;
-    return int(after - places.begin()) - (*after - along > along - *(after - 1) ? 1 : 0);
+    const std::vector<double>& points = passes_[pass].along;
+    const auto after = std::lower_bound(points.begin(), points.end(), along);
+    if (after == points.end()) return int(points.size()) - 1;
+    if (after == points.begin()) return 0;
+    return int(after - points.begin()) - (*after - along > along - *(after - 1) ? 1 : 0);
 }
 
 int LayerSwitching::interval_of(int pass, int point) const
@@ -215,16 +207,18 @@ int LayerSwitching::interval_of(int pass, int point) const
     return int(std::upper_bound(starts.begin(), starts.end(), point) - starts.begin());
 }
 
-LayerSwitching::Settings strategy_settings(const Plan& plan)
+LayerSwitching::Settings strategy_settings(const plan::Plan& plan, bool finish_passes)
 {
-    LayerSwitching::Settings settings;
-    settings.force_min = plan.job.force.min;
-    settings.force_down = plan.job.force.down;
-    settings.force_max = plan.job.force.max;
-    settings.step_over = plan.job.feed.step_over;
-    settings.remaining = plan.job.tolerance * (1 - kLeftoverPerTolerance);
-    settings.bounds = plan.bounds;
-    return settings;
+    // The plan's bound follows from the lowest point of the surface; the start is not below that.
+    const double layer_above = plan.start.z() + plan.layers.distance * plan.bounds.layers;
+    return {.force_min = plan.job.force.min,
+            .force_down = plan.job.force.down,
+            .force_max = plan.job.force.max,
+            .step_over = plan.job.feed.step_over,
+            .max_remaining = plan.job.tolerance * (1 - plan::kScallopPerTolerance),
+            .ends_at_safe_height = layer_above > plan.job.safe_height,
+            .finish_passes = finish_passes,
+            .bounds = plan.bounds};
 }
 
-} // namespace fettle
+} // namespace fettle::strategy

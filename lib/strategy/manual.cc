@@ -7,20 +7,20 @@
 #include <cmath>
 #include <thread>
 
-namespace fettle {
+namespace fettle::strategy {
 namespace {
 
-/// The stick is looked at so often.
-constexpr double kPeriod = 0.005; // s
-constexpr double kBand = 0.1;     // of the force that was set
-/// Less of it is no contact: a transducer's noise looks like a force.
-constexpr double kContact = 0.05;
+constexpr double kManualPeriod = 0.005; // between two readings of the stick, s
+constexpr double kForceBand = 0.1;      // tolerance relative to the set force
+/// A smaller share of the set force is not a contact, but the transducer's noise.
+constexpr double kContactShare = 0.05;
 
 class Operator {
   public:
-    Operator(const Job& job, Gantry& gantry, Steering& steering, double force, double lowest, TraceFile* journal)
+    Operator(const job::Job& job, gantry::Gantry& gantry, Steering& steering, double force, double lowest,
+             TraceFile* journal)
         : job_(job), steering_(steering), force_(force), lowest_(lowest), machine_(gantry, job.units, {}, "", journal),
-          place_(gantry.status().commanded.head<2>())
+          position_(gantry.status().commanded.head<2>())
     {
     }
 
@@ -29,11 +29,11 @@ class Operator {
         try {
             for (Stick stick = steering_.at(0); !stick.end; stick = steering_.at(clock_)) step(stick);
             lift();
-        } catch (const GantryFault& fault) {
+        } catch (const gantry::GantryFault& fault) {
             result_.failure = fault.what();
-            machine_.decide({1, 1, Event::fault});
+            machine_.record_fault({1, 1, Event::fault});
         }
-        if (result_.contact_time > 0) result_.within /= result_.contact_time;
+        if (result_.contact_time > 0) result_.share_in_band /= result_.contact_time;
         result_.trace = machine_.trace();
         return std::move(result_);
     }
@@ -41,46 +41,43 @@ class Operator {
   private:
     void step(const Stick& stick)
     {
-        if (!stick.press || stick.way.norm() == 0) lift();
-        if (stick.way.norm() == 0) return wait();
-        place_ += stick.way.normalized() * job_.feed.rate * kPeriod;
-        clock_ += kPeriod;
-        const Eigen::Vector3d to(place_.x(), place_.y(), stick.press ? lowest_ : height_);
-        if (!stick.press) {
-            machine_.grind({}, to, job_.feed.rate);
-            return;
-        }
+        const bool centred = stick.direction.norm() == 0;
+        if (!stick.on_part || centred) lift();
+        if (centred) return wait();
+        position_ += stick.direction.normalized() * job_.feed.rate * kManualPeriod;
+        clock_ += kManualPeriod;
+        const Eigen::Vector3d to(position_.x(), position_.y(), stick.on_part ? lowest_ : safe_height_);
+        if (!stick.on_part) return void(machine_.grind({}, to, job_.feed.rate));
         down_ = true;
-        const GantryStatus& status = machine_.press({}, to, job_.feed.rate, force_);
+        const gantry::GantryStatus& status = machine_.press({}, to, job_.feed.rate, force_);
         result_.peak_force = std::max({result_.peak_force, status.force, status.peak_force});
-        if (!(status.force > kContact * force_)) return;
-        result_.contact_time += kPeriod;
-        if (std::abs(status.force - force_) <= kBand * force_) result_.within += kPeriod;
+        if (!(status.force > kContactShare * force_)) return;
+        result_.contact_time += kManualPeriod;
+        if (std::abs(status.force - force_) <= kForceBand * force_) result_.share_in_band += kManualPeriod;
     }
 
     void lift()
     {
         if (!down_) return;
         down_ = false;
-        machine_.lift({}, height_);
+        machine_.lift({}, safe_height_);
     }
 
-    /// Until the stick moves.
+    /// Waits until the stick moves, at most a period.
     void wait()
     {
-        const auto next = steering_.next_change();
-        if (next)
+        if (const auto next = steering_.next_change())
             clock_ = std::max(clock_, *next);
         else
-            std::this_thread::sleep_for(std::chrono::duration<double>(kPeriod));
+            std::this_thread::sleep_for(std::chrono::duration<double>(kManualPeriod));
     }
 
-    const Job& job_;
+    const job::Job& job_;
     Steering& steering_;
     double force_, lowest_;
-    double height_ = job_.safe_height;
+    double safe_height_ = job_.safe_height;
     Recorder machine_;
-    Eigen::Vector2d place_;
+    Eigen::Vector2d position_;
     double clock_ = 0; ///< of the steering, s
     bool down_ = false;
     ManualRun result_;
@@ -88,10 +85,10 @@ class Operator {
 
 } // namespace
 
-ManualRun run_manual(const Job& job, Gantry& gantry, Steering& steering, double force, double lowest,
+ManualRun run_manual(const job::Job& job, gantry::Gantry& gantry, Steering& steering, double force, double lowest,
                      TraceFile* journal)
 {
     return Operator(job, gantry, steering, force, lowest, journal).run();
 }
 
-} // namespace fettle
+} // namespace fettle::strategy

@@ -9,66 +9,75 @@
 #include <string>
 #include <vector>
 
-namespace fettle {
+namespace fettle::strategy {
 
-/// Stands between a strategy and its machine: writes into the journal what the machine is to do, has it done, and
-/// records what came of it. What was done before (`done`) is gone over first: the machine stands still, and the
-/// strategy is told what was measured then, so it comes to the very state in which it was cut off.
+/// The layer between a strategy and its machine: announces each action in the journal, executes it, and records the
+/// result. The trace of an interrupted run (`history`) is replayed first: the machine stands still, and the strategy
+/// gets the recorded measurements, so it reaches the very state in which it was interrupted.
 ///
-/// A trace holds floats, in the units of the job. The strategy is told no more than the trace holds, or it might decide
-/// differently the second time.
+/// A trace holds floats, in the units of the job. The strategy gets its measurements rounded to what the trace holds,
+/// or it might decide differently in a replay.
 class Recorder {
   public:
-    /// Of which layer and pass a row is, and why.
+    /// Layer and pass of a row, and the event that caused it.
     struct Mark {
         int layer = 1;
         int pass = 1;
         Event event = Event::none;
     };
 
+    /// @param history  rows to be replayed
+    /// @param source   name of the history's trace, for messages
     /// @param journal  nullptr: none
-    /// @param source   name of the trace that `done` is from, for messages
-    Recorder(Gantry& gantry, const Units& units, std::vector<TraceRow> done, const std::string& source,
-             TraceFile* journal);
+    Recorder(gantry::Gantry& gantry, const units::Units& units, std::vector<TraceRow> history,
+             const std::string& source, TraceFile* journal);
 
-    /// All of what was done has been gone over, and the machine has not moved yet.
-    bool resumes() const { return !live_ && next_ == done_.size(); }
-    /// So it has been here before: the trace goes on with what was done then, the wheel was measured.
-    bool resumed() const { return next_ < done_.size() && done_[next_].event == Event::touch_off; }
-    /// From here on the machine moves.
+    /// False during the replay: the machine stands still.
+    bool is_live() const { return live_; }
+    /// True between the end of the replay and the machine's first move.
+    bool replay_ended() const { return !live_ && next_ == history_.size(); }
+    /// True if the history goes on with a measurement of the wheel: the run was resumed here before.
+    bool was_resumed_here() const { return next_ < history_.size() && history_[next_].event == Event::touch_off; }
+    /// Ends the replay: from here on the machine moves.
     void go_live();
 
-    /// As the gantry's own. @throws InputError if the trace says something else; GantryFault
-    const GantryStatus& travel(const Mark& mark, const Eigen::Vector3d& tool_point);
-    const GantryStatus& grind(const Mark& mark, const Eigen::Vector3d& tool_point, double feed);
-    const GantryStatus& press(const Mark& mark, const Eigen::Vector3d& tool_point, double feed, double force);
-    const GantryStatus& lift(const Mark& mark, double commanded_z);
+    /// The gantry's actions: taken from the history during the replay, done by the machine afterwards.
+    /// @throws InputError if the history has another action here; GantryFault, also if the journal cannot be written:
+    /// what the machine does has to be known
+    const gantry::GantryStatus& travel(const Mark& mark, const Eigen::Vector3d& tool_point);
+    const gantry::GantryStatus& grind(const Mark& mark, const Eigen::Vector3d& tool_point, double feed);
+    const gantry::GantryStatus& press(const Mark& mark, const Eigen::Vector3d& tool_point, double feed, double force);
+    const gantry::GantryStatus& lift(const Mark& mark, double commanded_z);
     double touch_off(const Mark& mark);
     void change_wheel(const Mark& mark);
-    /// A row for a decision; nothing moves.
+    /// Records a decision that moves nothing.
     void decide(const Mark& mark);
+    /// Records that the machine has stopped for good: in the trace, and in the journal if that can be written.
+    void record_fault(const Mark& mark);
 
-    const GantryStatus& status() const { return status_; } ///< as it was told last
+    const gantry::GantryStatus& status() const { return status_; } ///< the last one, as the trace holds it
     const std::vector<TraceRow>& trace() const { return trace_; }
 
   private:
     template <class Work>
-    const GantryStatus& act(const Mark& mark, const Eigen::Vector3d& target, double feed, const Work& work);
-    void go_over(const Mark& mark, double feed);
-    void tell(const GantryStatus& status);
-    void record(TraceRow row);
+    const gantry::GantryStatus& act(const Mark& mark, const Eigen::Vector3d& target, double feed, const Work& work);
+    void replay(const Mark& mark, double feed);
+    void set_status(const gantry::GantryStatus& status);
+    void record(const Mark& mark, double feed);
+    template <class Write>
+    void write_journal(const Write& write);
 
-    Gantry& gantry_;
-    Units units_;
-    std::vector<TraceRow> done_;
+    gantry::Gantry& gantry_;
+    units::Units units_;
+    std::vector<TraceRow> history_;
     std::string source_;
     TraceFile* journal_;
-    std::size_t next_ = 0; ///< of what was done, to be gone over
+    std::size_t next_ = 0; ///< row of the history
     bool live_ = false;
-    double later_ = 0; ///< the time of the trace over the machine's, s
+    double time_offset_ = 0; ///< trace time minus machine time, s
     double radius_ = 0;
-    GantryStatus status_;
+    gantry::GantryStatus status_;
     std::vector<TraceRow> trace_;
 };
 
-} // namespace fettle
+} // namespace fettle::strategy

@@ -3,6 +3,7 @@
 #include "core/progress.h"
 #include "gantry/gantry.h"
 #include "plan/plan.h"
+#include "removal/height_field.h"
 #include "strategy/layer_switching.h"
 
 #include <Eigen/Core>
@@ -10,14 +11,14 @@
 #include <string>
 #include <vector>
 
-namespace fettle {
+namespace fettle::strategy {
 
 class TraceFile;
 
-/// One line of a trace: what the machine did, and why. mm, N, s, frame M.
+/// One row of a trace: what the machine did, and why. mm, N, s, frame M.
 struct TraceRow {
     double time = 0;
-    /// The wheel's lowest line at mid-width, where the spring lets it stand.
+    /// Lowest line of the wheel at mid-width, including the spring's deflection.
     Eigen::Vector3d tool = Eigen::Vector3d::Zero();
     int layer = 1;
     int pass = 1;
@@ -25,8 +26,8 @@ struct TraceRow {
     double force = 0;
     double feed = 0;       ///< 0: not grinding
     double peak_force = 0; ///< during the move
-    double deflection = 0; ///< of the spring, at its end
-    double radius = 0;     ///< of the wheel, measured last; 0: not yet
+    double deflection = 0; ///< of the spring, at the end of the move
+    double radius = 0;     ///< last measured wheel radius; 0: not measured yet
 };
 
 /// How layer 1 is ground: at the job's feed, covering after covering until all is within tolerance; or pass after pass
@@ -38,17 +39,20 @@ struct RunOptions {
     Layer1 layer_1 = Layer1::constant;
     /// Grinding time between two measurements of the wheel at P0, s. It is measured at the start of each covering, too.
     double touch_off_period = 120;
-    /// What a run that was cut off has done (trace_file.h). It is gone over without the machine; then the wheel is
-    /// measured, the machine goes back to where it was, and on.
-    std::vector<TraceRow> done;
-    std::string done_source;      ///< the name of the trace, for messages
-    TraceFile* journal = nullptr; ///< the trace is written ahead to it
+    /// Trace of an interrupted run (trace_file.h). It is replayed without the machine; then the wheel is measured, the
+    /// machine goes back to where it was, and the run continues.
+    std::vector<TraceRow> previous_trace;
+    std::string previous_source;  ///< name of that trace, for messages
+    TraceFile* journal = nullptr; ///< write-ahead copy of the trace; nullptr: none
+    /// The stock as far as it is known, at the end of `previous_trace`: a head that does not feel it ends the run
+    /// (contact_watch.h). nullptr for a simulated machine, whose head feels what it meets.
+    const removal::HeightField* known_stock = nullptr;
 };
 
-/// How a run ended.
+/// Result of a run.
 struct GrindRun {
     bool finished = false;
-    std::string failure; ///< the bound that was reached, and the state; or the machine's fault
+    std::string failure; ///< the limit that was reached, and the state; or the machine's fault
     StrategyCounts counts;
     double peak_force = 0;   ///< N
     double wheel_radius = 0; ///< last measured, mm
@@ -60,7 +64,8 @@ struct GrindRun {
 /// Grinds: lets the strategy decide, compensates the wheel, moves the gantry, measures, until the strategy is done or
 /// the machine has stopped.
 /// @throws InputError if the surface is not defined under a pass, a new wheel is smaller than the smallest radius, or
-/// what was done is of another run
-GrindRun run(const Plan& plan, Gantry& gantry, const RunOptions& options = {}, const Progress& progress = {});
+/// the trace to be continued belongs to another run
+GrindRun run(const plan::Plan& plan, gantry::Gantry& gantry, const RunOptions& options = {},
+             const core::Progress& progress = {});
 
-} // namespace fettle
+} // namespace fettle::strategy

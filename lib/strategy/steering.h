@@ -8,34 +8,35 @@
 #include <optional>
 #include <string>
 
-namespace fettle {
+namespace fettle::strategy {
 
-/// Buttons for teaching; manual mode knows none.
+/// Buttons for teaching; manual mode ignores them.
 enum class Button { none, record, next };
 
-/// What the operator's hand says.
+/// State of the operator's joystick.
 struct Stick {
-    Eigen::Vector2d way{0, 0};    ///< where to, M; only its direction counts. 0: nowhere
-    bool press = true;            ///< on the part; else at the safe height
-    Button button = Button::none; ///< pushed at this moment; told once
+    Eigen::Vector2d direction{0, 0}; ///< direction of travel, M; its length is ignored, but 0 means centred
+    bool on_part = true;             ///< the wheel is pressed on the part; false: at the safe height
+    Button button = Button::none;    ///< pushed at this moment; each push is reported once
     bool end = false;
 };
 
 class Keys;
 
-/// The operator's joystick. A file or a pipe holds lines "TIME X Y", "TIME X Y up", "TIME record", "TIME next" and
-/// "TIME end": from that time of steering on, s, the stick stands there; it rests while a button is pushed. A device
-/// (Linux, /dev/input/js0) is asked as it stands: axes 0 and 1, button 0 held: at the safe height, button 1: end, 2:
-/// record, 3: next. Of a terminal the keys are the stick (Keys).
+/// The operator's joystick, from one of three sources. A file or a pipe holds lines "TIME X Y", "TIME X Y up", "TIME
+/// record", "TIME next" and "TIME end": from that steering time on, s, the stick has this state; it is centred while a
+/// button is pushed. A device (Linux, /dev/input/js0) is polled: axes 0 and 1, button 0 held: at the safe height,
+/// button 1: end, 2: record, 3: next. On a terminal the keys move the stick (Keys).
 class Steering {
   public:
     /// @throws InputError if it cannot be opened
     explicit Steering(const std::string& path);
     ~Steering();
 
-    /// @throws InputError naming the line that is none; the end of the file is the end
+    /// State of the stick at a steering time, which must not decrease. The end of a file is Stick::end.
+    /// @throws InputError naming the malformed line
     const Stick& at(double time);
-    /// Of lines: when the next one is due; then nobody has to wait for it.
+    /// Steering time of the next line, so that the caller can skip to it; nothing for a device or keys.
     std::optional<double> next_change() const { return live_ ? std::nullopt : std::optional(next_time_); }
 
   private:
@@ -44,7 +45,7 @@ class Steering {
     void read_device();
 
     std::string path_;
-    Descriptor file_;
+    core::FileDescriptor file_;
     std::unique_ptr<Keys> keys_;
     bool live_ = false; ///< a device or keys
     std::string pending_;
@@ -53,4 +54,4 @@ class Steering {
     double next_time_ = 0;
 };
 
-} // namespace fettle
+} // namespace fettle::strategy

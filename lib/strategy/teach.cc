@@ -7,37 +7,36 @@
 #include <thread>
 #include <vector>
 
-namespace fettle {
+namespace fettle::strategy {
 namespace {
 
-/// The stick is looked at so often: what a machine that answers within some ms can follow.
+/// Between two readings of the stick: a machine that answers within some ms can follow.
 constexpr double kPeriod = 0.02; // s
 
 } // namespace
 
-TaughtBoundaries teach_boundaries(const Job& job, Gantry& gantry, const protocol::Limits& limits, Steering& steering,
-                                  double lowest, const Recorded& recorded)
+TaughtBoundaries teach_boundaries(const job::Job& job, gantry::Gantry& gantry, const gantry::protocol::Limits& limits,
+                                  Steering& steering, double lowest, const PointCallback& recorded)
 {
     if (gantry.status().commanded.z() < job.safe_height) gantry.lift(job.safe_height);
-    Eigen::Vector3d place = gantry.status().commanded;
+    Eigen::Vector3d position = gantry.status().commanded;
     std::vector<Eigen::Vector3d> points;
-    Eigen::Index around_anomaly = -1; // so many of them; -1: they are not all there yet
-    double clock = 0;                 // of the steering, s
+    Eigen::Index anomaly_count = -1; // -1: the anomaly's boundary is not complete yet
+    double clock = 0;                // steering time, s
     for (Stick stick = steering.at(clock); !stick.end; stick = steering.at(clock)) {
         if (stick.button == Button::record) {
-            points.emplace_back(place.x(), place.y(), gantry.probe(place.head<2>(), lowest));
-            const auto count = static_cast<Eigen::Index>(points.size());
-            recorded(around_anomaly < 0 ? "anomaly" : "sampling", count - std::max<Eigen::Index>(around_anomaly, 0),
-                     points.back());
+            points.emplace_back(position.x(), position.y(), gantry.probe(position.head<2>(), lowest));
+            recorded(anomaly_count < 0 ? "anomaly" : "sampling",
+                     Eigen::Index(points.size()) - std::max<Eigen::Index>(anomaly_count, 0), points.back());
         } else if (stick.button == Button::next) {
-            if (around_anomaly >= 0) break;
-            around_anomaly = static_cast<Eigen::Index>(points.size());
-        } else if (stick.way.norm() > 0) {
+            if (anomaly_count >= 0) break;
+            anomaly_count = Eigen::Index(points.size());
+        } else if (stick.direction.norm() > 0) {
             const auto change = steering.next_change();
-            const bool last = change && *change - clock <= kPeriod; // a step ends where the stick is moved
-            place.head<2>() += stick.way.normalized() * job.feed.rate * (last ? *change - clock : kPeriod);
-            place = place.cwiseMax(limits.least).cwiseMin(limits.most);
-            gantry.grind(place, job.feed.rate);
+            const bool last = change && *change - clock <= kPeriod; // a step ends when the stick is moved
+            position.head<2>() += stick.direction.normalized() * job.feed.rate * (last ? *change - clock : kPeriod);
+            position = position.cwiseMax(limits.min).cwiseMin(limits.max);
+            gantry.grind(position, job.feed.rate);
             clock = last ? *change : clock + kPeriod;
         } else if (const auto next = steering.next_change()) {
             clock = std::max(clock, *next);
@@ -45,15 +44,15 @@ TaughtBoundaries teach_boundaries(const Job& job, Gantry& gantry, const protocol
             std::this_thread::sleep_for(std::chrono::duration<double>(kPeriod));
         }
     }
-    const auto count = static_cast<Eigen::Index>(points.size());
+    const Eigen::Index count = points.size();
     Eigen::Matrix3Xd touches(3, count);
-    for (Eigen::Index i = 0; i < count; ++i) touches.col(i) = points[static_cast<std::size_t>(i)];
+    for (Eigen::Index i = 0; i < count; ++i) touches.col(i) = points[i];
     if (const double radius = job.probe.tip_radius; radius > 0) {
         touches.row(2).array() += radius;
-        touches = contact_points(job, touches, radius);
+        touches = sampling::contact_points(job, touches, radius);
     }
-    const Eigen::Index first = around_anomaly < 0 ? count : around_anomaly;
+    const Eigen::Index first = anomaly_count < 0 ? count : anomaly_count;
     return {touches.leftCols(first), touches.rightCols(count - first)};
 }
 
-} // namespace fettle
+} // namespace fettle::strategy

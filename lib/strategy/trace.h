@@ -7,20 +7,18 @@
 #include <string>
 #include <vector>
 
-namespace fettle {
-
-/// @param radius  of the wheel, as measured last, mm   @param feed  0: not grinding
-TraceRow row_of(const GantryStatus& status, double radius, double feed);
-GantryStatus status_of(const TraceRow& row);
+namespace fettle::strategy {
 
 /// A point for each row, frame M, with fields t, layer, pass, event, force, feed, peak_force, deflection, radius
 /// (docs/formats.md).
-Cloud to_cloud(const std::vector<TraceRow>& trace);
-/// @throws InputError if a field is not there or no trace's
-std::vector<TraceRow> trace_of(const Cloud& cloud, const std::string& source);
+cloud::Cloud to_cloud(const std::vector<TraceRow>& trace);
+/// Inverse of to_cloud.
+/// @throws InputError if a field is missing or has a value that no trace has
+std::vector<TraceRow> trace_from_cloud(const cloud::Cloud& cloud, const std::string& source);
 
-/// What the machine itself knows of the ground part: the stock without what the wheel, where it stood while it ground,
-/// took the place of. Its wear between two measurements is not known.
-HeightField ground_by(const std::vector<TraceRow>& trace, const Job& job, HeightField stock);
+/// The ground part as the machine itself knows it: the stock minus the volume that the wheel swept while it ground. The
+/// wheel's wear between two measurements is not known.
+removal::HeightField replay_removal(const std::vector<TraceRow>& trace, const job::Job& job,
+                                    removal::HeightField stock);
 
-} // namespace fettle
+} // namespace fettle::strategy

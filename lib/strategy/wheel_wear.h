@@ -2,31 +2,32 @@
 
 #include "job/job.h"
 
-namespace fettle {
+namespace fettle::strategy {
 
-/// What a wheel loses between two measurements at P0, from the force it has ground with: by Preston's law the stock,
-/// and by the grinding ratio the wheel, go with ∫F dt. How fast is learned from the measurements.
+/// Estimates the radius that a wheel loses between two measurements at P0 from its grinding force: by Preston's law the
+/// removed stock, and by the grinding ratio the lost wheel, are proportional to ∫F dt. The wear rate is learned from
+/// the measurements.
 class WheelWear {
   public:
-    /// @param remaining  the most that may be left on the stock, mm
-    WheelWear(const Job& job, double remaining);
+    /// @param max_remaining  largest height that may be left on the stock, mm
+    WheelWear(const job::Job& job, double max_remaining);
 
-    void ground(double force, double duration) { impulse_ += force * duration; }
-    void measured(double radius);
-    void renewed(); ///< a new wheel; measured() follows
+    void add_force(double force, double duration) { impulse_ += force * duration; }
+    void set_measured_radius(double radius);
+    void start_new_wheel(); ///< set_measured_radius() follows
 
-    /// To go down by, mm: a little less than is lost, so that nothing is ground too deep.
+    /// Estimated loss since the last measurement, mm: on the low side, so that nothing is ground too deep.
     double loss() const;
-    /// What loss() may be wrong by is more than it may.
-    bool due() const;
+    /// True if the error of loss() may exceed its bound.
+    bool measurement_due() const;
 
   private:
-    double steepest_;    ///< wear rate of a soft wheel, until one has been measured, mm/(N s)
-    double most_;        ///< loss between two measurements, mm
-    double impulse_ = 0; ///< since the last measurement, N s
-    double radius_ = 0;  ///< then, mm; 0: not measured yet
-    double worn_ = 0;    ///< by all measurements of this and former wheels, mm
-    double work_ = 0;    ///< what they were worn by, N s
+    double max_rate_;          ///< wear rate of a soft wheel, used until one has been measured, mm/(N s)
+    double max_loss_;          ///< between two measurements, mm
+    double impulse_ = 0;       ///< since the last measurement, N s
+    double radius_ = 0;        ///< last measured, mm; 0: not measured yet
+    double total_loss_ = 0;    ///< in all measurements of this and former wheels, mm
+    double total_impulse_ = 0; ///< that caused it, N s
 };
 
-} // namespace fettle
+} // namespace fettle::strategy

@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-namespace fettle {
+namespace fettle::surface {
 
 namespace {
 
@@ -16,14 +16,14 @@ using Eigen::VectorXd;
 
 constexpr Index kLanes = 4;
 
-FETTLE_INLINE double sum(const Double4& four) { return (four[0] + four[1]) + (four[2] + four[3]); }
+FETTLE_INLINE double sum(const core::Double4& four) { return (four[0] + four[1]) + (four[2] + four[3]); }
 
 FETTLE_CLONES double dot(const double* a, const double* b, Index count)
 {
-    Double4 sums{};
+    core::Double4 sums{};
     Index k = 0;
     for (; k + kLanes <= count; k += kLanes)
-        sums += *reinterpret_cast<const Double4*>(a + k) * *reinterpret_cast<const Double4*>(b + k);
+        sums += *reinterpret_cast<const core::Double4*>(a + k) * *reinterpret_cast<const core::Double4*>(b + k);
     double result = sum(sums);
     for (; k < count; ++k) result += a[k] * b[k];
     return result;
@@ -34,23 +34,23 @@ FETTLE_CLONES void add_multiple(double* y, const double* x, double factor, Index
 {
     Index k = 0;
     for (; k + kLanes <= count; k += kLanes)
-        *reinterpret_cast<Double4*>(y + k) += factor * *reinterpret_cast<const Double4*>(x + k);
+        *reinterpret_cast<core::Double4*>(y + k) += factor * *reinterpret_cast<const core::Double4*>(x + k);
     for (; k < count; ++k) y[k] += factor * x[k];
 }
 
-/// Columns first … end - 1 of four rows of L; rows[j] are those of L that are done.
+/// Computes columns first … end - 1 of four rows of L; rows[j - first] is the finished row j.
 FETTLE_CLONES void eliminate(double* const* four, const double* const* rows, Index first, Index end)
 {
     for (Index j = first; j < end; ++j) {
         const double* row = rows[j - first];
-        Double4 s0{}, s1{}, s2{}, s3{};
+        core::Double4 s0{}, s1{}, s2{}, s3{};
         Index k = first;
         for (; k + kLanes <= j; k += kLanes) {
-            const Double4 l = *reinterpret_cast<const Double4*>(row + k);
-            s0 += l * *reinterpret_cast<const Double4*>(four[0] + k);
-            s1 += l * *reinterpret_cast<const Double4*>(four[1] + k);
-            s2 += l * *reinterpret_cast<const Double4*>(four[2] + k);
-            s3 += l * *reinterpret_cast<const Double4*>(four[3] + k);
+            const core::Double4 l = *reinterpret_cast<const core::Double4*>(row + k);
+            s0 += l * *reinterpret_cast<const core::Double4*>(four[0] + k);
+            s1 += l * *reinterpret_cast<const core::Double4*>(four[1] + k);
+            s2 += l * *reinterpret_cast<const core::Double4*>(four[2] + k);
+            s3 += l * *reinterpret_cast<const core::Double4*>(four[3] + k);
         }
         double t[kLanes] = {sum(s0), sum(s1), sum(s2), sum(s3)};
         for (; k < j; ++k)
@@ -61,22 +61,22 @@ FETTLE_CLONES void eliminate(double* const* four, const double* const* rows, Ind
 
 } // namespace
 
-BandMatrix::BandMatrix(Index size, Index half)
-    : size_(size), half_(std::min(half, size - 1)),
-      entries_(static_cast<std::size_t>(size * (half_ + kPadding + 1)), 0.0)
+BandMatrix::BandMatrix(Index size, Index half_bandwidth)
+    : size_(size), half_bandwidth_(std::min(half_bandwidth, size - 1)),
+      entries_(size * (half_bandwidth_ + kPadding + 1), 0.0)
 {
 }
 
 void BandMatrix::add(const BandMatrix& other, double factor)
 {
-    add_multiple(entries_.data(), other.entries_.data(), factor, static_cast<Index>(entries_.size()));
+    add_multiple(entries_.data(), other.entries_.data(), factor, entries_.size());
 }
 
 VectorXd BandMatrix::operator*(const VectorXd& x) const
 {
     VectorXd y = VectorXd::Zero(size_);
     for (Index i = 0; i < size_; ++i) {
-        const Index first = std::max<Index>(0, i - half_);
+        const Index first = std::max<Index>(0, i - half_bandwidth_);
         y[i] += dot(row(i) + first, x.data() + first, i - first + 1);
         add_multiple(y.data() + first, row(i) + first, x[i], i - first);
     }
@@ -92,13 +92,13 @@ double BandMatrix::trace() const
 
 BandCholesky::BandCholesky(BandMatrix H) : L_(std::move(H))
 {
-    std::vector<const double*> above(static_cast<std::size_t>(L_.half()));
+    std::vector<const double*> above(L_.half_bandwidth());
     for (Index i = 0; i < L_.size(); i += kLanes) {
         const Index count = std::min(kLanes, L_.size() - i);
-        const Index first = std::max<Index>(0, i - L_.half());
-        for (Index j = first; j < i; ++j) above[static_cast<std::size_t>(j - first)] = L_.row(j);
+        const Index first = std::max<Index>(0, i - L_.half_bandwidth());
+        for (Index j = first; j < i; ++j) above[j - first] = L_.row(j);
         std::array<double*, kLanes> four;
-        for (Index r = 0; r < kLanes; ++r) four[static_cast<std::size_t>(r)] = L_.row(i + std::min(r, count - 1));
+        for (Index r = 0; r < kLanes; ++r) four[r] = L_.row(i + std::min(r, count - 1));
         if (count == kLanes) eliminate(four.data(), above.data(), first, i);
         for (Index r = 0; r < count; ++r) {
             double* row = L_.row(i + r);
@@ -106,19 +106,19 @@ BandCholesky::BandCholesky(BandMatrix H) : L_(std::move(H))
             for (Index j = begin; j < i + r; ++j)
                 row[j] = (row[j] - dot(row + first, L_.row(j) + first, j - first)) / L_(j, j);
             const double pivot = row[i + r] - dot(row + first, row + first, i + r - first);
-            if (!(pivot > 0)) throw InputError("the points do not determine the surface");
+            if (!(pivot > 0)) throw core::InputError("the points do not determine the surface");
             row[i + r] = std::sqrt(pivot);
         }
     }
 }
 
-VectorXd BandCholesky::half_solve(const VectorXd& b) const
+VectorXd BandCholesky::solve_lower(const VectorXd& b) const
 {
     VectorXd y = b;
     Index i = 0;
-    while (i < y.size() && y[i] == 0) ++i; // the solution is 0 there, too
+    while (i < y.size() && y[i] == 0) ++i; // the solution is 0 there as well
     for (const Index start = i; i < y.size(); ++i) {
-        const Index first = std::max(start, i - L_.half());
+        const Index first = std::max(start, i - L_.half_bandwidth());
         y[i] = (y[i] - dot(L_.row(i) + first, y.data() + first, i - first)) / L_(i, i);
     }
     return y;
@@ -126,9 +126,9 @@ VectorXd BandCholesky::half_solve(const VectorXd& b) const
 
 VectorXd BandCholesky::solve(const VectorXd& b) const
 {
-    VectorXd x = half_solve(b);
+    VectorXd x = solve_lower(b);
     for (Index i = x.size() - 1; i >= 0; --i) {
-        const Index first = std::max<Index>(0, i - L_.half());
+        const Index first = std::max<Index>(0, i - L_.half_bandwidth());
         x[i] /= L_(i, i);
         add_multiple(x.data() + first, L_.row(i) + first, -x[i], i - first);
     }
@@ -142,11 +142,11 @@ double BandCholesky::log_determinant() const
     return result;
 }
 
-// From Lᵀ Z = L⁻¹, column by column from the last: Z_ij = (δ_ij / L_jj - Σ_{k>j} Z_ik L_kj) / L_jj. The square window
-// holds Z_ik for the `half` indices after j, each at its index modulo `half`.
+// Lᵀ Z = L⁻¹ gives Z column by column, from the last: Z_ij = (δ_ij / L_jj - Σ_{k>j} Z_ik L_kj) / L_jj. The square
+// window holds Z_ik for the `half` indices after j, each at its index modulo half + 1.
 BandMatrix BandCholesky::inverse_in_band() const
 {
-    const Index n = L_.size(), half = L_.half();
+    const Index n = L_.size(), half = L_.half_bandwidth();
     BandMatrix Z(n, half);
     const Index width = half + 1;
     Eigen::MatrixXd window = Eigen::MatrixXd::Zero(width, width);
@@ -167,4 +167,4 @@ BandMatrix BandCholesky::inverse_in_band() const
     return Z;
 }
 
-} // namespace fettle
+} // namespace fettle::surface

@@ -2,20 +2,20 @@
 
 #include <algorithm>
 
-namespace fettle {
+namespace fettle::surface {
 
 namespace {
 
-Eigen::Index span_of(const Eigen::VectorXd& knots, int degree, double t)
+Eigen::Index find_span(const Eigen::VectorXd& knots, int degree, double t)
 {
     const auto* begin = knots.data() + degree;
-    const auto* end = knots.data() + knots.size() - degree - 1; // of the domain, belongs to the last span
+    const auto* end = knots.data() + knots.size() - degree - 1; // the domain's end belongs to the last span
     const Eigen::Index last = std::lower_bound(begin, end, *end) - knots.data() - 1;
     return std::min<Eigen::Index>(std::upper_bound(begin, end, t) - knots.data() - 1, last);
 }
 
-/// Cox and de Boor's recurrence: the functions of degree d on the span [t_s, t_s+1).
-Eigen::VectorXd functions(const Eigen::VectorXd& knots, Eigen::Index span, int degree, double t)
+/// Values of the basis functions that do not vanish on the span [t_s, t_s+1), by the recurrence of Cox and de Boor.
+Eigen::VectorXd values(const Eigen::VectorXd& knots, Eigen::Index span, int degree, double t)
 {
     Eigen::VectorXd value = Eigen::VectorXd::Zero(degree + 1);
     value[0] = 1;
@@ -32,10 +32,10 @@ Eigen::VectorXd functions(const Eigen::VectorXd& knots, Eigen::Index span, int d
     return value;
 }
 
-/// A derivative is a difference of two functions of one degree less.
+/// Derivatives of these functions, each a difference of two basis functions of one degree less.
 Eigen::VectorXd derivatives(const Eigen::VectorXd& knots, Eigen::Index span, int degree, double t, int order)
 {
-    if (order == 0) return functions(knots, span, degree, t);
+    if (order == 0) return values(knots, span, degree, t);
     Eigen::VectorXd result = Eigen::VectorXd::Zero(degree + 1);
     if (degree == 0) return result;
     const Eigen::VectorXd lower = derivatives(knots, span, degree - 1, t, order - 1);
@@ -49,15 +49,15 @@ Eigen::VectorXd derivatives(const Eigen::VectorXd& knots, Eigen::Index span, int
 
 } // namespace
 
-Basis basis(const Eigen::VectorXd& knots, int degree, double t)
+BasisFunctions basis_functions(const Eigen::VectorXd& knots, int degree, double t)
 {
-    const Eigen::Index span = span_of(knots, degree, t);
-    return {span - degree, functions(knots, span, degree, t), derivatives(knots, span, degree, t, 1)};
+    const Eigen::Index span = find_span(knots, degree, t);
+    return {span - degree, values(knots, span, degree, t), derivatives(knots, span, degree, t, 1)};
 }
 
 Eigen::VectorXd basis_derivative(const Eigen::VectorXd& knots, int degree, double t, int order)
 {
-    return derivatives(knots, span_of(knots, degree, t), degree, t, order);
+    return derivatives(knots, find_span(knots, degree, t), degree, t, order);
 }
 
-} // namespace fettle
+} // namespace fettle::surface

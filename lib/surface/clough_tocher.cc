@@ -9,16 +9,15 @@
 #include <set>
 #include <utility>
 
-namespace fettle {
+namespace fettle::surface {
 
 namespace {
 
-// How far outside a triangle a point may lie and still belong to it, in barycentric coordinates: the rounding of
-// points that were computed to lie on an edge of the hull.
-constexpr double kOutsideAllowance = 1e-9;
+// Barycentric tolerance by which a point may lie outside a triangle: rounding of points on an edge of the hull.
+constexpr double kBarycentricTolerance = 1e-9;
 
-// What a Bernstein coefficient is made of: row 3k + d is the weight of the value (d = 0) or the x or y derivative at
-// corner k.
+// A Bernstein coefficient as a linear function of the data at the corners: row 3k + d is the weight of the value (d =
+// 0) or of the x or y derivative (d = 1, 2) at corner k.
 using Coefficient = Eigen::Matrix<double, 9, 1>;
 
 Eigen::Vector3d barycentric_of(const Triangulation& mesh, Eigen::Index t, const Eigen::Vector2d& xy)
@@ -38,22 +37,22 @@ Eigen::Vector2d centroid(const Triangulation& mesh, Eigen::Index t)
 }
 
 /// Bernstein coefficients of the three cubics of one triangle. Corner k is opposite edge k, which runs from corner
-/// k + 1 to corner k + 2 (modulo 3); the cubic next to it is b(i, j, l) over (corner k + 1, corner k + 2, centroid).
+/// k + 1 to corner k + 2 (modulo 3); the cubic at edge k is b(i, j, l) over (corner k + 1, corner k + 2, centroid).
 struct SplitTriangle {
     std::array<Coefficient, 3> corner;               ///< at the corner
     std::array<std::array<Coefficient, 3>, 3> along; ///< [k][m], m != k: on the side from k to m, next to k
     std::array<Coefficient, 3> inward;               ///< on the line to the centroid, next to corner k
-    std::array<Coefficient, 3> across;               ///< in the middle of the cubic next to edge k
+    std::array<Coefficient, 3> across;               ///< in the middle of the cubic at edge k
     std::array<Coefficient, 3> inner;                ///< on the line to the centroid, next to the centroid
     Coefficient centre;
 };
 
-/// Where the line between the centroids of a triangle and its neighbour across edge k leaves the direction of the
-/// median: the direction is proportional to (centroid - corner k+1) + g (corner k+2 - corner k+1).
+/// Parameter g of the cross direction at edge k, which joins the centroids of the triangle and its neighbour: the
+/// direction is proportional to (centroid - corner k+1) + g (corner k+2 - corner k+1).
 double cross_direction(const Triangulation& mesh, Eigen::Index t, int k)
 {
     const int neighbour = mesh.neighbours(k, t);
-    if (neighbour < 0) return -0.5; // at the hull: towards the middle of the edge
+    if (neighbour < 0) return -0.5; // hull edge: the direction from the centroid to the middle of the edge
     const Eigen::Vector3d c = barycentric_of(mesh, t, centroid(mesh, neighbour));
     const double first = c[(k + 1) % 3];
     const double second = c[(k + 2) % 3];
@@ -89,13 +88,13 @@ SplitTriangle split(const Triangulation& mesh, Eigen::Index t)
     return b;
 }
 
-/// The cubic of the part that holds the point (next to the edge opposite the least barycentric coordinate).
+/// Evaluates the cubic that contains the point, the one at the edge opposite the smallest barycentric coordinate.
 Coefficient evaluate(const SplitTriangle& b, const Eigen::Vector3d& barycentric)
 {
     int k = 0;
-    const double least = barycentric.minCoeff(&k);
+    const double min = barycentric.minCoeff(&k);
     const int p = (k + 1) % 3, q = (k + 2) % 3;
-    const double u = barycentric[p] - least, v = barycentric[q] - least, w = 3 * least;
+    const double u = barycentric[p] - min, v = barycentric[q] - min, w = 3 * min;
     return u * u * u * b.corner[p] + v * v * v * b.corner[q] + w * w * w * b.centre +
            3 * u * u * (v * b.along[p][q] + w * b.inward[p]) + 3 * v * v * (u * b.along[q][p] + w * b.inward[q]) +
            3 * w * w * (u * b.inner[p] + v * b.inner[q]) + 6 * u * v * w * b.across[k];
@@ -106,11 +105,11 @@ Coefficient evaluate(const SplitTriangle& b, const Eigen::Vector3d& barycentric)
 CloughTocher::CloughTocher(Triangulation triangulation) : triangulation_(std::move(triangulation))
 {
     const Eigen::Matrix2Xd& points = triangulation_.points;
-    least_ = points.rowwise().minCoeff();
-    const Eigen::Vector2d size = points.rowwise().maxCoeff() - least_;
-    bin_ = size.maxCoeff() / std::ceil(std::sqrt(static_cast<double>(triangulation_.triangles.cols())));
-    bins_ = (size / bin_).array().floor().cast<int>() + 1;
-    triangles_in_.resize(static_cast<std::size_t>(bins_.prod()));
+    min_corner_ = points.rowwise().minCoeff();
+    const Eigen::Vector2d size = points.rowwise().maxCoeff() - min_corner_;
+    bin_side_ = size.maxCoeff() / std::ceil(std::sqrt(triangulation_.triangles.cols()));
+    bins_ = (size / bin_side_).array().floor().cast<int>() + 1;
+    triangles_in_bin_.resize(bins_.prod());
     for (Eigen::Index t = 0; t < triangulation_.triangles.cols(); ++t) {
         Eigen::Matrix<double, 2, 3> corners;
         for (int k = 0; k < 3; ++k) corners.col(k) = points.col(triangulation_.triangles(k, t));
@@ -118,37 +117,38 @@ CloughTocher::CloughTocher(Triangulation triangulation) : triangulation_(std::mo
         const Eigen::Vector2i to = bin_of(corners.rowwise().maxCoeff());
         for (int row = from.y(); row <= to.y(); ++row)
             for (int column = from.x(); column <= to.x(); ++column)
-                triangles_in_[static_cast<std::size_t>(row * bins_.x() + column)].push_back(static_cast<int>(t));
+                triangles_in_bin_[row * bins_.x() + column].push_back(t);
     }
 }
 
-/// The nearest bin; a point outside the bounding box gets one at its border.
+/// The bin of a point; for a point outside the bounding box, the nearest bin.
 Eigen::Vector2i CloughTocher::bin_of(const Eigen::Vector2d& xy) const
 {
-    const Eigen::Array2d bin = ((xy - least_) / bin_).array().floor();
+    const Eigen::Array2d bin = ((xy - min_corner_) / bin_side_).array().floor();
     return bin.max(0).min((bins_.array() - 1).cast<double>()).cast<int>();
 }
 
-std::optional<CloughTocher::Place> CloughTocher::locate(const Eigen::Vector2d& xy) const
+std::optional<CloughTocher::Location> CloughTocher::locate(const Eigen::Vector2d& xy) const
 {
     if (!xy.allFinite()) return {};
     const Eigen::Vector2i bin = bin_of(xy);
-    for (const int t : triangles_in_[static_cast<std::size_t>(bin.y() * bins_.x() + bin.x())]) {
+    for (const int t : triangles_in_bin_[bin.y() * bins_.x() + bin.x()]) {
         const Eigen::Vector3d b = barycentric_of(triangulation_, t, xy);
-        if (b.minCoeff() >= -kOutsideAllowance) return Place{t, b};
+        if (b.minCoeff() >= -kBarycentricTolerance) return Location{t, b};
     }
     return {};
 }
 
 std::optional<CloughTocher::Weights> CloughTocher::weights(const Eigen::Vector2d& xy) const
 {
-    const std::optional<Place> place = locate(xy);
-    if (!place) return {};
-    const Coefficient all = evaluate(split(triangulation_, place->triangle), place->barycentric);
-    return Weights{triangulation_.triangles.col(place->triangle), Eigen::Map<const Eigen::Matrix3d>(all.data())};
+    const std::optional<Location> location = locate(xy);
+    if (!location) return {};
+    const Coefficient data_weights = evaluate(split(triangulation_, location->triangle), location->barycentric);
+    return Weights{triangulation_.triangles.col(location->triangle),
+                   Eigen::Map<const Eigen::Matrix3d>(data_weights.data())};
 }
 
-Eigen::MatrixXd least_curvature_gradients(const Triangulation& triangulation, const Eigen::MatrixXd& values)
+Eigen::MatrixXd min_curvature_gradients(const Triangulation& triangulation, const Eigen::MatrixXd& values)
 {
     std::set<std::pair<int, int>> edges;
     for (Eigen::Index t = 0; t < triangulation.triangles.cols(); ++t)
@@ -175,9 +175,9 @@ Eigen::MatrixXd least_curvature_gradients(const Triangulation& triangulation, co
     }
     Eigen::SparseMatrix<double> normal(unknowns, unknowns);
     normal.setFromTriplets(entries.begin(), entries.end());
-    // Every point has edges in two directions, so the matrix is positive definite.
+    // LDLT: every point has edges in two directions, so the matrix is positive definite.
     const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(normal);
     return factor.solve(right);
 }
 
-} // namespace fettle
+} // namespace fettle::surface

@@ -4,22 +4,22 @@
 
 #include <vector>
 
-namespace fettle {
+namespace fettle::surface {
 
-/// Triangles over points of the plane, counter-clockwise.
+/// Triangulation of points in the plane.
 struct Triangulation {
     Eigen::Matrix2Xd points;
-    Eigen::Matrix3Xi triangles;  ///< indices of points
-    Eigen::Matrix3Xi neighbours; ///< the triangle opposite each corner; -1 at the hull
+    Eigen::Matrix3Xi triangles;  ///< indices of points, counter-clockwise
+    Eigen::Matrix3Xi neighbours; ///< index of the triangle opposite each corner; -1 at the hull
 };
 
-/// Delaunay triangulation. Points on one circle (a regular grid) are divided by the diagonals from the least index,
-/// whatever the rounding of their coordinates; triangles that are flat within rounding are left off the hull.
+/// Delaunay triangulation, from Boost's Voronoi diagram. Cocircular points (a regular grid) give the fan from the
+/// lowest index, whatever the rounding of their coordinates. Hull triangles that are flat within rounding are left out.
 /// @param points  2xN, all different
-/// @throws InputError for fewer than 3 points or if all lie on a line
+/// @throws InputError for fewer than 3 points or if all are collinear
 Triangulation delaunay(const Eigen::Matrix2Xd& points);
 
-/// The corners of the hull, counter-clockwise: the edges without a neighbour, one after the other.
-std::vector<int> hull(const Triangulation& triangulation);
+/// Indices of the points on the convex hull, counter-clockwise.
+std::vector<int> hull_corners(const Triangulation& triangulation);
 
-} // namespace fettle
+} // namespace fettle::surface

@@ -7,45 +7,45 @@
 #include <string_view>
 #include <vector>
 
-namespace fettle {
+namespace fettle::surface {
 
-/// A closed (rational) B-spline curve in the plane of u and v.
+/// Closed, possibly rational B-spline curve in the parameter plane (u, v).
 struct TrimCurve {
     int degree = 1;
     Eigen::VectorXd knots;    ///< ascending; control points + degree + 1 of them
     Eigen::Matrix2Xd control; ///< u, v
-    Eigen::VectorXd weights;  ///< of the control points; empty: all 1
+    Eigen::VectorXd weights;  ///< weights of the control points; empty: all 1
 };
 
-/// A (rational) tensor-product B-spline patch, x y z over (u, v).
+/// Tensor-product B-spline patch, possibly rational: x, y, z over (u, v).
 struct Patch {
     int degree_u = 3, degree_v = 3;
     Eigen::VectorXd knots_u, knots_v;       ///< ascending; control points + degree + 1 of them
     std::array<Eigen::MatrixXd, 3> control; ///< x, y, z of the control points, mm; rows along u, columns along v
-    Eigen::MatrixXd weights;                ///< of the control points; empty: all 1
-    std::vector<TrimCurve> trim;            ///< the patch is where an odd number of them goes around; none: everywhere
+    Eigen::MatrixXd weights;                ///< weights of the control points; empty: all 1
+    std::vector<TrimCurve> trim;            ///< the patch is the area inside an odd number of them; none: all
 };
 
 /// Reads a file of kind "patches". @param path  "-": stdin   @throws InputError with the key's path
 std::vector<Patch> read_patches(const std::string& path);
-/// The same from text. @param source  the name for messages
+/// Parses the text of such a file. @param source  the name for messages
 std::vector<Patch> parse_patches(std::string_view text, const std::string& source);
 
-/// Where the knots let u (row 0) and v (row 1) be: least, most.
-Eigen::Matrix2d domain(const Patch& patch);
+/// The domain that the knots give to u (row 0) and v (row 1): minimum and maximum.
+Eigen::Matrix2d parameter_domain(const Patch& patch);
 
-/// The trimming curves as closed polygons (the last point is the first), or without them the domain's. Where a span is
-/// a quarter of a circle, the polygon is off by a 13,000th of the radius.
-std::vector<Eigen::Matrix2Xd> outlines(const Patch& patch);
+/// The trimming curves as closed polygons (the last point is the first); without trimming curves, the domain. For spans
+/// of a quarter of a circle, the polygon deviates from the curve by 1/13,000 of the radius.
+std::vector<Eigen::Matrix2Xd> boundary_polygons(const Patch& patch);
 
-/// Does an odd number of the polygons go around uv?
-bool inside(const std::vector<Eigen::Matrix2Xd>& outlines, const Eigen::Vector2d& uv);
+/// Is uv inside an odd number of the polygons?
+bool is_inside(const std::vector<Eigen::Matrix2Xd>& outlines, const Eigen::Vector2d& uv);
 
-/// Point of the patch and its derivatives in u and v, one a column. @param uv  within the knots' domain
+/// Columns: point of the patch, its derivative in u, its derivative in v, mm. @param uv  within the domain
 Eigen::Matrix3d point_and_tangents(const Patch& patch, const Eigen::Vector2d& uv);
 
-/// z over xy, mm, exact to rounding: (u, v) by Newton's method, in one step if x and y are linear in them. NaN outside
-/// the patch and what its trimming curves leave of it.
+/// z over xy, mm, exact to rounding; NaN outside the trimmed patch. (u, v) follow by Newton's method, in one step if x
+/// and y are linear in them.
 double height(const Patch& patch, const Eigen::Vector2d& xy);
 
-} // namespace fettle
+} // namespace fettle::surface

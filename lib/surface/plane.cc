@@ -1,6 +1,6 @@
 #include "surface/shapes.h"
 
-namespace fettle {
+namespace fettle::surface {
 
 double height(const Plane& plane, const Eigen::Vector2d& xy) { return plane.z0 + plane.slope.dot(xy - plane.origin); }
 
@@ -11,6 +11,4 @@ Eigen::VectorXd height_gradient(const Plane& plane, const Eigen::Vector2d& xy)
     return Eigen::Vector3d(1, xy.x() - plane.origin.x(), xy.y() - plane.origin.y());
 }
 
-Eigen::VectorXi parameter_powers(const Plane&) { return Eigen::Vector3i(1, 0, 0); }
-
-} // namespace fettle
+} // namespace fettle::surface

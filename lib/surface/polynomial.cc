@@ -2,17 +2,17 @@
 
 #include <cmath>
 
-namespace fettle {
+namespace fettle::surface {
 
 namespace {
 
-/// Calls use(k, i, j) for the k-th monomial u^i v^j: by total degree, then with falling powers of u.
-template <typename Use>
-void for_monomials(int degree, Use&& use)
+/// Calls visit(k, i, j) for the k-th monomial u^i v^j: by total degree, then by decreasing powers of u.
+template <typename Visit>
+void for_each_monomial(int degree, Visit&& visit)
 {
     Eigen::Index k = 0;
     for (int total = 0; total <= degree; ++total)
-        for (int j = 0; j <= total; ++j) use(k++, total - j, j);
+        for (int j = 0; j <= total; ++j) visit(k++, total - j, j);
 }
 
 Eigen::Vector2d scaled(const Polynomial& polynomial, const Eigen::Vector2d& xy)
@@ -22,12 +22,12 @@ Eigen::Vector2d scaled(const Polynomial& polynomial, const Eigen::Vector2d& xy)
 
 } // namespace
 
-Eigen::Index monomials(int degree) { return static_cast<Eigen::Index>(degree + 1) * (degree + 2) / 2; }
+Eigen::Index monomial_count(int degree) { return static_cast<Eigen::Index>(degree + 1) * (degree + 2) / 2; }
 
 int degree(const Polynomial& polynomial)
 {
     int d = 0;
-    while (monomials(d) < polynomial.coefficients.size()) ++d;
+    while (monomial_count(d) < polynomial.coefficients.size()) ++d;
     return d;
 }
 
@@ -40,7 +40,7 @@ Eigen::Vector2d slope(const Polynomial& polynomial, const Eigen::Vector2d& xy)
 {
     const Eigen::Vector2d p = scaled(polynomial, xy);
     Eigen::Vector2d result = Eigen::Vector2d::Zero();
-    for_monomials(degree(polynomial), [&](Eigen::Index k, int i, int j) {
+    for_each_monomial(degree(polynomial), [&](Eigen::Index k, int i, int j) {
         const double c = polynomial.coefficients[k];
         if (i > 0) result[0] += c * i * std::pow(p[0], i - 1) * std::pow(p[1], j);
         if (j > 0) result[1] += c * j * std::pow(p[0], i) * std::pow(p[1], j - 1);
@@ -52,14 +52,9 @@ Eigen::VectorXd height_gradient(const Polynomial& polynomial, const Eigen::Vecto
 {
     const Eigen::Vector2d p = scaled(polynomial, xy);
     Eigen::VectorXd gradient(polynomial.coefficients.size());
-    for_monomials(degree(polynomial),
-                  [&](Eigen::Index k, int i, int j) { gradient[k] = std::pow(p[0], i) * std::pow(p[1], j); });
+    for_each_monomial(degree(polynomial),
+                      [&](Eigen::Index k, int i, int j) { gradient[k] = std::pow(p[0], i) * std::pow(p[1], j); });
     return gradient;
 }
 
-Eigen::VectorXi parameter_powers(const Polynomial& polynomial)
-{
-    return Eigen::VectorXi::Ones(polynomial.coefficients.size());
-}
-
-} // namespace fettle
+} // namespace fettle::surface

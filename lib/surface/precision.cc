@@ -1,5 +1,6 @@
 #include "surface/precision.h"
 
+#include "core/constants.h"
 #include "surface/shapes.h"
 #include "surface/spline_energy.h"
 
@@ -7,9 +8,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
-namespace fettle {
+namespace fettle::surface {
 
 namespace {
 
@@ -17,13 +17,13 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr Index kWeights = 16; // basis functions over a cell
+constexpr Index kBasisPerCell = 16; // bicubic basis functions that do not vanish over a cell
 
-/// gᵀ Z g with Z known inside the band, where all pairs of functions over a cell are.
+/// gᵀ Z g, where Z is known inside the band only: it contains all pairs of basis functions over a cell.
 double variance(const BandMatrix& Z, const BsplineWeights& w, Index rows)
 {
     double sum = 0;
-    for (Index a = 0; a < kWeights; ++a) {
+    for (Index a = 0; a < kBasisPerCell; ++a) {
         const Index i = (w.column + a / 4) * rows + w.row + a % 4;
         const double g = w.u[a % 4] * w.v[a / 4];
         for (Index b = 0; b < a; ++b)
@@ -37,9 +37,9 @@ double variance(const BandMatrix& Z, const BsplineWeights& w, Index rows)
 
 BandMatrix precision_matrix(const Bspline& grid, const SplinePrecision& precision)
 {
-    BandMatrix sum = band_over(grid);
-    add_energy(sum, grid, 1 / (precision.amplitude * precision.amplitude));
-    add_uniform(sum, grid, precision.weights);
+    BandMatrix sum = zero_band_matrix(grid);
+    add_derivative_energy(sum, grid, 1 / (precision.amplitude * precision.amplitude));
+    add_cell_weights(sum, grid, precision.weights);
     return sum;
 }
 
@@ -49,8 +49,7 @@ VectorXd sigmas(const Bspline& spline, const SplinePrecision& precision, const E
     VectorXd result(xy.cols());
     tbb::parallel_for(Index{0}, xy.cols(), [&](Index i) {
         const std::optional<BsplineWeights> w = weights(spline, xy.col(i));
-        result[i] = w ? std::sqrt(std::max(variance(inverse, *w, spline.heights.rows()), 0.0))
-                      : std::numeric_limits<double>::quiet_NaN();
+        result[i] = w ? std::sqrt(std::max(variance(inverse, *w, spline.heights.rows()), 0.0)) : core::kNaN;
     });
     return result;
 }
@@ -58,10 +57,10 @@ VectorXd sigmas(const Bspline& spline, const SplinePrecision& precision, const E
 MatrixXd height_covariance(const Bspline& spline, const SplinePrecision& precision, const Eigen::Matrix2Xd& xy)
 {
     const BandCholesky factor(precision_matrix(spline, precision));
-    MatrixXd half(spline.heights.size(), xy.cols()); // L⁻¹ G
+    MatrixXd root(spline.heights.size(), xy.cols()); // L⁻¹ G
     tbb::parallel_for(Index{0}, xy.cols(),
-                      [&](Index i) { half.col(i) = factor.half_solve(height_gradient(spline, xy.col(i))); });
-    return half.transpose() * half;
+                      [&](Index i) { root.col(i) = factor.solve_lower(height_gradient(spline, xy.col(i))); });
+    return root.transpose() * root;
 }
 
-} // namespace fettle
+} // namespace fettle::surface

@@ -1,9 +1,9 @@
 #include "surface/quadratic.h"
 #include "surface/shapes.h"
 
-namespace fettle {
+namespace fettle::surface {
 
-// F(x; θ) = ½ dᵀ A d + n·d, d = x - p: as for the sphere, whose A is k times the identity.
+// F(x; θ) = ½ dᵀ A d + n·d, d = x - p. See sphere.cc; a sphere has A = k I.
 
 namespace {
 
@@ -11,11 +11,11 @@ Eigen::Vector3d offset(const Quadric& quadric, const Eigen::Vector2d& xy)
 {
     Eigen::Vector3d d(xy.x() - quadric.point.x(), xy.y() - quadric.point.y(), 0);
     const Eigen::Vector3d Ad = quadric.form * d;
-    d.z() = rising_root(quadric.form(2, 2) / 2, quadric.normal.z() + Ad.z(), d.dot(Ad) / 2 + quadric.normal.dot(d));
+    d.z() = increasing_root(quadric.form(2, 2) / 2, quadric.normal.z() + Ad.z(), d.dot(Ad) / 2 + quadric.normal.dot(d));
     return d;
 }
 
-Eigen::Vector3d rise(const Quadric& quadric, const Eigen::Vector3d& d) // ∇F
+Eigen::Vector3d gradient_of_F(const Quadric& quadric, const Eigen::Vector3d& d)
 {
     return quadric.form * d + quadric.normal;
 }
@@ -26,14 +26,14 @@ double height(const Quadric& quadric, const Eigen::Vector2d& xy) { return quadri
 
 Eigen::Vector2d slope(const Quadric& quadric, const Eigen::Vector2d& xy)
 {
-    const Eigen::Vector3d gradient = rise(quadric, offset(quadric, xy));
+    const Eigen::Vector3d gradient = gradient_of_F(quadric, offset(quadric, xy));
     return -gradient.head<2>() / gradient.z();
 }
 
 Eigen::VectorXd height_gradient(const Quadric& quadric, const Eigen::Vector2d& xy)
 {
     const Eigen::Vector3d d = offset(quadric, xy);
-    const Eigen::Vector3d gradient = rise(quadric, d);
+    const Eigen::Vector3d gradient = gradient_of_F(quadric, d);
     const std::array<Eigen::Vector3d, 2> t = tangents(quadric.normal);
     const Eigen::Vector3d e(t[0].dot(d), t[1].dot(d), quadric.normal.dot(d));
     Eigen::VectorXd F_theta(9);
@@ -42,9 +42,4 @@ Eigen::VectorXd height_gradient(const Quadric& quadric, const Eigen::Vector2d& x
     return -F_theta / gradient.z();
 }
 
-Eigen::VectorXi parameter_powers(const Quadric&)
-{
-    return (Eigen::VectorXi(9) << 1, 0, 0, -1, -1, -1, -1, -1, -1).finished();
-}
-
-} // namespace fettle
+} // namespace fettle::surface

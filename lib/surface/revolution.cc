@@ -2,39 +2,38 @@
 
 #include "core/constants.h"
 
-#include <Eigen/Geometry>
-
 #include <cmath>
 
-namespace fettle {
+namespace fettle::surface {
 
 namespace {
 
 using Eigen::Vector3d;
 
-/// Of v/|v|, as v changes.
-Vector3d change_of_unit(const Vector3d& unit, double norm, const Vector3d& change)
+/// Derivative of v/|v| for the derivative `change` of v.
+Vector3d derivative_of_unit(const Vector3d& unit, double norm, const Vector3d& change)
 {
     return (change - unit.dot(change) * unit) / norm;
 }
 
-/// A circle (line) of curvature k in its plane: with q = k/2 |x|² + (its normal)·x the distance of x from it is
-/// f = 2q / (1 + r), r = √(1 + 2kq), so that ∂f/∂q = 1/r and ∂f/∂k = -f²/2r.
-struct FromCircle {
+/// Signed distance f of a point x from the circle (or line) of curvature k through the origin with unit normal n: with
+/// q = k/2 |x|² + n·x it is f = 2q / (1 + r), r = √(1 + 2kq), so that ∂f/∂q = 1/r and ∂f/∂k = -f²/2r.
+struct CircleDistance {
     double f, r;
 };
-FromCircle from_circle(double k, double q)
+CircleDistance circle_distance(double k, double q)
 {
     const double ratio = 1 + 2 * k * q;
-    if (!(ratio > 0)) return {kNaN, kNaN};
+    if (!(ratio > 0)) return {core::kNaN, core::kNaN};
     const double r = std::sqrt(ratio);
     return {2 * q / (1 + r), r};
 }
 
+/// A point relative to the axis of revolution and the profile.
 struct Profile {
     Vector3d d;
-    double height, away, level2; ///< w·d, m·d, |d|² - (w·d)²
-    FromCircle around, along;
+    double height, radial, across2; ///< w·d, m·d, |d|² - (w·d)²
+    CircleDistance around, along;
 };
 
 Profile profile(const Revolution& surface, const Vector3d& point)
@@ -42,18 +41,18 @@ Profile profile(const Revolution& surface, const Vector3d& point)
     Profile p;
     p.d = Vector3d(point.x(), point.y(), point.z() - surface.offset);
     p.height = surface.w.dot(p.d);
-    p.away = surface.m.dot(p.d);
-    p.level2 = p.d.squaredNorm() - p.height * p.height;
-    p.around = from_circle(surface.around, surface.around * p.level2 / 2 + p.away);
+    p.radial = surface.m.dot(p.d);
+    p.across2 = p.d.squaredNorm() - p.height * p.height;
+    p.around = circle_distance(surface.curvature_around, surface.curvature_around * p.across2 / 2 + p.radial);
     const double g = p.around.f;
-    p.along = from_circle(surface.along,
-                          surface.along * (g * g + p.height * p.height) / 2 + surface.c * g + surface.s * p.height);
+    p.along = circle_distance(surface.curvature_along, surface.curvature_along * (g * g + p.height * p.height) / 2 +
+                                                           surface.c * g + surface.s * p.height);
     return p;
 }
 
 } // namespace
 
-Revolution revolution(const RevolutionParameters& theta)
+Revolution make_revolution(const RevolutionParameters& theta)
 {
     const Vector3d to(1, theta[kTurn], -theta[kTiltAlong]);
     const double to_norm = to.norm();
@@ -70,13 +69,14 @@ Revolution revolution(const RevolutionParameters& theta)
     surface.c = c;
     surface.s = s;
     surface.offset = theta[kOffset];
-    surface.around = theta[kAround];
-    surface.along = theta[kAlong];
+    surface.curvature_around = theta[kCurvatureAround];
+    surface.curvature_along = theta[kCurvatureAlong];
     surface.w_theta.setZero();
     surface.m_theta.setZero();
     const auto set = [&](RevolutionParameter k, const Vector3d& to_change, const Vector3d& up_change) {
-        const Vector3d da = change_of_unit(a, to_norm, to_change);
-        const Vector3d dn = change_of_unit(n, across_norm, up_change - (up_change.dot(a) + up.dot(da)) * a - up_a * da);
+        const Vector3d da = derivative_of_unit(a, to_norm, to_change);
+        const Vector3d dn =
+            derivative_of_unit(n, across_norm, up_change - (up_change.dot(a) + up.dot(da)) * a - up_a * da);
         surface.w_theta.col(k) = s * dn + c * da;
         surface.m_theta.col(k) = c * dn - s * da;
     };
@@ -90,22 +90,24 @@ Revolution revolution(const RevolutionParameters& theta)
 
 double distance(const Revolution& surface, const Vector3d& point) { return profile(surface, point).along.f; }
 
-RevolutionDistance distance_and_slopes(const Revolution& surface, const Vector3d& point)
+RevolutionDistance distance_with_gradients(const Revolution& surface, const Vector3d& point)
 {
     const Profile p = profile(surface, point);
     const double g = p.around.f, f = p.along.f;
-    const double by_g = (surface.along * g + surface.c) / p.along.r;
-    const double by_q = by_g / p.around.r; // q of the circle around
-    const double by_height = (surface.along * p.height + surface.s) / p.along.r - by_q * surface.around * p.height;
+    const double by_g = (surface.curvature_along * g + surface.c) / p.along.r;
+    const double by_q = by_g / p.around.r; // derivative by q of the circle around the axis
+    const double by_height =
+        (surface.curvature_along * p.height + surface.s) / p.along.r - by_q * surface.curvature_around * p.height;
     RevolutionDistance result;
     result.value = f;
-    result.by_point = by_height * surface.w + by_q * surface.m + by_q * surface.around * p.d;
-    result.by_theta = by_height * (surface.w_theta.transpose() * p.d) + by_q * (surface.m_theta.transpose() * p.d);
-    result.by_theta[kOffset] = -result.by_point.z();
-    result.by_theta[kAround] = by_q * p.level2 / 2 - by_g * g * g / (2 * p.around.r);
-    result.by_theta[kLean] += (surface.c * p.height - surface.s * g) / p.along.r;
-    result.by_theta[kAlong] = (g * g + p.height * p.height - f * f) / (2 * p.along.r);
+    result.gradient = by_height * surface.w + by_q * surface.m + by_q * surface.curvature_around * p.d;
+    result.parameter_gradient =
+        by_height * (surface.w_theta.transpose() * p.d) + by_q * (surface.m_theta.transpose() * p.d);
+    result.parameter_gradient[kOffset] = -result.gradient.z();
+    result.parameter_gradient[kCurvatureAround] = by_q * p.across2 / 2 - by_g * g * g / (2 * p.around.r);
+    result.parameter_gradient[kLean] += (surface.c * p.height - surface.s * g) / p.along.r;
+    result.parameter_gradient[kCurvatureAlong] = (g * g + p.height * p.height - f * f) / (2 * p.along.r);
     return result;
 }
 
-} // namespace fettle
+} // namespace fettle::surface

@@ -7,26 +7,26 @@
 #include "surface/tensor_bspline.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
-namespace fettle {
+namespace fettle::surface {
 
 namespace {
 
 using json::Reader;
 using json::Value;
 
-// Each shape lists its members once, `members(io, shape)`: a Writer puts them into a JSON value, a Parser takes them
-// from one. A power of length belongs to each: with 1 it is divided by the file's unit, with -1 multiplied.
+// Each shape lists its members once, in `visit_members(io, shape)`: a Writer writes them to a JSON value, a Parser
+// reads them. Each has a power of length: with 1 the Writer divides by the file's unit of length, with -1 it
+// multiplies.
 
 class Writer {
   public:
     explicit Writer(double mm) : mm_(mm) {}
     double mm() const { return mm_; }
 
-    void number(const char* key, double x, int power, const Range& = {}) { value_.set(key, in_unit(x, power)); }
-    void angle(const char* key, double x) { value_.set(key, x / kRadPerDegree); }
+    void number(const char* key, double x, int power, const core::Range& = {}) { value_.set(key, in_unit(x, power)); }
+    void angle(const char* key, double x) { value_.set(key, x / core::kRadPerDegree); }
     void vector(const char* key, const Eigen::VectorXd& v, int power) { value_.set(key, Value(in_unit(v, power))); }
     void matrix(const char* key, const Eigen::MatrixXd& m) { value_.set(key, Value(in_unit(m, 1))); }
     void points(const char* key, const Eigen::Matrix3Xd& m) { matrix(key, m.transpose()); }
@@ -55,11 +55,11 @@ class Parser {
     Parser(Reader& reader, double mm) : reader_(reader), mm_(mm) {}
     double mm() const { return mm_; }
 
-    void number(const char* key, double& x, int power, const Range& range = {})
+    void number(const char* key, double& x, int power, const core::Range& range = {})
     {
         x = in_mm(reader_.number(key, range), power);
     }
-    void angle(const char* key, double& x) { x = reader_.number(key) * kRadPerDegree; }
+    void angle(const char* key, double& x) { x = reader_.number(key) * core::kRadPerDegree; }
     template <typename Vector>
     void vector(const char* key, Vector& v, int power)
     {
@@ -77,7 +77,7 @@ class Parser {
     void direction(const char* key, Vector& v)
     {
         vector(key, v, 0);
-        if (std::abs(v.norm() - 1) > kUnitSlack) reader_.refuse(key, "must have length 1");
+        if (std::abs(v.norm() - 1) > kUnitLengthTolerance) reader_.refuse(key, "must have length 1");
     }
     void upward(const char* key, Eigen::Vector3d& v)
     {
@@ -87,12 +87,12 @@ class Parser {
     void across(const char* key, Eigen::Vector3d& v, const Eigen::Vector3d& normal)
     {
         direction(key, v);
-        if (std::abs(v.dot(normal)) > kUnitSlack) reader_.refuse(key, "must be perpendicular to normal");
+        if (std::abs(v.dot(normal)) > kUnitLengthTolerance) reader_.refuse(key, "must be perpendicular to normal");
     }
 
   private:
-    // Directions are read to full precision; a vector that is further from unit length was edited.
-    static constexpr double kUnitSlack = 1e-9;
+    // Directions are written with all digits; a vector that deviates more from unit length was edited.
+    static constexpr double kUnitLengthTolerance = 1e-9;
 
     template <typename T>
     T in_mm(const T& x, int power) const
@@ -105,7 +105,7 @@ class Parser {
 };
 
 template <typename Io>
-void members(Io& io, Plane& plane)
+void visit_members(Io& io, Plane& plane)
 {
     io.vector("origin", plane.origin, 1);
     io.number("z0", plane.z0, 1);
@@ -113,7 +113,7 @@ void members(Io& io, Plane& plane)
 }
 
 template <typename Io>
-void members(Io& io, Sphere& sphere)
+void visit_members(Io& io, Sphere& sphere)
 {
     io.vector("point", sphere.point, 1);
     io.upward("normal", sphere.normal);
@@ -121,7 +121,7 @@ void members(Io& io, Sphere& sphere)
 }
 
 template <typename Io, typename Round>
-void members_of_frame(Io& io, Round& round)
+void visit_frame(Io& io, Round& round)
 {
     io.vector("point", round.point, 1);
     io.upward("normal", round.normal);
@@ -129,31 +129,31 @@ void members_of_frame(Io& io, Round& round)
 }
 
 template <typename Io>
-void members(Io& io, Cylinder& cylinder)
+void visit_members(Io& io, Cylinder& cylinder)
 {
-    members_of_frame(io, cylinder);
+    visit_frame(io, cylinder);
     io.number("curvature", cylinder.curvature, -1);
 }
 
 template <typename Io>
-void members(Io& io, Cone& cone)
+void visit_members(Io& io, Cone& cone)
 {
-    members_of_frame(io, cone);
-    io.number("around", cone.around, -1);
+    visit_frame(io, cone);
+    io.number("around", cone.curvature_around, -1);
     io.angle("lean_deg", cone.lean);
 }
 
 template <typename Io>
-void members(Io& io, Torus& torus)
+void visit_members(Io& io, Torus& torus)
 {
-    members_of_frame(io, torus);
-    io.number("around", torus.around, -1);
+    visit_frame(io, torus);
+    io.number("around", torus.curvature_around, -1);
     io.angle("lean_deg", torus.lean);
-    io.number("along", torus.along, -1);
+    io.number("along", torus.curvature_along, -1);
 }
 
 template <typename Io>
-void members(Io& io, Quadric& quadric)
+void visit_members(Io& io, Quadric& quadric)
 {
     io.vector("point", quadric.point, 1);
     io.upward("normal", quadric.normal);
@@ -161,27 +161,27 @@ void members(Io& io, Quadric& quadric)
 }
 
 template <typename Io>
-void members(Io& io, Polynomial& polynomial)
+void visit_members(Io& io, Polynomial& polynomial)
 {
     io.vector("origin", polynomial.origin, 1);
-    io.number("scale", polynomial.scale, 1, Range::positive());
+    io.number("scale", polynomial.scale, 1, core::Range::positive());
     io.vector("coefficients", polynomial.coefficients, 1);
 }
 
 template <typename Io>
-void members(Io& io, Swept& swept)
+void visit_members(Io& io, Swept& swept)
 {
     io.vector("origin", swept.origin, 1);
     io.direction("ruling", swept.ruling);
-    io.number("scale", swept.scale, 1, Range::positive());
+    io.number("scale", swept.scale, 1, core::Range::positive());
     io.vector("section", swept.section, 1);
     io.number("slope", swept.slope, 0);
-    io.number("section_least", swept.section_least, 1);
-    io.number("section_most", swept.section_most, 1, Range::at_least(swept.section_least / io.mm()));
+    io.number("section_least", swept.section_min, 1);
+    io.number("section_most", swept.section_max, 1, core::Range::at_least(swept.section_min / io.mm()));
 }
 
 template <typename Io>
-void members(Io& io, Bspline& bspline)
+void visit_members(Io& io, Bspline& bspline)
 {
     io.angle("angle_deg", bspline.angle);
     io.vector("origin", bspline.origin, 1);
@@ -190,7 +190,7 @@ void members(Io& io, Bspline& bspline)
 }
 
 template <typename Io>
-void members(Io& io, TensorBspline& bspline)
+void visit_members(Io& io, TensorBspline& bspline)
 {
     io.angle("angle_deg", bspline.angle);
     io.vector("knots_u", bspline.knots_u, 1);
@@ -199,52 +199,52 @@ void members(Io& io, TensorBspline& bspline)
 }
 
 template <typename Io>
-void members(Io& io, Griddata& griddata)
+void visit_members(Io& io, Griddata& griddata)
 {
     io.points("points", griddata.points);
-    io.number("spacing", griddata.spacing, 1, Range::at_least(0));
+    io.number("spacing", griddata.spacing, 1, core::Range::at_least(0));
     io.angle("angle_deg", griddata.angle);
 }
 
-// --- what the members must be together ---
+// --- conditions on several members, and what is derived from them ---
 
 template <typename AnyShape>
-void complete(const Reader&, AnyShape&)
+void validate(const Reader&, AnyShape&)
 {
 }
 
-void complete(const Reader& reader, Polynomial& polynomial)
+void validate(const Reader& reader, Polynomial& polynomial)
 {
-    if (polynomial.coefficients.size() != monomials(degree(polynomial)))
+    if (polynomial.coefficients.size() != monomial_count(degree(polynomial)))
         reader.refuse("coefficients", "expected 1, 3, 6, 10, … numbers: all of a total degree");
 }
 
-void complete(const Reader& reader, Bspline& bspline)
+void validate(const Reader& reader, Bspline& bspline)
 {
     if (bspline.cell.minCoeff() <= 0) reader.refuse("cell", "must be positive");
     if (bspline.heights.rows() < 4 || bspline.heights.cols() < 4)
         reader.refuse("heights", "expected at least 4 rows of 4 (one cubic cell)");
 }
 
-void complete(const Reader& reader, TensorBspline& bspline)
+void validate(const Reader& reader, TensorBspline& bspline)
 {
     const auto check = [&](const char* key, const Eigen::VectorXd& knots, Eigen::Index control) {
-        if (const std::string wrong = wrong_with_knots(knots, control); !wrong.empty()) reader.refuse(key, wrong);
+        if (const std::string problem = knot_problem(knots, control); !problem.empty()) reader.refuse(key, problem);
     };
     check("knots_u", bspline.knots_u, bspline.heights.rows());
     check("knots_v", bspline.knots_v, bspline.heights.cols());
 }
 
-void complete(const Reader& reader, Griddata& griddata)
+void validate(const Reader& reader, Griddata& griddata)
 {
     try {
         griddata = make_griddata(griddata.points, griddata.spacing, griddata.angle);
-    } catch (const InputError& error) {
+    } catch (const core::InputError& error) {
         reader.refuse("points", error.what());
     }
 }
 
-/// Names of the types, in the order of Shape.
+/// Names of the types, in the order of the alternatives of Shape.
 const std::vector<std::string>& type_names()
 {
     static const std::vector<std::string> names = {"plane",   "sphere",         "cylinder",   "cone",
@@ -253,9 +253,9 @@ const std::vector<std::string>& type_names()
     return names;
 }
 
-/// In place: its members are not set yet, and must not be moved.
+/// Constructs the type in place: its members are not initialised yet, and must not be copied.
 template <std::size_t... kTypes>
-void become(Shape& shape, std::size_t type, std::index_sequence<kTypes...>)
+void emplace_type(Shape& shape, std::size_t type, std::index_sequence<kTypes...>)
 {
     ((type == kTypes ? void(shape.emplace<kTypes>()) : void()), ...);
 }
@@ -266,7 +266,7 @@ Value shape_to_json(const Shape& shape, double mm)
 {
     Writer writer(mm);
     writer.value().set("type", type_names()[shape.index()]);
-    std::visit([&](auto listed) { members(writer, listed); }, shape);
+    std::visit([&](auto copy) { visit_members(writer, copy); }, shape);
     return std::move(writer.value());
 }
 
@@ -275,16 +275,16 @@ Shape parse_shape(Reader reader, double mm)
     const std::vector<std::string>& names = type_names();
     const auto type = std::find(names.begin(), names.end(), reader.choice("type", names)) - names.begin();
     Shape shape;
-    become(shape, static_cast<std::size_t>(type), std::make_index_sequence<std::variant_size_v<Shape>>());
+    emplace_type(shape, type, std::make_index_sequence<std::variant_size_v<Shape>>());
     Parser parser(reader, mm);
     std::visit(
         [&](auto& one) {
-            members(parser, one);
-            complete(reader, one);
+            visit_members(parser, one);
+            validate(reader, one);
         },
         shape);
-    reader.done();
+    reader.reject_unknown_keys();
     return shape;
 }
 
-} // namespace fettle
+} // namespace fettle::surface

@@ -3,10 +3,10 @@
 
 #include <Eigen/Geometry>
 
-namespace fettle {
+namespace fettle::surface {
 
-// F(x; θ) = k/2 |d|² + n·d, d = x - p, rises upward through the surface. Along a vertical line d = d0 + t e_z this is
-// a parabola in t. Implicitly, ∂z/∂θ = -F_θ / F_z, and ∂z/∂x = -F_x / F_z.
+// The surface is F(x; θ) = k/2 |d|² + n·d = 0, d = x - p, and F increases upward. Along a vertical line d = d0 + t e_z
+// it is a parabola in t. By implicit differentiation ∂z/∂θ = -F_θ / F_z and ∂z/∂x = -F_x / F_z.
 
 namespace {
 
@@ -14,7 +14,7 @@ Eigen::Vector3d offset(const Sphere& sphere, const Eigen::Vector2d& xy)
 {
     const double k = sphere.curvature;
     Eigen::Vector3d d(xy.x() - sphere.point.x(), xy.y() - sphere.point.y(), 0);
-    d.z() = rising_root(k / 2, sphere.normal.z(), k / 2 * d.squaredNorm() + sphere.normal.dot(d));
+    d.z() = increasing_root(k / 2, sphere.normal.z(), k / 2 * d.squaredNorm() + sphere.normal.dot(d));
     return d;
 }
 
@@ -24,8 +24,8 @@ double height(const Sphere& sphere, const Eigen::Vector2d& xy) { return sphere.p
 
 Eigen::Vector2d slope(const Sphere& sphere, const Eigen::Vector2d& xy)
 {
-    const Eigen::Vector3d rise = sphere.curvature * offset(sphere, xy) + sphere.normal; // ∇F
-    return -rise.head<2>() / rise.z();
+    const Eigen::Vector3d gradient_of_F = sphere.curvature * offset(sphere, xy) + sphere.normal;
+    return -gradient_of_F.head<2>() / gradient_of_F.z();
 }
 
 Eigen::VectorXd height_gradient(const Sphere& sphere, const Eigen::Vector2d& xy)
@@ -37,18 +37,16 @@ Eigen::VectorXd height_gradient(const Sphere& sphere, const Eigen::Vector2d& xy)
     return -F_theta / (k * d.z() + sphere.normal.z());
 }
 
-Eigen::VectorXi parameter_powers(const Sphere&) { return Eigen::Vector4i(1, 0, 0, -1); }
-
 std::array<Eigen::Vector3d, 2> tangents(const Eigen::Vector3d& normal)
 {
     const Eigen::Vector3d first = Eigen::Vector3d(normal.z(), 0, -normal.x()).normalized();
     return {first, normal.cross(first)};
 }
 
-Sphere sphere_about(const Eigen::Vector3d& centre, double radius, bool convex)
+Sphere sphere_from_centre(const Eigen::Vector3d& centre, double radius, bool convex)
 {
     const double side = convex ? 1 : -1;
     return {centre + side * radius * Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitZ(), side / radius};
 }
 
-} // namespace fettle
+} // namespace fettle::surface

@@ -1,9 +1,11 @@
 #include "surface/spline_energy.h"
 
+#include "surface/basis.h"
+
 #include <array>
 #include <cmath>
 
-namespace fettle {
+namespace fettle::surface {
 
 namespace {
 
@@ -12,23 +14,7 @@ using Eigen::Matrix4d;
 using Eigen::MatrixXd;
 using Eigen::Vector4d;
 
-constexpr Index kOverlap = 3; // a cubic basis function meets that many on either side
-
-/// k-th derivatives (k = 0 … 3) of the four basis functions over a unit cell.
-Vector4d basis_derivative(int k, double f)
-{
-    const double g = 1 - f;
-    switch (k) {
-    case 0:
-        return Vector4d(g * g * g, 4 - 6 * f * f + 3 * f * f * f, 4 - 6 * g * g + 3 * g * g * g, f * f * f) / 6;
-    case 1:
-        return Vector4d(-g * g, 3 * f * f - 4 * f, 4 * g - 3 * g * g, f * f) / 2;
-    case 2:
-        return {g, 3 * f - 2, 3 * g - 2, f};
-    default:
-        return {-1, 3, -3, 1};
-    }
-}
+constexpr Index kBasisOverlap = 3; // a cubic basis function overlaps that many others on either side
 
 /// ∫ B_i^(k) B_j^(k) over a unit cell. Four Gauss points are exact to degree 7; the integrand has 6.
 Matrix4d cell_gram(int k)
@@ -38,13 +24,13 @@ Matrix4d cell_gram(int k)
     Matrix4d cell = Matrix4d::Zero();
     for (int i = 0; i < 2; ++i)
         for (const double side : {-1.0, 1.0}) {
-            const Vector4d b = basis_derivative(k, (1 + side * kNode[i]) / 2);
+            const Vector4d b = uniform_cubic_basis((1 + side * kNode[i]) / 2, k);
             cell += kWeight[i] / 2 * b * b.transpose();
         }
     return cell;
 }
 
-/// The same over `cells` cells of width h.
+/// ∫ B_i^(k) B_j^(k) over `cells` cells of width h.
 MatrixXd gram(int k, Index cells, double h)
 {
     const Matrix4d cell = cell_gram(k) * std::pow(h, 1 - 2 * k);
@@ -55,11 +41,11 @@ MatrixXd gram(int k, Index cells, double h)
 
 /// Control values of 1, x, x² for uniform cubic knots (Marsden's identity): with the Greville abscissa g_i = (i - 1) h,
 /// x has g_i and x² has g_i² - h²/3.
-Eigen::MatrixX3d monomials(Index cells, double h, double middle, double scale)
+Eigen::MatrixX3d monomial_controls(Index cells, double h, double middle, double scale)
 {
     Eigen::MatrixX3d columns(cells + 3, 3);
     for (Index i = 0; i < cells + 3; ++i) {
-        const double greville = static_cast<double>(i - 1) * h - middle;
+        const double greville = (i - 1) * h - middle;
         columns.row(i) << 1, greville / scale, (greville * greville - h * h / 3) / (scale * scale);
     }
     return columns;
@@ -67,9 +53,12 @@ Eigen::MatrixX3d monomials(Index cells, double h, double middle, double scale)
 
 } // namespace
 
-BandMatrix band_over(const Bspline& grid) { return {grid.heights.size(), kOverlap * grid.heights.rows() + kOverlap}; }
+BandMatrix zero_band_matrix(const Bspline& grid)
+{
+    return {grid.heights.size(), kBasisOverlap * grid.heights.rows() + kBasisOverlap};
+}
 
-void add_energy(BandMatrix& sum, const Bspline& grid, double factor)
+void add_derivative_energy(BandMatrix& sum, const Bspline& grid, double factor)
 {
     constexpr std::array<double, 4> kBinomial = {1, 3, 3, 1};
     const Index rows = grid.heights.rows(), columns = grid.heights.cols();
@@ -77,17 +66,17 @@ void add_energy(BandMatrix& sum, const Bspline& grid, double factor)
         const MatrixXd u = gram(k, rows - 3, grid.cell.x());
         const MatrixXd v = gram(3 - k, columns - 3, grid.cell.y());
         for (Index j = 0; j < columns; ++j)
-            for (Index l = std::max<Index>(0, j - kOverlap); l <= j; ++l)
+            for (Index l = std::max<Index>(0, j - kBasisOverlap); l <= j; ++l)
                 for (Index i = 0; i < rows; ++i) {
                     double* row = sum.row(j * rows + i) + l * rows;
-                    const Index last = l == j ? i : std::min(rows - 1, i + kOverlap);
-                    for (Index m = std::max<Index>(0, i - kOverlap); m <= last; ++m)
-                        row[m] += factor * kBinomial[static_cast<std::size_t>(k)] * v(j, l) * u(i, m);
+                    const Index last = l == j ? i : std::min(rows - 1, i + kBasisOverlap);
+                    for (Index m = std::max<Index>(0, i - kBasisOverlap); m <= last; ++m)
+                        row[m] += factor * kBinomial[k] * v(j, l) * u(i, m);
                 }
     }
 }
 
-void add_uniform(BandMatrix& sum, const Bspline& grid, const MatrixXd& weights)
+void add_cell_weights(BandMatrix& sum, const Bspline& grid, const MatrixXd& weights)
 {
     const Index rows = grid.heights.rows();
     const Matrix4d mean = cell_gram(0);
@@ -101,15 +90,15 @@ void add_uniform(BandMatrix& sum, const Bspline& grid, const MatrixXd& weights)
         }
 }
 
-Quadratics quadratics(const Bspline& grid)
+QuadraticControlHeights quadratic_control_heights(const Bspline& grid)
 {
-    Quadratics result;
+    QuadraticControlHeights result;
     const Index rows = grid.heights.rows(), columns = grid.heights.cols();
-    const Eigen::Array2d cells(static_cast<double>(rows - 3), static_cast<double>(columns - 3));
+    const Eigen::Array2d cells(rows - 3, columns - 3);
     result.middle = cells * grid.cell.array() / 2;
-    result.half = result.middle.maxCoeff();
-    const Eigen::MatrixX3d u = monomials(rows - 3, grid.cell.x(), result.middle.x(), result.half);
-    const Eigen::MatrixX3d v = monomials(columns - 3, grid.cell.y(), result.middle.y(), result.half);
+    result.half_side = result.middle.maxCoeff();
+    const Eigen::MatrixX3d u = monomial_controls(rows - 3, grid.cell.x(), result.middle.x(), result.half_side);
+    const Eigen::MatrixX3d v = monomial_controls(columns - 3, grid.cell.y(), result.middle.y(), result.half_side);
     const std::array<std::array<int, 2>, 6> powers = {{{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 2}}};
     result.heights.resize(rows * columns, 6);
     for (Index k = 0; k < 6; ++k)
@@ -117,4 +106,4 @@ Quadratics quadratics(const Bspline& grid)
     return result;
 }
 
-} // namespace fettle
+} // namespace fettle::surface

@@ -4,25 +4,28 @@
 #include "mesh/mesh.h"
 #include "surface/surface.h"
 
-namespace fettle {
+namespace fettle::surface {
 
-/// A square grid over a polygon; its points and the triangles between them.
+/// Square grid over a polygon.
 struct SurfaceGrid {
-    Eigen::Matrix2Xd xy;        ///< M, mm; only points in the polygon, row by row
-    Eigen::Matrix3Xi triangles; ///< counter-clockwise; two for each cell that has its four corners in the polygon
+    Eigen::Matrix2Xd xy;        ///< points inside the polygon, row by row, M, mm
+    Eigen::Matrix3Xi triangles; ///< counter-clockwise; two for each cell with all four corners inside the polygon
 };
 
-/// @param outline  in a frame that is M turned counter-clockwise by `angle`; the grid is aligned with that frame and
-///                 begins at the polygon's least corner
-/// @throws InputError if the step makes more than kMostGridPoints
-SurfaceGrid grid_over(const Polygon& outline, double angle, double step);
-inline constexpr double kMostGridPoints = 2e7; // half a gigabyte of triangles
+inline constexpr double kMaxGridPoints = 2e7; ///< their triangles take half a gigabyte
+
+/// Creates the grid over a polygon.
+/// @param outline  in the frame M rotated counter-clockwise by `angle`, mm; the grid is aligned with that frame and
+///                 starts at the minimum corner of the polygon's bounding box
+/// @param step     mm
+/// @throws InputError for more than kMaxGridPoints in the bounding box
+SurfaceGrid make_surface_grid(const job::Polygon& outline, double angle, double step);
 
 /// The bounding box of the touches, in M.
 /// @throws InputError for a surface without touches
-Polygon touched_box(const Surface& surface, const std::string& source);
+job::Polygon touch_bounding_box(const Surface& surface, const std::string& source);
 
-/// The surface over the grid; triangles with a corner where it is not defined are left out.
-Mesh mesh_of(const Surface& surface, const SurfaceGrid& grid);
+/// Mesh of the surface over the grid. Triangles with a corner where the surface is not defined are left out.
+mesh::Mesh mesh_of(const Surface& surface, const SurfaceGrid& grid);
 
-} // namespace fettle
+} // namespace fettle::surface

@@ -1,4 +1,4 @@
-#include "core/error.h"
+#include "core/constants.h"
 #include "core/text.h"
 #include "surface/shape_json.h"
 #include "surface/surface.h"
@@ -7,17 +7,17 @@
 #include <cmath>
 #include <limits>
 
-namespace fettle {
+namespace fettle::surface {
 
 namespace {
 
-constexpr int kMostRoles = 5;
-constexpr double kMostTouches = 1e9;
+constexpr int kMaxRole = 5;
+constexpr double kMaxTouches = 1e9;
 
 using json::Reader;
 using json::Value;
 
-// --- covariance: the lower triangle, row by row; C_ij has the dimension of θ_i θ_j ---
+// --- covariance: lower triangle, row by row; C_ij has the dimension of θ_i θ_j ---
 
 Eigen::VectorXd parameter_units(const Shape& shape, double mm)
 {
@@ -39,7 +39,7 @@ Eigen::MatrixXd read_covariance(Reader& reader, const Shape& shape, double mm)
     if (!reader.has("covariance")) return {};
     const Eigen::VectorXd unit = parameter_units(shape, mm);
     const Eigen::Index n = unit.size();
-    const Eigen::VectorXd packed = reader.vector("covariance", static_cast<int>(n * (n + 1) / 2));
+    const Eigen::VectorXd packed = reader.vector("covariance", n * (n + 1) / 2);
     Eigen::MatrixXd covariance(n, n);
     for (Eigen::Index i = 0, k = 0; i < n; ++i)
         for (Eigen::Index j = 0; j <= i; ++j, ++k) covariance(i, j) = covariance(j, i) = packed[k] * unit[i] * unit[j];
@@ -47,7 +47,7 @@ Eigen::MatrixXd read_covariance(Reader& reader, const Shape& shape, double mm)
     return covariance;
 }
 
-// --- the alternatives ---
+// --- alternatives ---
 
 Value write_alternatives(const Surface& surface, double mm)
 {
@@ -70,21 +70,22 @@ void read_alternatives(Reader& reader, Surface& surface, double mm)
         Alternative other;
         other.method = one.text("method");
         other.score = one.number("score");
-        other.weight = one.number("weight", Range::between(0, 1));
+        other.weight = one.number("weight", core::Range::between(0, 1));
         if (other.weight > 0) {
             other.shape = parse_shape(one.object("shape"), mm);
             other.covariance = read_covariance(one, other.shape, mm);
             if (other.covariance.size() == 0) one.refuse("covariance", "is missing");
         }
-        one.done();
+        one.reject_unknown_keys();
         sum += other.weight;
         surface.alternatives.push_back(std::move(other));
     }
-    constexpr double kRounding = 1e-9; // numbers are written to all their digits
-    if (std::abs(sum - 1) > kRounding) reader.refuse("alternatives", "weights do not sum up to 1 with that of the fit");
+    constexpr double kSumTolerance = 1e-9; // numbers are written with all digits
+    if (std::abs(sum - 1) > kSumTolerance)
+        reader.refuse("alternatives", "weights do not sum up to 1 with that of the fit");
 }
 
-// --- precision: weights to four digits, which is 1e-4 of a sigma ---
+// --- precision: weights are rounded to four digits, which changes a sigma by 1e-4 of it ---
 
 Value write_precision(const SplinePrecision& precision, double mm)
 {
@@ -100,38 +101,36 @@ Value write_precision(const SplinePrecision& precision, double mm)
 
 std::optional<SplinePrecision> read_precision(Reader& reader, const Surface& surface, double mm)
 {
-    std::optional<Reader> object = reader.object_or_none("precision");
+    std::optional<Reader> object = reader.optional_object("precision");
     if (!object) return std::nullopt;
     const Bspline* spline = std::get_if<Bspline>(&surface.shape);
     if (spline == nullptr) object->refuse("", "belongs to a shape of type bspline");
-    if (surface.covariance.size() > 0) object->refuse("", "stands beside covariance: one of the two");
+    if (surface.covariance.size() > 0) object->refuse("", "and covariance are both given: only one is allowed");
     SplinePrecision precision;
-    precision.amplitude = object->number("amplitude", Range::positive()) / mm;
+    precision.amplitude = object->number("amplitude", core::Range::positive()) / mm;
     precision.weights = object->matrix("weights") / (mm * mm);
     if (precision.weights.rows() != spline->heights.rows() - 3 ||
         precision.weights.cols() != spline->heights.cols() - 3)
         object->refuse("weights", "expected " + std::to_string(spline->heights.rows() - 3) + " rows of " +
                                       std::to_string(spline->heights.cols() - 3) + ", one for each cell");
     if (precision.weights.minCoeff() < 0) object->refuse("weights", "has a negative weight");
-    object->done();
+    object->reject_unknown_keys();
     return precision;
 }
 
-// --- the fit, the touches, the prediction ---
+// --- fit, touches, prediction ---
 
 Value write_fit(const Surface& surface, double mm)
 {
     Value fit;
     fit.set("method", surface.method).set("touch_sigma", surface.touch_sigma / mm);
-    if (std::isfinite(surface.touch_freedom)) fit.set("touch_freedom", surface.touch_freedom);
+    if (std::isfinite(surface.touch_sigma_dof)) fit.set("touch_freedom", surface.touch_sigma_dof);
     fit.set("rms", surface.rms / mm);
     if (std::isfinite(surface.goodness)) fit.set("goodness", surface.goodness);
     if (!surface.alternatives.empty()) fit.set("score", surface.score).set("weight", surface.weight);
-    if (!surface.gross_errors.empty()) {
-        Eigen::VectorXd columns(static_cast<Eigen::Index>(surface.gross_errors.size()));
-        for (Eigen::Index i = 0; i < columns.size(); ++i)
-            columns[i] = static_cast<double>(surface.gross_errors[static_cast<std::size_t>(i)]);
-        fit.set("gross_errors", columns);
+    if (!surface.outliers.empty()) {
+        const std::vector<double> outliers(surface.outliers.begin(), surface.outliers.end());
+        fit.set("gross_errors", Value(Eigen::VectorXd(Eigen::VectorXd::Map(outliers.data(), outliers.size()))));
     }
     return fit.set("ignored", surface.ignored);
 }
@@ -139,21 +138,21 @@ Value write_fit(const Surface& surface, double mm)
 void read_fit(Reader reader, Surface& surface, double mm)
 {
     surface.method = reader.text("method");
-    surface.touch_sigma = reader.number("touch_sigma", Range::at_least(0)) * mm;
-    surface.touch_freedom =
-        reader.number_or("touch_freedom", std::numeric_limits<double>::infinity(), Range{2, kMostTouches, false, true});
-    surface.rms = reader.number("rms", Range::at_least(0)) * mm;
-    surface.goodness = reader.number_or("goodness", std::numeric_limits<double>::quiet_NaN(), Range::between(0, 1));
+    surface.touch_sigma = reader.number("touch_sigma", core::Range::at_least(0)) * mm;
+    surface.touch_sigma_dof =
+        reader.number_or("touch_freedom", core::kInfinity, core::Range{2, kMaxTouches, false, true});
+    surface.rms = reader.number("rms", core::Range::at_least(0)) * mm;
+    surface.goodness = reader.number_or("goodness", core::kNaN, core::Range::between(0, 1));
     surface.ignored = reader.integer("ignored", 0, std::numeric_limits<int>::max());
     surface.score = reader.number_or("score", 0);
-    surface.weight = reader.number_or("weight", 1, Range::between(0, 1));
+    surface.weight = reader.number_or("weight", 1, core::Range::between(0, 1));
     if (reader.has("gross_errors"))
         for (const double column : reader.vector("gross_errors")) {
-            if (!(column >= 0 && column < kMostTouches && column == std::floor(column)))
-                reader.refuse("gross_errors", to_text(column) + " is no number of a touch");
-            surface.gross_errors.push_back(static_cast<Eigen::Index>(column));
+            if (!(column >= 0 && column < kMaxTouches && column == std::floor(column)))
+                reader.refuse("gross_errors", core::to_text(column) + " is not the index of a touch");
+            surface.outliers.push_back(column);
         }
-    reader.done();
+    reader.reject_unknown_keys();
 }
 
 Value write_touches(const Surface& surface, double mm)
@@ -170,8 +169,8 @@ void read_touches(Reader& reader, Surface& surface, double mm)
     if (rows.rows() == 0) reader.refuse("touches", "is empty");
     surface.touches = rows.leftCols(3).transpose() * mm;
     for (Eigen::Index i = 0; i < rows.rows(); ++i)
-        if (!(rows(i, 3) >= 0 && rows(i, 3) <= kMostRoles && rows(i, 3) == std::floor(rows(i, 3))))
-            reader.refuse("touches[" + std::to_string(i) + "][3]", "is no role (0 to 5)");
+        if (!(rows(i, 3) >= 0 && rows(i, 3) <= kMaxRole && rows(i, 3) == std::floor(rows(i, 3))))
+            reader.refuse("touches[" + std::to_string(i) + "][3]", "is no touch role (0 to 5)");
     surface.roles = rows.col(3).cast<int>();
 }
 
@@ -188,10 +187,10 @@ Prediction read_prediction(Reader reader, double mm)
 {
     Prediction prediction;
     prediction.method = reader.choice("method", {"posterior", "wang"});
-    prediction.confidence = reader.number("confidence", Range::between(0, 1));
+    prediction.confidence = reader.number("confidence", core::Range::between(0, 1));
     prediction.shift = reader.number("shift") * mm;
     prediction.clamped = reader.flag_or("clamped", false);
-    reader.done();
+    reader.reject_unknown_keys();
     return prediction;
 }
 
@@ -223,21 +222,21 @@ Surface parse_surface(json::Reader reader)
     const double mm = surface.units.mm();
     surface.shape = parse_shape(reader.object("shape"), mm);
     surface.shift = reader.number_or("shift", 0) * mm;
-    if (std::optional<Reader> prediction = reader.object_or_none("prediction")) {
+    if (std::optional<Reader> prediction = reader.optional_object("prediction")) {
         surface.prediction = read_prediction(*prediction, mm);
-        surface.prediction->band = reader.number("predicted_band", Range::at_least(0)) * mm;
+        surface.prediction->band = reader.number("predicted_band", core::Range::at_least(0)) * mm;
     }
-    if (std::optional<Reader> fit = reader.object_or_none("fit")) read_fit(*fit, surface, mm);
+    if (std::optional<Reader> fit = reader.optional_object("fit")) read_fit(*fit, surface, mm);
     read_touches(reader, surface, mm);
     surface.covariance = read_covariance(reader, surface.shape, mm);
     surface.precision = read_precision(reader, surface, mm);
     if (reader.has("alternatives")) read_alternatives(reader, surface, mm);
-    for (const Eigen::Index column : surface.gross_errors)
+    for (const Eigen::Index column : surface.outliers)
         if (column >= surface.touches.cols()) reader.refuse("fit.gross_errors", "there are fewer touches");
-    reader.done();
+    reader.reject_unknown_keys();
     return surface;
 }
 
 Surface read_surface(const std::string& path) { return parse_surface(json::Reader::open(path)); }
 
-} // namespace fettle
+} // namespace fettle::surface

@@ -1,10 +1,10 @@
 #include "surface/shapes.h"
 
-namespace fettle {
+namespace fettle::surface {
 
 namespace {
 
-/// Distances across the rulings, over `scale`, and along them.
+/// Coordinate across the rulings, divided by `scale`, and along them, mm.
 Eigen::Vector2d across_along(const Swept& swept, const Eigen::Vector2d& xy)
 {
     const Eigen::Vector2d d = xy - swept.origin;
@@ -35,6 +35,4 @@ Eigen::VectorXd height_gradient(const Swept& swept, const Eigen::Vector2d& xy)
     return (Eigen::VectorXd(5) << 1, s, s * s, s * s * s, st[1]).finished();
 }
 
-Eigen::VectorXi parameter_powers(const Swept&) { return (Eigen::VectorXi(5) << 1, 1, 1, 1, 0).finished(); }
-
-} // namespace fettle
+} // namespace fettle::surface

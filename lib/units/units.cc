@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace fettle {
+namespace fettle::units {
 
 namespace {
 constexpr double kMmPerInch = 25.4;               // exact by definition (1959)
@@ -13,15 +13,7 @@ constexpr double kNewtonPerLbf = 4.4482216152605; // exact by definition: 0.4535
 
 double mm_per(Units::Length length)
 {
-    switch (length) {
-    case Units::Length::mm:
-        return 1;
-    case Units::Length::in:
-        return kMmPerInch;
-    case Units::Length::m:
-        break;
-    }
-    return 1000;
+    return length == Units::Length::mm ? 1 : length == Units::Length::in ? kMmPerInch : 1000;
 }
 
 double Units::mm() const { return mm_per(length); }
@@ -39,19 +31,19 @@ Units::Length parse_length_unit(const std::string& word)
 {
     for (const Units::Length length : {Units::Length::mm, Units::Length::in, Units::Length::m})
         if (word == to_string(length)) return length;
-    throw InputError("unknown length unit '" + word + "' (mm, in or m)");
+    throw core::InputError("unknown length unit '" + word + "' (mm, in or m)");
 }
 
 Units::Force parse_force_unit(const std::string& word)
 {
     for (const Units::Force force : {Units::Force::N, Units::Force::lbf})
         if (word == to_string(force)) return force;
-    throw InputError("unknown force unit '" + word + "' (N or lbf)");
+    throw core::InputError("unknown force unit '" + word + "' (N or lbf)");
 }
 
-double to_base(const Units& units, Dimension dimension)
+double base_unit_factor(const Units& units, Dimension dimension)
 {
     return std::pow(units.mm(), dimension.length_power) * std::pow(units.newton(), dimension.force_power);
 }
 
-} // namespace fettle
+} // namespace fettle::units

@@ -2,10 +2,10 @@
 
 #include <string>
 
-namespace fettle {
+namespace fettle::units {
 
-/// The library computes in mm, N, s and rad. A job declares the units of its files and reports; numbers are converted
-/// where they are read and written, nowhere else.
+/// Units of a file or report. The library itself computes in mm, N, s and rad; numbers are converted only where they
+/// are read and written.
 struct Units {
     enum class Length { mm, in, m };
     enum class Force { N, lbf };
@@ -13,9 +13,9 @@ struct Units {
     Length length = Length::mm;
     Force force = Force::N;
 
-    /// Millimetres in one length unit: multiply a number from a file by it, divide a number for a file by it.
+    /// Millimetres per length unit: multiply lengths read from a file by it, divide lengths to write by it.
     double mm() const;
-    /// Newtons in one force unit.
+    /// Newtons per force unit.
     double newton() const;
 
     bool operator==(const Units&) const = default;
@@ -25,19 +25,20 @@ struct Units {
 std::string to_string(Units::Length length);
 std::string to_string(Units::Force force);
 
-/// @throws InputError for any other word
+/// Inverse of to_string(). @throws InputError for other words
 Units::Length parse_length_unit(const std::string& word);
 Units::Force parse_force_unit(const std::string& word);
 
+/// Millimetres per length unit.
 double mm_per(Units::Length length);
 
-/// What a measured quantity is made of: length^length_power · force^force_power (time is always in seconds).
+/// Dimension of a quantity: length^length_power · force^force_power (time is always in seconds).
 struct Dimension {
     int length_power = 0;
     int force_power = 0;
 };
 
-/// Factor that turns a number in `units` into mm and N.
-double to_base(const Units& units, Dimension dimension);
+/// Factor that converts a quantity from `units` to base units, mm and N.
+double base_unit_factor(const Units& units, Dimension dimension);
 
-} // namespace fettle
+} // namespace fettle::units

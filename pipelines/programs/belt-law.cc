@@ -1,4 +1,4 @@
-// The removal law of a belt from measured trials, and how well it tells trials that it was not fitted to.
+// The removal law of a belt from measured trials, and how well it predicts trials that it was not fitted to.
 
 #include "belt/contact_wheel.h"
 #include "belt/removal_fit.h"
@@ -36,7 +36,7 @@ std::vector<Row> rows_of(const std::string& text, const std::string& source)
 {
     std::vector<Row> rows;
     std::vector<std::string> names;
-    for (Lines lines(text); lines.next();) {
+    for (core::Lines lines(text); lines.next();) {
         if (lines.line().empty() || lines.line().front() == '#') continue;
         const std::vector<std::string> cells = cells_of(lines.line());
         if (names.empty()) {
@@ -44,10 +44,10 @@ std::vector<Row> rows_of(const std::string& text, const std::string& source)
             continue;
         }
         if (cells.size() != names.size())
-            throw InputError(source, lines.place() + ": " + std::to_string(cells.size()) + " values, not " +
-                                         std::to_string(names.size()));
+            throw core::InputError(source, lines.location() + ": " + std::to_string(cells.size()) + " values, not " +
+                                               std::to_string(names.size()));
         Row& row = rows.emplace_back();
-        for (std::size_t i = 0; i < names.size(); ++i) row[names[i]] = parse_number(cells[i]).value_or(NAN);
+        for (std::size_t i = 0; i < names.size(); ++i) row[names[i]] = core::parse_number(cells[i]).value_or(NAN);
     }
     return rows;
 }
@@ -58,7 +58,7 @@ double value_or_nan(const Row& row, const std::string& name)
     return found == row.end() ? NAN : found->second;
 }
 
-RemovalTrial trial_of(const Row& row)
+belt::RemovalTrial trial_of(const Row& row)
 {
     return {value_or_nan(row, "avg_force_N"),        value_or_nan(row, "avg_rpm"),
             value_or_nan(row, "feed_rate_setpoint"), value_or_nan(row, "grind_time_s"),
@@ -66,16 +66,16 @@ RemovalTrial trial_of(const Row& row)
 }
 
 /// Is the recorded work a state that trials hand on? How many trials there are with one that begins where they end,
-/// within `kSlack` of their own work, and how many by chance: where no belt ever ends.
-json::Value work_carried(const std::vector<RemovalTrial>& trials)
+/// within `kShareTolerance` of their own work, and how many by chance: where no belt ever ends.
+json::Value work_carried(const std::vector<belt::RemovalTrial>& trials)
 {
-    constexpr double kSlack = 0.02; // work was summed with set values; force, speed and duration are means
+    constexpr double kShareTolerance = 0.02; // work was summed with set values; force, speed and duration are means
     const auto followed = [&](double share) {
         std::size_t count = 0;
-        for (const RemovalTrial& trial : trials) {
+        for (const belt::RemovalTrial& trial : trials) {
             const double own = trial.force * trial.speed * trial.duration;
-            const auto follows = [&](const RemovalTrial& other) {
-                return std::abs((other.worn - trial.worn) / own - share) <= kSlack;
+            const auto follows = [&](const belt::RemovalTrial& other) {
+                return std::abs((other.prior_work - trial.prior_work) / own - share) <= kShareTolerance;
             };
             count += std::any_of(trials.begin(), trials.end(), follows) ? 1 : 0;
         }
@@ -84,36 +84,36 @@ json::Value work_carried(const std::vector<RemovalTrial>& trials)
     return json::Value().set("handed_on", followed(1)).set("by_chance", followed(0.9)).set("trials", trials.size());
 }
 
-json::Value score_of(const char* name, const std::vector<RemovalTrial>& trials, const RemovalTerms& terms)
+json::Value score_of(const char* name, const std::vector<belt::RemovalTrial>& trials, const belt::RemovalTerms& terms)
 {
-    const RemovalScore score = score_removal(trials, terms);
-    const RemovalLaw& law = score.law;
+    const belt::RemovalScore score = belt::score_removal(trials, terms);
+    const belt::RemovalLaw& law = score.law;
     return json::Value()
         .set("name", name)
         .set("r2", score.r2)
-        .set("left_out_r2", score.left_out_r2)
+        .set("left_out_r2", score.leave_one_out_r2)
         .set("worst_factor", score.worst_factor)
         .set("coefficient", std::exp(law.log_coefficient))
-        .set("force", law.force)
-        .set("speed", law.speed)
-        .set("feed", law.feed)
-        .set("duration", law.duration)
+        .set("force", law.force_exponent)
+        .set("speed", law.speed_exponent)
+        .set("feed", law.feed_exponent)
+        .set("duration", law.duration_exponent)
         .set("threshold", law.threshold)
-        .set("wear_work", law.wear > 0 ? 1 / law.wear : 0);
+        .set("wear_work", law.wear_rate > 0 ? 1 / law.wear_rate : 0);
 }
 
 /// As a wheel's file has it: pressure is force over `area`, mm²; the belt goes `travel` mm in a unit of the trials'
 /// speed and a second.
-json::Value wheels_law(const RemovalLaw& law, double area, double travel)
+json::Value wheels_law(const belt::RemovalLaw& law, double area, double travel)
 {
     return json::Value()
         .set("type", "power")
-        .set("coefficient",
-             std::exp(law.log_coefficient) * std::pow(area, law.force - 1) * std::pow(travel, -law.speed))
-        .set("pressure_exponent", law.force)
-        .set("speed_exponent", law.speed)
-        .set("dwell_exponent", law.duration)
-        .set("wear_work", law.wear > 0 ? travel / law.wear / kJoule : 0);
+        .set("coefficient", std::exp(law.log_coefficient) * std::pow(area, law.force_exponent - 1) *
+                                std::pow(travel, -law.speed_exponent))
+        .set("pressure_exponent", law.force_exponent)
+        .set("speed_exponent", law.speed_exponent)
+        .set("dwell_exponent", law.duration_exponent)
+        .set("wear_work", law.wear_rate > 0 ? travel / law.wear_rate / belt::kNewtonMmPerJoule : 0);
 }
 
 } // namespace
@@ -125,19 +125,20 @@ int main(int argc, char** argv)
         "TRIALS has a row of names and the columns avg_force_N, initial_wear, removed_mm3 and grind_time_s and "
         "avg_rpm, or "
         "feed_rate_setpoint; with a column exact, rows where it is not 1 say bounds and are left out.";
-    return tool_main(argc, argv, description, [](Tool& t) {
-        const std::string& path = t.input("TRIALS", "CSV");
-        const double& area = t.number("--area", 50, "MM2", "Of the contact while the wheel stands", Range::positive());
-        const double& travel = t.number("--travel", 100, "MM", "Of the belt in a revolution", Range::positive());
+    return cli::tool_main(argc, argv, description, [](cli::Tool& t) {
+        const std::string& path = t.main_input("TRIALS", "CSV");
+        const double& area =
+            t.number("--area", 50, "MM2", "Of the contact while the wheel stands", core::Range::positive());
+        const double& travel = t.number("--travel", 100, "MM", "Of the belt in a revolution", core::Range::positive());
         t.parse();
-        const std::string name = display_name(path);
-        std::vector<RemovalTrial> exact, all;
-        for (const Row& row : rows_of(read_whole(path), name)) {
+        const std::string name = core::display_name(path);
+        std::vector<belt::RemovalTrial> exact, all;
+        for (const Row& row : rows_of(core::read_file(path), name)) {
             all.push_back(trial_of(row));
             const double is_exact = value_or_nan(row, "exact");
             if (std::isnan(is_exact) || is_exact == 1) exact.push_back(all.back());
         }
-        const std::vector<json::Value> laws = named(name, [&] {
+        const std::vector<json::Value> laws = cli::with_error_prefix(name, [&] {
             return std::vector<json::Value>{score_of("Preston", exact, {false, false, false}),
                                             score_of("Preston, wear", exact, {false, true, false}),
                                             score_of("exponents", exact, {true, false, false}),
@@ -150,9 +151,9 @@ int main(int argc, char** argv)
         if (is_static) {
             constexpr double kSeconds = 60; // in a minute
             out.set("work", work_carried(all))
-                .set("law", wheels_law(fit_removal(exact, {true, true, false}), area, travel / kSeconds));
+                .set("law", wheels_law(belt::fit_removal(exact, {true, true, false}), area, travel / kSeconds));
         }
         t.output() << out;
-        return Verdict::yes;
+        return cli::Verdict::yes;
     });
 }

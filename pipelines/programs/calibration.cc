@@ -33,7 +33,7 @@ Eigen::MatrixXd quadratic_basis(const Eigen::Matrix2Xd& xy, double scale)
 }
 
 /// Squared-exponential process on a free quadratic, the best of a grid of amplitudes and lengths.
-Eigen::VectorXd gaussian_process(const FitInput& input, const Eigen::Matrix2Xd& grid, double sigma)
+Eigen::VectorXd gaussian_process(const fit::FitInput& input, const Eigen::Matrix2Xd& grid, double sigma)
 {
     const Eigen::Matrix2Xd xy = input.xyz.topRows(2);
     const Eigen::VectorXd z = input.xyz.row(2).transpose();
@@ -67,20 +67,21 @@ Eigen::VectorXd gaussian_process(const FitInput& input, const Eigen::Matrix2Xd& 
 }
 
 /// Median band of the best unbiased estimate: draws from the covariance of the truth's family.
-double limit(const std::string& family, const FitInput& exact, const Eigen::Matrix2Xd& grid, std::mt19937_64& random)
+double limit(const std::string& family, const fit::FitInput& exact, const Eigen::Matrix2Xd& grid,
+             std::mt19937_64& random)
 {
-    Surface surface = begin_surface(exact, family, kSampleRoles, 3);
-    const Touched touched = touched_of(surface, exact.job);
-    const std::optional<Candidate> known = fit_family(family, touched, all_touches(touched));
+    surface::Surface surface = fit::begin_surface(exact, family, fit::kSampleRoles, 3);
+    const fit::TouchSet touched = fit::make_touch_set(surface, exact.job);
+    const std::optional<fit::FitCandidate> known = fit::fit_family(family, touched, fit::all_touches(touched));
     if (!known) return std::numeric_limits<double>::quiet_NaN();
     const Eigen::MatrixXd root = Eigen::LLT<Eigen::MatrixXd>(known->covariance).matrixL();
-    const Eigen::MatrixXd G = height_gradients(known->shape, grid).transpose() * root;
+    const Eigen::MatrixXd G = surface::height_gradients(known->shape, grid).transpose() * root;
     std::normal_distribution<double> normal;
     std::vector<double> bands;
     for (int draw = 0; draw < 200; ++draw) {
         Eigen::VectorXd unit(root.cols());
         for (double& u : unit) u = normal(random);
-        bands.push_back(error_band(G * unit));
+        bands.push_back(margin::error_band(G * unit));
     }
     std::nth_element(bands.begin(), bands.begin() + 100, bands.end());
     return bands[100];
@@ -102,39 +103,40 @@ int main(int argc, char** argv)
         std::mt19937_64 random(seed * 1000003 + static_cast<std::uint64_t>(number));
         const Cell cell = draw_cell(number, random);
         const auto [truth, family] = truth_of(kind, cell);
-        FitInput input = wang_touches(cell, truth);
+        fit::FitInput input = wang_touches(cell, truth);
         const Eigen::Matrix2Xd grid = inside(cell.a, cell.b, 31);
         const Eigen::VectorXd exact = heights_of(truth, grid);
         const double best =
             family.empty() ? std::numeric_limits<double>::quiet_NaN() : limit(family, input, grid * kInch, random);
-        std::normal_distribution<double> noise(0, touch_sigma(input.job.probe));
+        std::normal_distribution<double> noise(0, fit::touch_sigma(input.job.probe));
         for (Eigen::Index i = 0; i < input.xyz.cols(); ++i) input.xyz(2, i) += noise(random);
 
         for (int m = 4; m < argc; ++m) {
             const std::string method = argv[m];
-            Surface surface;
+            surface::Surface surface;
             Eigen::VectorXd z;
             double shift = NAN, predicted = NAN, covered = NAN, z2 = NAN;
             if (method == "gp") {
                 z = gaussian_process(input, grid * kInch, noise.stddev());
             } else {
-                FitInput mine = input;
+                fit::FitInput mine = input;
                 if (method == "griddata" || method == "bspline-wang") add_estimated(mine);
-                surface = fit_surface(mine, method).surface;
-                z = heights(surface, grid * kInch);
-                if (surface.covariance.size() > 0) {
-                    const Prediction foreseen = predict_by_posterior(surface, input.job, 0.99, 1);
-                    shift = foreseen.shift;
-                    predicted = predict_by_posterior(surface, input.job, 0.95, 1).band;
+                surface = fit::fit_surface(mine, method).surface;
+                z = surface::heights(surface, grid * kInch);
+                if (surface::has_sigma(surface)) {
+                    const surface::Prediction posterior_prediction =
+                        margin::predict_by_posterior(surface, input.job, 0.99, 1);
+                    shift = posterior_prediction.shift;
+                    predicted = margin::predict_by_posterior(surface, input.job, 0.95, 1).band;
                     const Eigen::Index one =
                         static_cast<Eigen::Index>(random() % static_cast<std::uint64_t>(grid.cols()));
-                    const double error = (z[one] - exact[one]) / sigma(surface, grid.col(one) * kInch);
+                    const double error = (z[one] - exact[one]) / surface::sigma(surface, grid.col(one) * kInch);
                     covered = std::abs(error) <= 1.959964;
                     z2 = error * error;
                 }
             }
             const Eigen::VectorXd errors = z - exact;
-            const double band = error_band(errors);
+            const double band = margin::error_band(errors);
             std::cout << kind << ',' << number << ',' << input.xyz.cols() << ',' << cell.R << ',' << cell.a << ','
                       << cell.b << ',' << cell.d << ',' << method << ','
                       << (surface.method.empty() ? method : surface.method) << ',' << surface.weight << ','

@@ -28,7 +28,7 @@ using Truth = std::function<double(double, double)>;
 
 struct Cell {
     double R;    ///< radius
-    double side; ///< 1 or -1: the other way up
+    double side; ///< 1 or -1: upside down
     double a, b; ///< sides of the anomaly
     double d;    ///< from there to the farthest touches
 };
@@ -53,7 +53,7 @@ inline Truth turned(Truth truth)
     };
 }
 
-/// The truth of a kind, and a family that holds it (or a stand-in that the touches cannot tell from it).
+/// The truth of a kind, and a family that contains it (or one that the touches cannot distinguish from it).
 inline std::pair<Truth, std::string> truth_of(const std::string& kind, const Cell& cell)
 {
     const double R = cell.R, s = cell.side;
@@ -147,10 +147,10 @@ inline Eigen::Matrix2Xd inside(double a, double b, int n)
     return xy * (1 - 1e-9);
 }
 
-inline Job job_of(const Cell& cell)
+inline job::Job job_of(const Cell& cell)
 {
-    Job job;
-    job.units.length = Units::Length::in;
+    job::Job job;
+    job.units.length = units::Units::Length::in;
     job.probe.accuracy = 0.005 * kInch;
     job.anomaly.resize(3, 4);
     const double x = cell.a / 2 * kInch, y = cell.b / 2 * kInch;
@@ -162,9 +162,9 @@ inline Job job_of(const Cell& cell)
 }
 
 /// The points that griddata needs beneath the anomaly.
-inline void add_estimated(FitInput& input)
+inline void add_estimated(fit::FitInput& input)
 {
-    const Eigen::Matrix3Xd more = estimated_points(input.job, input.xyz, input.curves, input.roles);
+    const Eigen::Matrix3Xd more = sampling::estimated_points(input.job, input.xyz, input.curves, input.roles);
     const Eigen::Index n = input.xyz.cols(), all = n + more.cols();
     input.xyz.conservativeResize(3, all);
     input.xyz.rightCols(more.cols()) = more;
@@ -183,9 +183,9 @@ inline Eigen::VectorXd heights_of(const Truth& truth, const Eigen::Matrix2Xd& xy
 }
 
 /// Wang's touches of a truth, without noise.
-inline FitInput wang_touches(const Cell& cell, const Truth& truth)
+inline fit::FitInput wang_touches(const Cell& cell, const Truth& truth)
 {
-    FitInput input;
+    fit::FitInput input;
     input.job = job_of(cell);
     const Eigen::Matrix2Xd xy = layout(cell.a, cell.b, cell.d, input.curves);
     input.xyz.resize(3, xy.cols());

@@ -1,9 +1,10 @@
-// What happens to a part on its way through a printer, a mould or a scanner: a mesh or cloud becomes one that is
+// Errors that a printer, a mould or a scanner adds to a part: a mesh or cloud becomes one that is
 // warped, shrunk, noisy and not quite in its place.
 
 #include "cli/tool.h"
 #include "cloud/pcd.h"
 #include "core/file.h"
+#include "geometry/bounding_box.h"
 #include "mesh/mesh_file.h"
 
 #include <Eigen/Geometry>
@@ -58,8 +59,7 @@ Eigen::Matrix3Xd disturbed(Eigen::Matrix3Xd points, const Disturbance& d, std::u
     std::mt19937_64 random(seed);
     std::normal_distribution<double> normal;
     const Warp warp(d, random);
-    const Eigen::Matrix<double, 3, 2> box = bounding_box(points);
-    const Eigen::Vector3d middle = box.rowwise().mean(), foot(middle.x(), middle.y(), 0);
+    const Eigen::Vector3d middle = geometry::finite_bounding_box(points).center(), foot(middle.x(), middle.y(), 0);
     Eigen::Vector3d turn, shift;
     for (int k = 0; k < 3; ++k) {
         turn[k] = d.turn * normal(random);
@@ -80,29 +80,32 @@ Eigen::Matrix3Xd disturbed(Eigen::Matrix3Xd points, const Disturbance& d, std::u
 
 int main(int argc, char** argv)
 {
-    return tool_main(argc, argv, "Disturb a mesh or a cloud, as making and measuring it does.", [](Tool& t) {
-        const std::string& path = t.input("PART", "STL, or a PCD");
+    return cli::tool_main(argc, argv, "Disturb a mesh or a cloud, as making and measuring it does.", [](cli::Tool& t) {
+        const std::string& path = t.main_input("PART", "STL, or a PCD");
         const bool& is_cloud = t.flag("--cloud", "It is a PCD");
-        const std::optional<Units::Length>& unit = t.length_unit("--file-units", "Of PART");
-        const double& warp = t.number("--warp", 0, "MM", "Smooth error, standard deviation", Range::at_least(0));
-        const double& wavelength = t.number("--wavelength", 25, "MM", "Of the warp", Range::positive());
-        const double& shrinkage = t.number("--shrinkage", 0, "SHARE", "Of all lengths", Range::at_least(0));
-        const double& noise = t.number("--noise", 0, "MM", "Of each point, standard deviation", Range::at_least(0));
-        const double& shift = t.number("--shift", 0, "MM", "Along each axis, standard deviation", Range::at_least(0));
-        const double& turn = t.number("--turn", 0, "DEG", "About each axis, standard deviation", Range::at_least(0));
+        const std::optional<units::Units::Length>& unit = t.length_unit("--file-units", "Of PART");
+        const double& warp = t.number("--warp", 0, "MM", "Smooth error, standard deviation", core::Range::at_least(0));
+        const double& wavelength = t.number("--wavelength", 25, "MM", "Of the warp", core::Range::positive());
+        const double& shrinkage = t.number("--shrinkage", 0, "SHARE", "Of all lengths", core::Range::at_least(0));
+        const double& noise =
+            t.number("--noise", 0, "MM", "Of each point, standard deviation", core::Range::at_least(0));
+        const double& shift =
+            t.number("--shift", 0, "MM", "Along each axis, standard deviation", core::Range::at_least(0));
+        const double& turn =
+            t.number("--turn", 0, "DEG", "About each axis, standard deviation", core::Range::at_least(0));
         t.parse();
 
         const Disturbance d = {warp, wavelength, shrinkage, noise, shift, turn * std::numbers::pi / 180};
-        const Units::Length length = unit.value_or(Units::Length::mm);
+        const units::Units::Length length = unit.value_or(units::Units::Length::mm);
         if (is_cloud) {
-            CloudFile file = read_cloud(path);
+            cloud::CloudFile file = cloud::read_cloud(path);
             file.cloud.xyz = disturbed(file.cloud.xyz, d, t.seed());
-            write_pcd(t.output(), file.cloud, file.units);
+            cloud::write_pcd(t.output(), file.cloud, file.units);
         } else {
-            Mesh mesh = read_mesh(path, length);
+            mesh::Mesh mesh = mesh::read_mesh(path, length);
             mesh.vertices = disturbed(mesh.vertices, d, t.seed());
-            write_stl(t.output(), mesh, length);
+            mesh::write_stl(t.output(), mesh, length);
         }
-        return Verdict::yes;
+        return cli::Verdict::yes;
     });
 }

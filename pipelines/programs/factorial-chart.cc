@@ -4,8 +4,8 @@
 #include "factorial.h"
 
 #include "cli/tool.h"
-#include "compare/canvas.h"
-#include "compare/chart.h"
+#include "draw/canvas.h"
+#include "draw/chart.h"
 
 #include <array>
 #include <functional>
@@ -38,9 +38,9 @@ Cells chosen(const Cells& cells, const std::function<bool(const Cell&)>& wanted)
     return result;
 }
 
-Chart panel(const std::string& title, const std::string& x_label)
+draw::Chart panel(const std::string& title, const std::string& x_label)
 {
-    Chart chart;
+    draw::Chart chart;
     chart.title = title;
     chart.x_label = x_label;
     chart.y_label = "in, median of the cells";
@@ -49,12 +49,12 @@ Chart panel(const std::string& title, const std::string& x_label)
 }
 
 /// Bands and shifts of Wang's method, of the default and as published.
-Chart by_methods(const std::string& title, const std::string& x_label, const Kind& kind, const Cells& cells,
-                 const Number& x)
+draw::Chart by_methods(const std::string& title, const std::string& x_label, const Kind& kind, const Cells& cells,
+                       const Number& x)
 {
-    Chart chart = panel(title, x_label);
+    draw::Chart chart = panel(title, x_label);
     const auto add = [&](const std::string& name, const Number& y) {
-        chart.curves.push_back({name, medians(cells, x, y), curve_colour(chart.curves.size())});
+        chart.curves.push_back({name, medians(cells, x, y), draw::curve_colour(chart.curves.size())});
     };
     for (const Quantity quantity : {band, shift}) {
         const std::string what = quantity == band ? ", band" : ", shift";
@@ -66,12 +66,12 @@ Chart by_methods(const std::string& title, const std::string& x_label, const Kin
 }
 
 /// Wang's method over the shape, for the areas that the experiment has in several shapes.
-Chart by_shape(const Kind& kind, const Cells& cells)
+draw::Chart by_shape(const Kind& kind, const Cells& cells)
 {
-    Chart chart = panel("(a) shape, " + kind.method, "longer side over shorter side");
+    draw::Chart chart = panel("(a) shape, " + kind.method, "longer side over shorter side");
     struct Areas {
         std::string name;
-        double least, most; ///< in², nearly the same
+        double min, max; ///< in², nearly the same
     };
     const std::array<Areas, 3> areas = {{{"10 in2", 9.9, 10.6}, {"32 in2", 30, 33}, {"57 in2", 55, 61}}};
     for (const Quantity quantity : {band, shift})
@@ -79,10 +79,10 @@ Chart by_shape(const Kind& kind, const Cells& cells)
             chart.curves.push_back(
                 {area.name + (quantity == band ? ", band" : ", shift"),
                  medians(
-                     chosen(cells, [&](const Cell& c) { return c.area() >= area.least && c.area() <= area.most; }),
+                     chosen(cells, [&](const Cell& c) { return c.area() >= area.min && c.area() <= area.max; }),
                      [](const Cell& cell) { return cell.slimness(); },
                      [&](const Cell& cell) { return cell.error(kind.method, quantity); }),
-                 curve_colour(chart.curves.size())});
+                 draw::curve_colour(chart.curves.size())});
     return chart;
 }
 
@@ -90,33 +90,35 @@ Chart by_shape(const Kind& kind, const Cells& cells)
 
 int main(int argc, char** argv)
 {
-    return tool_main(argc, argv, "Figure 4-14 of Wang's factorial experiment, for one kind of surface.", [](Tool& t) {
-        std::vector<std::string> names;
-        for (const auto& [name, kind] : kinds()) names.push_back(name);
-        const std::string& surface = t.word("SURFACE", names, "Kind of surface");
-        const std::string& path = t.input("CELLS", "Batches of the program factorial, merged");
-        t.reference("Wang 2007, figure 4-14");
-        t.parse();
+    return cli::tool_main(
+        argc, argv, "Figure 4-14 of Wang's factorial experiment, for one kind of surface.", [](cli::Tool& t) {
+            std::vector<std::string> names;
+            for (const auto& [name, kind] : kinds()) names.push_back(name);
+            const std::string& surface = t.positional_choice("SURFACE", names, "Kind of surface");
+            const std::string& path = t.main_input("CELLS", "Batches of the program factorial, merged");
+            t.reference("Wang 2007, figure 4-14");
+            t.parse();
 
-        const Kind& kind = kinds().at(surface);
-        const Cells cells = read_study(path).surfaces[surface];
-        const Cells squares = chosen(cells, [](const Cell& cell) { return cell.width == cell.length; });
-        const std::array<Chart, 4> charts = {
-            by_shape(kind, cells),
-            by_methods("(b) farthest sampling distance", "distance, in", kind, cells,
-                       [](const Cell& cell) { return cell.distance; }),
-            by_methods("(c) area, squares", "area, in2", kind, squares, [](const Cell& cell) { return cell.area(); }),
-            by_methods("(d) curvature", "curvature, 1/in", kind, cells,
-                       [](const Cell& cell) { return 1 / cell.radius; }),
-        };
-        constexpr double kHead = 30;
-        Canvas sheet(static_cast<int>(2 * kPanel.x()), static_cast<int>(2 * kPanel.y() + kHead));
-        sheet.text("Wang 2007, figure 4-14: " + surface + ", " + std::to_string(cells.size()) + " cells",
-                   {kPanel.x(), 18}, 14, Canvas::kInk, Canvas::Align::centre, true);
-        for (std::size_t i = 0; i < charts.size(); ++i)
-            draw_chart(sheet, Eigen::Vector2d(i % 2 ? kPanel.x() : 0, (i / 2 ? kPanel.y() : 0) + kHead), kPanel,
-                       charts[i]);
-        t.output() << sheet.png();
-        return Verdict::yes;
-    });
+            const Kind& kind = kinds().at(surface);
+            const Cells cells = read_study(path).surfaces[surface];
+            const Cells squares = chosen(cells, [](const Cell& cell) { return cell.width == cell.length; });
+            const std::array<draw::Chart, 4> charts = {
+                by_shape(kind, cells),
+                by_methods("(b) farthest sampling distance", "distance, in", kind, cells,
+                           [](const Cell& cell) { return cell.distance; }),
+                by_methods("(c) area, squares", "area, in2", kind, squares,
+                           [](const Cell& cell) { return cell.area(); }),
+                by_methods("(d) curvature", "curvature, 1/in", kind, cells,
+                           [](const Cell& cell) { return 1 / cell.radius; }),
+            };
+            constexpr double kHead = 30;
+            draw::Canvas sheet(static_cast<int>(2 * kPanel.x()), static_cast<int>(2 * kPanel.y() + kHead));
+            sheet.text("Wang 2007, figure 4-14: " + surface + ", " + std::to_string(cells.size()) + " cells",
+                       {kPanel.x(), 18}, 14, draw::Canvas::kInk, draw::Canvas::Align::centre, true);
+            for (std::size_t i = 0; i < charts.size(); ++i)
+                draw::draw_chart(sheet, Eigen::Vector2d(i % 2 ? kPanel.x() : 0, (i / 2 ? kPanel.y() : 0) + kHead),
+                                 kPanel, charts[i]);
+            t.output() << sheet.png();
+            return cli::Verdict::yes;
+        });
 }

@@ -1,4 +1,4 @@
-// The factorial experiment of Wang 2007, 4.5, as a whole: bands by method, the regressions fitted anew beside the
+// The factorial experiment of Wang 2007, 4.5, as a whole: bands by method, the regressions fitted again beside the
 // published ones, Wang's observations, and what must be reached.
 
 #include "factorial.h"
@@ -99,7 +99,7 @@ Refit refit(const Cells& cells, const std::string& method, Quantity quantity)
     }
     Refit result{Eigen::VectorXd::Constant(terms, kNaN)};
     if (count <= terms) return result;
-    const LeastSquares fit = least_squares_by_qr(model, measured);
+    const core::LeastSquaresSolution fit = core::least_squares_by_qr(model, measured);
     if (fit.rank < terms) return result; // the terms are not independent
     result.coefficients = fit.x;
     const double residual = (measured - model * result.coefficients).squaredNorm();
@@ -123,12 +123,12 @@ void print_regressions(std::ostream& out, const Study& study)
            "cells where the published prediction is below 0.\n";
     for (const auto& [surface, cells] : study.surfaces) {
         const Kind& kind = kinds().at(surface);
-        const Regression& published = published_regression(kind.regression);
+        const margin::Regression& published = margin::published_regression(kind.regression);
         for (const Quantity quantity : {band, shift}) {
             const auto predicted = each(cells, [&](const Cell& cell) { return cell.published(kind, quantity); });
             const auto negative = std::count_if(predicted.begin(), predicted.end(), [](double p) { return p < 0; });
             out << "\n" << left(surface + (quantity == band ? ", band" : ", shift"), 24);
-            for (const std::string& term : regression_terms(kind.regression)) out << right(term, 12);
+            for (const std::string& term : margin::regression_terms(kind.regression)) out << right(term, 12);
             out << "      R2   rms   predicted  measured  negative\n";
             print_row(out, "published", quantity == band ? published.band : published.shift);
             out << right("-", 8) << right("-", 6) << number(median(predicted) / kMil, 12, 2) << right("-", 10)
@@ -171,14 +171,14 @@ void print_observations(std::ostream& out, const Study& study)
         std::function<bool(const Cell&, const Cell&)> differ;
     };
     // Areas of the experiment that differ by less than this are the same: 1 x 10 and 3.25 x 3.25, for one.
-    constexpr double kSameArea = 1.1;
+    constexpr double kMaxAreaRatio = 1.1;
     const auto same_sides = [](const Cell& a, const Cell& b) { return a.width == b.width && a.length == b.length; };
-    const auto ends = [](double a, double b, double least, double most) { return a == least && b == most; };
+    const auto ends = [](double a, double b, double min, double max) { return a == min && b == max; };
     const std::vector<Observation> observations = {
         {"(a) slimmer, same area",
          [](const Cell& a, const Cell& b) {
              return a.radius == b.radius && a.distance == b.distance && a.slimness() == 1 && b.slimness() > 1 &&
-                    std::max(a.area(), b.area()) <= kSameArea * std::min(a.area(), b.area());
+                    std::max(a.area(), b.area()) <= kMaxAreaRatio * std::min(a.area(), b.area());
          }},
         {"(b) distance 1 to 10 in",
          [&](const Cell& a, const Cell& b) {
@@ -215,14 +215,14 @@ class Bars {
   public:
     explicit Bars(std::ostream& out) : out_(out) { out_ << "\nMust be reached\n"; }
 
-    void between(const std::string& name, double value, double least, double most)
+    void between(const std::string& name, double value, double min, double max)
     {
-        const bool good = value >= least && value <= most;
+        const bool good = value >= min && value <= max;
         reached_ = reached_ && good;
-        out_ << left(name, 72) << number(value, 8, 3) << "   " << to_short_text(least) << " to " << to_short_text(most)
-             << (good ? "" : "   MISSED") << "\n";
+        out_ << left(name, 72) << number(value, 8, 3) << "   " << core::to_short_text(min) << " to "
+             << core::to_short_text(max) << (good ? "" : "   MISSED") << "\n";
     }
-    void at_most(const std::string& name, double value, double most) { between(name, value, 0, most); }
+    void at_most(const std::string& name, double value, double max) { between(name, value, 0, max); }
     bool reached() const { return reached_; }
 
   private:
@@ -230,7 +230,7 @@ class Bars {
     bool reached_ = true;
 };
 
-bool judge(std::ostream& out, const Study& study)
+bool check_claims(std::ostream& out, const Study& study)
 {
     Bars bars(out);
     Cells all;
@@ -266,14 +266,15 @@ bool judge(std::ostream& out, const Study& study)
 
 int main(int argc, char** argv)
 {
-    return tool_main(argc, argv, "Tables of Wang's factorial experiment, and what must be reached.", [](Tool& t) {
-        const std::string& path = t.input("CELLS", "Batches of the program factorial, merged");
-        t.reference("Wang 2007, 4.5");
-        t.parse();
-        const Study study = read_study(path);
-        print_methods(t.output(), study);
-        print_regressions(t.output(), study);
-        print_observations(t.output(), study);
-        return judge(t.output(), study) ? Verdict::yes : Verdict::no;
-    });
+    return cli::tool_main(
+        argc, argv, "Tables of Wang's factorial experiment, and what must be reached.", [](cli::Tool& t) {
+            const std::string& path = t.main_input("CELLS", "Batches of the program factorial, merged");
+            t.reference("Wang 2007, 4.5");
+            t.parse();
+            const Study study = read_study(path);
+            print_methods(t.output(), study);
+            print_regressions(t.output(), study);
+            print_observations(t.output(), study);
+            return check_claims(t.output(), study) ? cli::Verdict::yes : cli::Verdict::no;
+        });
 }

@@ -1,5 +1,5 @@
 // One batch of the factorial experiment of Wang 2007, 4.5: one surface of one curvature, 125 cells, every method of
-// fit. A cell's touch noise is drawn by its number, so that it is the same in whatever batch and on whatever machine.
+// fit. A cell's touch noise is drawn by its number, so that it is the same in every batch and on every machine.
 
 #include "cli/tool.h"
 #include "core/text.h"
@@ -31,13 +31,13 @@ constexpr double kInch = 25.4;
 constexpr std::array kLevels = {1.0, 3.25, 5.5, 7.75, 10.0};
 constexpr int kLevelCount = std::ssize(kLevels);
 // Radii, in.
-constexpr int kLeastRadius = 25, kMostRadius = 225, kRadiusStep = 10;
-constexpr int kRadiusCount = (kMostRadius - kLeastRadius) / kRadiusStep + 1;
+constexpr int kMinRadius = 25, kMaxRadius = 225, kRadiusStep = 10;
+constexpr int kRadiusCount = (kMaxRadius - kMinRadius) / kRadiusStep + 1;
 constexpr int kBatch = kLevelCount * kLevelCount * kLevelCount;
 
 // 99 % of the touch errors lie within, mm.
 constexpr double kAccuracy = 0.005 * kInch;
-// The errors are looked at on a grid of that many points over the longer side of the anomaly, and along its edge:
+// The errors are evaluated on a grid of that many points over the longer side of the anomaly, and along its edge:
 // cubic pieces between touches bend over a fifth of the side or more.
 constexpr int kAcross = 40;
 // Of the touch noise, for the limit: the median of so many bands scatters by 4 % of itself.
@@ -45,8 +45,8 @@ constexpr int kLimitDraws = 199;
 
 struct Kind {
     std::string name;
-    SurfaceType type;
-    RegressionKind regression;
+    job::SurfaceType type;
+    margin::RegressionKind regression;
     std::function<double(double x, double y, double radius)> height; ///< highest, lowest or saddle point at 0
 };
 
@@ -56,13 +56,13 @@ const std::vector<Kind>& kinds()
 {
     // The cylinder's axis runs along X: the swept jobs' rulings.
     static const std::vector<Kind> all = {
-        {"cylinder", SurfaceType::swept, RegressionKind::swept,
+        {"cylinder", job::SurfaceType::swept, margin::RegressionKind::swept,
          [](double, double y, double r) { return arc(y * y, r); }},
-        {"sphere-convex", SurfaceType::freeform, RegressionKind::convex,
+        {"sphere-convex", job::SurfaceType::freeform, margin::RegressionKind::convex,
          [](double x, double y, double r) { return arc(x * x + y * y, r); }},
-        {"sphere-concave", SurfaceType::freeform, RegressionKind::concave,
+        {"sphere-concave", job::SurfaceType::freeform, margin::RegressionKind::concave,
          [](double x, double y, double r) { return -arc(x * x + y * y, r); }},
-        {"saddle", SurfaceType::freeform, RegressionKind::saddle,
+        {"saddle", job::SurfaceType::freeform, margin::RegressionKind::saddle,
          [](double x, double y, double r) { return (y * y - x * x) / (2 * r); }},
     };
     return all;
@@ -79,7 +79,7 @@ struct Cell {
 Cell cell_at(int kind, int radius, int place)
 {
     const auto level = [](int index) { return kInch * kLevels[static_cast<std::size_t>(index % kLevelCount)]; };
-    const int batch = kind * kRadiusCount + (radius - kLeastRadius) / kRadiusStep;
+    const int batch = kind * kRadiusCount + (radius - kMinRadius) / kRadiusStep;
     return {batch * kBatch + place,
             &kinds()[static_cast<std::size_t>(kind)],
             kInch * radius,
@@ -96,10 +96,10 @@ Eigen::Matrix3Xd rectangle(double width, double length)
     return corners;
 }
 
-Job job_of(const Cell& cell)
+job::Job job_of(const Cell& cell)
 {
-    Job job;
-    job.units.length = Units::Length::in;
+    job::Job job;
+    job.units.length = units::Units::Length::in;
     job.surface = cell.kind->type;
     job.anomaly = rectangle(cell.width, cell.length);
     job.sampling = rectangle(cell.width + 2 * cell.distance, cell.length + 2 * cell.distance);
@@ -114,47 +114,48 @@ Eigen::VectorXd true_heights(const Cell& cell, const Eigen::Matrix2Xd& xy)
     return z;
 }
 
-FitInput touch(const Cell& cell, std::uint64_t seed)
+fit::FitInput touch(const Cell& cell, std::uint64_t seed)
 {
-    FitInput input;
+    fit::FitInput input;
     input.job = job_of(cell);
-    const TouchPlan plan = plan_touches(input.job);
+    const sampling::TouchPlan plan = sampling::plan_touches(input.job);
     input.curves = plan.curve;
     input.roles = plan.role;
     input.xyz.resize(3, plan.size());
     input.xyz << plan.xy, true_heights(cell, plan.xy).transpose();
-    input.xyz.row(2) += draw_noise({TouchNoise::Kind::normal, kAccuracy}, plan.size(), seed).transpose();
+    input.xyz.row(2) +=
+        sampling::draw_noise({sampling::TouchNoise::Kind::normal, kAccuracy}, plan.size(), seed).transpose();
     return input;
 }
 
-void add_estimated(FitInput& input)
+void add_estimated(fit::FitInput& input)
 {
-    if (input.job.surface != SurfaceType::freeform) return;
-    const Eigen::Matrix3Xd points = estimated_points(input.job, input.xyz, input.curves, input.roles);
+    if (input.job.surface != job::SurfaceType::freeform) return;
+    const Eigen::Matrix3Xd points = sampling::estimated_points(input.job, input.xyz, input.curves, input.roles);
     const Eigen::Index touches = input.xyz.cols(), count = points.cols();
     input.xyz.conservativeResize(3, touches + count);
     input.roles.conservativeResize(touches + count);
     input.curves.conservativeResize(touches + count);
     input.xyz.rightCols(count) = points;
-    input.roles.tail(count).setConstant(static_cast<int>(Role::estimated));
+    input.roles.tail(count).setConstant(static_cast<int>(sampling::Role::estimated));
     input.curves.tail(count).setConstant(-1); // of no line
 }
 
 /// ∂z/∂θ of the family that the surface is of; the direction of a swept job's rulings is given.
 Eigen::MatrixXd family_gradients(const Cell& cell, const Eigen::Matrix2Xd& xy)
 {
-    const bool convex = cell.kind->regression != RegressionKind::concave;
+    const bool convex = cell.kind->regression != margin::RegressionKind::concave;
     const Eigen::Vector3d centre(0, 0, convex ? -cell.radius : cell.radius);
-    if (cell.kind->regression == RegressionKind::saddle) {
+    if (cell.kind->regression == margin::RegressionKind::saddle) {
         Eigen::MatrixXd quadratic(6, xy.cols());
         quadratic << Eigen::RowVectorXd::Ones(xy.cols()), xy, xy.cwiseAbs2(), xy.row(0).cwiseProduct(xy.row(1));
         return quadratic;
     }
-    if (cell.kind->regression != RegressionKind::swept)
-        return height_gradients(sphere_about(centre, cell.radius, convex), xy);
+    if (cell.kind->regression != margin::RegressionKind::swept)
+        return surface::height_gradients(surface::sphere_from_centre(centre, cell.radius, convex), xy);
     const std::vector<int> all_but_turn = {0, 1, 2, 4};
-    return height_gradients(cylinder_about(centre, Eigen::Vector3d::UnitX(), cell.radius, convex), xy)(all_but_turn,
-                                                                                                       Eigen::all);
+    return surface::height_gradients(surface::cylinder_from_axis(centre, Eigen::Vector3d::UnitX(), cell.radius, convex),
+                                     xy)(all_but_turn, Eigen::all);
 }
 
 /// What statistics allow: the median error band of the least squares fit of the true family (Cramér and Rao), mm.
@@ -165,40 +166,41 @@ double limit(const Cell& cell, const Eigen::Matrix2Xd& touched, const Eigen::Mat
     const Eigen::MatrixXd influence =
         family_gradients(cell, grid).transpose() *
         model.colPivHouseholderQr().solve(Eigen::MatrixXd::Identity(model.rows(), model.rows()));
-    const Eigen::VectorXd noise = draw_noise({TouchNoise::Kind::normal, kAccuracy}, kLimitDraws * touched.cols(), seed);
+    const Eigen::VectorXd noise =
+        sampling::draw_noise({sampling::TouchNoise::Kind::normal, kAccuracy}, kLimitDraws * touched.cols(), seed);
     std::vector<double> bands;
     for (int draw = 0; draw < kLimitDraws; ++draw)
-        bands.push_back(error_band(influence * noise.segment(draw * touched.cols(), touched.cols())));
+        bands.push_back(margin::error_band(influence * noise.segment(draw * touched.cols(), touched.cols())));
     std::nth_element(bands.begin(), bands.begin() + kLimitDraws / 2, bands.end());
     return bands[kLimitDraws / 2];
 }
 
 /// Band and shift by one method over the part of the anomaly where it has a surface, in, and the share of that part;
 /// nothing where it has none at all. (Interpolators have none beyond the convex hull of the touches.)
-std::optional<Eigen::Vector3d> errors_of(const FitInput& input, const std::string& method, const Eigen::Matrix2Xd& grid,
-                                         const Eigen::VectorXd& truth)
+std::optional<Eigen::Vector3d> errors_of(const fit::FitInput& input, const std::string& method,
+                                         const Eigen::Matrix2Xd& grid, const Eigen::VectorXd& truth)
 {
     try {
-        const Fit fit = fit_surface(input, method);
+        const fit::Fit fit = fit::fit_surface(input, method);
         if (!fit.converged) return std::nullopt;
-        const Eigen::VectorXd errors = heights(fit.surface, grid) - truth;
+        const Eigen::VectorXd errors = surface::heights(fit.surface, grid) - truth;
         std::vector<double> defined;
         std::copy_if(errors.begin(), errors.end(), std::back_inserter(defined),
                      [](double e) { return !std::isnan(e); });
         if (defined.empty()) return std::nullopt;
         const Eigen::Map<const Eigen::VectorXd> known(defined.data(), std::ssize(defined));
-        return Eigen::Vector3d(error_band(known) / kInch, shift_distance(known) / kInch,
+        return Eigen::Vector3d(margin::error_band(known) / kInch, margin::shift_distance(known) / kInch,
                                static_cast<double>(known.size()) / static_cast<double>(errors.size()));
-    } catch (const InputError&) { // the touches do not determine such a surface: an answer, too
+    } catch (const core::InputError&) { // the touches do not determine such a surface: an answer, too
         return std::nullopt;
     }
 }
 
 json::Value run(const Cell& cell, const std::vector<std::string>& methods, std::uint64_t seed)
 {
-    FitInput input = touch(cell, seed);
+    fit::FitInput input = touch(cell, seed);
     const Eigen::Matrix3Xd touches = input.xyz;
-    const Eigen::Matrix2Xd grid = anomaly_grid(input.job, kAcross);
+    const Eigen::Matrix2Xd grid = margin::anomaly_grid(input.job, kAcross);
     const Eigen::VectorXd truth = true_heights(cell, grid);
     add_estimated(input);
     json::Value errors;
@@ -212,7 +214,7 @@ json::Value run(const Cell& cell, const std::vector<std::string>& methods, std::
         .set("length", cell.length / kInch)
         .set("distance", cell.distance / kInch)
         .set("touches", static_cast<int>(touches.cols()))
-        .set("terms", regression_values(cell.kind->regression, touches, input.job))
+        .set("terms", margin::regression_values(cell.kind->regression, touches, input.job))
         .set("limit", limit(cell, touches.topRows<2>(), grid, seed) / kInch)
         .set("errors", errors);
     return result;
@@ -235,8 +237,7 @@ std::string words(const std::vector<std::string>& names)
 std::vector<std::string> radii()
 {
     std::vector<std::string> names;
-    for (int radius = kLeastRadius; radius <= kMostRadius; radius += kRadiusStep)
-        names.push_back(std::to_string(radius));
+    for (int radius = kMinRadius; radius <= kMaxRadius; radius += kRadiusStep) names.push_back(std::to_string(radius));
     return names;
 }
 
@@ -244,29 +245,31 @@ std::vector<std::string> radii()
 
 int main(int argc, char** argv)
 {
-    return tool_main(argc, argv, "One batch of Wang's factorial experiment: one surface of one radius.", [](Tool& t) {
-        const std::string& surface = t.word("SURFACE", names_of_kinds(), "Kind of surface");
-        const std::string& radius = t.word("RADIUS", radii(), "Its radius of curvature, in");
-        const int& every = t.count("--every", 1, "Take every Nth cell only, from the batch's first", 1, kBatch);
-        t.example("factorial saddle 125 --every 25", "five cells of the saddles of 125 in");
-        t.reference("Wang 2007, 4.5; eq. 4-1 (band), 4-6 (shift)");
-        t.parse();
+    return cli::tool_main(
+        argc, argv, "One batch of Wang's factorial experiment: one surface of one radius.", [](cli::Tool& t) {
+            const std::string& surface = t.positional_choice("SURFACE", names_of_kinds(), "Kind of surface");
+            const std::string& radius = t.positional_choice("RADIUS", radii(), "Its radius of curvature, in");
+            const int& every = t.count("--every", 1, "Take every Nth cell only, from the batch's first", 1, kBatch);
+            t.example("factorial saddle 125 --every 25", "five cells of the saddles of 125 in");
+            t.reference("Wang 2007, 4.5; eq. 4-1 (band), 4-6 (shift)");
+            t.parse();
 
-        const auto& names = kinds();
-        const auto kind = std::find_if(names.begin(), names.end(), [&](const Kind& k) { return k.name == surface; });
-        std::vector<std::string> methods = {"auto"};
-        methods.insert(methods.end(), fit_methods().begin(), fit_methods().end());
-        const std::uint64_t first_seed = t.seed() * kBatch * kRadiusCount * names.size();
-        std::vector<json::Value> cells;
-        for (int place = 0; place < kBatch; place += every) {
-            const Cell cell = cell_at(static_cast<int>(kind - names.begin()), std::stoi(radius), place);
-            cells.push_back(run(cell, methods, first_seed + static_cast<std::uint64_t>(cell.number)));
-        }
-        t.output() << json::Value()
-                          .set("kind", "factorial")
-                          .set("units", json::Value().set("length", "in"))
-                          .set("methods", words(methods))
-                          .set("cells", cells);
-        return Verdict::yes;
-    });
+            const auto& names = kinds();
+            const auto kind =
+                std::find_if(names.begin(), names.end(), [&](const Kind& k) { return k.name == surface; });
+            std::vector<std::string> methods = {"auto"};
+            methods.insert(methods.end(), fit::fit_methods().begin(), fit::fit_methods().end());
+            const std::uint64_t first_seed = t.seed() * kBatch * kRadiusCount * names.size();
+            std::vector<json::Value> cells;
+            for (int place = 0; place < kBatch; place += every) {
+                const Cell cell = cell_at(static_cast<int>(kind - names.begin()), std::stoi(radius), place);
+                cells.push_back(run(cell, methods, first_seed + static_cast<std::uint64_t>(cell.number)));
+            }
+            t.output() << json::Value()
+                              .set("kind", "factorial")
+                              .set("units", json::Value().set("length", "in"))
+                              .set("methods", words(methods))
+                              .set("cells", cells);
+            return cli::Verdict::yes;
+        });
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-// Cells of the factorial experiment as factorial.cc writes them, read back by the programs that look at all of them.
+// Cells of the factorial experiment as factorial.cc writes them, read back by the programs that evaluate them.
 
 #include "margin/regression.h"
 #include "json/document.h"
@@ -19,17 +19,17 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// A kind of surface, and Wang's own method for it.
 struct Kind {
-    fettle::RegressionKind regression;
+    fettle::margin::RegressionKind regression;
     std::string method;
 };
 
 inline const std::map<std::string, Kind>& kinds()
 {
     static const std::map<std::string, Kind> all = {
-        {"cylinder", {fettle::RegressionKind::swept, "swept"}},
-        {"sphere-convex", {fettle::RegressionKind::convex, "griddata"}},
-        {"sphere-concave", {fettle::RegressionKind::concave, "griddata"}},
-        {"saddle", {fettle::RegressionKind::saddle, "griddata"}},
+        {"cylinder", {fettle::margin::RegressionKind::swept, "swept"}},
+        {"sphere-convex", {fettle::margin::RegressionKind::convex, "griddata"}},
+        {"sphere-concave", {fettle::margin::RegressionKind::concave, "griddata"}},
+        {"saddle", {fettle::margin::RegressionKind::saddle, "griddata"}},
     };
     return all;
 }
@@ -53,7 +53,7 @@ struct Cell {
     }
     double published(const Kind& kind, Quantity quantity) const
     {
-        const fettle::Regression& regression = fettle::published_regression(kind.regression);
+        const fettle::margin::Regression& regression = fettle::margin::published_regression(kind.regression);
         return (quantity == band ? regression.band : regression.shift).dot(terms);
     }
     double area() const { return width * length; }
@@ -68,7 +68,7 @@ struct Study {
 
 inline Cell read_cell(fettle::json::Reader& row, const std::vector<std::string>& methods)
 {
-    const fettle::Range positive = fettle::Range::positive();
+    const fettle::core::Range positive = fettle::core::Range::positive();
     Cell cell;
     cell.number = row.integer("cell", 0, std::numeric_limits<int>::max());
     cell.radius = row.number("radius", positive);
@@ -81,7 +81,7 @@ inline Cell read_cell(fettle::json::Reader& row, const std::vector<std::string>&
     fettle::json::Reader errors = row.object("errors");
     for (const std::string& method : methods)
         if (errors.has(method)) cell.errors[method] = errors.vector(method, 3);
-    errors.done();
+    errors.reject_unknown_keys();
     return cell;
 }
 
@@ -93,7 +93,7 @@ inline Study read_study(const std::string& path)
     reader.expect_kind("factorial");
     fettle::json::Reader units = reader.object("units");
     units.choice("length", {"in"});
-    units.done();
+    units.reject_unknown_keys();
     Study study;
     std::istringstream methods(reader.text("methods"));
     for (std::string method; methods >> method;) study.methods.push_back(method);
@@ -102,9 +102,9 @@ inline Study read_study(const std::string& path)
     for (fettle::json::Reader& row : reader.objects("cells")) {
         const std::string surface = row.choice("surface", names);
         study.surfaces[surface].push_back(read_cell(row, study.methods));
-        row.done();
+        row.reject_unknown_keys();
     }
-    reader.done();
+    reader.reject_unknown_keys();
     return study;
 }
 

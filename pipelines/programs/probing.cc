@@ -1,4 +1,4 @@
-// How many touches adaptive probing saves, and whether the band that it foresees when it stops holds: one kind of
+// How many touches adaptive probing saves, and whether the band that it predicts when it stops is met: one kind of
 // surface, many cells of the design of Wang's factorial experiment (2007, 4.5).
 //
 //     probing KIND CELLS SEED       a line a cell and design, CSV
@@ -24,14 +24,14 @@ using namespace cells;
 
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 // Of Wang's touches, percent.
 constexpr int kShares[] = {20, 25, 30, 35, 40, 45, 50, 55, 60, 65, 70, 75, 80, 85, 90, 95, 100};
-constexpr int kFewest = 6; // that a fit takes
+constexpr int kMinTouches = 6; // that a fit takes
 
-/// A surface and where its fits are judged.
+/// A surface and the points at which its fits are evaluated.
 struct Part {
-    Job job;
+    job::Job job;
     Truth truth;
     Eigen::Matrix2Xd grid; ///< inside B, mm
     Eigen::VectorXd exact; ///< mm
@@ -39,36 +39,38 @@ struct Part {
 };
 
 /// Infinite without a surface.
-double band_of(const Part& part, const FitInput& input, const std::string& method)
+double band_of(const Part& part, const fit::FitInput& input, const std::string& method)
 {
     try {
-        const Eigen::VectorXd errors = heights(fit_surface(input, method).surface, part.grid) - part.exact;
-        if (!errors.hasNaN()) return error_band(errors);
-    } catch (const InputError&) {
+        const Eigen::VectorXd errors =
+            surface::heights(fit::fit_surface(input, method).surface, part.grid) - part.exact;
+        if (!errors.hasNaN()) return margin::error_band(errors);
+    } catch (const core::InputError&) {
         // these touches determine none
     }
     return std::numeric_limits<double>::infinity();
 }
 
-FitInput first_of(const Part& part, const AdaptiveTouches& found, Eigen::Index count)
+fit::FitInput first_of(const Part& part, const margin::AdaptiveTouches& found, Eigen::Index count)
 {
-    FitInput input;
+    fit::FitInput input;
     input.job = part.job;
     input.xyz = found.touches.leftCols(count);
     input.roles = found.plan.role.head(count);
     return input;
 }
 
-AdaptiveTouches adapt(const Part& part, int most, double band)
+margin::AdaptiveTouches adapt(const Part& part, int max, double band)
 {
-    AdaptiveLimits limits;
-    limits.most_touches = most;
-    limits.band = band;
-    return touch_adaptively(part.job, limits, [&](const TouchPlan& plan) {
+    margin::AdaptiveLimits limits;
+    limits.max_touches = max;
+    limits.max_band = band;
+    return margin::touch_adaptively(part.job, limits, [&](const sampling::TouchPlan& plan) {
         Eigen::Matrix3Xd touches(3, plan.size());
-        touches << plan.xy,
-            heights_of(part.truth, plan.xy / kInch).transpose() +
-                draw_noise({TouchNoise::Kind::normal, part.job.probe.accuracy}, plan.size(), part.seed).transpose();
+        touches << plan.xy, heights_of(part.truth, plan.xy / kInch).transpose() +
+                                sampling::draw_noise({sampling::TouchNoise::Kind::normal, part.job.probe.accuracy},
+                                                     plan.size(), part.seed)
+                                    .transpose();
         return touches;
     });
 }
@@ -79,7 +81,7 @@ void study(const std::string& kind, int number, std::uint64_t seed)
     const Cell cell = draw_cell(number, random);
     Part part;
     part.truth = truth_of(kind, cell).first;
-    FitInput wang = wang_touches(cell, part.truth);
+    fit::FitInput wang = wang_touches(cell, part.truth);
     part.job = wang.job;
     part.grid = inside(cell.a, cell.b, 31) * kInch;
     part.exact = heights_of(part.truth, part.grid / kInch);
@@ -89,22 +91,23 @@ void study(const std::string& kind, int number, std::uint64_t seed)
         std::cout << kind << ',' << number << ',' << all << ',' << design << ',' << touches << ',' << band / kInch
                   << ',' << predicted / kInch << '\n';
     };
-    wang.xyz.row(2) += draw_noise({TouchNoise::Kind::normal, part.job.probe.accuracy}, all, random()).transpose();
-    print("wang", all, band_of(part, wang, "auto"), kNone);
-    FitInput interpolated = wang;
+    wang.xyz.row(2) +=
+        sampling::draw_noise({sampling::TouchNoise::Kind::normal, part.job.probe.accuracy}, all, random()).transpose();
+    print("wang", all, band_of(part, wang, "auto"), kUndefined);
+    fit::FitInput interpolated = wang;
     add_estimated(interpolated);
-    print("griddata", all, band_of(part, interpolated, "griddata"), kNone);
+    print("griddata", all, band_of(part, interpolated, "griddata"), kUndefined);
 
-    const AdaptiveTouches found = adapt(part, all, 0);
+    const margin::AdaptiveTouches found = adapt(part, all, 0);
     for (const int share : kShares) {
-        const int count = std::max(kFewest, static_cast<int>(std::lround(share * all / 100.0)));
+        const int count = std::max(kMinTouches, static_cast<int>(std::lround(share * all / 100.0)));
         print("adaptive" + std::to_string(share), count, band_of(part, first_of(part, found, count), "auto"),
               found.band[count - 1]);
     }
-    constexpr int kMost = 60; // as fettle-sample
-    const AdaptiveTouches stopped = adapt(part, kMost, part.job.probe.accuracy);
+    constexpr int kMaxTouches = 60; // as fettle-sample
+    const margin::AdaptiveTouches stopped = adapt(part, kMaxTouches, part.job.probe.accuracy);
     const Eigen::Index count = stopped.plan.size();
-    print(stopped.enough ? "stopped" : "exhausted", count, band_of(part, first_of(part, stopped, count), "auto"),
+    print(stopped.band_reached ? "stopped" : "exhausted", count, band_of(part, first_of(part, stopped, count), "auto"),
           stopped.band[count - 1]);
 }
 

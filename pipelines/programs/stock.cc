@@ -3,6 +3,8 @@
 #include "cli/tool.h"
 #include "core/error.h"
 #include "core/file.h"
+#include "core/text.h"
+#include "geometry/bounding_box.h"
 #include "mesh/mesh.h"
 #include "mesh/mesh_file.h"
 #include "robot/solve_path.h"
@@ -29,7 +31,7 @@ constexpr int kSteps = 400;
 constexpr double kRim = 0.05;
 
 struct Allowance {
-    double least, most;
+    double min, max;
     Eigen::AlignedBox3d box; ///< of the design
 
     /// Waves, two to the design's size.
@@ -37,7 +39,7 @@ struct Allowance {
     {
         const Eigen::Vector3d place = (point - box.center()) / box.diagonal().norm() * 4 * std::numbers::pi;
         const double wave = std::sin(place.x() + 0.5 * place.y()) * std::cos(place.z() - 0.5 * place.y());
-        return least + (most - least) * (1 + wave) / 2;
+        return min + (max - min) * (1 + wave) / 2;
     }
 };
 
@@ -47,16 +49,16 @@ struct Sheet {
     static constexpr int side = kSteps + 3;
 };
 
-Sheet sheet_over(const Patch& patch)
+Sheet sheet_over(const surface::Patch& patch)
 {
-    const Eigen::Matrix2d limits = domain(patch);
+    const Eigen::Matrix2d limits = surface::parameter_domain(patch);
     Sheet sheet;
     for (int i = -1; i <= kSteps + 1; ++i)
         for (int j = -1; j <= kSteps + 1; ++j) {
             const auto share = [](int k) { return std::min(std::max(k, 0), kSteps) / double(kSteps); };
             const Eigen::Vector2d uv =
                 limits.col(0) + (limits.col(1) - limits.col(0)).cwiseProduct(Eigen::Vector2d(share(i), share(j)));
-            const Eigen::Matrix3d here = point_and_tangents(patch, uv);
+            const Eigen::Matrix3d here = surface::point_and_tangents(patch, uv);
             const auto beyond = [](int k) { return k < 0 ? -kRim : k > kSteps ? kRim : 0; };
             sheet.points.push_back(here.col(0) + beyond(i) * here.col(1).normalized() +
                                    beyond(j) * here.col(2).normalized());
@@ -65,16 +67,16 @@ Sheet sheet_over(const Patch& patch)
     return sheet;
 }
 
-/// The patches' sheets, raised; their normals look away from the design's middle.
-Mesh stock_of(const std::vector<Patch>& design, Allowance allowance)
+/// The patches' sheets, raised; their normals point away from the design's middle.
+mesh::Mesh stock_of(const std::vector<surface::Patch>& design, Allowance allowance)
 {
     std::vector<Sheet> sheets;
-    for (const Patch& patch : design) sheets.push_back(sheet_over(patch));
+    for (const surface::Patch& patch : design) sheets.push_back(sheet_over(patch));
     for (const Sheet& sheet : sheets)
         for (const Eigen::Vector3d& point : sheet.points) allowance.box.extend(point);
     constexpr int side = Sheet::side;
-    Mesh mesh{Eigen::Matrix3Xd(3, sheets.size() * side * side),
-              Eigen::Matrix3Xi(3, sheets.size() * 2 * (side - 1) * (side - 1))};
+    mesh::Mesh mesh{Eigen::Matrix3Xd(3, sheets.size() * side * side),
+                    Eigen::Matrix3Xi(3, sheets.size() * 2 * (side - 1) * (side - 1))};
     Eigen::Index vertex = 0, triangle = 0;
     for (const Sheet& sheet : sheets) {
         double outward = 0;
@@ -96,7 +98,7 @@ Mesh stock_of(const std::vector<Patch>& design, Allowance allowance)
 
 /// Triangles whose edges are no longer than `longest`, on the same surface: an edge that is too long is halved in both
 /// its triangles.
-Mesh refined(Mesh mesh, double longest)
+mesh::Mesh refined(mesh::Mesh mesh, double longest)
 {
     using Edge = std::pair<int, int>;
     const auto edge = [](int a, int b) { return Edge(std::min(a, b), std::max(a, b)); };
@@ -157,10 +159,9 @@ struct Corner {
 };
 
 /// Each facet is raised along its normal.
-Mesh stock_of(Mesh mesh, Allowance allowance)
+mesh::Mesh stock_of(mesh::Mesh mesh, Allowance allowance)
 {
-    const Eigen::Matrix<double, 3, 2> box = bounding_box(mesh.vertices);
-    allowance.box = Eigen::AlignedBox3d(Eigen::Vector3d(box.col(0)), Eigen::Vector3d(box.col(1)));
+    allowance.box = geometry::finite_bounding_box(mesh.vertices);
     constexpr double kFacets = 200; // to the part's size, a fifteenth of the allowance's waves
     mesh = refined(std::move(mesh), allowance.box.diagonal().norm() / kFacets);
     std::vector<Corner> corners(static_cast<std::size_t>(mesh.vertices.cols()));
@@ -186,29 +187,31 @@ Mesh stock_of(Mesh mesh, Allowance allowance)
 
 int main(int argc, char** argv)
 {
-    return tool_main(argc, argv, "A rough part: a design with an allowance that varies over it, STL.", [](Tool& t) {
-        const std::string& path = t.input("DESIGN", "B-spline patches (JSON) or a mesh");
-        const auto& unit = t.length_unit("--file-units", "Unit of a mesh, if it is not mm");
-        const double& least = t.number("--least", 0.2, "MM", "Allowance", Range::at_least(0));
-        const double& most = t.number("--most", 0.6, "MM", "Allowance", Range::at_least(0));
-        const std::string& at = t.text("--at", "0,0,0,1,0,0,0", "X,Y,Z,QW,QX,QY,QZ", "Where it stands");
-        const bool& turned = t.flag("--turned", "Facets look the other way");
-        t.parse();
-        const std::string bytes = read_whole(path);
-        const Allowance allowance = {least, most, {}};
-        Mesh stock;
-        if (bytes.starts_with('{')) {
-            stock = stock_of(parse_patches(bytes, display_name(path)), allowance);
-        } else {
-            stock = parse_mesh(bytes, display_name(path), unit.value_or(Units::Length::mm));
-            if (turned) stock.triangles.row(0).swap(stock.triangles.row(1));
-            stock = stock_of(std::move(stock), allowance);
-        }
-        const Eigen::VectorXd pose = numbers_in(at);
-        if (pose.size() != 7 || !(pose.tail<4>().norm() > 0)) throw InputError("--at", "expected x,y,z,qw,qx,qy,qz");
-        const Eigen::Quaterniond turn(pose[3], pose[4], pose[5], pose[6]);
-        stock.vertices = (turn.normalized().toRotationMatrix() * stock.vertices).colwise() + pose.head<3>();
-        write_stl(t.output(), stock);
-        return Verdict::yes;
-    });
+    return cli::tool_main(
+        argc, argv, "A rough part: a design with an allowance that varies over it, STL.", [](cli::Tool& t) {
+            const std::string& path = t.main_input("DESIGN", "B-spline patches (JSON) or a mesh");
+            const auto& unit = t.length_unit("--file-units", "Unit of a mesh, if it is not mm");
+            const double& min = t.number("--least", 0.2, "MM", "Allowance", core::Range::at_least(0));
+            const double& max = t.number("--most", 0.6, "MM", "Allowance", core::Range::at_least(0));
+            const std::string& at = t.text("--at", "0,0,0,1,0,0,0", "X,Y,Z,QW,QX,QY,QZ", "Where it stands");
+            const bool& turned = t.flag("--turned", "Facets look the other way");
+            t.parse();
+            const std::string bytes = core::read_file(path);
+            const Allowance allowance = {min, max, {}};
+            mesh::Mesh stock;
+            if (bytes.starts_with('{')) {
+                stock = stock_of(surface::parse_patches(bytes, core::display_name(path)), allowance);
+            } else {
+                stock = mesh::parse_mesh(bytes, core::display_name(path), unit.value_or(units::Units::Length::mm));
+                if (turned) stock.triangles.row(0).swap(stock.triangles.row(1));
+                stock = stock_of(std::move(stock), allowance);
+            }
+            const Eigen::VectorXd pose = core::parse_number_list(at);
+            if (pose.size() != 7 || !(pose.tail<4>().norm() > 0))
+                throw core::InputError("--at", "expected x,y,z,qw,qx,qy,qz");
+            const Eigen::Quaterniond turn(pose[3], pose[4], pose[5], pose[6]);
+            stock.vertices = (turn.normalized().toRotationMatrix() * stock.vertices).colwise() + pose.head<3>();
+            mesh::write_stl(t.output(), stock);
+            return cli::Verdict::yes;
+        });
 }

@@ -3,8 +3,8 @@
 
 #include "cli/tool.h"
 #include "cloud/pcd.h"
-#include "compare/canvas.h"
-#include "compare/chart.h"
+#include "draw/canvas.h"
+#include "draw/chart.h"
 #include "job/boundary.h"
 #include "plan/plan.h"
 #include "removal/height_field.h"
@@ -23,29 +23,31 @@ using Eigen::Vector2d;
 constexpr int kStages = 6, kColumns = 3;
 const Vector2d kPanel(270, 252), kTimes(830, 220); // pixels
 constexpr double kHead = 56, kGap = 12;
-constexpr double kRim = 20; // cells around B: on a slope the tool point stands beside the contact
+constexpr double kRim = 20; // cells around B: on a slope the tool point lies beside the contact
 // The trace is replayed in so many pieces to find the stages.
 constexpr std::size_t kPieces = 120;
 
 /// Rows first … end of the trace, and the stock after them.
 struct Stage {
     std::size_t first, end;
-    HeightField stock;
+    removal::HeightField stock;
 };
 
 /// The beginning, and ends of equal shares of the removed volume.
-std::vector<Stage> stages(const std::vector<TraceRow>& rows, const Job& job, const HeightField& stock)
+std::vector<Stage> stages(const std::vector<strategy::TraceRow>& rows, const job::Job& job,
+                          const removal::HeightField& stock)
 {
-    const double whole = volume_between(stock, ground_by(rows, job, stock));
+    const double whole = removal::volume_between(stock, strategy::replay_removal(rows, job, stock));
     std::vector<Stage> result = {{0, 0, stock}};
-    HeightField now = stock;
+    removal::HeightField now = stock;
     const std::size_t piece = std::max<std::size_t>(rows.size() / kPieces, 1);
     for (std::size_t i = 0; i + 1 < rows.size(); i += piece) {
         const std::size_t end = std::min(i + piece, rows.size() - 1);
-        now = ground_by({rows.begin() + std::ptrdiff_t(i), rows.begin() + std::ptrdiff_t(end + 1)}, job, now);
+        now = strategy::replay_removal({rows.begin() + std::ptrdiff_t(i), rows.begin() + std::ptrdiff_t(end + 1)}, job,
+                                       now);
         const double due = whole * double(result.size()) / (kStages - 1);
         const bool last = end + 1 == rows.size();
-        if (last || (std::ssize(result) < kStages - 1 && volume_between(stock, now) >= due))
+        if (last || (std::ssize(result) < kStages - 1 && removal::volume_between(stock, now) >= due))
             result.push_back({result.back().end, end + 1, now});
     }
     return result;
@@ -57,14 +59,14 @@ struct Map {
     double scale;                  ///< pixels per mm
     Eigen::Index first_column, columns, first_row, rows;
 
-    Map(const Vector2d& where, const HeightField& stock, const Polygon& anomaly) : corner(where)
+    Map(const Vector2d& where, const removal::HeightField& stock, const job::Polygon& anomaly) : corner(where)
     {
-        const Vector2d least = (anomaly.rowwise().minCoeff() - stock.origin) / stock.cell;
-        const Vector2d most = (anomaly.rowwise().maxCoeff() - stock.origin) / stock.cell;
-        first_column = Eigen::Index(std::max(least.x() - kRim, 0.0));
-        first_row = Eigen::Index(std::max(least.y() - kRim, 0.0));
-        columns = std::min(Eigen::Index(most.x() + kRim), stock.columns()) - first_column;
-        rows = std::min(Eigen::Index(most.y() + kRim), stock.rows()) - first_row;
+        const Vector2d min_cell = (anomaly.rowwise().minCoeff() - stock.origin) / stock.cell;
+        const Vector2d max_cell = (anomaly.rowwise().maxCoeff() - stock.origin) / stock.cell;
+        first_column = Eigen::Index(std::max(min_cell.x() - kRim, 0.0));
+        first_row = Eigen::Index(std::max(min_cell.y() - kRim, 0.0));
+        columns = std::min(Eigen::Index(max_cell.x() + kRim), stock.columns()) - first_column;
+        rows = std::min(Eigen::Index(max_cell.y() + kRim), stock.rows()) - first_row;
         origin = stock.origin + stock.cell * Vector2d(double(first_column), double(first_row));
         const Vector2d extent = stock.cell * Vector2d(double(columns), double(rows));
         scale = ((kPanel - Vector2d(kGap, 2 * kGap + 10)).array() / extent.array()).minCoeff();
@@ -77,20 +79,21 @@ struct Map {
     }
 };
 
-void draw_heights(Canvas& sheet, const Map& map, const HeightField& stock, const Eigen::ArrayXXd& desired, double most)
+void draw_heights(draw::Canvas& sheet, const Map& map, const removal::HeightField& stock,
+                  const Eigen::ArrayXXd& desired, double max_cell)
 {
     std::vector<std::uint8_t> rgb;
     for (Eigen::Index j = map.first_row + map.rows - 1; j >= map.first_row; --j)
         for (Eigen::Index i = map.first_column; i < map.first_column + map.columns; ++i) {
-            const double over = (stock.z(i, j) - desired(i, j)) / most;
-            // 34 steps: more than eyes tell apart, and a third of the picture's bytes.
+            const double over = (stock.z(i, j) - desired(i, j)) / max_cell;
+            // 34 steps: more than the eye distinguishes, and a third of the picture's bytes.
             const double grey = std::isfinite(over) ? 250 - 5 * std::round(34 * std::clamp(over, 0.0, 1.0)) : 250;
             rgb.insert(rgb.end(), 3, std::uint8_t(grey));
         }
     sheet.image(map.corner, map.size, int(map.columns), rgb);
 }
 
-void draw_paths(Canvas& sheet, const Map& map, const std::vector<TraceRow>& rows, const Stage& stage,
+void draw_paths(draw::Canvas& sheet, const Map& map, const std::vector<strategy::TraceRow>& rows, const Stage& stage,
                 const Eigen::Matrix2d& R_working_machine)
 {
     for (std::size_t i = std::max<std::size_t>(stage.first, 1); i < stage.end; ++i) {
@@ -98,23 +101,24 @@ void draw_paths(Canvas& sheet, const Map& map, const std::vector<TraceRow>& rows
         Eigen::Matrix2Xd line(2, 2);
         line.col(0) = map(R_working_machine * rows[i - 1].tool.head<2>());
         line.col(1) = map(R_working_machine * rows[i].tool.head<2>());
-        sheet.line(line, curve_colour(std::size_t(rows[i].layer - 1)), rows[i].layer > 1 ? 2 : 1);
+        sheet.line(line, draw::curve_colour(std::size_t(rows[i].layer - 1)), rows[i].layer > 1 ? 2 : 1);
     }
 }
 
-Chart over_time(const std::vector<TraceRow>& rows, const Units& units)
+draw::Chart over_time(const std::vector<strategy::TraceRow>& rows, const units::Units& units)
 {
-    Chart chart;
-    chart.title = "force (" + to_string(units.force) + "), feed (" + to_string(units.length) + "/s) and layer";
+    draw::Chart chart;
+    chart.title =
+        "force (" + units::to_string(units.force) + "), feed (" + units::to_string(units.length) + "/s) and layer";
     chart.x_label = "time, s";
     const auto add = [&](const std::string& name, const auto& value) {
-        Curve curve{name, Eigen::Matrix2Xd(2, std::ssize(rows)), curve_colour(chart.curves.size()), false};
+        draw::Curve curve{name, Eigen::Matrix2Xd(2, std::ssize(rows)), draw::curve_colour(chart.curves.size()), false};
         for (std::size_t i = 0; i < rows.size(); ++i) curve.points.col(Eigen::Index(i)) << rows[i].time, value(rows[i]);
         chart.curves.push_back(curve);
     };
-    add("force", [&](const TraceRow& row) { return row.force / units.newton(); });
-    add("layer", [](const TraceRow& row) { return double(row.layer); });
-    add("feed", [&](const TraceRow& row) { return row.feed / units.mm(); });
+    add("force", [&](const strategy::TraceRow& row) { return row.force / units.newton(); });
+    add("layer", [](const strategy::TraceRow& row) { return double(row.layer); });
+    add("feed", [&](const strategy::TraceRow& row) { return row.feed / units.mm(); });
     return chart;
 }
 
@@ -122,49 +126,49 @@ Chart over_time(const std::vector<TraceRow>& rows, const Units& units)
 
 int main(int argc, char** argv)
 {
-    return tool_main(argc, argv, "How an anomaly goes, stage by stage.", [](Tool& t) {
-        const std::string& plan_file = t.input("PLAN", "What fettle-plan wrote");
+    return cli::tool_main(argc, argv, "How an anomaly goes, stage by stage.", [](cli::Tool& t) {
+        const std::string& plan_file = t.main_input("PLAN", "What fettle-plan wrote");
         const std::string& stock_file = t.required_text("--stock", "PART", "The part as it was");
         const std::string& trace_file = t.required_text("--trace", "FILE", "What fettle-grind did");
         const std::string& title = t.text("--title", "", "TEXT", "Name of the part");
         t.reference("Wang 2007, figure 5-8");
         t.parse();
 
-        const Plan plan = read_plan(plan_file);
-        const HeightField stock =
-            height_field(read_scan(stock_file, plan.job.units, {}), plan.job, plan.job.wheel.width / 32, stock_file);
-        const std::vector<TraceRow> rows = read_trace(trace_file, plan.job.units);
-        const Eigen::Matrix2d R_working_machine = rotation_working_machine(plan.job.theta);
+        const plan::Plan plan = plan::read_plan(plan_file);
+        const removal::HeightField stock = removal::stock_from_scan(sampling::read_scan(stock_file, plan.job.units, {}),
+                                                                    plan.job, plan.job.wheel.width / 32, stock_file);
+        const std::vector<strategy::TraceRow> rows = strategy::read_trace(trace_file, plan.job.units);
+        const Eigen::Matrix2d R_working_machine = job::rotation_working_machine(plan.job.theta);
         Eigen::ArrayXXd desired(stock.columns(), stock.rows());
         for (Eigen::Index j = 0; j < stock.rows(); ++j)
             for (Eigen::Index i = 0; i < stock.columns(); ++i)
-                desired(i, j) = height(plan.surface, R_working_machine.transpose() * stock.centre(i, j));
+                desired(i, j) = surface::height(plan.surface, R_working_machine.transpose() * stock.centre(i, j));
         const Eigen::ArrayXXd over = stock.z - desired;
-        const double most = over.isFinite().select(over, 0).maxCoeff();
-        const Polygon anomaly = boundaries(plan.job).anomaly;
+        const double max_cell = over.isFinite().select(over, 0).maxCoeff();
+        const job::Polygon anomaly = job::working_boundaries(plan.job).anomaly;
 
         const std::vector<Stage> shown = stages(rows, plan.job, stock);
-        Canvas sheet(int(kTimes.x() + 2 * kGap), int(kHead + 2 * kPanel.y() + kTimes.y()));
-        sheet.text("Wang 2007, figure 5-8: " + title + ", layer by layer", {kGap, 18}, 14, Canvas::kInk,
-                   Canvas::Align::left, true);
+        draw::Canvas sheet(int(kTimes.x() + 2 * kGap), int(kHead + 2 * kPanel.y() + kTimes.y()));
+        sheet.text("Wang 2007, figure 5-8: " + title + ", layer by layer", {kGap, 18}, 14, draw::Canvas::kInk,
+                   draw::Canvas::Align::left, true);
         int highest = 1;
-        for (const TraceRow& row : rows) highest = std::max(highest, row.layer);
+        for (const strategy::TraceRow& row : rows) highest = std::max(highest, row.layer);
         for (int layer = 1; layer <= highest; ++layer)
             sheet.text("layer " + std::to_string(layer), {kGap + 80 * (layer - 1), 42}, 11,
-                       curve_colour(std::size_t(layer - 1)));
+                       draw::curve_colour(std::size_t(layer - 1)));
         for (std::size_t k = 0; k < shown.size(); ++k) {
             const Vector2d corner(kGap + double(k % kColumns) * kPanel.x(), kHead + double(k / kColumns) * kPanel.y());
             const double time = shown[k].end ? rows[shown[k].end - 1].time : 0;
             sheet.text(k ? "after " + std::to_string(std::lround(time)) + " s" : "before", corner + Vector2d(0, 8), 11);
             const Map map(corner + Vector2d(0, 20), stock, anomaly);
-            draw_heights(sheet, map, shown[k].stock, desired, most);
+            draw_heights(sheet, map, shown[k].stock, desired, max_cell);
             draw_paths(sheet, map, rows, shown[k], R_working_machine);
             Eigen::Matrix2Xd outline = anomaly;
             for (Eigen::Index i = 0; i < outline.cols(); ++i) outline.col(i) = map(anomaly.col(i));
-            sheet.line(outline, Canvas::kInk, 1.5, true);
+            sheet.line(outline, draw::Canvas::kInk, 1.5, true);
         }
-        draw_chart(sheet, {kGap, kHead + 2 * kPanel.y()}, kTimes, over_time(rows, plan.job.units));
+        draw::draw_chart(sheet, {kGap, kHead + 2 * kPanel.y()}, kTimes, over_time(rows, plan.job.units));
         t.output() << sheet.png();
-        return Verdict::yes;
+        return cli::Verdict::yes;
     });
 }

@@ -3,8 +3,8 @@
 #include "tables-values.h"
 
 #include "cli/tool.h"
-#include "compare/canvas.h"
-#include "compare/chart.h"
+#include "draw/canvas.h"
+#include "draw/chart.h"
 
 #include <array>
 #include <ostream>
@@ -26,22 +26,22 @@ Eigen::Matrix2Xd points(const std::vector<std::pair<double, double>>& pairs)
     return result;
 }
 
-void add(Chart& chart, const std::string& name, const std::vector<std::pair<double, double>>& pairs)
+void add(draw::Chart& chart, const std::string& name, const std::vector<std::pair<double, double>>& pairs)
 {
-    chart.curves.push_back({name, points(pairs), curve_colour(chart.curves.size())});
+    chart.curves.push_back({name, points(pairs), draw::curve_colour(chart.curves.size())});
 }
 
-Chart least(const Values& values)
+draw::Chart min_points(const Values& values)
 {
-    Chart chart{"Figure 4-8: least estimated points, saddles", "area of the anomaly, in2", "points", {}};
+    draw::Chart chart{"Figure 4-8: least estimated points, saddles", "area of the anomaly, in2", "points", {}};
     add(chart, "eq. 4-3: 1 + 0.22 area", {{0, 1}, {100, 23}});
-    for (const std::string& radius : kRadii) add(chart, "radius " + radius + " in", least_numbers(values, radius));
+    for (const std::string& radius : kRadii) add(chart, "radius " + radius + " in", min_point_counts(values, radius));
     return chart;
 }
 
-Chart strips(const Values& values)
+draw::Chart strips(const Values& values)
 {
-    Chart chart{
+    draw::Chart chart{
         "Figure 4-10: touches in strips around the anomaly", "distance from the anomaly, in", "% of the touches", {}};
     constexpr double kStrip = 0.25;
     for (const std::string& name : kCases) {
@@ -54,9 +54,10 @@ Chart strips(const Values& values)
     return chart;
 }
 
-Chart bands(const Values& values)
+draw::Chart bands(const Values& values)
 {
-    Chart chart{"Table 4-5: error bands", "1-3: 2 x 2 in, 4-6: 1 x 1 in; concave, convex, saddle", "band, in", {}};
+    draw::Chart chart{
+        "Table 4-5: error bands", "1-3: 2 x 2 in, 4-6: 1 x 1 in; concave, convex, saddle", "band, in", {}};
     const std::array<double, 6> simple = {.1196, .0991, .1658, .0506, .0497, .0615};
     const std::array<double, 6> searched = {.0961, .0790, .1206, .0272, .0112, .0210};
     std::array<std::vector<std::pair<double, double>>, 4> curves;
@@ -76,17 +77,17 @@ Chart bands(const Values& values)
 
 int main(int argc, char** argv)
 {
-    return tool_main(argc, argv, "Figures of Wang's tables.", [](Tool& t) {
-        const std::string& path = t.input("VALUES", "Lines NAME VALUE of the programs tables-*");
+    return cli::tool_main(argc, argv, "Figures of Wang's tables.", [](cli::Tool& t) {
+        const std::string& path = t.main_input("VALUES", "Lines NAME VALUE of the programs tables-*");
         t.reference("Wang 2007, figures 4-8 and 4-10, Table 4-5");
         t.parse();
 
         const Values values = read_values(path);
-        const std::array<Chart, 3> charts = {least(values), strips(values), bands(values)};
-        Canvas sheet(static_cast<int>(3 * kPanel.x()), static_cast<int>(kPanel.y()));
+        const std::array<draw::Chart, 3> charts = {min_points(values), strips(values), bands(values)};
+        draw::Canvas sheet(static_cast<int>(3 * kPanel.x()), static_cast<int>(kPanel.y()));
         for (std::size_t i = 0; i < charts.size(); ++i)
-            draw_chart(sheet, {static_cast<double>(i) * kPanel.x(), 0}, kPanel, charts[i]);
+            draw::draw_chart(sheet, {static_cast<double>(i) * kPanel.x(), 0}, kPanel, charts[i]);
         t.output() << sheet.png();
-        return Verdict::yes;
+        return cli::Verdict::yes;
     });
 }

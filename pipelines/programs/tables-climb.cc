@@ -21,46 +21,47 @@ constexpr double kStrip = 0.25 * kInch;
 constexpr int kStrips = 10;
 
 /// Share of the touches in each strip by their distance from B.
-Eigen::VectorXd strip_shares(const Job& job, const Eigen::Matrix2Xd& touches)
+Eigen::VectorXd strip_shares(const job::Job& job, const Eigen::Matrix2Xd& touches)
 {
-    const Polygon anomaly = boundaries(job).anomaly;
+    const job::Polygon anomaly = job::working_boundaries(job).anomaly;
     Eigen::VectorXd shares = Eigen::VectorXd::Zero(kStrips);
     for (const Eigen::Vector2d& xy : touches.colwise()) {
-        const auto strip = static_cast<int>(distance_to_edge(anomaly, xy) / kStrip);
+        const auto strip = static_cast<int>(job::distance_to_edge(anomaly, xy) / kStrip);
         if (strip < kStrips) shares[strip] += 1.0 / static_cast<double>(touches.cols());
     }
     return shares;
 }
 
 struct Cell {
-    Job job;
+    job::Job job;
     Height truth;
     bool estimated = true;
     bool spline = false;
-    double spacing = 0; ///< of griddata's uniform sampling, mm
-    double between = 0; ///< candidates, mm; 0: as candidate_touches says
-    TouchPlan plan;     ///< Wang's layout, from which the estimated points come
+    double spacing = 0;       ///< of griddata's uniform sampling, mm
+    double between = 0;       ///< candidates, mm; 0: the default of candidate_touches()
+    sampling::TouchPlan plan; ///< Wang's layout, from which the estimated points come
 };
 
-KnownSurface known_surface(const Cell& cell, std::uint64_t seed)
+margin::KnownSurface known_surface(const Cell& cell, std::uint64_t seed)
 {
-    KnownSurface known;
+    margin::KnownSurface known;
     known.angle = cell.job.theta;
-    known.inside = anomaly_grid(cell.job, kPlacesAcross);
-    known.truth = heights(cell.truth, known.inside);
-    known.candidates = touch(cell.truth, candidate_touches(cell.job, cell.between), seed);
-    known.always.resize(3, 0);
+    known.anomaly_places = margin::anomaly_grid(cell.job, kPlacesAcross);
+    known.true_heights = heights(cell.truth, known.anomaly_places);
+    known.candidates = touch(cell.truth, sampling::candidate_touches(cell.job, cell.between), seed);
+    known.fixed_touches.resize(3, 0);
     if (cell.estimated)
-        known.always = estimated_points(cell.job, touch(cell.truth, cell.plan.xy, seed_of(seed, 1)), cell.plan.curve,
-                                        cell.plan.role);
+        known.fixed_touches = sampling::estimated_points(cell.job, touch(cell.truth, cell.plan.xy, seed_of(seed, 1)),
+                                                         cell.plan.curve, cell.plan.role);
     return known;
 }
 
-void run(const Cell& cell, const HillClimb& settings, const std::string& name, std::ostream& out)
+void run(const Cell& cell, const sampling::HillClimbOptions& settings, const std::string& name, std::ostream& out)
 {
-    const KnownSurface known = known_surface(cell, settings.seed);
-    const SubsetError band = cell.spline ? tensor_bspline_band(known) : griddata_band(known, cell.spacing);
-    const HillClimbed found = hill_climb(known.candidates.cols(), band, settings);
+    const margin::KnownSurface known = known_surface(cell, settings.seed);
+    const sampling::SubsetError band =
+        cell.spline ? margin::tensor_bspline_band(known) : margin::griddata_band(known, cell.spacing);
+    const sampling::HillClimbResult found = sampling::hill_climb(known.candidates.cols(), band, settings);
     write(out, name + "/touches", static_cast<double>(found.chosen.size()));
     write(out, name + "/start", found.start_error / kInch);
     write(out, name + "/band", found.error / kInch);
@@ -76,29 +77,30 @@ void run(const Cell& cell, const HillClimb& settings, const std::string& name, s
 
 int main(int argc, char** argv)
 {
-    return tool_main(argc, argv, "Hill climbing for touches on a known patch.", [](Tool& t) {
-        const std::string& job = t.file("JOB", "Job, JSON");
-        const std::string& patch = t.file("PATCH", "The surface, JSON");
+    return cli::tool_main(argc, argv, "Hill climbing for touches on a known patch.", [](cli::Tool& t) {
+        const std::string& job = t.positional_file("JOB", "Job, JSON");
+        const std::string& patch = t.positional_file("PATCH", "The surface, JSON");
         const std::string& name = t.required_text("--name", "NAME", "Before each value");
         const bool& spline = t.flag("--spline", "Fit by bspline-wang, not by griddata");
         const bool& bare = t.flag("--without-estimated", "Without estimated points");
-        const int& lines = t.count("--lines", 2, "Of Wang's layout, each way", 1, kMostLines);
+        const int& lines = t.count("--lines", 2, "Of Wang's layout, each way", 1, sampling::kMaxProbingLines);
         const int& touches = t.count("--touches", 0, "To be left; 0: as few as the discards leave", 0, 1000);
         const int& mutations = t.count("--mutations", 1000, "In each phase", 0, 1000000);
-        const double& sharpness = t.number("--sharpness", 200, "K", "Of the discards, 1/in", Range::at_least(0));
+        const double& sharpness = t.number("--sharpness", 200, "K", "Of the discards, 1/in", core::Range::at_least(0));
         const double& spacing =
-            t.number("--spacing", 0.5, "LENGTH", "Of griddata's uniform sampling, in", Range::positive());
-        const double& between = t.number("--candidates", 0, "LENGTH",
-                                         "Spacing of the candidates, in; 0: about a thousand", Range::at_least(0));
+            t.number("--spacing", 0.5, "LENGTH", "Of griddata's uniform sampling, in", core::Range::positive());
+        const double& between =
+            t.number("--candidates", 0, "LENGTH", "Spacing of the candidates, in; 0: about a thousand",
+                     core::Range::at_least(0));
         const double& shift = t.number("--shift", 0, "LENGTH", "Of the anomaly along x, in");
         const int& first = t.count("--first", 1, "Number of the first run", 1, 1000000);
         const int& runs = t.count("--runs", 1, "How many", 1, 1000000);
         t.parse();
 
-        Cell cell{read_job(job), patch_height(patch), !bare, spline, spacing * kInch, between * kInch, {}};
+        Cell cell{job::read_job(job), patch_height(patch), !bare, spline, spacing * kInch, between * kInch, {}};
         cell.job.anomaly.row(0).array() += shift * kInch;
-        cell.plan = plan_freeform(cell.job, LineCount{lines, lines});
-        HillClimb settings;
+        cell.plan = sampling::plan_freeform(cell.job, sampling::LineCount{lines, lines});
+        sampling::HillClimbOptions settings;
         settings.touches = touches;
         settings.mutations = mutations;
         settings.sharpness = sharpness / kInch;
@@ -106,6 +108,6 @@ int main(int argc, char** argv)
             settings.seed = seed_of(t.seed(), static_cast<std::uint64_t>(i));
             run(cell, settings, name, t.output());
         }
-        return Verdict::yes;
+        return cli::Verdict::yes;
     });
 }

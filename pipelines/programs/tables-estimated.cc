@@ -29,26 +29,26 @@ namespace {
 
 /// Error band inside B of the modified griddata through touches and estimated points, in. Where their hull does not
 /// hold B, it is that of the part inside, since the paper's Matlab leaves NaN out of max and min.
-double griddata_band_of(const Job& job, const Height& truth, const Eigen::Matrix3Xd& touches,
+double griddata_band_of(const job::Job& job, const Height& truth, const Eigen::Matrix3Xd& touches,
                         const Eigen::Matrix3Xd& estimated)
 {
-    FitInput input;
+    fit::FitInput input;
     input.job = job;
     input.xyz.resize(3, touches.cols() + estimated.cols());
     input.xyz << touches, estimated;
     input.roles = Eigen::VectorXi::Ones(input.xyz.cols());
-    const Surface surface = fit_griddata(input).surface;
-    const Eigen::Matrix2Xd inside = anomaly_grid(job, kPlacesAcross);
-    const Eigen::VectorXd errors = fettle::heights(surface, inside) - study::heights(truth, inside);
-    return error_band(errors.unaryExpr([](double error) { return std::isnan(error) ? 0 : error; })) / kInch;
+    const surface::Surface surface = fit::fit_griddata(input).surface;
+    const Eigen::Matrix2Xd inside = margin::anomaly_grid(job, kPlacesAcross);
+    const Eigen::VectorXd errors = fettle::surface::heights(surface, inside) - study::heights(truth, inside);
+    return margin::error_band(errors.unaryExpr([](double error) { return std::isnan(error) ? 0 : error; })) / kInch;
 }
 
-/// The simple strategy with so many lines each way.
-double simple_band(const Job& job, const Height& truth, const LineCount& lines, std::uint64_t seed)
+/// The simple strategy with this number of lines in each direction.
+double simple_band(const job::Job& job, const Height& truth, const sampling::LineCount& lines, std::uint64_t seed)
 {
-    const TouchPlan plan = plan_freeform(job, lines);
+    const sampling::TouchPlan plan = sampling::plan_freeform(job, lines);
     const Eigen::Matrix3Xd touches = touch(truth, plan.xy, seed);
-    return griddata_band_of(job, truth, touches, estimated_points(job, touches, plan.curve, plan.role));
+    return griddata_band_of(job, truth, touches, sampling::estimated_points(job, touches, plan.curve, plan.role));
 }
 
 // --- Table 4-3: any number of points on each curve, drawn on either side of the anomaly ---
@@ -67,19 +67,19 @@ double spline_at(const Curve& curve, double t)
 }
 
 /// @param across  number of curves in each set   @param points  on each curve
-double drawn_band(const Job& job, const Height& truth, int across, int points, std::uint64_t seed)
+double drawn_band(const job::Job& job, const Height& truth, int across, int points, std::uint64_t seed)
 {
     Random random(seed);
-    const Boundaries both = boundaries(job);
-    const Eigen::Vector2d least = both.anomaly.rowwise().minCoeff(), most = both.anomaly.rowwise().maxCoeff();
+    const job::Boundaries both = job::working_boundaries(job);
+    const Eigen::Vector2d min = both.anomaly.rowwise().minCoeff(), max = both.anomaly.rowwise().maxCoeff();
     std::vector<Eigen::Vector3d> touches;
     std::array<std::vector<Curve>, 2> sets; // set k: curves along axis k
-    const auto offset = [&](int axis, int i) { return std::lerp(least[axis], most[axis], (i + 1) / (across + 1.0)); };
+    const auto offset = [&](int axis, int i) { return std::lerp(min[axis], max[axis], (i + 1) / (across + 1.0)); };
     for (int axis = 0; axis < 2; ++axis)
         for (int i = 0; i < across; ++i) {
             Eigen::Vector2d origin = Eigen::Vector2d::Zero();
             origin[1 - axis] = offset(1 - axis, i);
-            const Crossings t = *crossings_around(both, origin, Eigen::Vector2d::Unit(axis), 0);
+            const sampling::Crossings t = *sampling::crossings_around(both, origin, Eigen::Vector2d::Unit(axis), 0);
             Curve curve{Eigen::VectorXd(points), Eigen::VectorXd(points)};
             // One in each of equal parts of a side: two that lie next to each other make a wild cubic.
             const int half = points / 2;
@@ -108,10 +108,10 @@ double drawn_band(const Job& job, const Height& truth, int across, int points, s
     return griddata_band_of(job, truth, all, estimated);
 }
 
-// --- figure 4-8: the least number of estimated points within the tolerance ---
+// --- figure 4-8: the minimum number of estimated points within the tolerance ---
 
 constexpr double kTolerance = 0.1;                                 // in
-constexpr int kMostCurves = 15;                                    // 60 touches
+constexpr int kMaxCurves = 15;                                     // 60 touches
 constexpr std::array<double, 5> kSides = {1, 3.25, 5.5, 7.75, 10}; // in
 
 /// Hollow along x, arched along y, with the same curvature at the middle, 1/in.
@@ -121,7 +121,7 @@ Height saddle(double curvature)
 }
 
 /// Wang 2007, eq. 4-4: the curves for n estimated points.
-LineCount lines_for(int n, double a, double b)
+sampling::LineCount lines_for(int n, double a, double b)
 {
     constexpr double kBeforeCeiling = 1e-9;
     const auto up = [](double x) { return static_cast<int>(std::ceil(x - kBeforeCeiling)); };
@@ -130,19 +130,19 @@ LineCount lines_for(int n, double a, double b)
 }
 
 /// Nothing if no number of curves that may be touched suffices.
-std::optional<int> least_number(double a, double b, double distance, const Height& surface, std::uint64_t seed)
+std::optional<int> min_point_count(double a, double b, double distance, const Height& surface, std::uint64_t seed)
 {
-    Job job;
+    job::Job job;
     const Eigen::Vector2d half = Eigen::Vector2d(a, b) * kInch / 2;
     const Eigen::Vector2d outer = half.array() + distance * kInch;
     job.anomaly = rectangle(-half, half);
     job.sampling = rectangle(-outer, outer);
     int tried = 0;
-    for (int n = 1; n <= kMostCurves * kMostCurves / 4; ++n) {
-        const LineCount lines = lines_for(n, a, b);
+    for (int n = 1; n <= kMaxCurves * kMaxCurves / 4; ++n) {
+        const sampling::LineCount lines = lines_for(n, a, b);
         const int number = lines.across_a * lines.across_b;
         if (number == tried) continue;
-        if (lines.across_a + lines.across_b > kMostCurves) continue;
+        if (lines.across_a + lines.across_b > kMaxCurves) continue;
         tried = number;
         if (simple_band(job, surface, lines, seed) <= kTolerance) return number;
     }
@@ -157,7 +157,7 @@ void figure_4_8(std::ostream& out, double radius, std::uint64_t seed)
         for (const double b : kSides)
             for (const double distance : kSides) {
                 const std::optional<int> number =
-                    least_number(a, b, distance, saddle(1 / radius), seed_of(seed, ++trial));
+                    min_point_count(a, b, distance, saddle(1 / radius), seed_of(seed, ++trial));
                 std::ostringstream name;
                 name << "4-8/" << radius << '/' << a * b;
                 if (!number) name << "/none";
@@ -169,23 +169,23 @@ void figure_4_8(std::ostream& out, double radius, std::uint64_t seed)
 
 int main(int argc, char** argv)
 {
-    return tool_main(argc, argv, "What the estimated points bring.", [](Tool& t) {
-        const std::string& what = t.word("WHAT", {"4-3", "4-5", "4-8"}, "Table or figure");
+    return cli::tool_main(argc, argv, "What the estimated points bring.", [](cli::Tool& t) {
+        const std::string& what = t.positional_choice("WHAT", {"4-3", "4-5", "4-8"}, "Table or figure");
         const std::string& job_file = t.text("--job", "", "JOB", "Job, JSON");
         const std::string& patch = t.text("--patch", "", "PATCH", "The surface, JSON");
         const std::string& name = t.text("--name", "", "NAME", "Before each value of Table 4-5");
-        const int& lines = t.count("--lines", 2, "Each way, Table 4-5", 1, kMostLines);
+        const int& lines = t.count("--lines", 2, "Each way, Table 4-5", 1, sampling::kMaxProbingLines);
         const int& trials = t.count("--trials", 100, "Draws of touches and noise", 1, 1000000);
         const double& radius =
-            t.number("--radius", 25, "LENGTH", "Figure 4-8: of the saddles' curvature, in", Range::positive());
+            t.number("--radius", 25, "LENGTH", "Figure 4-8: of the saddles' curvature, in", core::Range::positive());
         t.parse();
 
         std::ostream& out = t.output();
         if (what == "4-8") {
             figure_4_8(out, radius, t.seed());
-            return Verdict::yes;
+            return cli::Verdict::yes;
         }
-        const Job job = read_job(job_file);
+        const job::Job job = job::read_job(job_file);
         const Height truth = patch_height(patch);
         for (int trial = 1; trial <= trials; ++trial) {
             const std::uint64_t seed = seed_of(t.seed(), static_cast<std::uint64_t>(trial));
@@ -198,6 +198,6 @@ int main(int argc, char** argv)
                     write(out, "4-3/" + std::to_string(across) + "x" + std::to_string(points),
                           drawn_band(job, truth, across, points, seed));
         }
-        return Verdict::yes;
+        return cli::Verdict::yes;
     });
 }

@@ -51,20 +51,20 @@ const std::array<Eigen::Vector2d, 5> kSizes = {
     Eigen::Vector2d(1, 1), {3.25, 1}, {3.25, 3.25}, {3.25, 5.5}, {5.5, 7.75}};
 constexpr double kDistance = 3.25;
 // Of the experiments of 4.5: normal, 99 % within ±0.005 in.
-const TouchNoise kNormal = {TouchNoise::Kind::normal, kNoise.amplitude};
+const sampling::TouchNoise kNormal = {sampling::TouchNoise::Kind::normal, kNoise.amplitude};
 
 struct Kind {
     std::string name;
-    RegressionKind regression;
+    margin::RegressionKind regression;
     const std::array<Formula, 5>& formulas;
     double sign = 1;
 };
 
-Job job_around(const Eigen::Vector2d& size, bool swept)
+job::Job job_around(const Eigen::Vector2d& size, bool swept)
 {
-    Job job;
-    job.surface = swept ? SurfaceType::swept : SurfaceType::freeform;
-    job.direction = std::acos(0.0); // the sections are along x, so the rulings along y
+    job::Job job;
+    job.surface = swept ? job::SurfaceType::swept : job::SurfaceType::freeform;
+    job.ruling_direction = std::acos(0.0); // the sections are along x, so the rulings along y
     const Eigen::Vector2d half = size * kInch / 2;
     const Eigen::Vector2d outer = half.array() + kDistance * kInch;
     job.anomaly = rectangle(-half, half);
@@ -74,30 +74,31 @@ Job job_around(const Eigen::Vector2d& size, bool swept)
 
 void compare(const Kind& kind, std::size_t which, std::uint64_t seed, std::ostream& out)
 {
-    const bool swept = kind.regression == RegressionKind::swept;
+    const bool swept = kind.regression == margin::RegressionKind::swept;
     const Formula formula = kind.formulas[which];
     const Height truth = [&](const Eigen::Vector2d& xy) {
         return kind.sign * kInch * formula(xy.x() / kInch, xy.y() / kInch);
     };
-    FitInput input;
+    fit::FitInput input;
     input.job = job_around(kSizes[which], swept);
-    const TouchPlan plan = plan_touches(input.job);
+    const sampling::TouchPlan plan = sampling::plan_touches(input.job);
     Eigen::Matrix3Xd touches(3, plan.size());
-    touches << plan.xy, (study::heights(truth, plan.xy) + draw_noise(kNormal, plan.size(), seed)).transpose();
+    touches << plan.xy, (study::heights(truth, plan.xy) + sampling::draw_noise(kNormal, plan.size(), seed)).transpose();
     input.xyz = touches;
     input.roles = plan.role;
     if (!swept) {
-        const Eigen::Matrix3Xd estimated = estimated_points(input.job, touches, plan.curve, plan.role);
+        const Eigen::Matrix3Xd estimated = sampling::estimated_points(input.job, touches, plan.curve, plan.role);
         input.xyz.conservativeResize(3, touches.cols() + estimated.cols());
         input.xyz.rightCols(estimated.cols()) = estimated;
-        input.roles = Eigen::VectorXi::Constant(input.xyz.cols(), static_cast<int>(Role::near_anomaly));
+        input.roles = Eigen::VectorXi::Constant(input.xyz.cols(), static_cast<int>(sampling::Role::near_anomaly));
     }
-    const Surface surface = swept ? fit_family_by_name(input, "swept").surface : fit_griddata(input).surface;
-    const Eigen::Matrix2Xd inside = anomaly_grid(input.job, kPlacesAcross);
-    const Eigen::VectorXd errors = fettle::heights(surface, inside) - study::heights(truth, inside);
-    const Eigen::VectorXd terms = regression_values(kind.regression, touches, input.job);
-    const Regression& published = published_regression(kind.regression);
-    const double band = error_band(errors) / kInch, shift = shift_distance(errors) / kInch;
+    const surface::Surface surface =
+        swept ? fit::fit_family_by_name(input, "swept").surface : fit::fit_griddata(input).surface;
+    const Eigen::Matrix2Xd inside = margin::anomaly_grid(input.job, kPlacesAcross);
+    const Eigen::VectorXd errors = fettle::surface::heights(surface, inside) - study::heights(truth, inside);
+    const Eigen::VectorXd terms = margin::regression_values(kind.regression, touches, input.job);
+    const margin::Regression& published = margin::published_regression(kind.regression);
+    const double band = margin::error_band(errors) / kInch, shift = margin::shift_distance(errors) / kInch;
     write(out, "others/" + kind.name + "/band", band);
     write(out, "others/" + kind.name + "/band_off", std::abs(published.band.dot(terms) - band));
     write(out, "others/" + kind.name + "/shift_off", std::abs(published.shift.dot(terms) - shift));
@@ -107,18 +108,19 @@ void compare(const Kind& kind, std::size_t which, std::uint64_t seed, std::ostre
 
 int main(int argc, char** argv)
 {
-    return tool_main(argc, argv, "Wang's regressions on surfaces that are neither cylinders nor spheres.", [](Tool& t) {
-        const int& trials = t.count("--trials", 20, "Draws of the noise", 1, 100000);
-        t.parse();
+    return cli::tool_main(
+        argc, argv, "Wang's regressions on surfaces that are neither cylinders nor spheres.", [](cli::Tool& t) {
+            const int& trials = t.count("--trials", 20, "Draws of the noise", 1, 100000);
+            t.parse();
 
-        const std::vector<Kind> kinds = {{"swept", RegressionKind::swept, kSections},
-                                         {"concave", RegressionKind::concave, kDomes, -1},
-                                         {"convex", RegressionKind::convex, kDomes},
-                                         {"saddle", RegressionKind::saddle, kSaddles}};
-        for (const Kind& kind : kinds)
-            for (std::size_t which = 0; which < kSizes.size(); ++which)
-                for (int trial = 1; trial <= trials; ++trial)
-                    compare(kind, which, seed_of(t.seed(), static_cast<std::uint64_t>(trial)), t.output());
-        return Verdict::yes;
-    });
+            const std::vector<Kind> kinds = {{"swept", margin::RegressionKind::swept, kSections},
+                                             {"concave", margin::RegressionKind::concave, kDomes, -1},
+                                             {"convex", margin::RegressionKind::convex, kDomes},
+                                             {"saddle", margin::RegressionKind::saddle, kSaddles}};
+            for (const Kind& kind : kinds)
+                for (std::size_t which = 0; which < kSizes.size(); ++which)
+                    for (int trial = 1; trial <= trials; ++trial)
+                        compare(kind, which, seed_of(t.seed(), static_cast<std::uint64_t>(trial)), t.output());
+            return cli::Verdict::yes;
+        });
 }

@@ -39,44 +39,45 @@ Eigen::Matrix3Xd touch_plane(const Setup& setup, const Eigen::Matrix2Xd& xy, std
     Eigen::Matrix3Xd touches = touch([&](const Eigen::Vector2d& p) { return plane_at(setup, p); }, xy, seed);
     if (setup.all_axes)
         for (int axis = 0; axis < 2; ++axis)
-            touches.row(axis) += draw_noise(kNoise, xy.cols(), seed_of(seed, static_cast<std::uint64_t>(axis + 1)));
+            touches.row(axis) +=
+                sampling::draw_noise(kNoise, xy.cols(), seed_of(seed, static_cast<std::uint64_t>(axis + 1)));
     return touches;
 }
 
 /// Places in the rectangle, all at least `apart` from each other.
-Eigen::Matrix2Xd places(Random& random, int count, double apart)
+Eigen::Matrix2Xd places(Random& random, int count, double min_distance)
 {
     Eigen::Matrix2Xd xy(2, count);
     for (int i = 0; i < count;) {
         xy.col(i) = random.in_box(Eigen::Vector2d::Zero(), kSize);
-        const bool far = i == 0 || (xy.leftCols(i).colwise() - xy.col(i)).colwise().norm().minCoeff() >= apart;
-        // begun anew where the first ones leave no place for the next
+        const bool far = i == 0 || (xy.leftCols(i).colwise() - xy.col(i)).colwise().norm().minCoeff() >= min_distance;
+        // restarted where the first ones leave no place for the next
         i = far ? i + 1 : 0;
     }
     return xy;
 }
 
 /// Largest error over the rectangle: of planes, at a corner.
-double plane_error(const Setup& setup, Random& random, int count, double apart, std::uint64_t seed)
+double plane_error(const Setup& setup, Random& random, int count, double min_distance, std::uint64_t seed)
 {
-    FitInput input;
-    input.xyz = touch_plane(setup, places(random, count, apart), seed);
+    fit::FitInput input;
+    input.xyz = touch_plane(setup, places(random, count, min_distance), seed);
     input.roles = Eigen::VectorXi::Ones(count);
-    input.job.surface = SurfaceType::plane;
+    input.job.surface = job::SurfaceType::plane;
     input.job.probe.accuracy = kNoise.amplitude;
     double largest = 0;
-    const Surface fitted = fit_plane(input).surface;
+    const surface::Surface fitted = fit::fit_plane(input).surface;
     for (const Eigen::Vector2d& share : {Eigen::Vector2d(0, 0), {1, 0}, {0, 1}, {1, 1}}) {
         const Eigen::Vector2d corner = share.cwiseProduct(kSize);
-        largest = std::max(largest, std::abs(height(fitted, corner) - plane_at(setup, corner)));
+        largest = std::max(largest, std::abs(surface::height(fitted, corner) - plane_at(setup, corner)));
     }
     return largest / kInch;
 }
 
 /// As in the paper, a figure is the mean, the standard deviation or the largest of 100 trials; it is drawn many times,
 /// so that one sees how much of it was luck.
-void plane_row(std::ostream& out, const Setup& setup, const std::string& row, int count, double apart, int batches,
-               std::uint64_t seed)
+void plane_row(std::ostream& out, const Setup& setup, const std::string& row, int count, double min_distance,
+               int batches, std::uint64_t seed)
 {
     const std::string name = "4-2/" + setup.name + "/" + row;
     Random random(seed);
@@ -84,10 +85,10 @@ void plane_row(std::ostream& out, const Setup& setup, const std::string& row, in
         Eigen::VectorXd errors(kTrials);
         for (int trial = 0; trial < kTrials;) {
             try {
-                errors[trial] = plane_error(setup, random, count, apart,
+                errors[trial] = plane_error(setup, random, count, min_distance,
                                             seed_of(seed, static_cast<std::uint64_t>(batch * kTrials + trial)));
                 ++trial;
-            } catch (const InputError&) {
+            } catch (const core::InputError&) {
                 write(out, name + "/on_a_line", 1); // the fit refuses three touches on a line; the paper drew no others
             }
         }
@@ -102,18 +103,18 @@ double line_error(const Eigen::VectorXd& shares, std::uint64_t seed)
 {
     Eigen::MatrixXd A(shares.size(), 2);
     A << Eigen::VectorXd::Ones(shares.size()), shares;
-    const Eigen::Vector2d error = A.colPivHouseholderQr().solve(draw_noise(kNoise, shares.size(), seed));
+    const Eigen::Vector2d error = A.colPivHouseholderQr().solve(sampling::draw_noise(kNoise, shares.size(), seed));
     return std::max(std::abs(error[0]), std::abs(error.sum())) / kInch;
 }
 
 void line_rows(std::ostream& out, int trials, std::uint64_t seed)
 {
     Random random(seed);
-    const auto draw = [&](int count, double apart) {
+    const auto draw = [&](int count, double min_distance) {
         Eigen::VectorXd shares(count);
         do
             for (double& share : shares) share = random.uniform(0, 1);
-        while (shares.maxCoeff() - shares.minCoeff() < apart);
+        while (shares.maxCoeff() - shares.minCoeff() < min_distance);
         return shares;
     };
     for (int trial = 0; trial < trials; ++trial) {
@@ -129,7 +130,7 @@ void line_rows(std::ostream& out, int trials, std::uint64_t seed)
 
 int main(int argc, char** argv)
 {
-    return tool_main(argc, argv, "Planes and lines through few touches.", [](Tool& t) {
+    return cli::tool_main(argc, argv, "Planes and lines through few touches.", [](cli::Tool& t) {
         const int& batches = t.count("--batches", 200, "Of 100 trials each", 1, 100000);
         t.parse();
 
@@ -143,6 +144,6 @@ int main(int argc, char** argv)
             plane_row(out, setup, "apart2.67", 3, 2.67 * kInch, batches, seed_of(t.seed(), 27));
         }
         line_rows(out, batches * kTrials, seed_of(t.seed(), 1));
-        return Verdict::yes;
+        return cli::Verdict::yes;
     });
 }

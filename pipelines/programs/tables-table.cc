@@ -16,7 +16,7 @@ using namespace fettle::study;
 namespace {
 
 // Griddata is within 25 % of Table 4-5; without a bar, "as published" means the same.
-constexpr double kNear = 0.25;
+constexpr double kRatioTolerance = 0.25;
 constexpr double kPointsPerArea = 0.22; // eq. 4-3, 1/in²
 
 std::string padded(const std::string& words, std::size_t width)
@@ -47,13 +47,16 @@ class Report {
     void shown(const std::string& what, double published, double here)
     {
         const double ratio = here / published;
-        row(what, published, here, ratio < 1 - kNear ? "lower" : ratio > 1 + kNear ? "higher" : "as published");
+        row(what, published, here,
+            ratio < 1 - kRatioTolerance   ? "lower"
+            : ratio > 1 + kRatioTolerance ? "higher"
+                                          : "as published");
     }
     void near(const std::string& what, double published, double here)
     {
-        row(what, published, here, verdict(std::abs(here / published - 1) <= kNear, "within 25 %"));
+        row(what, published, here, verdict(std::abs(here / published - 1) <= kRatioTolerance, "within 25 %"));
     }
-    void most(const std::string& what, double published, double here)
+    void at_most(const std::string& what, double published, double here)
     {
         row(what, published, here, verdict(here <= published, "no more"));
     }
@@ -234,8 +237,8 @@ void regressions(Report& report)
     report.title(
         "4.5: the published regressions on five surfaces each that are neither cylinders nor spheres: mean |predicted "
         "-\nactual|, in");
-    report.most("convex, error band", .082, mean(report.of("others/convex/band_off")));
-    report.most("convex, shift distance", .057, mean(report.of("others/convex/shift_off")));
+    report.at_most("convex, error band", .082, mean(report.of("others/convex/band_off")));
+    report.at_most("convex, shift distance", .057, mean(report.of("others/convex/shift_off")));
     for (const std::string kind : {"swept", "concave", "saddle"})
         report.words(padded(kind, 10) + "error band" + number(mean(report.of("others/" + kind + "/band_off"))) +
                      "   shift distance" + number(mean(report.of("others/" + kind + "/shift_off"))));
@@ -257,8 +260,8 @@ void waves(Report& report)
 
 int main(int argc, char** argv)
 {
-    return tool_main(argc, argv, "Wang's tables, measured and published.", [](Tool& t) {
-        const std::string& path = t.input("VALUES", "Lines NAME VALUE of the programs tables-*");
+    return cli::tool_main(argc, argv, "Wang's tables, measured and published.", [](cli::Tool& t) {
+        const std::string& path = t.main_input("VALUES", "Lines NAME VALUE of the programs tables-*");
         t.reference("Wang 2007, chapter 4");
         t.parse();
 
@@ -272,6 +275,6 @@ int main(int argc, char** argv)
         strips(report);
         regressions(report);
         waves(report);
-        return report.missed() == 0 ? Verdict::yes : Verdict::no;
+        return report.missed() == 0 ? cli::Verdict::yes : cli::Verdict::no;
     });
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-// Measurements of the programs tables-*.cc, lines "NAME VALUE", read back by those that look at all of them.
+// Measurements of the programs tables-*.cc, lines "NAME VALUE", read back by the programs that evaluate them.
 
 #include "core/error.h"
 #include "core/file.h"
@@ -19,12 +19,12 @@ using Values = std::map<std::string, std::vector<double>>;
 
 inline Values read_values(const std::string& path)
 {
-    const std::string text = read_whole(path);
+    const std::string text = core::read_file(path);
     Values values;
-    for (Lines lines(text); lines.next();) {
-        const std::vector<std::string_view> both = words(lines.line());
-        const std::optional<double> value = both.size() == 2 ? parse_number(both[1]) : std::nullopt;
-        if (!value) throw InputError(display_name(path), lines.place() + ": expected NAME VALUE");
+    for (core::Lines lines(text); lines.next();) {
+        const std::vector<std::string_view> both = core::words(lines.line());
+        const std::optional<double> value = both.size() == 2 ? core::parse_number(both[1]) : std::nullopt;
+        if (!value) throw core::InputError(core::display_name(path), lines.location() + ": expected NAME VALUE");
         values[std::string(both[0])].push_back(*value);
     }
     return values;
@@ -34,7 +34,7 @@ inline Values read_values(const std::string& path)
 inline const std::vector<double>& measured(const Values& values, const std::string& name)
 {
     const auto found = values.find(name);
-    if (found == values.end()) throw InputError("nothing was measured for " + name);
+    if (found == values.end()) throw core::InputError("nothing was measured for " + name);
     return found->second;
 }
 
@@ -67,9 +67,9 @@ inline double quantile(std::vector<double> x, double share)
 inline const std::vector<std::string> kRadii = {"25", "10", "7.5", "5"};
 inline const std::vector<std::string> kSquares = {"1", "10.5625", "30.25", "60.0625", "100"};
 
-/// Mean least number of estimated points over the area; squares for which 15 curves did not always suffice are left
-/// out.
-inline std::vector<std::pair<double, double>> least_numbers(const Values& values, const std::string& radius)
+/// Mean of the minimum number of estimated points over the area; squares for which 15 curves did not always suffice are
+/// left out.
+inline std::vector<std::pair<double, double>> min_point_counts(const Values& values, const std::string& radius)
 {
     std::vector<std::pair<double, double>> result;
     for (const std::string& square : kSquares) {
@@ -83,7 +83,7 @@ inline std::vector<std::pair<double, double>> least_numbers(const Values& values
 inline double points_per_area(const Values& values, const std::string& radius)
 {
     double above = 0, below = 0;
-    for (const auto& [area, number] : least_numbers(values, radius)) {
+    for (const auto& [area, number] : min_point_counts(values, radius)) {
         above += area * (number - 1);
         below += area * area;
     }

@@ -27,20 +27,20 @@ struct Sheet {
     double step = 0;
 };
 
-Sheet sheet_over(const Polygon& outline, double step)
+Sheet sheet_over(const job::Polygon& outline, double step)
 {
-    const Eigen::Vector2d least = outline.rowwise().minCoeff(), size = outline.rowwise().maxCoeff() - least;
+    const Eigen::Vector2d min = outline.rowwise().minCoeff(), size = outline.rowwise().maxCoeff() - min;
     const auto columns = static_cast<Eigen::Index>(size.x() / step), rows = static_cast<Eigen::Index>(size.y() / step);
     Sheet sheet{Eigen::Matrix2Xd(2, (columns + 1) * (rows + 1)), columns + 1, step};
     for (Eigen::Index i = 0; i < sheet.xy.cols(); ++i)
-        sheet.xy.col(i) = least + step * Eigen::Vector2d(static_cast<double>(i % sheet.columns),
-                                                         static_cast<double>(i / sheet.columns));
+        sheet.xy.col(i) = min + step * Eigen::Vector2d(static_cast<double>(i % sheet.columns),
+                                                       static_cast<double>(i / sheet.columns));
     return sheet;
 }
 
 /// Rms height inside B of the waves that are shorter than the cut-off: what is left of the errors when their mean under
 /// the weight of the Gaussian profile filter (ISO 16610-21, -61) is taken away. mm
-double waviness(const Sheet& sheet, const Eigen::VectorXd& errors, const Polygon& anomaly, double cut_off)
+double waviness(const Sheet& sheet, const Eigen::VectorXd& errors, const job::Polygon& anomaly, double cut_off)
 {
     const double alpha = std::sqrt(std::numbers::ln2 / std::numbers::pi);
     const auto reach = static_cast<Eigen::Index>(cut_off / sheet.step); // the weight there is 6e-7
@@ -50,7 +50,7 @@ double waviness(const Sheet& sheet, const Eigen::VectorXd& errors, const Polygon
     for (Eigen::Index row = 0; row < rows; ++row)
         for (Eigen::Index column = 0; column < sheet.columns; ++column) {
             const Eigen::Index here = row * sheet.columns + column;
-            if (!contains(anomaly, sheet.xy.col(here)) || std::isnan(errors[here])) continue;
+            if (!job::contains(anomaly, sheet.xy.col(here)) || std::isnan(errors[here])) continue;
             double sum = 0, weights = 0;
             for (Eigen::Index r = std::max<Eigen::Index>(0, row - reach); r <= std::min(rows - 1, row + reach); ++r)
                 for (Eigen::Index c = std::max<Eigen::Index>(0, column - reach);
@@ -68,30 +68,30 @@ double waviness(const Sheet& sheet, const Eigen::VectorXd& errors, const Polygon
     return std::sqrt(squares / count);
 }
 
-void draw_surface(std::ostream& out, const Sheet& sheet, const Eigen::VectorXd& z, const Units& units)
+void draw_surface(std::ostream& out, const Sheet& sheet, const Eigen::VectorXd& z, const units::Units& units)
 {
-    Cloud cloud;
+    cloud::Cloud cloud;
     cloud.xyz.resize(3, sheet.xy.cols());
     cloud.xyz << sheet.xy, z.transpose();
-    write_pcd(out, cloud, units, PcdEncoding::binary);
+    cloud::write_pcd(out, cloud, units, cloud::PcdEncoding::binary);
 }
 
 } // namespace
 
 int main(int argc, char** argv)
 {
-    return tool_main(argc, argv, "Waviness of griddata before and after resampling.", [](Tool& t) {
-        const std::string& job_file = t.file("JOB", "Job, JSON");
-        const std::string& patch = t.file("PATCH", "The surface, JSON");
+    return cli::tool_main(argc, argv, "Waviness of griddata before and after resampling.", [](cli::Tool& t) {
+        const std::string& job_file = t.positional_file("JOB", "Job, JSON");
+        const std::string& patch = t.positional_file("PATCH", "The surface, JSON");
         const int& trials = t.count("--trials", 50, "Scatterings of the points", 1, 100000);
-        const double& wavelength = t.number("--wavelength", 1, "LENGTH",
-                                            "The shortest that is kept: twice the spacing, in", Range::positive());
+        const double& wavelength = t.number(
+            "--wavelength", 1, "LENGTH", "The shortest that is kept: twice the spacing, in", core::Range::positive());
         const std::string& before_file = t.text("--before", "", "FILE", "The first surface as it was, PCD");
         const std::string& after_file = t.text("--after", "", "FILE", "The first surface sampled again, PCD");
         t.parse();
 
-        const Job job = read_job(job_file);
-        const Boundaries both = boundaries(job);
+        const job::Job job = job::read_job(job_file);
+        const job::Boundaries both = job::working_boundaries(job);
         const Height truth = patch_height(patch);
         const double spacing = wavelength * kInch / 2, cut_off = 2 * spacing;
         const Sheet sheet = sheet_over(both.sampling, cut_off / 10);
@@ -99,15 +99,15 @@ int main(int argc, char** argv)
         for (int trial = 1; trial <= trials; ++trial) {
             const std::uint64_t seed = seed_of(t.seed(), static_cast<std::uint64_t>(trial));
             Random random(seed);
-            const Eigen::Vector2d least = both.sampling.rowwise().minCoeff(), most = both.sampling.rowwise().maxCoeff();
+            const Eigen::Vector2d min = both.sampling.rowwise().minCoeff(), max = both.sampling.rowwise().maxCoeff();
             Eigen::Matrix2Xd xy(2, kPoints);
             for (int i = 0; i < kPoints;) {
-                xy.col(i) = random.in_box(least, most);
-                if (!contains(both.anomaly, xy.col(i))) ++i;
+                xy.col(i) = random.in_box(min, max);
+                if (!job::contains(both.anomaly, xy.col(i))) ++i;
             }
             const Eigen::Matrix3Xd touches = touch(truth, xy, seed_of(seed, 1));
-            const Eigen::VectorXd once = griddata_heights(touches, 0, job.theta, sheet.xy);
-            const Eigen::VectorXd twice = griddata_heights(touches, spacing, job.theta, sheet.xy);
+            const Eigen::VectorXd once = surface::griddata_heights(touches, 0, job.theta, sheet.xy);
+            const Eigen::VectorXd twice = surface::griddata_heights(touches, spacing, job.theta, sheet.xy);
             const double before = waviness(sheet, once - true_z, both.anomaly, cut_off);
             const double after = waviness(sheet, twice - true_z, both.anomaly, cut_off);
             write(t.output(), "4-4/before", before / kInch);
@@ -117,6 +117,6 @@ int main(int argc, char** argv)
             if (!before_file.empty()) draw_surface(t.output_file(before_file), sheet, once, job.units);
             if (!after_file.empty()) draw_surface(t.output_file(after_file), sheet, twice, job.units);
         }
-        return Verdict::yes;
+        return cli::Verdict::yes;
     });
 }

@@ -19,8 +19,8 @@ namespace fettle::study {
 
 constexpr double kInch = 25.4;
 /// Measurement error of the simulations: uniform within ±0.005 in (Wang 2007, 4.4).
-inline const TouchNoise kNoise = {TouchNoise::Kind::uniform, 0.005 * kInch};
-/// Places over the longer side of B at which errors are looked at.
+inline const sampling::TouchNoise kNoise = {sampling::TouchNoise::Kind::uniform, 0.005 * kInch};
+/// Places over the longer side of B at which errors are evaluated.
 constexpr int kPlacesAcross = 20;
 
 /// z over x-y, mm.
@@ -30,14 +30,11 @@ using Height = std::function<double(const Eigen::Vector2d&)>;
 class Random {
   public:
     explicit Random(std::uint64_t seed) : bits_(seed) {}
-    double uniform(double least, double most)
+    double uniform(double min, double max) { return min + (max - min) * static_cast<double>(bits_() >> 11) * 0x1p-53; }
+    Eigen::Vector2d in_box(const Eigen::Vector2d& min, const Eigen::Vector2d& max)
     {
-        return least + (most - least) * static_cast<double>(bits_() >> 11) * 0x1p-53;
-    }
-    Eigen::Vector2d in_box(const Eigen::Vector2d& least, const Eigen::Vector2d& most)
-    {
-        const double x = uniform(least.x(), most.x());
-        return {x, uniform(least.y(), most.y())};
+        const double x = uniform(min.x(), max.x());
+        return {x, uniform(min.y(), max.y())};
     }
 
   private:
@@ -64,21 +61,22 @@ inline Eigen::VectorXd heights(const Height& surface, const Eigen::Matrix2Xd& xy
 inline Eigen::Matrix3Xd touch(const Height& surface, const Eigen::Matrix2Xd& xy, std::uint64_t seed)
 {
     Eigen::Matrix3Xd touches(3, xy.cols());
-    touches << xy, (heights(surface, xy) + draw_noise(kNoise, xy.cols(), seed)).transpose();
+    touches << xy, (heights(surface, xy) + sampling::draw_noise(kNoise, xy.cols(), seed)).transpose();
     return touches;
 }
 
 /// The first patch of a file as a height.
 inline Height patch_height(const std::string& file)
 {
-    return [patch = read_patches(file).at(0)](const Eigen::Vector2d& xy) { return height(patch, xy); };
+    return
+        [patch = surface::read_patches(file).at(0)](const Eigen::Vector2d& xy) { return surface::height(patch, xy); };
 }
 
 /// A rectangle of four boundary points without z.
-inline Eigen::Matrix3Xd rectangle(const Eigen::Vector2d& least, const Eigen::Vector2d& most)
+inline Eigen::Matrix3Xd rectangle(const Eigen::Vector2d& min, const Eigen::Vector2d& max)
 {
     Eigen::Matrix3Xd corners(3, 4);
-    corners << least.x(), most.x(), most.x(), least.x(), least.y(), least.y(), most.y(), most.y(), 0, 0, 0, 0;
+    corners << min.x(), max.x(), max.x(), min.x(), min.y(), min.y(), max.y(), max.y(), 0, 0, 0, 0;
     corners.row(2).setConstant(std::nan(""));
     return corners;
 }

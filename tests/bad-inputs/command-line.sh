@@ -21,7 +21,7 @@ for name in $names; do
     option --threads --threads 1 --threads 2
     option --seed --seed x
     option --zebra --zebra
-    # every option that takes a number, a word of a few or a list of them: nan is none; --avoid may stand alone
+    # every option that takes a number, a word of a few or a list of them: nan is none; --avoid may occur alone
     while read -r name_of placeholder; do
         case $placeholder in FILE | PART | STOCK | SURFELS | SURFACE* | MESH | JOB | POINTS | PATH | TRACE | EVENTS | TEXT | NAME) continue ;; esac
         case " ${command[*]} --threads --seed --avoid " in *" $name_of "*) continue ;; esac

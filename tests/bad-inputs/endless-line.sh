@@ -1,6 +1,6 @@
 # A first line of 1 GB, as each format may begin it, in every kind of place where a tool reads: refused from its beginning, in the
 # memory that the tool itself needs and in a small part of the time that the whole line would take. JSON may be one long line: of
-# that, and of whatever else never ends where JSON is expected, 64 MiB are read.
+# that, and of any other endless input where JSON is expected, 64 MiB are read.
 # shellcheck source=tests/bad-inputs/probe.bash
 . "$HERE/probe.bash"
 good
@@ -49,7 +49,7 @@ fill='yes "x":1,' json $'{\n'
 fill=yes endless '' stdin fettle-plan - surface.json
 fill=yes endless '' stdin fettle-fit - good.pcd
 mkfifo pipe
-yes >pipe & # until nobody reads any more
+yes >pipe & # until the reader ends
 endless '' pipe fettle-plan pipe surface.json
 # a file is refused by its size: nothing of it is read
 truncate -s 1T sparse.json

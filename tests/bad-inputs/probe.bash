@@ -3,11 +3,12 @@
 #   good [STEP]               makes good files for all the other places
 #   try R|S|G NAME COMMAND…   runs a command that reads the file NAME.
 #                             R: it must be refused: status 2, one line on stderr that names the file, nothing on stdout.
+#                             T: it must be refused so, or read as far as it goes: status 0, and a warning that names the file.
 #                             S: it may be read: status 0 or 1; or it is refused, though not for the file as such.
 #                             G: it is good: status 0 or 1.
-#   all_tried                 fails if a try has, or if there were fewer than so many
+#   all_tried                 fails if a try has, or if there were fewer than MIN_COUNT
 #
-# Whatever it is: no signal, at most 10 s of processor time, and no more memory than the tool itself needs and ten times the file, of a large one three times.
+# In all cases: no signal, at most 10 s of processor time, and no more memory than the tool itself needs and ten times the file, of a large one three times.
 kOwnMemory=250000 # KiB: libraries and their threads; PCL and OpenCV alone map half of it
 tried=0
 failed=0
@@ -17,33 +18,35 @@ say() {
     [ $failed -gt 40 ] || printf '%s\n' "$1: ${*:2}" >&2
 }
 
-# By what bash has in itself where it can: it is called thousands of times.
+# Uses builtins of bash where possible: it is called thousands of times.
 try() {
-    local wish=$1 file=$2 status=0 memory most lines
+    local wish=$1 file=$2 status=0 memory max_memory lines
     shift 2
     tried=$((tried + 1))
     ( ulimit -t 10; exec /usr/bin/time -q -o rss -f '%M' "$@" ) >out 2>err </dev/null || status=$?
     read -r memory <rss
     mapfile lines <err
-    most=$kOwnMemory
-    [ "$memory" -le $most ] || most=$(stat -Lc %s "$file" | awk -v own=$most '{ print int(own + ($1 > 10000000 ? 3 : 10) * $1 / 1024) }')
+    max_memory=$kOwnMemory
+    [ "$memory" -le $max_memory ] || max_memory=$(stat -Lc %s "$file" | awk -v own=$max_memory '{ print int(own + ($1 > 10000000 ? 3 : 10) * $1 / 1024) }')
     if [ $status -gt 2 ]; then
         say "status $status" "$@"
-    elif [ "$memory" -gt "$most" ]; then
+    elif [ "$memory" -gt "$max_memory" ]; then
         say "$memory KiB" "$@"
     elif [ $status = 2 ]; then
         if [ "$wish" = G ]; then say "refused: ${lines[*]}" "$@"
         elif [ -s out ]; then say "refused, with $(stat -c %s out) bytes on stdout" "$@"
         elif [ ${#lines[@]} != 1 ] || [[ ${lines[0]} != *$'\n' ]]; then say "refused in ${#lines[@]} lines: ${lines[*]:0:2}" "$@"
         elif [[ ${lines[0]} == *'out of memory'* ]]; then say 'out of memory' "$@"
-        elif [ "$wish" = R ] && [[ ${lines[0]} != *"${file##*/}"* ]]; then say "does not name ${file##*/}: ${lines[0]}" "$@"
+        elif [ "$wish" != S ] && [[ ${lines[0]} != *"${file##*/}"* ]]; then say "does not name ${file##*/}: ${lines[0]}" "$@"
         fi
+    elif [ "$wish" = T ]; then
+        [[ ${lines[*]} == *"warning: ${file##*/}: "* ]] || say "status $status, expected a refusal or a warning" "$@"
     elif [ "$wish" = R ]; then
         say "status $status, expected a refusal" "$@"
     fi
 }
 
-all_tried() { # LEAST
+all_tried() { # MIN_COUNT
     echo "$tried tried, $failed failed"
     [ $failed = 0 ] && [ $tried -ge "$1" ]
 }
@@ -55,7 +58,7 @@ pcd() { # FIELDS < rows: an ASCII PCD, mm
         "$(sed 's/[^ ][^ ]*/4/g' <<<"$1")" "$(sed 's/[^ ][^ ]*/F/g' <<<"$1")" "$(sed 's/[^ ][^ ]*/1/g' <<<"$1")" "$(wc -l <<<"$rows")" "$(wc -l <<<"$rows")" "$rows"
 }
 
-# All that some tool asks of a point.
+# All fields that some tool requires of a point.
 kFields='x y z normal_x normal_y normal_z qw qx qy qz role curve error displacement radius t layer pass event force feed joint1 joint2 joint3 joint4 joint5 joint6 joint7'
 rows() { # < x y z a line: with values for the other fields
     awk '{ print $0, "0 0 1 1 0 0 0", NR % 2 + 1, NR % 4, 0.01, 0.02, 0.5, NR, 1, 1, 0, 5, 10, "0 0 0 0 0 0 0" }'
@@ -110,7 +113,7 @@ points() { # R|S FILE
     try "$1" "$2" fettle-path "$2"
     try "$1" "$2" fettle-render "$2"
     try "$1" "$2" fettle-report --errors "$2"
-    try "$1" "$2" fettle-report --trace "$2"
+    try "${1/R/T}" "$2" fettle-report --trace "$2" # a trace may be one of a killed run
     try "$1" "$2" fettle-report --job job.json --samples "$2"
     try "$1" "$2" fettle-sample job.json --on "$2"
     try "$1" "$2" fettle-surfel "$2" --stock plate.stl
@@ -119,7 +122,7 @@ points() { # R|S FILE
     try "$1" "$2" fettle-part spec.json
 }
 
-# As the stock of machines that end at once: nobody says anything on stdin.
+# FILE as the stock of machines that end at once: stdin is empty.
 stocks() { # R|S|G FILE
     try "$1" "$2" fettle-gantry-virtual plan.json --stock "$2" --cell 2
     try "$1" "$2" fettle-manual job.json --stock "$2" --cell 2 --machine machine.json --steer -

@@ -14,43 +14,43 @@ using namespace fettle;
 
 namespace {
 
-std::vector<Joints> random_joints(const Robot& robot)
+std::vector<robot::Joints> random_joints(const robot::Robot& robot)
 {
     std::mt19937 random(1);
-    std::vector<Joints> joints(4096);
-    for (Joints& q : joints)
+    std::vector<robot::Joints> joints(4096);
+    for (robot::Joints& q : joints)
         for (std::size_t i = 0; i < 6; ++i)
             q[static_cast<Eigen::Index>(i)] =
-                std::uniform_real_distribution<double>(robot.dh[i].range.least, robot.dh[i].range.most)(random);
+                std::uniform_real_distribution<double>(robot.dh[i].range.min, robot.dh[i].range.max)(random);
     return joints;
 }
 
 void forward(benchmark::State& state)
 {
-    const Robot robot = irb1400();
-    const Arm arm(robot);
-    const std::vector<Joints> joints = random_joints(robot);
+    const robot::Robot robot = irb1400();
+    const robot::Arm arm(robot);
+    const std::vector<robot::Joints> joints = random_joints(robot);
     for (auto _ : state)
-        for (const Joints& q : joints) benchmark::DoNotOptimize(arm.flange(q));
+        for (const robot::Joints& q : joints) benchmark::DoNotOptimize(arm.flange(q));
     state.counters["poses/s"] = benchmark::Counter(
         static_cast<double>(state.iterations()) * static_cast<double>(joints.size()), benchmark::Counter::kIsRate);
 }
 BENCHMARK(forward)->Unit(benchmark::kMillisecond);
 
-void inverse(benchmark::State& state, Ranges ranges)
+void inverse(benchmark::State& state, robot::Ranges ranges)
 {
-    const Robot robot = irb1400();
-    const Arm arm(robot);
+    const robot::Robot robot = irb1400();
+    const robot::Arm arm(robot);
     std::vector<Eigen::Isometry3d> flanges;
-    for (const Joints& q : random_joints(robot)) flanges.push_back(arm.flange(q));
+    for (const robot::Joints& q : random_joints(robot)) flanges.push_back(arm.flange(q));
     std::size_t solutions = 0;
     for (auto _ : state)
-        for (const Eigen::Isometry3d& T : flanges) solutions += arm.solve(T, Joints::Zero(), ranges).size();
+        for (const Eigen::Isometry3d& T : flanges) solutions += arm.solve(T, robot::Joints::Zero(), ranges).size();
     const double poses = static_cast<double>(state.iterations()) * static_cast<double>(flanges.size());
     state.counters["poses/s"] = benchmark::Counter(poses, benchmark::Counter::kIsRate);
     state.counters["branches/pose"] = static_cast<double>(solutions) / poses;
 }
-BENCHMARK_CAPTURE(inverse, in range, Ranges::respect)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(inverse, all branches, Ranges::ignore)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(inverse, in range, robot::Ranges::respect)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(inverse, all branches, robot::Ranges::ignore)->Unit(benchmark::kMillisecond);
 
 } // namespace

@@ -24,9 +24,9 @@ const Vector3d kPlace(1000, 1000, 500);
 
 double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
-PosePath path()
+cloud::PosePath path()
 {
-    PosePath poses = boat::poses(kPoses);
+    cloud::PosePath poses = boat::poses(kPoses);
     for (Isometry3d& T : poses) {
         T = Eigen::Translation3d(kPlace) * T * Eigen::Translation3d(0, 0, -boat::kBall);
         T.linear() =
@@ -40,33 +40,34 @@ PosePath path()
 int main(int argc, char** argv)
 {
     const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
-    const Robot robot = read_robot(argc > 1 ? argv[1] : "samples/robots/irb1400.json");
-    Mesh mesh = boat::hull(kTriangles);
+    const robot::Robot robot = robot::read_robot(argc > 1 ? argv[1] : "samples/robots/irb1400.json");
+    mesh::Mesh mesh = boat::hull(kTriangles);
     mesh.vertices.colwise() += kPlace;
-    const Workpiece workpiece(mesh);
-    const PosePath poses = path();
-    const ExternalChoice choice = choose_externals(robot, poses, {});
-    const FollowedPath way = follow(robot, poses, external_values(robot, poses, choice.track, choice.table));
-    const Cell cell(robot, &workpiece, {});
+    const robot::Workpiece workpiece(mesh);
+    const cloud::PosePath poses = path();
+    const robot::ExternalChoice choice = robot::choose_externals(robot, poses, {});
+    const robot::FollowedPath followed =
+        robot::follow_path(robot, poses, robot::external_values(robot, poses, choice.track, choice.table));
+    const robot::Cell cell(robot, &workpiece, {});
     for (int round = 0; round < kRounds; ++round) {
         double start = cpu_seconds();
-        Walk walk(cell);
+        robot::ClearanceTracker walk(cell);
         int reached = 0, colliding = 0;
-        for (const auto q : way.joints.colwise()) {
-            if (CellJoints(q).hasNaN()) continue;
+        for (const auto q : followed.joints.colwise()) {
+            if (robot::CellJoints(q).hasNaN()) continue;
             ++reached;
-            colliding += walk.step(q).clearance < -0.01;
+            colliding += walk.advance(q).clearance < -0.01;
         }
         const double at_poses = cpu_seconds() - start;
         start = cpu_seconds();
-        const CheckedPath checked = check_path(robot, &workpiece, way.joints, {});
+        const robot::CheckedPath checked = robot::check_path(robot, &workpiece, followed.joints, {});
         const double all = cpu_seconds() - start;
-        const auto between = std::count_if(checked.between.begin(), checked.between.end(),
-                                           [](const CellClearance& c) { return c.clearance < -0.01; });
+        const auto between = std::count_if(checked.between_poses.begin(), checked.between_poses.end(),
+                                           [](const robot::CellClearance& c) { return c.clearance < -0.01; });
         std::printf(
             "%d poses reached, %zu jumps, %d collide, %ld ways between: at the poses %.0f poses/s, between them, "
             "too, %.0f poses/s with %.1f looks a way\n",
-            reached, way.jumps.size(), colliding, between, reached / at_poses, reached / all,
-            static_cast<double>(checked.looks) / reached);
+            reached, followed.jumps.size(), colliding, between, reached / at_poses, reached / all,
+            static_cast<double>(checked.midpoint_count) / reached);
     }
 }

@@ -1,5 +1,5 @@
 // Signed distances to a mesh beside the same by Embree's point query: preparation and query, all threads, in turn, so
-// that their ratio tells something on a busy machine too. Beside them stands what the ratio should be. A sample of the
+// that their ratio is meaningful on a busy machine, too. The expected ratio is printed beside them. A sample of the
 // points is measured by brute force as well.
 //   of_embree     time of fettle / time of Embree        of_embree_cpu  the same of processor time
 //   worst_mm      largest difference from brute force    wrong_signs    of the sample
@@ -27,15 +27,15 @@ namespace {
 constexpr double kTurn = 2 * std::numbers::pi;
 
 struct Scene {
-    Mesh mesh;
+    mesh::Mesh mesh;
     Eigen::Matrix3Xd points;
 };
 
 /// A grid of `across` x `along` cells over the unit square, closed in either direction or not.
-Mesh grid(int across, int along, bool closed, const std::function<Eigen::Vector3d(double, double)>& at)
+mesh::Mesh grid(int across, int along, bool closed, const std::function<Eigen::Vector3d(double, double)>& at)
 {
     const int rows = along + (closed ? 0 : 1), columns = across + (closed ? 0 : 1);
-    Mesh mesh;
+    mesh::Mesh mesh;
     mesh.vertices.resize(3, rows * columns);
     for (int j = 0; j < rows; ++j)
         for (int i = 0; i < columns; ++i)
@@ -93,28 +93,28 @@ Scene torus()
 }
 
 struct Query {
-    const ReferenceMesh* reference;
+    const compare::ReferenceMesh* reference;
     Eigen::Vector3d point;
-    TrianglePoint nearest;
-    MeshIndex::Closest closest;
+    mesh::TrianglePoint nearest;
+    mesh::MeshIndex::Closest closest;
 };
 
-Triangle corners_of(const Mesh& mesh, Eigen::Index t)
+mesh::Triangle corners_of(const mesh::Mesh& mesh, Eigen::Index t)
 {
-    Triangle corners;
+    mesh::Triangle corners;
     for (int k = 0; k < 3; ++k) corners.col(k) = mesh.vertices.col(mesh.triangles(k, t));
     return corners;
 }
 
 void offer(Query& query, Eigen::Index t)
 {
-    const TrianglePoint found = closest_on_triangle(corners_of(query.reference->mesh, t), query.point);
+    const mesh::TrianglePoint found = mesh::closest_on_triangle(corners_of(query.reference->mesh, t), query.point);
     if (found.squared_distance >= query.nearest.squared_distance) return;
     query.nearest = found;
     query.closest = {found.point, t, found.barycentric};
 }
 
-double signed_by(const PseudoNormals& normals, const Query& query)
+double signed_by(const compare::PseudoNormals& normals, const Query& query)
 {
     const Eigen::Vector3d offset = query.point - query.nearest.point;
     return std::copysign(offset.norm(), offset.dot(normals.normal(query.closest)));
@@ -122,7 +122,7 @@ double signed_by(const PseudoNormals& normals, const Query& query)
 
 /// By the region that the point lies in: no more than Embree's query needs (Ericson, Real-Time Collision Detection,
 /// 2005, 5.1.5).
-double squared_distance(const Eigen::Vector3d& p, const Mesh& mesh, Eigen::Index t)
+double squared_distance(const Eigen::Vector3d& p, const mesh::Mesh& mesh, Eigen::Index t)
 {
     const Eigen::Vector3d a = mesh.vertices.col(mesh.triangles(0, t)), b = mesh.vertices.col(mesh.triangles(1, t)),
                           c = mesh.vertices.col(mesh.triangles(2, t));
@@ -151,7 +151,7 @@ bool approach(RTCPointQueryFunctionArguments* arguments)
     return true;
 }
 
-Query query_at(const ReferenceMesh& reference, const Eigen::Vector3d& point)
+Query query_at(const compare::ReferenceMesh& reference, const Eigen::Vector3d& point)
 {
     Query query{&reference, point, {}, {}};
     query.nearest.squared_distance = std::numeric_limits<double>::infinity();
@@ -160,12 +160,12 @@ Query query_at(const ReferenceMesh& reference, const Eigen::Vector3d& point)
 
 Eigen::VectorXd by_embree(const Scene& scene)
 {
-    const ReferenceMesh reference = reference_mesh(scene.mesh);
-    const PseudoNormals normals(reference);
+    const compare::ReferenceMesh reference = compare::reference_mesh(scene.mesh);
+    const compare::PseudoNormals normals(reference);
     const RTCDevice device = rtcNewDevice(nullptr);
     const RTCScene tree = rtcNewScene(device);
     const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    const Mesh& mesh = reference.mesh;
+    const mesh::Mesh& mesh = reference.mesh;
     const auto buffer = [&](RTCBufferType type, RTCFormat format, Eigen::Index count) {
         return rtcSetNewGeometryBuffer(geometry, type, 0, format, 12, static_cast<std::size_t>(count));
     };
@@ -200,11 +200,11 @@ struct Stopwatch {
     double cpu() const { return static_cast<double>(std::clock() - cpu_start) / CLOCKS_PER_SEC; }
 };
 
-/// Differences of a sample from the nearest of all facets, each looked at.
+/// Differences of a sample from the nearest of all facets, by brute force.
 void check(benchmark::State& state, const Scene& scene, const Eigen::VectorXd& errors)
 {
-    const ReferenceMesh reference = reference_mesh(scene.mesh);
-    const PseudoNormals normals(reference);
+    const compare::ReferenceMesh reference = compare::reference_mesh(scene.mesh);
+    const compare::PseudoNormals normals(reference);
     double worst = 0, wrong = 0;
     for (Eigen::Index i = 0; i < errors.size(); i += errors.size() / 50) {
         Query query = query_at(reference, scene.points.col(i));
@@ -226,7 +226,7 @@ void signed_distances(benchmark::State& state, const std::function<Scene()>& mak
     Eigen::VectorXd errors;
     for (auto _ : state) {
         const Stopwatch ours;
-        errors = signed_distance(scene.points, scene.mesh).error;
+        errors = compare::signed_distance(scene.points, scene.mesh).error;
         wall += ours.wall();
         cpu += ours.cpu();
         state.SetIterationTime(ours.wall());

@@ -32,19 +32,20 @@ MatrixXd gap(int step)
     return result;
 }
 
-LayerContact layer() { return {{10, 5, 0.45}, {kCell, kCell}, kCells, kCells}; }
+belt::LayerContact layer() { return {{10, 5, 0.45}, {kCell, kCell}, kCells, kCells}; }
 
 void rolling(benchmark::State& state)
 {
-    LayerContact contact = layer();
+    belt::LayerContact contact = layer();
     const double tolerance = std::pow(10, -static_cast<double>(state.range(0)));
     constexpr int kSteps = 64;
     std::vector<MatrixXd> gaps;
     for (int step = 0; step < kSteps; ++step) gaps.push_back(gap(step));
-    MatrixXd last = contact.by_force(gaps[0], 30, tolerance).pressure, now = last;
+    MatrixXd last = contact.solve_by_force(gaps[0], 30, tolerance).pressure, now = last;
     int step = 0;
     for (auto _ : state) {
-        const Contact next = contact.by_force(gaps[std::size_t(step++ % kSteps)], 30, tolerance, 2 * now - last);
+        const belt::Contact next =
+            contact.solve_by_force(gaps[std::size_t(step++ % kSteps)], 30, tolerance, 2 * now - last);
         last = std::move(now);
         now = next.pressure;
     }
@@ -54,36 +55,39 @@ BENCHMARK(rolling)->Arg(6)->Arg(4)->Unit(benchmark::kMillisecond);
 
 void cold(benchmark::State& state)
 {
-    LayerContact contact = layer();
+    belt::LayerContact contact = layer();
     const MatrixXd ground = gap(0);
-    for (auto _ : state) benchmark::DoNotOptimize(contact.by_force(ground, 30, 1e-6).force);
+    for (auto _ : state) benchmark::DoNotOptimize(contact.solve_by_force(ground, 30, 1e-6).force);
 }
 BENCHMARK(cold)->Unit(benchmark::kMillisecond);
 
-LayerContact finite_elements() { return {mesh_of({10, 5, 0.45}, 100, 100, {kCell, kCell}, kCells, 8), kCells}; }
+belt::LayerContact finite_elements()
+{
+    return {belt::layer_mesh({10, 5, 0.45}, 100, 100, {kCell, kCell}, kCells, 8), kCells};
+}
 
 void first_of_elements(benchmark::State& state)
 {
     const MatrixXd ground = gap(0);
-    for (auto _ : state) benchmark::DoNotOptimize(finite_elements().by_force(ground, 30, 1e-8).force);
+    for (auto _ : state) benchmark::DoNotOptimize(finite_elements().solve_by_force(ground, 30, 1e-8).force);
 }
 BENCHMARK(first_of_elements)->MeasureProcessCPUTime()->Unit(benchmark::kMillisecond);
 
 void next_of_elements(benchmark::State& state)
 {
-    LayerContact contact = finite_elements();
+    belt::LayerContact contact = finite_elements();
     int step = 0;
-    for (auto _ : state) benchmark::DoNotOptimize(contact.by_force(gap(step++), 30, 1e-8).force);
+    for (auto _ : state) benchmark::DoNotOptimize(contact.solve_by_force(gap(step++), 30, 1e-8).force);
 }
 BENCHMARK(next_of_elements)->Unit(benchmark::kMillisecond);
 
 /// @param state.range(0)  surfels for each cell, hundredths
-void gridding(benchmark::State& state, Gridding method)
+void gridding(benchmark::State& state, belt::Gridding method)
 {
     const auto ground = [](double x, double y) {
         return (x * x + y * y) / 400 + 0.05 * std::sin(x / 2) * std::cos(y / 3);
     };
-    const ContactCells cells{{kCell, kCell}, kCells, kCells};
+    const belt::ContactGrid cells{{kCell, kCell}, kCells, kCells};
     const double side = 1.2 * kCells * kCell;
     const auto count = static_cast<Index>(1.44 * kCells * kCells * static_cast<double>(state.range(0)) / 100);
     Eigen::Matrix3Xd points(3, count);
@@ -93,16 +97,24 @@ void gridding(benchmark::State& state, Gridding method)
         points.col(i) << x, y, ground(x, y);
     }
     MatrixXd heights;
-    for (auto _ : state) heights = heights_on(cells, points, method);
+    for (auto _ : state) heights = belt::interpolate_heights(cells, points, method);
     double squares = 0;
     for (Index j = 0; j < kCells; ++j)
         for (Index i = 0; i < kCells; ++i) {
-            const Eigen::Vector2d at = cells.middle(i, j);
+            const Eigen::Vector2d at = cells.cell_center(i, j);
             squares += std::pow(heights(i, j) - ground(at.x(), at.y()), 2);
         }
     state.counters["rms_um"] = 1000 * std::sqrt(squares / (kCells * kCells));
 }
-BENCHMARK_CAPTURE(gridding, shepard, Gridding::shepard)->Arg(25)->Arg(100)->Arg(400)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(gridding, kriging, Gridding::kriging)->Arg(25)->Arg(100)->Arg(400)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(gridding, shepard, belt::Gridding::shepard)
+    ->Arg(25)
+    ->Arg(100)
+    ->Arg(400)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(gridding, kriging, belt::Gridding::kriging)
+    ->Arg(25)
+    ->Arg(100)
+    ->Arg(400)
+    ->Unit(benchmark::kMillisecond);
 
 } // namespace

@@ -36,9 +36,9 @@ std::string scan_file(std::size_t points)
     return path;
 }
 
-Job job()
+job::Job job()
 {
-    Job result;
+    job::Job result;
     result.anomaly.resize(3, 4);
     result.anomaly << -20, 20, 20, -20, -20, -20, 20, 20, 0, 0, 0, 0;
     result.sampling = 2.5 * result.anomaly;
@@ -49,8 +49,8 @@ void dense_fit(benchmark::State& state)
 {
     const std::string path = scan_file(static_cast<std::size_t>(state.range(0)));
     for (auto _ : state) {
-        const CloudStream stream(path);
-        benchmark::DoNotOptimize(fit_dense(stream.points(), job(), false, path).fit.surface.rms);
+        const cloud::CloudStream stream(path);
+        benchmark::DoNotOptimize(fit::fit_dense(stream.points(), job(), false, path).fit.surface.rms);
     }
     std::filesystem::remove(path);
 }

@@ -1,6 +1,7 @@
 // How fast cutters come down on a mesh: a million positions over the mould of samples/ (DESIGN: another design), whose
 // triangles are cut in sixteen (141,792 of them), by two threads; without the time for the tree.
 
+#include "geometry/bounding_box.h"
 #include "machining/drop_cutter.h"
 #include "mesh/mesh_file.h"
 
@@ -17,10 +18,10 @@ using namespace fettle;
 namespace {
 
 /// Every triangle in four.
-Mesh subdivided(const Mesh& mesh)
+mesh::Mesh subdivided(const mesh::Mesh& mesh)
 {
     const Eigen::Index count = mesh.triangles.cols(), vertices = mesh.vertices.cols();
-    Mesh fine;
+    mesh::Mesh fine;
     fine.vertices.resize(3, vertices + 3 * count);
     fine.vertices.leftCols(vertices) = mesh.vertices;
     fine.triangles.resize(3, 4 * count);
@@ -41,12 +42,12 @@ void drop(benchmark::State& state)
 {
     const tbb::global_control two(tbb::global_control::max_allowed_parallelism, 2);
     const char* design = std::getenv("DESIGN");
-    static const Mesh mesh =
-        subdivided(subdivided(read_mesh(design ? design : "samples/designs/mould.stl", Units::Length::m)));
-    const auto box = bounding_box(mesh.vertices);
-    const Eigen::Vector3d size = box.col(1) - box.col(0);
+    static const mesh::Mesh mesh =
+        subdivided(subdivided(mesh::read_mesh(design ? design : "samples/designs/mould.stl", units::Units::Length::m)));
+    const Eigen::AlignedBox3d box = geometry::finite_bounding_box(mesh.vertices);
+    const Eigen::Vector3d size = box.sizes();
     const char* kCutters[] = {"ball:6", "ball:25", "flat:25", "bull:25,5", "taper:25,20,3"};
-    const DropCutter cutter(mesh, parse_cutter(kCutters[state.range(0)]));
+    const machining::DropCutter cutter(mesh, machining::parse_cutter(kCutters[state.range(0)]));
     state.SetLabel(kCutters[state.range(0)]);
     constexpr int kSide = 1000;
     for (auto _ : state) {
@@ -54,8 +55,9 @@ void drop(benchmark::State& state)
         tbb::parallel_for(0, kSide, [&](int j) {
             int met = 0;
             for (int i = 0; i < kSide; ++i)
-                met += cutter({box(0, 0) + size.x() * (i + 0.5) / kSide, box(1, 0) + size.y() * (j + 0.5) / kSide})
-                           .has_value();
+                met +=
+                    cutter({box.min().x() + size.x() * (i + 0.5) / kSide, box.min().y() + size.y() * (j + 0.5) / kSide})
+                        .has_value();
             touched += met;
         });
         state.counters["touched"] = touched.load();

@@ -25,9 +25,9 @@ double wave(double x, double y) { return cylinder(x, y) + 0.5 * std::sin(x / 15 
 constexpr double kSide = 80; // mm
 
 /// An anomaly half as wide as the square about it.
-Job job()
+job::Job job()
 {
-    Job result;
+    job::Job result;
     result.anomaly.resize(3, 4);
     result.anomaly << -kSide, kSide, kSide, -kSide, -kSide, -kSide, kSide, kSide, 0, 0, 0, 0;
     result.anomaly /= 4;
@@ -36,13 +36,14 @@ Job job()
 }
 
 /// Touches all over the square but for the anomaly, 99 % of them within 0.127 mm.
-FitInput touches_of(Truth truth, int count)
+fit::FitInput touches_of(Truth truth, int count)
 {
-    FitInput input;
+    fit::FitInput input;
     input.job = job();
     input.xyz.resize(3, count);
     input.roles = Eigen::VectorXi::Ones(count);
-    const Eigen::VectorXd noise = draw_noise({TouchNoise::Kind::normal, input.job.probe.accuracy}, count, 1);
+    const Eigen::VectorXd noise =
+        sampling::draw_noise({sampling::TouchNoise::Kind::normal, input.job.probe.accuracy}, count, 1);
     int n = 0;
     for (int i = 1; n < count; ++i) { // additive recurrence of the plastic number: even, and never in rows
         const double x = kSide * (std::fmod(0.5 + 0.7548776662466927 * i, 1) - 0.5);
@@ -56,9 +57,9 @@ FitInput touches_of(Truth truth, int count)
 
 void fit(benchmark::State& state, Truth truth)
 {
-    const FitInput input = touches_of(truth, static_cast<int>(state.range(0)));
+    const fit::FitInput input = touches_of(truth, static_cast<int>(state.range(0)));
     std::string method;
-    for (auto _ : state) method = fit_surface(input, "auto").surface.method;
+    for (auto _ : state) method = fit::fit_surface(input, "auto").surface.method;
     state.SetLabel(method);
 }
 BENCHMARK_CAPTURE(fit, sphere, sphere)->Arg(30)->Unit(benchmark::kMillisecond);
@@ -69,17 +70,18 @@ BENCHMARK_CAPTURE(fit, wave, wave)->Arg(30)->Unit(benchmark::kMillisecond);
 
 void adaptive(benchmark::State& state, Truth truth)
 {
-    const Job anywhere = job();
-    AdaptiveLimits limits;
-    limits.most_touches = static_cast<int>(state.range(0));
-    const auto probe = [&](const TouchPlan& plan) {
+    const job::Job anywhere = job();
+    margin::AdaptiveLimits limits;
+    limits.max_touches = static_cast<int>(state.range(0));
+    const auto probe = [&](const sampling::TouchPlan& plan) {
         Eigen::Matrix3Xd touches(3, plan.size());
-        const Eigen::VectorXd noise = draw_noise({TouchNoise::Kind::normal, anywhere.probe.accuracy}, plan.size(), 1);
+        const Eigen::VectorXd noise =
+            sampling::draw_noise({sampling::TouchNoise::Kind::normal, anywhere.probe.accuracy}, plan.size(), 1);
         for (Eigen::Index i = 0; i < plan.size(); ++i)
             touches.col(i) << plan.xy.col(i), truth(plan.xy(0, i), plan.xy(1, i)) + noise[i];
         return touches;
     };
-    for (auto _ : state) benchmark::DoNotOptimize(touch_adaptively(anywhere, limits, probe).touches);
+    for (auto _ : state) benchmark::DoNotOptimize(margin::touch_adaptively(anywhere, limits, probe).touches);
 }
 BENCHMARK_CAPTURE(adaptive, sphere, sphere)->Arg(30)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK_CAPTURE(adaptive, wave, wave)->Arg(30)->Unit(benchmark::kMillisecond)->UseRealTime();

@@ -16,11 +16,10 @@ namespace {
 constexpr double kInch = 25.4;
 
 /// A 2 x 2 in anomaly, 3/8 in high with a round edge, on a plane.
-HeightField anomaly(double cell)
+removal::HeightField anomaly(double cell)
 {
-    Eigen::Matrix2d box;
-    box << -kInch, kInch, -kInch, kInch;
-    HeightField field = empty_height_field(box, {kInch / 8, kInch}, 0, cell);
+    const Eigen::AlignedBox2d box(Eigen::Vector2d(-kInch, -kInch), Eigen::Vector2d(kInch, kInch));
+    removal::HeightField field = removal::empty_height_field(box, {kInch / 8, kInch}, 0, cell);
     for (Eigen::Index j = 0; j < field.rows(); ++j)
         for (Eigen::Index i = 0; i < field.columns(); ++i) {
             const double r = field.centre(i, j).norm() / kInch;
@@ -29,30 +28,30 @@ HeightField anomaly(double cell)
     return field;
 }
 
-Job job()
+job::Job job()
 {
-    Job inch;
-    inch.removal = 2e-3 * kInch * kInch * kInch / 4.4482216152605;
+    job::Job inch;
+    inch.removal_coefficient = 2e-3 * kInch * kInch * kInch / 4.4482216152605;
     return inch;
 }
 
 /// A drive of 80 kg that moves at up to 100 mm/s; loops of 1 kHz.
-Machine machine()
+gantry::Machine machine()
 {
-    Machine machine;
-    const Drive drive{.mass = 0.08,
-                      .damping = 1.5,
-                      .gain = 12,
-                      .load = 0,
-                      .voltage = 60,
-                      .current = 40,
-                      .emf = 0.05,
-                      .encoder = 0.0005,
-                      .speed = 100,
-                      .acceleration = 1000,
-                      .least = -500,
-                      .most = 500,
-                      .following_error = 5};
+    gantry::Machine machine;
+    const gantry::Drive drive{.mass = 0.08,
+                              .damping = 1.5,
+                              .gain = 12,
+                              .load = 0,
+                              .voltage = 60,
+                              .current = 40,
+                              .emf = 0.05,
+                              .encoder = 0.0005,
+                              .speed = 100,
+                              .acceleration = 1000,
+                              .min_position = -500,
+                              .max_position = 500,
+                              .following_error = 5};
     machine.axes = {drive, drive, drive};
     machine.c = drive;
     machine.head = {.damping = 0.9, .travel = 25, .lvdt = 0.001, .noise = 0.002, .stiffness = 900};
@@ -60,17 +59,17 @@ Machine machine()
     return machine;
 }
 
-using Make = std::function<std::unique_ptr<VirtualGantry>(const HeightField&)>;
+using Make = std::function<std::unique_ptr<gantry::VirtualGantry>(const removal::HeightField&)>;
 
 /// Zig-zag over B, layer by layer from the top, steps of 0.5 mm; counts strategy steps and simulated seconds.
 void grind(benchmark::State& state, const Make& make)
 {
     const double cell = static_cast<double>(state.range(0)) / 1000;
-    const HeightField stock = anomaly(cell);
+    const removal::HeightField stock = anomaly(cell);
     int64_t steps = 0;
     double seconds = 0;
     for (auto _ : state) {
-        const std::unique_ptr<VirtualGantry> gantry = make(stock);
+        const std::unique_ptr<gantry::VirtualGantry> gantry = make(stock);
         double direction = 1;
         for (double z = 0.375 * kInch; z > 0; z -= 0.6)
             for (double x = -kInch; x <= kInch; x += 5.08, direction = -direction) {
@@ -86,13 +85,16 @@ void grind(benchmark::State& state, const Make& make)
 
 void quasi_static(benchmark::State& state)
 {
-    grind(state, [](const HeightField& stock) { return std::make_unique<QuasiStaticGantry>(stock, job()); });
+    grind(state,
+          [](const removal::HeightField& stock) { return std::make_unique<gantry::QuasiStaticGantry>(stock, job()); });
 }
 BENCHMARK(quasi_static)->ArgName("cell_um")->Arg(400)->Arg(200)->Arg(100)->Arg(50)->Unit(benchmark::kMillisecond);
 
 void dynamic(benchmark::State& state)
 {
-    grind(state, [](const HeightField& stock) { return std::make_unique<DynamicGantry>(stock, job(), machine()); });
+    grind(state, [](const removal::HeightField& stock) {
+        return std::make_unique<gantry::DynamicGantry>(stock, job(), machine());
+    });
 }
 BENCHMARK(dynamic)->ArgName("cell_um")->Arg(400)->Arg(200)->Arg(100)->Arg(50)->Unit(benchmark::kMillisecond);
 

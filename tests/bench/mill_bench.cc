@@ -15,37 +15,36 @@ using namespace fettle;
 
 namespace {
 
-constexpr double kCell = 0.1, kHalf = 158.15; // 3163 cells each way
+constexpr double kCell = 0.1, kHalf = 158.15; // 3163 cells in each direction
 constexpr int kMoves = 100000;
 
-HeightField stock()
+removal::HeightField stock()
 {
-    Eigen::Matrix2d box;
-    box << -kHalf, kHalf, -kHalf, kHalf;
-    HeightField field = empty_height_field(box, {0, 0}, 0, kCell);
+    const Eigen::AlignedBox2d box(Eigen::Vector2d(-kHalf, -kHalf), Eigen::Vector2d(kHalf, kHalf));
+    removal::HeightField field = removal::empty_height_field(box, {0, 0}, 0, kCell);
     field.z.setConstant(30);
     return field;
 }
 
 /// @param steepest  slope of the waves, 60 mm long
-std::vector<CutterMove> zig_zag(double steepest, double angle)
+std::vector<machining::CutterMove> zig_zag(double steepest, double angle)
 {
-    constexpr double kStep = 0.5, kBeside = 2, kExtent = 300, kWave = 60;
+    constexpr double kStep = 0.5, kStepOver = 2, kExtent = 300, kWave = 60;
     const double k = 2 * 3.14159265358979 / kWave, c = std::cos(angle), s = std::sin(angle);
     const auto tip = [&](double u, double v) {
         return Eigen::Vector3d(c * u - s * v, s * u + c * v, 10 + steepest / k * std::sin(k * u) * std::cos(k * v / 3));
     };
-    std::vector<CutterMove> moves;
-    double u = -kExtent / 2, v = -kExtent / 2, way = kStep;
+    std::vector<machining::CutterMove> moves;
+    double u = -kExtent / 2, v = -kExtent / 2, step = kStep;
     Eigen::Vector3d at = tip(u, v);
     while (static_cast<int>(moves.size()) < kMoves) {
-        if (std::abs(u + way) > kExtent / 2) {
-            v += kBeside;
-            way = -way;
+        if (std::abs(u + step) > kExtent / 2) {
+            v += kStepOver;
+            step = -step;
         } else {
-            u += way;
+            u += step;
         }
-        CutterMove move;
+        machining::CutterMove move;
         move.from = at;
         move.to = at = tip(u, v);
         move.feed = 50;
@@ -57,15 +56,15 @@ std::vector<CutterMove> zig_zag(double steepest, double angle)
 void cut(benchmark::State& state)
 {
     const tbb::global_control two(tbb::global_control::max_allowed_parallelism, 2);
-    const HeightField whole = stock();
+    const removal::HeightField whole = stock();
     const auto moves =
         zig_zag(static_cast<double>(state.range(0)) / 10, static_cast<double>(state.range(1)) / 180 * 3.14159265358979);
-    const Cutter ball = parse_cutter(state.range(2) == 0 ? "ball:12" : "bull:12,2");
+    const machining::Cutter ball = machining::parse_cutter(state.range(2) == 0 ? "ball:12" : "bull:12,2");
     for (auto _ : state) {
         state.PauseTiming();
-        HeightField field = whole;
+        removal::HeightField field = whole;
         state.ResumeTiming();
-        benchmark::DoNotOptimize(mill(field, ball, moves).back().volume);
+        benchmark::DoNotOptimize(machining::mill(field, ball, moves).back().volume);
     }
 }
 BENCHMARK(cut)

@@ -2,7 +2,7 @@
 // 6, shank of radius 5 and length 40 from its centre up, spindle of radius 45 and length 90 above. The ball is 0.02 mm
 // clear of the hull, but for one pose of 20 that gouges 0.05 mm; the axis leans a fifth of the way to the normal.
 //
-//   least     signed clearance of the tool: the ball's bounds that of the shank, and theirs that of the spindle
+//   minimum   signed clearance of the tool: the ball's bounds that of the shank, and theirs that of the spindle
 //   each      signed clearance of every part by itself
 //   embree    does each part overlap a triangle? By rtcPointQuery around spheres along the axis, every triangle exactly
 //   fcl       the same by its oriented boxes, on every 19th pose
@@ -38,9 +38,9 @@ using Eigen::Isometry3d, Eigen::Vector3d;
 
 constexpr int kPoses = 50000, kRounds = 5, kFclEvery = 19;
 constexpr double kBall = boat::kBall, kShank = 5, kShankLength = 40, kSpindle = 45, kSpindleLength = 90;
-const std::array<Solid, 3> kTool = {
-    solid::Sphere{{0, 0, 0}, kBall}, solid::Cylinder{{0, 0, 0}, {0, 0, kShankLength}, kShank},
-    solid::Cylinder{{0, 0, kShankLength}, {0, 0, kShankLength + kSpindleLength}, kSpindle}};
+const std::array<robot::Solid, 3> kTool = {
+    robot::solid::Sphere{{0, 0, 0}, kBall}, robot::solid::Cylinder{{0, 0, 0}, {0, 0, kShankLength}, kShank},
+    robot::solid::Cylinder{{0, 0, kShankLength}, {0, 0, kShankLength + kSpindleLength}, kSpindle}};
 using Hits = std::array<int, 3>;
 
 double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
@@ -50,36 +50,37 @@ struct Run {
     Hits hits = {};
 };
 
-template <typename Look>
-Run timed(const std::vector<Isometry3d>& all, std::size_t every, const Look& look)
+template <typename Query>
+Run timed(const std::vector<Isometry3d>& all, std::size_t every, const Query& measure)
 {
     Run run;
     const double before = cpu_seconds();
-    for (std::size_t k = 0; k < all.size(); k += every) look(all[k], run.hits);
+    for (std::size_t k = 0; k < all.size(); k += every) measure(all[k], run.hits);
     run.seconds = (cpu_seconds() - before) * static_cast<double>(every);
     return run;
 }
 
 // --- fettle ----------------------------------------------------------------------------------------------------------
 
-/// @param together  the parts bound each other, and `hits` counts which part is least where one overlaps
-Run by_clearance(const Workpiece& workpiece, const std::vector<Isometry3d>& all, bool together)
+/// @param together  the parts bound each other, and `hits` counts which part has the minimum clearance where one
+/// overlaps
+Run by_clearance(const robot::Workpiece& workpiece, const std::vector<Isometry3d>& all, bool together)
 {
     std::array<std::uint32_t, 3> leaf = {};
     return timed(all, 1, [&](const Isometry3d& T, Hits& hits) {
-        double least = 50;
+        double min = 50;
         std::size_t who = 0;
         for (std::size_t k = 0; k < 3; ++k) {
-            const Workpiece::Nearest found =
-                workpiece.nearest(PlacedSolid(kTool[k], T), together ? least : 50, leaf[k]);
+            const robot::Workpiece::Nearest found =
+                workpiece.nearest(robot::PlacedSolid(kTool[k], T), together ? min : 50, leaf[k]);
             leaf[k] = found.leaf;
             if (!together) hits[k] += found.clearance.distance < 0;
-            if (found.clearance.distance < least) {
-                least = found.clearance.distance;
+            if (found.clearance.distance < min) {
+                min = found.clearance.distance;
                 who = k;
             }
         }
-        if (together) hits[who] += least < 0;
+        if (together) hits[who] += min < 0;
     });
 }
 
@@ -87,22 +88,22 @@ Run by_clearance(const Workpiece& workpiece, const std::vector<Isometry3d>& all,
 
 /// A part of the tool between two heights of its axis; of the ball both are 0.
 struct Question {
-    const Mesh& mesh;
+    const mesh::Mesh& mesh;
     const Isometry3d& T;
     double from, to, radius;
     bool hit = false;
 };
 
-bool look_at(RTCPointQueryFunctionArguments* found)
+bool point_query(RTCPointQueryFunctionArguments* found)
 {
     Question& question = *static_cast<Question*>(found->userPtr);
     if (question.hit) return false;
-    const Triangle t = triangle_of(question.mesh, found->primID);
+    const mesh::Triangle t = triangle_of(question.mesh, found->primID);
     const Vector3d centre = question.T.translation();
     if (question.to == question.from) {
-        question.hit = closest_on_triangle(t, centre).squared_distance < question.radius * question.radius;
+        question.hit = mesh::closest_on_triangle(t, centre).squared_distance < question.radius * question.radius;
     } else {
-        const Triangle local = question.T.linear().transpose() * (t.colwise() - centre);
+        const mesh::Triangle local = question.T.linear().transpose() * (t.colwise() - centre);
         question.hit = reaches_into_cylinder(local, question.from, question.to, question.radius);
     }
     if (question.hit) found->query->radius = 0;
@@ -111,7 +112,8 @@ bool look_at(RTCPointQueryFunctionArguments* found)
 
 class Embree {
   public:
-    explicit Embree(const Mesh& mesh) : mesh_(mesh), device_(rtcNewDevice("threads=1")), scene_(rtcNewScene(device_))
+    explicit Embree(const mesh::Mesh& mesh)
+        : mesh_(mesh), device_(rtcNewDevice("threads=1")), scene_(rtcNewScene(device_))
     {
         const RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
         const auto vertices = static_cast<std::size_t>(mesh.vertices.cols()),
@@ -121,7 +123,7 @@ class Embree {
         Eigen::Matrix3Xf::Map(points, 3, mesh.vertices.cols()) = mesh.vertices.cast<float>();
         void* corners = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, triangles);
         std::memcpy(corners, mesh.triangles.data(), 12 * triangles);
-        rtcSetGeometryPointQueryFunction(geometry, look_at);
+        rtcSetGeometryPointQueryFunction(geometry, point_query);
         rtcCommitGeometry(geometry);
         rtcAttachGeometry(scene_, geometry);
         rtcReleaseGeometry(geometry);
@@ -165,7 +167,7 @@ class Embree {
         return hit;
     }
 
-    const Mesh& mesh_;
+    const mesh::Mesh& mesh_;
     RTCDevice device_;
     RTCScene scene_;
 };
@@ -174,11 +176,11 @@ class Embree {
 
 class Fcl {
   public:
-    explicit Fcl(const Mesh& mesh) : model_(std::make_shared<fcl::BVHModel<fcl::OBBRSSd>>())
+    explicit Fcl(const mesh::Mesh& mesh) : model_(std::make_shared<fcl::BVHModel<fcl::OBBRSSd>>())
     {
         model_->beginModel();
         for (Eigen::Index i = 0; i < mesh.triangles.cols(); ++i) {
-            const Triangle t = triangle_of(mesh, i);
+            const mesh::Triangle t = triangle_of(mesh, i);
             model_->addTriangle(t.col(0), t.col(1), t.col(2));
         }
         model_->endModel();
@@ -216,12 +218,12 @@ double middle(std::vector<double> list)
 
 void compare(int triangles)
 {
-    const Mesh mesh = boat::hull(triangles);
-    const Workpiece workpiece(mesh);
+    const mesh::Mesh mesh = boat::hull(triangles);
+    const robot::Workpiece workpiece(mesh);
     const Embree embree(mesh);
     const Fcl fcl(mesh);
     const std::vector<Isometry3d> all = boat::poses(kPoses);
-    const std::array<const char*, 4> names = {"least", "each", "embree", "fcl"};
+    const std::array<const char*, 4> names = {"minimum", "each", "embree", "fcl"};
     std::array<std::vector<double>, 4> seconds, ratios;
     std::array<Run, 4> runs;
     for (int round = 0; round < kRounds; ++round) {
@@ -240,13 +242,13 @@ void compare(int triangles)
 void compare_with_brute_force(int triangles)
 {
     constexpr double kTolerance = 0.01, kUndecided = 1e-5;
-    const Mesh mesh = boat::hull(triangles);
-    const Workpiece workpiece(mesh);
+    const mesh::Mesh mesh = boat::hull(triangles);
+    const robot::Workpiece workpiece(mesh);
     const std::vector<Isometry3d> all = boat::poses(kPoses);
     Hits deeper = {}, wrong = {}, undecided = {};
     for (std::size_t k = 0; k < 3; ++k)
         for (const Isometry3d& T : all) {
-            const double clearance = workpiece.nearest(PlacedSolid(kTool[k], T), 50).clearance.distance;
+            const double clearance = workpiece.nearest(robot::PlacedSolid(kTool[k], T), 50).clearance.distance;
             const bool deep = any_deeper(mesh, kTool[k], T, kTolerance);
             deeper[k] += deep;
             wrong[k] += deep != (clearance < -kTolerance);

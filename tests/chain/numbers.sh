@@ -14,10 +14,10 @@ for file in far.xyz far.obj; do
     "$refuses" "$file: point 1: $far" fettle-render $file
 done
 echo '1e7 1e7 1' >survey.xyz # far, but read
-fettle-compare survey.xyz --to survey.xyz >/dev/null
+fettle-compare survey.xyz --to survey.xyz -q >/dev/null || [ $? = 1 ] # one point has no error
 # columns: one named like an axis, more than any scanner writes
 printf 'x y z x\n1 2 3 4\n' >axis.xyz
-"$refuses" "axis.xyz: column 'x' stands twice" fettle-form flatness axis.xyz
+"$refuses" "axis.xyz: column 'x' is duplicated" fettle-form flatness axis.xyz
 printf '1 %.0s' {1..2000} >wide.xyz
 "$refuses" 'wide.xyz: 2000 columns, at most 1000' fettle-form flatness wide.xyz
 # JSON

@@ -10,11 +10,11 @@ refuses empty.xyz fettle-align empty.xyz --to good.xyz
 refuses empty.xyz fettle-align good.xyz --to empty.xyz
 refuses 'one.xyz: needs at least 6 points, got 1' fettle-align one.xyz --to good.xyz
 refuses 'one.xyz: needs at least 3 points, got 1' fettle-align good.xyz --to one.xyz
-refuses 'equal.xyz: all points lie in one place' fettle-align equal.xyz --to good.xyz
+refuses 'equal.xyz: all points coincide' fettle-align equal.xyz --to good.xyz
 refuses 'nan.xyz: needs at least 6 points, got 0' fettle-align nan.xyz --to good.xyz
 refuses 'nan.xyz: needs at least 3 points, got 0' fettle-align good.xyz --to nan.xyz
 printf 'solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 0 0 0\nvertex 1 0 0\nendloop\nendfacet\nendsolid a\n' >flat.stl
-refuses 'flat.stl: none of its triangles has an area' fettle-align good.xyz --to flat.stl
+refuses 'flat.stl: all triangles have zero area' fettle-align good.xyz --to flat.stl
 refuses missing.pcd fettle-align good.xyz --to missing.pcd
 refuses -- fettle-align good.xyz
 # transforms
@@ -22,14 +22,14 @@ transform() { # MESSAGE TEXT
     printf -- "$2" >T.txt
     refuses "T.txt: $1" fettle-align good.xyz --to good.xyz --transform-in T.txt
 }
-transform 'expected 4 lines of 4 numbers, got 0' ''
+transform 'empty, expected a transform' ''
 transform 'line 2: expected 4 numbers, got 3' '1 0 0 0\n0 1 0\n'
 transform "line 1: expected a number, got '1,5'" '1 0 0 1,5\n'
 transform "line 1: expected a number, got 'nan'" '1 0 0 nan\n'
-transform 'line 5: a transform has 4 lines' '1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n0 0 0 1\n'
+transform 'line 5: a transform has only 4 lines' '1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n0 0 0 1\n'
 transform 'the last line must be 0 0 0 1' '1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 1 1\n'
-transform 'is no rotation' '2 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n'
-transform 'mirrors' '-1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n'
+transform 'is not a rotation' '2 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n'
+transform 'is a reflection' '-1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n'
 # options
 refuses "--hold: expected some of x,y,z,rx,ry,rz with commas between, got 'x,w'" fettle-align good.xyz --to good.xyz --hold x,w
 refuses '--overlap' fettle-align good.xyz --to good.xyz --overlap 0

@@ -1,4 +1,4 @@
-# Motions that are held stay as they are, those that the points say nothing about too, and both are told.
+# Held and undetermined motions keep their start values, and both are reported.
 # Reference: the axes themselves; a plane leaves two shifts and one turn open.
 awk 'BEGIN { for (i = 0; i < 40; i++) for (j = 0; j < 30; j++) print i, j, (i < 12 && j < 9 ? 6 : i > 30 ? 3 : 0) }' >steps.xyz
 awk '{ print -$2 + 7, $1 - 3, $3 }' steps.xyz >turned.xyz

@@ -16,6 +16,16 @@ refuses '--box goes with --reach' fettle-arm good.json --inverse --box 0,0,0,1,1
 refuses '--rapid needs a path' fettle-arm good.json --reach --box 0,0,0,1,1,1 --feed 1 --rapid out.mod
 refuses '--rapid needs --feed' fettle-arm good.json --inverse --rapid out.mod path.pcd
 refuses "path.pcd: the points have no field 'joint1'" fettle-arm good.json --forward path.pcd
+joints() { # NAME JOINT1 JOINT7
+    printf 'VERSION 0.7\nFIELDS joint1 joint2 joint3 joint4 joint5 joint6 joint7\nSIZE 8 8 8 8 8 8 8\nTYPE F F F F F F F\nCOUNT 1 1 1 1 1 1 1\n' > "$1"
+    printf 'WIDTH 2\nHEIGHT 1\nPOINTS 2\nDATA ascii\n0 0 0 0 0 0 0\n%s 0 0 0 0 0 %s\n' "$2" "$3" >> "$1"
+}
+joints turned.pcd 1e9 0
+refuses 'turned.pcd: point 1: joint1 is 1e+09 degrees, at most 720 either way' fettle-arm good.json --forward turned.pcd
+joints away.pcd 0 -1e9
+refuses 'away.pcd: point 1: joint7 is -1e+09 mm, at most 100000 either way' fettle-arm good.json --forward away.pcd
+sed 's/joint1/jointA/' turned.pcd >no_joint1.pcd
+refuses "no_joint1.pcd: no field 'x'" fettle-arm good.json --forward no_joint1.pcd
 sed 's/ qz$/ qq/' path.pcd >no_qz.pcd
 refuses "no_qz.pcd: the points have no field 'qz'" fettle-arm good.json --inverse no_qz.pcd
 sed '$s/.*/1000 1000 500 0 0 0 0/' path.pcd >zero.pcd
@@ -27,7 +37,7 @@ for start in 1,2,3 1,2,3,4,5,1e9 1,2,3,4,5,6,7 1,2,3,4,5,x 1,2,3,4,5,nan; do
     refuses '--start: expected six angles' fettle-arm good.json --inverse --start "$start" path.pcd
 done
 for box in 0,0,0,1,1 0,0,0,1,1,1,1 0,0,0,1,1,-1 0,0,0,1,1,x 0,0,0,1,1,inf; do
-    refuses '--box: expected x,y,z of its least and of its greatest corner' fettle-arm good.json --reach --box $box
+    refuses '--box: expected x,y,z of its minimum and of its maximum corner' fettle-arm good.json --reach --box $box
 done
 refuses '--box: expected' fettle-arm good.json --reach
 refuses 'the box has 1e+09 cells, at most 1e+07' fettle-arm good.json --reach --box 0,0,0,1000,1000,1000 --step 1
@@ -64,7 +74,7 @@ change 'bodies[0].link: must be' '.bodies[0].link = 9'
 change 'bodies[0].link: 8 is the table, and the robot has none' '.bodies[0].link = 8'
 change 'bodies[0].shape: ' '.bodies[0].shape = "torus"'
 change 'bodies[0].radius: must be' '.bodies[0].radius = 0'
-change 'bodies[0].to: is where it is from' '.bodies[0].to = .bodies[0].from'
+change 'bodies[0].to: equals from' '.bodies[0].to = .bodies[0].from'
 change 'bodies[0].size: ' '.bodies[0] |= {name, link, shape: "box", size: [1, 1, -1], at: {}}'
 change 'bodies[0].at.quaternion: must not be 0' '.bodies[0] |= {name, link, shape: "box", size: [1, 1, 1], at: {quaternion: [0, 0, 0, 0]}}'
 change 'bodies[0].radius_to: both radii are 0' '.bodies[0] |= (del(.radius) + {shape: "cone", radius_from: 0, radius_to: 0})'

@@ -12,6 +12,6 @@ awk 'data { print $NF } $1 == "DATA" { data = 1 }' track.pcd | paste - fixed | a
 jq -e '.cells == 60 and .reached > 0.8 and .mean_reach > 0.3' r.json >/dev/null
 jq '.base = {position: [0, 500, 0]}' fixed.json >moved.json
 diff <(reach fixed.json --box 600,0,500,1200,400,700) <(reach moved.json --box 600,500,500,1200,900,700)
-# the same whatever the threads; a picture of a layer
+# the same for any number of threads; a picture of a layer
 fettle-arm "$SAMPLES/robots/irb1400.json" --reach --box $box --step 200 --threads 1 --ascii | cmp - track.pcd
 fettle-render track.pcd --field reach -o reach.png

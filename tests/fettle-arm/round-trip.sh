@@ -1,4 +1,4 @@
-# Joints that --inverse finds bring the tool back to its path by --forward, with a track that stands or follows and a table that turns.
+# Joints that --inverse finds bring the tool back to its path by --forward, with a track that is fixed or follows and a table that turns.
 # Reference: the path itself (x y z are floats: 1e-4 mm).
 robots=$SAMPLES/robots
 path=$SAMPLES/paths/keel.pcd
@@ -23,7 +23,7 @@ there_and_back irb1400.json --track follow:-100
 jq -e --argjson width "$width" '.track.follows and (.joints[6].max - .joints[6].min - $width | fabs) < 1e-3' r.json >/dev/null
 there_and_back irb1400_table.json --track 1000 --table 30
 jq -e '(.table.value - 30 | fabs) < 1e-9 and (.joints[7].max - 30 | fabs) < 1e-9' r.json >/dev/null
-# the same bytes whatever the threads
+# the same bytes for any number of threads
 fettle-arm "$robots/irb1400_table.json" --inverse "$path" --threads 1 >1.pcd
 fettle-arm "$robots/irb1400_table.json" --inverse "$path" --threads 3 >3.pcd
 cmp 1.pcd 3.pcd

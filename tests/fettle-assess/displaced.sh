@@ -1,5 +1,5 @@
 # Stock that rises by 0.2 along x and 0.3 along y over a plate: its surface and the normals there, exactly; and a warning where
-# stock of 1.2 mm stands over a radius of 10 mm. Reference: the plane, and |D| / R.
+# stock of 1.2 mm lies over a radius of 10 mm. Reference: the plane, and |D| / R.
 cat > plate.json <<'JSON'
 {"kind": "patches", "units": {"length": "mm"}, "patches": [{"degree": [1, 1], "knots_u": [0, 0, 10, 10], "knots_v": [0, 0, 6, 6],
   "control": [[[0, 0, 0], [0, 6, 0]], [[10, 0, 0], [10, 6, 0]]]}]}

@@ -42,22 +42,23 @@ tail -1 whole.csv | tr , ' ' | { read -r point t gouge within undercut mean rms 
 refused() { "$HERE/../refuses" "$@"; }
 refused 'run.journal: this is the journal of another run' fettle-belt plate.pcd --wheel wheel.json --path path.pcd --feed 0.2 --journal run.journal
 cp path.pcd other.pcd
-refused 'other.pcd: this is no journal of fettle-belt' fettle-belt plate.pcd --wheel wheel.json --path path.pcd --feed 0.003 --journal other.pcd
+refused 'other.pcd: not a journal of fettle-belt' fettle-belt plate.pcd --wheel wheel.json --path path.pcd --feed 0.003 --journal other.pcd
 refused 'path.pcd: is an input, which would be lost' fettle-belt plate.pcd --wheel wheel.json --path path.pcd --feed 0.003 --journal path.pcd
 head -c 5000 run.journal > short.journal
 refused 'short.journal: ' fettle-belt plate.pcd --wheel wheel.json --path path.pcd --feed 0.003 --journal short.journal
-# A count in it that is none, or more than there is: where the next point, and the sizes of the arrays, stand.
-title=22
-for number in 1 2 3; do
-    for bytes in '\0\0\0\0\0\0\370\177' '\0\0\0\0\0\0\360\277' '\0\0\0\0\0\0\320\177'; do # NaN, -1, 4e307
-        cp run.journal broken.journal
-        printf %b "$bytes" | dd of=broken.journal bs=1 seek=$((title + 8 * number)) conv=notrunc status=none
-        refused 'broken.journal: the journal is broken' fettle-belt plate.pcd --wheel wheel.json --path path.pcd --feed 0.003 --cells 64 \
-            --lower 0.1 --upper 0.2 --watch broken.csv --journal broken.journal
-    done
+# A bit that has flipped: in the digests, in a count, in the displacements, anywhere.
+size=$(stat -c %s run.journal)
+for place in 5 30 100 152 160 $((size / 3)) $((size / 2)) $((size - 1)); do
+    cp run.journal broken.journal
+    byte=$(od -An -tu1 -j "$place" -N 1 run.journal)
+    printf %b "\\$(printf %03o $((byte ^ 4)))" | dd of=broken.journal bs=1 seek="$place" conv=notrunc status=none
+    refused 'broken.journal: ' fettle-belt plate.pcd --wheel wheel.json --path path.pcd --feed 0.003 --cells 64 \
+        --lower 0.1 --upper 0.2 --watch broken.csv --journal broken.journal
 done
+sed '1s/2/1/' run.journal > older.journal
+refused 'older.journal: the journal is corrupt, or of another version' fettle-belt plate.pcd --wheel wheel.json --path path.pcd --feed 0.003 --journal older.journal
 { cat run.journal; printf '\0\0\0\0\0\0\0\0'; } > long.journal
-refused 'long.journal: the journal is broken' fettle-belt plate.pcd --wheel wheel.json --path path.pcd --feed 0.003 --cells 64 \
+refused 'long.journal: the journal is corrupt' fettle-belt plate.pcd --wheel wheel.json --path path.pcd --feed 0.003 --cells 64 \
     --lower 0.1 --upper 0.2 --watch long.csv --journal long.journal
 refused '--watch' fettle-belt plate.pcd --wheel wheel.json --path path.pcd --watch w.csv --lower 0
 refused '--lower: is more' fettle-belt plate.pcd --wheel wheel.json --path path.pcd --watch w.csv --lower 1 --upper 0

@@ -1,6 +1,6 @@
-# A run over a plate: Preston's law says what goes (C V_b F t), the surfels have lost it, a second belt adds to removed, and
-# the trace tells of each point. To half the spacing the same depth; the same bytes with one thread and two.
-# Reference: the law; volume of a plate whose surfels stand 0.5 mm apart.
+# A run over a plate: the surfels lose the volume of Preston's law (C V_b F t), a second belt adds to removed, and
+# the trace has each point. To half the spacing the same depth; the same bytes with one thread and two.
+# Reference: the law; volume of a plate whose surfels are 0.5 mm apart.
 # shellcheck source=tests/fettle-contact/plate.bash
 . "$HERE/../fettle-contact/plate.bash"
 plate > plate.pcd

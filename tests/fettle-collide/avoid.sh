@@ -1,5 +1,5 @@
-# A clamp stands in the way of the tool along the keel: the path is led around it. The ball's centre, and so the point of contact,
-# stays where it is but for retreats. Reference: the path itself, and a second look at what comes out.
+# A clamp obstructs the tool along the keel: the path is changed to avoid it. The ball's centre, and so the point of contact,
+# stays where it is but for retreats. Reference: the path itself, and a second check of the changed path.
 fettle-part "$SAMPLES/parts/keel.json" >keel.stl
 jq '.bodies += [{name: "clamp", link: -1, shape: "box", at: {position: [1065, 1000, 600]}, size: [60, 60, 200]}]' \
     "$SAMPLES/robots/irb1400.json" >clamp.json
@@ -21,7 +21,7 @@ for how in pose smooth; do
         .avoidance.changed == (.avoidance.changes | length) and (.avoidance.unsolved_poses | length) == 0 and
         .avoidance.most_tilt_deg <= 45.001 and .avoidance.most_retreat <= 1.001' --slurpfile before before.json $how.json >/dev/null
     centres $how.pcd | paste -d' ' given - | awk '{ d = sqrt(($1 - $4)^2 + ($2 - $5)^2 + ($3 - $6)^2); if (d > $7 + 2e-3) { print; exit 1 } }'
-    # the poses that come out are clear when they are looked at anew
+    # the changed poses are clear when they are checked again
     sed 's/ joint/ j/g' $how.pcd >again.pcd
     look again.pcd again.json -o /dev/null || test $? -eq 1
     jq -e '.collisions == 0 and .reached == 61' again.json >/dev/null
@@ -29,7 +29,7 @@ done
 # smoothly the tilt changes by less than a third as much from pose to pose, and the ways between are clear, too
 jq -es '.[1].avoidance.most_tilt_change_deg <= 0.3 * .[0].avoidance.most_tilt_change_deg' pose.json smooth.json >/dev/null
 jq -e '.avoidance.by == "smooth" and .avoidance.unsolved_ways == .collisions_between' smooth.json >/dev/null
-# --avoid alone is pose by pose, before whatever else; the same bytes whatever the threads
+# --avoid alone is pose by pose, in any position; the same bytes for any number of threads
 fettle-collide --avoid clamp.json "$path" --workpiece keel.stl --track 350 --resolution 1 -q --ascii --threads 1 | cmp - pose.pcd
 fettle-collide clamp.json "$path" --workpiece keel.stl --track 350 --resolution 1 -q --ascii --threads 1 --avoid=smooth | cmp - smooth.pcd
 # with less tilt it cannot be done: exit 1, and which poses

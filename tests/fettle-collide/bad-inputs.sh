@@ -19,7 +19,7 @@ refuses '--resolution' fettle-collide robot.json path.pcd --resolution 0
 refuses '--track: expected auto' fettle-collide robot.json path.pcd --track x
 refuses '--table: the robot has none' fettle-collide robot.json path.pcd --table 5
 jq '.bodies[0].name = "workpiece"' robot.json >named.json
-refuses 'named.json: bodies[0].name: is what the part is called' fettle-collide named.json path.pcd
+refuses 'named.json: bodies[0].name: is reserved for the part' fettle-collide named.json path.pcd
 # an unreachable pose: the answer is no, and its clearance is not known
 sed '$s/^1000/9000/' path.pcd >far.pcd
 status=0
@@ -31,3 +31,9 @@ refuses "--avoid: 'smoot' is none of pose, smooth; did you mean 'smooth'" fettle
 refuses '--most-tilt' fettle-collide robot.json path.pcd --avoid --most-tilt 91
 refuses '--most-retreat' fettle-collide robot.json path.pcd --avoid --most-retreat -1
 refuses 'twice' fettle-collide robot.json path.pcd --avoid --avoid smooth
+# A flat body, two triangles in a plane: its hull has no inside, and it touches the keel without a depth. It took half a minute.
+printf 'OFF\n4 2 0\n-200 -200 20\n200 -200 20\n200 200 20\n-200 200 20\n3 0 1 2\n3 0 2 3\n' >sheet.off
+jq '.bodies += [{name: "sheet", link: 7, shape: "hull", file: "sheet.off"}]' robot.json >sheet.json
+fettle-part "$SAMPLES/parts/keel.json" >keel.stl
+timeout 20 fettle-collide sheet.json path.pcd --workpiece keel.stl --report sheet.report -q -o /dev/null || test $? -eq 1
+jq -e '.least.clearance <= 0 and .least.clearance > -1e-3 and (.least.pair | index("sheet") != null)' sheet.report >/dev/null

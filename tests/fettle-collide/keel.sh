@@ -9,7 +9,7 @@ jq -e '.collisions == 0 and .collisions_between == 0 and .looked_at == 61 and .l
 # poses or joints: the same
 fettle-collide "$robot" "$SAMPLES/paths/keel.pcd" --workpiece keel.stl --report poses.json -q -o /dev/null
 jq -es '.[0].least.clearance - .[1].least.clearance | fabs < 2e-4' r.json poses.json >/dev/null
-# the same bytes whatever the threads
+# the same bytes for any number of threads
 fettle-collide "$robot" joints.pcd --workpiece keel.stl --threads 1 -q --ascii | cmp - clear.pcd
 
 fettle-arm "$robot" --forward joints.pcd --ascii | awk 'data { $3 -= 0.1 } { print } $1 == "DATA" { data = 1 }' |
@@ -28,10 +28,10 @@ fettle-collide margin.json joints.pcd --workpiece keel.stl --report m.json --bey
 fettle-collide "$robot" joints.pcd --beyond 100 --report none.json -q -o /dev/null
 jq -e '.least.pair == ["spindle", "workpiece"]' m.json >/dev/null
 # a calibration error takes as much from the clearances of the robot to all else, but not of a pair that has its margin
-least() { fettle-collide "$1" joints.pcd --workpiece keel.stl --report l.json -q -o /dev/null "${@:2}" || test $? -eq 1; jq -c '[.least.clearance, .least.pair]' l.json; }
+min_clearance() { fettle-collide "$1" joints.pcd --workpiece keel.stl --report l.json -q -o /dev/null "${@:2}" || test $? -eq 1; jq -c '[.least.clearance, .least.pair]' l.json; }
 jq '.calibration_error = 0.5' "$robot" >error.json
 jq '.margins = [{a: "ball", b: "workpiece", distance: 0}]' error.json >but.json
 jq '.allowed += [["ball", "workpiece"], ["shank", "workpiece"]]' "$robot" >free.json
 jq '.calibration_error = 0.5' free.json >free_error.json
-jq -e -n --argjson a "$(least "$robot")" --argjson b "$(least error.json)" --argjson c "$(least but.json)" --argjson d "$(least free.json)" --argjson e "$(least free_error.json)" \
+jq -e -n --argjson a "$(min_clearance "$robot")" --argjson b "$(min_clearance error.json)" --argjson c "$(min_clearance but.json)" --argjson d "$(min_clearance free.json)" --argjson e "$(min_clearance free_error.json)" \
     '($a[0] - $b[0] - 0.5 | fabs) < 1e-9 and $a == $c and ($d[0] - $e[0] - 0.5 | fabs) < 1e-9 and $d[1] == $e[1]' >/dev/null

@@ -16,7 +16,7 @@ fettle-arm "$robot" --forward joints.pcd --ascii | awk 'data { $3 -= 0.1 } { pri
 check low.pcd grid deep
 check low.pcd paper paper
 jq -es '.[0].collisions == 61 and .[0].least.pair == ["ball", "workpiece"] and .[1].collisions == 61' deep.json paper.json >/dev/null
-# the same bytes whatever the threads
+# the same bytes for any number of threads
 fettle-collide "$robot" joints.pcd --workpiece keel.stl --method grid --threads 1 -q --ascii | cmp - grid.pcd
 refuses() { "$HERE/../refuses" "$@" </dev/null; }
 fettle-collide "$robot" joints.pcd --workpiece keel.stl --exact -q --ascii | cmp - exact.pcd

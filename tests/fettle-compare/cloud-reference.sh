@@ -1,7 +1,7 @@
 # A cloud as reference: a quadratic grid is represented exactly along z. Reference: the offsets that were added.
 # 2e-6 is the rounding of float coordinates of size 10.
-quadratic() { awk -v step="$1" -v lift="$2" -v most="$3" 'BEGIN {
-    for (x = -most; x <= most; x += step) for (y = -most; y <= most; y += step)
+quadratic() { awk -v step="$1" -v lift="$2" -v reach="$3" 'BEGIN {
+    for (x = -reach; x <= reach; x += step) for (y = -reach; y <= reach; y += step)
         printf "%.7g %.7g %.7g\n", x, y, 0.02 * x * x - 0.01 * x * y + 0.1 * y + lift }'; }
 quadratic 0.5 0 10 >reference.xyz
 quadratic 0.73 0.125 8 >test.xyz

@@ -3,7 +3,7 @@ printf 'v 0 0 0\nv 10 0 0\nv 10 10 0\nv 0 10 0\nf 1 2 3 4\n' >plate.obj
 printf 'x y z layer\n1 1 0.5 7\n5 5 -0.25 8\n9 2 0 9\n12 8 0.25 10\n' >test.xyz
 compare() { fettle-compare test.xyz --to plate.obj --tolerance 0.5 "$@"; }
 compare --format csv
-# PLY: what fettle reads back is what the PCD holds; the header has the names that CloudCompare looks for.
+# PLY: fettle reads back the contents of the PCD; the header has the names that CloudCompare expects.
 compare -o errors.pcd
 compare --format ply -o errors.ply
 grep -a -c -E '^property (float (nx|scalar_error|scalar_layer)|uchar red)$' errors.ply

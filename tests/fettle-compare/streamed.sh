@@ -1,4 +1,4 @@
-# A binary PCD that is streamed tells the same as the same points held in memory, from a file, a pipe and with little
+# A binary PCD that is streamed gives the same results as the same points in memory, from a file, a pipe and with little
 # memory. Reference: the text of the points; and the mean offset.
 awk 'BEGIN { for (i = 0; i < 400; i++) for (j = 0; j < 300; j++) print i, j, 0.25 + sin(i * j) / 10 }' >test.xyz
 printf 'v -9 -9 0\nv 999 -9 0\nv 999 999 0\nv -9 999 0\nf 1 2 3 4\n' >plate.obj

@@ -1,5 +1,5 @@
-# The exit status: 0 within, 1 out of tolerance, 0 without one. An error equal to the tolerance is within, as far as
-# float coordinates tell.
+# The exit status: 0 within, 1 out of tolerance, 0 without one. An error equal to the tolerance is within, to the
+# resolution of float coordinates.
 printf 'v 0 0 0\nv 10 0 0\nv 10 10 0\nv 0 10 0\nf 1 2 3 4\n' >plate.obj
 printf '1 1 0.02\n5 5 -0.01\n' >test.xyz
 fettle-compare test.xyz --to plate.obj -o /dev/null

@@ -1,4 +1,4 @@
-# A cube of which one facet is wound the other way, and one that is inside out: mended, counted and said; or kept.
+# A cube of which one facet is wound the other way, and one that is inside out: repaired, counted and reported; or kept.
 # Reference: the distance of the points from the cube, by hand.
 cube='v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n'
 { printf "$cube"; printf 'f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n'; } >sound.obj

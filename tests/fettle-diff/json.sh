@@ -1,4 +1,4 @@
-# JSON is compared member by member, whatever their order; texts exactly, numbers within the tolerance. By hand.
+# JSON is compared member by member, in any order; texts exactly, numbers within the tolerance. By hand.
 echo '{"kind": "x", "list": [1, 2.0, {"deep": null}], "empty": []}' > a.json
 echo '{"list": [1, 2.5, {"deep": null}], "kind": "x", "empty": {}, "more": true}' > b.json
 fettle-diff a.json a.json

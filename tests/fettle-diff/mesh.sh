@@ -1,4 +1,4 @@
-# Meshes are compared corner by corner, whatever their format. Reference: by hand.
+# Meshes are compared corner by corner, in any format. Reference: by hand.
 cat > a.off <<'END'
 OFF
 4 2 0

@@ -1,4 +1,4 @@
-# What cannot be held against each other is said: fields, number of points, units, kind. Reference: by hand.
+# What cannot be compared is reported: fields, number of points, units, kind. Reference: by hand.
 differs() { local status=0; fettle-diff --tol 100 "$HERE/two-points.pcd" other.pcd || status=$?; test $status = 1; }
 sed 's/error/sigma/' "$HERE/two-points.pcd" > other.pcd; differs
 sed 's/units mm/units in/' "$HERE/two-points.pcd" > other.pcd; differs

@@ -12,7 +12,7 @@ fettle-sample job.json --on part.stl --ascii > samples.pcd
 echo '1 2 3' > one.xyz
 "$refuses" "one.xyz: the points have no field 'curve'" fettle-estimate job.json one.xyz
 fettle-estimate job.json samples.pcd > points.pcd
-"$refuses" 'points.pcd: holds estimated points already (role 3)' fettle-estimate job.json points.pcd
+"$refuses" 'points.pcd: already has estimated points (role 3)' fettle-estimate job.json points.pcd
 # a touch is missing; places without heights
 awk '/^[0-9]/ && NF == 5 && !done { $3 = "nan"; done = 1 } { print }' samples.pcd > missing.pcd
 "$refuses" 'missing.pcd: curve ' fettle-estimate job.json missing.pcd

@@ -17,6 +17,6 @@ refused 'off.pcd: no point is on the part' fettle-feed off.pcd --on plate.pcd --
 refused 'empty.pcd: no point is on the part' fettle-feed empty.pcd --on plate.pcd --wheel wheel.json --force 1
 refused 'away.pcd: point 0: there is nothing under the wheel' fettle-feed away.pcd --on plate.pcd --wheel wheel.json --force 1
 sed 's/{"type": "preston", "coefficient": 1e-8}/{"type": "power", "coefficient": 1e-8, "pressure_exponent": 1, "speed_exponent": 1, "threshold": 1000}/' wheel.json > blunt.json
-refused 'path.pcd: the belt takes nothing along the path' fettle-feed path.pcd --on plate.pcd --wheel blunt.json --force 1
+refused 'path.pcd: the belt removes nothing along the path' fettle-feed path.pcd --on plate.pcd --wheel blunt.json --force 1
 refused '--on' fettle-feed path.pcd --wheel wheel.json --force 1
 refused 'missing.json' fettle-feed path.pcd --on plate.pcd --wheel missing.json --force 1

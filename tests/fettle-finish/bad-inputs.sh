@@ -9,8 +9,14 @@ refused '--cutter' fettle-finish plane.off --scallop 0.1
 refused '--cutter: expected ball:D' fettle-finish plane.off --cutter drill:6 --scallop 0.1
 refused 'plane.off: a cutter without ball or corner' fettle-finish plane.off --cutter flat:6 --scallop 0.1
 refused 'plane.off: a step-over of 1e-06 mm' fettle-finish plane.off --cutter flat:6 --step-over 1e-6
-refused 'down.off: nothing of the design faces up' fettle-finish down.off --cutter ball:6 --scallop 0.1
+refused 'down.off: no facet of the design faces up' fettle-finish down.off --cutter ball:6 --scallop 0.1
 refused 'empty.stl: empty' fettle-finish empty.stl --cutter ball:6 --scallop 0.1
 refused '--ascii: belongs to --pcd' fettle-finish plane.off --cutter ball:6 --scallop 0.1 --ascii
 refused '--scallop' fettle-finish plane.off --cutter ball:6 --scallop 0
 refused '--allowance' fettle-finish plane.off --cutter ball:6 --scallop 0.1 --allowance -1
+for option in --scallop --step-over --overhang --feed --clearance --allowance --angle; do
+    how=(--step-over 1)
+    [ $option != --scallop ] && [ $option != --step-over ] || how=()
+    refused "$option" fettle-finish plane.off --cutter ball:6 "${how[@]}" $option 1e300
+done
+refused '--cutter: the diameter must be in' fettle-finish plane.off --cutter ball:1e-300 --step-over 1

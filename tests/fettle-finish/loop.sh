@@ -1,7 +1,7 @@
 # The loop closes: design, path, machined part, verdict. Wang's sphere of 4 in with passes for ridges of 0.05 mm: no patch is
 # over-cut by more than the chords of the path (a third of the step-over on a radius of 101.6 mm: 2e-4 mm) and the rounding
 # of floats in inches, none is left higher than the ridges; and the program cuts what the points cut, but for its five
-# decimals. Reference: the scallop height that was asked for.
+# decimals. Reference: the requested scallop height.
 fettle-part --without-anomaly "$SAMPLES/parts/wang3.json" > design.stl
 for cutter in ball:12 bull:12,3; do
     fettle-finish design.stl --file-units in --cutter $cutter --scallop 0.05 --report finish.json > finish.nc

@@ -1,4 +1,4 @@
-# A block with walls on a plate: no cutter digs into either, whatever its shape, and rapid moves keep above. Reference: the
+# A block with walls on a plate: no cutter of any shape gouges either, and rapid moves keep above. Reference: the
 # design, to the floats of an STL; patches on the walls are left out and counted, but
 # not the vertices before and behind them: none is lower than the design by more than the chords' 0.005 mm.
 cat > block.off <<'END'

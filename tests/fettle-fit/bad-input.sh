@@ -45,7 +45,7 @@ printf '1 0 0\n0 1 0\n-1 0 0\n0 -1 0\n0.6 0.8 0\n0.8 -0.6 0\n' | pcd x y z >circ
 "$refuses" 'circle.pcd: touches do not determine a sphere' fettle-fit job.json circle.pcd --method sphere
 # roles that are none, units that disagree
 heights 1 20 1 | sed 's/$/ 7/' | pcd x y z role >role.pcd
-"$refuses" 'role.pcd: point 0: 7 is no role (0 to 5)' fettle-fit job.json role.pcd
+"$refuses" 'role.pcd: point 0: 7 is not a role (0 to 5)' fettle-fit job.json role.pcd
 sed '/^COUNT/s/1$/3/' role.pcd >roles.pcd
 "$refuses" "roles.pcd: field 'role': COUNT 3, expected 1" fettle-fit job.json roles.pcd
 # a curve's number beyond all integers is none

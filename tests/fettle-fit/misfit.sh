@@ -1,5 +1,5 @@
 # A boundary that leaves out the ends of the bead: touches on it. The fit says that they lie farther off than the probe's accuracy
-# explains; with the boundary around all of it it says nothing. Reference: the part, which is known.
+# explains; with the boundary around all of it there is no warning. Reference: the part, which is known.
 part=$SAMPLES/parts/hammer.json
 job=$SAMPLES/jobs/hammer.json
 fettle-part "$part" > worn.stl

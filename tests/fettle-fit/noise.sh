@@ -1,5 +1,5 @@
-# Touches whose noise the job overstates tenfold, or does not know. Reference: the noise that went in: 0.001 in, which 16
-# touches less the 4 parameters of a sphere tell within 0.5 to 1.7 in 99.8 % of all cases (chi-squared, 12 degrees of freedom).
+# Touches whose noise the job overstates tenfold, or does not know. Reference: the generating noise, 0.001 in: the estimate from 16
+# touches less the 4 parameters of a sphere is within 0.5 to 1.7 of it in 99.8 % of all cases (chi-squared, 12 degrees of freedom).
 source "$HERE/points.bash"
 job freeform | sed 's/1e-4/0.02576/' >coarse.json
 job freeform | sed 's/1e-4/0.0002576/' >fine.json
@@ -16,4 +16,4 @@ fettle-diff --tol 1e-9 coarse-margin.json fine-margin.json
 # Student's t at work: a known sigma of the same size takes a smaller shift.
 jq 'del(.fit.touch_freedom)' coarse-surface.json | fettle-margin coarse.json >known.json
 jq -n -e --slurpfile a coarse-margin.json --slurpfile b known.json '$a[0].shift > 1.02 * $b[0].shift'
-"$HERE/../refuses" 'too few to tell the noise' fettle-fit --noise estimate --method griddata coarse.json touches.pcd
+"$HERE/../refuses" 'too few to estimate the noise' fettle-fit --noise estimate --method griddata coarse.json touches.pcd

@@ -1,5 +1,5 @@
 # Which points a fit takes: touches (1, 2, 4, 5); estimated points (3) never; corners of the anomaly (0) for planes or
-# when asked. Those of the wrong role lie 1 in off here. Points without a height are left out. Reference: the formula.
+# on request. Those of the wrong role lie 1 in off here. Points without a height are left out. Reference: the formula.
 source "$HERE/points.bash"
 job freeform >freeform.json
 job plane >plane.json

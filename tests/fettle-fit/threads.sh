@@ -1,4 +1,4 @@
-# Same input, same bytes, whatever the number of threads.
+# Same input, same bytes, for any number of threads.
 source "$HERE/points.bash"
 job freeform >job.json
 heights '0.2 * sin(3 * x) + 0.3 * y ^ 2' 40 1 | pcd x y z >touches.pcd

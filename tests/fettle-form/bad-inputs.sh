@@ -26,6 +26,8 @@ refused straightness equal.xyz
 refused straightness plane.xyz --sections 0
 refused flatness plane.xyz --sections 1
 refused straightness plane.xyz --section-width 1
+refused straightness plane.xyz --sections 1 --section-width 1e15
+grep -q -- '--section-width: must be at most 100 times --sections' err
 refused straightness plane.xyz --sections 1e-9
 refused straightness plane.xyz --sections 1 --section-width 0.1 --direction 90
 grep -q 'plane.xyz: straightness: no section has as many as 3 points' err

@@ -1,6 +1,6 @@
 # A quarter of a cylinder of radius 20 about the y axis, with ripples of ±0.05 in both directions, inside a job in
 # inches. Reference: the minimum zone is no wider than the ripple, that of
-# least squares hardly (its element lies off the middle), and the axis is y.
+# least squares slightly wider (its element is off the middle), and the axis is y.
 cat >job.json <<'JSON'
 { "kind": "job", "units": {"length": "in", "force": "lbf"}, "surface": {"type": "swept", "direction_deg": 90},
   "anomaly": [[-30, -30], [30, -30], [30, 30], [-30, 30]], "sampling": [[-40, -40], [40, -40], [40, 40], [-40, 40]] }

@@ -7,7 +7,7 @@ fettle-form straightness rows.xyz --file-units in --sections 2 --section-width 0
 jq -e '.units.length == "in" and .parameter == "STRt" and (.sections | length) == 7 and (.minimum_zone - 0.3 | fabs) < 1e-6 and
     .offset == 2 and ([.sections[] | select(.minimum_zone < 1e-6)] | length) == 6 and .elements.least_squares.name == "LSLI" and
     (.elements.minimum_zone.contacts | length) == 3 and (.sections[0].offset + 6 | fabs) < 1e-9 and .count == 41' form.json >/dev/null
-# One line: the width of a triangle's least height, in any position; least squares is wider.
+# One line: the width is the smallest height of a triangle, in any position; least squares is wider.
 printf '0 0 0\n3 0 4\n6 0 8\n9 0 12\n4 0 3\n' | fettle-form straightness |
     jq -e '(.minimum_zone - 1.4 | fabs) < 1e-9 and .least_squares > .minimum_zone and ([.elements.minimum_zone.sides[]] | add | fabs) == 1' >/dev/null
 # Outliers: without them the form is that of the rest, and they are counted.

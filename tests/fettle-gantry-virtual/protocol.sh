@@ -1,4 +1,4 @@
-# A conversation by hand, line by line: what the machine can do, a way down on a flat part, a step, an unknown command, a touch
+# A conversation by hand, line by line: the limits of the machine, a move down on a flat part, a step, an unknown command, a touch
 # on the hill of 0.01 mm and one that meets nothing, and the end. References: the protocol; the part's height, 5 mm.
 # shellcheck source=tests/fettle-grind/stock.bash
 . "$HERE/../fettle-grind/stock.bash"
@@ -36,7 +36,7 @@ awk 'NR == 1 && !($1 == 1 && $2 == "ok" && $3 " " $4 == "fettle-gantry 1" && NF 
     END { exit NR != 13 }' <<< "$answers"
 grep -q '^FIELDS x y z' <(head -c 500 ground.pcd)
 
-# What no client asks for: places and feeds that the machine has not, each refused without an end.
+# Invalid requests: positions and feeds outside the machine's range, each refused without ending.
 refused=0
 while read -r command; do
     answers=$(printf '1 %s\n2 status\n' "$command" | fettle-gantry-virtual plan.json --stock stock.stl --cell 0.2)
@@ -55,15 +55,15 @@ END
 [ $refused = 8 ]
 [ "$(fettle-gantry-virtual plan.json --stock stock.stl --cell 0.2 <<< '1 press -5 -5 10 20 5')" = '1 error the machine cannot hold a force' ]
 
-# A client that is gone: the driver ends by itself.
+# A client that has ended: the driver ends by itself.
 fettle-gantry-virtual plan.json --stock stock.stl --cell 0.2 <<< '1 status' > out
 [ "$(wc -l < out)" = 1 ]
 
-# Far below the part the wheel is worn away; when nobody speaks any more, the part is kept all the same.
+# Far below the part the wheel is worn away; when the client has ended, the part is kept all the same.
 answers=$(printf '1 travel 0 0 5\n2 move 5 5 -9000 10000\n' | fettle-gantry-virtual plan.json --stock stock.stl --cell 0.2 --ground worn.pcd)
 grep -q '^2 error .*the wheel is worn away' <<< "$answers"
 grep -q '^FIELDS x y z' <(head -c 500 worn.pcd)
 
-# A client that is gone when it is answered: the same.
+# A client that has ended before the answer: the same.
 (sleep 0.5; echo '1 status') | fettle-gantry-virtual plan.json --stock stock.stl --cell 0.2 --ground left.pcd | true
 grep -q '^FIELDS x y z' <(head -c 500 left.pcd)

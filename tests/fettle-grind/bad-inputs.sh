@@ -47,6 +47,12 @@ refused fettle-grind plan.json --stock stock.stl --stock stock.stl
 refused fettle-grind plan.json --stock stock.stl --gantry virtual:dynamic
 refused fettle-grind plan.json --stock stock.stl --machine "$SAMPLES/machines/full_scale.json"
 refused fettle-grind plan.json --stock stock.stl --gantry virtual:dynamic --machine job.json
+refused fettle-grind plan.json --stock stock.stl --removal-factor 1e-200
+refused fettle-grind plan.json --stock stock.stl --cell 3
+jq '.job.wheel.radius = 1e15' plan.json > huge.json
+jq '.job.wheel.width = 1e-5 | .job.feed.step_over = 1e-5' plan.json > thin.json
+refused fettle-grind huge.json --stock stock.stl
+refused fettle-grind thin.json --stock stock.stl
 machine() { # FILTER: the sample, changed
     jq "$1" "$SAMPLES/machines/prototype.json" > machine.json
     refused fettle-grind plan.json --stock stock.stl --gantry virtual:dynamic --machine machine.json

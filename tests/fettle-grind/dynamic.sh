@@ -29,7 +29,7 @@ grind 1 > ground.pcd
 turned=$(first_touch)
 awk -v a="$straight" -v b="$turned" 'BEGIN { d = b - a - (30 / 90 + 90 / 360); exit d < -0.001 || d > 0.1 }'
 
-# A wheel too big for the spindle stalls it: status 1, the fault is told, and the trace ends in event 12.
+# A wheel too big for the spindle stalls it: status 1, the fault is reported, and the trace ends in event 12.
 jq '.spindle.power = 1 | .spindle.inertia = 1e-6' "$SAMPLES/machines/full_scale.json" > weak.json
 status=0
 fettle-grind plan.json --stock stock.stl --gantry virtual:dynamic --machine weak.json --trace trace.pcd --ascii > ground.pcd 2> message || status=$?

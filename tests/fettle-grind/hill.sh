@@ -1,5 +1,5 @@
 # A hill of 4 mm, layers 0.5 mm apart: ground to the plane z = 5 within the tolerance of 0.1, and not below it by more than
-# the 0.005 to which a touch-off tells the radius. References:
+# the 0.005 to which a touch-off measures the radius. References:
 # the plane; the removed volume is the sum of what every cell lost; each number of the report is that of the trace.
 # shellcheck source=tests/fettle-grind/stock.bash
 . "$HERE/stock.bash"

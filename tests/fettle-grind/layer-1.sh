@@ -1,5 +1,5 @@
 # Feed-rate control and force control: the hill is ground in one covering, in soft and in hard stock, on both gantries, to the
-# plane within the tolerance and not below it by more than 0.01; without it takes several. The margins of the loops are told, and
+# plane within the tolerance and not below it by more than 0.01; without it takes several. The margins of the loops are reported, and
 # no smaller than promised: 3 and 38.9 degrees. References: the plane, and the runs without.
 # shellcheck source=tests/fettle-grind/stock.bash
 . "$HERE/stock.bash"

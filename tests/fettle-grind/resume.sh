@@ -1,5 +1,5 @@
 # Killed at any moment, 20 times on each machine, a run leaves a trace whose points are the beginning of
-# what an undisturbed run does. --resume goes on: nothing of what was done is gone over again but the step that was under way, and
+# what an undisturbed run does. --resume continues: nothing is repeated but the step that was under way, and
 # the part comes out as it should, within the tolerance of 0.1 and not below the plane by more than 0.01. The driver's machine keeps its
 # stock. References: the undisturbed run, and the plane.
 # shellcheck source=tests/fettle-grind/stock.bash
@@ -50,9 +50,9 @@ for kind in virtual virtual:dynamic exec; do
 done
 
 # What goes on is the same run: another plan, other options and what is no trace are refused.
-"$HERE/../refuses" 'is not what this plan and these options do' fettle-grind plan.json --stock stock.stl --resume whole.pcd
+"$HERE/../refuses" 'does not match this plan and these options' fettle-grind plan.json --stock stock.stl --resume whole.pcd
 jq '.passes |= .[:-1]' plan.json > other.json
-"$HERE/../refuses" 'is not what this plan and these options do' fettle-grind other.json --stock stock.stl --layer-1 feed --resume whole.pcd
+"$HERE/../refuses" 'does not match this plan and these options' fettle-grind other.json --stock stock.stl --layer-1 feed --resume whole.pcd
 "$HERE/../refuses" 'ground.pcd: ' fettle-grind plan.json --stock stock.stl --resume ground.pcd
 "$HERE/../refuses" 'none.pcd: cannot open' fettle-grind plan.json --stock stock.stl --resume none.pcd
 

@@ -1,5 +1,5 @@
 # Back and forth over the raw H of Wang's part 1 at 1 in/s, up its walls and down: the force stays within a tenth of the 10 lbf to be held
-# for at least 95 % of the time of contact, and metal is removed. References: the set force; the force's loop, whose margins are told
+# for at least 95 % of the time of contact, and metal is removed. References: the set force; the force's loop, whose margins are reported
 # by fettle-grind.
 fettle-part "$SAMPLES/parts/wang1.json" > part.stl
 fettle-manual "$SAMPLES/jobs/wang1.json" --stock part.stl --machine "$SAMPLES/machines/full_scale.json" --steer "$SAMPLES/steering/h.txt" \

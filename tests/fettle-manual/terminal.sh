@@ -1,4 +1,4 @@
-# On a terminal the wheel goes where arrow keys send it, 0.1 s at the job's 20 mm/s each, and stands while there are none. Reference: the way.
+# On a terminal the wheel goes where arrow keys send it, 0.1 s at the job's 20 mm/s each, and rests while there are none. Reference: the distance.
 # shellcheck source=tests/fettle-grind/stock.bash
 . "$HERE/../fettle-grind/stock.bash"
 command -v script > /dev/null || { echo 'script (bsdutils) is not installed' >&2; exit 77; }

@@ -1,4 +1,4 @@
-# What cannot be foreseen, or is no surface, no job, no command line.
+# What cannot be predicted, or is no surface, no job, no command line.
 refuses=$HERE/../refuses
 surface() { echo '{"kind": "surface", "units": {"length": "mm"}, "shape": {"type": "plane", "origin": [0, 0], "z0": 5, "slope": [0, 0]}, '"$1"' "touches": [[0, 0, 5, 1], [20, 0, 5, 1], [0, 20, 5, 1]]}'; }
 surface '"covariance": [0.04, 0, 0, 0, 0, 0],' > surface.json

@@ -28,6 +28,16 @@ refused 'under.xyz: point 2: ' under.xyz $box ball:6 --points cc
 refused 'a program has no contact points' feed.nc $box ball:6 --points cc
 refused 'empty' empty
 refused 'missing.nc' missing.nc
+printf '#1=3\nG0 X#1\n' > parameter.nc
+printf 'o<cut> sub\n' > sub.nc
+printf 'G0 X0 Y0 Z5\nX[1+2]\n' > expression.nc
+printf 'G0 X0 Y0 Z5\nG20 G1 X1 F10\n' > unit.nc
+printf 'G54 G0 X0 Y0 Z5\nG55 X1\n' > systems.nc
+refused "parameter.nc: line 1: expected a word, got '#1=3': parameters (#) and expressions ([ ]) are not read" parameter.nc
+refused "sub.nc: line 1: O-words (subprograms, loops) are not read, got 'O<CUT>'" sub.nc
+refused "expression.nc: line 2: expected a number after X, got '[1+2]': parameters" expression.nc
+refused 'unit.nc: line 2: F on a line that changes the unit' unit.nc
+refused 'systems.nc: line 2: a move with the coordinate system G55 after moves with G54' systems.nc
 refused '--stock: a box needs x0 < x1' path.xyz box:0,0,0,0,9,9
 refused '--stock: expected a number for y1 and a comma' path.xyz box:0,0,0,9,9
 refused '--stock: expected a number for z1' path.xyz box:0,0,0,9,9,9,9
@@ -40,6 +50,16 @@ refused '--holder: both must be positive' path.xyz $box ball:6 --holder 20,-3
 refused '--ascii: belongs to --pcd' path.xyz $box ball:6 --ascii
 refused '--feed' path.xyz $box ball:6 --feed 0
 refused 'a box is in mm' path.xyz $box ball:6 --stock-units in
+refused '--cutter: the diameter must be in' path.xyz $box ball:1e200
+refused '--cutter: the half angle must be in' path.xyz $box taper:6,1e-300,1
+refused "--cutter: the corner's radius must be in" path.xyz $box bull:6,1e-300
+refused '--holder: the height must be in' path.xyz $box ball:6 --holder 20,1e300
+refused "--stock: a corner's coordinate must be in" path.xyz box:0,0,0,1e300,9,9
+refused '--rapid' path.xyz $box ball:6 --rapid 1e-320
+refused '--feed' path.xyz $box ball:6 --feed 1e-320
+printf 'OFF\n6 2 0\n0 0 9\n9 0 9\n9 9 9\n0 9 nan\n0 0 nan\n9 0 nan\n3 0 1 2\n3 3 4 5\n' > half.off
+refused 'half.off: 1 of 2 facets have corners that are not finite' path.xyz half.off
+"$HERE/../refuses" 'half.off: 1 of 2 facets have' fettle-mill path.xyz --stock $box --cutter ball:6 --tolerance 0.1 --design half.off
 "$HERE/../refuses" 'give either --step or --tolerance' fettle-mill path.xyz --stock $box --cutter ball:6
 refused 'give either --step or --tolerance' path.xyz $box ball:6 --tolerance 0.1
 refused '--design and --as-published belong to --tolerance' path.xyz $box ball:6 --as-published

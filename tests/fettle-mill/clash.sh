@@ -1,4 +1,4 @@
-# A rapid move through material and a holder that meets it: told with their lines, exit 1, and the part is there.
+# A rapid move through material and a holder that meets it: reported with their lines, exit 1, and the part is there.
 # Reference: plain geometry; the rapid goes 3 mm deep, the holder's lower side (10 - 8 = 2 mm below the top) 2 mm.
 printf 'G0 X5 Y15 Z20\nX25\nZ8\nG1 Y14 F100\nG0 Z20\n' > rapid.nc
 status=0

@@ -7,6 +7,6 @@ awk 'BEGIN { print "x y z normal_x normal_y normal_z"
 for cutter in ball:6 bull:6,1 taper:6,30,1 flat:6; do
     fettle-mill contacts.xyz --points cc --stock box:8,8,-9,18,12,19 --cutter $cutter --step 0.1 --pcd --ascii > cut.pcd
     awk -v cutter=$cutter '/^DATA/ { body = 1; next }
-        body { e = $3 - 0.75 * $1; if (e < least) least = e; if (e > most) most = e; n++ }
-        END { if (least < -1e-5 || most > (cutter ~ /flat/ ? 0.0376 : 7e-4) || n != 4000) { print cutter, least, most; exit 1 } }' cut.pcd
+        body { e = $3 - 0.75 * $1; if (e < min) min = e; if (e > max) max = e; n++ }
+        END { if (min < -1e-5 || max > (cutter ~ /flat/ ? 0.0376 : 7e-4) || n != 4000) { print cutter, min, max; exit 1 } }' cut.pcd
 done

@@ -37,7 +37,7 @@ places() { # of the ends of motions, in the order of the program, mm: rs274 prin
 }
 for program in words.nc "$SAMPLES/programs/pocket.nc"; do
     fettle-mill "$program" --stock box:-50,-50,-20,100,100,0 --cutter ball:6 --step 2 --trace trace.pcd --ascii -q --report report.json -o part.stl || test $? = 1
-    # rs274 stands at 0, 0, 0 while some coordinate is not known yet
+    # rs274 starts at 0, 0, 0 while some coordinate is not known yet
     places "$program" | tail -n +$((1 + $(jq .unplaced_rapids report.json))) > theirs
     # the last point of each line of the program
     awk '/^DATA/ { body = 1; next } body { if (n && $9 != line) print at; at = $1 " " $2 " " $3; line = $9; n++ } END { print at }' trace.pcd > ours

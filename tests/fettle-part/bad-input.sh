@@ -18,7 +18,7 @@ refused 'surface.type' '.surface.type = "plain"'
 refused 'bad.json: surface: is not defined over (0, 0) in' '.surface.radius = 1' wang3
 refused 'surface.section' '.surface.section = [[0, 0], [1, 1]]' hills
 refused 'surface.section' '.surface.section[2][0] = -2' hills
-refused 'stands beside a surface' '.scan = {"file": "a.stl", "units": "mm"}'
+refused 'give either scan or surface, not both' '.scan = {"file": "a.stl", "units": "mm"}'
 refused 'noise' '.noise = "gauss:1"'
 refused 'anomalies\[0\].type' '.anomalies[0].type = "wart"'
 refused 'anomalies\[0\].*draft_deg' '.anomalies[0].draft_deg = 0'
@@ -30,7 +30,7 @@ refused 'bite' '.anomalies[0].outline.moon.bite.centre = [9, 9]' moon
 refused 'anomalies\[1\].*height' '.anomalies[1].height = 1' wang2
 refused 'anomalies\[0\].*height' '.anomalies[0].height = 9' wang2
 refused 'roughness.size' '.anomalies[0].roughness.size = 1' wang3
-refused 'bad.json: anomalies\[1\]: lies beside the part' '.anomalies[1].centre = [9, 9]' wang2
+refused 'bad.json: anomalies\[1\]: is outside the part' '.anomalies[1].centre = [9, 9]' wang2
 # A square of two triangles, which an anomaly would cut into more than the memory holds.
 printf 'v 0 0 0\nv 99 0 0\nv 99 99 0\nv 0 99 0\nf 1 2 3 4\n' >square.obj
 refused 'bad.json: step: too fine' '.step = 1e-5 | .scan = {"file": "square.obj", "units": "mm"}

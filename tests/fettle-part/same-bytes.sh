@@ -1,4 +1,4 @@
-# Same input, same bytes, whatever the threads; another seed only matters where there is noise.
+# Same input, same bytes, for any number of threads; another seed only matters where there is noise.
 jq '.noise = "normal:0.01"' "$SAMPLES/parts/wang3.json" >noisy.json
 fettle-part noisy.json --threads 1 -o a.stl
 fettle-part - --threads 2 <noisy.json >b.stl

@@ -9,11 +9,15 @@ printf '1 2 3\n4 5 6\n' > points.xyz
 : > empty.pcd
 refused 'empty.pcd' fettle-path empty.pcd
 refused 'points.xyz: no fields normal_x' fettle-path points.xyz
-refused 'work.pcd: there is no surfel of patch 6' fettle-path work.pcd --patch 6
+refused 'work.pcd: no surfels on patch 6' fettle-path work.pcd --patch 6
 refused 'coarse.pcd: too few surfels on patch 0' fettle-path coarse.pcd
 refused '--held part and --wheel' fettle-path work.pcd --held part
 refused '--held part and --wheel' fettle-path work.pcd --wheel 0,0,0,1,0,0,0
 refused '--wheel: expected x,y,z,qw,qx,qy,qz, got' fettle-path work.pcd --held part --wheel 0,0,0,1
 refused '--wheel: expected x,y,z,qw,qx,qy,qz, got' fettle-path work.pcd --held part --wheel 0,0,0,0,0,0,0
-refused '--spacing: must be positive' fettle-path work.pcd --spacing 0
+refused '--spacing: must be at least 0.001' fettle-path work.pcd --spacing 0
+refused '--spacing: must be at least 0.001' fettle-path work.pcd --spacing 1e-9
 refused '--pattern' fettle-path work.pcd --pattern circle
+# What would take all memory: by the count of the rows.
+refused 'work.pcd: the step-over is too fine: more than 100,000 rows' fettle-path work.pcd --step-over 1e-9
+refused 'work.pcd: the step-over is too fine' fettle-path work.pcd --step-over 1e-9 --pattern spiral

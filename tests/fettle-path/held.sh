@@ -7,7 +7,7 @@
 } > path.pcd
 fettle-path path.pcd --held part --wheel 1500,0,1100,1,0,0,0 --ascii > held.pcd
 awk 'data { if (($1 - 1400) ^ 2 + ($2 + 5 * n) ^ 2 + ($3 - 1100) ^ 2 > 1e-6 || $4 ^ 2 + ($5 ^ 2 - 1) ^ 2 > 1e-12) exit 1; ++n } $1 == "DATA" { data = 1 }' held.pcd
-# the wheel above turned so that its contact frame looks down: the part hangs under the flange
+# the wheel above turned so that its contact frame points down: the part hangs under the flange
 fettle-path path.pcd --held part --wheel 1100,0,700,0,1,0,0 > hung.pcd
 fettle-arm "$SAMPLES/robots/irb1400.json" --inverse hung.pcd > joints.pcd
 fettle-arm "$SAMPLES/robots/irb1400.json" --forward joints.pcd | fettle-diff --tol 1e-3 - <(fettle-arm "$SAMPLES/robots/irb1400.json" --inverse hung.pcd)

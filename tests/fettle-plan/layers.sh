@@ -1,5 +1,5 @@
 # Forces 5, 10, 15 lbf on 200 lbf/in: layers 0.05 in thick (Wang 2007, eq. 5-1), 0.025 in apart (5-2), case 3. The highest
-# reference surface below the safe height, 1.25 in over the surface, is that of layer 51. Start: least x, then least y.
+# reference surface below the safe height, 1.25 in over the surface, is that of layer 51. Start: smallest x, then smallest y.
 # Passes: 10 of 2 in, the outer ones flush with B: their lines at 0.625 and 2.375 in.
 echo '{"kind": "surface", "units": {"length": "in"}, "shape": {"type": "plane", "origin": [0, 0], "z0": 0.75, "slope": [0, 0]}}' |
     fettle-plan "$SAMPLES/jobs/wang1.json" - --report report.json > plan.json

@@ -38,7 +38,7 @@ trace() { # ROW…: t layer event force feed
     printf '0 0 0 %s\n' "$@"
 }
 trace '2 1 0 0 0' '1 1 0 0 0' >back.pcd
-"$refuses" 'back.pcd: point 1: t does not go on: 1' fettle-report --trace back.pcd
+"$refuses" 'back.pcd: point 1: t decreases or is not finite: 1' fettle-report --trace back.pcd
 trace '2 1e30 0 0 0' >layer.pcd
 "$refuses" 'layer.pcd: point 0: there is no layer 1e+30' fettle-report --trace layer.pcd
 trace '0 1 0 nan 0' '1 1 0 nan nan' '2 1 0 5 1' >feed.pcd

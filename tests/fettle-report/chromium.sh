@@ -1,5 +1,5 @@
 # Headless Chromium shows the page without a complaint and prints it on A4: a handful of pages, none of them empty.
-# Reference: the browser. The pages carry everything, so the network is not asked (a proxy that is not there would fail).
+# Reference: the browser. The pages carry everything, so the network is not used (the missing proxy would fail).
 command -v chromium >/dev/null || { echo 'chromium is not installed' >&2; exit 77; }
 . "$HERE/run.bash"
 page --title 'Part 1: what headless Chromium makes of it' -o page.html

@@ -13,6 +13,10 @@ xmllint --xpath 'string(//section[@id="provenance"])' page.html | grep -qF "$nam
 fettle-report --job "$job" --title $'a\xff\e[2Jb\xe2\x80\xaec' -o page.html
 xmllint --noout --nonet page.html
 test "$(xmllint --xpath 'string(//h1)' page.html)" = $'a\uFFFD\uFFFD[2Jb\uFFFDc'
+# noncharacters, which XML does not allow
+fettle-report --job "$job" --title $'a\uFFFFb\uFFFEc\U0001FFFFd\uFDD0' -o page.html
+xmllint --noout --nonet page.html
+test "$(xmllint --xpath 'string(//h1)' page.html)" = $'a\uFFFDb\uFFFDc\uFFFDd\uFFFD'
 jq '.fit.method = "<b>quadratic</b>"' desired.json >method.json
 fettle-report --surface method.json >page.html || test $? -eq 2
 ! grep -q '<b>quadratic' page.html || exit 1

@@ -1,4 +1,4 @@
-# Every number of the page that an input holds is the input's: its key and full value stand beside it. Reference: the
+# Every number of the page that an input holds is the input's: its key and full value are its attributes. Reference: the
 # inputs themselves, read by jq; the passes' length from the report of fettle-plan; the trace's sums from that of fettle-grind.
 . "$HERE/run.bash"
 page -o page.html

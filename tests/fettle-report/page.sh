@@ -13,13 +13,13 @@ for file in part.stl samples.pcd errors.json; do grep -q "$(sha256sum $file | cu
 fettle-report --comparison errors.json -o numbers.html
 xmllint --noout --nonet numbers.html
 test "$(grep -o '<section id="[a-z]*"' numbers.html | tr '\n' ' ')" = '<section id="verdict" <section id="statistics" <section id="provenance" '
-# in the units of the report, whatever else is named
-grep -q 'mean size of the error' numbers.html
+# in the units of the report, whichever other files are named
+grep -q 'mean absolute error' numbers.html
 grep -qE 'data-key="comparison.regions.inside.mean_abs"[^<]*</span> in<' numbers.html
 # out of tolerance, and without any
 fettle-compare ground.pcd --to truth.stl --within "$job" --tolerance 0.0001 --report tight.json -o /dev/null || test $? -eq 1
 fettle-report --job "$job" --comparison tight.json | grep -q 'data-verdict="Out of tolerance"'
-fettle-compare ground.pcd --to truth.stl --report free.json -o /dev/null
+fettle-compare ground.pcd --to truth.stl --to-units in --report free.json -o /dev/null
 fettle-report --comparison free.json | grep -q 'data-verdict="Not judged"'
 # nothing to judge, a machine that stopped, a swept surface
 jq '.worst = null' tight.json >nothing.json
@@ -29,10 +29,10 @@ fettle-report --job "$job" --grinding stopped.json | grep -q 'Grinding not finis
 ! fettle-report --job "$job" --grinding grind.json | grep -q 'Grinding not finished' || exit 1
 jq '.surface = {"type": "swept", "direction_deg": 30}' "$job" >swept.json
 fettle-report --job swept.json | grep -q 'swept, rulings 30°'
-# slips are named
-jq '.fit.gross_errors = [2]' desired.json >slip.json
-fettle-report --job "$job" --surface slip.json | grep -q 'Slips, left out</th><td>1<.*>touch 2<'
-# files of one run agree; those of another are told
+# outliers are named
+jq '.fit.gross_errors = [2]' desired.json >outlier.json
+fettle-report --job "$job" --surface outlier.json | grep -q 'Outliers, left out</th><td>1<.*>touch 2<'
+# files of one run agree; those of another are reported
 fettle-report --job "$job" --surface desired.json --plan plan.json -o /dev/null 2>err
 test ! -s err
 jq '.probe.accuracy *= 2' "$job" >other.json

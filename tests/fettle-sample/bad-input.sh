@@ -18,7 +18,7 @@ facet '-9 -9 0' '99 -9 0' '-9 99 0' > part.stl
 facet '200 0 0' '300 0 0' '200 100 0' > elsewhere.stl
 "$refuses" 'elsewhere.stl: 16 of 16 touches find no surface, at (13.3333, 0) mm, ' fettle-sample job.json --on elsewhere.stl
 facet '0.005 0 0' '0.02 0 0' '0.005 0.03 0' > metres.stl
-"$refuses" 'does not hold the job'"'s boundary: is its unit right?" fettle-sample job.json --on metres.stl
+"$refuses" 'does not contain the job'"'s boundary: is its unit right?" fettle-sample job.json --on metres.stl
 echo '1 1 1' > one.xyz
 "$refuses" 'one.xyz: 16 of 16 touches find no surface' fettle-sample job.json --on one.xyz
 # touched all the same, but said: mm taken for metres

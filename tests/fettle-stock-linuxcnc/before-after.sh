@@ -13,7 +13,7 @@ fettle-diff after.pcd ground.pcd
 head -c 1000 before > short
 "$HERE/../refuses" 'is cut short' fettle-stock-linuxcnc plan.json --stock stock.stl --after short
 "$HERE/../refuses" '--stock is required' fettle-stock-linuxcnc plan.json
-# What is read is bounded by what is there, whatever is claimed.
+# Reading is bounded by the size of the file, not by its header.
 claims() { head -c 14 before; perl -e 'print pack("d<2", @ARGV)' "$@"; tail -c +31 before; }
 claims 30000 30000 > many
 claims 1e300 1e300 > most

@@ -17,7 +17,8 @@ refused 'empty.stl: empty' fettle-surfel box.off --stock empty.stl
 refused '--stock' fettle-surfel box.off
 refused 'points.xyz: no fields normal_x' fettle-surfel points.xyz --stock box.off
 refused '--spacing: must be positive, got 0' fettle-surfel box.off --stock box.off --spacing 0
-refused 'more than 200 million surfels' fettle-surfel box.off --stock box.off --spacing 1e-6
+refused 'box.off: patch 0: the spacing is too fine for its size: 2e+14 surfels, at most 5e+06' fettle-surfel box.off --stock box.off --spacing 1e-6
+refused 'box.off: patch' fettle-surfel box.off --stock box.off --edge-spacing 1e-9
 refused '--sharp' fettle-surfel box.off --stock box.off --sharp 120
 refused '--precision' fettle-surfel points.xyz --stock box.off --precision 0.1
 refused 'only one of DESIGN and --stock' fettle-surfel - --stock -
@@ -32,3 +33,6 @@ refused 'patches[0].trim[0].weights: must be positive' fettle-surfel weights.jso
 status=0
 fettle-surfel box.off --stock far.off -q > work.pcd || status=$?
 test $status = 1
+# A control point that has been moved by metres makes a patch of millions of surfels.
+jq '.patches[0].control[1][1] = [2000, 3000, 1] | del(.patches[0].trim)' open.json > moved.json
+refused 'moved.json: patch 0: the spacing is too fine for its size' fettle-surfel moved.json --stock box.off

@@ -14,7 +14,7 @@ refuses '--stock: goes with' --gantry exec:true --stock part.stl --steer "$steer
 refuses '--steer: goes with' --gantry virtual --stock part.stl
 refuses 'ended with status 3' --gantry 'exec:exit 3' --steer "$steer"
 refuses '--sampling, --file-units: go with' --gantry virtual --stock part.stl --steer "$steer" --sampling part.stl
-on "no number" < <(echo left)
+on "is not a number" < <(echo left)
 on "none of plane, swept, freeform" < <(printf '0\nround\n')
 on "none of automatic, manual" < <(printf '0\nplane\nslow\n')
 on 'stopped by the operator' < <(printf '0\nplane\nmanual\nstop\n')

@@ -7,9 +7,9 @@ printf 'Point index picked: 1 (real: 1) - [1, 2\n' > cut.txt
 printf '0,0,1\n1,1,1\n1,0,1\n0,1,1\n' > crossed.txt
 printf '0,0,1\n1,0,1\n1,1,1\n0,1,1\n' > good.txt
 refuses() { "$HERE/../refuses" "$1" fettle-teach "$job" "${@:2}"; }
-refuses 'empty: no points were picked' --anomaly empty
-refuses "two.txt: line 1: '1,2' is no point" --anomaly two.txt
-refuses "word.txt: line 2: '1,2,x' is no point" --anomaly word.txt
+refuses 'empty: empty, expected picked points' --anomaly empty
+refuses "two.txt: line 1: '1,2' is not a point" --anomaly two.txt
+refuses "word.txt: line 2: '1,2,x' is not a point" --anomaly word.txt
 refuses 'cut.txt: line 1' --anomaly cut.txt
 refuses 'the job that was taught: anomaly' --anomaly crossed.txt
 refuses 'the job that was taught: sampling' --anomaly good.txt --surface freeform --sampling good.txt

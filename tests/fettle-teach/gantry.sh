@@ -16,12 +16,12 @@ jq -e '.mode == "manual" and .units.length == "in" and (.anomaly_area - 4 | fabs
 answer freeform | teach wang3 --gantry virtual --stock sphere.stl --theta 10 > sphere.json
 fettle-sample sphere.json --on sphere.stl | fettle-fit sphere.json > surface.json
 jq -e '.kind == "surface"' surface.json > ok
-# What is given is not asked for.
+# Options that are given are not prompted for.
 answer automatic | teach wang1 --gantry virtual --stock plane.stl --theta 30 --surface swept --direction 45 > given.json
 cmp swept.json given.json
 jq -e '.mode == "automatic"' report.json > ok
 
-# On the sphere, as near as the drive's encoder tells (0.0001 in) and diagonals of 0.03 in cells sink (2 · 0.03² / 32), with a point or a ball.
+# On the sphere, to the resolution of the drive's encoder (0.0001 in) and diagonals of 0.03 in cells sink (2 · 0.03² / 32), with a point or a ball.
 on_sphere='.anomaly + .sampling | map(((.[0] - 1.5) as $x | (.[1] - 1.5) as $y | (.[2] + 3) as $z | $x * $x + $y * $y + $z * $z | sqrt) - 4 | fabs) | max'
 jq -e "$on_sphere < 0.0002" sphere.json > ok
 jq '.probe.tip_radius = 0.1' "$SAMPLES/jobs/wang3.json" > tip.json

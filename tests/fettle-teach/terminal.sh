@@ -1,5 +1,5 @@
-# On a terminal: an arrow key moves by 0.1 s at 1 in/s, buttons wait until the stick rests, and the terminal is left as it was. What is asked
-# for is asked again after a bad answer. References: the numbers; the terminal before.
+# On a terminal: an arrow key moves by 0.1 s at 1 in/s, buttons wait until the stick rests, and the terminal is left as it was. A bad
+# answer is prompted for again. References: the numbers; the terminal before.
 command -v script > /dev/null || { echo 'script (bsdutils) is not installed' >&2; exit 77; }
 fettle-part "$SAMPLES/parts/wang1.json" > part.stl
 on_terminal() { timeout 60 script -qec "bash $1" /dev/null > "$2"; }
@@ -19,7 +19,7 @@ jq -e '(.anomaly | map(.[:2]) | [., [[1.5, 1.5], [1.6, 1.5], [1.6, 1.6], [1.5, 1
 echo "$teach --steer $SAMPLES/steering/teach.txt -o asked.json" > ask.sh
 printf '%s\n' left 30 round swept 45 manual start | on_terminal ask.sh shown
 jq -e '.frame.theta_deg == 30 and .surface == {"type": "swept", "direction_deg": 45}' asked.json > ok
-grep -q "'left' is no number" shown
+grep -q "'left' is not a number" shown
 grep -q "'round' is none of plane, swept, freeform" shown
 grep -q 'anomaly 8: (' shown
 [ "$(grep -c 'axis, degrees \[0' shown)" = 2 ]

@@ -23,3 +23,7 @@ refused '--cutter: expected ball:D' fettle-verify ok.off --design ok.off --corre
 refused 'path.nc: a program has no contact points' fettle-verify ok.off --design ok.off --correct path.nc --corrected c.nc --cutter ball:6 --points cc
 refused 'ok.off' fettle-verify ok.off --design ok.off --correct ok.off --corrected c.nc --cutter ball:6
 [ ! -e c.nc ]
+for option in --tolerance --inner-tolerance --outer-tolerance --step; do
+    refused "$option" fettle-verify ok.off --design ok.off $option 1e300
+    refused "$option" fettle-verify ok.off --design ok.off $option 1e-300
+done

@@ -1,4 +1,4 @@
-# --correct takes errors back that lie in the path: a program that stands 0.1 mm too low and 0.2 mm beside (a workpiece that was
+# --correct takes errors back that lie in the path: a program that is 0.1 mm too low and 0.2 mm beside (a workpiece that was
 # set up wrong), points made for a ball of 12 mm that one of 10 mm cuts along (a worn cutter), and points so far apart that
 # their chords cut into a convex sphere. fettle-mill and fettle-verify confirm: of the errors' rms at most a fifth is left, and
 # no over-cut beyond 5e-3 mm, which is what half a cell of the grid makes of a chord. What the program says beside its moves

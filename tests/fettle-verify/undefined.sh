@@ -1,5 +1,5 @@
 # Beyond the design and where it is vertical nothing is said, and that is counted, listed and grey, never 0: a box design
-# 10 mm high whose walls stand at x, y = 2.05 and 8.05, on a plate. Reference: counting cells. A design that is missed
+# 10 mm high whose walls are at x, y = 2.05 and 8.05, on a plate. Reference: counting cells. A design that is missed
 # wholly: exit 1.
 # shellcheck source=tests/fettle-verify/offset.bash
 . "$HERE/offset.bash"

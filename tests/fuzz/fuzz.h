@@ -1,7 +1,7 @@
 #pragma once
 
 // What the targets share. A target hands bytes to a reader of the library: it reads them, or refuses them by
-// InputError; whatever else happens is a finding.
+// InputError; anything else is a finding.
 
 #include "core/error.h"
 
@@ -22,7 +22,7 @@ inline void require(bool is_so, std::string_view what)
     std::abort();
 }
 
-/// Runs `read`. What it refuses it says in one line of text.
+/// Runs `read`. A refusal must be a message of one line.
 /// @return  has it been read?
 template <typename Read>
 bool is_read(const Read& read)
@@ -30,7 +30,7 @@ bool is_read(const Read& read)
     try {
         read();
         return true;
-    } catch (const InputError& error) {
+    } catch (const core::InputError& error) {
         for (const char* c = error.what(); *c != '\0'; ++c) require(*c != '\n', "a refusal is one line of text");
         return false;
     }

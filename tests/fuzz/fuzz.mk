@@ -4,15 +4,16 @@ FUZZ_RUNS ?= -1
 FUZZ_SECONDS ?= $(if $(filter -1,$(FUZZ_RUNS)),60,0)
 FUZZ_TARGETS := $(patsubst tests/fuzz/%.cc,%,$(wildcard tests/fuzz/*.cc))
 # What the readers are made of: whole modules, and of the others the files that the targets call.
-FUZZ_LIBRARY := $(wildcard $(addprefix lib/,$(addsuffix /*.cc,core units json cloud job surface plan removal))) \
+FUZZ_LIBRARY := $(wildcard $(addprefix lib/,$(addsuffix /*.cc,core geometry units json cloud job surface plan removal))) \
     $(addprefix lib/,$(addsuffix .cc,$(addprefix mesh/,mesh mesh_file stl obj off polygons equal_corners) \
-    $(addprefix gantry/,protocol serve driver child machine virtual_gantry quasi_static) \
-    $(addprefix strategy/,trace trace_file steering joystick keys) align/rigid belt/contact_wheel \
+    $(addprefix gantry/,protocol serve driver head_check child machine virtual_gantry quasi_static) \
+    $(addprefix strategy/,trace trace_file run_identity steering joystick keys) align/rigid compare/comparison_report \
+    $(addprefix belt/,contact_wheel belt_journal_file assess running_error) \
     $(addprefix machining/,nc_block nc_arc nc_program nc_writer cutter_path cutter) \
     $(addprefix part/,spec surface anomalies outline profile) sampling/noise \
     $(addprefix robot/,robot body_json)))
 FUZZ_LIBRARY := $(patsubst %.cc,$(B)/fuzz/%.o,$(FUZZ_LIBRARY))
-FUZZ_FLAGS = $(filter-out -O% --param ggc-%,$(CXXFLAGS)) -O1 -fsanitize=address,undefined,float-cast-overflow -fno-sanitize-recover=all \
+FUZZ_FLAGS = $(filter-out -O% -DNDEBUG --param ggc-%,$(CXXFLAGS)) -O1 -fsanitize=address,undefined,float-cast-overflow -fno-sanitize-recover=all \
     -Wno-psabi -Wno-unused-const-variable
 
 .PHONY: fuzz fuzz-run $(FUZZ_TARGETS:%=%.fuzz)
@@ -43,6 +44,6 @@ $(B)/fuzz/library.a: $(FUZZ_LIBRARY)
 	$(AR) rcs $@ $^
 
 $(B)/fuzz/%: $(B)/fuzz/tests/fuzz/%.o $(B)/fuzz/library.a
-	$(FUZZ_CXX) $(FUZZ_FLAGS) -fsanitize=fuzzer -o $@ $^ -llzf -ltbb
+	$(FUZZ_CXX) $(FUZZ_FLAGS) -fsanitize=fuzzer -o $@ $^ $(MD) -llzf -ltbb
 
 -include $(B)/fuzz/precompiled.h.d

@@ -23,7 +23,7 @@ void check(std::string_view text, const Parse& parse)
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {
     const std::string_view text = fuzz::text_of(data, size);
-    check(text, [](json::Reader reader) { return parse_job(std::move(reader)); });
-    check(text, [](json::Reader reader) { return parse_plan(std::move(reader)); });
+    check(text, [](json::Reader reader) { return job::parse_job(std::move(reader)); });
+    check(text, [](json::Reader reader) { return plan::parse_plan(std::move(reader)); });
     return 0;
 }

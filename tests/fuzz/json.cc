@@ -1,4 +1,4 @@
-// JSON: as it stands, and as the document that its kind says. Surfaces are written and read the same again. Jobs and
+// JSON: by itself, and as the document that its kind names. Surfaces are written and read the same again. Jobs and
 // plans have a target of their own.
 
 #include "belt/contact_wheel.h"
@@ -20,23 +20,23 @@ void read_kind(const std::string& kind, std::string_view text)
 {
     static fuzz::MemoryFile memory;
     if (kind == "surface") {
-        const std::string written = to_json(parse_surface(json::Reader::parse(text, "file"))).text();
+        const std::string written = surface::to_json(surface::parse_surface(json::Reader::parse(text, "file"))).text();
         fuzz::require(fuzz::is_read([&] {
                           const std::string again =
-                              to_json(parse_surface(json::Reader::parse(written, "written"))).text();
+                              surface::to_json(surface::parse_surface(json::Reader::parse(written, "written"))).text();
                           fuzz::require_same(again, written);
                       }),
                       "a surface that was written is read");
     } else if (kind == "patches") {
-        for (const Patch& patch : parse_patches(text, "file")) outlines(patch);
+        for (const surface::Patch& patch : surface::parse_patches(text, "file")) surface::boundary_polygons(patch);
     } else if (kind == "wheel") {
-        read_contact_wheel(memory.with(text));
+        belt::read_contact_wheel(memory.with(text));
     } else if (kind == "machine") {
-        read_machine(memory.with(text));
+        gantry::read_machine(memory.with(text));
     } else if (kind == "robot") {
-        read_robot(memory.with(text));
+        robot::read_robot(memory.with(text));
     } else {
-        read_part(memory.with(text));
+        part::read_part(memory.with(text));
     }
 }
 
@@ -46,7 +46,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 {
     const std::string_view text = fuzz::text_of(data, size);
     const bool is_json = fuzz::is_read([&] {
-        for (const json::Leaf& leaf : json::leaves(text, "file")) json::to_text(leaf);
+        for (const json::Leaf& leaf : json::flatten(text, "file")) json::to_text(leaf);
     });
     std::string kind;
     const bool has_kind = fuzz::is_read([&] {

@@ -1,5 +1,5 @@
-// Point clouds: whatever read_cloud() takes, at once and by parts. What was read is written as text and as numbers, and
-// both read the same again.
+// Point clouds: all that read_cloud() reads, at once and in blocks. What was read is written as text and as numbers,
+// and both read the same again.
 
 #include "cloud/pcd.h"
 #include "cloud/pcd_header.h"
@@ -12,21 +12,21 @@ using namespace fettle;
 
 namespace {
 
-std::string written(const Cloud& cloud, const Units& units, PcdEncoding encoding)
+std::string written(const cloud::Cloud& cloud, const units::Units& units, cloud::PcdEncoding encoding)
 {
     std::ostringstream out;
-    write_pcd(out, cloud, units, encoding);
+    cloud::write_pcd(out, cloud, units, encoding);
     return out.str();
 }
 
-void check_round_trip(const CloudFile& file)
+void check_round_trip(const cloud::CloudFile& file)
 {
-    for (const PcdEncoding encoding : {PcdEncoding::binary, PcdEncoding::ascii}) {
-        const CloudFile again = parse_cloud(written(file.cloud, file.units, encoding), "written");
+    for (const cloud::PcdEncoding encoding : {cloud::PcdEncoding::binary, cloud::PcdEncoding::ascii}) {
+        const cloud::CloudFile again = cloud::parse_cloud(written(file.cloud, file.units, encoding), "written");
         fuzz::require(again.units.length == file.units.length && again.cloud.size() == file.cloud.size() &&
                           again.cloud.fields.size() == file.cloud.fields.size(),
                       "unit and size are kept");
-        const CloudFile twice = parse_cloud(written(again.cloud, again.units, encoding), "written");
+        const cloud::CloudFile twice = cloud::parse_cloud(written(again.cloud, again.units, encoding), "written");
         fuzz::require(written(twice.cloud, twice.units, encoding) == written(again.cloud, again.units, encoding),
                       "read and written again it is the same");
     }
@@ -38,20 +38,22 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 {
     static fuzz::MemoryFile memory;
     const std::string_view bytes = fuzz::text_of(data, size);
-    CloudFile file;
-    const bool whole = fuzz::is_read([&] { file = parse_cloud(bytes, "file"); });
-    fuzz::is_read([&] { parse_cloud(bytes, "file", Units{Units::Length::in, Units::Force::lbf}); });
+    cloud::CloudFile file;
+    const bool whole = fuzz::is_read([&] { file = cloud::parse_cloud(bytes, "file"); });
+    fuzz::is_read([&] {
+        cloud::parse_cloud(bytes, "file", units::Units{units::Units::Length::in, units::Units::Force::lbf});
+    });
     if (whole) check_round_trip(file);
-    if (!looks_like_pcd(bytes)) return 0;
-    CloudFile parts;
+    if (!cloud::looks_like_pcd(bytes)) return 0;
+    cloud::CloudFile parts;
     const bool streamed = fuzz::is_read([&] {
-        const CloudStream stream(memory.with(bytes));
-        parts = {*stream.cloud(), stream.units()};
+        const cloud::CloudStream stream(memory.with(bytes));
+        parts = {*stream.read_all(), stream.units()};
     });
     fuzz::require(whole == streamed, "a stream is read where the whole is");
     if (whole)
-        fuzz::require(written(file.cloud, file.units, PcdEncoding::binary) ==
-                          written(parts.cloud, parts.units, PcdEncoding::binary),
+        fuzz::require(written(file.cloud, file.units, cloud::PcdEncoding::binary) ==
+                          written(parts.cloud, parts.units, cloud::PcdEncoding::binary),
                       "a stream is what the whole is");
     return 0;
 }

@@ -14,7 +14,7 @@ namespace fettle::fuzz {
 inline void require_same(const std::string& a, const std::string& b)
 {
     constexpr double kRounding = 1e-9; // of the largest number; far above it, far below what anybody would notice
-    const std::vector<json::Leaf> first = json::leaves(a, "first"), second = json::leaves(b, "second");
+    const std::vector<json::Leaf> first = json::flatten(a, "first"), second = json::flatten(b, "second");
     require(first.size() == second.size(), "the documents have the same members");
     double largest = 0;
     for (const json::Leaf& leaf : first)

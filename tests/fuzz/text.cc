@@ -16,16 +16,16 @@ void check_transform(const std::string& path)
 {
     static fuzz::MemoryFile again;
     Eigen::Matrix4d matrix;
-    if (!fuzz::is_read([&] { matrix = read_transform(path); })) return;
+    if (!fuzz::is_read([&] { matrix = align::read_transform(path); })) return;
     std::ostringstream out;
-    write_transform(out, matrix);
-    fuzz::require(read_transform(again.with(out.str())) == matrix, "a transform reads the same again");
+    align::write_transform(out, matrix);
+    fuzz::require(align::read_transform(again.with(out.str())) == matrix, "a transform reads the same again");
 }
 
 void check_steering(const std::string& path)
 {
     fuzz::is_read([&] {
-        Steering steering(path);
+        strategy::Steering steering(path);
         double time = 0;
         while (!steering.at(time).end) time = std::max(time, steering.next_change().value_or(time));
     });
@@ -37,8 +37,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 {
     static fuzz::MemoryFile memory;
     const std::string_view text = fuzz::text_of(data, size);
-    fuzz::is_read([&] { parse_xyz(text, "file"); });
-    fuzz::is_read([&] { parse_picked(text, "file"); });
+    fuzz::is_read([&] { cloud::parse_xyz(text, "file"); });
+    fuzz::is_read([&] { job::parse_picked_points(text, "file"); });
     const std::string& path = memory.with(text);
     check_transform(path);
     check_steering(path);

@@ -9,10 +9,10 @@ using namespace fettle;
 
 namespace {
 
-std::string written(const std::vector<TraceRow>& rows, const Units& units)
+std::string written(const std::vector<strategy::TraceRow>& rows, const units::Units& units)
 {
     std::ostringstream out;
-    write_pcd(out, to_cloud(rows), units, PcdEncoding::binary);
+    cloud::write_pcd(out, strategy::to_cloud(rows), units, cloud::PcdEncoding::binary);
     return out.str();
 }
 
@@ -22,11 +22,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 {
     static fuzz::MemoryFile memory;
     const std::string_view bytes = fuzz::text_of(data, size);
-    for (const Units& units : {Units{}, Units{Units::Length::in, Units::Force::lbf}}) {
-        std::vector<TraceRow> rows;
-        if (!fuzz::is_read([&] { rows = read_trace(memory.with(bytes), units); })) continue;
+    for (const units::Units& units :
+         {units::Units{}, units::Units{units::Units::Length::in, units::Units::Force::lbf}}) {
+        std::vector<strategy::TraceRow> rows;
+        if (!fuzz::is_read([&] { rows = strategy::read_trace(memory.with(bytes), units); })) continue;
         const std::string once = written(rows, units);
-        fuzz::require(written(read_trace(memory.with(once), units), units) == once, "it reads the same again");
+        fuzz::require(written(strategy::read_trace(memory.with(once), units), units) == once,
+                      "it reads the same again");
     }
     return 0;
 }

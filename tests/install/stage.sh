@@ -23,6 +23,8 @@ END
 test "$(bash ask fettle-compare --tol)" = --tolerance
 test "$(bash ask fettle-compare --mode "")" = "normal z direction"
 test "$(bash ask fettle-fit --method cyl)" = cylinder
+test "$(bash ask fettle he)" = help
+test "$(bash ask fettle help al)" = align
 
 cd "$OLDPWD"
 # Another program uses the installed library.

@@ -24,9 +24,9 @@ using Truth = double (*)(double, double);
 double dome(double x, double y) { return std::sqrt(120.0 * 120 - x * x - y * y); }
 double ripples(double x, double y) { return 2 * std::sin(x / 17) * std::cos(y / 21 + 0.3) + 0.002 * x * x; }
 
-Job square_job()
+job::Job square_job()
 {
-    Job job;
+    job::Job job;
     job.anomaly.resize(3, 4);
     job.anomaly << -20, 20, 20, -20, -20, -20, 20, 20, 0, 0, 0, 0;
     job.sampling = 2 * job.anomaly;
@@ -34,11 +34,12 @@ Job square_job()
 }
 
 /// Touches a surface with the error of touch i drawn for seed; nothing is there where x > hole.
-ProbePlan touching(Truth truth, const Job& job, std::uint64_t seed, double hole = 1e9)
+margin::ProbeFunction touching(Truth truth, const job::Job& job, std::uint64_t seed, double hole = 1e9)
 {
-    return [=](const TouchPlan& plan) {
+    return [=](const sampling::TouchPlan& plan) {
         Eigen::Matrix3Xd touches(3, plan.size());
-        const Eigen::VectorXd noise = draw_noise({TouchNoise::Kind::normal, job.probe.accuracy}, plan.size(), seed);
+        const Eigen::VectorXd noise =
+            sampling::draw_noise({sampling::TouchNoise::Kind::normal, job.probe.accuracy}, plan.size(), seed);
         for (Eigen::Index i = 0; i < plan.size(); ++i) {
             const double x = plan.xy(0, i), y = plan.xy(1, i);
             touches.col(i) << x, y, x > hole ? std::numeric_limits<double>::quiet_NaN() : truth(x, y) + noise[i];
@@ -47,85 +48,86 @@ ProbePlan touching(Truth truth, const Job& job, std::uint64_t seed, double hole 
     };
 }
 
-double realised_band(const Job& job, const AdaptiveTouches& found, Truth truth)
+double realised_band(const job::Job& job, const margin::AdaptiveTouches& found, Truth truth)
 {
-    FitInput input;
+    fit::FitInput input;
     input.job = job;
     input.xyz = found.touches;
     input.roles = found.plan.role;
-    const Surface surface = fit_surface(input, "auto").surface;
-    const Eigen::Matrix2Xd grid = anomaly_grid(job, 12);
-    Eigen::VectorXd errors = heights(surface, grid);
+    const surface::Surface surface = fit::fit_surface(input, "auto").surface;
+    const Eigen::Matrix2Xd grid = margin::anomaly_grid(job, 12);
+    Eigen::VectorXd errors = surface::heights(surface, grid);
     for (Eigen::Index i = 0; i < errors.size(); ++i) errors[i] -= truth(grid(0, i), grid(1, i));
-    return error_band(errors);
+    return margin::error_band(errors);
 }
 
 TEST(Adaptive, TouchesBesideTheAnomalyAndKeepsItsDistance)
 {
-    const Job job = square_job();
-    const Boundaries polygons = boundaries(job);
-    AdaptiveLimits limits;
-    limits.most_touches = 20;
-    limits.distance = 6;
-    const AdaptiveTouches found = touch_adaptively(job, limits, touching(dome, job, 1));
+    const job::Job job = square_job();
+    const job::Boundaries polygons = job::working_boundaries(job);
+    margin::AdaptiveLimits limits;
+    limits.max_touches = 20;
+    limits.min_distance = 6;
+    const margin::AdaptiveTouches found = margin::touch_adaptively(job, limits, touching(dome, job, 1));
     ASSERT_EQ(found.plan.size(), 20);
     for (Eigen::Index i = 0; i < found.plan.size(); ++i) {
-        EXPECT_TRUE(contains(polygons.sampling, found.plan.xy.col(i)));
-        EXPECT_FALSE(contains(polygons.anomaly, found.plan.xy.col(i)));
+        EXPECT_TRUE(job::contains(polygons.sampling, found.plan.xy.col(i)));
+        EXPECT_FALSE(job::contains(polygons.anomaly, found.plan.xy.col(i)));
         for (Eigen::Index j = 0; j < i; ++j) EXPECT_GT((found.plan.xy.col(i) - found.plan.xy.col(j)).norm(), 6);
     }
 }
 
 TEST(Adaptive, GoesAroundPlacesWhereNothingIsFound)
 {
-    const Job job = square_job();
-    AdaptiveLimits limits;
-    limits.most_touches = 12;
-    const AdaptiveTouches found = touch_adaptively(job, limits, touching(dome, job, 1, 30));
+    const job::Job job = square_job();
+    margin::AdaptiveLimits limits;
+    limits.max_touches = 12;
+    const margin::AdaptiveTouches found = margin::touch_adaptively(job, limits, touching(dome, job, 1, 30));
     EXPECT_EQ(found.plan.size(), 12);
     EXPECT_FALSE(found.unreachable.empty());
     for (const Eigen::Vector2d& place : found.unreachable) EXPECT_GT(place.x(), 30);
     EXPECT_LE(found.touches.row(0).maxCoeff(), 30);
-    EXPECT_THROW(touch_adaptively(job, limits, touching(dome, job, 1, -50)), InputError); // nothing anywhere
+    EXPECT_THROW(margin::touch_adaptively(job, limits, touching(dome, job, 1, -50)),
+                 core::InputError); // nothing anywhere
 }
 
 // It stops when the predicted band is small enough, and then the band is: over draws of the touch error.
 TEST(Adaptive, StopsWhenTheBandIsReachedAndItIs)
 {
-    const Job job = square_job();
-    AdaptiveLimits limits;
-    limits.most_touches = 60;
+    const job::Job job = square_job();
+    margin::AdaptiveLimits limits;
+    limits.max_touches = 60;
     const auto covered = [&](Truth truth, std::uint64_t runs, double band) {
-        limits.band = band;
+        limits.max_band = band;
         int count = 0;
         for (std::uint64_t seed = 1; seed <= runs; ++seed) {
-            const AdaptiveTouches found = touch_adaptively(job, limits, touching(truth, job, seed));
+            const margin::AdaptiveTouches found = margin::touch_adaptively(job, limits, touching(truth, job, seed));
             const double predicted = found.band[found.band.size() - 1];
-            EXPECT_TRUE(found.enough);
-            EXPECT_LE(predicted, limits.band);
+            EXPECT_TRUE(found.band_reached);
+            EXPECT_LE(predicted, limits.max_band);
             count += realised_band(job, found, truth) <= predicted;
         }
         return count;
     };
     // 95 %, less three standard errors of 60 runs; stopping prefers lucky draws a little.
     EXPECT_GE(covered(dome, 60, 0.15), 51);
-    EXPECT_EQ(covered(ripples, 1, 0.4), 1); // no family: a process on the way, which takes its time
+    EXPECT_EQ(covered(ripples, 1, 0.4), 1); // no family fits: a Gaussian process, which takes longer
 }
 
 // The same number of touches is worth more than Wang's layout.
 TEST(Adaptive, BeatsWangsLayout)
 {
-    const Job job = square_job();
-    const TouchPlan wang = plan_freeform(job);
-    AdaptiveLimits limits;
-    limits.most_touches = static_cast<int>(wang.size());
+    const job::Job job = square_job();
+    const sampling::TouchPlan wang = sampling::plan_freeform(job);
+    margin::AdaptiveLimits limits;
+    limits.max_touches = static_cast<int>(wang.size());
     std::vector<double> ratio;
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-        const ProbePlan touch = touching(dome, job, seed);
-        AdaptiveTouches layout;
+        const margin::ProbeFunction touch = touching(dome, job, seed);
+        margin::AdaptiveTouches layout;
         layout.plan = wang;
         layout.touches = touch(wang);
-        ratio.push_back(realised_band(job, touch_adaptively(job, limits, touch), dome) /
+        ratio.push_back(realised_band(job, margin::touch_adaptively(job, limits, touch), dome) /
                         realised_band(job, layout, dome));
     }
     std::nth_element(ratio.begin(), ratio.begin() + 10, ratio.end());
@@ -135,15 +137,16 @@ TEST(Adaptive, BeatsWangsLayout)
 // Fields drawn from a mixture have its mean, 0, and its covariance, within and between.
 TEST(FieldDraws, HaveTheSurfacesVariance)
 {
-    Surface surface;
-    surface.shape = Plane{{0, 0}, 1, {0, 0}};
+    surface::Surface surface;
+    surface.shape = surface::Plane{{0, 0}, 1, {0, 0}};
     surface.covariance = Eigen::Vector3d(0.04, 0.0001, 0).asDiagonal();
     surface.weight = 0.75;
-    surface.alternatives = {{"other", 0, 0.25, Plane{{0, 0}, 2, {0, 0}}, Eigen::Vector3d(0.01, 0, 0).asDiagonal()}};
+    surface.alternatives = {
+        {"other", 0, 0.25, surface::Plane{{0, 0}, 2, {0, 0}}, Eigen::Vector3d(0.01, 0, 0).asDiagonal()}};
     const Eigen::Vector2d xy(10, 3);
-    const Eigen::MatrixXd draws = draw_fields(surface, xy, 40000, 1);
+    const Eigen::MatrixXd draws = margin::draw_fields(surface, xy, 40000, 1);
     EXPECT_NEAR(draws.mean(), 0, 1e-3);
-    EXPECT_NEAR(std::sqrt(draws.squaredNorm() / 40000) / sigma(surface, xy), 1, 0.02);
+    EXPECT_NEAR(std::sqrt(draws.squaredNorm() / 40000) / surface::sigma(surface, xy), 1, 0.02);
 }
 
 } // namespace

@@ -17,8 +17,8 @@
 namespace fettle {
 namespace {
 
-const Track kTrack = {Eigen::Vector3d::UnitY(), {0, 2000}, {}};
-const Table kTable = {{1000, 0, 400}, Eigen::Vector3d::UnitZ(), {-360 * kDegree, 360 * kDegree}, {}, ""};
+const robot::Track kTrack = {Eigen::Vector3d::UnitY(), {0, 2000}, {}};
+const robot::Table kTable = {{1000, 0, 400}, Eigen::Vector3d::UnitZ(), {-360 * kDegree, 360 * kDegree}, {}, ""};
 
 Eigen::Isometry3d upright(double x, double y, double z)
 {
@@ -28,9 +28,9 @@ Eigen::Isometry3d upright(double x, double y, double z)
 }
 
 // A circle in a plane across the robot, the tool upright.
-PosePath circle(int count, double radius = 150)
+cloud::PosePath circle(int count, double radius = 150)
 {
-    PosePath poses;
+    cloud::PosePath poses;
     for (int i = 0; i < count; ++i) {
         const double phi = 2 * std::numbers::pi * i / (count - 1);
         poses.push_back(upright(1000 + radius * std::cos(phi), radius * std::sin(phi), 500));
@@ -38,12 +38,12 @@ PosePath circle(int count, double radius = 150)
     return poses;
 }
 
-Eigen::Matrix2Xd at_rest(const PosePath& poses)
+Eigen::Matrix2Xd at_rest(const cloud::PosePath& poses)
 {
     return Eigen::Matrix2Xd::Zero(2, static_cast<Eigen::Index>(poses.size()));
 }
 
-double largest_step(const FollowedPath& path)
+double largest_step(const robot::FollowedPath& path)
 {
     const Eigen::Index n = path.joints.cols() - 1;
     return (path.joints.rightCols(n) - path.joints.leftCols(n)).topRows<6>().cwiseAbs().maxCoeff();
@@ -51,49 +51,50 @@ double largest_step(const FollowedPath& path)
 
 TEST(Follow, JointsBringTheToolBack)
 {
-    Robot robot = irb1400();
+    robot::Robot robot = irb1400();
     robot.track = kTrack;
     robot.table = kTable;
     robot.T_cell_base = Eigen::Translation3d(10, -800, 30) * Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitZ());
-    const PosePath poses = circle(101);
-    const Eigen::Matrix2Xd externals = external_values(robot, poses, {true, -50}, {false, 0.3});
-    const FollowedPath path = follow(robot, poses, externals);
+    const cloud::PosePath poses = circle(101);
+    const Eigen::Matrix2Xd externals = robot::external_values(robot, poses, {true, -50}, {false, 0.3});
+    const robot::FollowedPath path = robot::follow_path(robot, poses, externals);
     EXPECT_TRUE(path.jumps.empty());
-    const PosePath back = forward(robot, path.joints);
+    const cloud::PosePath back = robot::forward_kinematics(robot, path.joints);
     for (std::size_t i = 0; i < poses.size(); ++i) {
-        EXPECT_EQ(path.state[i], PoseState::reached);
+        EXPECT_EQ(path.state[i], robot::PoseState::reached);
         EXPECT_LT((back[i].matrix() - poses[i].matrix()).cwiseAbs().maxCoeff(), 1e-9);
     }
     EXPECT_LT(largest_step(path), 0.2);
 }
 
-// Reference: all ways through all solutions, one by one.
-TEST(Follow, NoWayIsShorter)
+// Reference: all paths through all solutions, one by one.
+TEST(Follow, NoPathIsShorter)
 {
-    const Robot robot = irb1400();
+    const robot::Robot robot = irb1400();
     std::mt19937 random(5);
     std::uniform_real_distribution<double> at(-1, 1);
-    const Arm arm(robot);
+    const robot::Arm arm(robot);
     for (int k = 0; k < 20; ++k) {
-        PosePath poses;
-        std::vector<std::vector<std::pair<int, Joints>>> solutions;
-        Joints q = degrees(20 * at(random), 20 * at(random), 20 * at(random), 100 * at(random), 60 * at(random),
-                           200 * at(random));
+        cloud::PosePath poses;
+        std::vector<std::vector<std::pair<int, robot::Joints>>> solutions;
+        robot::Joints q = degrees(20 * at(random), 20 * at(random), 20 * at(random), 100 * at(random), 60 * at(random),
+                                  200 * at(random));
         for (int i = 0; i < 4; ++i) {
-            q += 0.4 * Joints::NullaryExpr([&] { return at(random); });
+            q += 0.4 * robot::Joints::NullaryExpr([&] { return at(random); });
             if (!arm.in_range(q)) break;
             poses.push_back(arm.flange(q) * robot.T_flange_tool);
-            solutions.push_back(all_solutions(robot, arm.flange(q)));
+            solutions.push_back(robot::all_solutions(robot, arm.flange(q)));
         }
-        const FollowOptions options;
-        const FollowedPath path = follow(robot, poses, at_rest(poses), options);
+        const robot::FollowOptions options;
+        const robot::FollowedPath path = robot::follow_path(robot, poses, at_rest(poses), options);
         std::pair<int, double> best = {1000, 0}, found = {0, 0};
-        const auto add = [&](std::pair<int, double>& sum, const Joints& from, const Joints& to, bool first) {
-            if (!first && (to - from).cwiseAbs().maxCoeff() > options.jump) ++sum.first;
+        const auto add = [&](std::pair<int, double>& sum, const robot::Joints& from, const robot::Joints& to,
+                             bool first) {
+            if (!first && (to - from).cwiseAbs().maxCoeff() > options.jump_threshold) ++sum.first;
             sum.second += (to - from).squaredNorm();
         };
-        const std::function<void(std::size_t, const Joints&, std::pair<int, double>)> go =
-            [&](std::size_t i, const Joints& from, std::pair<int, double> sum) {
+        const std::function<void(std::size_t, const robot::Joints&, std::pair<int, double>)> go =
+            [&](std::size_t i, const robot::Joints& from, std::pair<int, double> sum) {
                 if (i == poses.size()) {
                     best = std::min(best, sum);
                     return;
@@ -105,7 +106,7 @@ TEST(Follow, NoWayIsShorter)
                 }
             };
         go(0, options.start, {0, 0});
-        Joints from = options.start;
+        robot::Joints from = options.start;
         for (Eigen::Index i = 0; i < path.joints.cols(); ++i) {
             add(found, from, path.joints.col(i).head<6>(), i == 0);
             from = path.joints.col(i).head<6>();
@@ -120,15 +121,15 @@ TEST(Follow, NoWayIsShorter)
 // whole turn from the nearest solution; one of 640 does not fit, and is broken once.
 TEST(Follow, LooksAheadOverWholeTurns)
 {
-    const Robot robot = irb1400();
-    const Arm arm(robot);
+    const robot::Robot robot = irb1400();
+    const robot::Arm arm(robot);
     const auto spin = [&](double turn) {
-        PosePath poses;
+        cloud::PosePath poses;
         const Eigen::Isometry3d first = arm.flange(degrees(0, 0, 0, 0, 30, 80));
         for (int i = 0; i <= 64; ++i)
             poses.push_back(first * Eigen::AngleAxisd(turn * kDegree * i / 64, Eigen::Vector3d::UnitZ()) *
                             robot.T_flange_tool);
-        return follow(robot, poses, at_rest(poses));
+        return robot::follow_path(robot, poses, at_rest(poses));
     };
     EXPECT_TRUE(spin(560).jumps.empty());
     EXPECT_EQ(spin(640).jumps.size(), 1u);
@@ -138,115 +139,117 @@ TEST(Follow, LooksAheadOverWholeTurns)
 // of what turns.
 TEST(Follow, ATableThatTurnsBackJumps)
 {
-    Robot robot = irb1400();
-    robot.table = Table{{1000, 0, 0}, Eigen::Vector3d::UnitZ(), {10 * kDegree, 350 * kDegree}, {}, ""};
-    CellJointsPath joints = CellJointsPath::Zero(8, 4);
+    robot::Robot robot = irb1400();
+    robot.table = robot::Table{{1000, 0, 0}, Eigen::Vector3d::UnitZ(), {10 * kDegree, 350 * kDegree}, {}, ""};
+    robot::CellJointsPath joints = robot::CellJointsPath::Zero(8, 4);
     joints.row(7) << 340 * kDegree, 349 * kDegree, 11 * kDegree, 20 * kDegree;
-    EXPECT_EQ(judge(robot, joints, 30 * kDegree).jumps, std::vector<Eigen::Index>{2});
+    EXPECT_EQ(robot::evaluate_joints(robot, joints, 30 * kDegree).jumps, std::vector<Eigen::Index>{2});
     joints.row(7).setConstant(kDegree);
     joints.row(6) << 0, 500, 1000, 1500;
-    EXPECT_TRUE(judge(robot, joints, 30 * kDegree).jumps.empty());
+    EXPECT_TRUE(robot::evaluate_joints(robot, joints, 30 * kDegree).jumps.empty());
 }
 
-TEST(Follow, StatesTellWhatIsWrong)
+TEST(Follow, StatesNameTheFault)
 {
-    const Robot robot = irb1400();
-    PosePath poses = circle(9);
+    const robot::Robot robot = irb1400();
+    cloud::PosePath poses = circle(9);
     poses[2].translation().x() = 5000;
     poses[4].translation().setConstant(NAN);
-    poses[6] = Arm(robot).flange(degrees(0, 0, 75, 0, 60, 0)) * robot.T_flange_tool; // joint 3 ends at 70
-    const FollowedPath path = follow(robot, poses, at_rest(poses));
-    EXPECT_EQ(path.state[1], PoseState::reached);
-    EXPECT_EQ(path.state[2], PoseState::unreachable);
-    EXPECT_EQ(path.state[4], PoseState::undefined);
-    EXPECT_EQ(path.state[6], PoseState::out_of_range);
-    EXPECT_EQ(path.blocked.sum(), 1);
-    EXPECT_EQ(path.blocked[2], 1);
+    poses[6] = robot::Arm(robot).flange(degrees(0, 0, 75, 0, 60, 0)) * robot.T_flange_tool; // joint 3 ends at 70
+    const robot::FollowedPath path = robot::follow_path(robot, poses, at_rest(poses));
+    EXPECT_EQ(path.state[1], robot::PoseState::reached);
+    EXPECT_EQ(path.state[2], robot::PoseState::unreachable);
+    EXPECT_EQ(path.state[4], robot::PoseState::undefined);
+    EXPECT_EQ(path.state[6], robot::PoseState::out_of_range);
+    EXPECT_EQ(path.out_of_range_counts.sum(), 1);
+    EXPECT_EQ(path.out_of_range_counts[2], 1);
     EXPECT_TRUE(path.joints.col(2).hasNaN());
     EXPECT_TRUE(path.jumps.empty());
 }
 
-TEST(Externals, AxesStandIfTheyMay)
+TEST(Externals, AxesRestIfAllowed)
 {
-    Robot robot = irb1400();
+    robot::Robot robot = irb1400();
     robot.track = kTrack;
-    PosePath poses = circle(50);
+    cloud::PosePath poses = circle(50);
     for (Eigen::Isometry3d& pose : poses) pose.translation().y() += 900;
-    const ExternalChoice stands = choose_externals(robot, poses, {});
-    EXPECT_EQ(stands.unreached, 0);
-    EXPECT_FALSE(stands.track.follows);
+    const robot::ExternalChoice at_rest_choice = robot::choose_externals(robot, poses, {});
+    EXPECT_EQ(at_rest_choice.unreached, 0);
+    EXPECT_FALSE(at_rest_choice.track.follows);
     for (const double place : {400.0, 700.0, 1000.0, 1300.0}) {
-        const ExternalChoice there = choose_externals(robot, poses, {AxisRule{false, place}, {}});
-        EXPECT_TRUE(there.unreached > 0 || there.singularity <= stands.singularity);
+        const robot::ExternalChoice there = robot::choose_externals(robot, poses, {robot::AxisRule{false, place}, {}});
+        EXPECT_TRUE(there.unreached > 0 || there.singularity <= at_rest_choice.singularity);
     }
     // a line as long as the track needs it to follow
-    PosePath line;
+    cloud::PosePath line;
     for (int i = 0; i <= 100; ++i) line.push_back(upright(1000, -300 + 26 * i, 500));
-    const ExternalChoice follows = choose_externals(robot, line, {});
+    const robot::ExternalChoice follows = robot::choose_externals(robot, line, {});
     EXPECT_EQ(follows.unreached, 0);
     EXPECT_TRUE(follows.track.follows);
-    const Eigen::Matrix2Xd values = external_values(robot, line, follows.track, {});
+    const Eigen::Matrix2Xd values = robot::external_values(robot, line, follows.track, {});
     EXPECT_GE(values.row(0).minCoeff(), 0);
     EXPECT_LE(values.row(0).maxCoeff(), 2000);
-    const FollowedPath path = follow(robot, line, values);
+    const robot::FollowedPath path = robot::follow_path(robot, line, values);
     EXPECT_TRUE(path.jumps.empty());
-    EXPECT_TRUE(std::all_of(path.state.begin(), path.state.end(), [](PoseState s) { return s == PoseState::reached; }));
-    EXPECT_THROW(parse_axis_rule("follow", 1), InputError);
-    EXPECT_THROW(parse_axis_rule("nan", 1), InputError);
-    EXPECT_FALSE(parse_axis_rule("auto", 1));
-    EXPECT_EQ(parse_axis_rule("follow:-5", 2)->value, -10);
+    EXPECT_TRUE(std::all_of(path.state.begin(), path.state.end(),
+                            [](robot::PoseState s) { return s == robot::PoseState::reached; }));
+    EXPECT_THROW(robot::parse_axis_rule("follow", 1), core::InputError);
+    EXPECT_THROW(robot::parse_axis_rule("nan", 1), core::InputError);
+    EXPECT_FALSE(robot::parse_axis_rule("auto", 1));
+    EXPECT_EQ(robot::parse_axis_rule("follow:-5", 2)->value, -10);
 }
 
-// The far side of a part is reached when the table turns it to the robot: its tip's azimuth is then the one asked for.
+// The far side of a part is reached when the table turns it to the robot: its tip then has the requested azimuth.
 TEST(Externals, TableTurnsThePartToTheRobot)
 {
-    Robot robot = irb1400();
+    robot::Robot robot = irb1400();
     robot.table = kTable;
-    const PosePath poses = circle(73, 700);
+    const cloud::PosePath poses = circle(73, 700);
     const double to_the_robot = std::numbers::pi;
-    const Eigen::Matrix2Xd values = external_values(robot, poses, {}, {true, to_the_robot});
+    const Eigen::Matrix2Xd values = robot::external_values(robot, poses, {}, {true, to_the_robot});
     for (std::size_t i = 0; i < poses.size(); ++i) {
-        const Eigen::Vector3d tip = cell_part(robot, values(1, static_cast<Eigen::Index>(i))) * poses[i].translation();
+        const Eigen::Vector3d tip =
+            robot::part_in_cell(robot, values(1, static_cast<Eigen::Index>(i))) * poses[i].translation();
         EXPECT_LT((tip - Eigen::Vector3d(300, 0, 500)).norm(), 1e-9);
     }
     EXPECT_LT((values.row(1).tail(72) - values.row(1).head(72)).cwiseAbs().maxCoeff(), 0.1); // no turn is skipped
 }
 
-// Only joint 1 turns, by 1 degree a pose: the tip's way is a chord of its circle.
+// Only joint 1 turns, by 1 degree a pose: the tip moves along a chord of its circle.
 TEST(Rates, OfAJointThatTurnsEvenly)
 {
-    Robot robot = irb1400();
-    CellJointsPath joints = CellJointsPath::Zero(8, 21);
+    robot::Robot robot = irb1400();
+    robot::CellJointsPath joints = robot::CellJointsPath::Zero(8, 21);
     for (Eigen::Index i = 0; i < 21; ++i) joints.col(i).head<6>() = degrees(static_cast<double>(i), 0, 0, 0, 30, 0);
-    const PosePath poses = forward(robot, joints);
-    const FollowedPath path = judge(robot, joints, 0.5);
+    const cloud::PosePath poses = robot::forward_kinematics(robot, joints);
+    const robot::FollowedPath path = robot::evaluate_joints(robot, joints, 0.5);
     const double radius = poses[0].translation().head<2>().norm(), chord = 2 * radius * std::sin(kDegree / 2);
-    const Eigen::VectorXd times = arrival_times(poses, {100});
+    const Eigen::VectorXd times = robot::arrival_times(poses, {100});
     EXPECT_NEAR(times[20], 20 * chord / 100, 1e-9);
-    std::array<JointRate, 8> rates = joint_rates(robot, path, times);
+    std::array<robot::JointRate, 8> rates = robot::joint_rates(robot, path, times);
     EXPECT_NEAR(rates[0].speed, kDegree * 100 / chord, 1e-9);
     EXPECT_NEAR(rates[0].acceleration, 0, 1e-9);
     EXPECT_EQ(rates[1].speed, 0);
     robot.dh[0].max_speed = 0.99 * rates[0].speed;
-    EXPECT_EQ(joint_rates(robot, path, times)[0].too_fast, 20);
+    EXPECT_EQ(robot::joint_rates(robot, path, times)[0].over_limit_count, 20);
     robot.dh[0].max_speed = 1.01 * rates[0].speed;
-    EXPECT_EQ(joint_rates(robot, path, times)[0].too_fast, 0);
+    EXPECT_EQ(robot::joint_rates(robot, path, times)[0].over_limit_count, 0);
     // the turn's own limit, 1 degree a second, makes it slower
-    EXPECT_NEAR(joint_rates(robot, path, arrival_times(poses, {100, kDegree}))[0].speed, kDegree, 1e-9);
+    EXPECT_NEAR(robot::joint_rates(robot, path, robot::arrival_times(poses, {100, kDegree}))[0].speed, kDegree, 1e-9);
 }
 
 // q = t³ along unevenly spaced times: the difference quotients differ from 3 t² and 6 t by their second order.
 TEST(Rates, ConvergeToTheDerivatives)
 {
-    const Robot robot = irb1400();
+    const robot::Robot robot = irb1400();
     const auto errors = [&](Eigen::Index n) {
-        CellJointsPath joints = CellJointsPath::Zero(8, n + 1);
+        robot::CellJointsPath joints = robot::CellJointsPath::Zero(8, n + 1);
         Eigen::VectorXd times(n + 1);
         for (Eigen::Index i = 0; i <= n; ++i) {
             times[i] = static_cast<double>(i) / static_cast<double>(n);
             joints(0, i) = std::pow(times[i], 3);
         }
-        const JointRate rate = joint_rates(robot, judge(robot, joints, 10), times)[0];
+        const robot::JointRate rate = robot::joint_rates(robot, robot::evaluate_joints(robot, joints, 10), times)[0];
         EXPECT_EQ(rate.speed_at, n);
         EXPECT_EQ(rate.acceleration_at, n - 1);
         const double h = 1.0 / static_cast<double>(n);
@@ -260,38 +263,38 @@ TEST(Rates, ConvergeToTheDerivatives)
 
 TEST(PathCloud, GoesThereAndBack)
 {
-    Robot robot = irb1400();
+    robot::Robot robot = irb1400();
     robot.track = kTrack;
-    Cloud cloud;
+    cloud::Cloud cloud;
     cloud.xyz = Eigen::Matrix3Xd::Zero(3, 3);
-    CellJointsPath joints = CellJointsPath::Zero(8, 3);
+    robot::CellJointsPath joints = robot::CellJointsPath::Zero(8, 3);
     joints.col(0).head<7>() << degrees(10, 20, 30, 40, 50, 60), 700;
     joints.col(2).setConstant(NAN);
-    set_joints(cloud, robot, joints);
-    EXPECT_NEAR(field(cloud, "joint4")[0], 40, 1e-12);
-    EXPECT_NEAR(field(cloud, "joint7")[0], 700, 1e-12);
-    EXPECT_FALSE(has_field(cloud, "joint8"));
-    const PosePath poses = forward(robot, path_joints(cloud, robot));
-    set_path(cloud, poses);
-    const PosePath again = path_poses(cloud);
+    robot::set_joints(cloud, robot, joints);
+    EXPECT_NEAR(cloud::field(cloud, "joint4")[0], 40, 1e-12);
+    EXPECT_NEAR(cloud::field(cloud, "joint7")[0], 700, 1e-12);
+    EXPECT_FALSE(cloud::has_field(cloud, "joint8"));
+    const cloud::PosePath poses = robot::forward_kinematics(robot, robot::path_joints(cloud, robot));
+    cloud::set_poses(cloud, poses);
+    const cloud::PosePath again = cloud::read_poses(cloud);
     EXPECT_LT((again[0].matrix() - poses[0].matrix()).cwiseAbs().maxCoeff(), 1e-12);
     EXPECT_TRUE(again[2].translation().hasNaN());
-    set_field(cloud, "qw", Eigen::VectorXd::Zero(3), 8);
-    set_field(cloud, "qx", Eigen::VectorXd::Zero(3), 8);
-    set_field(cloud, "qy", Eigen::VectorXd::Zero(3), 8);
-    set_field(cloud, "qz", Eigen::VectorXd::Zero(3), 8);
-    EXPECT_THROW(path_poses(cloud), InputError);
+    cloud::set_field(cloud, "qw", Eigen::VectorXd::Zero(3), 8);
+    cloud::set_field(cloud, "qx", Eigen::VectorXd::Zero(3), 8);
+    cloud::set_field(cloud, "qy", Eigen::VectorXd::Zero(3), 8);
+    cloud::set_field(cloud, "qz", Eigen::VectorXd::Zero(3), 8);
+    EXPECT_THROW(cloud::read_poses(cloud), core::InputError);
 }
 
 // Reference: what an ABB arm shows at home, tool z ahead: q = 0.7071, 0, 0.7071, 0; and its quadrants.
 TEST(Rapid, TargetsOfTheHomePose)
 {
-    Robot robot = irb1400();
-    CellJointsPath joints = CellJointsPath::Zero(8, 2);
+    robot::Robot robot = irb1400();
+    robot::CellJointsPath joints = robot::CellJointsPath::Zero(8, 2);
     joints.col(1).head<6>() = degrees(-100, 0, 0, 95, 30, 200);
-    const FollowedPath path = judge(robot, joints, 10);
+    const robot::FollowedPath path = robot::evaluate_joints(robot, joints, 10);
     std::ostringstream text;
-    write_rapid(text, robot, forward(robot, joints), path, {{50}, "z1"});
+    robot::write_rapid(text, robot, robot::forward_kinematics(robot, joints), path, {{50}, "z1"});
     const std::string module = text.str();
     EXPECT_NE(module.find("p1 := [[1155,0,1095],[0.707106781,0,0.707106781,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];"),
               std::string::npos)
@@ -306,7 +309,8 @@ TEST(Rapid, TargetsOfTheHomePose)
     joints(6, 0) = 1500;
     joints(7, 0) = 90 * kDegree;
     std::ostringstream cell;
-    write_rapid(cell, robot, forward(robot, joints), judge(robot, joints, 10), {{50}, "z1"});
+    robot::write_rapid(cell, robot, robot::forward_kinematics(robot, joints), robot::evaluate_joints(robot, joints, 10),
+                       {{50}, "z1"});
     EXPECT_NE(cell.str().find("[1500,90,9E9,9E9,9E9,9E9]"), std::string::npos) << cell.str();
     EXPECT_NE(cell.str().find(
                   "wobjdata fettle_part := [FALSE,FALSE,\"TURN\",[[0,0,0],[1,0,0,0]],[[-1000,0,-400],[1,0,0,0]]]"),
@@ -314,18 +318,21 @@ TEST(Rapid, TargetsOfTheHomePose)
         << cell.str();
 }
 
-TEST(Rapid, EightWaysOfASerialArm)
+TEST(Rapid, EightBranchesOfASerialArm)
 {
-    const Robot robot = irb1400(Coupling::serial);
-    const auto way = [&](const Joints& q) { return rapid_configuration(robot, q)[3]; };
-    EXPECT_EQ(way(degrees(0, 0, 0, 0, 30, 0)), 0);
-    EXPECT_EQ(way(degrees(0, 0, 0, 0, -30, 0)), 1);
-    EXPECT_EQ(way(degrees(0, 60, -150, 0, 30, 0)), 2);  // forearm folded back over the arm, which leans far ahead
-    EXPECT_EQ(way(degrees(0, -90, 70, 0, 30, 0)), 0);   // the arm lies back, the forearm looks ahead past axis 1
-    EXPECT_EQ(way(degrees(0, -70, -10, 0, 30, 0)), 4);  // the arm leans back, the forearm stands up on it
-    EXPECT_EQ(way(degrees(0, -80, -100, 0, 30, 0)), 6); // and lies back, too
-    EXPECT_EQ(way(degrees(0, -80, -100, 0, -30, 0)), 7);
-    EXPECT_EQ(rapid_configuration(irb1400(), degrees(0, 0, 0, 0, -30, 0))[3], 0);
+    const robot::Robot robot = irb1400(robot::Coupling::serial);
+    const auto configuration = [&](const robot::Joints& q) { return robot::rapid_configuration(robot, q)[3]; };
+    EXPECT_EQ(configuration(degrees(0, 0, 0, 0, 30, 0)), 0);
+    EXPECT_EQ(configuration(degrees(0, 0, 0, 0, -30, 0)), 1);
+    EXPECT_EQ(configuration(degrees(0, 60, -150, 0, 30, 0)),
+              2); // forearm folded back over the arm, which leans far ahead
+    EXPECT_EQ(configuration(degrees(0, -90, 70, 0, 30, 0)),
+              0); // the arm lies back, the forearm points ahead past axis 1
+    EXPECT_EQ(configuration(degrees(0, -70, -10, 0, 30, 0)),
+              4); // the arm leans back, the forearm points upwards from it
+    EXPECT_EQ(configuration(degrees(0, -80, -100, 0, 30, 0)), 6); // and lies back, too
+    EXPECT_EQ(configuration(degrees(0, -80, -100, 0, -30, 0)), 7);
+    EXPECT_EQ(robot::rapid_configuration(irb1400(), degrees(0, 0, 0, 0, -30, 0))[3], 0);
 }
 
 } // namespace

@@ -16,10 +16,10 @@ using Eigen::Index;
 
 constexpr double kSpacing = 0.5;
 
-Surfels plate()
+belt::Surfels plate()
 {
     const Index rows = 72, columns = 40;
-    Surfels surfels;
+    belt::Surfels surfels;
     surfels.position.setZero(3, rows * columns);
     for (Index j = 0; j < columns; ++j)
         for (Index i = 0; i < rows; ++i)
@@ -36,9 +36,9 @@ Surfels plate()
 
 /// It takes so little that the contact does not change with it: the choices that made an allowance are those that meet
 /// it.
-ContactWheel crowned()
+belt::ContactWheel crowned()
 {
-    ContactWheel wheel;
+    belt::ContactWheel wheel;
     wheel.radius = 20;
     wheel.width = 30;
     wheel.crown_radius = 30;
@@ -49,13 +49,13 @@ ContactWheel crowned()
 }
 
 /// Three passes 4 mm apart, from -12 to 12 mm.
-std::vector<BeltPoint> passes(double (*feed)(double x, double y), double (*force)(double x, double y))
+std::vector<belt::BeltPoint> passes(double (*feed)(double x, double y), double (*force)(double x, double y))
 {
-    std::vector<BeltPoint> path;
+    std::vector<belt::BeltPoint> path;
     for (const double y : {-4.0, 0.0, 4.0})
         for (int k = 0; k <= 12; ++k) {
             const double x = -12 + 2 * k;
-            BeltPoint point{Eigen::Isometry3d::Identity(), {true, force(x, y)}, feed(x, y), 0, k == 0};
+            belt::BeltPoint point{Eigen::Isometry3d::Identity(), {true, force(x, y)}, feed(x, y), 0, k == 0};
             point.T_part_tool.translation() << x, y, 0;
             path.push_back(point);
         }
@@ -68,33 +68,33 @@ double wavy_feed(double x, double y) { return 5 + 2 * std::sin(x / 5 + y); }
 double wavy_force(double x, double y) { return 10 + 5 * std::sin(x / 5 + y); }
 
 /// What such a path takes is the allowance.
-Surfels allowance_of(const std::vector<BeltPoint>& path)
+belt::Surfels allowance_of(const std::vector<belt::BeltPoint>& path)
 {
-    Surfels surfels = plate();
-    surfels.displacement = grind(surfels, crowned(), path, {}).removed;
+    belt::Surfels surfels = plate();
+    surfels.displacement = belt::grind(surfels, crowned(), path, {}).removed;
     return surfels;
 }
 
-BeltPlanOptions limits(double least, double most)
+belt::BeltPlanOptions limits(double min, double max)
 {
-    BeltPlanOptions options;
-    options.least = least;
-    options.most = most;
+    belt::BeltPlanOptions options;
+    options.min = min;
+    options.max = max;
     options.smoothness = 1e-9;
     return options;
 }
 
 TEST(BeltPlan, FindsTheFeedsAgain)
 {
-    const std::vector<BeltPoint> known = passes(wavy_feed, even_force);
-    const Surfels surfels = allowance_of(known);
-    const BeltPlan plan = plan_belt(surfels, crowned(), passes(even_feed, even_force), limits(1, 50));
+    const std::vector<belt::BeltPoint> known = passes(wavy_feed, even_force);
+    const belt::Surfels surfels = allowance_of(known);
+    const belt::BeltPlan plan = belt::plan_belt(surfels, crowned(), passes(even_feed, even_force), limits(1, 50));
     EXPECT_TRUE(plan.converged);
     EXPECT_LE(plan.rms_planned, 0.03 * plan.rms_constant);
     EXPECT_LT(plan.rms_constant, plan.rms_before);
     for (std::size_t k = 0; k < known.size(); ++k) {
         EXPECT_NEAR(plan.path[k].feed, known[k].feed, 0.05 * known[k].feed);
-        EXPECT_EQ(plan.path[k].pressing.amount, 10);
+        EXPECT_EQ(plan.path[k].load.value, 10);
     }
     EXPECT_GT(plan.reached, 0);
     EXPECT_LT(plan.reached, plan.touched);
@@ -102,16 +102,16 @@ TEST(BeltPlan, FindsTheFeedsAgain)
 
 TEST(BeltPlan, FindsTheForcesAgain)
 {
-    const Surfels surfels = allowance_of(passes(even_feed, wavy_force));
-    const BeltPlan plan = [&] {
-        BeltPlanOptions options = limits(1, 50);
+    const belt::Surfels surfels = allowance_of(passes(even_feed, wavy_force));
+    const belt::BeltPlan plan = [&] {
+        belt::BeltPlanOptions options = limits(1, 50);
         options.by_force = true;
-        return plan_belt(surfels, crowned(), passes(even_feed, even_force), options);
+        return belt::plan_belt(surfels, crowned(), passes(even_feed, even_force), options);
     }();
     EXPECT_LE(plan.rms_planned, 0.05 * plan.rms_constant);
-    for (const BeltPoint& point : plan.path) {
+    for (const belt::BeltPoint& point : plan.path) {
         EXPECT_EQ(point.feed, 5);
-        EXPECT_NEAR(point.pressing.amount,
+        EXPECT_NEAR(point.load.value,
                     wavy_force(point.T_part_tool.translation().x(), point.T_part_tool.translation().y()), 1.5);
     }
 }
@@ -119,93 +119,94 @@ TEST(BeltPlan, FindsTheForcesAgain)
 // The law's exponents bend what a feed takes; the answer is the same.
 TEST(BeltPlan, FollowsThePowerLaw)
 {
-    ContactWheel wheel = crowned();
-    wheel.law.pressure = 1.5;
-    wheel.law.feed = -0.3;
+    belt::ContactWheel wheel = crowned();
+    wheel.law.pressure_exponent = 1.5;
+    wheel.law.feed_exponent = -0.3;
     wheel.law.wear_work = 5e5;
-    Surfels surfels = plate();
-    const std::vector<BeltPoint> known = passes(wavy_feed, even_force);
-    surfels.displacement = grind(surfels, wheel, known, {}).removed;
-    const BeltPlan plan = plan_belt(surfels, wheel, passes(even_feed, even_force), limits(1, 50));
+    belt::Surfels surfels = plate();
+    const std::vector<belt::BeltPoint> known = passes(wavy_feed, even_force);
+    surfels.displacement = belt::grind(surfels, wheel, known, {}).removed;
+    const belt::BeltPlan plan = belt::plan_belt(surfels, wheel, passes(even_feed, even_force), limits(1, 50));
     EXPECT_LE(plan.rms_planned, 0.03 * plan.rms_constant);
     for (std::size_t k = 0; k < known.size(); ++k) EXPECT_NEAR(plan.path[k].feed, known[k].feed, 0.05 * known[k].feed);
 }
 
 TEST(BeltPlan, KeepsItsLimits)
 {
-    const Surfels surfels = allowance_of(passes(wavy_feed, even_force));
-    const BeltPlan plan = plan_belt(surfels, crowned(), passes(even_feed, even_force), limits(4, 6));
-    for (const BeltPoint& point : plan.path) {
+    const belt::Surfels surfels = allowance_of(passes(wavy_feed, even_force));
+    const belt::BeltPlan plan = belt::plan_belt(surfels, crowned(), passes(even_feed, even_force), limits(4, 6));
+    for (const belt::BeltPoint& point : plan.path) {
         EXPECT_GE(point.feed, 4);
         EXPECT_LE(point.feed, 6);
     }
-    EXPECT_GT(plan.at_least, 0);
-    EXPECT_GT(plan.at_most, 0);
+    EXPECT_GT(plan.at_min, 0);
+    EXPECT_GT(plan.at_max, 0);
     EXPECT_LT(plan.rms_planned, plan.rms_constant);
 }
 
 // The smoother, the more even, at the cost of the error.
 TEST(BeltPlan, IsSmoothOnRequest)
 {
-    const Surfels surfels = allowance_of(passes(wavy_feed, even_force));
+    const belt::Surfels surfels = allowance_of(passes(wavy_feed, even_force));
     const auto planned = [&](double smoothness) {
-        BeltPlanOptions options = limits(1, 50);
+        belt::BeltPlanOptions options = limits(1, 50);
         options.smoothness = smoothness;
-        return plan_belt(surfels, crowned(), passes(even_feed, even_force), options);
+        return belt::plan_belt(surfels, crowned(), passes(even_feed, even_force), options);
     };
-    const BeltPlan rough = planned(1e-9), smooth = planned(1e-3);
-    const auto spread = [](const BeltPlan& plan) {
-        double least = 1e9, most = 0;
-        for (const BeltPoint& point : plan.path) {
-            least = std::min(least, point.feed);
-            most = std::max(most, point.feed);
+    const belt::BeltPlan rough = planned(1e-9), smooth = planned(1e-3);
+    const auto spread = [](const belt::BeltPlan& plan) {
+        double min = 1e9, max = 0;
+        for (const belt::BeltPoint& point : plan.path) {
+            min = std::min(min, point.feed);
+            max = std::max(max, point.feed);
         }
-        return most / least;
+        return max / min;
     };
     EXPECT_LT(spread(smooth), 0.7 * spread(rough));
     EXPECT_LE(rough.rms_planned, smooth.rms_planned);
 }
 
-// Where the wheel is off the part nothing is chosen, and nothing that stands there counts: the same plan as without.
+// Where the wheel is off the part nothing is planned, and its loads there do not count: the same plan as without.
 TEST(BeltPlan, PassesOverPointsOffThePart)
 {
     constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
     for (const bool by_force : {false, true}) {
-        const Surfels surfels = allowance_of(by_force ? passes(even_feed, wavy_force) : passes(wavy_feed, even_force));
-        const std::vector<BeltPoint> on = passes(even_feed, even_force);
-        std::vector<BeltPoint> with;
-        for (const BeltPoint& point : on) {
-            if (point.begins_run) {
-                BeltPoint off{point.T_part_tool, {true, kNan}, kNan, kNan, true};
+        const belt::Surfels surfels =
+            allowance_of(by_force ? passes(even_feed, wavy_force) : passes(wavy_feed, even_force));
+        const std::vector<belt::BeltPoint> on = passes(even_feed, even_force);
+        std::vector<belt::BeltPoint> with;
+        for (const belt::BeltPoint& point : on) {
+            if (point.touches_down) {
+                belt::BeltPoint off{point.T_part_tool, {true, kNan}, kNan, kNan, true};
                 off.T_part_tool.matrix().setConstant(kNan);
                 with.insert(with.end(), 4, off);
             }
             with.push_back(point);
         }
-        BeltPlanOptions options = limits(1, 50);
+        belt::BeltPlanOptions options = limits(1, 50);
         options.by_force = by_force;
-        options.rounds = 1;
+        options.max_rounds = 1;
         options.smoothness = 1e-3;
-        const BeltPlan expected = plan_belt(surfels, crowned(), on, options);
-        BeltPlan plan = plan_belt(surfels, crowned(), with, options);
+        const belt::BeltPlan expected = belt::plan_belt(surfels, crowned(), on, options);
+        belt::BeltPlan plan = belt::plan_belt(surfels, crowned(), with, options);
         EXPECT_NEAR(plan.rms_planned, expected.rms_planned, 1e-6 * expected.rms_planned);
         EXPECT_EQ(plan.constant, expected.constant);
-        std::erase_if(plan.path, [](const BeltPoint& point) { return !point.is_on(); });
+        std::erase_if(plan.path, [](const belt::BeltPoint& point) { return !point.is_on_part(); });
         ASSERT_EQ(plan.path.size(), on.size());
         for (std::size_t k = 0; k < on.size(); ++k) {
             EXPECT_NEAR(plan.path[k].feed, expected.path[k].feed, 1e-6 * expected.path[k].feed);
-            EXPECT_NEAR(plan.path[k].pressing.amount, expected.path[k].pressing.amount, 1e-5);
+            EXPECT_NEAR(plan.path[k].load.value, expected.path[k].load.value, 1e-5);
         }
     }
 }
 
 TEST(BeltPlan, RefusesForcesWhereDepthsAreGiven)
 {
-    std::vector<BeltPoint> path = passes(even_feed, even_force);
-    path[3].pressing = {false, 0.2};
-    BeltPlanOptions options = limits(1, 50);
+    std::vector<belt::BeltPoint> path = passes(even_feed, even_force);
+    path[3].load = {false, 0.2};
+    belt::BeltPlanOptions options = limits(1, 50);
     options.by_force = true;
-    EXPECT_THROW(plan_belt(plate(), crowned(), path, options), InputError);
+    EXPECT_THROW(belt::plan_belt(plate(), crowned(), path, options), core::InputError);
 }
 
 } // namespace

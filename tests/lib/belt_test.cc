@@ -19,10 +19,10 @@ constexpr double kSpacing = 0.5, kLength = 80, kWidth = 30; // mm
 constexpr double kForce = 20, kFeed = 40;
 
 /// A plate in z = 0; its stock's surface is tilted by `slope` along y about x.
-Surfels plate(double slope = 0)
+belt::Surfels plate(double slope = 0)
 {
     const auto rows = static_cast<Index>(kLength / kSpacing), columns = static_cast<Index>(kWidth / kSpacing);
-    Surfels surfels;
+    belt::Surfels surfels;
     surfels.position.resize(3, rows * columns);
     surfels.normal.resize(3, rows * columns);
     for (Index j = 0; j < columns; ++j)
@@ -39,9 +39,9 @@ Surfels plate(double slope = 0)
     return surfels;
 }
 
-ContactWheel crowned()
+belt::ContactWheel crowned()
 {
-    ContactWheel wheel;
+    belt::ContactWheel wheel;
     wheel.radius = 100;
     wheel.width = 50;
     wheel.crown_radius = 60;
@@ -52,12 +52,12 @@ ContactWheel crowned()
 }
 
 /// Along x through the middle, from -20 to 20 mm.
-std::vector<BeltPoint> line(double step)
+std::vector<belt::BeltPoint> line(double step)
 {
-    std::vector<BeltPoint> path;
+    std::vector<belt::BeltPoint> path;
     const int count = static_cast<int>(std::lround(40 / step));
     for (int k = 0; k <= count; ++k) {
-        BeltPoint point{Eigen::Isometry3d::Identity(), {true, kForce}, kFeed, 0};
+        belt::BeltPoint point{Eigen::Isometry3d::Identity(), {true, kForce}, kFeed, 0};
         point.T_part_tool.translation() << -20 + step * k, 0.13, 0;
         path.push_back(point);
     }
@@ -68,11 +68,11 @@ double volume(const Eigen::VectorXd& removed) { return removed.sum() * kSpacing 
 
 TEST(Belt, RemovesWhatTheLawSays)
 {
-    Surfels surfels = plate();
-    const Surfels before = surfels;
-    const ContactWheel wheel = crowned();
-    const BeltRun run = grind(surfels, wheel, line(0.5), {});
-    // Preston's law is linear in p: C V_b F t, whatever the pressure's shape.
+    belt::Surfels surfels = plate();
+    const belt::Surfels before = surfels;
+    const belt::ContactWheel wheel = crowned();
+    const belt::BeltRun run = belt::grind(surfels, wheel, line(0.5), {});
+    // Preston's law is linear in p: C V_b F t, for any distribution of the pressure.
     const double law = wheel.law.coefficient * wheel.belt_speed * kForce * 40 / kFeed;
     EXPECT_NEAR(run.trace.back().time, 40 / kFeed, 1e-9);
     EXPECT_NEAR(run.removed_volume, law, 1e-5 * law);
@@ -88,45 +88,45 @@ TEST(Belt, RemovesWhatTheLawSays)
 
 TEST(Belt, DependsNotOnThePathsSpacing)
 {
-    const ContactWheel wheel = crowned();
+    const belt::ContactWheel wheel = crowned();
     const auto ground = [&](double step) {
-        Surfels surfels = plate();
-        return grind(surfels, wheel, line(step), {}).removed;
+        belt::Surfels surfels = plate();
+        return belt::grind(surfels, wheel, line(step), {}).removed;
     };
     const Eigen::VectorXd coarse = ground(1), fine = ground(0.5);
-    const Surfels where = plate();
-    double most = 0, deepest = 0;
+    const belt::Surfels where = plate();
+    double max = 0, deepest = 0;
     for (Index i = 0; i < where.size(); ++i) {
         if (std::abs(where.position(0, i)) > 8) continue; // away from the path's ends
-        most = std::max(most, std::abs(coarse[i] - fine[i]));
+        max = std::max(max, std::abs(coarse[i] - fine[i]));
         deepest = std::max(deepest, fine[i]);
     }
-    EXPECT_LE(most, 0.005 * deepest);
+    EXPECT_LE(max, 0.005 * deepest);
 }
 
 // The depth is normal to the tangent plane: a surfel whose normal leans loses its cosine of it.
 TEST(Belt, TakesTheCosineFromLeaningNormals)
 {
-    const ContactWheel wheel = crowned();
-    Surfels level = plate(), leaning = plate(0.1);
+    const belt::ContactWheel wheel = crowned();
+    belt::Surfels level = plate(), leaning = plate(0.1);
     level.displacement.setZero();
     leaning.displacement.setZero();
-    const BeltRun a = grind(level, wheel, line(1), {}), b = grind(leaning, wheel, line(1), {});
+    const belt::BeltRun a = belt::grind(level, wheel, line(1), {}), b = belt::grind(leaning, wheel, line(1), {});
     EXPECT_NEAR(volume(b.removed) / volume(a.removed), 1 / std::sqrt(1.01), 1e-3);
 }
 
-// A break ends a run: no way is counted across it, and the next contact begins anew.
+// A break ends a run: no distance is counted across it, and the next contact is a new start.
 TEST(Belt, LiftsAtABreak)
 {
-    const ContactWheel wheel = crowned();
-    std::vector<BeltPoint> path = line(1);
+    const belt::ContactWheel wheel = crowned();
+    std::vector<belt::BeltPoint> path = line(1);
     const std::size_t n = path.size();
-    BeltPoint off = path.front();
+    belt::BeltPoint off = path.front();
     off.T_part_tool.translation().setConstant(std::numeric_limits<double>::quiet_NaN());
     path.push_back(off);
     for (std::size_t k = 0; k < n; ++k) path.push_back(path[k]);
-    Surfels surfels = plate();
-    const BeltRun run = grind(surfels, wheel, path, {});
+    belt::Surfels surfels = plate();
+    const belt::BeltRun run = belt::grind(surfels, wheel, path, {});
     EXPECT_NEAR(run.trace.back().time, 2 * 40 / kFeed, 1e-9);
     EXPECT_TRUE(std::isnan(run.trace[n].force));
     EXPECT_NEAR(run.removed_volume, 2 * wheel.law.coefficient * wheel.belt_speed * kForce * 40 / kFeed, 1e-6);
@@ -134,28 +134,28 @@ TEST(Belt, LiftsAtABreak)
 
 TEST(Belt, DwellsAndWears)
 {
-    ContactWheel wheel = crowned();
-    std::vector<BeltPoint> path = line(1);
+    belt::ContactWheel wheel = crowned();
+    std::vector<belt::BeltPoint> path = line(1);
     path.resize(1);
     path[0].dwell = 0.5;
-    Surfels surfels = plate();
-    const double fresh = grind(surfels, wheel, path, {}).removed_volume;
+    belt::Surfels surfels = plate();
+    const double fresh = belt::grind(surfels, wheel, path, {}).removed_volume;
     EXPECT_NEAR(fresh, wheel.law.coefficient * wheel.belt_speed * kForce * 0.5, 1e-6);
-    BeltOptions worn;
-    worn.worn = wheel.law.wear_work = 1e6;
-    EXPECT_NEAR(grind(surfels, wheel, path, worn).removed_volume, fresh / std::exp(1), 1e-6);
-    wheel.law.dwell = 2;
-    EXPECT_NEAR(grind(surfels, wheel, path, {}).removed_volume, fresh / 2, 1e-6);
+    belt::BeltOptions worn;
+    worn.prior_work = wheel.law.wear_work = 1e6;
+    EXPECT_NEAR(belt::grind(surfels, wheel, path, worn).removed_volume, fresh / std::exp(1), 1e-6);
+    wheel.law.dwell_exponent = 2;
+    EXPECT_NEAR(belt::grind(surfels, wheel, path, {}).removed_volume, fresh / 2, 1e-6);
 }
 
 // The belt's work is F V_b t, and it cuts exp(-work / wear_work) as fast: the volume is the integral of that.
 TEST(Belt, WearsAlongThePath)
 {
-    ContactWheel wheel = crowned();
+    belt::ContactWheel wheel = crowned();
     const double work = kForce * wheel.belt_speed * 40 / kFeed;
     wheel.law.wear_work = work / 2;
-    Surfels surfels = plate();
-    const BeltRun run = grind(surfels, wheel, line(0.25), {});
+    belt::Surfels surfels = plate();
+    const belt::BeltRun run = belt::grind(surfels, wheel, line(0.25), {});
     EXPECT_NEAR(run.work, work, 1e-9 * work);
     const double law = wheel.law.coefficient * wheel.law.wear_work * (1 - std::exp(-2));
     EXPECT_NEAR(run.removed_volume, law, 0.01 * law); // steps of 1/160 of the path
@@ -164,94 +164,94 @@ TEST(Belt, WearsAlongThePath)
 // Hammann's model removes the same volume, evenly over a rectangle.
 TEST(Belt, SpreadsTheForceInTheGlobalModel)
 {
-    const ContactWheel wheel = crowned();
-    Surfels local = plate(), global = plate();
-    BeltOptions options;
-    const BeltRun by_pressure = grind(local, wheel, line(0.5), options);
-    options.model = BeltModel::global;
-    options.keeps_losses = true;
-    const BeltRun even = grind(global, wheel, line(0.5), options);
+    const belt::ContactWheel wheel = crowned();
+    belt::Surfels local = plate(), global = plate();
+    belt::BeltOptions options;
+    const belt::BeltRun by_pressure = belt::grind(local, wheel, line(0.5), options);
+    options.model = belt::BeltModel::global;
+    options.keep_removals = true;
+    const belt::BeltRun even = belt::grind(global, wheel, line(0.5), options);
     EXPECT_NEAR(even.removed_volume, by_pressure.removed_volume, 1e-6 * by_pressure.removed_volume);
     EXPECT_NEAR(volume(even.removed), even.removed_volume, 1e-3 * even.removed_volume);
     EXPECT_LT(even.removed.maxCoeff(), 0.8 * by_pressure.removed.maxCoeff());
     Eigen::VectorXd sum = Eigen::VectorXd::Zero(global.size());
     std::vector<double> deepest(81, 0);
-    for (const BeltLoss& loss : even.losses) {
+    for (const belt::SurfelRemoval& loss : even.removals) {
         sum[loss.surfel] += loss.depth;
         deepest[loss.point] = std::max(deepest[loss.point], loss.depth);
     }
     EXPECT_LE((sum - even.removed).cwiseAbs().maxCoeff(), 1e-12);
     // r = C V_b F / (V_w L_w) in the middle, where each place is passed from end to end
-    double middle = 0, least = 1;
+    double middle = 0, min = 1;
     for (Index i = 0; i < global.size(); ++i)
         if (global.position.col(i).cwiseAbs().head<2>().maxCoeff() < 3) {
             middle = std::max(middle, even.removed[i]);
-            least = std::min(least, even.removed[i]);
+            min = std::min(min, even.removed[i]);
         }
-    EXPECT_LE(middle - least, 0.02 * middle);
-    EXPECT_TRUE(by_pressure.losses.empty());
+    EXPECT_LE(middle - min, 0.02 * middle);
+    EXPECT_TRUE(by_pressure.removals.empty());
 }
 
 TEST(Belt, FollowsThePowerLaw)
 {
-    BeltLaw law;
+    belt::BeltLaw law;
     law.coefficient = 2;
-    law.pressure = 1.5;
-    law.speed = 0.5;
-    law.feed = -1;
+    law.pressure_exponent = 1.5;
+    law.speed_exponent = 0.5;
+    law.feed_exponent = -1;
     law.threshold = 0.1;
-    EXPECT_EQ(removed_depth(law, 0.1, 9, 4, 3, 0), 0);
-    EXPECT_NEAR(removed_depth(law, 0.35, 9, 4, 3, 0), 2 * 0.125 * 3 / 4.0 * 3, 1e-12);
+    EXPECT_EQ(belt::removed_depth(law, 0.1, 9, 4, 3, 0), 0);
+    EXPECT_NEAR(belt::removed_depth(law, 0.35, 9, 4, 3, 0), 2 * 0.125 * 3 / 4.0 * 3, 1e-12);
 }
 
-// Two passes 10 mm apart: the way between them is none of the wheel's, and each end dwells.
+// Two passes 10 mm apart: the wheel does not travel between them, and each end dwells.
 TEST(Belt, BeginsARunWithEachPass)
 {
-    Cloud cloud;
-    PosePath poses(4, Eigen::Isometry3d::Identity());
+    cloud::Cloud cloud;
+    cloud::PosePath poses(4, Eigen::Isometry3d::Identity());
     poses[1].translation().x() = 2;
     poses[2].translation() << 2, 10, 0;
     poses[3].translation().y() = 10;
     cloud.xyz.setZero(3, 4);
-    set_path(cloud, poses);
-    BeltSettings settings;
+    cloud::set_poses(cloud, poses);
+    belt::BeltSettings settings;
     settings.force = 5;
     settings.dwell = 0.5;
-    EXPECT_NEAR(ways(belt_path(cloud, settings)).sum(), 14, 1e-6);
-    EXPECT_EQ(belt_path(cloud, settings)[1].dwell, 0);
-    set_field(cloud, "pass", Eigen::Vector4d(0, 0, 1, 1));
-    const std::vector<BeltPoint> path = belt_path(cloud, settings);
-    EXPECT_NEAR(ways(path).sum(), 4, 1e-6);
-    for (const BeltPoint& point : path) EXPECT_EQ(point.dwell, 0.5);
-    set_field(cloud, "feed", Eigen::Vector4d(1, 1, 0, 1));
-    EXPECT_THROW(belt_path(cloud, settings), InputError);
+    EXPECT_NEAR(belt::tributary_lengths(belt::belt_path(cloud, settings)).sum(), 14, 1e-6);
+    EXPECT_EQ(belt::belt_path(cloud, settings)[1].dwell, 0);
+    cloud::set_field(cloud, "pass", Eigen::Vector4d(0, 0, 1, 1));
+    const std::vector<belt::BeltPoint> path = belt::belt_path(cloud, settings);
+    EXPECT_NEAR(belt::tributary_lengths(path).sum(), 4, 1e-6);
+    for (const belt::BeltPoint& point : path) EXPECT_EQ(point.dwell, 0.5);
+    cloud::set_field(cloud, "feed", Eigen::Vector4d(1, 1, 0, 1));
+    EXPECT_THROW(belt::belt_path(cloud, settings), core::InputError);
 }
 
-// The deeper the hub, the more force; each point says what it took.
+// The deeper the hub, the larger the force; each point reports its force.
 TEST(Belt, PressesToADepth)
 {
-    const ContactWheel wheel = crowned();
-    std::vector<BeltPoint> path = line(10);
+    const belt::ContactWheel wheel = crowned();
+    std::vector<belt::BeltPoint> path = line(10);
     for (std::size_t k = 0; k < path.size(); ++k) {
-        path[k].pressing = {false, 0.1 + 0.1 * static_cast<double>(k)};
+        path[k].load = {false, 0.1 + 0.1 * static_cast<double>(k)};
         path[k].T_part_tool.translation().z() = 0.2;
     }
-    Surfels surfels = plate();
-    const BeltRun run = grind(surfels, wheel, path, {});
+    belt::Surfels surfels = plate();
+    const belt::BeltRun run = belt::grind(surfels, wheel, path, {});
     for (std::size_t k = 1; k < path.size(); ++k) EXPECT_GT(run.trace[k].force, run.trace[k - 1].force);
     EXPECT_NEAR(run.trace[2].indentation, 0.3, 1e-12);
 }
 
 TEST(Belt, NamesThePointWithNothingUnderIt)
 {
-    const ContactWheel wheel = crowned();
-    std::vector<BeltPoint> path = line(10);
+    const belt::ContactWheel wheel = crowned();
+    std::vector<belt::BeltPoint> path = line(10);
     path[2].T_part_tool.translation().y() = 500;
-    Surfels surfels = plate();
+    belt::Surfels surfels = plate();
     try {
-        grind(surfels, wheel, path, {});
+        belt::grind(surfels, wheel, path, {});
         FAIL();
-    } catch (const InputError& error) {
+    } catch (const core::InputError& error) {
         EXPECT_STREQ(error.what(), "point 2: there is nothing under the wheel");
     }
 }
@@ -259,17 +259,17 @@ TEST(Belt, NamesThePointWithNothingUnderIt)
 // A run that is stopped and goes on elsewhere ends as one that was not, to the last digit.
 TEST(Belt, GoesOnWhereItWasStopped)
 {
-    const ContactWheel wheel = crowned();
-    const std::vector<BeltPoint> path = line(1);
-    BeltOptions options;
-    options.range = ToleranceRange{0.19, 0.1999};
-    Surfels whole = plate(), begun = plate();
-    const BeltRun run = grind(whole, wheel, path, options);
-    BeltGrinding first(begun, wheel, path, options);
+    const belt::ContactWheel wheel = crowned();
+    const std::vector<belt::BeltPoint> path = line(1);
+    belt::BeltOptions options;
+    options.range = belt::ToleranceRange{0.19, 0.1999};
+    belt::Surfels whole = plate(), begun = plate();
+    const belt::BeltRun run = belt::grind(whole, wheel, path, options);
+    belt::BeltGrinding first(begun, wheel, path, options);
     for (int k = 0; k < 17; ++k) first.step();
-    Surfels later = begun;
-    BeltGrinding second(later, wheel, path, options);
-    second.go_on(first.state());
+    belt::Surfels later = begun;
+    belt::BeltGrinding second(later, wheel, path, options);
+    second.restore(first.state());
     while (!second.is_done()) second.step();
     EXPECT_EQ(later.displacement, whole.displacement);
     EXPECT_EQ(second.run().removed, run.removed);
@@ -277,17 +277,17 @@ TEST(Belt, GoesOnWhereItWasStopped)
     EXPECT_EQ(second.run().errors.back().rms, run.errors.back().rms);
 }
 
-// What changes from point to point adds up to what a look at all surfels finds.
+// What changes from point to point adds up to the sums over all surfels.
 TEST(Belt, KeepsTheErrorsUpToDate)
 {
-    const ContactWheel wheel = crowned();
-    Surfels surfels = plate();
+    const belt::ContactWheel wheel = crowned();
+    belt::Surfels surfels = plate();
     surfels.displacement[3] = std::numeric_limits<double>::quiet_NaN();
-    BeltOptions options;
-    options.range = ToleranceRange{0.19, 0.1999};
-    const BeltRun run = grind(surfels, wheel, line(1), options);
-    const RunningError all = running_error(surfels.displacement, *options.range);
-    const BeltError& last = run.errors.back();
+    belt::BeltOptions options;
+    options.range = belt::ToleranceRange{0.19, 0.1999};
+    const belt::BeltRun run = belt::grind(surfels, wheel, line(1), options);
+    const belt::RunningError all = belt::running_error(surfels.displacement, *options.range);
+    const belt::BeltError& last = run.errors.back();
     ASSERT_EQ(run.errors.size(), run.trace.size());
     EXPECT_EQ(last.gouge, all.counts.gouge);
     EXPECT_EQ(last.within, all.counts.within);
@@ -296,7 +296,7 @@ TEST(Belt, KeepsTheErrorsUpToDate)
     EXPECT_GT(last.within, run.errors.front().within);
     EXPECT_NEAR(last.mean, all.mean(), 1e-12);
     EXPECT_NEAR(last.rms, all.rms(), 1e-12);
-    EXPECT_EQ(last.least, all.least);
+    EXPECT_EQ(last.min, all.min);
 }
 
 } // namespace

@@ -21,10 +21,10 @@ inline double height(double x, double y)
 }
 
 /// About so many, in a grid of quads.
-inline Mesh hull(int triangles)
+inline mesh::Mesh hull(int triangles)
 {
     const int across = static_cast<int>(std::sqrt(triangles / 2 * 0.4)), along = triangles / 2 / across;
-    Mesh mesh;
+    mesh::Mesh mesh;
     mesh.vertices.resize(3, (along + 1) * (across + 1));
     mesh.triangles.resize(3, 2 * along * across);
     Eigen::Index v = 0, t = 0;
@@ -58,7 +58,7 @@ inline std::vector<Eigen::Isometry3d> poses(int count)
         const Eigen::Vector3d axis = 0.2 * normal + 0.8 * Eigen::Vector3d::UnitZ();
         Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
         T.translation() = Eigen::Vector3d(x, y, height(x, y)) + (kBall + (k % 20 == 7 ? -0.05 : 0.02)) * normal;
-        T.linear() = turn_between(Eigen::Vector3d::UnitZ(), axis);
+        T.linear() = core::rotation_between(Eigen::Vector3d::UnitZ(), axis);
         all.push_back(T);
     }
     return all;

@@ -12,23 +12,24 @@
 namespace fettle {
 namespace {
 
-using Intervals = std::vector<Interval>;
+using Intervals = std::vector<job::Interval>;
 
-Polygon polygon(std::initializer_list<Eigen::Vector2d> corners)
+job::Polygon polygon(std::initializer_list<Eigen::Vector2d> corners)
 {
-    Polygon result(2, static_cast<Eigen::Index>(corners.size()));
+    job::Polygon result(2, static_cast<Eigen::Index>(corners.size()));
     Eigen::Index i = 0;
     for (const Eigen::Vector2d& corner : corners) result.col(i++) = corner;
     return result;
 }
 
-const Polygon kSquare = polygon({{0, 0}, {4, 0}, {4, 4}, {0, 4}});
+const job::Polygon kSquare = polygon({{0, 0}, {4, 0}, {4, 4}, {0, 4}});
 // a U, open above
-const Polygon kMoon = polygon({{0, 0}, {6, 0}, {6, 4}, {4, 4}, {4, 2}, {2, 2}, {2, 4}, {0, 4}});
+const job::Polygon kMoon = polygon({{0, 0}, {6, 0}, {6, 4}, {4, 4}, {4, 2}, {2, 2}, {2, 4}, {0, 4}});
 
-Job job_of(const Polygon& anomaly, const Polygon& sampling, SurfaceType surface = SurfaceType::freeform)
+job::Job job_of(const job::Polygon& anomaly, const job::Polygon& sampling,
+                job::SurfaceType surface = job::SurfaceType::freeform)
 {
-    Job job;
+    job::Job job;
     job.source = "job.json";
     job.surface = surface;
     job.anomaly = Eigen::Matrix3Xd::Zero(3, anomaly.cols());
@@ -38,11 +39,11 @@ Job job_of(const Polygon& anomaly, const Polygon& sampling, SurfaceType surface 
     return job;
 }
 
-std::string problem(const Job& job)
+std::string problem(const job::Job& job)
 {
     try {
-        boundaries(job);
-    } catch (const InputError& error) {
+        job::working_boundaries(job);
+    } catch (const core::InputError& error) {
         return error.what();
     }
     return "accepted";
@@ -50,42 +51,43 @@ std::string problem(const Job& job)
 
 TEST(Inside, ConvexPolygon)
 {
-    EXPECT_EQ(inside(kSquare, {-1, 1}, {1, 0}), (Intervals{{1, 5}}));
-    EXPECT_EQ(inside(kSquare, {5, 1}, {-1, 0}), (Intervals{{1, 5}}));
-    EXPECT_EQ(inside(kSquare, {0, 5}, {1, 0}), Intervals{});
+    EXPECT_EQ(job::intervals_inside(kSquare, {-1, 1}, {1, 0}), (Intervals{{1, 5}}));
+    EXPECT_EQ(job::intervals_inside(kSquare, {5, 1}, {-1, 0}), (Intervals{{1, 5}}));
+    EXPECT_EQ(job::intervals_inside(kSquare, {0, 5}, {1, 0}), Intervals{});
 }
 
 TEST(Inside, NonConvexPolygonHasSeveralStretches)
 {
-    EXPECT_EQ(inside(kMoon, {0, 3}, {1, 0}), (Intervals{{0, 2}, {4, 6}}));
-    EXPECT_EQ(inside(kMoon, {1, 0}, {0, 1}), (Intervals{{0, 4}}));
-    EXPECT_EQ(inside(kMoon, {3, 0}, {0, 1}), (Intervals{{0, 2}}));
+    EXPECT_EQ(job::intervals_inside(kMoon, {0, 3}, {1, 0}), (Intervals{{0, 2}, {4, 6}}));
+    EXPECT_EQ(job::intervals_inside(kMoon, {1, 0}, {0, 1}), (Intervals{{0, 4}}));
+    EXPECT_EQ(job::intervals_inside(kMoon, {3, 0}, {0, 1}), (Intervals{{0, 2}}));
 }
 
 TEST(Inside, EdgeAlongTheLineBelongsToIt)
 {
-    EXPECT_EQ(inside(kSquare, {0, 4}, {1, 0}), (Intervals{{0, 4}}));
-    EXPECT_EQ(inside(kSquare, {0, 0}, {1, 0}), (Intervals{{0, 4}}));
-    EXPECT_EQ(inside(kMoon, {0, 2}, {1, 0}), (Intervals{{0, 6}}));         // floor of the bay
-    EXPECT_EQ(inside(kMoon, {0, 4}, {1, 0}), (Intervals{{0, 2}, {4, 6}})); // tips of the horns
+    EXPECT_EQ(job::intervals_inside(kSquare, {0, 4}, {1, 0}), (Intervals{{0, 4}}));
+    EXPECT_EQ(job::intervals_inside(kSquare, {0, 0}, {1, 0}), (Intervals{{0, 4}}));
+    EXPECT_EQ(job::intervals_inside(kMoon, {0, 2}, {1, 0}), (Intervals{{0, 6}}));         // floor of the bay
+    EXPECT_EQ(job::intervals_inside(kMoon, {0, 4}, {1, 0}), (Intervals{{0, 2}, {4, 6}})); // tips of the horns
 }
 
 TEST(Inside, TouchedCornerGivesNothing)
 {
-    const Polygon diamond = polygon({{0, -1}, {1, 0}, {0, 1}, {-1, 0}});
-    EXPECT_EQ(inside(diamond, {-5, 1}, {1, 0}), Intervals{});
-    EXPECT_EQ(inside(diamond, {-5, 0}, {1, 0}), (Intervals{{4, 6}})); // through two corners
+    const job::Polygon diamond = polygon({{0, -1}, {1, 0}, {0, 1}, {-1, 0}});
+    EXPECT_EQ(job::intervals_inside(diamond, {-5, 1}, {1, 0}), Intervals{});
+    EXPECT_EQ(job::intervals_inside(diamond, {-5, 0}, {1, 0}), (Intervals{{4, 6}})); // through two corners
     // a reflex corner on the line does not cut the stretch in two
-    const Polygon notched = polygon({{0, 0}, {4, 0}, {4, 4}, {2, 2}, {0, 4}});
-    EXPECT_EQ(inside(notched, {0, 2}, {1, 0}), (Intervals{{0, 4}}));
+    const job::Polygon notched = polygon({{0, 0}, {4, 0}, {4, 4}, {2, 2}, {0, 4}});
+    EXPECT_EQ(job::intervals_inside(notched, {0, 2}, {1, 0}), (Intervals{{0, 4}}));
 }
 
 TEST(Inside, SmallRotationsDoNotLoseAnEdge)
 {
     for (int degrees = 1; degrees < 360; degrees += 7) {
-        const Eigen::Matrix2d turn = rotation_working_machine(degrees * std::numbers::pi / 180);
-        const Polygon turned = turn * (kMoon.colwise() + Eigen::Vector2d(100, 50));
-        const Intervals found = inside(turned, turn * Eigen::Vector2d(100, 54), turn * Eigen::Vector2d(1, 0));
+        const Eigen::Matrix2d turn = job::rotation_working_machine(degrees * std::numbers::pi / 180);
+        const job::Polygon turned = turn * (kMoon.colwise() + Eigen::Vector2d(100, 50));
+        const Intervals found =
+            job::intervals_inside(turned, turn * Eigen::Vector2d(100, 54), turn * Eigen::Vector2d(1, 0));
         ASSERT_EQ(found.size(), 2u) << degrees;
         EXPECT_NEAR(found[0].second, 2, 1e-12);
         EXPECT_NEAR(found[1].second, 6, 1e-12);
@@ -97,7 +99,7 @@ TEST(Inside, AgreesWithPointInPolygonOnRandomStars)
     std::mt19937 random(5);
     std::uniform_real_distribution<double> uniform(0, 1);
     for (int trial = 0; trial < 200; ++trial) {
-        Polygon star(2, 9);
+        job::Polygon star(2, 9);
         for (int i = 0; i < 9; ++i) {
             const double angle = 2 * std::numbers::pi * i / 9, r = 1 + 3 * uniform(random);
             star.col(i) << r * std::cos(angle), r * std::sin(angle);
@@ -105,12 +107,12 @@ TEST(Inside, AgreesWithPointInPolygonOnRandomStars)
         const double angle = 6.3 * uniform(random);
         const Eigen::Vector2d direction(std::cos(angle), std::sin(angle));
         const Eigen::Vector2d origin(uniform(random), uniform(random));
-        const Intervals found = inside(star, origin, direction);
+        const Intervals found = job::intervals_inside(star, origin, direction);
         for (int k = 0; k < 100; ++k) {
             const double t = 10 * uniform(random) - 5;
             bool in = false;
-            for (const Interval& stretch : found) in |= stretch.first <= t && t <= stretch.second;
-            EXPECT_EQ(in, contains(star, origin + t * direction)) << trial << ' ' << t;
+            for (const job::Interval& stretch : found) in |= stretch.first <= t && t <= stretch.second;
+            EXPECT_EQ(in, job::contains(star, origin + t * direction)) << trial << ' ' << t;
         }
     }
 }
@@ -118,38 +120,38 @@ TEST(Inside, AgreesWithPointInPolygonOnRandomStars)
 TEST(Intervals, SubtractAndIntersect)
 {
     const Intervals a = {{0, 4}, {6, 10}}, b = {{1, 2}, {3, 7}};
-    EXPECT_EQ(subtract(a, b), (Intervals{{0, 1}, {2, 3}, {7, 10}}));
-    EXPECT_EQ(intersect(a, b), (Intervals{{1, 2}, {3, 4}, {6, 7}}));
-    EXPECT_EQ(subtract(a, b, 2), (Intervals{{7, 10}}));
-    EXPECT_EQ(intersect(a, b, 1.5), Intervals{});
-    EXPECT_EQ(subtract(a, {}), a);
-    EXPECT_EQ(subtract(a, {{-1, 20}}), Intervals{});
-    EXPECT_EQ(intersect({{0, 1}}, {{1, 2}}), Intervals{}); // touching is not overlapping
+    EXPECT_EQ(job::subtract(a, b), (Intervals{{0, 1}, {2, 3}, {7, 10}}));
+    EXPECT_EQ(job::intersect(a, b), (Intervals{{1, 2}, {3, 4}, {6, 7}}));
+    EXPECT_EQ(job::subtract(a, b, 2), (Intervals{{7, 10}}));
+    EXPECT_EQ(job::intersect(a, b, 1.5), Intervals{});
+    EXPECT_EQ(job::subtract(a, {}), a);
+    EXPECT_EQ(job::subtract(a, {{-1, 20}}), Intervals{});
+    EXPECT_EQ(job::intersect({{0, 1}}, {{1, 2}}), Intervals{}); // touching is not overlapping
 }
 
 TEST(Polygon, ContainsItsEdge)
 {
-    EXPECT_TRUE(contains(kMoon, {1, 3}));
-    EXPECT_FALSE(contains(kMoon, {3, 3}));
-    EXPECT_TRUE(contains(kMoon, {3, 2}));
-    EXPECT_TRUE(contains(kMoon, {6, 4}));
-    EXPECT_FALSE(contains(kMoon, {6.0001, 4}));
+    EXPECT_TRUE(job::contains(kMoon, {1, 3}));
+    EXPECT_FALSE(job::contains(kMoon, {3, 3}));
+    EXPECT_TRUE(job::contains(kMoon, {3, 2}));
+    EXPECT_TRUE(job::contains(kMoon, {6, 4}));
+    EXPECT_FALSE(job::contains(kMoon, {6.0001, 4}));
 }
 
 TEST(Polygon, AreaHullDistance)
 {
-    EXPECT_DOUBLE_EQ(area(kMoon), 20);
-    EXPECT_DOUBLE_EQ(area(Polygon(kMoon.colwise() + Eigen::Vector2d(1e5, 1e5))), 20);
-    EXPECT_DOUBLE_EQ(area(convex_hull(kMoon)), 24);
-    EXPECT_EQ(convex_hull(kMoon).cols(), 4);
-    EXPECT_DOUBLE_EQ(distance_to_edge(kMoon, {3, 3}), 1);
-    EXPECT_DOUBLE_EQ(distance_to_edge(kMoon, {9, 8}), 5);
+    EXPECT_DOUBLE_EQ(job::area(kMoon), 20);
+    EXPECT_DOUBLE_EQ(job::area(job::Polygon(kMoon.colwise() + Eigen::Vector2d(1e5, 1e5))), 20);
+    EXPECT_DOUBLE_EQ(job::area(job::convex_hull(kMoon)), 24);
+    EXPECT_EQ(job::convex_hull(kMoon).cols(), 4);
+    EXPECT_DOUBLE_EQ(job::distance_to_edge(kMoon, {3, 3}), 1);
+    EXPECT_DOUBLE_EQ(job::distance_to_edge(kMoon, {9, 8}), 5);
 }
 
 TEST(Boundaries, ClockwiseIsTurnedAndClosingPointDropped)
 {
-    const Polygon clockwise = polygon({{1, 1}, {1, 2}, {2, 2}, {2, 1}, {1, 1}});
-    const Boundaries found = boundaries(job_of(clockwise, kSquare));
+    const job::Polygon clockwise = polygon({{1, 1}, {1, 2}, {2, 2}, {2, 1}, {1, 1}});
+    const job::Boundaries found = job::working_boundaries(job_of(clockwise, kSquare));
     ASSERT_EQ(found.anomaly.cols(), 4);
     const Eigen::Vector2d first = found.anomaly.col(1) - found.anomaly.col(0);
     const Eigen::Vector2d second = found.anomaly.col(2) - found.anomaly.col(1);
@@ -158,14 +160,14 @@ TEST(Boundaries, ClockwiseIsTurnedAndClosingPointDropped)
 
 TEST(Boundaries, AreInTheWorkingFrame)
 {
-    Job job = job_of(polygon({{1, 1}, {2, 1}, {2, 2}, {1, 2}}), kSquare);
+    job::Job job = job_of(polygon({{1, 1}, {2, 1}, {2, 2}, {1, 2}}), kSquare);
     job.theta = std::numbers::pi / 2;
-    EXPECT_TRUE(boundaries(job).sampling.isApprox(polygon({{0, 0}, {0, -4}, {4, -4}, {4, 0}}), 1e-15));
+    EXPECT_TRUE(job::working_boundaries(job).sampling.isApprox(polygon({{0, 0}, {0, -4}, {4, -4}, {4, 0}}), 1e-15));
 }
 
 TEST(Boundaries, RefusesBadPolygons)
 {
-    const Polygon small = polygon({{1, 1}, {2, 1}, {2, 2}, {1, 2}});
+    const job::Polygon small = polygon({{1, 1}, {2, 1}, {2, 2}, {1, 2}});
     EXPECT_EQ(problem(job_of(small, kSquare)), "accepted");
     EXPECT_EQ(problem(job_of(polygon({{1, 1}, {2, 1}}), kSquare)),
               "job.json: anomaly: 2 boundary points, at least 3 are needed");
@@ -190,31 +192,31 @@ TEST(Boundaries, RefusesBadPolygons)
 
 TEST(Boundaries, ReportsPlacesInTheJobsUnits)
 {
-    Job job = job_of(25.4 * polygon({{1, 1}, {2, 2}, {2, 1}, {1, 2}}), 25.4 * kSquare);
-    job.units.length = Units::Length::in;
+    job::Job job = job_of(25.4 * polygon({{1, 1}, {2, 2}, {2, 1}, {1, 2}}), 25.4 * kSquare);
+    job.units.length = units::Units::Length::in;
     EXPECT_EQ(problem(job), "job.json: anomaly: the boundary crosses itself at (1.5, 1.5) in");
 }
 
 TEST(Boundaries, FreeformNeedsTheHullOnly)
 {
-    const Polygon in_the_bay = polygon({{2.5, 2.5}, {3.5, 2.5}, {3, 3.5}});
+    const job::Polygon in_the_bay = polygon({{2.5, 2.5}, {3.5, 2.5}, {3, 3.5}});
     EXPECT_EQ(problem(job_of(in_the_bay, kMoon)), "accepted");
-    EXPECT_EQ(problem(job_of(in_the_bay, kMoon, SurfaceType::swept)),
+    EXPECT_EQ(problem(job_of(in_the_bay, kMoon, job::SurfaceType::swept)),
               "job.json: anomaly: not inside the sampling boundary, at (3, 3.5) mm");
 }
 
 TEST(Boundaries, AnomalyMayTouchTheSamplingBoundaryAtAnyAngle)
 {
     for (int degrees = 0; degrees < 360; degrees += 13) {
-        const Eigen::Matrix2d turn = rotation_working_machine(degrees * std::numbers::pi / 180);
-        const Polygon anomaly = turn * polygon({{0, 1}, {2, 1}, {2, 2}, {0, 2}});
-        EXPECT_EQ(problem(job_of(anomaly, turn * kSquare, SurfaceType::swept)), "accepted") << degrees;
+        const Eigen::Matrix2d turn = job::rotation_working_machine(degrees * std::numbers::pi / 180);
+        const job::Polygon anomaly = turn * polygon({{0, 1}, {2, 1}, {2, 2}, {0, 2}});
+        EXPECT_EQ(problem(job_of(anomaly, turn * kSquare, job::SurfaceType::swept)), "accepted") << degrees;
     }
 }
 
 TEST(Boundaries, PlaneNeedsNoSamplingBoundary)
 {
-    EXPECT_EQ(boundaries(job_of(kSquare, Polygon(2, 0), SurfaceType::plane)).sampling.cols(), 0);
+    EXPECT_EQ(job::working_boundaries(job_of(kSquare, job::Polygon(2, 0), job::SurfaceType::plane)).sampling.cols(), 0);
 }
 
 } // namespace

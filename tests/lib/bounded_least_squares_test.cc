@@ -18,10 +18,10 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 /// The best of all 3^n choices of which unknowns are at a bound that give a point within the bounds.
-double least_by_choices(const MatrixXd& A, const VectorXd& b, const VectorXd& lower, const VectorXd& upper)
+double minimum_by_enumeration(const MatrixXd& A, const VectorXd& b, const VectorXd& lower, const VectorXd& upper)
 {
     const Index n = A.cols();
-    double least = std::numeric_limits<double>::infinity();
+    double min = std::numeric_limits<double>::infinity();
     for (int choice = 0; choice < std::pow(3, n); ++choice) {
         VectorXd x = VectorXd::Zero(n);
         std::vector<Index> free;
@@ -36,9 +36,9 @@ double least_by_choices(const MatrixXd& A, const VectorXd& b, const VectorXd& lo
             for (std::size_t i = 0; i < free.size(); ++i) x[free[i]] = best[static_cast<Index>(i)];
         }
         if ((x.array() >= lower.array() - 1e-12).all() && (x.array() <= upper.array() + 1e-12).all())
-            least = std::min(least, (A * x - b).norm());
+            min = std::min(min, (A * x - b).norm());
     }
-    return least;
+    return min;
 }
 
 TEST(BoundedLeastSquares, IsTheBestOfAllChoices)
@@ -49,9 +49,10 @@ TEST(BoundedLeastSquares, IsTheBestOfAllChoices)
         const MatrixXd A = MatrixXd::NullaryExpr(9, 5, [&] { return normal(random); });
         const VectorXd b = VectorXd::NullaryExpr(9, [&] { return 3 * normal(random); });
         const VectorXd lower = VectorXd::Constant(5, -0.3), upper = VectorXd::Constant(5, 0.8);
-        const BoundedSolution found = bounded_least_squares(A.sparseView(), b, lower, upper, VectorXd::Zero(5), 1e-10);
+        const core::BoundedSolution found =
+            core::bounded_least_squares(A.sparseView(), b, lower, upper, VectorXd::Zero(5), 1e-10);
         EXPECT_TRUE(found.converged);
-        EXPECT_NEAR((A * found.x - b).norm(), least_by_choices(A, b, lower, upper), 1e-9);
+        EXPECT_NEAR((A * found.x - b).norm(), minimum_by_enumeration(A, b, lower, upper), 1e-9);
     }
 }
 
@@ -67,7 +68,7 @@ TEST(BoundedLeastSquares, MeetsTheConditionsOfTheMinimum)
     A.setFromTriplets(entries.begin(), entries.end());
     const VectorXd b = VectorXd::NullaryExpr(places, [](Index i) { return 0.4 + 0.4 * std::sin(double(i) / 30); });
     const VectorXd lower = VectorXd::Constant(points, 5), upper = VectorXd::Constant(points, 60);
-    const BoundedSolution found = bounded_least_squares(A, b, lower, upper, lower, 1e-6);
+    const core::BoundedSolution found = core::bounded_least_squares(A, b, lower, upper, lower, 1e-6);
     ASSERT_TRUE(found.converged);
     const VectorXd g = A.transpose() * (A * found.x - b), scale = VectorXd(A.transpose() * b);
     Index at_lower = 0, at_upper = 0;
@@ -85,18 +86,18 @@ TEST(BoundedLeastSquares, MeetsTheConditionsOfTheMinimum)
     EXPECT_LE(found.x.maxCoeff(), 60);
 }
 
-TEST(BoundedLeastSquares, LeavesWhatTakesNothing)
+TEST(BoundedLeastSquares, FixesVariablesWithoutEffect)
 {
     Eigen::SparseMatrix<double> A(2, 2);
     A.insert(0, 0) = 2;
-    const BoundedSolution found = bounded_least_squares(A, Eigen::Vector2d(6, 1), Eigen::Vector2d(0, 0),
-                                                        Eigen::Vector2d(9, 9), Eigen::Vector2d(1, 7));
+    const core::BoundedSolution found = core::bounded_least_squares(A, Eigen::Vector2d(6, 1), Eigen::Vector2d(0, 0),
+                                                                    Eigen::Vector2d(9, 9), Eigen::Vector2d(1, 7));
     EXPECT_TRUE(found.converged);
     EXPECT_NEAR(found.x[0], 3, 1e-9);
     EXPECT_EQ(found.x[1], 7);
-    EXPECT_THROW(bounded_least_squares(A, Eigen::Vector2d(6, 1), Eigen::Vector2d(1, 0), Eigen::Vector2d(0, 9),
-                                       Eigen::Vector2d(0, 0)),
-                 InputError);
+    EXPECT_THROW(core::bounded_least_squares(A, Eigen::Vector2d(6, 1), Eigen::Vector2d(1, 0), Eigen::Vector2d(0, 9),
+                                             Eigen::Vector2d(0, 0)),
+                 core::InputError);
 }
 
 } // namespace

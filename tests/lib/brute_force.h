@@ -17,15 +17,8 @@
 /// library.
 namespace fettle {
 
-inline Triangle triangle_of(const Mesh& mesh, Eigen::Index index)
-{
-    Triangle t;
-    for (int k = 0; k < 3; ++k) t.col(k) = mesh.vertices.col(mesh.triangles(k, index));
-    return t;
-}
-
 /// Is a point of the triangle between the two heights nearer to the z axis than the radius?
-inline bool reaches_into_cylinder(const Triangle& t, double from, double to, double radius)
+inline bool reaches_into_cylinder(const mesh::Triangle& t, double from, double to, double radius)
 {
     std::array<Eigen::Vector3d, 9> in = {t.col(0), t.col(1), t.col(2)}, out;
     std::size_t count = 3;
@@ -44,11 +37,11 @@ inline bool reaches_into_cylinder(const Triangle& t, double from, double to, dou
     }
     bool left = false, right = false;
     for (std::size_t i = 0; i < count; ++i) {
-        const Eigen::Vector2d p = in[i].head<2>(), way = in[(i + 1) % count].head<2>() - p;
-        const double length2 = way.squaredNorm();
-        const double s = length2 > 0 ? std::clamp(-p.dot(way) / length2, 0.0, 1.0) : 0;
-        if ((p + s * way).squaredNorm() < radius * radius) return true;
-        const double side = p.x() * way.y() - p.y() * way.x();
+        const Eigen::Vector2d p = in[i].head<2>(), step = in[(i + 1) % count].head<2>() - p;
+        const double length2 = step.squaredNorm();
+        const double s = length2 > 0 ? std::clamp(-p.dot(step) / length2, 0.0, 1.0) : 0;
+        if ((p + s * step).squaredNorm() < radius * radius) return true;
+        const double side = p.x() * step.y() - p.y() * step.x();
         left |= side > 0;
         right |= side < 0;
     }
@@ -57,23 +50,24 @@ inline bool reaches_into_cylinder(const Triangle& t, double from, double to, dou
 
 /// Does any triangle reach deeper than that into the sphere or cylinder? Deeper than d are the points of one that is
 /// smaller by d all around.
-inline bool any_deeper(const Mesh& mesh, const Solid& solid, const Eigen::Isometry3d& T, double depth)
+inline bool any_deeper(const mesh::Mesh& mesh, const robot::Solid& solid, const Eigen::Isometry3d& T, double depth)
 {
-    const auto* cylinder = std::get_if<solid::Cylinder>(&solid);
-    const auto* sphere = std::get_if<solid::Sphere>(&solid);
+    const auto* cylinder = std::get_if<robot::solid::Cylinder>(&solid);
+    const auto* sphere = std::get_if<robot::solid::Sphere>(&solid);
     const Eigen::Vector3d from = T * (cylinder ? cylinder->from : sphere->centre);
-    const Eigen::Vector3d way = cylinder ? Eigen::Vector3d(T * cylinder->to - from) : Eigen::Vector3d::Zero();
-    const double length = way.norm(), radius = (cylinder ? cylinder->radius : sphere->radius) - depth;
-    const Eigen::Vector3d middle = from + way / 2;
+    const Eigen::Vector3d step = cylinder ? Eigen::Vector3d(T * cylinder->to - from) : Eigen::Vector3d::Zero();
+    const double length = step.norm(), radius = (cylinder ? cylinder->radius : sphere->radius) - depth;
+    const Eigen::Vector3d middle = from + step / 2;
     const double around = std::hypot(length / 2, radius);
-    const Eigen::Matrix3d turn = turn_between(cylinder ? way : Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitZ());
+    const Eigen::Matrix3d turn =
+        core::rotation_between(cylinder ? step : Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitZ());
     for (Eigen::Index i = 0; i < mesh.triangles.cols(); ++i) {
-        const Triangle t = triangle_of(mesh, i);
+        const mesh::Triangle t = triangle_of(mesh, i);
         if (((t.colwise() - middle).rowwise().minCoeff().array() > around).any() ||
             ((t.colwise() - middle).rowwise().maxCoeff().array() < -around).any())
             continue;
         if (sphere != nullptr) {
-            if (closest_on_triangle(t, from).squared_distance < radius * radius) return true;
+            if (mesh::closest_on_triangle(t, from).squared_distance < radius * radius) return true;
         } else if (reaches_into_cylinder(turn * (t.colwise() - from), depth, length - depth, radius)) {
             return true;
         }

@@ -20,7 +20,7 @@ namespace {
 
 using Eigen::Isometry3d, Eigen::Vector3d;
 
-double volume(const Mesh& mesh)
+double volume(const mesh::Mesh& mesh)
 {
     double sum = 0;
     for (const auto t : mesh.triangles.colwise()) {
@@ -37,33 +37,34 @@ TEST(CellScene, MeshesOfSolidsHaveTheirVolumes)
     turned.translation() << 5, -3, 2;
     Eigen::Matrix3Xd corners(3, 4);
     corners << 0, 6, 0, 0, 0, 0, 6, 0, 0, 0, 0, 6;
-    const std::vector<std::pair<Solid, double>> solids = {
-        {solid::Sphere{{1, 2, 3}, 10}, 4000 * pi / 3},
-        {solid::Capsule{{0, 0, 0}, {0, 30, 0}, 10}, 4000 * pi / 3 + 3000 * pi},
-        {solid::Cylinder{{0, 0, 0}, {0, 12, 16}, 10}, 2000 * pi},
-        {solid::Cone{{0, 0, 0}, {30, 0, 0}, 10, 4}, 10 * pi * (100 + 40 + 16)},
-        {solid::Box{turned, {5, 10, 15}}, 6000},
-        {solid::Hull{corners}, 36}};
+    const std::vector<std::pair<robot::Solid, double>> solids = {
+        {robot::solid::Sphere{{1, 2, 3}, 10}, 4000 * pi / 3},
+        {robot::solid::Capsule{{0, 0, 0}, {0, 30, 0}, 10}, 4000 * pi / 3 + 3000 * pi},
+        {robot::solid::Cylinder{{0, 0, 0}, {0, 12, 16}, 10}, 2000 * pi},
+        {robot::solid::Cone{{0, 0, 0}, {30, 0, 0}, 10, 4}, 10 * pi * (100 + 40 + 16)},
+        {robot::solid::Box{turned, {5, 10, 15}}, 6000},
+        {robot::solid::Hull{corners}, 36}};
     for (const auto& [solid, expected] : solids) {
-        const Mesh mesh = solid_mesh(solid);
+        const mesh::Mesh mesh = robot::solid_mesh(solid);
         EXPECT_NEAR(volume(mesh), expected, 4e-3 * expected) << solid.index();
-        const PlacedSolid placed(solid, Isometry3d::Identity());
-        for (const auto& p : mesh.vertices.colwise()) EXPECT_NEAR(placed.distance(p).value, 0, 1e-9);
+        const robot::PlacedSolid placed(solid, Isometry3d::Identity());
+        for (const auto& p : mesh.vertices.colwise()) EXPECT_NEAR(placed.signed_distance(p).value, 0, 1e-9);
     }
 }
 
-// A small box before a large one, looked at along -x.
+// A small box before a large one, seen along -x.
 TEST(CellScene, WhatIsNearerIsSeen)
 {
-    Robot robot = irb1400();
+    robot::Robot robot = irb1400();
     const auto box = [](const Vector3d& at, double half) {
-        return solid::Box{Isometry3d(Eigen::Translation3d(at)), Vector3d::Constant(half)};
+        return robot::solid::Box{Isometry3d(Eigen::Translation3d(at)), Vector3d::Constant(half)};
     };
-    robot.bodies = {{"behind", link::kCell, box({0, 0, 0}, 50)}, {"before", link::kCell, box({100, 0, 0}, 10)}};
-    const CellScene scene = cell_scene(robot, nullptr, nullptr, CellJoints::Zero(), 0);
-    const View view{{-75, -75}, 1, 150, 150};
+    robot.bodies = {{"behind", robot::link::kCell, box({0, 0, 0}, 50)},
+                    {"before", robot::link::kCell, box({100, 0, 0}, 10)}};
+    const robot::CellScene scene = robot::make_cell_scene(robot, nullptr, nullptr, robot::CellJoints::Zero(), 0);
+    const draw::View view{{-75, -75}, 1, 150, 150};
     Eigen::ArrayXXd depth;
-    const Eigen::ArrayXXi seen = seen_triangles(scene, view_rotation(Vector3d::UnitX()), view, depth);
+    const Eigen::ArrayXXi seen = robot::visible_triangles(scene, draw::view_rotation(Vector3d::UnitX()), view, depth);
     int pixels[3] = {0, 0, 0};
     for (int i = 0; i < seen.size(); ++i) ++pixels[seen(i) < 0 ? 2 : scene.body[static_cast<std::size_t>(seen(i))]];
     EXPECT_EQ(pixels[1], 20 * 20);
@@ -75,48 +76,48 @@ TEST(CellScene, WhatIsNearerIsSeen)
 
 TEST(CellScene, TheWorkpieceTurnsWithTheTable)
 {
-    Robot robot = irb1400();
-    robot.table = Table{{100, 0, 0}, Vector3d::UnitZ(), {-4, 4}, {}, ""};
-    Mesh part;
+    robot::Robot robot = irb1400();
+    robot.table = robot::Table{{100, 0, 0}, Vector3d::UnitZ(), {-4, 4}, {}, ""};
+    mesh::Mesh part;
     part.vertices.resize(3, 3);
     part.vertices << 110, 120, 110, 0, 0, 5, 7, 7, 7;
     part.triangles = Eigen::Vector3i(0, 1, 2);
-    CellJoints q = CellJoints::Zero();
+    robot::CellJoints q = robot::CellJoints::Zero();
     q[7] = std::numbers::pi / 2;
-    const CellScene scene = cell_scene(robot, &part, nullptr, q, 0);
+    const robot::CellScene scene = robot::make_cell_scene(robot, &part, nullptr, q, 0);
     Eigen::Matrix3d expected;
     expected << 100, 100, 95, 10, 20, 10, 7, 7, 7;
     EXPECT_LT((scene.mesh.vertices - expected).cwiseAbs().maxCoeff(), 1e-12);
     EXPECT_EQ(scene.body, std::vector<std::size_t>{0}); // it has no bodies: the workpiece is number 0
 }
 
-// Two triangles over 3 x 2 cells: what the tool stands over counts by its triangles, all else by cuboids.
+// Two triangles over 3 x 2 cells: below the tool the triangles count, elsewhere the cuboids.
 TEST(CellScene, AModelIsDrawnAsItCounts)
 {
-    Mesh roof;
+    mesh::Mesh roof;
     roof.vertices.resize(3, 4);
     roof.vertices << 0, 29, 29, 0, 0, 0, 19, 19, 5, 8, 8, 5;
     roof.triangles.resize(3, 2);
     roof.triangles << 0, 0, 1, 2, 2, 3;
-    const Workpiece workpiece(roof);
+    const robot::Workpiece workpiece(roof);
     const std::vector<Vector3d> up = {Vector3d::UnitZ()};
-    const Heterogeneous model(workpiece, up, {.cell = 10});
-    ToolZone zone{0, std::vector<char>(6, 0)};
-    Heterogeneous::Parts parts = model.parts(zone);
+    const robot::HeterogeneousModel model(workpiece, up, {.cell_size = 10});
+    robot::ToolZone zone{0, std::vector<char>(6, 0)};
+    robot::HeterogeneousModel::Geometry parts = model.geometry(zone);
     EXPECT_EQ(parts.triangles.triangles.cols(), 0);
     ASSERT_EQ(parts.cuboids.triangles.cols(), 6 * 12);
-    // They stand on the lowest point, and each is as high as the roof is over it: 5 + 3 (x / 29) at its far side.
+    // They begin at the lowest point, and each is as high as the roof over it: 5 + 3 (x / 29) at its far side.
     double expected = 0;
     constexpr double kTouched = 1e-6; // cells reach a nanometre beyond their sides, over 600 mm²
     for (const double far : {10.0, 20.0, 29.0}) expected += 2 * 100 * 3 * far / 29;
     EXPECT_NEAR(volume(parts.cuboids), expected, kTouched);
     zone.cells[2] = 1; // the corner at x 29, y 0, where only the first triangle lies
-    parts = model.parts(zone);
+    parts = model.geometry(zone);
     EXPECT_EQ(parts.triangles.triangles, Eigen::Matrix3Xi(roof.triangles.leftCols(1)));
     EXPECT_EQ(parts.cuboids.triangles.cols(), 5 * 12);
     EXPECT_NEAR(volume(parts.cuboids), expected - 300, kTouched);
     std::fill(zone.cells.begin(), zone.cells.end(), char{1});
-    parts = model.parts(zone);
+    parts = model.geometry(zone);
     EXPECT_EQ(parts.triangles.triangles, roof.triangles);
     EXPECT_EQ(parts.cuboids.triangles.cols(), 0);
 }
@@ -125,12 +126,13 @@ TEST(CellScene, AModelIsDrawnAsItCounts)
 // they are AModelIsDrawnAsItCounts tests.
 TEST(CellPicture, ShowsTheModel)
 {
-    Robot robot = irb1400();
-    robot.bodies = {{"ball", link::kTool, solid::Sphere{{0, 0, 6}, 6}}};
-    const CellJointsPath joints = CellJointsPath::Zero(8, 1);
-    const Vector3d tip = link_frames(robot, Arm(robot), joints.col(0))[link::kTool + 1].translation();
+    robot::Robot robot = irb1400();
+    robot.bodies = {{"ball", robot::link::kTool, robot::solid::Sphere{{0, 0, 6}, 6}}};
+    const robot::CellJointsPath joints = robot::CellJointsPath::Zero(8, 1);
+    const Vector3d tip =
+        robot::link_frames(robot, robot::Arm(robot), joints.col(0))[robot::link::kTool + 1].translation();
     const auto part = [&](double low) {
-        Mesh box = cube(1);
+        mesh::Mesh box = cube(1);
         for (int k = 0; k < 8; ++k)
             box.vertices.col(k) << tip.x() + (k & 1 ? 200 : 100), tip.y() + (k & 2 ? 50 : -50),
                 (k & 4 ? tip.z() - (k & 1 ? low : 0) : tip.z() - 300);
@@ -138,39 +140,39 @@ TEST(CellPicture, ShowsTheModel)
     };
     std::set<std::string> pictures;
     for (const double low : {0.0, 150.0}) {
-        const Mesh mesh = part(low);
-        const Workpiece workpiece(mesh);
+        const mesh::Mesh mesh = part(low);
+        const robot::Workpiece workpiece(mesh);
         const std::vector<Vector3d> up = {Vector3d::UnitZ()};
-        const Heterogeneous model(workpiece, up, {.cell = 100});
-        const CheckedPath checked = check_path(robot, nullptr, joints, {});
-        CellPictureOptions options;
-        options.at = {0};
-        const std::string plain = cell_picture(robot, &mesh, joints, checked, options);
+        const robot::HeterogeneousModel model(workpiece, up, {.cell_size = 100});
+        const robot::CheckedPath checked = robot::check_path(robot, nullptr, joints, {});
+        robot::CellPictureOptions options;
+        options.poses = {0};
+        const std::string plain = robot::draw_cell_picture(robot, &mesh, joints, checked, options);
         options.model = &model;
-        const std::string drawn = cell_picture(robot, &mesh, joints, checked, options);
+        const std::string drawn = robot::draw_cell_picture(robot, &mesh, joints, checked, options);
         pictures.insert(plain);
         pictures.insert(drawn);
-        EXPECT_EQ(cell_picture(robot, &mesh, joints, checked, options), drawn);
+        EXPECT_EQ(robot::draw_cell_picture(robot, &mesh, joints, checked, options), drawn);
     }
     EXPECT_EQ(pictures.size(), 4u);
 }
 
 TEST(CellPicture, RefusesPosesThatAreNotThere)
 {
-    Robot robot = irb1400();
-    robot.bodies = {{"ball", link::kTool, solid::Sphere{{0, 0, 6}, 6}}};
-    CellJointsPath joints = CellJointsPath::Zero(8, 2);
+    robot::Robot robot = irb1400();
+    robot.bodies = {{"ball", robot::link::kTool, robot::solid::Sphere{{0, 0, 6}, 6}}};
+    robot::CellJointsPath joints = robot::CellJointsPath::Zero(8, 2);
     joints.col(1).setConstant(std::numeric_limits<double>::quiet_NaN());
-    const CheckedPath checked = check_path(robot, nullptr, joints, {});
-    CellPictureOptions options;
-    options.at = {0};
-    const std::string png = cell_picture(robot, nullptr, joints, checked, options);
+    const robot::CheckedPath checked = robot::check_path(robot, nullptr, joints, {});
+    robot::CellPictureOptions options;
+    options.poses = {0};
+    const std::string png = robot::draw_cell_picture(robot, nullptr, joints, checked, options);
     EXPECT_EQ(png.substr(1, 3), "PNG");
-    EXPECT_EQ(cell_picture(robot, nullptr, joints, checked, options), png);
-    options.at = {1};
-    EXPECT_THROW(cell_picture(robot, nullptr, joints, checked, options), InputError);
-    options.at = {2};
-    EXPECT_THROW(cell_picture(robot, nullptr, joints, checked, options), InputError);
+    EXPECT_EQ(robot::draw_cell_picture(robot, nullptr, joints, checked, options), png);
+    options.poses = {1};
+    EXPECT_THROW(robot::draw_cell_picture(robot, nullptr, joints, checked, options), core::InputError);
+    options.poses = {2};
+    EXPECT_THROW(robot::draw_cell_picture(robot, nullptr, joints, checked, options), core::InputError);
 }
 
 } // namespace

@@ -1,9 +1,9 @@
 // The whole chain on Wang's third part: what must not change when the part lies elsewhere, and what must balance.
 
 #include "compare/signed_distance.h"
-#include "compare/statistics.h"
 #include "fit/fit.h"
 #include "gantry/quasi_static.h"
+#include "geometry/statistics.h"
 #include "margin/shift.h"
 #include "part/part.h"
 #include "plan/plan.h"
@@ -20,23 +20,23 @@ namespace fettle {
 namespace {
 
 struct Case {
-    Job job;
-    Mesh part;
-    Mesh truth;
+    job::Job job;
+    mesh::Mesh part;
+    mesh::Mesh truth;
 };
 
 Case sphere_with_anomalies()
 {
     const std::string samples = std::getenv("SAMPLES");
-    PartSpec spec = read_part(samples + "/parts/wang3.json");
-    Case c{read_job(samples + "/jobs/wang3.json"), std::get<Mesh>(make_part(spec, 1)), {}};
+    part::PartSpec spec = part::read_part(samples + "/parts/wang3.json");
+    Case c{job::read_job(samples + "/jobs/wang3.json"), std::get<mesh::Mesh>(part::make_part(spec, 1)), {}};
     spec.anomalies.clear();
-    c.truth = std::get<Mesh>(make_part(spec, 1));
+    c.truth = std::get<mesh::Mesh>(part::make_part(spec, 1));
     return c;
 }
 
 /// The same part and job, turned about Z by `angle` and moved by `offset`.
-Case elsewhere(Case c, double angle, const Eigen::Vector3d& offset)
+Case moved(Case c, double angle, const Eigen::Vector3d& offset)
 {
     const Eigen::Matrix3d R = Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()).toRotationMatrix();
     for (Eigen::Matrix3Xd* points : {&c.part.vertices, &c.truth.vertices, &c.job.anomaly, &c.job.sampling})
@@ -47,43 +47,43 @@ Case elsewhere(Case c, double angle, const Eigen::Vector3d& offset)
 }
 
 struct Result {
-    Cloud ground;
+    cloud::Cloud ground;
     Eigen::VectorXd error; ///< of each point of `ground`, mm
-    HeightField before, after;
-    GrindTotals totals;
+    removal::HeightField before, after;
+    gantry::GrindTotals totals;
     double shift = 0;
     bool finished = false;
 };
 
-Surface desired_surface(const Case& c)
+surface::Surface desired_surface(const Case& c)
 {
-    const Scan scan(c.part);
-    const TouchPlan plan = plan_touches(c.job);
-    const TouchNoise noise = parse_noise("normal:0.005", c.job.units.mm());
-    FitInput input;
+    const sampling::Scan scan(c.part);
+    const sampling::TouchPlan plan = sampling::plan_touches(c.job);
+    const sampling::TouchNoise noise = sampling::parse_noise("normal:0.005", c.job.units.mm());
+    fit::FitInput input;
     input.job = c.job;
-    input.xyz = probe(scan, c.job, plan, noise, 1);
+    input.xyz = sampling::probe(scan, c.job, plan, noise, 1);
     input.roles = plan.role;
     input.curves = plan.curve;
-    Surface surface = fit_surface(input, "auto").surface;
-    surface.prediction = predict_by_posterior(surface, c.job, 0.99, 1);
+    surface::Surface surface = fit::fit_surface(input, "auto").surface;
+    surface.prediction = margin::predict_by_posterior(surface, c.job, 0.99, 1);
     surface.shift = surface.prediction->shift;
     return surface;
 }
 
 Result run_chain(const Case& c, double cell)
 {
-    const Surface surface = desired_surface(c);
-    const Plan plan = make_plan(c.job, surface);
+    const surface::Surface surface = desired_surface(c);
+    const plan::Plan plan = plan::make_plan(c.job, surface);
     Result result;
     result.shift = surface.shift;
-    result.before = height_field(Scan(c.part), c.job, cell);
-    QuasiStaticGantry gantry(result.before, c.job);
-    result.finished = run(plan, gantry).finished;
+    result.before = removal::stock_from_scan(sampling::Scan(c.part), c.job, cell);
+    gantry::QuasiStaticGantry gantry(result.before, c.job);
+    result.finished = strategy::run(plan, gantry).finished;
     result.after = gantry.stock();
     result.totals = gantry.totals();
-    result.ground = to_cloud(result.before, result.after);
-    result.error = signed_distance(result.ground.xyz, c.truth).error;
+    result.ground = removal::to_cloud(result.before, result.after);
+    result.error = compare::signed_distance(result.ground.xyz, c.truth).error;
     return result;
 }
 
@@ -111,7 +111,7 @@ TEST(Chain, TranslationChangesNoErrorMap)
     const Case c = sphere_with_anomalies();
     const Result here = run_chain(c, kCell);
     ASSERT_TRUE(here.finished);
-    expect_same_map(here, run_chain(elsewhere(c, 0, {123.456, -78.9, 31.4}), kCell));
+    expect_same_map(here, run_chain(moved(c, 0, {123.456, -78.9, 31.4}), kCell));
 }
 
 TEST(Chain, TurnWithThetaChangesNoErrorMap)
@@ -119,17 +119,16 @@ TEST(Chain, TurnWithThetaChangesNoErrorMap)
     const Case c = sphere_with_anomalies();
     const Result here = run_chain(c, kCell);
     for (const double degrees : {90.0, 37.0, -111.0})
-        expect_same_map(here,
-                        run_chain(elsewhere(c, degrees * std::numbers::pi / 180, Eigen::Vector3d::Zero()), kCell));
+        expect_same_map(here, run_chain(moved(c, degrees * std::numbers::pi / 180, Eigen::Vector3d::Zero()), kCell));
 }
 
 TEST(Chain, RemovedVolumeIsIntegratedDepth)
 {
     const Result result = run_chain(sphere_with_anomalies(), kCell);
-    const double depth = field(result.ground, "removed").sum() * kCell * kCell;
+    const double depth = cloud::field(result.ground, "removed").sum() * kCell * kCell;
     EXPECT_GT(depth, 0);
     EXPECT_NEAR(result.totals.removed_volume, depth, 1e-6 * depth); // the field is a float
-    EXPECT_NEAR(result.totals.removed_volume, volume_between(result.before, result.after), 1e-9 * depth);
+    EXPECT_NEAR(result.totals.removed_volume, removal::volume_between(result.before, result.after), 1e-9 * depth);
 }
 
 // Cells change the volume of a wall by their side at most: halving them halves the difference or better, give or take

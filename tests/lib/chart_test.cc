@@ -1,7 +1,7 @@
 // Charts read back: where the marks of known points are.
-#include "compare/chart.h"
+#include "draw/chart.h"
 
-#include "compare/canvas.h"
+#include "draw/canvas.h"
 
 #include <gtest/gtest.h>
 #include <png.h>
@@ -15,13 +15,13 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr int kWidth = 600, kHeight = 400;
-const Rgb kRed = {255, 0, 0};
+const draw::Rgb kRed = {255, 0, 0};
 
 /// Columns and rows of the pixels of pure red.
-std::vector<Eigen::Vector2d> red_pixels(const Chart& chart)
+std::vector<Eigen::Vector2d> red_pixels(const draw::Chart& chart)
 {
-    Canvas sheet(kWidth, kHeight);
-    draw_chart(sheet, {0, 0}, {kWidth, kHeight}, chart);
+    draw::Canvas sheet(kWidth, kHeight);
+    draw::draw_chart(sheet, {0, 0}, {kWidth, kHeight}, chart);
     const std::string bytes = sheet.png();
     png_image image{};
     image.version = PNG_IMAGE_VERSION;
@@ -38,15 +38,15 @@ std::vector<Eigen::Vector2d> red_pixels(const Chart& chart)
 /// Middles of the marks of three points, each by itself, from left to right.
 std::vector<Eigen::Vector2d> marks(const Eigen::Vector3d& x, const Eigen::Vector3d& y, bool logarithmic)
 {
-    Chart chart;
+    draw::Chart chart;
     chart.logarithmic = logarithmic;
     for (int i = 0; i < 3; ++i) chart.curves.push_back({"", Eigen::Vector2d(x[i], y[i]), kRed});
     const std::vector<Eigen::Vector2d> pixels = red_pixels(chart);
     std::vector<Eigen::Vector2d> middles;
-    constexpr double kApart = 20; // marks are smaller, and further from each other
+    constexpr double kMinMarkSpacing = 20; // marks are smaller, and further from each other
     for (const Eigen::Vector2d& pixel : pixels) {
         const bool known = std::any_of(middles.begin(), middles.end(),
-                                       [&](const Eigen::Vector2d& m) { return (m - pixel).norm() < kApart; });
+                                       [&](const Eigen::Vector2d& m) { return (m - pixel).norm() < kMinMarkSpacing; });
         if (!known) middles.push_back(pixel); // the upper left corner of each: rows come first
     }
     std::sort(middles.begin(), middles.end(), [](const auto& a, const auto& b) { return a.x() < b.x(); });
@@ -73,7 +73,7 @@ TEST(Chart, LogarithmicYStepsAlikeForEachPowerOfTen)
 
 TEST(Chart, LinesBreakWhereThereIsNoNumber)
 {
-    Chart whole, broken;
+    draw::Chart whole, broken;
     Eigen::Matrix2Xd points(2, 5);
     points << 0, 1, 2, 3, 4, 0, 0, 0, 0, 0;
     whole.curves.push_back({"", points, kRed, false});

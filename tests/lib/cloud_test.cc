@@ -24,11 +24,11 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-std::string message_of(const std::string& bytes, std::optional<Units> units = std::nullopt)
+std::string message_of(const std::string& bytes, std::optional<units::Units> units = std::nullopt)
 {
     try {
-        parse_cloud(bytes, "file", units);
-    } catch (const InputError& error) {
+        cloud::parse_cloud(bytes, "file", units);
+    } catch (const core::InputError& error) {
         return error.what();
     }
     return "accepted";
@@ -63,32 +63,32 @@ std::string replaced(std::string text, const std::string& from, const std::strin
     return text.replace(at, from.size(), to);
 }
 
-std::string written(const Cloud& cloud, PcdEncoding encoding, const Units& units = {})
+std::string written(const cloud::Cloud& cloud, cloud::PcdEncoding encoding, const units::Units& units = {})
 {
     std::ostringstream out;
-    write_pcd(out, cloud, units, encoding);
+    cloud::write_pcd(out, cloud, units, encoding);
     return out.str();
 }
 
 // Every type that PCD has, a field of several elements, and padding; values that a float cannot hold.
-Cloud cloud_of_all_types(int points)
+cloud::Cloud cloud_of_all_types(int points)
 {
     std::mt19937_64 random(1);
-    Cloud cloud;
+    cloud::Cloud cloud;
     cloud.xyz.resize(3, points);
     std::uniform_real_distribution<float> place(-100, 100);
     for (double& coordinate : cloud.xyz.reshaped()) coordinate = place(random);
     cloud.xyz.col(1).setConstant(kNan);
     const auto add = [&](const std::string& name, char type, int size, int count) {
-        Field& field = cloud.fields.emplace_back(Field{name, type, size, count, {}});
+        cloud::Field& field = cloud.fields.emplace_back(cloud::Field{name, type, size, count, {}});
         field.bytes.resize(static_cast<std::size_t>(points * size * count));
         for (std::size_t i = 0; i < field.bytes.size() / static_cast<std::size_t>(size); ++i)
-            visit_element(type, size, [&](auto zero) {
+            cloud::visit_element(type, size, [&](auto zero) {
                 using T = decltype(zero);
                 T value = static_cast<T>(random());
                 if constexpr (std::is_floating_point_v<T>)
                     value = std::exp(T(0.25) * static_cast<T>(int(i % 700) - 350));
-                store(field.bytes.data() + i * sizeof(T), value);
+                cloud::store(field.bytes.data() + i * sizeof(T), value);
             });
     };
     for (const char type : {'I', 'U'})
@@ -103,7 +103,7 @@ Cloud cloud_of_all_types(int points)
     return cloud;
 }
 
-void expect_same(const Cloud& a, const Cloud& b)
+void expect_same(const cloud::Cloud& a, const cloud::Cloud& b)
 {
     ASSERT_EQ(a.size(), b.size());
     for (Eigen::Index i = 0; i < a.size(); ++i)
@@ -124,12 +124,12 @@ void expect_same(const Cloud& a, const Cloud& b)
 
 TEST(Pcd, WritingAndReadingKeepsEveryByte)
 {
-    Cloud cloud = cloud_of_all_types(5000); // more than are packed at once
+    cloud::Cloud cloud = cloud_of_all_types(5000); // more than are packed at once
     for (const std::size_t width : {0, 1000}) {
         cloud.width = width;
-        for (const PcdEncoding encoding : {PcdEncoding::ascii, PcdEncoding::binary}) {
+        for (const cloud::PcdEncoding encoding : {cloud::PcdEncoding::ascii, cloud::PcdEncoding::binary}) {
             const std::string bytes = written(cloud, encoding);
-            const CloudFile back = parse_cloud(bytes, "file");
+            const cloud::CloudFile back = cloud::parse_cloud(bytes, "file");
             expect_same(cloud, back.cloud);
             EXPECT_EQ(written(back.cloud, encoding), bytes);
         }
@@ -139,13 +139,14 @@ TEST(Pcd, WritingAndReadingKeepsEveryByte)
 // PCL's own reader, an independent one, finds the same numbers in what we write, and we in what it writes.
 TEST(Pcd, AgreesWithPcl)
 {
-    Cloud cloud = cloud_of_all_types(40);
-    std::erase_if(cloud.fields, [](const Field& field) { // PCL has no 8 byte integers in 1.13's ascii; it drops padding
-        return field.name == "_" || (field.type != 'F' && field.size == 8);
-    });
+    cloud::Cloud cloud = cloud_of_all_types(40);
+    std::erase_if(cloud.fields,
+                  [](const cloud::Field& field) { // PCL has no 8 byte integers in 1.13's ascii; it drops padding
+                      return field.name == "_" || (field.type != 'F' && field.size == 8);
+                  });
     const OwnFolder folder;
     const std::string path = "cloud.pcd";
-    for (const PcdEncoding encoding : {PcdEncoding::ascii, PcdEncoding::binary}) {
+    for (const cloud::PcdEncoding encoding : {cloud::PcdEncoding::ascii, cloud::PcdEncoding::binary}) {
         std::ofstream(path, std::ios::binary) << written(cloud, encoding);
         pcl::PCLPointCloud2 theirs;
         Eigen::Vector4f origin;
@@ -157,11 +158,11 @@ TEST(Pcd, AgreesWithPcl)
         for (Eigen::Index i = 0; i < cloud.size(); ++i) {
             const std::uint8_t* point = theirs.data.data() + i * theirs.point_step;
             for (int axis = 0; axis < 3; ++axis) {
-                const double x = load<float>(point + theirs.fields[static_cast<std::size_t>(axis)].offset);
+                const double x = cloud::load<float>(point + theirs.fields[static_cast<std::size_t>(axis)].offset);
                 EXPECT_TRUE(x == cloud.xyz(axis, i) || (std::isnan(x) && std::isnan(cloud.xyz(axis, i))));
             }
             for (std::size_t f = 0; f < cloud.fields.size(); ++f) {
-                const Field& field = cloud.fields[f];
+                const cloud::Field& field = cloud.fields[f];
                 EXPECT_EQ(theirs.fields[f + 3].name, field.name);
                 const auto block = static_cast<std::size_t>(field.size * field.count);
                 EXPECT_EQ(std::memcmp(point + theirs.fields[f + 3].offset,
@@ -170,37 +171,41 @@ TEST(Pcd, AgreesWithPcl)
                     << field.name << ' ' << i;
             }
         }
-        if (encoding == PcdEncoding::ascii) continue;
+        if (encoding == cloud::PcdEncoding::ascii) continue;
         pcl::PCDWriter().writeBinaryCompressed(path, theirs, origin, orientation);
         std::ostringstream compressed;
         compressed << std::ifstream(path, std::ios::binary).rdbuf();
-        expect_same(cloud, parse_cloud(compressed.str(), "compressed").cloud);
+        expect_same(cloud, cloud::parse_cloud(compressed.str(), "compressed").cloud);
+        expect_same(cloud, cloud::parse_cloud(compressed.str() + "\n", "compressed").cloud);
+        pcl::PCDWriter().writeBinary(path, theirs, origin, orientation); // with zeros after the last point
+        expect_same(cloud, cloud::read_cloud(path).cloud);
     }
 }
 
 TEST(Pcd, PositionsOfAnyType)
 {
-    const Cloud ascii = parse_cloud(header("z a y x", "8 4 2 4", "F F I I", 1) + "0.1 7 -3 2000000000\n", "file").cloud;
+    const cloud::Cloud ascii =
+        cloud::parse_cloud(header("z a y x", "8 4 2 4", "F F I I", 1) + "0.1 7 -3 2000000000\n", "file").cloud;
     EXPECT_EQ(ascii.xyz.col(0), Eigen::Vector3d(2e9, -3, 0.1));
     ASSERT_EQ(ascii.fields.size(), 1u);
-    EXPECT_EQ(field(ascii, "a")[0], 7);
+    EXPECT_EQ(cloud::field(ascii, "a")[0], 7);
 }
 
 TEST(Pcd, WhatCanBeReadSafelyIsRead)
 {
     const std::string plain = xyz_header(2) + "1 2 3\nnan -inf 4\n";
     for (std::string text : {plain, "\xef\xbb\xbf" + plain, plain.substr(0, plain.size() - 1), plain + "\n \n"}) {
-        const Cloud cloud = parse_cloud(text, "file").cloud;
+        const cloud::Cloud cloud = cloud::parse_cloud(text, "file").cloud;
         ASSERT_EQ(cloud.size(), 2);
         EXPECT_TRUE(std::isnan(cloud.xyz(0, 1)));
         EXPECT_EQ(cloud.xyz(1, 1), -std::numeric_limits<double>::infinity());
     }
     std::string crlf;
     for (const char c : plain) crlf += c == '\n' ? "\r\n" : std::string(1, c);
-    EXPECT_EQ(parse_cloud(crlf, "file").cloud.size(), 2);
-    EXPECT_EQ(parse_cloud(xyz_header(0), "file").cloud.size(), 0);
-    EXPECT_EQ(parse_cloud(replaced(xyz_header(1), "POINTS 1\n", "") + "1 2 3", "file").cloud.size(), 1);
-    EXPECT_EQ(parse_cloud(xyz_header(1) + "1e7 10000000.0001 1e-42\n", "file").cloud.xyz(0, 0), 1e7);
+    EXPECT_EQ(cloud::parse_cloud(crlf, "file").cloud.size(), 2);
+    EXPECT_EQ(cloud::parse_cloud(xyz_header(0), "file").cloud.size(), 0);
+    EXPECT_EQ(cloud::parse_cloud(replaced(xyz_header(1), "POINTS 1\n", "") + "1 2 3", "file").cloud.size(), 1);
+    EXPECT_EQ(cloud::parse_cloud(xyz_header(1) + "1e7 10000000.0001 1e-42\n", "file").cloud.xyz(0, 0), 1e7);
 }
 
 TEST(Pcd, HeadersThatLieAreRefused)
@@ -232,11 +237,11 @@ TEST(Pcd, HeadersThatLieAreRefused)
     expect_refused(header("x y z", "4 4 4", "F F F", 1, "ascii", "1 1 2") + "1 2 3 4\n", "'z': COUNT 2", "two z");
     expect_refused(replaced(good, "4 4 4", "4 4"), "SIZE: 2 values for 3 fields", "fewer SIZE");
     expect_refused(replaced(good, "x y z", "x x z"), "no field 'y'", "no y");
-    expect_refused(header("x y z x", "4 4 4 4", "F F F F", 1) + "1 2 3 4\n", "'x' stands twice", "two x");
+    expect_refused(header("x y z x", "4 4 4 4", "F F F F", 1) + "1 2 3 4\n", "'x' is duplicated", "two x");
     expect_refused(header("a b", "4 4", "F F", 1) + "1 2\n", "no field 'x'", "no position");
     for (const char* view : {"0 0 0 1 0 0", "0 0 0 0 0 0 0", "0 0 nan 1 0 0 0"})
         expect_refused(replaced(good, "0 0 0 1 0 0 0", view), "line 7: VIEWPOINT", view);
-    expect_refused(replaced(good, "HEIGHT 1", "HEIGHT 1\nHEIGHT 1"), "HEIGHT stands twice", "repeated entry");
+    expect_refused(replaced(good, "HEIGHT 1", "HEIGHT 1\nHEIGHT 1"), "HEIGHT is duplicated", "repeated entry");
     expect_refused(replaced(good, "VERSION 0.7", "VERSION 0.7\nCOLOUR 3"), "'COLOUR'", "unknown entry");
     expect_refused(replaced(good, "VERSION 0.7", std::string("VERSION\0 0.7", 12)), "zero byte", "NUL");
     expect_refused("# " + std::string(1 << 20, 'a') + "\n" + good, "line 1: longer", "a long line");
@@ -246,7 +251,9 @@ TEST(Pcd, HeadersThatLieAreRefused)
     std::string wide = "\xff\xfe";
     for (const char c : good) wide += {c, '\0'};
     expect_refused(wide, "UTF-16", "with a mark");
-    expect_refused(wide.substr(2), "zero byte", "without a mark");
+    expect_refused(wide.substr(2), "text in UTF-16, expected points", "without a mark");
+    expect_refused("\x89PNG\r\n\x1a\n", "a PNG picture, expected points", "a picture");
+    expect_refused("solid a\n", "a mesh, expected points", "a mesh");
     expect_refused(std::string(1000, '\n'), "without DATA", "blank lines");
     expect_refused(replaced(replaced(replaced(good, "WIDTH 1\n", ""), "HEIGHT 1\n", ""), "POINTS 1\n", ""),
                    "without WIDTH or POINTS", "no number of points");
@@ -270,7 +277,7 @@ TEST(Pcd, RowsAreHeldAgainstTheHeader)
     expect_refused(with("1 2 3\n4 5 6"), "line 12: more rows than POINTS 2", "one too many");
     expect_refused(xyz_header(3) + "1 2 3\n4 5 6\n    \n", "only 2 rows", "one missing");
     expect_refused(with("1 2 3") + with("1 2 3"), "another PCD follows", "two files in one");
-    expect_refused(header("x y z c", "4 4 4 1", "F F F U", 1) + "1 2 3 256\n", "'256' is no number of type U1",
+    expect_refused(header("x y z c", "4 4 4 1", "F F F U", 1) + "1 2 3 256\n", "'256' is not a number of type U1",
                    "range");
     expect_refused(header("x y z c", "4 4 4 1", "F F F U", 1) + "1 2 3 -1\n", "'-1'", "sign");
     expect_refused(header("x y z c", "4 4 4 4", "F F F I", 1) + "1 2 3 1.5\n", "'1.5'", "no whole number");
@@ -282,6 +289,12 @@ TEST(Pcd, BinaryBodiesAreHeldAgainstTheHeader)
     EXPECT_EQ(message_of(xyz_header(2, "binary") + body), "accepted");
     expect_refused(xyz_header(2, "binary") + body.substr(1), "need 24 bytes, there are 23", "a byte short");
     expect_refused(xyz_header(2, "binary") + body + "\n", "need 24 bytes, there are 25", "a byte more");
+    // PCL's zeros make up for what the header is shorter than a page of memory.
+    const std::string header = xyz_header(2, "binary"), zeros(4096 - header.size(), '\0');
+    EXPECT_EQ(message_of(header + body + zeros), "accepted");
+    expect_refused(header + body + zeros + '\0', "need 24 bytes, there are ", "a zero more");
+    expect_refused(header + body + zeros.substr(1), "need 24 bytes, there are ", "a zero less");
+    expect_refused(header + body + zeros.substr(1) + '\1', "need 24 bytes, there are ", "no zero");
     expect_refused(xyz_header(2, "binary") + body + xyz_header(0, "binary"), "another PCD follows", "two in one");
     expect_refused(xyz_header(2, "binary") + "1 2 3\n4 5 6\n", "there are 12", "ascii rows under a binary header");
 }
@@ -289,8 +302,8 @@ TEST(Pcd, BinaryBodiesAreHeldAgainstTheHeader)
 std::string packed(const std::string& bytes, std::uint32_t size, std::uint32_t unpacked_size)
 {
     std::string body(8, '\0');
-    store(body.data(), size);
-    store(body.data() + 4, unpacked_size);
+    cloud::store(body.data(), size);
+    cloud::store(body.data() + 4, unpacked_size);
     return body + bytes;
 }
 
@@ -328,7 +341,7 @@ TEST(Pcd, UnpacksWhatPclPacks)
         std::string small(2 * text.size(), '\0');
         small.resize(pcl::lzfCompress(text.data(), unsigned(text.size()), small.data(), unsigned(small.size())));
         ASSERT_FALSE(small.empty());
-        const Cloud cloud = parse_cloud(file_of(small), "file").cloud;
+        const cloud::Cloud cloud = cloud::parse_cloud(file_of(small), "file").cloud;
         for (int axis = 0; axis < 3; ++axis)
             for (int i = 0; i < kPoints; ++i)
                 ASSERT_EQ(cloud.xyz(axis, i), text[std::size_t(axis * kPoints + i)]) << letters << ' ' << i;
@@ -344,20 +357,20 @@ TEST(Pcd, UnpacksWhatPclPacks)
 
 TEST(Units, CommentIsReadAndHeldAgainstTheJob)
 {
-    const Units inches{Units::Length::in, Units::Force::lbf};
+    const units::Units inches{units::Units::Length::in, units::Units::Force::lbf};
     const std::string text = header("x y z force error", "4 4 4 8 8", "F F F F F", 1) + "1 2 3 4 5\n";
-    const CloudFile plain = parse_cloud(text, "file");
+    const cloud::CloudFile plain = cloud::parse_cloud(text, "file");
     EXPECT_EQ(plain.cloud.xyz(0, 0), 1);
-    EXPECT_EQ(field(plain.cloud, "force")[0], 4);
-    const CloudFile told = parse_cloud(text, "file", inches);
-    EXPECT_DOUBLE_EQ(told.cloud.xyz(0, 0), 25.4);
-    EXPECT_DOUBLE_EQ(field(told.cloud, "force")[0], 4 * 4.4482216152605);
-    EXPECT_DOUBLE_EQ(field(told.cloud, "error")[0], 5 * 25.4);
-    const CloudFile stated = parse_cloud("# units in lbf\n" + text, "file");
+    EXPECT_EQ(cloud::field(plain.cloud, "force")[0], 4);
+    const cloud::CloudFile parsed = cloud::parse_cloud(text, "file", inches);
+    EXPECT_DOUBLE_EQ(parsed.cloud.xyz(0, 0), 25.4);
+    EXPECT_DOUBLE_EQ(cloud::field(parsed.cloud, "force")[0], 4 * 4.4482216152605);
+    EXPECT_DOUBLE_EQ(cloud::field(parsed.cloud, "error")[0], 5 * 25.4);
+    const cloud::CloudFile stated = cloud::parse_cloud("# units in lbf\n" + text, "file");
     EXPECT_EQ(stated.units, inches);
-    EXPECT_DOUBLE_EQ(field(stated.cloud, "force")[0], 4 * 4.4482216152605);
+    EXPECT_DOUBLE_EQ(cloud::field(stated.cloud, "force")[0], 4 * 4.4482216152605);
     EXPECT_EQ(message_of("# units in\n" + text, inches), "accepted");
-    EXPECT_EQ(message_of("# units in lbf\n" + text, Units{}), "file: units: the file says in, expected mm");
+    EXPECT_EQ(message_of("# units in lbf\n" + text, units::Units{}), "file: units: the file says in, expected mm");
     EXPECT_EQ(message_of("# units in N\n" + text, inches), "file: units: the file says N, expected lbf");
     expect_refused("# units furlong\n" + text, "line 1: unknown length unit 'furlong'", "no unit");
     expect_refused("# units mm\n# units in\n" + text, "line 2: second units", "two units");
@@ -367,69 +380,70 @@ TEST(Units, CommentIsReadAndHeldAgainstTheJob)
 
 TEST(Units, FieldsWithUnitsAreWrittenInThem)
 {
-    const Units inches{Units::Length::in, Units::Force::lbf};
-    Cloud cloud;
+    const units::Units inches{units::Units::Length::in, units::Units::Force::lbf};
+    cloud::Cloud cloud;
     cloud.xyz = Eigen::Vector3d(25.4, 0, -50.8);
     for (const char* name : {"error", "feed", "force", "curve"})
-        set_field(cloud, name, Eigen::VectorXd::Constant(1, 25.4), 8);
+        cloud::set_field(cloud, name, Eigen::VectorXd::Constant(1, 25.4), 8);
     cloud.view_origin << 25.4, 0, 0;
-    const std::string bytes = written(cloud, PcdEncoding::ascii, inches);
+    const std::string bytes = written(cloud, cloud::PcdEncoding::ascii, inches);
     EXPECT_NE(bytes.find("# units in lbf\n"), std::string::npos);
     EXPECT_NE(bytes.find("VIEWPOINT 1 0 0 1 0 0 0\n"), std::string::npos);
     EXPECT_NE(bytes.find("DATA ascii\n1 0 -2 1 1 5.7101471547326"), std::string::npos) << bytes;
-    const CloudFile back = parse_cloud(bytes, "file", inches);
-    for (const char* name : {"error", "feed", "force", "curve"}) EXPECT_NEAR(field(back.cloud, name)[0], 25.4, 1e-13);
-    std::erase_if(cloud.fields, [](const Field& f) { return f.name == "force"; });
-    EXPECT_NE(written(cloud, PcdEncoding::ascii, inches).find("# units in\n"), std::string::npos);
+    const cloud::CloudFile back = cloud::parse_cloud(bytes, "file", inches);
+    for (const char* name : {"error", "feed", "force", "curve"})
+        EXPECT_NEAR(cloud::field(back.cloud, name)[0], 25.4, 1e-13);
+    std::erase_if(cloud.fields, [](const cloud::Field& f) { return f.name == "force"; });
+    EXPECT_NE(written(cloud, cloud::PcdEncoding::ascii, inches).find("# units in\n"), std::string::npos);
 }
 
 TEST(Units, BinaryAndAsciiHoldTheSameNumbers)
 {
-    const Units inches{Units::Length::in, Units::Force::lbf};
-    Cloud cloud = cloud_of_all_types(9000);
+    const units::Units inches{units::Units::Length::in, units::Units::Force::lbf};
+    cloud::Cloud cloud = cloud_of_all_types(9000);
     cloud.fields[1].name = "removed"; // whole numbers, which inches make broken ones
     cloud.fields[3].name = "force";
-    const auto read = [&](PcdEncoding encoding) {
-        return parse_cloud(written(cloud, encoding, inches), "file", inches).cloud;
+    const auto read = [&](cloud::PcdEncoding encoding) {
+        return cloud::parse_cloud(written(cloud, encoding, inches), "file", inches).cloud;
     };
-    const Cloud binary = read(PcdEncoding::binary), ascii = read(PcdEncoding::ascii);
+    const cloud::Cloud binary = read(cloud::PcdEncoding::binary), ascii = read(cloud::PcdEncoding::ascii);
     expect_same(binary, ascii);
     for (const char* name : {"removed", "force"})
-        EXPECT_TRUE(field(binary, name).isApprox(field(cloud, name), 1e-14)) << name;
+        EXPECT_TRUE(cloud::field(binary, name).isApprox(cloud::field(cloud, name), 1e-14)) << name;
     EXPECT_TRUE(binary.xyz.rightCols(8998).isApprox(cloud.xyz.rightCols(8998), 1e-7));
 }
 
 // A float colour with a full first byte is a NaN, whose bits ascii floats would lose; PCL writes it as a whole number.
 TEST(Colours, SurviveAscii)
 {
-    Cloud cloud;
+    cloud::Cloud cloud;
     cloud.xyz.setZero(3, 2);
     Eigen::Matrix<std::uint8_t, 3, Eigen::Dynamic> rgb(3, 2);
     rgb << 255, 0, 128, 1, 0, 2;
-    set_colours(cloud, rgb);
-    const Cloud back = parse_cloud(written(cloud, PcdEncoding::ascii), "file").cloud;
+    cloud::set_colours(cloud, rgb);
+    const cloud::Cloud back = cloud::parse_cloud(written(cloud, cloud::PcdEncoding::ascii), "file").cloud;
     EXPECT_EQ(back.fields[0].bytes, cloud.fields[0].bytes);
-    EXPECT_EQ(load<std::uint32_t>(back.fields[0].bytes.data()), 0xff8000u);
+    EXPECT_EQ(cloud::load<std::uint32_t>(back.fields[0].bytes.data()), 0xff8000u);
 }
 
 TEST(Fields, SetGetSelect)
 {
-    Cloud cloud;
+    cloud::Cloud cloud;
     cloud.xyz = Eigen::Matrix3Xd::Random(3, 4);
-    set_field(cloud, "a", Eigen::Vector4d(1, 2, 3, 4));
-    set_field(cloud, "b", Eigen::Vector4d(0.1, 0.2, 0.3, 0.4), 8);
-    set_field(cloud, "a", Eigen::Vector4d(5, 6, 7, 8));
+    cloud::set_field(cloud, "a", Eigen::Vector4d(1, 2, 3, 4));
+    cloud::set_field(cloud, "b", Eigen::Vector4d(0.1, 0.2, 0.3, 0.4), 8);
+    cloud::set_field(cloud, "a", Eigen::Vector4d(5, 6, 7, 8));
     EXPECT_EQ(cloud.fields[0].name, "a");
-    EXPECT_EQ(field(cloud, "b"), Eigen::Vector4d(0.1, 0.2, 0.3, 0.4));
-    const Cloud chosen = select(cloud, {3, 1, 1});
-    EXPECT_EQ(field(chosen, "a"), Eigen::Vector3d(8, 6, 6));
+    EXPECT_EQ(cloud::field(cloud, "b"), Eigen::Vector4d(0.1, 0.2, 0.3, 0.4));
+    const cloud::Cloud chosen = cloud::select_points(cloud, {3, 1, 1});
+    EXPECT_EQ(cloud::field(chosen, "a"), Eigen::Vector3d(8, 6, 6));
     EXPECT_EQ(chosen.xyz.col(2), cloud.xyz.col(1));
-    EXPECT_THROW(field(cloud, "c"), InputError);
+    EXPECT_THROW(cloud::field(cloud, "c"), core::InputError);
     cloud.fields.push_back({"pair", 'U', 1, 2, std::vector<std::byte>(8)});
-    EXPECT_THROW(field(cloud, "pair"), InputError);
-    EXPECT_FALSE(has_normals(cloud));
-    set_normals(cloud, Eigen::Matrix3Xd::Ones(3, 4));
-    EXPECT_TRUE(has_normals(cloud));
+    EXPECT_THROW(cloud::field(cloud, "pair"), core::InputError);
+    EXPECT_FALSE(cloud::has_normals(cloud));
+    cloud::set_normals(cloud, Eigen::Matrix3Xd::Ones(3, 4));
+    EXPECT_TRUE(cloud::has_normals(cloud));
 }
 
 std::string ply(const std::string& format, const std::string& rest)
@@ -445,13 +459,13 @@ TEST(Ply, AsciiAndBothBinaries)
         "comment made by hand\nelement other 1\nproperty list uchar short s\nelement vertex 2\n"
         "property double x\nproperty float y\nproperty short z\nproperty list uchar int l\n"
         "property uchar scalar_error\nproperty float nx\nend_header\n";
-    const Cloud ascii =
-        parse_cloud(ply("ascii", properties) + "2 7 8\n0.1 2 -3 0 200 1\n4 5 6 2 9 9 1 0\n", "file").cloud;
+    const cloud::Cloud ascii =
+        cloud::parse_cloud(ply("ascii", properties) + "2 7 8\n0.1 2 -3 0 200 1\n4 5 6 2 9 9 1 0\n", "file").cloud;
     const auto binary = [&](bool swap) {
         std::string body;
         const auto put = [&](auto value) {
             std::string bytes(sizeof value, '\0');
-            store(bytes.data(), value);
+            cloud::store(bytes.data(), value);
             if (swap) std::reverse(bytes.begin(), bytes.end());
             body += bytes;
         };
@@ -459,11 +473,12 @@ TEST(Ply, AsciiAndBothBinaries)
         for (int v : {7, 8}) put(std::int16_t(v));
         put(0.1), put(2.f), put(std::int16_t(-3)), put(std::uint8_t(0)), put(std::uint8_t(200)), put(1.f);
         put(4.0), put(5.f), put(std::int16_t(6)), put(std::uint8_t(2)), put(9), put(9), put(std::uint8_t(1)), put(0.f);
-        return parse_cloud(ply(swap ? "binary_big_endian" : "binary_little_endian", properties) + body, "file").cloud;
+        return cloud::parse_cloud(ply(swap ? "binary_big_endian" : "binary_little_endian", properties) + body, "file")
+            .cloud;
     };
     EXPECT_EQ(ascii.xyz, (Eigen::Matrix3Xd(3, 2) << 0.1, 4, 2, 5, -3, 6).finished());
-    EXPECT_EQ(field(ascii, "error"), Eigen::Vector2d(200, 1));
-    EXPECT_EQ(field(ascii, "normal_x"), Eigen::Vector2d(1, 0));
+    EXPECT_EQ(cloud::field(ascii, "error"), Eigen::Vector2d(200, 1));
+    EXPECT_EQ(cloud::field(ascii, "normal_x"), Eigen::Vector2d(1, 0));
     expect_same(ascii, binary(false));
     expect_same(ascii, binary(true));
 }
@@ -482,7 +497,7 @@ TEST(Ply, BadFilesAreRefused)
     expect_refused(replaced(ascii(kVertex, ""), "float y", "half y"), "unknown type 'half'", "type");
     expect_refused(replaced(ascii(kVertex, "1 2 3 4\n5 6 7 8\n"), "float z", "float z\nproperty float scalar_x"),
                    "be called 'x'", "a scalar x");
-    expect_refused(replaced(ascii(kVertex, ""), "float y", "float x"), "'x' stands twice", "two x");
+    expect_refused(replaced(ascii(kVertex, ""), "float y", "float x"), "'x' is duplicated", "two x");
     expect_refused(replaced(ascii(kVertex, "1 2 3\n"), "end_header\n", ""), "line 7", "no end_header");
     expect_refused(ascii(kVertex, "1 2 3\n"), "only 6 bytes left", "a line missing");
     expect_refused(ascii(kVertex, "1.5 2.5 3.5\n4 5\n"), "property z is missing", "a number missing");
@@ -497,7 +512,7 @@ TEST(Ply, BadFilesAreRefused)
     expect_refused(replaced(ply("ascii", kVertex), "ascii 1.0", "ascii 2.0"),
                    "expected 'format ENCODING 1.0', got 'format ascii 2.0'", "version");
     expect_refused(ascii(kVertex + "property float nx\nproperty float normal_x\n", "1 2 3 1 1\n4 5 6 1 1\n"),
-                   "field 'normal_x' stands twice", "by two names");
+                   "field 'normal_x' is duplicated", "by two names");
     expect_refused(replaced(ply("ascii", kVertex), "format ascii 1.0\n", "") + "end_header\n", "without format",
                    "none");
     expect_refused(ascii("element a 4000000000\n" + kVertex, ""), "element a without a property", "endless");
@@ -516,23 +531,23 @@ TEST(Ply, BadFilesAreRefused)
 
 TEST(Xyz, NamesCommentsAndColumns)
 {
-    const Cloud plain = parse_cloud("# scan\n1 2 3 4\n\n 5\t6 7 nan\n", "file").cloud;
+    const cloud::Cloud plain = cloud::parse_cloud("# scan\n1 2 3 4\n\n 5\t6 7 nan\n", "file").cloud;
     EXPECT_EQ(plain.xyz.col(1), Eigen::Vector3d(5, 6, 7));
-    EXPECT_EQ(field(plain, "column4")[0], 4);
-    EXPECT_EQ(field(parse_cloud("//X Y Z intensity\n1 2 3 4\n", "file").cloud, "intensity")[0], 4);
+    EXPECT_EQ(cloud::field(plain, "column4")[0], 4);
+    EXPECT_EQ(cloud::field(cloud::parse_cloud("//X Y Z intensity\n1 2 3 4\n", "file").cloud, "intensity")[0], 4);
     expect_refused("1 2\n", "line 1: expected at least 3 numbers, got 2", "two columns");
     expect_refused("1 2 3\n1 2 3 4\n", "line 2: expected 3 numbers, got 4", "uneven");
     expect_refused("1 2 3\n1,5 2 3\n", "line 2: '1,5'", "decimal comma");
     expect_refused(std::string("x y z a\0b\n1 2 3 4\n", 18), "be called 'a", "a name with a zero byte");
     expect_refused("x y z a\rb\n1 2 3 4\n", "be called 'a", "a name with a carriage return");
     expect_refused("x y z " + std::string(1 << 16, 'a') + "\n1 2 3 4\n", "names of the fields take", "a long name");
-    expect_refused("x y z a a\n1 2 3 4 5\n", "'a' stands twice", "two names");
+    expect_refused("x y z a a\n1 2 3 4 5\n", "'a' is duplicated", "two names");
 }
 
-std::string written(const Cloud& cloud, CloudFormat format)
+std::string written(const cloud::Cloud& cloud, cloud::CloudFormat format)
 {
     std::ostringstream out;
-    CloudWriter writer(out, format, Units{}, static_cast<std::size_t>(cloud.size()));
+    cloud::CloudWriter writer(out, format, units::Units{}, static_cast<std::size_t>(cloud.size()));
     writer.write(cloud);
     writer.finish();
     return out.str();
@@ -541,16 +556,16 @@ std::string written(const Cloud& cloud, CloudFormat format)
 // Reference: the names of the types in the VTK user's guide; the numbers by hand, big-endian.
 TEST(Vtk, HasTheTypesOfTheFields)
 {
-    Cloud cloud;
+    cloud::Cloud cloud;
     cloud.xyz = Eigen::Vector3d(1, 2, 3);
     const auto add = [&](char type, int size, const std::string& name) {
-        Field& field = cloud.fields.emplace_back(
-            Field{name, type, size, 1, std::vector<std::byte>(static_cast<std::size_t>(size))});
+        cloud::Field& field = cloud.fields.emplace_back(
+            cloud::Field{name, type, size, 1, std::vector<std::byte>(static_cast<std::size_t>(size))});
         field.bytes[0] = std::byte{7};
     };
     const std::pair<int, std::string> names[] = {{1, "char"}, {2, "short"}, {4, "int"}, {8, "long"}};
     for (const auto& [size, name] : names) add('I', size, "i_" + name), add('U', size, "u_" + name);
-    const std::string text = written(cloud, CloudFormat::vtk);
+    const std::string text = written(cloud, cloud::CloudFormat::vtk);
     for (const auto& [size, name] : names) {
         const std::string bytes =
             "\nLOOKUP_TABLE default\n" + std::string(static_cast<std::size_t>(size) - 1, '\0') + '\7';
@@ -561,34 +576,34 @@ TEST(Vtk, HasTheTypesOfTheFields)
 
 TEST(Csv, NamesEachElement)
 {
-    Cloud cloud;
+    cloud::Cloud cloud;
     cloud.xyz = Eigen::Matrix3Xd::Identity(3, 2);
     cloud.fields.push_back({"pair", 'U', 1, 2, {std::byte{1}, std::byte{2}, std::byte{3}, std::byte{4}}});
-    set_field(cloud, "t", Eigen::Vector2d(5, 6));
-    EXPECT_EQ(written(cloud, CloudFormat::csv), "x,y,z,pair_0,pair_1,t\n1,0,0,1,2,5\n0,1,0,3,4,6\n");
+    cloud::set_field(cloud, "t", Eigen::Vector2d(5, 6));
+    EXPECT_EQ(written(cloud, cloud::CloudFormat::csv), "x,y,z,pair_0,pair_1,t\n1,0,0,1,2,5\n0,1,0,3,4,6\n");
 }
 
 /// The points of a file as a stream gives them, in blocks.
-Cloud streamed(const std::string& bytes, const std::optional<Units>& units = std::nullopt)
+cloud::Cloud streamed(const std::string& bytes, const std::optional<units::Units>& units = std::nullopt)
 {
     const OwnFolder folder;
     const std::string path = "cloud.pcd";
     std::ofstream(path, std::ios::binary) << bytes;
-    const CloudStream stream(path, units);
-    const PointSource& source = stream.points();
-    Cloud cloud;
+    const cloud::CloudStream stream(path, units);
+    const cloud::PointSource& source = stream.points();
+    cloud::Cloud cloud;
     cloud.xyz.resize(3, static_cast<Eigen::Index>(source.points));
     Eigen::VectorXd roles(source.has_roles ? cloud.xyz.cols() : 0);
-    PointBlock block;
-    for (std::size_t first = 0; first < source.points; first += source.block) {
-        const std::size_t count = std::min(source.block, source.points - first);
+    cloud::PointBlock block;
+    for (std::size_t first = 0; first < source.points; first += source.block_size) {
+        const std::size_t count = std::min(source.block_size, source.points - first);
         source.read(first, count, block);
         const auto at = static_cast<Eigen::Index>(first), size = static_cast<Eigen::Index>(count);
         cloud.xyz.middleCols(at, size) = block.xyz;
         if (source.has_roles) roles.segment(at, size) = block.roles;
     }
-    if (source.has_roles) set_field(cloud, "role", roles);
-    EXPECT_EQ(stream.cloud()->xyz.cwiseAbs().maxCoeff(), cloud.xyz.cwiseAbs().maxCoeff());
+    if (source.has_roles) cloud::set_field(cloud, "role", roles);
+    EXPECT_EQ(stream.read_all()->xyz.cwiseAbs().maxCoeff(), cloud.xyz.cwiseAbs().maxCoeff());
     return cloud;
 }
 
@@ -597,31 +612,31 @@ TEST(CloudStream, ReadsWhatReadCloudReads)
 {
     std::mt19937 random(5);
     std::uniform_real_distribution<double> number(-100, 100);
-    Cloud cloud;
+    cloud::Cloud cloud;
     cloud.xyz.resize(3, 100000);
     for (double& x : cloud.xyz.reshaped()) x = number(random);
-    set_field(cloud, "role", Eigen::VectorXd::LinSpaced(100000, 0, 5).array().round());
-    set_field(cloud, "t", Eigen::VectorXd::LinSpaced(100000, 0, 1), 8);
-    for (const PcdEncoding encoding : {PcdEncoding::binary, PcdEncoding::ascii}) {
+    cloud::set_field(cloud, "role", Eigen::VectorXd::LinSpaced(100000, 0, 5).array().round());
+    cloud::set_field(cloud, "t", Eigen::VectorXd::LinSpaced(100000, 0, 1), 8);
+    for (const cloud::PcdEncoding encoding : {cloud::PcdEncoding::binary, cloud::PcdEncoding::ascii}) {
         std::ostringstream out;
-        write_pcd(out, cloud, Units{Units::Length::in, Units::Force::N}, encoding);
-        const Cloud whole = parse_cloud(out.str(), "file").cloud, pieces = streamed(out.str());
+        cloud::write_pcd(out, cloud, units::Units{units::Units::Length::in, units::Units::Force::N}, encoding);
+        const cloud::Cloud whole = cloud::parse_cloud(out.str(), "file").cloud, pieces = streamed(out.str());
         EXPECT_EQ(whole.xyz, pieces.xyz);
-        EXPECT_EQ(field(whole, "role"), field(pieces, "role"));
+        EXPECT_EQ(cloud::field(whole, "role"), cloud::field(pieces, "role"));
     }
 }
 
 TEST(CloudStream, RefusesWhatReadCloudRefuses)
 {
-    Cloud cloud;
+    cloud::Cloud cloud;
     cloud.xyz.setOnes(3, 100000);
     std::ostringstream out;
-    write_pcd(out, cloud, Units{});
+    cloud::write_pcd(out, cloud, units::Units{});
     const std::string good = out.str();
     const auto refusal = [](const std::string& bytes) -> std::string {
         try {
             streamed(bytes);
-        } catch (const InputError& error) {
+        } catch (const core::InputError& error) {
             const std::string message = error.what();
             return "file" + message.substr(message.find(": "));
         }
@@ -635,7 +650,7 @@ TEST(CloudStream, RefusesWhatReadCloudRefuses)
         EXPECT_NE(refusal(bytes), "accepted");
         EXPECT_EQ(refusal(bytes), message_of(bytes));
     }
-    EXPECT_THROW(streamed(good, Units{Units::Length::in, Units::Force::N}), InputError);
+    EXPECT_THROW(streamed(good, units::Units{units::Units::Length::in, units::Units::Force::N}), core::InputError);
 }
 
 } // namespace

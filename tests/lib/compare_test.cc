@@ -1,8 +1,8 @@
 #include "cube.h"
 
 #include "compare/areas.h"
-#include "compare/colours.h"
 #include "compare/signed_distance.h"
+#include "draw/colours.h"
 
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
@@ -33,9 +33,9 @@ double cube_distance(const Eigen::Vector3d& p)
 }
 
 // A square plate of two facets in z = 0, x and y from 0 to 10.
-Mesh plate()
+mesh::Mesh plate()
 {
-    Mesh mesh;
+    mesh::Mesh mesh;
     mesh.vertices.resize(3, 4);
     mesh.vertices << 0, 10, 10, 0, 0, 0, 10, 10, 0, 0, 0, 0;
     mesh.triangles.resize(3, 2);
@@ -47,9 +47,9 @@ Mesh plate()
 TEST(SignedDistance, CubeInClosedForm)
 {
     Eigen::Matrix3Xd points = random_points(3000, 3, 1);
-    for (Eigen::Index i = 0; i < 1000; ++i) // a lattice that holds the extensions of every facet and edge
+    for (Eigen::Index i = 0; i < 1000; ++i) // a lattice that contains the extensions of every facet and edge
         points.col(i) << -3 + i % 10 * 0.5, -3 + i / 10 % 10 * 0.5, -3 + i / 100 * 0.5;
-    const ErrorMap map = signed_distance(points, cube(1));
+    const compare::ErrorMap map = compare::signed_distance(points, cube(1));
     for (Eigen::Index i = 0; i < points.cols(); ++i) EXPECT_NEAR(map.error[i], cube_distance(points.col(i)), 1e-14);
 }
 
@@ -58,11 +58,11 @@ TEST(SignedDistance, CubeInClosedForm)
 TEST(SignedDistance, TriangleSoupByBruteForce)
 {
     constexpr Eigen::Index kTriangles = 60;
-    Mesh soup;
+    mesh::Mesh soup;
     soup.vertices = random_points(3 * kTriangles, 5, 2);
     soup.triangles = Eigen::VectorXi::LinSpaced(3 * kTriangles, 0, 3 * kTriangles - 1).reshaped(3, kTriangles);
     const Eigen::Matrix3Xd points = random_points(2000, 6, 3);
-    const ErrorMap map = signed_distance(points, soup);
+    const compare::ErrorMap map = compare::signed_distance(points, soup);
     int defined = 0;
     for (Eigen::Index i = 0; i < points.cols(); ++i) {
         const Eigen::Vector3d p = points.col(i);
@@ -98,7 +98,7 @@ TEST(SignedDistance, TriangleSoupByBruteForce)
 TEST(SignedDistance, SignOnSpikes)
 {
     constexpr int kRings = 12, kSectors = 16;
-    Mesh mesh;
+    mesh::Mesh mesh;
     mesh.vertices.resize(3, kRings * kSectors + 2);
     std::mt19937 random(4);
     std::uniform_real_distribution<double> radius(0.5, 2);
@@ -132,7 +132,7 @@ TEST(SignedDistance, SignOnSpikes)
         const Eigen::Vector3i f = facets[static_cast<std::size_t>(i * 7) % facets.size()];
         points.col(i) = (mesh.vertices.col(f[0]) + mesh.vertices.col(f[i % 3])) / 2 + jitter.col(i);
     }
-    const ErrorMap map = signed_distance(points, mesh);
+    const compare::ErrorMap map = compare::signed_distance(points, mesh);
     for (Eigen::Index i = 0; i < points.cols(); ++i) {
         double reach = 0; // of the ray from the centre through the point, in units of the point's distance
         for (const Eigen::Vector3i& f : facets) {
@@ -148,14 +148,14 @@ TEST(SignedDistance, SignOnSpikes)
 
 TEST(SignedDistance, RigidMotionChangesNothing)
 {
-    const Mesh mesh = cube(1);
+    const mesh::Mesh mesh = cube(1);
     const Eigen::Matrix3Xd points = random_points(500, 2, 6);
     const Eigen::Isometry3d motion =
         Eigen::Translation3d(30, -20, 10) * Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized());
-    Mesh moved = mesh;
+    mesh::Mesh moved = mesh;
     moved.vertices = motion * mesh.vertices;
-    const ErrorMap here = signed_distance(points, mesh);
-    const ErrorMap there = signed_distance(motion * points, moved);
+    const compare::ErrorMap here = compare::signed_distance(points, mesh);
+    const compare::ErrorMap there = compare::signed_distance(motion * points, moved);
     EXPECT_LT((here.error - there.error).cwiseAbs().maxCoeff(), 1e-12);
     EXPECT_LT((motion.linear() * here.normal - there.normal).cwiseAbs().maxCoeff(), 1e-6);
 }
@@ -171,7 +171,7 @@ TEST(SignedDistance, NothingBeyondAnOpenBorder)
     points.col(5) << -0.001, 0, 0;    // beyond, in the plane
     points.col(6) << 10 + 1e-7, 5, 0; // on the border but for the rounding of floats
     points.col(7) << kNaN, 0, 0;
-    const ErrorMap map = signed_distance(points, plate());
+    const compare::ErrorMap map = compare::signed_distance(points, plate());
     EXPECT_DOUBLE_EQ(map.error[0], 0.25);
     EXPECT_DOUBLE_EQ(map.error[1], -0.25);
     EXPECT_DOUBLE_EQ(map.error[2], 2);
@@ -183,9 +183,9 @@ TEST(SignedDistance, NothingBeyondAnOpenBorder)
 }
 
 // Quadrilaterals over shared corners, each cut in two.
-Mesh of_quads(const Eigen::Matrix3Xd& corners, const std::vector<Eigen::Vector4i>& quads)
+mesh::Mesh of_quads(const Eigen::Matrix3Xd& corners, const std::vector<Eigen::Vector4i>& quads)
 {
-    Mesh mesh;
+    mesh::Mesh mesh;
     mesh.vertices = corners;
     mesh.triangles.resize(3, 2 * static_cast<Eigen::Index>(quads.size()));
     for (std::size_t q = 0; q < quads.size(); ++q) {
@@ -206,10 +206,10 @@ Eigen::Matrix3Xd extruded(const std::vector<Eigen::Vector2d>& profile)
     return corners;
 }
 
-void expect_errors(const Mesh& mesh, const std::vector<std::pair<Eigen::Vector3d, double>>& expected)
+void expect_errors(const mesh::Mesh& mesh, const std::vector<std::pair<Eigen::Vector3d, double>>& expected)
 {
     for (const auto& [point, error] : expected) {
-        const double found = signed_distance(point, mesh).error[0];
+        const double found = compare::signed_distance(point, mesh).error[0];
         if (std::isnan(error))
             EXPECT_TRUE(std::isnan(found)) << point.transpose();
         else
@@ -220,7 +220,8 @@ void expect_errors(const Mesh& mesh, const std::vector<std::pair<Eigen::Vector3d
 // A step of 2 with its wall at x = 5, material below; distances and sides by hand.
 TEST(SignedDistance, OfAStep)
 {
-    const Mesh step = of_quads(extruded({{0, 0}, {5, 0}, {5, 2}, {10, 2}}), {{0, 2, 3, 1}, {2, 4, 5, 3}, {4, 6, 7, 5}});
+    const mesh::Mesh step =
+        of_quads(extruded({{0, 0}, {5, 0}, {5, 2}, {10, 2}}), {{0, 2, 3, 1}, {2, 4, 5, 3}, {4, 6, 7, 5}});
     expect_errors(step, {{{2, 5, 0.5}, 0.5},
                          {{2, 5, -0.25}, -0.25},
                          {{8, 5, 2.5}, 0.5},
@@ -235,7 +236,7 @@ TEST(SignedDistance, OfAStep)
 // Two plates with a slot between them, 4 < x < 6: over the slot there is no surface to be far from.
 TEST(SignedDistance, OverAGap)
 {
-    const Mesh plates = of_quads(extruded({{0, 0}, {4, 0}, {6, 0}, {10, 0}}), {{0, 2, 3, 1}, {4, 6, 7, 5}});
+    const mesh::Mesh plates = of_quads(extruded({{0, 0}, {4, 0}, {6, 0}, {10, 0}}), {{0, 2, 3, 1}, {4, 6, 7, 5}});
     expect_errors(plates, {{{3.75, 5, 0.5}, 0.5},
                            {{4, 5, -0.5}, -0.5},
                            {{4.25, 5, 0.5}, kNaN},
@@ -247,7 +248,8 @@ TEST(SignedDistance, OverAGap)
 // A plate with a fin on top: three facets at one edge, which is no border.
 TEST(SignedDistance, OfAnEdgeOfThreeFacets)
 {
-    const Mesh fin = of_quads(extruded({{-5, 0}, {0, 0}, {5, 0}, {0, 3}}), {{0, 2, 3, 1}, {2, 4, 5, 3}, {2, 6, 7, 3}});
+    const mesh::Mesh fin =
+        of_quads(extruded({{-5, 0}, {0, 0}, {5, 0}, {0, 3}}), {{0, 2, 3, 1}, {2, 4, 5, 3}, {2, 6, 7, 3}});
     expect_errors(fin, {{{0, 5, -0.5}, -0.5}, {{-1, 5, 0.25}, 0.25}, {{2, 5, -1}, -1}, {{1, 5, 0.5}, 0.5}});
 }
 
@@ -255,8 +257,8 @@ TEST(SignedDistance, NothingBeyondMaxDistance)
 {
     Eigen::Matrix3Xd points(3, 2);
     points << 5, 5, 5, 5, 0.9, 1.1;
-    for (const DistanceMode mode : {DistanceMode::normal, DistanceMode::direction}) {
-        const ErrorMap map = signed_distance(points, plate(), {mode, Eigen::Vector3d::UnitZ(), 1});
+    for (const compare::DistanceMode mode : {compare::DistanceMode::normal, compare::DistanceMode::direction}) {
+        const compare::ErrorMap map = compare::signed_distance(points, plate(), {mode, Eigen::Vector3d::UnitZ(), 1});
         EXPECT_DOUBLE_EQ(map.error[0], 0.9);
         EXPECT_TRUE(std::isnan(map.error[1]));
     }
@@ -265,61 +267,62 @@ TEST(SignedDistance, NothingBeyondMaxDistance)
 // A crack as CAD programs leave it, vertices that differ in the last bits of a float, is no border.
 TEST(SignedDistance, CracksOfRoundingAreClosed)
 {
-    Mesh mesh = cube(1);
-    Mesh soup;
+    mesh::Mesh mesh = cube(1);
+    mesh::Mesh soup;
     soup.vertices.resize(3, 36);
     for (int i = 0; i < 36; ++i)
         soup.vertices.col(i) = mesh.vertices.col(mesh.triangles(i % 3, i / 3)) * (1 + (i % 3 - 1) * 6e-8);
     soup.triangles = Eigen::VectorXi::LinSpaced(36, 0, 35).reshaped(3, 12);
     const Eigen::Matrix3Xd points = random_points(2000, 3, 7);
-    const ErrorMap map = signed_distance(points, soup);
+    const compare::ErrorMap map = compare::signed_distance(points, soup);
     for (Eigen::Index i = 0; i < points.cols(); ++i) EXPECT_NEAR(map.error[i], cube_distance(points.col(i)), 1e-6);
 }
 
 // A stray facet far away does not make one vertex of the cube's.
 TEST(SignedDistance, StrayFacetsDoNotWeld)
 {
-    Mesh mesh = cube(1);
+    mesh::Mesh mesh = cube(1);
     mesh.vertices.conservativeResize(3, 11);
     mesh.vertices.rightCols(3) << 1e9, 2e9, 1e9, 1e9, 1e9, 2e9, 1e9, 1e9, 1e9;
     mesh.triangles.conservativeResize(3, 13);
     mesh.triangles.col(12) << 8, 9, 10;
     const Eigen::Matrix3Xd points = random_points(2000, 3, 8);
-    const ErrorMap map = signed_distance(points, mesh);
+    const compare::ErrorMap map = compare::signed_distance(points, mesh);
     for (Eigen::Index i = 0; i < points.cols(); ++i) EXPECT_NEAR(map.error[i], cube_distance(points.col(i)), 1e-12);
 }
 
-// A facet that stands twice has open borders all the same.
+// A duplicate facet does not close the borders.
 TEST(SignedDistance, NothingBeyondTheBorderOfARepeatedFacet)
 {
-    Mesh mesh = plate();
+    mesh::Mesh mesh = plate();
     mesh.triangles = mesh.triangles.replicate(1, 2).eval();
     Eigen::Matrix3Xd points(3, 2);
     points << 5, 12, 3, 3, 1, 1;
-    const ErrorMap map = signed_distance(points, mesh);
+    const compare::ErrorMap map = compare::signed_distance(points, mesh);
     EXPECT_EQ(map.error[0], 1);
     EXPECT_TRUE(std::isnan(map.error[1]));
 }
 
 // A ridge whose two sides share no edge: on one side it is cut in two, and a facet without area fills the gap.
-TEST(SignedDistance, LooksThroughFacetsWithoutArea)
+TEST(SignedDistance, IgnoresFacetsWithoutArea)
 {
-    Mesh ridge;
+    mesh::Mesh ridge;
     ridge.vertices.resize(3, 5);
     ridge.vertices << 0, 2, 4, 2, 2, /* y */ 0, 0, 0, -3, 3, /* z */ 0, 0, 0, -6, -6;
     ridge.triangles.resize(3, 4); // a, b, c along the crest; one facet before it, two behind, the needle between
     ridge.triangles.transpose() << 3, 2, 0, 0, 2, 1, 0, 1, 4, 1, 2, 4;
     Eigen::Matrix3Xd points(3, 3);
     points << 1, 3, 2, 0.5, 0.5, -0.5, 0.3, 0.3, 0.3;
-    const ErrorMap map = signed_distance(points, ridge);
+    const compare::ErrorMap map = compare::signed_distance(points, ridge);
     for (int i = 0; i < 3; ++i) EXPECT_NEAR(map.error[i], std::hypot(0.5, 0.3), 1e-12) << i;
 }
 
-// The needle is as wide as rounding leaves it, and points stand over its inside: it has no normal to tell the side by.
+// The needle is as wide as rounding leaves it, and points lie over its inside: it has no normal from which the side
+// follows.
 TEST(SignedDistance, LooksThroughNeedlesThatItStandsOver)
 {
     constexpr double kWide = 1e-4, kOver = 0.01, kFar = 1000; // where floats are 6e-5 apart
-    Mesh ridge;
+    mesh::Mesh ridge;
     ridge.vertices.resize(3, 5);
     ridge.vertices << 0, 2, 4, 2, 2, /* y */ 0, kWide, 0, -3, 3, /* z */ 0, 0, 0, -6, -6;
     ridge.triangles.resize(3, 4);
@@ -330,7 +333,7 @@ TEST(SignedDistance, LooksThroughNeedlesThatItStandsOver)
     points.row(0).array() += kFar;
     for (const bool up : {false, true}) {
         if (up) ridge.triangles.row(1).swap(ridge.triangles.row(2));
-        const ErrorMap map = signed_distance(points, ridge);
+        const compare::ErrorMap map = compare::signed_distance(points, ridge);
         for (int i = 0; i < 2; ++i) EXPECT_NEAR(map.error[i], up ? kOver : -kOver, 1e-12) << i;
     }
 }
@@ -344,7 +347,7 @@ TEST(SignedDistance, AlongADirection)
     points.col(2) << 0.3, 0.2, 1; // on it
     points.col(3) << 1.3, 0, 1;   // the line misses the cube
     points.col(4) << 0, 0, 1;     // over the diagonal of the facets
-    const ErrorMap z = signed_distance(points, cube(1), {DistanceMode::direction});
+    const compare::ErrorMap z = compare::signed_distance(points, cube(1), {compare::DistanceMode::direction});
     EXPECT_NEAR(z.error[0], -1.9, 1e-14);
     EXPECT_NEAR(z.error[1], 0.25, 1e-14);
     EXPECT_NEAR(z.error[2], 0, 1e-14);
@@ -352,7 +355,8 @@ TEST(SignedDistance, AlongADirection)
     EXPECT_NEAR(z.error[4], 0, 1e-14);
 
     const Eigen::Vector3d slanted = Eigen::Vector3d(3, 0, 4) / 5;
-    const ErrorMap along = signed_distance(points.col(1), cube(1), {DistanceMode::direction, slanted});
+    const compare::ErrorMap along =
+        compare::signed_distance(points.col(1), cube(1), {compare::DistanceMode::direction, slanted});
     EXPECT_NEAR(along.error[0], 0.25 / 0.8, 1e-14); // height over the cosine
 }
 
@@ -362,9 +366,9 @@ TEST(SignedDistance, AlongADirection)
 constexpr double kRadius = 50;
 
 // The cap of a sphere over a square of side 20, centre (0, 0, -50).
-Cloud cap(double spacing)
+cloud::Cloud cap(double spacing)
 {
-    Cloud cloud;
+    cloud::Cloud cloud;
     const int n = static_cast<int>(std::lround(20 / spacing)) + 1;
     cloud.xyz.resize(3, n * n);
     for (int i = 0; i < n * n; ++i) {
@@ -374,16 +378,16 @@ Cloud cap(double spacing)
     return cloud;
 }
 
-double cap_error(double spacing, const DistanceOptions& options)
+double cap_error(double spacing, const compare::DistanceOptions& options)
 {
     Eigen::Matrix3Xd points = random_points(300, 8, 8);
     points.row(2) =
         points.row(2) / 8 - (points.row(0).array().square() + points.row(1).array().square()).matrix() / 100;
-    const ErrorMap map = signed_distance(points, cap(spacing), options);
+    const compare::ErrorMap map = compare::signed_distance(points, cap(spacing), options);
     double worst = 0;
     for (Eigen::Index i = 0; i < points.cols(); ++i) {
         const Eigen::Vector3d p = points.col(i) + Eigen::Vector3d(0, 0, kRadius);
-        const double exact = options.mode == DistanceMode::normal
+        const double exact = options.mode == compare::DistanceMode::normal
                                  ? p.norm() - kRadius
                                  : p.z() - std::sqrt(kRadius * kRadius - p.head<2>().squaredNorm());
         worst = std::max(worst, std::abs(map.error[i] - exact)); // NaN would not pass the comparison below
@@ -396,22 +400,22 @@ double cap_error(double spacing, const DistanceOptions& options)
 // the slope times h³/R².
 TEST(CloudReference, ConvergesOnASphere)
 {
-    for (const DistanceMode mode : {DistanceMode::normal, DistanceMode::direction}) {
+    for (const compare::DistanceMode mode : {compare::DistanceMode::normal, compare::DistanceMode::direction}) {
         const double coarse = cap_error(1, {mode}), fine = cap_error(0.5, {mode});
         EXPECT_LT(coarse, std::pow(3.0, 4) / std::pow(kRadius, 3)); // the neighbourhood reaches three spacings
-        EXPECT_GT(std::log2(coarse / fine), mode == DistanceMode::normal ? 3.5 : 2.8);
+        EXPECT_GT(std::log2(coarse / fine), mode == compare::DistanceMode::normal ? 3.5 : 2.8);
     }
 }
 
 TEST(CloudReference, NothingInHolesOrBeyondTheBorder)
 {
-    const Cloud whole = cap(0.5);
+    const cloud::Cloud whole = cap(0.5);
     std::vector<Eigen::Index> kept;
     for (Eigen::Index i = 0; i < whole.size(); ++i)
         if (whole.xyz.col(i).norm() > 4) kept.push_back(i);
     Eigen::Matrix3Xd points(3, 4);
     points << 0, 10.1, 8, 0, /* y */ 0, 0, 0, 11, /* z */ 0.1, -1, -0.6, -1;
-    const ErrorMap map = signed_distance(points, select(whole, kept));
+    const compare::ErrorMap map = compare::signed_distance(points, cloud::select_points(whole, kept));
     EXPECT_TRUE(std::isnan(map.error[0]));
     EXPECT_TRUE(std::isnan(map.error[1]));
     EXPECT_FALSE(std::isnan(map.error[2]));
@@ -420,22 +424,22 @@ TEST(CloudReference, NothingInHolesOrBeyondTheBorder)
 
 TEST(CloudReference, NormalsSayWhichSideIsOut)
 {
-    Cloud cloud = cap(0.5);
+    cloud::Cloud cloud = cap(0.5);
     Eigen::Matrix3Xd points(3, 1);
     points << 1, 2, 0.3;
-    const double up = signed_distance(points, cloud).error[0];
+    const double up = compare::signed_distance(points, cloud).error[0];
     EXPECT_GT(up, 0);
-    set_normals(cloud, -Eigen::Vector3d::UnitZ().replicate(1, cloud.size()));
-    EXPECT_DOUBLE_EQ(signed_distance(points, cloud).error[0], -up);
+    cloud::set_normals(cloud, -Eigen::Vector3d::UnitZ().replicate(1, cloud.size()));
+    EXPECT_DOUBLE_EQ(compare::signed_distance(points, cloud).error[0], -up);
 }
 
 TEST(CloudReference, OutliersDoNotPull)
 {
-    Cloud cloud = cap(0.5);
-    for (Eigen::Index i = 7; i < cloud.size(); i += 29) cloud.xyz(2, i) += 3; // one of every 29 stands out
+    cloud::Cloud cloud = cap(0.5);
+    for (Eigen::Index i = 7; i < cloud.size(); i += 29) cloud.xyz(2, i) += 3; // every 29th is an outlier
     Eigen::Matrix3Xd points = random_points(200, 8, 9);
     points.row(2) = (kRadius * kRadius - points.topRows<2>().colwise().squaredNorm().array()).sqrt() - kRadius;
-    const ErrorMap map = signed_distance(points, cloud, {DistanceMode::direction});
+    const compare::ErrorMap map = compare::signed_distance(points, cloud, {compare::DistanceMode::direction});
     EXPECT_LT(map.error.cwiseAbs().maxCoeff(), 1e-3);
 }
 
@@ -444,9 +448,9 @@ TEST(CloudReference, OutliersDoNotPull)
 
 Eigen::VectorXd areas_of(const Eigen::Matrix3Xd& points)
 {
-    const auto cloud = std::make_shared<Cloud>();
+    const auto cloud = std::make_shared<cloud::Cloud>();
     cloud->xyz = points;
-    return PlanAreas(point_source(cloud))(points);
+    return compare::PlanAreas(cloud::make_point_source(cloud))(points);
 }
 
 TEST(Areas, OfATurnedGridAreItsCells)
@@ -471,22 +475,22 @@ TEST(Areas, OfAScatteredCloudSumUp)
     EXPECT_NEAR(areas_of(points).sum(), 400, 8);
 }
 
-// Identity: an offset cube's vertices stand for its whole surface, and for its shadow along z twice.
+// Identity: the areas of an offset cube's vertices sum up to its whole surface, and along z to twice its shadow.
 TEST(Areas, OfVertices)
 {
-    EXPECT_DOUBLE_EQ(vertex_areas(cube(1)).sum(), 24);
-    EXPECT_DOUBLE_EQ(vertex_areas(cube(1), Eigen::Vector3d::UnitZ()).sum(), 8);
+    EXPECT_DOUBLE_EQ(compare::vertex_areas(cube(1)).sum(), 24);
+    EXPECT_DOUBLE_EQ(compare::vertex_areas(cube(1), Eigen::Vector3d::UnitZ()).sum(), 8);
 }
 
-TEST(Colours, TellSidesApart)
+TEST(Colours, SignsHaveDifferentColours)
 {
-    const ColourScale scale{0.5};
-    EXPECT_EQ(scale(kNaN), kUndefinedColour);
-    EXPECT_EQ(scale(0), (Rgb{247, 247, 247}));
-    EXPECT_EQ(scale(-9), (Rgb{103, 0, 31}));
-    EXPECT_EQ(scale(0.5), (Rgb{5, 48, 97}));
-    EXPECT_EQ(colour_scale(Eigen::Vector3d(1, kNaN, -3), 0.25).limit, 0.5);
-    EXPECT_EQ(colour_scale(Eigen::Vector3d(kNaN, kNaN, kNaN), 0).limit, 1);
+    const draw::ColourScale scale{0.5};
+    EXPECT_EQ(scale(kNaN), draw::kUndefinedColour);
+    EXPECT_EQ(scale(0), (draw::Rgb{247, 247, 247}));
+    EXPECT_EQ(scale(-9), (draw::Rgb{103, 0, 31}));
+    EXPECT_EQ(scale(0.5), (draw::Rgb{5, 48, 97}));
+    EXPECT_EQ(draw::colour_scale(Eigen::Vector3d(1, kNaN, -3), 0.25).limit, 0.5);
+    EXPECT_EQ(draw::colour_scale(Eigen::Vector3d(kNaN, kNaN, kNaN), 0).limit, 1);
 }
 
 } // namespace

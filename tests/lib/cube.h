@@ -7,9 +7,9 @@
 namespace fettle {
 
 /// Twelve facets, outwards. @param half  of a side, mm
-inline Mesh cube(double half, const Eigen::Vector3d& centre = Eigen::Vector3d::Zero())
+inline mesh::Mesh cube(double half, const Eigen::Vector3d& centre = Eigen::Vector3d::Zero())
 {
-    Mesh mesh;
+    mesh::Mesh mesh;
     mesh.vertices.resize(3, 8);
     for (int i = 0; i < 8; ++i)
         mesh.vertices.col(i) = centre + half * Eigen::Vector3d(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1);

@@ -14,9 +14,9 @@ std::string points(const std::string& fields, const std::string& types, const st
            "\nWIDTH 1\nHEIGHT 1\nPOINTS 1\nDATA ascii\n" + row + "\n";
 }
 
-Difference of(const std::string& a, const std::string& b, const Tolerance& tolerance = {})
+diff::Difference of(const std::string& a, const std::string& b, const diff::Tolerance& tolerance = {})
 {
-    return difference(a, "a", b, "b", tolerance);
+    return diff::compare_contents(a, "a", b, "b", tolerance);
 }
 
 // The bounds themselves are within; both parts of the tolerance add up.
@@ -29,7 +29,7 @@ TEST(Diff, Tolerance)
     EXPECT_TRUE(of(a, b, {0, 0.25}).equal());
     EXPECT_FALSE(of(a, b, {0, 0.125}).equal());
     EXPECT_TRUE(of(a, b, {1, 0.125}).equal());
-    EXPECT_EQ(of(a, b, {2, 0}).largest, 2) << "told although it is within";
+    EXPECT_EQ(of(a, b, {2, 0}).largest, 2) << "reported although it is within";
 }
 
 TEST(Diff, UndefinedNumbers)
@@ -44,7 +44,7 @@ TEST(Diff, UndefinedNumbers)
     EXPECT_FALSE(of(inf, less, {infinite, 1}).equal());
 }
 
-// Types do not matter, numbers do; colours are compared as colours, whatever type carries them.
+// Types do not matter, numbers do; colours are compared as colours, in any field type.
 TEST(Diff, TypesAndColours)
 {
     EXPECT_TRUE(of(points("a", "F", "1 2 3 7"), points("a", "U", "1 2 3 7")).equal());
@@ -56,9 +56,9 @@ TEST(Diff, TypesAndColours)
 
 TEST(Diff, UnreadableIsNotDifferent)
 {
-    EXPECT_THROW(of("{\"a\": 1}", "{\"a\": 1"), InputError);
-    EXPECT_THROW(of("{\"a\": 1}", ""), InputError);
-    EXPECT_THROW(of("{\"a\": 1}", "solid"), InputError);
+    EXPECT_THROW(of("{\"a\": 1}", "{\"a\": 1"), core::InputError);
+    EXPECT_THROW(of("{\"a\": 1}", ""), core::InputError);
+    EXPECT_THROW(of("{\"a\": 1}", "solid"), core::InputError);
     EXPECT_FALSE(of("{\"a\": 1}", points("a", "F", "1 2 3 7")).equal());
 }
 

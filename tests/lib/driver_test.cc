@@ -17,99 +17,157 @@ using Eigen::Vector3d;
 const std::string kLimits = "fettle-gantry 1 -500 500 -500 500 -500 500 100 60";
 const std::string kHome = "1 0 0 30 0 0 0";
 
-Job job()
+job::Job job()
 {
-    Job job;
+    job::Job job;
     job.source = "job";
     job.force.max = 60;
     return job;
 }
 
 /// Speaks to a driver that gives these answers, numbered, one a command, and then closes its output.
-/// @return  what the client said, or, if it threw, why
-std::string told(const std::vector<std::string>& answers, const std::function<void(DriverGantry&)>& work = {},
-                 const Job& of = job())
+/// @return  what the client sent, or its error message
+std::string reply_to(const std::vector<std::string>& answers,
+                     const std::function<void(gantry::DriverGantry&)>& work = {}, const job::Job& of = job())
 {
     int ends[2];
     if (::socketpair(AF_UNIX, SOCK_STREAM, 0, ends) != 0) throw std::runtime_error("no sockets");
-    Descriptor ours(ends[0]);
-    const Descriptor theirs(ends[1]);
+    core::FileDescriptor ours(ends[0]);
+    const core::FileDescriptor theirs(ends[1]);
     std::string lines;
     for (std::size_t i = 0; i < answers.size(); ++i) lines += std::to_string(i + 1) + " ok " + answers[i] + "\n";
-    EXPECT_TRUE(write_all(theirs, lines));
+    EXPECT_TRUE(core::write_all(theirs, lines));
     ::shutdown(theirs.get(), SHUT_WR);
     try {
-        DriverGantry gantry("driver", std::move(ours), of, 1);
+        gantry::DriverGantry gantry("driver", std::move(ours), of, 1);
         if (work) work(gantry);
-    } catch (const InputError& error) {
+    } catch (const core::InputError& error) {
         return error.what();
     }
-    std::string said(10000, '\0');
-    const ssize_t size = ::read(theirs.get(), said.data(), said.size());
-    said.resize(static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
-    return said;
+    std::string sent(10000, '\0');
+    const ssize_t size = ::read(theirs.get(), sent.data(), sent.size());
+    sent.resize(static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
+    return sent;
 }
 
-std::string told_when(const std::string& answer, const std::function<void(DriverGantry&)>& work)
+std::string reply_after(const std::string& answer, const std::function<void(gantry::DriverGantry&)>& work)
 {
-    return told({kLimits, "60", kHome, answer}, work);
+    return reply_to({kLimits, "60", kHome, answer}, work);
 }
 
 // By hand, after docs/driver.md.
 TEST(Driver, IsSpokenToInItsLanguage)
 {
-    const std::string said =
-        told({kLimits, "60", kHome, "2 5 6 7 0 0 0", "3 5 7 7 0.5 20 25", "4 5 8 6.5 0.4 19 19", "5 5 8 30 0 0 0",
-              "99.5 6 5 8 30 0 0 0", "6.5 7 5 8 30 0 0 0", "none 8 5 8 30 0 0 0", "9 5 8 30 0 0 0", "10 5 8 30 0 0 0"},
-             [](DriverGantry& gantry) {
-                 EXPECT_EQ(gantry.limits().speed, 100);
-                 gantry.travel({5, 6, 7});
-                 EXPECT_EQ(gantry.grind({5, 7, 7}, 20).peak_force, 25);
-                 EXPECT_EQ(gantry.press({5, 8, 6}, 20, 19).commanded, Vector3d(5, 8, 6.5));
-                 gantry.lift(30);
-                 EXPECT_EQ(gantry.touch_off(), 99.5);
-                 EXPECT_EQ(gantry.probe({5, 8}, 2), 6.5);
-                 EXPECT_TRUE(std::isnan(gantry.probe({5, 8}, 2)));
-                 gantry.change_wheel();
-                 EXPECT_EQ(gantry.status().time, 9);
-             });
-    EXPECT_EQ(said,
+    const std::string sent = reply_to(
+        {kLimits, "60", kHome, "2 5 6 7 0 0 0", "3 5 7 7 0.5 20 25", "4 5 8 6.5 0.4 19 19", "5 5 8 30 0 0 0",
+         "25.3 6 5 8 30 0 0 0", "6.5 7 5 8 30 0 0 0", "none 8 5 8 30 0 0 0", "9 5 8 30 0 0 0", "10 5 8 30 0 0 0"},
+        [](gantry::DriverGantry& gantry) {
+            EXPECT_EQ(gantry.limits().speed, 100);
+            gantry.travel({5, 6, 7});
+            EXPECT_EQ(gantry.grind({5, 7, 7}, 20).peak_force, 25);
+            EXPECT_EQ(gantry.press({5, 8, 6}, 20, 19).commanded, Vector3d(5, 8, 6.5));
+            gantry.lift(30);
+            EXPECT_EQ(gantry.touch_off(), 25.3);
+            EXPECT_EQ(gantry.probe({5, 8}, 2), 6.5);
+            EXPECT_TRUE(std::isnan(gantry.probe({5, 8}, 2)));
+            gantry.change_wheel();
+            EXPECT_EQ(gantry.status().time, 9);
+        });
+    EXPECT_EQ(sent,
               "1 connect fettle-gantry 1\n2 limit 60\n3 home 0\n4 travel 5 6 7\n5 move 5 7 7 20\n"
               "6 press 5 8 6 20 19\n7 lift 30\n8 touch_off\n9 probe 5 8 2\n10 probe 5 8 2\n11 change_wheel\n12 quit\n");
 }
 
 TEST(Driver, MustDoWhatTheJobNeeds)
 {
-    EXPECT_NE(told({"fettle-gantry 1 -500 500 many"}).find("makes no sense"), std::string::npos);
-    Job strong = job();
+    EXPECT_NE(reply_to({"fettle-gantry 1 -500 500 many"}).find("makes no sense"), std::string::npos);
+    job::Job strong = job();
     strong.force.max = 61;
-    EXPECT_EQ(told({kLimits, "61", kHome}, {}, strong), "job: force.max is above the 60 N of the machine");
-    const auto grind = [](DriverGantry& gantry) { gantry.grind({1, 1, 30}, 101); };
-    const auto press = [](DriverGantry& gantry) { gantry.press({1, 1, 30}, 0, 20); };
-    const auto far = [](DriverGantry& gantry) { gantry.grind({501, 1, 30}, 20); };
-    EXPECT_EQ(told_when(kHome, grind), "gantry: a feed of 101 mm/s is not in the machine's range");
-    EXPECT_EQ(told_when(kHome, press), "gantry: a feed of 0 mm/s is not in the machine's range");
-    EXPECT_EQ(told_when(kHome, far), "driver: the machine does not reach 501 1 30 mm");
+    EXPECT_EQ(reply_to({kLimits, "61", kHome}, {}, strong), "job: force.max is above the 60 N of the machine");
+    const auto grind = [](gantry::DriverGantry& gantry) { gantry.grind({1, 1, 30}, 101); };
+    const auto press = [](gantry::DriverGantry& gantry) { gantry.press({1, 1, 30}, 0, 20); };
+    const auto far = [](gantry::DriverGantry& gantry) { gantry.grind({501, 1, 30}, 20); };
+    EXPECT_EQ(reply_after(kHome, grind), "gantry: a feed of 101 mm/s is not in the machine's range");
+    EXPECT_EQ(reply_after(kHome, press), "gantry: a feed of 0 mm/s is not in the machine's range");
+    EXPECT_EQ(reply_after(kHome, far), "driver: the machine does not reach 501 1 30 mm");
 }
 
-TEST(Driver, IsNotBelievedWhatCannotBe)
+TEST(Driver, RefusesImpossibleAnswers)
 {
-    const auto grind = [](DriverGantry& gantry) { gantry.grind({5, 0, 30}, 20); };
-    const auto probe = [](DriverGantry& gantry) { gantry.probe({0, 0}, 2); };
-    const auto change = [](DriverGantry& gantry) { gantry.change_wheel(); };
+    const auto grind = [](gantry::DriverGantry& gantry) { gantry.grind({5, 0, 30}, 20); };
+    const auto probe = [](gantry::DriverGantry& gantry) { gantry.probe({0, 0}, 2); };
+    const auto change = [](gantry::DriverGantry& gantry) { gantry.change_wheel(); };
     const auto part = [](const std::string& message, const std::string& words) {
         return message.find(words) == std::string::npos ? message : words;
     };
     for (const char* forces : {"0.1 -1 2", "-0.1 1 2", "0.1 3 2"}) {
-        const std::string message = told_when("2 5 0 30 " + std::string(forces), grind);
+        const std::string message = reply_after("2 5 0 30 " + std::string(forces), grind);
         EXPECT_NE(message.find("reports a force of"), std::string::npos) << message;
     }
     for (const char* z : {"-3.1", "35.1"})
-        EXPECT_EQ(part(told_when(z + std::string(" 2 0 0 30 0 0 0"), probe), "touches at z"), "touches at z") << z;
-    EXPECT_EQ(part(told_when("2 0 5.1 30 0 0 0", change), "stands at 0 5.1 30 after 'change_wheel'"),
+        EXPECT_EQ(part(reply_after(z + std::string(" 2 0 0 30 0 0 0"), probe), "touches at z"), "touches at z") << z;
+    EXPECT_EQ(part(reply_after("2 0 5.1 30 0 0 0", change), "stands at 0 5.1 30 after 'change_wheel'"),
               "stands at 0 5.1 30 after 'change_wheel'");
-    EXPECT_EQ(part(told_when("0.5 0 0 30 0 0 0", change), "goes back in time"), "goes back in time");
-    EXPECT_EQ(part(told_when("1.5 0 0 90 0 0 0", change), "jumps by 60 mm in 0.5 s"), "jumps by 60 mm in 0.5 s");
+    EXPECT_EQ(part(reply_after("0.5 0 0 30 0 0 0", change), "goes back in time"), "goes back in time");
+    EXPECT_EQ(part(reply_after("1.5 0 0 90 0 0 0", change), "jumps by 60 mm in 0.5 s"), "jumps by 60 mm in 0.5 s");
+}
+
+// The default head: 35 N/mm, without preload; 0.5 mm are its tolerance.
+TEST(Driver, HasToFeelWhatItsSpringFeels)
+{
+    const auto after = [](const std::string& answer, const std::string& words) {
+        const auto grind = [](gantry::DriverGantry& gantry) { gantry.grind({5, 0, 30}, 20); };
+        const std::string message = reply_after("2 5 0 30 " + answer, grind);
+        return message.find(words) != std::string::npos ? "" : message;
+    };
+    EXPECT_EQ(after("1 35 35", "quit"), "");
+    EXPECT_EQ(after("1 17.6 40", "quit"), ""); // half a millimetre less
+    EXPECT_EQ(after("0 17.4 17.4", "quit"), "");
+    EXPECT_EQ(after("0.2 61 61", "quit"), ""); // the force that has stopped it
+    EXPECT_EQ(after("1 17.4 40", "a force of 17.4 N at a deflection of 1 mm, where the head's spring has 35 N"), "");
+    EXPECT_EQ(after("0.51 0 0", "a force of 0 N at a deflection of 0.51 mm"), "");
+    EXPECT_EQ(after("0 18 18", "a force of 18 N at a deflection of 0 mm"), "");
+    EXPECT_EQ(after("1e30 40 40", "a deflection of 1e+30 mm; the head travels 1000 mm"), "");
+    EXPECT_EQ(after("1 35 1e30", "a force of 1e+30 N"), "");
+}
+
+TEST(Driver, PreloadIsFeltOnTheStopOrNot)
+{
+    const gantry::HeadCheck head{.preload = 30, .stiffness = 10, .max_force = 100, .tolerance = 0.1, .travel = 10};
+    const auto check = [&](double deflection, double force) {
+        gantry::check_head(head, {.deflection = deflection, .force = force, .peak_force = force});
+    };
+    for (const double force : {0.0, 12.0, 30.0, 31.0}) EXPECT_NO_THROW(check(0, force)) << force;
+    EXPECT_THROW(check(0, 31.1), gantry::GantryFault);
+    EXPECT_THROW(check(0.2, 30.9), gantry::GantryFault);
+    EXPECT_NO_THROW(check(0.2, 31.1));
+    EXPECT_NO_THROW(check(0.1, 0)); // what the transducer does not resolve
+}
+
+TEST(Driver, IsNotBelievedAboutLimitsWheelsAndTime)
+{
+    const auto touch = [](gantry::DriverGantry& gantry) { gantry.touch_off(); };
+    const auto twice = [](gantry::DriverGantry& gantry) { gantry.touch_off(), gantry.touch_off(); };
+    const auto renewed = [](gantry::DriverGantry& gantry) {
+        gantry.touch_off(), gantry.change_wheel(), gantry.touch_off();
+    };
+    const auto grind = [](gantry::DriverGantry& gantry) { gantry.grind({5, 0, 30}, 20); };
+    const auto lower = [](gantry::DriverGantry& gantry) { gantry.lift(20); };
+    const std::string at = " 0 0 30 0 0 0";
+    const auto says = [](const std::string& message, const std::string& words) {
+        return message.find(words) != std::string::npos ? "" : message;
+    };
+    EXPECT_EQ(says(reply_to({kLimits, "1000", kHome}), "guards its moves at 1000 N instead of 60"), "");
+    EXPECT_EQ(says(reply_to({kLimits, "sixty", kHome}), "makes no sense"), "");
+    EXPECT_EQ(says(reply_to({kLimits, "60", "1e12" + at}), "begins at 1e+12 s"), "");
+    EXPECT_EQ(says(reply_after("1e6 2" + at, touch), "measures a wheel of 1e+06 mm; a new one has 25.4 mm"), "");
+    EXPECT_EQ(says(reply_to({kLimits, "60", kHome, "20 2" + at, "20.6 3" + at}, twice), "which had 20 mm before"), "");
+    EXPECT_EQ(says(reply_to({kLimits, "60", kHome, "20 2" + at, "3" + at, "25 4" + at}, renewed), "quit"), "");
+    EXPECT_EQ(says(reply_after("1e12 5 0 30 0 0 0", grind), "jumps ahead in time by 1e+12 s"), "");
+    EXPECT_EQ(says(reply_after("2 0 0 506 0 0 0", touch), "makes no sense"), "");
+    EXPECT_EQ(says(reply_after("6 0 0 21 0 0 0", lower), "stops 1 mm early after 'lift 20', but felt at most 0 N"), "");
+    EXPECT_EQ(says(reply_after("6 0 0 21 1 35 60", lower), "quit"), "");
+    EXPECT_EQ(says(reply_after("20 9 0 0 506 0 0 0", touch), "stands at 0 0 506, out of its range"), "");
 }
 
 } // namespace

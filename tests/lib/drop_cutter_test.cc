@@ -18,11 +18,11 @@ const std::vector<std::string> kCutters = {"ball:3",     "flat:3",         "bull
                                            "bull:3,1.4", "taper:3,20,0.4", "taper:3,50,0"};
 
 /// Some triangles of all sizes and slopes, over each other.
-Mesh soup(unsigned seed, int count)
+mesh::Mesh soup(unsigned seed, int count)
 {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> unit(-1, 1);
-    Mesh mesh;
+    mesh::Mesh mesh;
     mesh.vertices.resize(3, 3 * count);
     mesh.triangles.resize(3, count);
     for (int t = 0; t < count; ++t) {
@@ -37,40 +37,41 @@ Mesh soup(unsigned seed, int count)
 }
 
 /// The greatest z − rise over a segment, by narrowing it down: a concave function where the cutter reaches.
-double over_segment(const Cutter& cutter, const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector2d& xy)
+double over_segment(const machining::Cutter& cutter, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                    const Eigen::Vector2d& xy)
 {
-    const Eigen::Vector2d way = (b - a).head<2>(), off = xy - a.head<2>();
+    const Eigen::Vector2d step = (b - a).head<2>(), off = xy - a.head<2>();
     double first = 0, last = 1;
-    if (way.squaredNorm() > 0) {
-        const double middle = off.dot(way) / way.squaredNorm(), beside = (off - middle * way).squaredNorm();
+    if (step.squaredNorm() > 0) {
+        const double middle = off.dot(step) / step.squaredNorm(), beside = (off - middle * step).squaredNorm();
         if (beside > cutter.radius * cutter.radius) return -std::numeric_limits<double>::infinity();
-        const double half = std::sqrt((cutter.radius * cutter.radius - beside) / way.squaredNorm());
+        const double half = std::sqrt((cutter.radius * cutter.radius - beside) / step.squaredNorm());
         first = std::max(first, middle - half);
         last = std::min(last, middle + half);
         if (first > last) return -std::numeric_limits<double>::infinity();
     }
     const auto height = [&](double share) {
         const Eigen::Vector3d p = a + share * (b - a);
-        return p.z() - rise(cutter, std::min((p.head<2>() - xy).norm(), cutter.radius));
+        return p.z() - machining::rise(cutter, std::min((p.head<2>() - xy).norm(), cutter.radius));
     };
-    double most = std::max(height(first), height(last));
+    double max = std::max(height(first), height(last));
     for (int i = 0; i < 120; ++i) {
         const double p = first + (last - first) / 3, q = last - (last - first) / 3;
         const double at_p = height(p), at_q = height(q);
-        most = std::max({most, at_p, at_q});
+        max = std::max({max, at_p, at_q});
         if (at_p >= at_q) last = q;
         if (at_p <= at_q) first = p;
     }
-    return most;
+    return max;
 }
 
 /// The same over a triangle: of the segments from a corner to the points of the other side, the greatest, which is a
 /// concave function, too, where the cutter reaches all of them.
-double over_triangle(const Cutter& cutter, const Eigen::Matrix3d& t, const Eigen::Vector2d& xy)
+double over_triangle(const machining::Cutter& cutter, const Eigen::Matrix3d& t, const Eigen::Vector2d& xy)
 {
-    double most = -std::numeric_limits<double>::infinity();
-    for (int k = 0; k < 3; ++k) most = std::max(most, over_segment(cutter, t.col(k), t.col((k + 1) % 3), xy));
-    // First looked at from place to place, since not all are reached, then narrowed down about the best.
+    double max = -std::numeric_limits<double>::infinity();
+    for (int k = 0; k < 3; ++k) max = std::max(max, over_segment(cutter, t.col(k), t.col((k + 1) % 3), xy));
+    // First a scan, since not all positions are reached, then a search around the best.
     constexpr int kPlaces = 400;
     const auto height = [&](double share) {
         return over_segment(cutter, t.col(0), t.col(1) + share * (t.col(2) - t.col(1)), xy);
@@ -91,7 +92,7 @@ double over_triangle(const Cutter& cutter, const Eigen::Matrix3d& t, const Eigen
         if (at_p >= at_q) last = q;
         if (at_p <= at_q) first = p;
     }
-    return std::max(most, found);
+    return std::max(max, found);
 }
 
 TEST(DropCutter, AgainstBruteForce)
@@ -99,19 +100,19 @@ TEST(DropCutter, AgainstBruteForce)
     std::mt19937 random(11);
     std::uniform_real_distribution<double> unit(-5, 5);
     for (const std::string& name : kCutters) {
-        const Cutter cutter = parse_cutter(name);
-        const Mesh mesh = soup(3, 12);
-        const DropCutter drop(mesh, cutter);
+        const machining::Cutter cutter = machining::parse_cutter(name);
+        const mesh::Mesh mesh = soup(3, 12);
+        const machining::DropCutter drop(mesh, cutter);
         int met = 0;
         for (int i = 0; i < 40; ++i) {
             const Eigen::Vector2d xy(unit(random), unit(random));
-            double most = -std::numeric_limits<double>::infinity();
+            double max = -std::numeric_limits<double>::infinity();
             for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t)
-                most = std::max(most, over_triangle(cutter, mesh.vertices.middleCols<3>(3 * t), xy));
+                max = std::max(max, over_triangle(cutter, mesh.vertices.middleCols<3>(3 * t), xy));
             const auto touch = drop(xy);
-            ASSERT_EQ(touch.has_value(), std::isfinite(most)) << name << " at " << xy.transpose();
+            ASSERT_EQ(touch.has_value(), std::isfinite(max)) << name << " at " << xy.transpose();
             if (!touch) continue;
-            EXPECT_NEAR(touch->z, most, 1e-9) << name << " at " << xy.transpose();
+            EXPECT_NEAR(touch->z, max, 1e-9) << name << " at " << xy.transpose();
             ++met;
         }
         EXPECT_GT(met, 20) << name;
@@ -123,7 +124,7 @@ TEST(DropCutter, OfManyTrianglesIsTheHighestOfEach)
     // Walls, level steps and bumps far from the origin, some of the triangles needles; each triangle alone is the
     // reference, so that what the search leaves out must be lower.
     constexpr int kCells = 30;
-    Mesh mesh;
+    mesh::Mesh mesh;
     mesh.vertices.resize(3, (kCells + 1) * (kCells + 1));
     for (int j = 0; j <= kCells; ++j)
         for (int i = 0; i <= kCells; ++i) {
@@ -142,60 +143,60 @@ TEST(DropCutter, OfManyTrianglesIsTheHighestOfEach)
     std::mt19937 random(5);
     std::uniform_real_distribution<double> unit(0, 1);
     for (const std::string& name : kCutters) {
-        const Cutter cutter = parse_cutter(name);
-        const DropCutter drop(mesh, cutter);
+        const machining::Cutter cutter = machining::parse_cutter(name);
+        const machining::DropCutter drop(mesh, cutter);
         std::vector<Eigen::Vector2d> places;
         for (int i = 0; i < 60; ++i) places.emplace_back(699 + 32 * unit(random), 899 + 32 * unit(random));
         for (int i = 0; i < 20; ++i) places.emplace_back(700 + i, 900 + i); // over vertices and sides
-        std::vector<double> most(places.size(), -std::numeric_limits<double>::infinity());
+        std::vector<double> max(places.size(), -std::numeric_limits<double>::infinity());
         for (const Eigen::Vector3i& triangle : triangles) {
-            const Mesh alone{mesh.vertices(Eigen::all, triangle), Eigen::Vector3i(0, 1, 2)};
-            const DropCutter on(alone, cutter);
+            const mesh::Mesh alone{mesh.vertices(Eigen::all, triangle), Eigen::Vector3i(0, 1, 2)};
+            const machining::DropCutter on(alone, cutter);
             for (std::size_t i = 0; i < places.size(); ++i)
-                if (const auto touch = on(places[i])) most[i] = std::max(most[i], touch->z);
+                if (const auto touch = on(places[i])) max[i] = std::max(max[i], touch->z);
         }
         for (std::size_t i = 0; i < places.size(); ++i) {
             const auto touch = drop(places[i]);
-            ASSERT_EQ(touch.has_value(), std::isfinite(most[i]));
+            ASSERT_EQ(touch.has_value(), std::isfinite(max[i]));
             if (!touch) continue;
-            EXPECT_NEAR(touch->z, most[i], 1e-9) << name << " at " << places[i].transpose();
+            EXPECT_NEAR(touch->z, max[i], 1e-9) << name << " at " << places[i].transpose();
             // the cutter's lower side goes through its contact
             const double beside = std::min((touch->contact.head<2>() - places[i]).norm(), cutter.radius);
-            EXPECT_NEAR(touch->contact.z(), touch->z + rise(cutter, beside), 1e-6) << name;
+            EXPECT_NEAR(touch->contact.z(), touch->z + machining::rise(cutter, beside), 1e-6) << name;
         }
     }
 }
 
 TEST(DropCutter, OnASlopeTouchesWhereItsContactIs)
 {
-    Mesh plane;
+    mesh::Mesh plane;
     plane.vertices.resize(3, 3);
     plane.vertices << -100, 100, 0, -100, -100, 200, -75, 75, 0; // z = 3/4 x
     plane.triangles = Eigen::Vector3i(0, 1, 2);
     const Eigen::Vector3d normal(-0.6, 0, 0.8), contact(1, 2, 0.75);
     for (const char* name : {"ball:6", "flat:6", "bull:6,1", "taper:6,30,1"}) {
-        const Cutter cutter = parse_cutter(name);
-        const Eigen::Vector3d tip = tip_at_contact(cutter, contact, normal);
-        const auto touch = DropCutter(plane, cutter)(tip.head<2>());
+        const machining::Cutter cutter = machining::parse_cutter(name);
+        const Eigen::Vector3d tip = machining::tip_at_contact(cutter, contact, normal);
+        const auto touch = machining::DropCutter(plane, cutter)(tip.head<2>());
         EXPECT_NEAR(touch->z, tip.z(), 1e-12) << name;
         EXPECT_LT((touch->contact - contact).norm(), 1e-12) << name;
     }
-    EXPECT_FALSE(DropCutter(plane, parse_cutter("ball:6"))({300, 0}).has_value());
+    EXPECT_FALSE(machining::DropCutter(plane, machining::parse_cutter("ball:6"))({300, 0}).has_value());
 }
 
 TEST(DropCutter, OnCornersAndEdges)
 {
     // A roof with its ridge along y at z = 0, slopes of 45 degrees: over the ridge the tip rests on it.
-    Mesh roof;
+    mesh::Mesh roof;
     roof.vertices.resize(3, 6);
     roof.vertices << 0, 0, 5, 5, -5, -5, -9, 9, -9, 9, -9, 9, 0, 0, -5, -5, -5, -5;
     roof.triangles.resize(3, 4);
     roof.triangles << 0, 2, 0, 1, 2, 3, 1, 5, 1, 1, 4, 4;
     for (const std::string& name : kCutters)
-        EXPECT_NEAR(DropCutter(roof, parse_cutter(name))({0, 0})->z, 0, 1e-12) << name;
+        EXPECT_NEAR(machining::DropCutter(roof, machining::parse_cutter(name))({0, 0})->z, 0, 1e-12) << name;
     // A flat cutter beside the ridge still rests on it, to its rim.
-    EXPECT_NEAR(DropCutter(roof, parse_cutter("flat:3"))({1.4, 0})->z, 0, 1e-12);
-    EXPECT_NEAR(DropCutter(roof, parse_cutter("flat:3"))({2, 0})->z, -0.5, 1e-12);
+    EXPECT_NEAR(machining::DropCutter(roof, machining::parse_cutter("flat:3"))({1.4, 0})->z, 0, 1e-12);
+    EXPECT_NEAR(machining::DropCutter(roof, machining::parse_cutter("flat:3"))({2, 0})->z, -0.5, 1e-12);
 }
 
 } // namespace

@@ -18,7 +18,7 @@ using namespace fettle;
 
 namespace {
 
-Drive drive()
+gantry::Drive drive()
 {
     return {.mass = 0.08,
             .damping = 1.5,
@@ -30,14 +30,14 @@ Drive drive()
             .encoder = 0.0005,
             .speed = 100,
             .acceleration = 1000,
-            .least = -500,
-            .most = 500,
+            .min_position = -500,
+            .max_position = 500,
             .following_error = 1};
 }
 
-Machine machine()
+gantry::Machine machine()
 {
-    Machine machine;
+    gantry::Machine machine;
     machine.axes = {drive(), drive(), drive()};
     machine.axes[2].load = 30;
     machine.c = drive();
@@ -48,9 +48,9 @@ Machine machine()
     return machine;
 }
 
-DynamicOptions no_wear()
+gantry::DynamicOptions no_wear()
 {
-    DynamicOptions options;
+    gantry::DynamicOptions options;
     options.grinding_ratio = 1e15;
     return options;
 }
@@ -59,8 +59,8 @@ TEST(ExactStep, FreeDriveUnderAStep)
 {
     // m v' + d v = f: v = f/d (1 − e^(−t/τ)), p = f/d (t − τ (1 − e^(−t/τ))); under f = rate t the integral of that.
     const double m = 0.08, d = 1.5, tau = m / d, f = 20;
-    const ExactStep step({m, d, 0}, 1e-3);
-    Motion constant, ramp;
+    const gantry::ExactStep step({m, d, 0}, 1e-3);
+    gantry::Motion constant, ramp;
     for (int n = 1; n <= 500; ++n) {
         constant = step(constant, f, 0);
         ramp = step(ramp, f * (n - 1) * 1e-3, f);
@@ -78,8 +78,8 @@ TEST(ExactStep, SpringUnderAStep)
     for (const double d : {1.5, 8.0}) {
         const double m = 0.08, k = 35, f = 60, sigma = d / (2 * m);
         const std::complex<double> w = std::sqrt(std::complex<double>(k / m - sigma * sigma));
-        const ExactStep step({m, d, k}, 1e-3);
-        Motion x;
+        const gantry::ExactStep step({m, d, k}, 1e-3);
+        gantry::Motion x;
         for (int n = 1; n <= 500; ++n) {
             x = step(x, f, 0);
             const double t = n * 1e-3;
@@ -91,7 +91,7 @@ TEST(ExactStep, SpringUnderAStep)
 
 /// Acceleration of Wang's equation 6-7, of p, v, the voltage and the spring's other end.
 struct Equation {
-    Drive drive;
+    gantry::Drive drive;
     double preload, k, b;
     double operator()(double p, double v, double voltage, double end, double rate) const
     {
@@ -101,16 +101,19 @@ struct Equation {
 };
 
 /// Runge and Kutta, fourth order, ten steps to a period.
-Motion runge_kutta(const Equation& equation, Motion x, double voltage, double end, double rate, double period)
+gantry::Motion runge_kutta(const Equation& equation, gantry::Motion x, double voltage, double end, double rate,
+                           double period)
 {
     const double h = period / 10;
     for (int n = 0; n < 10; ++n) {
-        const auto slope = [&](double dt, const Motion& at) {
-            return Motion{at.v, equation(at.p, at.v, voltage, end + rate * (n * h + dt), rate)};
+        const auto slope = [&](double dt, const gantry::Motion& at) {
+            return gantry::Motion{at.v, equation(at.p, at.v, voltage, end + rate * (n * h + dt), rate)};
         };
-        const auto on = [&](double dt, const Motion& s) { return Motion{x.p + dt * s.p, x.v + dt * s.v}; };
-        const Motion a = slope(0, x), b = slope(h / 2, on(h / 2, a)), c = slope(h / 2, on(h / 2, b)),
-                     d = slope(h, on(h, c));
+        const auto on = [&](double dt, const gantry::Motion& s) {
+            return gantry::Motion{x.p + dt * s.p, x.v + dt * s.v};
+        };
+        const gantry::Motion a = slope(0, x), b = slope(h / 2, on(h / 2, a)), c = slope(h / 2, on(h / 2, b)),
+                             d = slope(h, on(h, c));
         x = {x.p + h / 6 * (a.p + 2 * b.p + 2 * c.p + d.p), x.v + h / 6 * (a.v + 2 * b.v + 2 * c.v + d.v)};
     }
     return x;
@@ -119,15 +122,15 @@ Motion runge_kutta(const Equation& equation, Motion x, double voltage, double en
 TEST(ServoAxis, TenTimesFinerRungeKuttaAgrees)
 {
     // The loop at work for two seconds against the spring, whose end rises and falls: 1e-6 of the largest of each.
-    Drive weighted = drive();
+    gantry::Drive weighted = drive();
     weighted.load = 30;
     const Equation equation{weighted, 5, 35, 0.8};
-    ServoAxis axis(weighted, equation.k, equation.b, 1e-3, 20);
-    Motion x = axis.motion();
+    gantry::ServoAxis axis(weighted, equation.k, equation.b, 1e-3, 20);
+    gantry::Motion x = axis.motion();
     double end = 21, difference = 0, rate_difference = 0, longest = 0, fastest = 0;
     for (int n = 0; n < 2000; ++n) {
         const double t = n * 1e-3, rate = 3 * std::cos(7 * t);
-        const Reference reference{20 + std::sin(3 * t), 3 * std::cos(3 * t), -9 * std::sin(3 * t)};
+        const gantry::Reference reference{20 + std::sin(3 * t), 3 * std::cos(3 * t), -9 * std::sin(3 * t)};
         axis.step_with_spring(reference, equation.preload, end, rate);
         x = runge_kutta(equation, x, axis.voltage(), end, rate, 1e-3);
         end += rate * 1e-3;
@@ -143,8 +146,8 @@ TEST(ServoAxis, TenTimesFinerRungeKuttaAgrees)
 
 TEST(ServoAxis, FollowsWithinCountsAndHoldsAgainstALoad)
 {
-    const Drive of = drive();
-    ServoAxis axis(of, 0, 0, 1e-3, 0);
+    const gantry::Drive of = drive();
+    gantry::ServoAxis axis(of, 0, 0, 1e-3, 0);
     double worst = 0;
     for (int n = 0; n < 3000; ++n) { // feed-forward is the inverse of the drive: what is left are counts
         const double t = n * 1e-3;
@@ -160,10 +163,11 @@ TEST(ServoAxis, FollowsWithinCountsAndHoldsAgainstALoad)
 
 /// Does the loop come to rest if the drive is `factor` times as strong as the controller thinks? A loop of our own,
 /// without limits and counts.
-bool stable(const Drive& drive, const ServoGains& gains, const Oscillator& load, double factor, double period)
+bool stable(const gantry::Drive& drive, const gantry::ServoGains& gains, const gantry::Oscillator& load, double factor,
+            double period)
 {
-    const ExactStep step(load, period);
-    Motion x{1, 0};
+    const gantry::ExactStep step(load, period);
+    gantry::Motion x{1, 0};
     double integral = 0, last = -1, late = 0;
     for (int n = 0; n < 20000; ++n) {
         const double error = -x.p;
@@ -182,50 +186,52 @@ TEST(Tuning, HoldsItsMargins)
     // A sensitivity peak of 1.5 promises a gain margin of 3 upwards (and 1/(1 + 1/1.5) = 0.6 downwards).
     for (const double encoder : {0.00005, 0.0005, 0.005})
         for (const double k : {0.0, 35.0}) {
-            Drive of = drive();
+            gantry::Drive of = drive();
             of.encoder = encoder;
-            const ServoGains gains = tune(of, k, 0.5, 1e-3);
-            const Oscillator free{of.mass, of.damping, 0}, sprung{of.mass, of.damping + 0.5, k};
+            const gantry::ServoGains gains = gantry::tune_servo(of, k, 0.5, 1e-3);
+            const gantry::Oscillator free{of.mass, of.damping, 0}, sprung{of.mass, of.damping + 0.5, k};
             EXPECT_GT(gains.bandwidth, 10);
-            for (const Oscillator& load : {free, sprung}) {
+            for (const gantry::Oscillator& load : {free, sprung}) {
                 EXPECT_TRUE(stable(of, gains, load, 2.99, 1e-3));
                 EXPECT_TRUE(stable(of, gains, load, 0.61, 1e-3));
-                const Margins told = servo_response(of, load, 1e-3, kFineFrequencies).margins(gains);
-                EXPECT_LE(told.sensitivity, kMostSensitivity + 1e-3); // looked for at fewer frequencies
-                EXPECT_GE(told.gain, 3);
-                EXPECT_GE(told.phase, 2 * std::asin(1 / (2 * kMostSensitivity)));
-                EXPECT_TRUE(stable(of, gains, load, 0.97 * told.gain, 1e-3));
-                EXPECT_FALSE(stable(of, gains, load, 1.03 * told.gain, 1e-3));
+                const gantry::Margins margins =
+                    gantry::servo_response(of, load, 1e-3, gantry::kMarginFrequencies).margins(gains);
+                EXPECT_LE(margins.sensitivity, gantry::kMaxSensitivity + 1e-3); // searched at fewer frequencies
+                EXPECT_GE(margins.gain, 3);
+                EXPECT_GE(margins.phase, 2 * std::asin(1 / (2 * gantry::kMaxSensitivity)));
+                EXPECT_TRUE(stable(of, gains, load, 0.97 * margins.gain, 1e-3));
+                EXPECT_FALSE(stable(of, gains, load, 1.03 * margins.gain, 1e-3));
             }
             EXPECT_FALSE(stable(of, gains, free, 400, 1e-3));
         }
-    Drive coarse = drive();
+    gantry::Drive coarse = drive();
     coarse.encoder = 20;
-    EXPECT_THROW(tune(coarse, 0, 0, 1e-3), InputError);
+    EXPECT_THROW(gantry::tune_servo(coarse, 0, 0, 1e-3), core::InputError);
 }
 
 TEST(ForceLoop, HoldsItsMarginsAndTheForceOnASlope)
 {
-    const Drive of = drive();
-    const ServoGains servo = tune(of, 35, 0.5, 1e-3);
-    const Pid gains = tune_force(of, 35, 0.5, 1e-3);
+    const gantry::Drive of = drive();
+    const gantry::ServoGains servo = gantry::tune_servo(of, 35, 0.5, 1e-3);
+    const gantry::Pid gains = gantry::tune_force(of, 35, 0.5, 1e-3);
     EXPECT_GT(gains.kp, 20);
-    for (const Oscillator& load : {Oscillator{of.mass, of.damping, 0}, Oscillator{of.mass, of.damping + 0.5, 35}}) {
-        const Margins told = force_response(of, servo, load, 1e-3).margins(gains);
-        EXPECT_LE(told.sensitivity, kMostSensitivity);
-        EXPECT_GE(told.gain, 3);
-        EXPECT_GE(told.phase, 2 * std::asin(1 / (2 * kMostSensitivity)));
+    for (const gantry::Oscillator& load :
+         {gantry::Oscillator{of.mass, of.damping, 0}, gantry::Oscillator{of.mass, of.damping + 0.5, 35}}) {
+        const gantry::Margins margins = gantry::force_response(of, servo, load, 1e-3).margins(gains);
+        EXPECT_LE(margins.sensitivity, gantry::kMaxSensitivity);
+        EXPECT_GE(margins.gain, 3);
+        EXPECT_GE(margins.phase, 2 * std::asin(1 / (2 * gantry::kMaxSensitivity)));
     }
-    // A controller that looks 25 times a second holds the drive, but not the force.
-    EXPECT_GT(tune(of, 35, 0.5, 0.04).bandwidth, 0);
-    EXPECT_THROW(tune_force(of, 35, 0.5, 0.04), InputError);
+    // A controller at 25 Hz holds the drive, but not the force.
+    EXPECT_GT(gantry::tune_servo(of, 35, 0.5, 0.04).bandwidth, 0);
+    EXPECT_THROW(gantry::tune_force(of, 35, 0.5, 0.04), core::InputError);
     // Up a slope that nothing grinds: the integral leaves no error.
-    Job job = small_job();
-    job.removal = 1e-6;
+    job::Job job = small_job();
+    job.removal_coefficient = 1e-6;
     const auto slope = [](double, double y) { return kTop + 0.2 * y; };
-    DynamicGantry gantry(stock(slope), job, machine(), no_wear());
+    gantry::DynamicGantry gantry(stock(slope), job, machine(), no_wear());
     gantry.travel({0, -40, kTop});
-    GantryStatus status;
+    gantry::GantryStatus status;
     for (double y = -39.5; y < 20; y += 0.5) {
         status = gantry.press({0, y, -100}, 25, 40);
         if (y > -20) {
@@ -234,7 +240,7 @@ TEST(ForceLoop, HoldsItsMarginsAndTheForceOnASlope)
     }
     EXPECT_NEAR(status.commanded.y(), 20, 0.6);
     EXPECT_NEAR(status.time, 0, 10);
-    gantry.lift(kTop + 10); // 16 is above what stands there, and it comes no lower
+    gantry.lift(kTop + 10); // 16 is above the stock, and it stops there
     EXPECT_EQ(gantry.press({0, 21, kTop + 6}, 25, 40).force, 0);
     EXPECT_NEAR(gantry.status().commanded.z(), kTop + 6, 0.1);
 }
@@ -243,9 +249,9 @@ TEST(ReadMachine, DrivesOfTheSamplesObeyWang)
 {
     // Driven by V without a load the screw turns at N K_m/R_m V / (B + N² K_m²/R_m) (eq. 6-1, the motor's brake in B);
     // a force f at the nut holds against a torque f / (η K_b) of the screw (6-2).
-    const Machine m = read_machine(std::getenv("SAMPLES") + std::string("/machines/prototype.json"));
+    const gantry::Machine m = gantry::read_machine(std::getenv("SAMPLES") + std::string("/machines/prototype.json"));
     const double km = 0.056, r = 1.1, b = 1e-4, k_b = 2 * std::numbers::pi / 5.0, eta = 0.9; // pitch 0.19685 in ≈ 5 mm
-    const Drive& x = m.axes[0];
+    const gantry::Drive& x = m.axes[0];
     EXPECT_NEAR(x.gain / x.damping, km / r / (b + km * km / r) / k_b, 1e-5 * x.gain / x.damping);
     EXPECT_NEAR(x.gain, km / r * 1000 * eta * k_b, 1e-5 * x.gain);
     EXPECT_NEAR(x.mass / x.damping, 4e-5 / (b + km * km / r), 1e-12);
@@ -257,15 +263,15 @@ TEST(ReadMachine, DrivesOfTheSamplesObeyWang)
 
 TEST(Dynamic, MovesTakeTheTimeOfTrapezoids)
 {
-    DynamicGantry gantry(flat(), small_job(), machine());
+    gantry::DynamicGantry gantry(flat(), small_job(), machine());
     EXPECT_EQ(gantry.status().time, 0);
     const double v = 100, a = 1000;
-    const GantryStatus down = gantry.lift(15); // 15 mm, guarded: √(F_max a / k) = 41.4 mm/s
+    const gantry::GantryStatus down = gantry.lift(15); // 15 mm, guarded: √(F_max a / k) = 41.4 mm/s
     const double touching = std::sqrt(60 * a / 35);
     EXPECT_NEAR(down.time, 15 / touching + touching / a, 0.03);
-    const GantryStatus up = gantry.lift(30);
+    const gantry::GantryStatus up = gantry.lift(30);
     EXPECT_NEAR(up.time - down.time, 15 / v + v / a, 0.03);
-    const GantryStatus across = gantry.travel({5, -50, 30});
+    const gantry::GantryStatus across = gantry.travel({5, -50, 30});
     EXPECT_NEAR(across.time - up.time, std::hypot(5, 50) / v + v / a, 0.03);
     EXPECT_NEAR((across.commanded - Eigen::Vector3d(5, -50, 30)).norm(), 0, 0.003);
     EXPECT_NEAR(gantry.totals().travel_time, across.time, 1e-9);
@@ -274,18 +280,18 @@ TEST(Dynamic, MovesTakeTheTimeOfTrapezoids)
 
 TEST(Dynamic, TurnsItsHeadFirst)
 {
-    Job job = small_job();
+    job::Job job = small_job();
     job.theta = -2; // rad, at 1 rad/s and 1 rad/s²
-    DynamicGantry gantry(stock(hills, 0.2, -2), job, machine());
+    gantry::DynamicGantry gantry(stock(hills, 0.2, -2), job, machine());
     EXPECT_NEAR(gantry.status().time, 3, 0.05);
-    Machine narrow = machine();
-    narrow.c.least = -1;
-    EXPECT_THROW(DynamicGantry(flat(), job, narrow), InputError);
+    gantry::Machine narrow = machine();
+    narrow.c.min_position = -1;
+    EXPECT_THROW(gantry::DynamicGantry(flat(), job, narrow), core::InputError);
 }
 
 /// One pass over hills at `feed`.
 template <class AnyGantry>
-HeightField ground(AnyGantry&& gantry, double feed)
+removal::HeightField ground(AnyGantry&& gantry, double feed)
 {
     gantry.travel({0, -20, 8.3});
     for (double y = -19.5; y < 20.01; y += 0.5) gantry.grind({0, y, 8.3}, feed);
@@ -297,10 +303,11 @@ TEST(Dynamic, AgreesWithTheQuasiStaticWhereFeedGoesToZero)
     // What differs falls with the feed: removal by the normal or the vertical force, corners, where contacts fall.
     double last = 1e9;
     for (const double feed : {8.0, 2.0, 0.5}) {
-        QuasiStaticOptions quasi;
+        gantry::QuasiStaticOptions quasi;
         quasi.grinding_ratio = 1e15;
-        const HeightField a = ground(QuasiStaticGantry(stock(hills, 0.2), small_job(), quasi), feed);
-        const HeightField b = ground(DynamicGantry(stock(hills, 0.2), small_job(), machine(), no_wear()), feed);
+        const removal::HeightField a = ground(gantry::QuasiStaticGantry(stock(hills, 0.2), small_job(), quasi), feed);
+        const removal::HeightField b =
+            ground(gantry::DynamicGantry(stock(hills, 0.2), small_job(), machine(), no_wear()), feed);
         const Eigen::ArrayXXd inside = (a.z - b.z).block(10, 260, 60, 180);
         const double difference = inside.abs().maxCoeff();
         EXPECT_LT(difference, last / 2) << feed;
@@ -313,13 +320,13 @@ TEST(Dynamic, SteadyDepthIsTheBalance)
 {
     // As for the quasi-static gantry: t v w = c F, F = preload + k (D − t); by the normal force it is t F / cos φ, a
     // mean slope of √(2 t / R) / 2 of its rim in the cut.
-    Job job = small_job();
+    job::Job job = small_job();
     job.force.preload = 5;
     job.force.max = 1e9;
-    DynamicGantry gantry(flat(), job, machine(), no_wear());
-    const double v = 25.4, w = 6.4, c = job.removal, k = job.force.stiffness, depth = 0.4;
+    gantry::DynamicGantry gantry(flat(), job, machine(), no_wear());
+    const double v = 25.4, w = 6.4, c = job.removal_coefficient, k = job.force.stiffness, depth = 0.4;
     gantry.travel({0, -40, kTop - depth});
-    GantryStatus end;
+    gantry::GantryStatus end;
     for (double y = -39.5; y < 40.1; y += 0.5) end = gantry.grind({0, y, kTop - depth}, v);
     const double t = c * (5 + k * depth) / (v * w + c * k);
     EXPECT_NEAR(kTop - gantry.stock().z(80, 700), t, 0.01 * t);
@@ -330,17 +337,17 @@ TEST(Dynamic, SteadyDepthIsTheBalance)
 TEST(Dynamic, VolumeIsNormalForceTimesTimeAtAWall)
 {
     // A wall higher than the wheel's axis meets its rim where that is upright: all of the force is across the spring,
-    // and bends the machine. Removed volume = c ∫ F dt, but for a row that still stands (0.05 mm
+    // and bends the machine. Removed volume = c ∫ F dt, but for a row that remains (0.05 mm
     // of at most 13 mm above the rim) and 2 % for rows that are not quite upright.
     const auto wall = [](double, double y) { return y < 0 ? kTop - 5 : kTop + 30; };
-    Job job = small_job();
+    job::Job job = small_job();
     job.safe_height = kTop + 40;
-    DynamicGantry gantry(stock(wall, 0.05), job, machine(), no_wear());
+    gantry::DynamicGantry gantry(stock(wall, 0.05), job, machine(), no_wear());
     gantry.travel({0, -30, kTop});
     double impulse = 0;
     for (double y = -29.98; y < -24; y += 0.02) {
         const double t = gantry.status().time;
-        const GantryStatus status = gantry.grind({0, y, kTop}, 5);
+        const gantry::GantryStatus status = gantry.grind({0, y, kTop}, 5);
         impulse -= gantry.side_load().y() * (status.time - t);
     }
     EXPECT_GT(gantry.totals().removed_volume, 50);
@@ -352,23 +359,23 @@ TEST(Dynamic, DamperLetsTheHeadDownByItsTimeConstant)
 {
     // The stock ends under the pressed wheel: its deflection decays as e^(−k t / b). First order in the time between
     // two contacts, 8 ms of 200 ms.
-    Machine damped = machine();
+    gantry::Machine damped = machine();
     damped.head.damping = 7;
-    Job job = small_job();
-    job.removal = 1e-6;
+    job::Job job = small_job();
+    job.removal_coefficient = 1e-6;
     const auto edge = [](double, double y) { return y < 0 ? kTop : kTop - 20; };
-    DynamicGantry gantry(stock(edge), job, damped, no_wear());
+    gantry::DynamicGantry gantry(stock(edge), job, damped, no_wear());
     gantry.travel({0, -5, kTop - 1});
     gantry.grind({0, 8, kTop - 1}, 25.4); // off the edge, whose corner the rim leaves at 7.06
-    const GantryStatus a = gantry.grind({0, 10, kTop - 1}, 25.4), b = gantry.grind({0, 13, kTop - 1}, 25.4);
+    const gantry::GantryStatus a = gantry.grind({0, 10, kTop - 1}, 25.4), b = gantry.grind({0, 13, kTop - 1}, 25.4);
     EXPECT_GT(b.deflection, 0.1);
     EXPECT_NEAR(std::log(a.deflection / b.deflection), (b.time - a.time) * 35 / 7, 0.03 * (b.time - a.time) * 35 / 7);
 }
 
 TEST(Dynamic, TheWayDownIsGuarded)
 {
-    DynamicGantry gantry(flat(), small_job(), machine());
-    const GantryStatus status = gantry.travel({0, 0, kTop - 5});
+    gantry::DynamicGantry gantry(flat(), small_job(), machine());
+    const gantry::GantryStatus status = gantry.travel({0, 0, kTop - 5});
     EXPECT_GT(status.force, 40);
     EXPECT_LT(status.peak_force, 62);
     EXPECT_GT(status.commanded.z(), kTop - 5);
@@ -376,13 +383,13 @@ TEST(Dynamic, TheWayDownIsGuarded)
 
 TEST(Dynamic, SensorsHaveTheirResolution)
 {
-    Machine coarse = machine();
+    gantry::Machine coarse = machine();
     coarse.head.lvdt = 0.125;
     coarse.head.noise = 0.05;
     const auto run = [&](std::uint64_t seed) {
-        DynamicOptions options;
+        gantry::DynamicOptions options;
         options.seed = seed;
-        DynamicGantry gantry(flat(), small_job(), coarse, options);
+        gantry::DynamicGantry gantry(flat(), small_job(), coarse, options);
         gantry.travel({0, -20, kTop - 0.8});
         std::vector<double> read;
         for (double y = -19.5; y < 20; y += 0.5) read.push_back(gantry.grind({0, y, kTop - 0.8}, 25.4).deflection);
@@ -394,16 +401,16 @@ TEST(Dynamic, SensorsHaveTheirResolution)
     EXPECT_NE(one, run(2));
 }
 
-/// What the machine says when it stops, cutting 1 mm deep.
-std::string fault_of(const Machine& machine, double depth = 1)
+/// Message of the machine when it stops, cutting 1 mm deep.
+std::string fault_of(const gantry::Machine& machine, double depth = 1)
 {
     try {
-        Job job = small_job();
+        job::Job job = small_job();
         job.force.max = 1e9;
-        DynamicGantry gantry(flat(), job, machine);
+        gantry::DynamicGantry gantry(flat(), job, machine);
         gantry.travel({0, -20, kTop - depth});
         for (double y = -19.5; y < 20; y += 0.5) gantry.grind({0, y, kTop - depth}, 25.4);
-    } catch (const GantryFault& fault) {
+    } catch (const gantry::GantryFault& fault) {
         return fault.what();
     }
     return "";
@@ -412,22 +419,22 @@ std::string fault_of(const Machine& machine, double depth = 1)
 TEST(Dynamic, StopsForGood)
 {
     EXPECT_EQ(fault_of(machine()), "");
-    Machine weak = machine();
+    gantry::Machine weak = machine();
     weak.spindle.tangential = 0.4;
     weak.spindle.inertia = 0.01;
     weak.spindle.power = 1e8;
     EXPECT_EQ(fault_of(weak), "");
     weak.spindle.power = 1e4;
     EXPECT_NE(fault_of(weak).find("the spindle stalls"), std::string::npos);
-    Machine tight = machine();
+    gantry::Machine tight = machine();
     tight.axes[1].following_error = 0.001;
     EXPECT_NE(fault_of(tight).find("axis y"), std::string::npos);
-    Machine shallow = machine();
+    gantry::Machine shallow = machine();
     shallow.head.travel = 0.3;
     EXPECT_NE(fault_of(shallow).find("travel"), std::string::npos);
-    Machine small = machine();
-    small.axes[1].least = -10;
-    EXPECT_THROW(fault_of(small), InputError);
+    gantry::Machine small = machine();
+    small.axes[1].min_position = -10;
+    EXPECT_THROW(fault_of(small), core::InputError);
 }
 
 } // namespace

@@ -15,15 +15,15 @@ namespace {
 
 using Eigen::Vector2d;
 
-Job job_at(double theta)
+job::Job job_at(double theta)
 {
-    Job job;
+    job::Job job;
     job.theta = theta;
     job.anomaly = Eigen::Matrix3Xd::Zero(3, 4);
     job.sampling = Eigen::Matrix3Xd::Zero(3, 4);
     job.anomaly.topRows<2>() << 30, 70, 70, 30, 30, 30, 60, 60;
     job.sampling.topRows<2>() << 5, 95, 95, 5, 5, 5, 85, 85;
-    const Eigen::Matrix2d turn = rotation_working_machine(-theta);
+    const Eigen::Matrix2d turn = job::rotation_working_machine(-theta);
     for (Eigen::Matrix3Xd* points : {&job.anomaly, &job.sampling})
         points->topRows<2>() = (turn * points->topRows<2>()).eval();
     return job;
@@ -38,38 +38,39 @@ double bicubic(const Vector2d& w)
 }
 
 struct Touched {
-    TouchPlan plan;
+    sampling::TouchPlan plan;
     Eigen::Matrix3Xd xyz;
 };
 
-Touched touched(const Job& job, const std::function<double(Vector2d)>& surface_in_w)
+Touched touched(const job::Job& job, const std::function<double(Vector2d)>& surface_in_w)
 {
-    Touched result{plan_touches(job), {}};
+    Touched result{sampling::plan_touches(job), {}};
     result.xyz.resize(3, result.plan.size());
     for (Eigen::Index i = 0; i < result.plan.size(); ++i) {
         const Vector2d xy = result.plan.xy.col(i);
-        result.xyz.col(i) << xy, surface_in_w(rotation_working_machine(job.theta) * xy);
+        result.xyz.col(i) << xy, surface_in_w(job::rotation_working_machine(job.theta) * xy);
     }
     return result;
 }
 
-Cloud samples_of(const Touched& touches)
+cloud::Cloud samples_of(const Touched& touches)
 {
-    Cloud samples;
+    cloud::Cloud samples;
     samples.xyz = touches.xyz;
-    set_field(samples, "curve", touches.plan.curve.cast<double>());
-    set_field(samples, "role", touches.plan.role.cast<double>());
+    cloud::set_field(samples, "curve", touches.plan.curve.cast<double>());
+    cloud::set_field(samples, "role", touches.plan.role.cast<double>());
     return samples;
 }
 
 TEST(Estimate, BicubicSurfaceIsReproducedAtEveryCrossing)
 {
     for (const double theta : {0.0, 0.3, std::numbers::pi / 2, 3.0}) {
-        const Job job = job_at(theta);
+        const job::Job job = job_at(theta);
         const Touched touches = touched(job, bicubic);
-        const Eigen::Matrix3Xd points = estimated_points(job, touches.xyz, touches.plan.curve, touches.plan.role);
+        const Eigen::Matrix3Xd points =
+            sampling::estimated_points(job, touches.xyz, touches.plan.curve, touches.plan.role);
         ASSERT_EQ(points.cols(), 4);
-        const Eigen::Matrix2Xd working = rotation_working_machine(theta) * points.topRows<2>();
+        const Eigen::Matrix2Xd working = job::rotation_working_machine(theta) * points.topRows<2>();
         for (int i = 0; i < 4; ++i) {
             EXPECT_NEAR(working(0, i), 30 + 40 * (1 + i / 2) / 3.0, 1e-11);
             EXPECT_NEAR(working(1, i), 30 + 30 * (1 + i % 2) / 3.0, 1e-11);
@@ -81,87 +82,88 @@ TEST(Estimate, BicubicSurfaceIsReproducedAtEveryCrossing)
 TEST(Estimate, IsTheMeanOfTheTwoCurves)
 {
     // lifting all touches of the lines along Y_w by 1 lifts the crossings by a half
-    const Job job = job_at(0);
+    const job::Job job = job_at(0);
     Touched touches = touched(job, bicubic);
-    const Eigen::Matrix3Xd before = estimated_points(job, touches.xyz, touches.plan.curve, touches.plan.role);
+    const Eigen::Matrix3Xd before = sampling::estimated_points(job, touches.xyz, touches.plan.curve, touches.plan.role);
     for (Eigen::Index i = 0; i < touches.plan.size(); ++i)
         if (touches.plan.curve[i] < 2) touches.xyz(2, i) += 1;
-    const Eigen::Matrix3Xd after = estimated_points(job, touches.xyz, touches.plan.curve, touches.plan.role);
+    const Eigen::Matrix3Xd after = sampling::estimated_points(job, touches.xyz, touches.plan.curve, touches.plan.role);
     EXPECT_LT((after.row(2) - before.row(2)).array().abs().maxCoeff() - 0.5, 1e-12);
     EXPECT_GT((after.row(2) - before.row(2)).array().abs().minCoeff() - 0.5, -1e-12);
 }
 
 TEST(Estimate, DoesNotDependOnTheOrderOfTheTouches)
 {
-    const Job job = job_at(0.3);
+    const job::Job job = job_at(0.3);
     const Touched touches = touched(job, bicubic);
-    const Eigen::Matrix3Xd forward = estimated_points(job, touches.xyz, touches.plan.curve, touches.plan.role);
-    const Eigen::Matrix3Xd backward = estimated_points(job, touches.xyz.rowwise().reverse(),
-                                                       touches.plan.curve.reverse(), touches.plan.role.reverse());
+    const Eigen::Matrix3Xd forward =
+        sampling::estimated_points(job, touches.xyz, touches.plan.curve, touches.plan.role);
+    const Eigen::Matrix3Xd backward = sampling::estimated_points(
+        job, touches.xyz.rowwise().reverse(), touches.plan.curve.reverse(), touches.plan.role.reverse());
     EXPECT_LT((forward - backward).cwiseAbs().maxCoeff(), 1e-11);
 }
 
 TEST(Estimate, TouchesOfABallBesideTheLineAreCarriedOntoIt)
 {
     // a sphere of 200 mm, a tip of 3 mm: contacts lie up to 0.4 mm beside the lines and are scattered across them
-    const Job job = job_at(0);
+    const job::Job job = job_at(0);
     const auto ball = [](double radius) {
         return
             [radius](const Vector2d& xy) { return std::sqrt(radius * radius - (xy - Vector2d(50, 45)).squaredNorm()); };
     };
     // how far the estimated points, wherever they come to lie, are off the sphere
     const auto errors = [&](const Touched& touches, const Eigen::Matrix3Xd& xyz) {
-        Eigen::Matrix3Xd points = estimated_points(job, xyz, touches.plan.curve, touches.plan.role);
+        Eigen::Matrix3Xd points = sampling::estimated_points(job, xyz, touches.plan.curve, touches.plan.role);
         for (Eigen::Index i = 0; i < points.cols(); ++i) points(2, i) -= ball(200)(points.col(i).head<2>());
         return Eigen::VectorXd(points.row(2));
     };
     const Touched by_point = touched(job, ball(200)), by_ball = touched(job, ball(203));
     const Eigen::VectorXd difference =
-        errors(by_point, by_point.xyz) - errors(by_ball, contact_points(job, by_ball.xyz, 3));
+        errors(by_point, by_point.xyz) - errors(by_ball, sampling::contact_points(job, by_ball.xyz, 3));
     EXPECT_LT(difference.cwiseAbs().maxCoeff(), 0.01);
 }
 
 TEST(Estimate, AppendsRole3AndKeepsEveryField)
 {
-    const Job job = job_at(0);
-    Cloud samples = samples_of(touched(job, bicubic));
-    set_field(samples, "sigma", Eigen::VectorXd::LinSpaced(16, 0, 1));
-    const Cloud points = with_estimated_points(job, samples);
+    const job::Job job = job_at(0);
+    cloud::Cloud samples = samples_of(touched(job, bicubic));
+    cloud::set_field(samples, "sigma", Eigen::VectorXd::LinSpaced(16, 0, 1));
+    const cloud::Cloud points = sampling::with_estimated_points(job, samples);
     ASSERT_EQ(points.size(), 20);
     EXPECT_EQ(points.xyz.leftCols(16), samples.xyz);
-    EXPECT_EQ(field(points, "role").tail(4), Eigen::VectorXd::Constant(4, 3));
-    EXPECT_TRUE(field(points, "curve").tail(4).array().isNaN().all());
-    EXPECT_EQ(field(points, "sigma").head(16), field(samples, "sigma"));
-    EXPECT_TRUE(field(points, "sigma").tail(4).array().isNaN().all());
-    EXPECT_THROW(with_estimated_points(job, points), InputError);
+    EXPECT_EQ(cloud::field(points, "role").tail(4), Eigen::VectorXd::Constant(4, 3));
+    EXPECT_TRUE(cloud::field(points, "curve").tail(4).array().isNaN().all());
+    EXPECT_EQ(cloud::field(points, "sigma").head(16), cloud::field(samples, "sigma"));
+    EXPECT_TRUE(cloud::field(points, "sigma").tail(4).array().isNaN().all());
+    EXPECT_THROW(sampling::with_estimated_points(job, points), core::InputError);
 }
 
 TEST(Estimate, OtherSurfacesPassUnchanged)
 {
-    Job job = job_at(0);
-    job.surface = SurfaceType::swept;
-    const Cloud samples = samples_of(touched(job, bicubic));
-    EXPECT_EQ(with_estimated_points(job, samples).size(), 7);
+    job::Job job = job_at(0);
+    job.surface = job::SurfaceType::swept;
+    const cloud::Cloud samples = samples_of(touched(job, bicubic));
+    EXPECT_EQ(sampling::with_estimated_points(job, samples).size(), 7);
 }
 
 TEST(Estimate, RefusesLinesItCannotUse)
 {
-    const Job job = job_at(0);
-    const auto problem = [&](const Cloud& samples) -> std::string {
+    const job::Job job = job_at(0);
+    const auto problem = [&](const cloud::Cloud& samples) -> std::string {
         try {
-            with_estimated_points(job, samples);
-        } catch (const InputError& error) {
+            sampling::with_estimated_points(job, samples);
+        } catch (const core::InputError& error) {
             return error.what();
         }
         return "accepted";
     };
-    Cloud samples = samples_of(touched(job, bicubic));
+    cloud::Cloud samples = samples_of(touched(job, bicubic));
     samples.xyz(2, 5) = NAN; // a touch that failed
     EXPECT_EQ(problem(samples), "curve 1: 3 touches near the boundaries, 4 are needed");
     samples = samples_of(touched(job, bicubic));
     samples.xyz.col(5) = samples.xyz.col(6);
     EXPECT_EQ(problem(samples), "curve 1: two touches at the same place");
-    set_field(samples, "role", Eigen::VectorXd::Zero(16));
+    cloud::set_field(samples, "role", Eigen::VectorXd::Zero(16));
     EXPECT_EQ(problem(samples), "no touches of role 1 and 2, which a free-form job has");
     samples.fields.clear();
     EXPECT_EQ(problem(samples), "the points have no field 'curve'");

@@ -18,14 +18,14 @@ using Eigen::Isometry3d, Eigen::Vector3d;
 
 /// A solid for both, about the origin, z its axis.
 struct Shape {
-    Solid ours;
+    robot::Solid ours;
     std::shared_ptr<fcl::CollisionGeometryd> theirs;
 };
 
 class Draw {
   public:
     explicit Draw(unsigned seed) : random_(seed) {}
-    double number(double least, double most) { return std::uniform_real_distribution<double>(least, most)(random_); }
+    double number(double min, double max) { return std::uniform_real_distribution<double>(min, max)(random_); }
     Isometry3d placement(double size)
     {
         std::normal_distribution<double> normal;
@@ -39,15 +39,15 @@ class Draw {
         const Vector3d from(0, 0, -length / 2), to(0, 0, length / 2), half(radius, number(2, 12), length / 2);
         switch (kind) {
         case 0:
-            return {solid::Sphere{Vector3d::Zero(), radius}, std::make_shared<fcl::Sphered>(radius)};
+            return {robot::solid::Sphere{Vector3d::Zero(), radius}, std::make_shared<fcl::Sphered>(radius)};
         case 1:
-            return {solid::Capsule{from, to, radius}, std::make_shared<fcl::Capsuled>(radius, length)};
+            return {robot::solid::Capsule{from, to, radius}, std::make_shared<fcl::Capsuled>(radius, length)};
         case 2:
-            return {solid::Cylinder{from, to, radius}, std::make_shared<fcl::Cylinderd>(radius, length)};
+            return {robot::solid::Cylinder{from, to, radius}, std::make_shared<fcl::Cylinderd>(radius, length)};
         case 3:
-            return {solid::Cone{from, to, radius, 0}, std::make_shared<fcl::Coned>(radius, length)};
+            return {robot::solid::Cone{from, to, radius, 0}, std::make_shared<fcl::Coned>(radius, length)};
         default:
-            return {solid::Box{Isometry3d::Identity(), half}, std::make_shared<fcl::Boxd>(2 * half)};
+            return {robot::solid::Box{Isometry3d::Identity(), half}, std::make_shared<fcl::Boxd>(2 * half)};
         }
     }
 
@@ -55,30 +55,30 @@ class Draw {
     std::mt19937 random_;
 };
 
-// FCL tells overlaps, but not how deep.
+// FCL reports overlaps, but not their depth.
 TEST(Fcl, RandomPairs)
 {
     constexpr double kAccuracy = 1e-3;
     Draw draw(21);
-    int apart = 0, overlapping = 0;
+    int separate = 0, overlapping = 0;
     for (unsigned k = 0; k < 4000; ++k) {
         const Shape a = draw.shape(k % 5), b = draw.shape(k / 5 % 5);
         const double size = k % 3 == 0 ? 25 : 12;
         const Isometry3d T_a = draw.placement(size), T_b = draw.placement(size);
-        const double ours = clearance(PlacedSolid(a.ours, T_a), PlacedSolid(b.ours, T_b)).distance;
+        const double ours = robot::clearance(robot::PlacedSolid(a.ours, T_a), robot::PlacedSolid(b.ours, T_b)).distance;
         fcl::CollisionObjectd at_a(a.theirs, T_a), at_b(b.theirs, T_b);
         fcl::CollisionResultd collision;
         const bool overlap = fcl::collide(&at_a, &at_b, fcl::CollisionRequestd(1, false), collision) > 0;
         if (std::abs(ours) > kAccuracy) {
             EXPECT_EQ(overlap, ours < 0) << k << " " << ours;
         }
-        ++(ours < 0 ? overlapping : apart);
+        ++(ours < 0 ? overlapping : separate);
         if (ours < kAccuracy) continue;
         fcl::DistanceRequestd request(true);
         fcl::DistanceResultd distance;
         EXPECT_NEAR(fcl::distance(&at_a, &at_b, request, distance), ours, kAccuracy) << k;
     }
-    EXPECT_GT(apart, 1000);
+    EXPECT_GT(separate, 1000);
     EXPECT_GT(overlapping, 1000);
 }
 
@@ -86,28 +86,28 @@ TEST(Fcl, RandomSolidsAgainstAMesh)
 {
     constexpr double kAccuracy = 1e-3;
     Draw draw(22);
-    const Mesh mesh = boat::hull(4000);
-    const Workpiece workpiece(mesh);
+    const mesh::Mesh mesh = boat::hull(4000);
+    const robot::Workpiece workpiece(mesh);
     const auto model = std::make_shared<fcl::BVHModel<fcl::OBBRSSd>>();
     model->beginModel();
     for (const auto t : mesh.triangles.colwise())
         model->addTriangle(mesh.vertices.col(t[0]), mesh.vertices.col(t[1]), mesh.vertices.col(t[2]));
     model->endModel();
     fcl::CollisionObjectd hull(model);
-    int apart = 0, overlapping = 0;
+    int separate = 0, overlapping = 0;
     for (unsigned k = 0; k < 3000; ++k) {
         const Shape a = draw.shape(k % 5);
         const Isometry3d T = Eigen::Translation3d(0, 0, 50) * draw.placement(90);
-        const double ours = workpiece.nearest(PlacedSolid(a.ours, T)).clearance.distance;
+        const double ours = workpiece.nearest(robot::PlacedSolid(a.ours, T)).clearance.distance;
         fcl::CollisionObjectd at_a(a.theirs, T);
         fcl::CollisionResultd collision;
         const bool overlap = fcl::collide(&hull, &at_a, fcl::CollisionRequestd(1, false), collision) > 0;
         if (std::abs(ours) > kAccuracy) {
             EXPECT_EQ(overlap, ours < 0) << k << " " << ours;
         }
-        ++(ours < 0 ? overlapping : apart);
+        ++(ours < 0 ? overlapping : separate);
     }
-    EXPECT_GT(apart, 500);
+    EXPECT_GT(separate, 500);
     EXPECT_GT(overlapping, 500);
 }
 

@@ -17,20 +17,20 @@ namespace {
 
 constexpr double kRemaining = 0.1;
 
-LayerSwitching::Settings settings()
+strategy::LayerSwitching::Settings settings()
 {
-    LayerSwitching::Settings s;
+    strategy::LayerSwitching::Settings s;
     s.force_min = 5, s.force_down = 10, s.force_max = 15;
     s.step_over = 1;
-    s.remaining = kRemaining;
+    s.max_remaining = kRemaining;
     s.finish_passes = true;
     s.bounds = {.layers = 5, .re_cuts = 40, .coverings = 1, .time = 1e6, .steps = 100000};
     return s;
 }
 
-std::vector<ToolPass> square(int count, int points)
+std::vector<plan::ToolPass> square(int count, int points)
 {
-    std::vector<ToolPass> passes(static_cast<std::size_t>(count));
+    std::vector<plan::ToolPass> passes(static_cast<std::size_t>(count));
     for (int p = 0; p < count; ++p) {
         passes[static_cast<std::size_t>(p)].line = p;
         passes[static_cast<std::size_t>(p)].starts = {0};
@@ -51,19 +51,19 @@ TEST(Strokes, LeaveNoPlaceTooHighAndMoveByNeighbours)
         for (auto& pass : z)
             for (double& height : pass) height = random() % 3 == 0 ? double(random() % 1000) / 200 : 0;
         const auto passes = square(count, points);
-        LayerSwitching strategy(passes, settings());
+        strategy::LayerSwitching strategy(passes, settings());
         std::set<std::pair<int, int>> visited;
-        Action action = strategy.first();
+        strategy::Action action = strategy.first();
         double time = 0;
-        while (action.kind != Action::Kind::finish) {
-            ASSERT_NE(action.kind, Action::Kind::fail) << strategy.failure();
+        while (action.kind != strategy::Action::Kind::finish) {
+            ASSERT_NE(action.kind, strategy::Action::Kind::fail) << strategy.failure();
             double& height = z[std::size_t(action.to.pass)][std::size_t(action.to.point)];
             visited.insert({action.to.pass, action.to.point});
-            const Place before = action.to;
+            const strategy::PathIndex before = action.to;
             const double remaining = height;
             height *= 0.4;
             action = strategy.next({0, remaining, ++time});
-            if (action.kind != Action::Kind::grind) continue;
+            if (action.kind != strategy::Action::Kind::grind) continue;
             if (action.to.pass == before.pass) {
                 ASSERT_EQ(std::abs(action.to.point - before.point), 1);
             } else {
@@ -84,18 +84,19 @@ TEST(Strokes, GoOnlyWhereTooMuchIsLeft)
     // Of 20 places two in the middle need a second visit: back from the far end to one beyond them, and on to the
     // nearer end.
     const auto passes = square(1, 20);
-    LayerSwitching strategy(passes, settings());
+    strategy::LayerSwitching strategy(passes, settings());
     std::vector<double> z(20, 0);
     z[6] = z[7] = 0.2;
-    Action action = strategy.first();
-    std::string way;
-    for (double time = 0; action.kind != Action::Kind::finish; ++time) {
-        way += std::to_string(action.to.point) + " ";
+    strategy::Action action = strategy.first();
+    std::string points_visited;
+    for (double time = 0; action.kind != strategy::Action::Kind::finish; ++time) {
+        points_visited += std::to_string(action.to.point) + " ";
         const double remaining = z[std::size_t(action.to.point)];
         z[std::size_t(action.to.point)] *= 0.4;
         action = strategy.next({0, remaining, time});
     }
-    EXPECT_EQ(way, "0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 18 17 16 15 14 13 12 11 10 9 8 7 6 5 4 3 2 1 0 ");
+    EXPECT_EQ(points_visited,
+              "0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 18 17 16 15 14 13 12 11 10 9 8 7 6 5 4 3 2 1 0 ");
     EXPECT_EQ(strategy.counts().strokes, 1);
 }
 
@@ -104,12 +105,12 @@ TEST(FeedControl, HoldsTheTargetWhateverTheMetalYields)
     // The wheel climbs by s v and sinks by c F / A, steps of 1 ms; s such that the job's feed leaves 1.2 times the
     // limit. At rest what is left is the target, three quarters of the limit, for metal of half to twice the job's c /
     // A.
-    Job job;
+    job::Job job;
     for (const double yields : {0.25, 0.5, 0.9}) {
         const double limit = 0.05, contact = std::sqrt(2 * job.wheel.radius * 0.75 * limit);
-        const double rate = yields * job.removal / (contact * job.wheel.width), k = job.force.stiffness;
+        const double rate = yields * job.removal_coefficient / (contact * job.wheel.width), k = job.force.stiffness;
         const double s = rate * k * 1.2 * limit / job.feed.rate;
-        FeedControl control(job, limit);
+        strategy::FeedControl control(job, limit);
         EXPECT_EQ(control.feed(), job.feed.rate);
         double z = 0;
         for (int n = 0; n < 400; ++n) {
@@ -124,49 +125,49 @@ TEST(FeedControl, HoldsTheTargetWhateverTheMetalYields)
 
 TEST(FeedControl, KeepsTheFeedWhereAnotherStrokeIsDue)
 {
-    Job job;
-    FeedControl control(job, 0.05);
+    job::Job job;
+    strategy::FeedControl control(job, 0.05);
     control.update(1, 1, 0.02); // 20 times the limit
     EXPECT_EQ(control.feed(), job.feed.rate);
     control.update(0, 0, 0.02); // air
     EXPECT_EQ(control.feed(), job.feed.rate);
 }
 
-/// Strokes to and fro over a flat stock that stands `high` over the reference until no more than `limit` is left in the
+/// Strokes to and fro over a flat stock `high` above the reference until no more than `limit` is left in the
 /// middle. Each
 /// step is a balance of Preston's law and the spring: (stock − r) v = q k (r + u). Returns how many, and the lowest r.
-std::pair<int, double> strokes_by_force(const Job& job, double q, double high, double limit, bool pressed)
+std::pair<int, double> strokes_by_force(const job::Job& job, double q, double high, double limit, bool pressed)
 {
-    ForceControl control(job, limit);
+    strategy::ForceControl control(job, limit);
     std::vector<double> along(100), z(100, high);
     for (std::size_t n = 0; n < along.size(); ++n) along[n] = 0.5 * double(n);
     control.begin_pass(along);
     const double k = job.force.stiffness, v = job.feed.rate;
     double lowest = high;
     for (int stroke = 1; stroke < 100; ++stroke) {
-        double most = 0;
+        double max = 0;
         for (int i = 0; i < 100; ++i) {
             const int n = stroke % 2 == 1 ? i : 99 - i;
-            const double u = pressed ? control.press(n, stroke % 2 == 1 ? 1 : -1) : 0;
+            const double u = pressed ? control.next_force_offset(n, stroke % 2 == 1 ? 1 : -1) : 0;
             double& stock = z[std::size_t(n)];
             const double r = std::max((stock * v - q * k * u) / (v + q * k), -u);
             stock = std::min(stock, r);
-            if (pressed) control.arrived(n, r, std::max(k * (r + u), 0.0) * 0.5 / v);
-            if (n >= 30 && n < 70) most = std::max(most, r); // at the ends of a stroke the press begins and ends
+            if (pressed) control.record(n, r, std::max(k * (r + u), 0.0) * 0.5 / v);
+            if (n >= 30 && n < 70) max = std::max(max, r); // at the ends of a stroke the press begins and ends
             lowest = std::min(lowest, r);
         }
-        if (most <= limit) return {stroke, lowest};
+        if (max <= limit) return {stroke, lowest};
     }
     return {100, lowest};
 }
 
 TEST(ForceControl, TakesFewerStrokesThanTheSpringAndNeverGrindsTooDeep)
 {
-    // In stock a tenth to four times as soft as the job says, low and high.
-    Job job;
+    // In stock a tenth to four times as soft as in the job, low and high.
+    job::Job job;
     for (const double yields : {0.1, 0.5, 1.0, 4.0})
         for (const double high : {0.2, 1.0}) {
-            const double q = yields * job.removal / job.wheel.width, limit = 0.05;
+            const double q = yields * job.removal_coefficient / job.wheel.width, limit = 0.05;
             const auto [with, lowest] = strokes_by_force(job, q, high, limit, true);
             const auto [without, spring] = strokes_by_force(job, q, high, limit, false);
             EXPECT_GE(lowest, 0) << yields << " " << high;
@@ -178,44 +179,44 @@ TEST(ForceControl, TakesFewerStrokesThanTheSpringAndNeverGrindsTooDeep)
         }
 }
 
-TEST(ForceControl, PressesByWhatItKnows)
+TEST(ForceControl, SetsTheForceByTheEstimatedRate)
 {
-    Job job;
-    const double limit = 0.05, q = job.removal / job.wheel.width;
-    ForceControl control(job, limit);
+    job::Job job;
+    const double limit = 0.05, q = job.removal_coefficient / job.wheel.width;
+    strategy::ForceControl control(job, limit);
     control.begin_pass({0, 0.5, 1, 1.5});
-    EXPECT_EQ(control.press(0, 1), 0); // nothing is known
-    for (const int n : {0, 1, 2, 3}) control.arrived(n, 0.4, 1);
-    EXPECT_EQ(control.press(2, -1), 0); // of q, nothing
-    for (const int n : {2, 1, 0}) control.arrived(n, 0.3, 0.1 * 0.5 / q);
+    EXPECT_EQ(control.next_force_offset(0, 1), 0); // nothing is known
+    for (const int n : {0, 1, 2, 3}) control.record(n, 0.4, 1);
+    EXPECT_EQ(control.next_force_offset(2, -1), 0); // of q, nothing
+    for (const int n : {2, 1, 0}) control.record(n, 0.3, 0.1 * 0.5 / q);
     // Forth again: not more than by the share of q that is sure, and growing no faster than the wheel follows.
-    const double u = control.press(1, 1);
+    const double u = control.next_force_offset(1, 1);
     EXPECT_GT(u, 0);
     EXPECT_LE(u, 0.5 * limit / std::sqrt(2 * job.wheel.radius * limit) + 1e-12);
     control.begin_pass({0, 0.5, 1, 1.5});
-    EXPECT_EQ(control.press(1, 1), 0);
+    EXPECT_EQ(control.next_force_offset(1, 1), 0);
 }
 
 TEST(WheelWear, LearnsAndStaysCautious)
 {
-    Job job;
-    WheelWear wear(job, 0.05);
-    wear.measured(25);
-    wear.ground(20, 10);
-    EXPECT_EQ(wear.loss(), 0); // nothing learned yet
-    wear.measured(24.98);      // 0.02 mm by 200 N s
-    wear.ground(10, 10);
+    job::Job job;
+    strategy::WheelWear wear(job, 0.05);
+    wear.set_measured_radius(25);
+    wear.add_force(20, 10);
+    EXPECT_EQ(wear.loss(), 0);       // nothing learned yet
+    wear.set_measured_radius(24.98); // 0.02 mm by 200 N s
+    wear.add_force(10, 10);
     EXPECT_GT(wear.loss(), 0.5 * 0.01);
     EXPECT_LT(wear.loss(), 0.01);
-    EXPECT_FALSE(wear.due());
-    wear.ground(10, 40); // 0.05 mm by now: what the prediction may miss is more than a quarter of 0.05 mm
-    EXPECT_TRUE(wear.due());
-    wear.measured(24.93);
-    EXPECT_FALSE(wear.due());
+    EXPECT_FALSE(wear.measurement_due());
+    wear.add_force(10, 40); // 0.05 mm by now: what the prediction may miss is more than a quarter of 0.05 mm
+    EXPECT_TRUE(wear.measurement_due());
+    wear.set_measured_radius(24.93);
+    EXPECT_FALSE(wear.measurement_due());
     EXPECT_EQ(wear.loss(), 0);
-    wear.renewed();
-    wear.measured(30); // a new wheel has not grown
-    wear.ground(10, 10);
+    wear.start_new_wheel();
+    wear.set_measured_radius(30); // a new wheel has not grown
+    wear.add_force(10, 10);
     EXPECT_NEAR(wear.loss(), 0.7 * 0.01, 1e-9);
 }
 

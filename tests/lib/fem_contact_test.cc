@@ -25,7 +25,7 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 using std::numbers::pi;
 
-constexpr double kTight = 1e-8;
+constexpr double kTightTolerance = 1e-8;
 
 MatrixXd paraboloid(Index n, double cell, double radius)
 {
@@ -34,9 +34,9 @@ MatrixXd paraboloid(Index n, double cell, double radius)
 }
 
 /// A flat layer wide enough that its sides are not felt.
-LayerContact flat(const ElasticLayer& layer, double cell, Index cells, Index elements)
+belt::LayerContact flat(const belt::ElasticLayer& layer, double cell, Index cells, Index elements)
 {
-    return {mesh_of(layer, 1e6 * layer.thickness, 20 * layer.thickness, {cell, cell}, cells, elements), cells};
+    return {belt::layer_mesh(layer, 1e6 * layer.thickness, 20 * layer.thickness, {cell, cell}, cells, elements), cells};
 }
 
 struct Errors {
@@ -46,10 +46,10 @@ struct Errors {
 Errors against_theory(double poisson, double thickness, Index cells, Index elements)
 {
     const double a = 4, R = 60, cell = 3 * a / static_cast<double>(cells);
-    const ElasticLayer layer{thickness * a, 5, poisson};
+    const belt::ElasticLayer layer{thickness * a, 5, poisson};
     const LayerTheory theory = layer_theory(layer, a, R);
-    const Contact contact =
-        flat(layer, cell, cells, elements).by_force(paraboloid(cells, cell, R), theory.force, kTight);
+    const belt::Contact contact =
+        flat(layer, cell, cells, elements).solve_by_force(paraboloid(cells, cell, R), theory.force, kTightTolerance);
     EXPECT_TRUE(contact.converged);
     EXPECT_NEAR(contact.force, theory.force, 1e-9 * theory.force);
     return {contact.indentation / theory.indentation - 1, contact.pressure.maxCoeff() / theory.peak - 1};
@@ -95,8 +95,8 @@ TEST(FemContact, AgreesWithHertzOnAThickLayer)
     const double a = 1.0096, peak = 88.29, approach = 0.1274;
     const auto error = [&](Index cells, Index elements) {
         const double cell = 3 * a / static_cast<double>(cells);
-        const Contact contact =
-            flat({1000 * a, 1000, 0.3}, cell, cells, elements).by_force(paraboloid(cells, cell, 8), 60 * pi, kTight);
+        const belt::Contact contact = flat({1000 * a, 1000, 0.3}, cell, cells, elements)
+                                          .solve_by_force(paraboloid(cells, cell, 8), 60 * pi, kTightTolerance);
         return Errors{contact.indentation / approach - 1, contact.pressure.maxCoeff() / peak - 1};
     };
     const Errors coarse = error(16, 8), fine = error(32, 16);
@@ -111,32 +111,32 @@ TEST(FemContact, AgreesWithHertzOnAThickLayer)
 // of.
 TEST(FemContact, ConvergesAcrossTheWholeWidth)
 {
-    const ElasticLayer rubber{6, 5, 0.49};
+    const belt::ElasticLayer rubber{6, 5, 0.49};
     const double width = 20, radius = 60;
     const auto pressed = [&](Index cells, auto make) {
         const Eigen::Vector2d cell(16.0 / static_cast<double>(cells), width / static_cast<double>(cells));
         const Eigen::ArrayXd x = (Eigen::ArrayXd::LinSpaced(cells, 1, 2 * double(cells) - 1) - double(cells)) / 2;
         const MatrixXd gap = ((x * cell.x()).square() / 80).matrix().replicate(1, cells);
-        return make(cell).by_force(gap, 200, kTight);
+        return make(cell).solve_by_force(gap, 200, kTightTolerance);
     };
     const auto fem = [&](Index cells) {
         return pressed(cells, [&](const Eigen::Vector2d& cell) {
-            return LayerContact(mesh_of(rubber, radius, width, cell, cells, cells / 8), cells);
+            return belt::LayerContact(belt::layer_mesh(rubber, radius, width, cell, cells, cells / 8), cells);
         });
     };
-    const Contact coarse = fem(16), middle = fem(32), fine = fem(64);
+    const belt::Contact coarse = fem(16), middle = fem(32), fine = fem(64);
     EXPECT_GT(fine.pressure.col(0).minCoeff(), -1e-12);
     EXPECT_GT(fine.pressure.col(0).maxCoeff(), 0);
     EXPECT_GE(std::log2((middle.indentation - coarse.indentation) / (fine.indentation - middle.indentation)), 1.7);
     EXPECT_NEAR(middle.pressure.maxCoeff(), fine.pressure.maxCoeff(), 0.01 * fine.pressure.maxCoeff());
-    const Contact edgeless =
-        pressed(64, [&](const Eigen::Vector2d& cell) { return LayerContact(rubber, cell, 64, 64); });
+    const belt::Contact edgeless =
+        pressed(64, [&](const Eigen::Vector2d& cell) { return belt::LayerContact(rubber, cell, 64, 64); });
     EXPECT_LT(edgeless.indentation, 0.8 * fine.indentation);
     EXPECT_GT(edgeless.pressure.maxCoeff(), 2 * fine.pressure.maxCoeff());
 }
 
 /// On a small wheel, under its edge, where nothing is under a corner of the window.
-LayerMesh at_the_edge() { return mesh_of({6, 5, 0.49}, 40, 16, {1, 1}, 16, 4); }
+belt::LayerMesh at_the_edge() { return belt::layer_mesh({6, 5, 0.49}, 40, 16, {1, 1}, 16, 4); }
 
 MatrixXd rough_gap()
 {
@@ -150,38 +150,39 @@ MatrixXd rough_gap()
 // Pressure and gap are not negative, and one of them is 0, at once along the radii and summed up along the middle's.
 TEST(FemContact, IsComplementary)
 {
-    LayerContact contact(at_the_edge(), 16);
-    const FemLayer layer(at_the_edge(), 16);
+    belt::LayerContact contact(at_the_edge(), 16);
+    const belt::FemLayer layer(at_the_edge(), 16);
     const MatrixXd gap = rough_gap();
-    const Contact pressed = contact.by_force(gap, 40, kTight);
+    const belt::Contact pressed = contact.solve_by_force(gap, 40, kTightTolerance);
     ASSERT_TRUE(pressed.converged);
     EXPECT_GE(pressed.pressure.minCoeff(), 0);
     EXPECT_EQ(pressed.pressure.topLeftCorner(9, 3).maxCoeff(), 0);
-    EXPECT_GT(pressed.pressure.col(15).maxCoeff(), 0);                                   // the edge is in it
-    EXPECT_NEAR((pressed.pressure.array().colwise() * layer.upright()).sum(), 40, 1e-9); // cells of 1 mm²
-    const double most = kTight * pressed.pressure.maxCoeff() * (pressed.indentation - gap.minCoeff());
-    const MatrixXd left = contact.gap_left(gap, pressed);
-    EXPECT_LE((pressed.pressure.array() > 0).select(pressed.pressure.array() * left.array(), 0).maxCoeff(), most);
-    const MatrixXd open =
-        gap + layer.displacement(pressed.pressure) - pressed.indentation * layer.upright().matrix().replicate(1, 16);
-    EXPECT_GE(open.minCoeff(), -2 * kTight * (pressed.indentation - gap.minCoeff()));
-    EXPECT_NEAR(contact.by_depth(gap, pressed.indentation, kTight).force, 40, 1e-5);
-    EXPECT_EQ(contact.by_depth(gap, gap.minCoeff() - 1, kTight).force, 0);
-    const Contact again = contact.by_force(gap, 40, kTight, contact.by_force(gap, 10, 1e-3).pressure);
+    EXPECT_GT(pressed.pressure.col(15).maxCoeff(), 0);                                        // the edge is in it
+    EXPECT_NEAR((pressed.pressure.array().colwise() * layer.tilt_cosines()).sum(), 40, 1e-9); // cells of 1 mm²
+    const double max = kTightTolerance * pressed.pressure.maxCoeff() * (pressed.indentation - gap.minCoeff());
+    const MatrixXd left = contact.residual_gap(gap, pressed);
+    EXPECT_LE((pressed.pressure.array() > 0).select(pressed.pressure.array() * left.array(), 0).maxCoeff(), max);
+    const MatrixXd open = gap + layer.displacement(pressed.pressure) -
+                          pressed.indentation * layer.tilt_cosines().matrix().replicate(1, 16);
+    EXPECT_GE(open.minCoeff(), -2 * kTightTolerance * (pressed.indentation - gap.minCoeff()));
+    EXPECT_NEAR(contact.solve_by_indentation(gap, pressed.indentation, kTightTolerance).force, 40, 1e-5);
+    EXPECT_EQ(contact.solve_by_indentation(gap, gap.minCoeff() - 1, kTightTolerance).force, 0);
+    const belt::Contact again =
+        contact.solve_by_force(gap, 40, kTightTolerance, contact.solve_by_force(gap, 10, 1e-3).pressure);
     EXPECT_LE((again.pressure - pressed.pressure).cwiseAbs().maxCoeff(), 1e-5 * pressed.pressure.maxCoeff());
 }
 
-// The same by a method that has nothing in common: an active set, eliminated anew until it stays (Hintermüller, Ito and
+// Reference: an independent method, an active set, eliminated again until it no longer changes (Hintermüller, Ito and
 // Kunisch 2003).
 TEST(FemContact, IsTheActiveSets)
 {
-    LayerContact contact(at_the_edge(), 16);
-    const FemLayer layer(at_the_edge(), 16);
+    belt::LayerContact contact(at_the_edge(), 16);
+    const belt::FemLayer layer(at_the_edge(), 16);
     const MatrixXd gap = rough_gap();
     const double depth = gap.minCoeff() + 0.8;
     MatrixXd S(256, 256);
     for (Index k = 0; k < 256; ++k) S.col(k) = layer.displacement(VectorXd::Unit(256, k).reshaped(16, 16)).reshaped();
-    const VectorXd wanted = (depth * layer.upright().matrix().replicate(1, 16) - gap).reshaped();
+    const VectorXd wanted = (depth * layer.tilt_cosines().matrix().replicate(1, 16) - gap).reshaped();
     VectorXd pressure = VectorXd::Zero(256);
     std::vector<Index> active, before;
     for (Index k = 0; k < 256; ++k)
@@ -197,16 +198,16 @@ TEST(FemContact, IsTheActiveSets)
             if (pressure[k] > 0 || (pressure[k] == 0 && cross[k] > 0)) active.push_back(k);
     }
     ASSERT_EQ(active, before);
-    const Contact found = contact.by_depth(gap, depth, kTight);
+    const belt::Contact found = contact.solve_by_indentation(gap, depth, kTightTolerance);
     EXPECT_LE((found.pressure.reshaped() - pressure).cwiseAbs().maxCoeff(), 1e-5 * pressure.maxCoeff());
 }
 
 /// Surfels of a blade's skin, radii along x and y, as wide as the wheel finds it.
-Surfels blade(double radius_x, double radius_y)
+belt::Surfels blade(double radius_x, double radius_y)
 {
     constexpr Index kSide = 121;
     constexpr double kSpacing = 0.5;
-    Surfels surfels;
+    belt::Surfels surfels;
     surfels.position.resize(3, kSide * kSide);
     surfels.normal.resize(3, kSide * kSide);
     for (Index i = 0; i < kSide; ++i)
@@ -226,26 +227,26 @@ Surfels blade(double radius_x, double radius_y)
 // blade's edge under the wheel, its back, and a hollow.
 TEST(FemContact, AgreesWithTheFourierLayerOnABlade)
 {
-    ContactWheel wheel;
+    belt::ContactWheel wheel;
     wheel.radius = 100;
     wheel.width = 200;
     for (const auto& [radius_x, radius_y] : {std::pair(20, 300), std::pair(300, 20), std::pair(-400, 60)})
         for (const double poisson : {0.3, 0.49}) {
             wheel.layer = {10, 5, poisson};
-            const Surfels surfels = blade(radius_x, radius_y);
-            PressOptions options;
-            WheelPress layer(surfels, wheel, options);
-            options.solver = LayerSolver::fem;
-            WheelPress fem(surfels, wheel, options);
-            const Press& one = layer.at(Eigen::Isometry3d::Identity(), {true, 60});
-            const Press& other = fem.at(Eigen::Isometry3d::Identity(), {true, 60});
+            const belt::Surfels surfels = blade(radius_x, radius_y);
+            belt::WheelContactOptions options;
+            belt::WheelContactSolver layer(surfels, wheel, options);
+            options.solver = belt::LayerSolver::fem;
+            belt::WheelContactSolver fem(surfels, wheel, options);
+            const belt::WheelContact& one = layer.solve(Eigen::Isometry3d::Identity(), {true, 60});
+            const belt::WheelContact& other = fem.solve(Eigen::Isometry3d::Identity(), {true, 60});
             EXPECT_NEAR(other.contact.indentation, one.contact.indentation, 0.03 * one.contact.indentation);
             EXPECT_NEAR(other.contact.pressure.maxCoeff(), one.contact.pressure.maxCoeff(),
                         0.03 * one.contact.pressure.maxCoeff());
             EXPECT_FALSE(other.is_near_edge);
             EXPECT_EQ(other.arc_radius, 100);
             // The contact lies where the layer's does: on the blade.
-            const Cloud cloud = to_cloud(other, fem.gap_left(), Eigen::Isometry3d::Identity());
+            const cloud::Cloud cloud = belt::to_cloud(other, fem.residual_gap(), Eigen::Isometry3d::Identity());
             const Eigen::ArrayXd x = cloud.xyz.row(0), y = cloud.xyz.row(1), z = cloud.xyz.row(2);
             const double off = (z + x.square() / (2 * radius_x) + y.square() / (2 * radius_y)).abs().maxCoeff();
             EXPECT_LE(off, 0.02);
@@ -255,23 +256,23 @@ TEST(FemContact, AgreesWithTheFourierLayerOnABlade)
 // A path that goes on from where it was left finds the elements' grid again.
 TEST(FemContact, GoesOnFromWhatItRemembers)
 {
-    ContactWheel wheel;
+    belt::ContactWheel wheel;
     wheel.radius = 60;
     wheel.width = 40;
     wheel.layer = {6, 5, 0.49};
-    const Surfels surfels = blade(100, 60);
-    PressOptions options;
-    options.solver = LayerSolver::fem;
-    options.cells = 24;
+    const belt::Surfels surfels = blade(100, 60);
+    belt::WheelContactOptions options;
+    options.solver = belt::LayerSolver::fem;
+    options.cells_per_side = 24;
     options.elements = 4;
-    WheelPress one(surfels, wheel, options), other(surfels, wheel, options);
+    belt::WheelContactSolver one(surfels, wheel, options), other(surfels, wheel, options);
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-    EXPECT_NEAR(one.at(pose, {true, 20}).contact.force, 20, 1e-9);
-    other.remember(one.memory());
+    EXPECT_NEAR(one.solve(pose, {true, 20}).contact.force, 20, 1e-9);
+    other.restore(one.state());
     pose.rotate(Eigen::AngleAxisd(0.01, Vector3d::UnitX()));
-    const MatrixXd expected = one.at(pose, {true, 21}).contact.pressure;
-    EXPECT_EQ(other.at(pose, {true, 21}).contact.pressure, expected);
-    EXPECT_EQ(other.at(pose, {true, 21}).arc_radius, 60);
+    const MatrixXd expected = one.solve(pose, {true, 21}).contact.pressure;
+    EXPECT_EQ(other.solve(pose, {true, 21}).contact.pressure, expected);
+    EXPECT_EQ(other.solve(pose, {true, 21}).arc_radius, 60);
 }
 
 TEST(FemContact, DoesNotDependOnTheThreads)
@@ -280,7 +281,7 @@ TEST(FemContact, DoesNotDependOnTheThreads)
     std::vector<MatrixXd> displacements;
     for (const std::size_t threads : {1, 2}) {
         const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-        displacements.push_back(FemLayer(at_the_edge(), 16).displacement(pressure));
+        displacements.push_back(belt::FemLayer(at_the_edge(), 16).displacement(pressure));
     }
     EXPECT_EQ(displacements[0], displacements[1]);
 }

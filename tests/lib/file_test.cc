@@ -1,5 +1,7 @@
+#include "core/content.h"
 #include "core/error.h"
 #include "core/file.h"
+#include "core/wrong_kind.h"
 #include "own_folder.h"
 
 #include <gtest/gtest.h>
@@ -26,38 +28,38 @@ TEST_F(Files, AppearWholeOrNotAtAll)
 {
     const std::string text = "a line\n" + std::string(100000, 'x');
     {
-        OutputFile file("a");
+        core::OutputFile file("a");
         file.stream() << "half";
         EXPECT_FALSE(fs::exists("a"));
     }
     EXPECT_EQ(files(), 0u);
     std::ofstream("a") << "old";
     {
-        OutputFile file("a");
+        core::OutputFile file("a");
         file.stream() << text;
-        EXPECT_EQ(read_whole("a"), "old");
+        EXPECT_EQ(core::read_file("a"), "old");
         file.commit();
     }
-    EXPECT_EQ(read_whole("a"), text);
+    EXPECT_EQ(core::read_file("a"), text);
     EXPECT_EQ(files(), 1u);
 }
 
-// JSON is read whatever the length of its lines, and so is what is no text.
+// JSON is read with lines of any length, and so are binary files.
 TEST_F(Files, WithAFirstLineThatNoneOfOursHasAreNotRead)
 {
     constexpr std::size_t kLongest = 1 << 16;
     const auto write = [](const std::string& bytes) { std::ofstream("a", std::ios::binary) << bytes; };
     for (const std::string begin : {"x", "\t", "\xef\xbb\xbf#"}) {
         write(begin + std::string(kLongest, 'x'));
-        EXPECT_THROW(read_whole("a"), InputError) << begin;
-        EXPECT_THROW(InputFile("a"), InputError) << begin;
+        EXPECT_THROW(core::read_file("a"), core::InputError) << begin;
+        EXPECT_THROW(core::InputFile("a"), core::InputError) << begin;
     }
     using namespace std::string_literals;
     for (const std::string& begin : {""s, "\n"s, " {"s, "\xef\xbb\xbf["s, "\0"s}) {
         const std::string bytes = begin + std::string(kLongest, 'x');
         write(bytes);
-        EXPECT_EQ(read_whole("a"), bytes);
-        EXPECT_EQ(InputFile("a").size(), bytes.size());
+        EXPECT_EQ(core::read_file("a"), bytes);
+        EXPECT_EQ(core::InputFile("a").size(), bytes.size());
     }
 }
 
@@ -65,7 +67,7 @@ TEST_F(Files, KeepTheirPermissions)
 {
     std::ofstream("a") << "old";
     chmod("a", 0640);
-    OutputFile file("a");
+    core::OutputFile file("a");
     file.commit();
     struct stat status = {};
     ASSERT_EQ(stat("a", &status), 0);
@@ -77,17 +79,17 @@ TEST_F(Files, LinksStayAndWhatTheyNameIsReplaced)
     fs::create_directory("there");
     std::ofstream("there/b") << "old";
     fs::create_symlink("there/b", "a");
-    OutputFile file("a");
+    core::OutputFile file("a");
     file.stream() << "new";
     file.commit();
     EXPECT_TRUE(fs::is_symlink("a"));
-    EXPECT_EQ(read_whole("there/b"), "new");
+    EXPECT_EQ(core::read_file("there/b"), "new");
     EXPECT_EQ(files(), 2u);
 }
 
 TEST_F(Files, AreNotThereBeforeTheyAreWhole)
 {
-    OutputFile file("a");
+    core::OutputFile file("a");
     file.stream() << std::string(3000000, 'x');
     EXPECT_EQ(files(), 0u); // not under another name either: the program may be stopped
     file.commit();
@@ -99,9 +101,9 @@ TEST_F(Files, PipesGetAllAtTheEnd)
     ASSERT_EQ(mkfifo("pipe", 0600), 0);
     const std::string sent = '\n' + std::string(3000000, 'y');
     std::string got;
-    std::thread reader([&got] { got = read_whole("pipe"); });
+    std::thread reader([&got] { got = core::read_file("pipe"); });
     {
-        OutputFile pipe("pipe");
+        core::OutputFile pipe("pipe");
         pipe.stream() << sent;
         pipe.commit();
     }
@@ -113,34 +115,34 @@ TEST_F(Files, AreTheSameByWhateverName)
 {
     std::ofstream("a") << "x";
     fs::create_symlink("a", "b");
-    EXPECT_TRUE(same_file("a", "./a"));
-    EXPECT_TRUE(same_file("a", "b"));
-    EXPECT_TRUE(same_file("absent", "./absent"));
-    EXPECT_TRUE(same_file("absent", fs::absolute("absent")));
-    EXPECT_TRUE(same_file("-", "-"));
-    EXPECT_FALSE(same_file("a", "absent"));
-    EXPECT_FALSE(same_file("-", "./-"));
+    EXPECT_TRUE(core::same_file("a", "./a"));
+    EXPECT_TRUE(core::same_file("a", "b"));
+    EXPECT_TRUE(core::same_file("absent", "./absent"));
+    EXPECT_TRUE(core::same_file("absent", fs::absolute("absent")));
+    EXPECT_TRUE(core::same_file("-", "-"));
+    EXPECT_FALSE(core::same_file("a", "absent"));
+    EXPECT_FALSE(core::same_file("-", "./-"));
 }
 
 TEST_F(Files, FailedWritesAreErrors)
 {
-    EXPECT_THROW(OutputFile("no/where"), InputError);
-    EXPECT_THROW(OutputFile("."), InputError);
-    EXPECT_THROW(OutputFile(""), InputError);
-    OutputFile full("/dev/full");
+    EXPECT_THROW(core::OutputFile("no/where"), core::InputError);
+    EXPECT_THROW(core::OutputFile("."), core::InputError);
+    EXPECT_THROW(core::OutputFile(""), core::InputError);
+    core::OutputFile full("/dev/full");
     full.stream() << "x";
-    EXPECT_THROW(full.commit(), InputError);
-    OutputFile nothing("/dev/null");
+    EXPECT_THROW(full.commit(), core::InputError);
+    core::OutputFile nothing("/dev/null");
     nothing.stream() << "x";
     nothing.commit();
 }
 
-TEST_F(Files, AreGoneWhenTheyCannotBeNamed)
+TEST_F(Files, AreRemovedWhenTheyCannotBeNamed)
 {
-    OutputFile file("a");
+    core::OutputFile file("a");
     file.stream() << "x";
     fs::create_directory("a");
-    EXPECT_THROW(file.commit(), InputError);
+    EXPECT_THROW(file.commit(), core::InputError);
     EXPECT_TRUE(fs::is_directory("a"));
     EXPECT_EQ(files(), 1u);
 }
@@ -153,14 +155,14 @@ TEST_F(Files, AreCopiedWhereTheyCannotBeNamed)
     if (stat(".", &here) != 0 || stat("/dev/shm", &there) != 0 || here.st_dev == there.st_dev)
         GTEST_SKIP() << "/dev/shm is no other disk";
     fs::create_directory("folder");
-    OutputFile file("folder/a");
+    core::OutputFile file("folder/a");
     const std::string text = "a line\n" + std::string(3000000, 'x');
     file.stream() << text;
     fs::rename("folder", "away");
     fs::create_directory(other);
     fs::create_symlink(other, "folder");
     file.commit();
-    EXPECT_EQ(read_whole("folder/a"), text);
+    EXPECT_EQ(core::read_file("folder/a"), text);
     EXPECT_EQ(std::distance(fs::directory_iterator(other), {}), 1);
     EXPECT_TRUE(fs::is_empty("away"));
     fs::remove_all(other);
@@ -168,18 +170,18 @@ TEST_F(Files, AreCopiedWhereTheyCannotBeNamed)
 
 TEST_F(Files, ReadFromWhatIsNoFile)
 {
-    EXPECT_THROW(read_whole("absent"), InputError);
-    EXPECT_THROW(read_whole("."), InputError);
-    EXPECT_THROW(read_whole(""), InputError);
-    EXPECT_EQ(read_whole("/dev/null"), "");
+    EXPECT_THROW(core::read_file("absent"), core::InputError);
+    EXPECT_THROW(core::read_file("."), core::InputError);
+    EXPECT_THROW(core::read_file(""), core::InputError);
+    EXPECT_EQ(core::read_file("/dev/null"), "");
     ASSERT_EQ(mkfifo("pipe", 0600), 0);
     const std::string sent = '\n' + std::string(3000000, 'y');
     std::thread writer([&sent] { std::ofstream("pipe") << sent; });
-    EXPECT_EQ(read_whole("pipe"), sent);
+    EXPECT_EQ(core::read_file("pipe"), sent);
     writer.join();
 }
 
-std::string part(const InputFile& file, std::size_t offset, std::size_t count)
+std::string part(const core::InputFile& file, std::size_t offset, std::size_t count)
 {
     std::string bytes(count, '\0');
     file.read(offset, bytes.data(), count);
@@ -194,20 +196,46 @@ TEST_F(Files, AreReadAnywhere)
     ASSERT_EQ(mkfifo("pipe", 0600), 0);
     for (const std::size_t size : {std::size_t{0}, std::size_t{100}, sent.size()}) { // nothing, held, copied
         std::thread writer([&] { std::ofstream("pipe") << sent.substr(0, size); });
-        const InputFile pipe("pipe");
+        const core::InputFile pipe("pipe");
         writer.join();
         EXPECT_EQ(pipe.size(), size);
         EXPECT_EQ(part(pipe, 0, size), sent.substr(0, size));
         if (size == 0) continue;
         EXPECT_EQ(part(pipe, size - 50, 50), sent.substr(size - 50, 50));
     }
-    const InputFile whole("whole");
+    const core::InputFile whole("whole");
     EXPECT_EQ(whole.size(), sent.size());
     EXPECT_EQ(part(whole, 2000000, 1000), sent.substr(2000000, 1000));
     fs::resize_file("whole", 1000);
-    EXPECT_THROW(part(whole, 2000000, 1000), InputError);
-    EXPECT_THROW(InputFile("absent"), InputError);
-    EXPECT_THROW(InputFile("."), InputError);
+    EXPECT_THROW(part(whole, 2000000, 1000), core::InputError);
+    EXPECT_THROW(core::InputFile("absent"), core::InputError);
+    EXPECT_THROW(core::InputFile("."), core::InputError);
+}
+
+// Known by their first bytes, whatever their case; a binary STL by its size.
+TEST(Content, IsNamed)
+{
+    using namespace std::string_literals;
+    const auto name = [](const std::string& bytes) { return core::describe_content(bytes).value_or("text"); };
+    EXPECT_EQ(name(""), "empty");
+    EXPECT_EQ(name("\x89PNG\r\n\x1a\n"), "a PNG picture");
+    EXPECT_EQ(name("%PDF-1.7\n"), "a PDF document");
+    EXPECT_EQ(name("\x7f"s + "ELF\2\1\1\0"s), "a program (ELF)");
+    EXPECT_EQ(name("\x1f\x8b\b\0"s), "compressed by gzip");
+    EXPECT_EQ(name("<!doctype HTML>"), "an HTML page");
+    EXPECT_EQ(name("\xff\xfe" + "a\0b\0"s), "text in UTF-16");
+    EXPECT_EQ(name("a\0b\0"s), "text in UTF-16");
+    EXPECT_EQ(name("\0a\0b"s), "text in UTF-16");
+    EXPECT_EQ(name(std::string(50, '\0')), "nothing but zero bytes");
+    EXPECT_EQ(name("\nabc\x01\n"), "binary data of no known format");
+    std::string stl = "\x89PNG\r\n" + std::string(74, ' ') + "\1\0\0\0"s + std::string(50, '\0');
+    EXPECT_EQ(name(stl), "a binary STL mesh");
+    EXPECT_EQ(name(stl + "x"), "a PNG picture");
+    for (const char* text : {"1 2 3\n", "{}", "# .PCD v0.7\n", "ply\r\n", "v 1 2 3\n", "G0 X1\n", "# .PCD v0.7\n\x01",
+                             "\t1\f2\v\x1a", "\xc3\xa4"})
+        EXPECT_EQ(name(text), "text") << text;
+    EXPECT_NO_THROW(core::refuse_other_content("1 2 3", "a", "points"));
+    EXPECT_THROW(core::refuse_other_content("%PDF-", "a", "points"), core::WrongFileType);
 }
 
 } // namespace

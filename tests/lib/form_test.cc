@@ -26,14 +26,14 @@ Eigen::Matrix3Xd five_points()
 // Reference: a published flatness case, least squares 0.0720973, minimum zone 0.0672621.
 TEST(Form, FlatnessOfFivePoints)
 {
-    const Form f = form(FormKind::flatness, five_points());
+    const compare::Form f = compare::evaluate_form(compare::FormKind::flatness, five_points());
     EXPECT_NEAR(f.least_squares.width, 0.0720973, 5e-8);
     EXPECT_NEAR(f.minimum_zone.width, 0.0672621, 5e-8);
     EXPECT_TRUE(f.minimum_zone.converged);
     EXPECT_EQ(f.minimum_zone.contacts.size(), 4U);
 }
 
-// Independent: the width of a body is least across a face or across two edges; so over all triples of points and all
+// Independent: the width of a body is smallest across a face or across two edges; so over all triples of points and all
 // pairs of pairs.
 TEST(Form, FlatnessByBruteForce)
 {
@@ -42,19 +42,19 @@ TEST(Form, FlatnessByBruteForce)
     for (int round = 0; round < 5; ++round) {
         Eigen::Matrix3Xd p = Eigen::Matrix3Xd::NullaryExpr(3, 16, [&] { return place(random); });
         p.row(2) *= 0.05;
-        double least = 1;
-        const auto look = [&](const Eigen::Vector3d& across) {
+        double min = 1;
+        const auto try_direction = [&](const Eigen::Vector3d& across) {
             if (across.norm() < 1e-9) return; // parallel edges
             const Eigen::RowVectorXd d = across.normalized().transpose() * p;
-            least = std::min(least, d.maxCoeff() - d.minCoeff());
+            min = std::min(min, d.maxCoeff() - d.minCoeff());
         };
         for (int a = 0; a < 16; ++a)
             for (int b = 0; b < a; ++b)
                 for (int c = 0; c < 16; ++c)
                     for (int d = 0; d < c; ++d)
-                        look(Eigen::Vector3d(p.col(a) - p.col(b)).cross(Eigen::Vector3d(p.col(c) - p.col(d))));
-        const Form f = form(FormKind::flatness, p);
-        EXPECT_NEAR(f.minimum_zone.width, least, 1e-12);
+                        try_direction(Eigen::Vector3d(p.col(a) - p.col(b)).cross(Eigen::Vector3d(p.col(c) - p.col(d))));
+        const compare::Form f = compare::evaluate_form(compare::FormKind::flatness, p);
+        EXPECT_NEAR(f.minimum_zone.width, min, 1e-12);
         EXPECT_GE(f.least_squares.width, f.minimum_zone.width);
     }
 }
@@ -71,15 +71,15 @@ TEST(Form, StraightnessByBruteForce)
                                       Eigen::Matrix2Xd::NullaryExpr(2, 40, [&] { return place(random); });
         Eigen::Matrix3Xd p = along * flat.row(0) + section.cross(along) * flat.row(1);
         p += section * Eigen::RowVectorXd::NullaryExpr(40, [&] { return place(random); });
-        double least = 1;
+        double min = 1;
         for (int a = 0; a < 40; ++a)
             for (int b = 0; b < a; ++b) {
                 const Eigen::Vector2d edge = (flat.col(a) - flat.col(b)).normalized();
                 const Eigen::RowVectorXd d = Eigen::Vector2d(-edge.y(), edge.x()).transpose() * flat;
-                least = std::min(least, d.maxCoeff() - d.minCoeff());
+                min = std::min(min, d.maxCoeff() - d.minCoeff());
             }
-        const Form f = form(FormKind::straightness, p, section);
-        EXPECT_NEAR(f.minimum_zone.width, least, 1e-12);
+        const compare::Form f = compare::evaluate_form(compare::FormKind::straightness, p, section);
+        EXPECT_NEAR(f.minimum_zone.width, min, 1e-12);
         EXPECT_EQ(f.minimum_zone.contacts.size(), 3U);
         EXPECT_NEAR(f.least_squares.peak + f.least_squares.valley, f.least_squares.width, 1e-12);
         EXPECT_GE(f.least_squares.width, f.minimum_zone.width);
@@ -97,7 +97,7 @@ TEST(Form, OutliersAreLeftOut)
         const double r = 25 + noise(random) + (i % 10 == 3 ? 0.5 : 0);
         p.col(i) << r * std::sin(turn), static_cast<double>(i) / 40, r * std::cos(turn);
     }
-    const std::vector<Eigen::Index> kept = without_outliers(FormKind::cylindricity, p, 6);
+    const std::vector<Eigen::Index> kept = compare::without_outliers(compare::FormKind::cylindricity, p, 6);
     EXPECT_EQ(kept.size(), 1800U);
     for (const Eigen::Index i : kept) EXPECT_NE(i % 10, 3);
 }
@@ -106,12 +106,12 @@ TEST(Form, Sections)
 {
     Eigen::Matrix3Xd p(3, 12);
     for (Eigen::Index i = 0; i < 12; ++i) p.col(i) << static_cast<double>(i % 4), 2.0 * static_cast<double>(i / 4), 5;
-    const std::vector<Section> along_x = vertical_sections(p, 0, 2, 2);
+    const std::vector<compare::Section> along_x = compare::vertical_sections(p, 0, 2, 2);
     ASSERT_EQ(along_x.size(), 3U);
     EXPECT_EQ(along_x[1].offset, 2);
     EXPECT_EQ(along_x[1].points, (std::vector<Eigen::Index>{4, 5, 6, 7}));
-    EXPECT_EQ(vertical_sections(p, std::numbers::pi / 2, 1, 0.5).size(), 4U);
-    EXPECT_THROW(vertical_sections(p, 0, 1e-9, 1e-9), InputError);
+    EXPECT_EQ(compare::vertical_sections(p, std::numbers::pi / 2, 1, 0.5).size(), 4U);
+    EXPECT_THROW(compare::vertical_sections(p, 0, 1e-9, 1e-9), core::InputError);
 }
 
 Eigen::Matrix3Xd bumpy_cylinder()
@@ -129,18 +129,20 @@ Eigen::Matrix3Xd bumpy_cylinder()
 TEST(Form, MinimumZoneHolds)
 {
     const Eigen::Matrix3Xd p = bumpy_cylinder();
-    for (const FormKind kind : {FormKind::cylindricity, FormKind::sphericity, FormKind::flatness}) {
-        const FormZone zone = form(kind, p).minimum_zone;
+    for (const compare::FormKind kind :
+         {compare::FormKind::cylindricity, compare::FormKind::sphericity, compare::FormKind::flatness}) {
+        const compare::FormZone zone = compare::evaluate_form(kind, p).minimum_zone;
         EXPECT_TRUE(zone.converged);
-        const Eigen::VectorXd d = deviations(zone.element, p);
+        const Eigen::VectorXd d = compare::deviations(zone.element, p);
         EXPECT_NEAR(d.cwiseAbs().maxCoeff(), zone.width / 2, 1e-9);
         for (const Eigen::Index i : zone.contacts) EXPECT_NEAR(std::abs(d[i]), zone.width / 2, 1e-9);
-        const FormMotion motion(zone.element, 30);
+        const compare::FormMotion motion(zone.element, 30);
         std::mt19937 random(2);
         std::normal_distribution<double> step(0, 1e-3);
         for (int i = 0; i < 300; ++i) {
-            const FormVector x = FormVector::NullaryExpr(motion.parameters(), [&] { return step(random); });
-            const Eigen::VectorXd moved = deviations(motion.moved(x), p);
+            const compare::FormVector x =
+                compare::FormVector::NullaryExpr(motion.parameter_count(), [&] { return step(random); });
+            const Eigen::VectorXd moved = compare::deviations(motion.apply(x), p);
             EXPECT_GE(moved.maxCoeff() - moved.minCoeff(), zone.width - 1e-9);
         }
     }
@@ -151,7 +153,8 @@ TEST(Form, RigidMotionChangesNothing)
     const Eigen::Matrix3Xd p = bumpy_cylinder();
     const Eigen::Isometry3d motion =
         Eigen::Translation3d(300, -200, 10) * Eigen::AngleAxisd(1, Eigen::Vector3d(1, 2, 3).normalized());
-    const Form here = form(FormKind::cylindricity, p), there = form(FormKind::cylindricity, motion * p);
+    const compare::Form here = compare::evaluate_form(compare::FormKind::cylindricity, p),
+                        there = compare::evaluate_form(compare::FormKind::cylindricity, motion * p);
     EXPECT_NEAR(here.least_squares.width, there.least_squares.width, 1e-9);
     EXPECT_NEAR(here.minimum_zone.width, there.minimum_zone.width, 1e-9);
     EXPECT_NEAR(
@@ -163,17 +166,18 @@ TEST(Form, RigidMotionChangesNothing)
 TEST(Form, Gradients)
 {
     const Eigen::Vector3d point(11, -7, 5);
-    for (const FormKind kind :
-         {FormKind::flatness, FormKind::cylindricity, FormKind::sphericity, FormKind::straightness}) {
-        const FormElement element{
+    for (const compare::FormKind kind : {compare::FormKind::flatness, compare::FormKind::cylindricity,
+                                         compare::FormKind::sphericity, compare::FormKind::straightness}) {
+        const compare::FormElement element{
             kind, {1, 2, 3}, Eigen::Vector3d(1, -1, 2).normalized(), 10, Eigen::Vector3d(1, 1, 0).normalized()};
-        const FormMotion motion(element, 20);
-        const FormVector g = motion.gradient(point);
+        const compare::FormMotion motion(element, 20);
+        const compare::FormVector g = motion.gradient(point);
         for (Eigen::Index k = 0; k < g.size(); ++k) {
             constexpr double kStep = 1e-5; // rounding 1e-15 / 1e-5, truncation (1e-5)²
-            FormVector x = FormVector::Zero(g.size());
+            compare::FormVector x = compare::FormVector::Zero(g.size());
             x[k] = kStep;
-            const double up = deviation(motion.moved(x), point), down = deviation(motion.moved(-x), point);
+            const double up = compare::deviation(motion.apply(x), point),
+                         down = compare::deviation(motion.apply(-x), point);
             EXPECT_NEAR(g[k], (up - down) / (2 * kStep), 1e-8);
         }
     }
@@ -182,10 +186,11 @@ TEST(Form, Gradients)
 TEST(Form, RefusesWhatDoesNotDetermineIt)
 {
     const Eigen::Matrix3Xd line = Eigen::Vector3d(1, 2, 3) * Eigen::RowVectorXd::LinSpaced(10, 0, 1);
-    for (const FormKind kind : {FormKind::flatness, FormKind::cylindricity, FormKind::sphericity}) {
-        EXPECT_THROW(form(kind, line), InputError);
-        EXPECT_THROW(form(kind, line.leftCols(1)), InputError);
-        EXPECT_THROW(form(kind, Eigen::Matrix3Xd(3, 0)), InputError);
+    for (const compare::FormKind kind :
+         {compare::FormKind::flatness, compare::FormKind::cylindricity, compare::FormKind::sphericity}) {
+        EXPECT_THROW(compare::evaluate_form(kind, line), core::InputError);
+        EXPECT_THROW(compare::evaluate_form(kind, line.leftCols(1)), core::InputError);
+        EXPECT_THROW(compare::evaluate_form(kind, Eigen::Matrix3Xd(3, 0)), core::InputError);
     }
 }
 

@@ -11,23 +11,22 @@ namespace fettle {
 
 inline constexpr double kTop = 10; // z of the flat stock
 
-inline Job small_job()
+inline job::Job small_job()
 {
-    Job job;
+    job::Job job;
     job.wheel = {.radius = 25.4, .width = 6.4, .min_radius = 12.7};
     job.force = {.min = 20, .down = 40, .max = 60, .stiffness = 35, .preload = 0};
-    job.removal = 7.4;
+    job.removal_coefficient = 7.4;
     job.safe_height = 30;
     return job;
 }
 
 /// 16 mm along X_w, 140 mm along Y_w. @param height  over W
-inline HeightField stock(const std::function<double(double, double)>& height, double cell = 0.1, double theta = 0,
-                         const Eigen::Vector2d& shift = {0, 0})
+inline removal::HeightField stock(const std::function<double(double, double)>& height, double cell = 0.1,
+                                  double theta = 0, const Eigen::Vector2d& shift = {0, 0})
 {
-    Eigen::Matrix2d box;
-    box << -8, 8, -70, 70;
-    HeightField field = empty_height_field(box.colwise() + shift, {0, 0}, theta, cell);
+    const Eigen::AlignedBox2d box(Eigen::Vector2d(-8, -70), Eigen::Vector2d(8, 70));
+    removal::HeightField field = removal::empty_height_field(box.translated(shift), {0, 0}, theta, cell);
     for (Eigen::Index j = 0; j < field.rows(); ++j)
         for (Eigen::Index i = 0; i < field.columns(); ++i) {
             const Eigen::Vector2d at = field.centre(i, j) - shift;
@@ -36,7 +35,7 @@ inline HeightField stock(const std::function<double(double, double)>& height, do
     return field;
 }
 
-inline HeightField flat(double cell = 0.1)
+inline removal::HeightField flat(double cell = 0.1)
 {
     return stock([](double, double) { return kTop; }, cell);
 }

@@ -14,22 +14,23 @@ using namespace fettle;
 
 namespace {
 
-QuasiStaticOptions no_wear()
+gantry::QuasiStaticOptions no_wear()
 {
-    QuasiStaticOptions options;
+    gantry::QuasiStaticOptions options;
     options.grinding_ratio = 1e15;
     return options;
 }
 
 /// One pass along Y_w at mid-width; returns the status at the end.
-GantryStatus pass(QuasiStaticGantry& gantry, double z, double feed, double from = -40, double to = 40, double x = 0)
+gantry::GantryStatus pass(gantry::QuasiStaticGantry& gantry, double z, double feed, double from = -40, double to = 40,
+                          double x = 0)
 {
     gantry.travel({x, from, z});
     for (double y = from + 0.5; y < to; y += 0.5) gantry.grind({x, y, z}, feed);
     return gantry.grind({x, to, z}, feed);
 }
 
-double middle(const QuasiStaticGantry& gantry)
+double middle(const gantry::QuasiStaticGantry& gantry)
 {
     return gantry.stock().z(gantry.stock().columns() / 2, gantry.stock().rows() / 2);
 }
@@ -40,12 +41,12 @@ TEST(QuasiStatic, SteadyDepthIsTheBalance)
     // (0.2 mm)² / 8R = 2e-4 mm.
     for (const double preload : {0.0, 5.0})
         for (const double depth : {0.4, 1.0}) {
-            Job job = small_job();
+            job::Job job = small_job();
             job.force.preload = preload;
             job.force.max = 1e9;
-            QuasiStaticGantry gantry(flat(), job, no_wear());
-            const double v = 25.4, w = 6.4, c = job.removal, k = job.force.stiffness;
-            const GantryStatus end = pass(gantry, kTop - depth, v);
+            gantry::QuasiStaticGantry gantry(flat(), job, no_wear());
+            const double v = 25.4, w = 6.4, c = job.removal_coefficient, k = job.force.stiffness;
+            const gantry::GantryStatus end = pass(gantry, kTop - depth, v);
             const double t = c * (preload + k * depth) / (v * w + c * k);
             EXPECT_NEAR(kTop - middle(gantry), t, 3e-4);
             EXPECT_NEAR(end.force, preload + k * (depth - t), 0.005 * end.force);
@@ -56,15 +57,16 @@ TEST(QuasiStatic, SteadyDepthIsTheBalance)
 TEST(QuasiStatic, PositionLimitLeavesTheCommandedPlane)
 {
     // At the stop the force is what the depth takes: F = t v w / c, in proportion to depth and feed, up to the preload.
-    Job job = small_job();
+    job::Job job = small_job();
     job.force.preload = 100;
     job.force.max = 1e9;
     for (const double depth : {0.1, 0.4})
         for (const double feed : {10.0, 50.0}) {
-            QuasiStaticGantry gantry(flat(), job, no_wear());
-            const GantryStatus end = pass(gantry, kTop - depth, feed);
+            gantry::QuasiStaticGantry gantry(flat(), job, no_wear());
+            const gantry::GantryStatus end = pass(gantry, kTop - depth, feed);
             EXPECT_EQ(end.deflection, 0);
-            EXPECT_NEAR(end.force, depth * feed * 6.4 / job.removal, 0.01 * end.force); // rows come one by one
+            EXPECT_NEAR(end.force, depth * feed * 6.4 / job.removal_coefficient,
+                        0.01 * end.force); // rows come one by one
             const auto ground = gantry.stock().z.block(60, 350, 40, 700);
             EXPECT_GE(ground.minCoeff(), kTop - depth - 1e-12);
             EXPECT_LE(ground.maxCoeff(), kTop - depth + 3e-4);
@@ -74,30 +76,30 @@ TEST(QuasiStatic, PositionLimitLeavesTheCommandedPlane)
 TEST(QuasiStatic, VolumeIsForceTimesTime)
 {
     // Removed volume = Σ c F dt over every sub-step = integrated depth. Steps of one sub-step show each force.
-    Job job = small_job();
+    job::Job job = small_job();
     job.force.preload = 3;
-    const HeightField before = stock(hills);
-    QuasiStaticGantry gantry(before, job);
+    const removal::HeightField before = stock(hills);
+    gantry::QuasiStaticGantry gantry(before, job);
     gantry.travel({0, -50, 10});
     const double already = gantry.totals().removed_volume;
     EXPECT_EQ(already, 0);
     double impulse = 0;
     for (double y = -49.8; y < 50; y += 0.2) {
         const double t = gantry.status().time;
-        const GantryStatus status = gantry.grind({0, y, 8.3}, 25.4);
+        const gantry::GantryStatus status = gantry.grind({0, y, 8.3}, 25.4);
         impulse += status.force * (status.time - t);
     }
     const double volume = gantry.totals().removed_volume;
     EXPECT_GT(volume, 100);
-    EXPECT_NEAR(volume, job.removal * impulse, 1e-9 * volume);
-    EXPECT_NEAR(volume, volume_between(before, gantry.stock()), 1e-9 * volume);
+    EXPECT_NEAR(volume, job.removal_coefficient * impulse, 1e-9 * volume);
+    EXPECT_NEAR(volume, removal::volume_between(before, gantry.stock()), 1e-9 * volume);
 }
 
 TEST(QuasiStatic, NoContactNoForce)
 {
-    const HeightField before = flat();
-    QuasiStaticGantry gantry(before, small_job());
-    const GantryStatus end = pass(gantry, kTop + 0.001, 25.4);
+    const removal::HeightField before = flat();
+    gantry::QuasiStaticGantry gantry(before, small_job());
+    const gantry::GantryStatus end = pass(gantry, kTop + 0.001, 25.4);
     EXPECT_EQ(end.force, 0);
     EXPECT_EQ(end.deflection, 0);
     EXPECT_EQ(gantry.totals().removed_volume, 0);
@@ -106,9 +108,9 @@ TEST(QuasiStatic, NoContactNoForce)
 
 TEST(QuasiStatic, GrindsOnlyUnderItsWheel)
 {
-    Job job = small_job();
+    job::Job job = small_job();
     job.force.max = 1e9;
-    QuasiStaticGantry gantry(flat(), job);
+    gantry::QuasiStaticGantry gantry(flat(), job);
     pass(gantry, kTop - 1, 25.4, -20, 20, 2);
     const double reach = std::sqrt(2 * 25.4 * 1);
     for (Eigen::Index j = 0; j < gantry.stock().rows(); ++j)
@@ -123,11 +125,11 @@ TEST(QuasiStatic, WallRaisesTheForceAtOnce)
 {
     // A step of 3 mm across the path: within one strategy step against it the peak shows more than the end of the step.
     const auto step = [](double, double y) { return y < 0 ? kTop - 3 : kTop; };
-    QuasiStaticGantry gantry(stock(step), small_job(), no_wear());
+    gantry::QuasiStaticGantry gantry(stock(step), small_job(), no_wear());
     gantry.travel({0, -30, kTop - 2.9});
     double highest = 0;
     for (double y = -29.5; y < 5; y += 0.5) {
-        const GantryStatus status = gantry.grind({0, y, kTop - 2.9}, 25.4);
+        const gantry::GantryStatus status = gantry.grind({0, y, kTop - 2.9}, 25.4);
         EXPECT_GE(status.peak_force, status.force);
         if (y < -std::sqrt(2 * 25.4 * 2.9 - 2.9 * 2.9)) {
             EXPECT_EQ(status.peak_force, 0) << y;
@@ -142,7 +144,7 @@ TEST(QuasiStatic, HalvingCellAndSubstepHalvesTheError)
     // First order: the force of a sub-step is that of its end. From 0.8 mm sub-steps of 0.4 mm cells downwards.
     std::vector<double> peak, height;
     for (const double cell : {0.4, 0.2, 0.1, 0.05}) {
-        QuasiStaticGantry gantry(stock(hills, cell), small_job(), no_wear());
+        gantry::QuasiStaticGantry gantry(stock(hills, cell), small_job(), no_wear());
         gantry.travel({0, -40, 8.5});
         double highest = 0;
         for (int n = 1; n <= 100; ++n)
@@ -162,11 +164,11 @@ TEST(QuasiStatic, HalvingCellAndSubstepHalvesTheError)
 TEST(QuasiStatic, TranslationAndRotationChangeNothing)
 {
     const auto run = [](double theta, const Eigen::Vector2d& shift, double lift) {
-        Job job = small_job();
+        job::Job job = small_job();
         job.theta = theta;
         job.safe_height += lift;
         const auto raised = [&](double x, double y) { return hills(x, y) + lift; };
-        QuasiStaticGantry gantry(stock(raised, 0.2, theta, shift), job);
+        gantry::QuasiStaticGantry gantry(stock(raised, 0.2, theta, shift), job);
         const auto to_machine = [&](double x, double y, double z) {
             const Eigen::Vector2d at = Eigen::Rotation2Dd(theta) * (Eigen::Vector2d(x, y) + shift);
             return Eigen::Vector3d(at.x(), at.y(), z + lift);
@@ -188,19 +190,19 @@ TEST(QuasiStatic, TranslationAndRotationChangeNothing)
 TEST(QuasiStatic, FeedAlongTheAxisToo)
 {
     // The wheel moved along its axis meets a wall of the same height: in steady state F v-proportional as along Y_w.
-    Job job = small_job();
+    job::Job job = small_job();
     job.force.preload = 100;
     job.force.max = 1e9;
     const auto half = [](double x, double) { return x < -4 ? kTop - 0.3 : kTop; };
-    QuasiStaticGantry gantry(stock(half), job, no_wear());
+    gantry::QuasiStaticGantry gantry(stock(half), job, no_wear());
     gantry.travel({-7.5, 0, kTop - 0.2});
     const double y_reach = std::sqrt(2 * 25.4 * 0.2 - 0.04);
     const double segment = 25.4 * 25.4 * std::acos(1 - 0.2 / 25.4) - (25.4 - 0.2) * y_reach;
-    GantryStatus status;
+    gantry::GantryStatus status;
     for (int n = 1; n <= 25; ++n) {
         status = gantry.grind({-7.5 + 0.37 * n, 0, kTop - 0.2}, 20); // cells and steps have nothing in common
         if (n < 10) continue;
-        EXPECT_NEAR(status.force, segment * 20 / job.removal, 0.005 * status.force);
+        EXPECT_NEAR(status.force, segment * 20 / job.removal_coefficient, 0.005 * status.force);
         EXPECT_NEAR(status.peak_force, status.force, 0.005 * status.force);
     }
     // but for the sub-step that the next one would make up for
@@ -210,11 +212,11 @@ TEST(QuasiStatic, FeedAlongTheAxisToo)
 
 TEST(QuasiStatic, WheelWearsByTheGrindingRatio)
 {
-    Job job = small_job();
+    job::Job job = small_job();
     job.force.max = 1e9;
-    QuasiStaticOptions options;
+    gantry::QuasiStaticOptions options;
     options.grinding_ratio = 5;
-    QuasiStaticGantry gantry(flat(), job, options);
+    gantry::QuasiStaticGantry gantry(flat(), job, options);
     pass(gantry, kTop - 1, 25.4);
     const double lost = gantry.totals().removed_volume / 5;
     const double r = gantry.true_radius();
@@ -228,24 +230,24 @@ TEST(QuasiStatic, WheelWearsByTheGrindingRatio)
     EXPECT_EQ(gantry.true_radius(), 25.4);
 
     options.grinding_ratio = 1e-3;
-    QuasiStaticGantry soft(flat(), job, options);
+    gantry::QuasiStaticGantry soft(flat(), job, options);
     const auto grind_on = [&] {
         for (int n = 0; n < 1000; ++n) {
             soft.touch_off(); // else a wheel that has lost the depth touches no more
             pass(soft, kTop - 1, 25.4, -2, 2);
         }
     };
-    EXPECT_THROW(grind_on(), InputError);
+    EXPECT_THROW(grind_on(), core::InputError);
 }
 
 TEST(QuasiStatic, WornWheelGrindsTooHighUntilTouchOff)
 {
-    Job job = small_job();
+    job::Job job = small_job();
     job.force.preload = 1000; // position decides
     job.force.max = 1e9;
-    QuasiStaticOptions options;
+    gantry::QuasiStaticOptions options;
     options.grinding_ratio = 2;
-    QuasiStaticGantry gantry(flat(), job, options);
+    gantry::QuasiStaticGantry gantry(flat(), job, options);
     pass(gantry, kTop - 0.5, 25.4);
     const double loss = 25.4 - gantry.true_radius();
     ASSERT_GT(loss, 0.05);
@@ -258,8 +260,8 @@ TEST(QuasiStatic, WornWheelGrindsTooHighUntilTouchOff)
 
 TEST(QuasiStatic, TimeIsTheSumOfItsParts)
 {
-    QuasiStaticOptions options;
-    QuasiStaticGantry gantry(flat(), small_job(), options);
+    gantry::QuasiStaticOptions options;
+    gantry::QuasiStaticGantry gantry(flat(), small_job(), options);
     EXPECT_NEAR((gantry.status().commanded - Eigen::Vector3d(0, 0, 30)).norm(), 0, 1e-12);
     EXPECT_NEAR(gantry.travel({3, -4, 20}).time, 5 / 100. + 10 / 50., 1e-12);
     EXPECT_NEAR(gantry.travel({3, 6, 20}).time, 5 / 100. + 10 / 50. + 2 * 10 / 50. + 10 / 100., 1e-12);
@@ -268,27 +270,27 @@ TEST(QuasiStatic, TimeIsTheSumOfItsParts)
     EXPECT_NEAR(gantry.lift(25).time, travelled + 0.6, 1e-12);
     gantry.touch_off();
     gantry.change_wheel();
-    const GrindTotals& totals = gantry.totals();
+    const gantry::GrindTotals& totals = gantry.totals();
     EXPECT_NEAR(totals.service_time, options.touch_off_time + options.wheel_change_time, 1e-12);
     EXPECT_NEAR(totals.grinding_time, 0.5, 1e-12);
     EXPECT_NEAR(totals.grinding_length, 4, 1e-12);
     EXPECT_NEAR(gantry.status().time, totals.grinding_time + totals.travel_time + totals.service_time, 1e-12);
     EXPECT_EQ(gantry.status().commanded.z(), 30);
-    EXPECT_THROW(gantry.grind({0, 0, 20}, 0), InputError);
+    EXPECT_THROW(gantry.grind({0, 0, 20}, 0), core::InputError);
     options.rapid = std::nan("");
-    EXPECT_THROW(QuasiStaticGantry(flat(), small_job(), options), InputError);
+    EXPECT_THROW(gantry::QuasiStaticGantry(flat(), small_job(), options), core::InputError);
 }
 
 TEST(QuasiStatic, TheWayDownIsGuarded)
 {
     // 5 mm into the stock would take 175 N; the drives stop at F_max = 60 N, a sub-step late at most.
-    QuasiStaticGantry gantry(flat(), small_job());
-    const GantryStatus status = gantry.travel({0, 0, kTop - 5});
+    gantry::QuasiStaticGantry gantry(flat(), small_job());
+    const gantry::GantryStatus status = gantry.travel({0, 0, kTop - 5});
     EXPECT_GE(status.force, 60);
     EXPECT_LE(status.force, 60 + 35 * 0.2);
     EXPECT_GT(status.commanded.z(), kTop - 5);
     EXPECT_NEAR(status.force, 35 * status.deflection, 1e-9);
-    const GantryStatus up = gantry.lift(kTop + 1);
+    const gantry::GantryStatus up = gantry.lift(kTop + 1);
     EXPECT_EQ(up.force, 0);
     EXPECT_EQ(up.deflection, 0);
     EXPECT_GE(up.peak_force, 60);

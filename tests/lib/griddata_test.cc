@@ -49,15 +49,15 @@ TEST(Griddata, agrees_with_scipy)
     const Eigen::MatrixXd values = table("griddata-values.txt", 4);
     ASSERT_EQ(points.cols(), 24);
     ASSERT_EQ(values.cols(), 80);
-    const Griddata once = make_griddata(points, 0, 0), twice = make_griddata(points, 9, 0);
+    const surface::Griddata once = surface::make_griddata(points, 0, 0), twice = surface::make_griddata(points, 9, 0);
     int inside = 0;
     for (Eigen::Index i = 0; i < values.cols(); ++i) {
         const Eigen::Vector2d xy = values.col(i).head<2>();
-        ASSERT_EQ(std::isnan(height(once, xy)), std::isnan(values(2, i))) << xy.transpose();
+        ASSERT_EQ(std::isnan(surface::height(once, xy)), std::isnan(values(2, i))) << xy.transpose();
         if (std::isnan(values(2, i))) continue;
         ++inside;
-        EXPECT_NEAR(height(once, xy), values(2, i), 1e-11);
-        EXPECT_NEAR(height(twice, xy), values(3, i), 1e-4); // the reference's grid is sheared by 1e-7 of 100
+        EXPECT_NEAR(surface::height(once, xy), values(2, i), 1e-11);
+        EXPECT_NEAR(surface::height(twice, xy), values(3, i), 1e-4); // the reference's grid is sheared by 1e-7 of 100
     }
     EXPECT_GT(inside, 40);
 }
@@ -67,9 +67,9 @@ TEST(Griddata, reproduces_planes)
     Eigen::Matrix3Xd points = scattered(30, 80);
     points.row(2) = (0.3 * points.row(0) - 0.7 * points.row(1)).array() + 12;
     for (const double spacing : {0.0, 7.0}) {
-        const Griddata surface = make_griddata(points, spacing, 0.4);
+        const surface::Griddata surface = surface::make_griddata(points, spacing, 0.4);
         for (const Eigen::Vector2d& xy : {Eigen::Vector2d(40, 40), Eigen::Vector2d(23.5, 51), Eigen::Vector2d(61, 33)})
-            EXPECT_NEAR(height(surface, xy), 0.3 * xy.x() - 0.7 * xy.y() + 12, 1e-10);
+            EXPECT_NEAR(surface::height(surface, xy), 0.3 * xy.x() - 0.7 * xy.y() + 12, 1e-10);
     }
 }
 
@@ -78,33 +78,35 @@ TEST(Griddata, has_the_normal_of_a_plane)
 {
     Eigen::Matrix3Xd points(3, 25);
     for (int i = 0; i < 25; ++i) points.col(i) << 3 * (i % 5), 2 * (i / 5), 1 + 1.5 * (i % 5) - 0.5 * (i / 5);
-    Surface surface;
-    surface.shape = make_griddata(points, 0, 0);
+    surface::Surface surface;
+    surface.shape = surface::make_griddata(points, 0, 0);
     for (const Eigen::Vector2d& xy :
          {Eigen::Vector2d(5, 3), Eigen::Vector2d(0, 0), Eigen::Vector2d(12, 8), Eigen::Vector2d(0, 8)})
-        EXPECT_LT((normal(surface, xy) - Eigen::Vector3d(-0.5, 0.25, 1).normalized()).norm(), 1e-9) << xy.transpose();
+        EXPECT_LT((surface::normal(surface, xy) - Eigen::Vector3d(-0.5, 0.25, 1).normalized()).norm(), 1e-9)
+            << xy.transpose();
 }
 
 TEST(Griddata, goes_through_the_points_when_interpolated_once)
 {
     const Eigen::Matrix3Xd points = scattered(30, 80);
-    const Griddata surface = make_griddata(points, 0, 0);
+    const surface::Griddata surface = surface::make_griddata(points, 0, 0);
     for (Eigen::Index i = 0; i < points.cols(); ++i)
-        EXPECT_NEAR(height(surface, points.col(i).head<2>()), points(2, i), 1e-9);
+        EXPECT_NEAR(surface::height(surface, points.col(i).head<2>()), points(2, i), 1e-9);
 }
 
 TEST(Griddata, gradient_is_the_weight_of_each_point)
 {
     const Eigen::Matrix3Xd points = scattered(20, 80);
     for (const double spacing : {0.0, 9.0}) {
-        const Griddata surface = make_griddata(points, spacing, 0.2);
+        const surface::Griddata surface = surface::make_griddata(points, spacing, 0.2);
         const Eigen::Vector2d xy(40, 37);
-        const Eigen::VectorXd weights = height_gradient(surface, xy);
-        EXPECT_NEAR(weights.dot(points.row(2)), height(surface, xy), 1e-12);
+        const Eigen::VectorXd weights = surface::height_gradient(surface, xy);
+        EXPECT_NEAR(weights.dot(points.row(2)), surface::height(surface, xy), 1e-12);
         EXPECT_NEAR(weights.sum(), 1, 1e-12);
         Eigen::Matrix3Xd moved = points;
         moved(2, 7) += 1;
-        EXPECT_NEAR(height(make_griddata(moved, spacing, 0.2), xy) - height(surface, xy), weights[7], 1e-12);
+        EXPECT_NEAR(surface::height(surface::make_griddata(moved, spacing, 0.2), xy) - surface::height(surface, xy),
+                    weights[7], 1e-12);
     }
 }
 
@@ -113,7 +115,7 @@ TEST(Griddata, gradient_is_the_weight_of_each_point)
 TEST(CloughTocher, reproduces_quadratics_from_exact_gradients)
 {
     const Eigen::Matrix3Xd points = scattered(25, 10);
-    const CloughTocher surface(delaunay(points.topRows<2>()));
+    const surface::CloughTocher surface(surface::delaunay(points.topRows<2>()));
     const auto f = [](const Eigen::Vector2d& p) {
         return Eigen::Vector3d(2 + p.x() - p.y() + 0.3 * p.x() * p.x() - 0.2 * p.x() * p.y() + 0.7 * p.y() * p.y(),
                                1 + 0.6 * p.x() - 0.2 * p.y(), -1 - 0.2 * p.x() + 1.4 * p.y());
@@ -131,13 +133,14 @@ TEST(CloughTocher, reproduces_quadratics_from_exact_gradients)
 // Along a line through many triangles the slope has no steps: its change over 2h shrinks with h.
 TEST(Griddata, has_continuous_slopes)
 {
-    const Griddata surface = make_griddata(scattered(30, 80), 0, 0);
+    const surface::Griddata surface = surface::make_griddata(scattered(30, 80), 0, 0);
     const auto largest_step = [&](double h) {
         double largest = 0;
         for (double t = 0; t < 1; t += 0.001) {
             const Eigen::Vector2d p(20 + 40 * t, 25 + 30 * t), d(0.6, -0.8);
-            const double slope_change =
-                (height(surface, p + h * d) - 2 * height(surface, p) + height(surface, p - h * d)) / h;
+            const double slope_change = (surface::height(surface, p + h * d) - 2 * surface::height(surface, p) +
+                                         surface::height(surface, p - h * d)) /
+                                        h;
             largest = std::max(largest, std::abs(slope_change));
         }
         return largest;
@@ -150,13 +153,13 @@ TEST(Griddata, is_not_defined_outside_the_hull)
     Eigen::Matrix3Xd points(3, 5);
     points << 0, 10, 10, 0, 4, 0, 0, 10, 10, 5, 0, 1, 2, 3, 1;
     for (const double spacing : {0.0, 2.0}) {
-        const Griddata surface = make_griddata(points, spacing, 0);
-        EXPECT_TRUE(std::isfinite(height(surface, {0.001, 9.999})));
-        EXPECT_TRUE(std::isfinite(height(surface, {10, 5})));
+        const surface::Griddata surface = surface::make_griddata(points, spacing, 0);
+        EXPECT_TRUE(std::isfinite(surface::height(surface, {0.001, 9.999})));
+        EXPECT_TRUE(std::isfinite(surface::height(surface, {10, 5})));
         for (const Eigen::Vector2d& xy :
              {Eigen::Vector2d(-0.001, 5), Eigen::Vector2d(5, 10.001), Eigen::Vector2d(99, 5)}) {
-            EXPECT_TRUE(std::isnan(height(surface, xy)));
-            EXPECT_TRUE(std::isnan(height_gradient(surface, xy)[0]));
+            EXPECT_TRUE(std::isnan(surface::height(surface, xy)));
+            EXPECT_TRUE(std::isnan(surface::height_gradient(surface, xy)[0]));
         }
     }
 }
@@ -168,27 +171,29 @@ TEST(Griddata, merges_points_over_the_same_place)
     twice << points, points.col(3);
     twice(2, 12) += 0.5;
     points(2, 3) += 0.25;
-    EXPECT_NEAR(height(make_griddata(twice, 0, 0), {25, 25}), height(make_griddata(points, 0, 0), {25, 25}), 1e-12);
+    EXPECT_NEAR(surface::height(surface::make_griddata(twice, 0, 0), {25, 25}),
+                surface::height(surface::make_griddata(points, 0, 0), {25, 25}), 1e-12);
 }
 
 // All squares of a grid have their corners on circles: the diagonals must not depend on rounding.
 TEST(Delaunay, divides_a_regular_grid_alike_however_it_is_turned)
 {
     const Eigen::Matrix3Xd points = square_grid(6, 0.1);
-    const Triangulation straight = delaunay(points.topRows<2>());
+    const surface::Triangulation straight = surface::delaunay(points.topRows<2>());
     EXPECT_EQ(straight.triangles.cols(), 50);
     for (const double angle : {0.3, 1.1, 2.9}) {
         const Eigen::Matrix2Xd turned = Eigen::Rotation2Dd(angle).toRotationMatrix() * points.topRows<2>();
-        EXPECT_EQ(delaunay(turned).triangles, straight.triangles);
+        EXPECT_EQ(surface::delaunay(turned).triangles, straight.triangles);
     }
-    EXPECT_EQ(hull(straight).size(), 20u);
+    EXPECT_EQ(surface::hull_corners(straight).size(), 20u);
 }
 
 TEST(Delaunay, has_empty_circles)
 {
     const Eigen::Matrix2Xd points = scattered(40, 1).topRows<2>();
-    const Triangulation mesh = delaunay(points);
-    EXPECT_EQ(mesh.triangles.cols(), 2 * 40 - 2 - static_cast<Eigen::Index>(hull(mesh).size())); // Euler
+    const surface::Triangulation mesh = surface::delaunay(points);
+    EXPECT_EQ(mesh.triangles.cols(),
+              2 * 40 - 2 - static_cast<Eigen::Index>(surface::hull_corners(mesh).size())); // Euler
     for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
         const Eigen::Vector2d a = points.col(mesh.triangles(0, t));
         Eigen::Matrix2d sides;
@@ -203,20 +208,20 @@ TEST(Delaunay, has_empty_circles)
 TEST(Griddata, refuses_what_makes_no_surface)
 {
     Eigen::Matrix3Xd points = scattered(10, 50);
-    EXPECT_THROW(make_griddata(points.leftCols(2), 0, 0), InputError);
-    EXPECT_THROW(make_griddata(points, 1e-3, 0), InputError); // 50000 x 50000 nodes
+    EXPECT_THROW(surface::make_griddata(points.leftCols(2), 0, 0), core::InputError);
+    EXPECT_THROW(surface::make_griddata(points, 1e-3, 0), core::InputError); // 50000 x 50000 nodes
     Eigen::Matrix3Xd line = points;
     line.row(1) = 2 * line.row(0);
-    EXPECT_THROW(make_griddata(line, 0, 0), InputError);
-    EXPECT_THROW(make_griddata(points.col(0).replicate<1, 5>(), 0, 0), InputError);
+    EXPECT_THROW(surface::make_griddata(line, 0, 0), core::InputError);
+    EXPECT_THROW(surface::make_griddata(points.col(0).replicate<1, 5>(), 0, 0), core::InputError);
     points(2, 4) = std::numeric_limits<double>::quiet_NaN();
-    EXPECT_THROW(make_griddata(points, 0, 0), InputError);
+    EXPECT_THROW(surface::make_griddata(points, 0, 0), core::InputError);
 }
 
-/// Wang's layout about a square anomaly: n lines each way.
-FitInput lines_input(const std::function<double(const Eigen::Vector2d&)>& z)
+/// Wang's layout about a square anomaly: n lines in each direction.
+fit::FitInput lines_input(const std::function<double(const Eigen::Vector2d&)>& z)
 {
-    FitInput input;
+    fit::FitInput input;
     input.job.anomaly.resize(3, 4);
     input.job.anomaly << -10, 10, 10, -10, -10, -10, 10, 10, 0, 0, 0, 0;
     input.xyz.resize(3, 16);
@@ -231,7 +236,7 @@ FitInput lines_input(const std::function<double(const Eigen::Vector2d&)>& z)
             input.roles[i] = std::abs(along) > 20 ? 2 : 1;
             input.curves[i++] = line;
         }
-    const Eigen::Matrix3Xd estimated = estimated_points(input.job, input.xyz, input.curves, input.roles);
+    const Eigen::Matrix3Xd estimated = sampling::estimated_points(input.job, input.xyz, input.curves, input.roles);
     input.xyz.conservativeResize(3, 16 + estimated.cols());
     input.xyz.rightCols(estimated.cols()) = estimated;
     input.roles.conservativeResize(input.xyz.cols());
@@ -250,24 +255,24 @@ TEST(GriddataFit, covariance_is_that_of_the_touches)
     double variance = 0;
     for (int touch = 0; touch < 16; ++touch) {
         int next = 0;
-        const FitInput input = lines_input([&](const Eigen::Vector2d&) { return next++ == touch ? 1.0 : 0.0; });
-        const double moved = height(fit_griddata(input).surface, xy);
+        const fit::FitInput input = lines_input([&](const Eigen::Vector2d&) { return next++ == touch ? 1.0 : 0.0; });
+        const double moved = surface::height(fit::fit_griddata(input).surface, xy);
         variance += moved * moved;
     }
-    const Surface surface = fit_griddata(lines_input(flat)).surface;
+    const surface::Surface surface = fit::fit_griddata(lines_input(flat)).surface;
     EXPECT_EQ(surface.touches.cols(), 20);
-    EXPECT_NEAR(sigma(surface, xy), std::sqrt(variance) * surface.touch_sigma, 1e-6);
+    EXPECT_NEAR(surface::sigma(surface, xy), std::sqrt(variance) * surface.touch_sigma, 1e-6);
 }
 
 TEST(GriddataFit, names_the_source)
 {
-    FitInput input = lines_input([](const Eigen::Vector2d&) { return 1.0; });
+    fit::FitInput input = lines_input([](const Eigen::Vector2d&) { return 1.0; });
     input.source = "touches.pcd";
     input.xyz.row(1) = input.xyz.row(0);
     try {
-        fit_griddata(input);
+        fit::fit_griddata(input);
         FAIL();
-    } catch (const InputError& error) {
+    } catch (const core::InputError& error) {
         EXPECT_EQ(std::string(error.what()).rfind("touches.pcd: ", 0), 0u) << error.what();
     }
 }

@@ -7,9 +7,9 @@
 namespace fettle {
 
 /// z(x, y) over a square of some cells a side, two triangles each, facing up.
-inline Mesh height_surface(double from, double to, int cells, const std::function<double(double, double)>& z)
+inline mesh::Mesh height_surface(double from, double to, int cells, const std::function<double(double, double)>& z)
 {
-    Mesh mesh;
+    mesh::Mesh mesh;
     const int side = cells + 1;
     mesh.vertices.resize(3, side * side);
     for (int j = 0; j < side; ++j)

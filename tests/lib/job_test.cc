@@ -1,4 +1,4 @@
-// Jobs: units, defaults, refusals, and the way back to JSON.
+// Jobs: units, defaults, refusals, and writing as JSON.
 #include "job/job.h"
 
 #include "core/error.h"
@@ -12,13 +12,13 @@
 namespace fettle {
 namespace {
 
-Job parse(const std::string& text) { return parse_job(json::Reader::parse(text, "job.json")); }
+job::Job parse(const std::string& text) { return job::parse_job(json::Reader::parse(text, "job.json")); }
 
 std::string problem(const std::string& text)
 {
     try {
         parse(text);
-    } catch (const InputError& error) {
+    } catch (const core::InputError& error) {
         return error.what();
     }
     return "accepted";
@@ -34,7 +34,7 @@ std::string inches(const std::string& members)
 
 TEST(Job, ConvertsEveryNumberToBaseUnits)
 {
-    const Job job = parse(R"({"kind": "job", "units": {"length": "in", "force": "lbf"},
+    const job::Job job = parse(R"({"kind": "job", "units": {"length": "in", "force": "lbf"},
       "frame": {"theta_deg": 90}, "surface": {"type": "swept", "direction_deg": 45},
       "anomaly": [[1,1,0.5],[2,1],[2,2],[1,2]], "sampling": [[0,0,0],[3,0,0],[3,3,0],[0,3,0]],
       "probe": {"accuracy": 0.005, "tip_radius": 0.1}, "tolerance": 0.02, "safe_height": 2,
@@ -43,8 +43,8 @@ TEST(Job, ConvertsEveryNumberToBaseUnits)
       "feed": {"axis": "x", "rate": 2, "step_over": 0.25}, "removal": {"coefficient": 1e-3}})");
     const double in = 25.4, lbf = 4.4482216152605;
     EXPECT_DOUBLE_EQ(job.theta, std::numbers::pi / 2);
-    EXPECT_EQ(job.surface, SurfaceType::swept);
-    EXPECT_DOUBLE_EQ(job.direction, std::numbers::pi / 4);
+    EXPECT_EQ(job.surface, job::SurfaceType::swept);
+    EXPECT_DOUBLE_EQ(job.ruling_direction, std::numbers::pi / 4);
     EXPECT_DOUBLE_EQ(job.anomaly(2, 0), 0.5 * in);
     EXPECT_TRUE(std::isnan(job.anomaly(2, 1)));
     EXPECT_DOUBLE_EQ(job.sampling(0, 2), 3 * in);
@@ -57,47 +57,47 @@ TEST(Job, ConvertsEveryNumberToBaseUnits)
     EXPECT_DOUBLE_EQ(job.force.stiffness, 200 * lbf / in);
     EXPECT_DOUBLE_EQ(job.feed.rate, 2 * in);
     EXPECT_EQ(job.feed.axis, 'x');
-    EXPECT_DOUBLE_EQ(job.removal, 1e-3 * in * in * in / lbf);
+    EXPECT_DOUBLE_EQ(job.removal_coefficient, 1e-3 * in * in * in / lbf);
 }
 
 TEST(Job, DefaultsAreTheSamePhysicalOnesInBothUnits)
 {
-    const Job in = parse(R"({"kind": "job", "units": {"length": "in"}, "surface": {"type": "plane"},
+    const job::Job in = parse(R"({"kind": "job", "units": {"length": "in"}, "surface": {"type": "plane"},
       "anomaly": [[0,0],[1,0],[0,1]]})");
-    const Job mm = parse(R"({"kind": "job", "units": {"length": "mm"}, "surface": {"type": "plane"},
+    const job::Job mm = parse(R"({"kind": "job", "units": {"length": "mm"}, "surface": {"type": "plane"},
       "anomaly": [[0,0],[1,0],[0,1]]})");
-    for (const Job& job : {in, mm}) {
-        EXPECT_EQ(job.force.down, Job().force.down);
-        EXPECT_EQ(job.wheel.min_radius, Job().wheel.min_radius);
-        EXPECT_DOUBLE_EQ(job.feed.step_over, Job().feed.step_over);
-        EXPECT_EQ(job.safe_height, Job().safe_height);
+    for (const job::Job& job : {in, mm}) {
+        EXPECT_EQ(job.force.down, job::Job().force.down);
+        EXPECT_EQ(job.wheel.min_radius, job::Job().wheel.min_radius);
+        EXPECT_DOUBLE_EQ(job.feed.step_over, job::Job().feed.step_over);
+        EXPECT_EQ(job.safe_height, job::Job().safe_height);
         EXPECT_EQ(job.sampling.cols(), 0);
     }
     // 5/10/15 lbf on 200 lbf/in, 2e-3 in^3/(lbf s), to the digits that the header gives
-    EXPECT_NEAR(Job().force.max, 15 * 4.44822, 0.01);
-    EXPECT_NEAR(Job().force.stiffness, 200 * 4.44822 / 25.4, 0.03);
-    EXPECT_NEAR(Job().removal, 2e-3 * 16387.064 / 4.44822, 1e-3);
+    EXPECT_NEAR(job::Job().force.max, 15 * 4.44822, 0.01);
+    EXPECT_NEAR(job::Job().force.stiffness, 200 * 4.44822 / 25.4, 0.03);
+    EXPECT_NEAR(job::Job().removal_coefficient, 2e-3 * 16387.064 / 4.44822, 1e-3);
 }
 
 TEST(Job, DefaultsFollowWhatIsGiven)
 {
-    const Job job = parse(inches(R"(, "wheel": {"radius": 2, "width": 0.1}, "force": {"min": 20, "max": 60})"));
+    const job::Job job = parse(inches(R"(, "wheel": {"radius": 2, "width": 0.1}, "force": {"min": 20, "max": 60})"));
     EXPECT_DOUBLE_EQ(job.wheel.min_radius, 25.4);
     EXPECT_DOUBLE_EQ(job.feed.step_over, 0.08 * 25.4);
     EXPECT_DOUBLE_EQ(job.force.down, 40 * 4.4482216152605);
-    const Job high = parse(R"({"kind": "job", "units": {"length": "mm"}, "surface": {"type": "plane"},
+    const job::Job high = parse(R"({"kind": "job", "units": {"length": "mm"}, "surface": {"type": "plane"},
       "anomaly": [[0,0,400],[1,0,401],[0,1]]})");
     EXPECT_DOUBLE_EQ(high.safe_height, 451.8);
 }
 
 TEST(Job, ComesBackFromJsonUnchanged)
 {
-    const std::string text = to_json(parse(inches(R"(, "frame": {"theta_deg": 33.3}, "tolerance": 0.0231,
+    const std::string text = job::to_json(parse(inches(R"(, "frame": {"theta_deg": 33.3}, "tolerance": 0.0231,
       "force": {"min": 5.1, "down": 9.7, "max": 15.3, "stiffness": 201.7}, "removal": {"coefficient": 0.00217})")))
                                  .text();
     EXPECT_NE(text.find("\"tolerance\": 0.0231,"), std::string::npos) << text;
     EXPECT_NE(text.find("33.3"), std::string::npos) << text;
-    EXPECT_EQ(to_json(parse(text)).text(), text);
+    EXPECT_EQ(job::to_json(parse(text)).text(), text);
 }
 
 TEST(Job, RefusesWithTheKey)
@@ -140,16 +140,14 @@ TEST(Job, RefusesWrongShapesOfTheFile)
 
 TEST(Plausible, BoxInAnotherUnitIsDoubted)
 {
-    const Job job = parse(inches(""));
+    const job::Job job = parse(inches(""));
     const auto doubt = [&](double low, double high) {
-        Eigen::Matrix<double, 3, 2> box;
-        box << low, high, low, high, 0, 10;
-        return implausible_box(box, job);
+        return job::part_box_warning({Eigen::Vector3d(low, low, 0), Eigen::Vector3d(high, high, 10)}, job);
     };
     EXPECT_EQ(doubt(-10, 100), "");
     EXPECT_EQ(doubt(0, 76.2), ""); // the boundary itself
     EXPECT_EQ(doubt(0, 3),
-              "the part, 0.11811 x 0.11811 x 0.393701 in, does not hold the job's boundary: is its unit right?");
+              "the part, 0.11811 x 0.11811 x 0.393701 in, does not contain the job's boundary: is its unit right?");
     EXPECT_EQ(
         doubt(0, 25400),
         "the part, 1000 x 1000 x 0.393701 in, is over 100 times as long as the job's boundary: is its unit right?");
@@ -161,7 +159,7 @@ TEST(Plausible, TouchesFarFromTheBoundaryPointsAreDoubted)
     const std::string taught = R"({"kind": "job", "units": {"length": "in"}, "surface": {"type": "freeform"},
       "anomaly": [[1, 1, 2], [2, 1, 2.5], [2, 2]], "sampling": [[0, 0], [3, 0], [3, 3], [0, 3]]})";
     const auto doubt = [](const std::string& text, double z) {
-        return implausible_height(Eigen::Vector3d(0, 0, z * 25.4), parse(text));
+        return job::touch_height_warning(Eigen::Vector3d(0, 0, z * 25.4), parse(text));
     };
     EXPECT_EQ(doubt(taught, 2.2), "");
     EXPECT_EQ(doubt(taught, 6.7), "");
@@ -176,7 +174,7 @@ TEST(Plausible, TouchesFarFromTheBoundaryPointsAreDoubted)
 TEST(Job, WorkingFrameIsTurnedCounterClockwise)
 {
     // X_w lies along Y_m when theta is 90 degrees: a point on Y_m has x_w = 1.
-    const Eigen::Vector2d w = rotation_working_machine(std::numbers::pi / 2) * Eigen::Vector2d(0, 1);
+    const Eigen::Vector2d w = job::rotation_working_machine(std::numbers::pi / 2) * Eigen::Vector2d(0, 1);
     EXPECT_NEAR(w.x(), 1, 1e-15);
     EXPECT_NEAR(w.y(), 0, 1e-15);
 }

@@ -21,7 +21,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using std::numbers::pi;
 
-constexpr double kTight = 1e-8;
+constexpr double kTightTolerance = 1e-8;
 
 /// Of a paraboloid on the plane, in the middle of the grid.
 MatrixXd paraboloid(Index rows, Index columns, const Eigen::Vector2d& cell, double radius_x, double radius_y)
@@ -36,31 +36,31 @@ MatrixXd paraboloid(Index rows, Index columns, const Eigen::Vector2d& cell, doub
     return gap;
 }
 
-double contact_radius(const Contact& contact, double cell)
+double contact_radius(const belt::Contact& contact, double cell)
 {
     return std::sqrt(static_cast<double>((contact.pressure.array() > 0).count()) / pi) * cell;
 }
 
-void expect_complementary(LayerContact& layer, const MatrixXd& gap, const Contact& contact)
+void expect_complementary(belt::LayerContact& layer, const MatrixXd& gap, const belt::Contact& contact)
 {
     EXPECT_TRUE(contact.converged);
     EXPECT_GE(contact.pressure.minCoeff(), 0);
-    const MatrixXd left = layer.gap_left(gap, contact);
+    const MatrixXd left = layer.residual_gap(gap, contact);
     EXPECT_GE(left.minCoeff(), 0);
     EXPECT_LE((contact.pressure.array() > 0).select(contact.pressure.array() * left.array(), 0).maxCoeff(),
-              kTight * contact.pressure.maxCoeff() * (contact.indentation - gap.minCoeff()));
+              kTightTolerance * contact.pressure.maxCoeff() * (contact.indentation - gap.minCoeff()));
 }
 
 // Sphere of 8 mm on a half-space, 60 π N: a = 1.0096 mm, p0 = 88.29 MPa, δ = 0.1274 mm (Hertz 1881).
 TEST(LayerContact, AgreesWithHertzOnAThickLayer)
 {
     const double a = 1.0096, force = 60 * pi, young = 1000, poisson = 0.3;
-    const ElasticLayer layer{1000 * a, young, poisson};
+    const belt::ElasticLayer layer{1000 * a, young, poisson};
     for (const Index n : {64, 128}) {
         const double cell = 3 * a / static_cast<double>(n);
-        LayerContact pressed(layer, {cell, cell}, n, n);
+        belt::LayerContact pressed(layer, {cell, cell}, n, n);
         const MatrixXd gap = paraboloid(n, n, {cell, cell}, 8, 8);
-        const Contact contact = pressed.by_force(gap, force, kTight);
+        const belt::Contact contact = pressed.solve_by_force(gap, force, kTightTolerance);
         expect_complementary(pressed, gap, contact);
         EXPECT_NEAR(contact.force, force, 1e-9 * force);
         EXPECT_NEAR(contact.pressure.maxCoeff(), 88.29, 0.01 * 88.29);
@@ -79,9 +79,9 @@ TEST(LayerContact, AgreesWithHertzOnALine)
     constexpr Index kRows = 64, kColumns = 128;
     const Eigen::Vector2d cell(3 * b / kRows, b);
     const double infinite = std::numeric_limits<double>::infinity();
-    const Contact contact =
-        LayerContact({infinite, young, poisson}, cell, kRows, kColumns)
-            .by_force(paraboloid(kRows, kColumns, cell, 20, infinite), per_length * kColumns * cell.y(), 1e-6);
+    const belt::Contact contact =
+        belt::LayerContact({infinite, young, poisson}, cell, kRows, kColumns)
+            .solve_by_force(paraboloid(kRows, kColumns, cell, 20, infinite), per_length * kColumns * cell.y(), 1e-6);
     const VectorXd middle = contact.pressure.col(kColumns / 2);
     const double here = middle.sum() * cell.x(); // the ends carry more than their share: 0.91 of the mean
     EXPECT_NEAR(middle.maxCoeff(), p0 * std::sqrt(here / per_length), 0.01 * p0);
@@ -103,10 +103,11 @@ TEST(LayerContact, AgreesWithLayerTheory)
     const double a = 4, R = 60, cell = 3 * a / kCells;
     for (const double poisson : {0.0, 0.3, 0.45, 0.49})
         for (const double thickness : {1.0, 2.0, 4.0, 10.0}) {
-            const ElasticLayer layer{thickness * a, 5, poisson};
+            const belt::ElasticLayer layer{thickness * a, 5, poisson};
             const LayerTheory theory = layer_theory(layer, a, R);
-            const Contact contact = LayerContact(layer, {cell, cell}, kCells, kCells)
-                                        .by_force(paraboloid(kCells, kCells, {cell, cell}, R, R), theory.force, 1e-6);
+            const belt::Contact contact =
+                belt::LayerContact(layer, {cell, cell}, kCells, kCells)
+                    .solve_by_force(paraboloid(kCells, kCells, {cell, cell}, R, R), theory.force, 1e-6);
             EXPECT_NEAR(contact.indentation, theory.indentation, 0.02 * theory.indentation);
             EXPECT_NEAR(contact.pressure.maxCoeff(), theory.peak, 0.02 * theory.peak);
             EXPECT_NEAR(contact_radius(contact, cell), a, 0.02 * a);
@@ -120,17 +121,17 @@ TEST(LayerContact, AgreesWithWinklerOnAThinLayer)
     const double a = 20, R = 400, cell = 2.5 * a / kCells, depth = a * a / (2 * R);
     for (const double poisson : {0.0, 0.3})
         for (const double thickness : {a / 10, a / 30, a / 1000}) {
-            const ElasticLayer layer{thickness, 5, poisson};
-            const double stiffness = 1 / even_compliance(layer);
-            LayerContact pressed(layer, {cell, cell}, kCells, kCells);
+            const belt::ElasticLayer layer{thickness, 5, poisson};
+            const double stiffness = 1 / uniform_compliance(layer);
+            belt::LayerContact pressed(layer, {cell, cell}, kCells, kCells);
             const MatrixXd gap = paraboloid(kCells, kCells, {cell, cell}, R, R);
-            const Contact contact = pressed.by_depth(gap, depth, kTight);
+            const belt::Contact contact = pressed.solve_by_indentation(gap, depth, kTightTolerance);
             expect_complementary(pressed, gap, contact);
             EXPECT_NEAR(contact.pressure.maxCoeff(), stiffness * depth, 0.02 * stiffness * depth);
         }
 }
 
-// Whatever the ground looks like: scattered peaks, a step, cells where there is nothing.
+// For any surface: scattered peaks, a step, cells without material.
 TEST(LayerContact, IsComplementary)
 {
     constexpr Index kCells = 48;
@@ -141,16 +142,18 @@ TEST(LayerContact, IsComplementary)
     gap.topRows(20).setConstant(std::numeric_limits<double>::infinity());
     for (const double poisson : {0.0, 0.49})
         for (const double thickness : {1.0, 15.0}) {
-            LayerContact contact({thickness, 5, poisson}, {0.5, 0.5}, kCells, kCells);
-            const Contact pressed = contact.by_force(gap, 40, kTight);
+            belt::LayerContact contact({thickness, 5, poisson}, {0.5, 0.5}, kCells, kCells);
+            const belt::Contact pressed = contact.solve_by_force(gap, 40, kTightTolerance);
             expect_complementary(contact, gap, pressed);
             EXPECT_EQ(pressed.pressure.topRows(20).maxCoeff(), 0);
             // To the same depth the same force; from the start of another the same contact.
-            const Contact deep = contact.by_depth(gap, pressed.indentation, kTight);
-            // A ground that stands 3 mm higher is touched 3 mm earlier.
-            EXPECT_NEAR(contact.by_force(gap.array() - 3, 40, kTight).indentation, pressed.indentation - 3, 1e-6);
+            const belt::Contact deep = contact.solve_by_indentation(gap, pressed.indentation, kTightTolerance);
+            // A surface 3 mm higher is touched 3 mm earlier.
+            EXPECT_NEAR(contact.solve_by_force(gap.array() - 3, 40, kTightTolerance).indentation,
+                        pressed.indentation - 3, 1e-6);
             EXPECT_NEAR(deep.force, 40, 1e-5 * 40);
-            const Contact again = contact.by_force(gap, 40, kTight, contact.by_force(gap, 10, 1e-3).pressure);
+            const belt::Contact again =
+                contact.solve_by_force(gap, 40, kTightTolerance, contact.solve_by_force(gap, 10, 1e-3).pressure);
             EXPECT_LE((again.pressure - pressed.pressure).cwiseAbs().maxCoeff(), 1e-5 * pressed.pressure.maxCoeff());
         }
 }
@@ -160,17 +163,18 @@ TEST(LayerContact, BeginsAnewWhereAStartLeadsNowhere)
 {
     const Index cells = 24;
     const double side = 9.0 / cells;
-    LayerContact contact({3, 1.8, 0.45}, {side, side}, cells, cells);
+    belt::LayerContact contact({3, 1.8, 0.45}, {side, side}, cells, cells);
     MatrixXd gap(cells, cells);
     for (Index j = 0; j < cells; ++j)
         for (Index i = 0; i < cells; ++i) {
             const double x = (double(i) + 0.5) * side - 4.5, y = (double(j) + 0.5) * side - 4.5;
             gap(i, j) = x * x / 80 + y * y / 30 + 0.02 * std::sin(3 * x + 1) * std::cos(2.3 * y);
         }
-    const MatrixXd hard = contact.by_force(gap, 40, 1e-4).pressure, soft = contact.by_force(gap, 10, 1e-4).pressure;
+    const MatrixXd hard = contact.solve_by_force(gap, 40, 1e-4).pressure,
+                   soft = contact.solve_by_force(gap, 10, 1e-4).pressure;
     for (const double force : {1.0, 5.0, 25.0}) {
-        const Contact found = contact.by_force(gap, force, 1e-4, 2 * soft - hard);
-        const Contact fresh = contact.by_force(gap, force, 1e-4);
+        const belt::Contact found = contact.solve_by_force(gap, force, 1e-4, 2 * soft - hard);
+        const belt::Contact fresh = contact.solve_by_force(gap, force, 1e-4);
         EXPECT_TRUE(found.converged);
         EXPECT_NEAR(found.indentation, fresh.indentation, 1e-3 * fresh.indentation);
     }
@@ -178,12 +182,12 @@ TEST(LayerContact, BeginsAnewWhereAStartLeadsNowhere)
 
 TEST(LayerContact, KnowsWhenNothingTouches)
 {
-    LayerContact contact({10, 5, 0.45}, {1, 1}, 16, 16);
+    belt::LayerContact contact({10, 5, 0.45}, {1, 1}, 16, 16);
     const MatrixXd gap = MatrixXd::Constant(16, 16, 2.0);
-    EXPECT_EQ(contact.by_depth(gap, 1.5, kTight).force, 0);
-    EXPECT_EQ(contact.gap_left(gap, contact.by_depth(gap, 1.5, kTight))(3, 4), 0.5);
-    EXPECT_THROW(contact.by_force(gap / 0.0, 1, kTight), InputError);
-    EXPECT_THROW(influence({10, 5, 0.6}, {1, 1}, 4, 4), InputError);
+    EXPECT_EQ(contact.solve_by_indentation(gap, 1.5, kTightTolerance).force, 0);
+    EXPECT_EQ(contact.residual_gap(gap, contact.solve_by_indentation(gap, 1.5, kTightTolerance))(3, 4), 0.5);
+    EXPECT_THROW(contact.solve_by_force(gap / 0.0, 1, kTightTolerance), core::InputError);
+    EXPECT_THROW(belt::influence_coefficients({10, 5, 0.6}, {1, 1}, 4, 4), core::InputError);
 }
 
 } // namespace

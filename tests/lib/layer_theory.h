@@ -11,6 +11,13 @@
 
 namespace fettle {
 
+/// Indentation of a bonded layer under a uniform pressure of 1 MPa on all of it, mm/MPa: h (1+ν)(1-2ν) / (E (1-ν)).
+inline double uniform_compliance(const belt::ElasticLayer& layer)
+{
+    const double nu = layer.poisson;
+    return layer.thickness * (1 + nu) * (1 - 2 * nu) / (layer.young * (1 - nu));
+}
+
 /// A rigid paraboloid on a bonded layer, contact radius a, by the integral equation for φ with pressure p(r) = -∫ φ'(t)
 /// / √(t² - r²) dt over r … a (Sneddon 1966; Dhaliwal 1970):
 ///     φ(t) - 1/π ∫ φ(s) (N(t+s) + N(t-s)) ds = E*/π (δ - t²/R),   N(x) = ∫ (1 - f(qh)) cos qx dq,   φ(a) = 0.
@@ -18,7 +25,7 @@ struct LayerTheory {
     double indentation, force, peak;
 };
 
-inline LayerTheory layer_theory(const ElasticLayer& layer, double a, double R)
+inline LayerTheory layer_theory(const belt::ElasticLayer& layer, double a, double R)
 {
     using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd, std::numbers::pi;
     using Gauss = boost::math::quadrature::gauss<double, 30>;

@@ -12,10 +12,11 @@
 namespace fettle {
 namespace {
 
-Mesh soup(int triangles, double size, std::mt19937& random, const Eigen::Vector3d& centre = Eigen::Vector3d::Zero())
+mesh::Mesh soup(int triangles, double size, std::mt19937& random,
+                const Eigen::Vector3d& centre = Eigen::Vector3d::Zero())
 {
     std::uniform_real_distribution<double> place(-1, 1);
-    Mesh mesh;
+    mesh::Mesh mesh;
     mesh.vertices.resize(3, 3 * triangles);
     mesh.triangles.resize(3, triangles);
     for (int t = 0; t < triangles; ++t) {
@@ -32,9 +33,9 @@ Mesh soup(int triangles, double size, std::mt19937& random, const Eigen::Vector3
 }
 
 // n x n cells of unit size, both diagonals in turn, z = 0 but for some hills at whole places.
-Mesh grid(int n)
+mesh::Mesh grid(int n)
 {
-    Mesh mesh;
+    mesh::Mesh mesh;
     mesh.vertices.resize(3, (n + 1) * (n + 1));
     mesh.triangles.resize(3, 2 * n * n);
     for (int j = 0; j <= n; ++j)
@@ -50,9 +51,9 @@ Mesh grid(int n)
     return mesh;
 }
 
-// The least of the distances to the corners, to the edges whose foot lies on them, and to the plane if its foot (by QR)
-// lies inside.
-double brute_distance(const Triangle& corners, const Eigen::Vector3d& point)
+// The smallest of the distances to the corners, to the edges whose foot lies on them, and to the plane if its foot (by
+// QR) lies inside.
+double brute_distance(const mesh::Triangle& corners, const Eigen::Vector3d& point)
 {
     double best = std::numeric_limits<double>::infinity();
     for (int k = 0; k < 3; ++k) {
@@ -74,19 +75,19 @@ double brute_distance(const Triangle& corners, const Eigen::Vector3d& point)
     return best;
 }
 
-Triangle corners_of(const Mesh& mesh, Eigen::Index t)
+mesh::Triangle corners_of(const mesh::Mesh& mesh, Eigen::Index t)
 {
-    Triangle corners;
+    mesh::Triangle corners;
     for (int k = 0; k < 3; ++k) corners.col(k) = mesh.vertices.col(mesh.triangles(k, t));
     return corners;
 }
 
 // Möller and Trumbore's test, an independent formula.
-double brute_cast(const Mesh& mesh, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction)
+double brute_cast(const mesh::Mesh& mesh, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction)
 {
     double best = std::numeric_limits<double>::infinity();
     for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
-        const Triangle c = corners_of(mesh, t);
+        const mesh::Triangle c = corners_of(mesh, t);
         const Eigen::Vector3d e1 = c.col(1) - c.col(0), e2 = c.col(2) - c.col(0), s = origin - c.col(0);
         const Eigen::Vector3d p = direction.cross(e2), q = s.cross(e1);
         const double det = e1.dot(p);
@@ -104,8 +105,8 @@ TEST(MeshIndex, ClosestIsThatOfBruteForceOnSoups)
     for (const double size : {0.01, 0.3, 2.0})
         for (const double shift : {0.0, 1e4}) {
             const Eigen::Vector3d centre = Eigen::Vector3d::Constant(shift);
-            const Mesh mesh = soup(300, size, random, centre);
-            const MeshIndex index(mesh);
+            const mesh::Mesh mesh = soup(300, size, random, centre);
+            const mesh::MeshIndex index(mesh);
             for (int i = 0; i < 300; ++i) {
                 const Eigen::Vector3d point = centre + Eigen::Vector3d(place(random), place(random), place(random));
                 double expected = std::numeric_limits<double>::infinity();
@@ -126,10 +127,10 @@ TEST(MeshIndex, ClosestIsThatOfBruteForceOnSoups)
 }
 
 // A torus of 4 000 facets with a bump here and there.
-Mesh torus()
+mesh::Mesh torus()
 {
     const int across = 50, along = 40;
-    Mesh mesh;
+    mesh::Mesh mesh;
     mesh.vertices.resize(3, across * along);
     mesh.triangles.resize(3, 2 * across * along);
     for (int j = 0; j < along; ++j)
@@ -149,8 +150,8 @@ Mesh torus()
 // search begins. The nearest facet is that of brute force, too: of equally near ones the first.
 TEST(MeshIndex, ClosestIsThatOfBruteForceOnCurvedSurfaces)
 {
-    const Mesh mesh = torus();
-    const MeshIndex index(mesh);
+    const mesh::Mesh mesh = torus();
+    const mesh::MeshIndex index(mesh);
     std::mt19937 random(3);
     std::uniform_real_distribution<double> turn(0, 2 * std::numbers::pi), unit(0, 1);
     for (const double far : {1e-3, 1.0, 29.99, 1e3, 1e6})
@@ -160,11 +161,11 @@ TEST(MeshIndex, ClosestIsThatOfBruteForceOnCurvedSurfaces)
             const Eigen::Vector3d point =
                 i % 2 == 0 && far > 30 ? mesh.vertices.col(i) * (1 + far / 130)
                                        : Eigen::Vector3d(ring * std::cos(u), ring * std::sin(u), r * std::sin(v));
-            TrianglePoint nearest;
+            mesh::TrianglePoint nearest;
             nearest.squared_distance = std::numeric_limits<double>::infinity();
             Eigen::Index triangle = -1;
             for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t)
-                if (const TrianglePoint other = closest_on_triangle(corners_of(mesh, t), point);
+                if (const mesh::TrianglePoint other = mesh::closest_on_triangle(corners_of(mesh, t), point);
                     other.squared_distance < nearest.squared_distance) {
                     nearest = other;
                     triangle = t;
@@ -185,7 +186,7 @@ TEST(MeshIndex, ClosestIsThatOfBruteForceOnCurvedSurfaces)
 TEST(MeshIndex, OfNeedlesAtTheNearestVertexTheFirst)
 {
     const int needles = 1000;
-    Mesh mesh;
+    mesh::Mesh mesh;
     mesh.vertices.resize(3, needles + 1);
     mesh.triangles.resize(3, needles);
     mesh.vertices.col(needles) << 0, 0, 5;
@@ -194,7 +195,7 @@ TEST(MeshIndex, OfNeedlesAtTheNearestVertexTheFirst)
         mesh.vertices.col(i) << std::cos(turn), std::sin(turn), 0;
         mesh.triangles.col(i) << needles, i, (i + 1) % needles;
     }
-    const MeshIndex index(mesh);
+    const mesh::MeshIndex index(mesh);
     for (std::uint32_t leaf = 0; leaf < 125; ++leaf) {
         const auto found = index.closest({0, 0, 7}, 10, leaf);
         ASSERT_TRUE(found);
@@ -205,8 +206,8 @@ TEST(MeshIndex, OfNeedlesAtTheNearestVertexTheFirst)
 
 TEST(MeshIndex, BarycentricIsExactlyZeroOffEdgesAndVertices)
 {
-    const Mesh mesh = grid(4);
-    const MeshIndex index(mesh);
+    const mesh::Mesh mesh = grid(4);
+    const mesh::MeshIndex index(mesh);
     const auto corner = index.closest({-1, -1, -1}, 100);
     ASSERT_TRUE(corner);
     EXPECT_EQ((corner->barycentric.array() == 0).count(), 2);
@@ -224,8 +225,8 @@ TEST(MeshIndex, CastIsThatOfBruteForceOnSoups)
     std::uniform_real_distribution<double> place(-1.5, 1.5);
     int hits = 0;
     for (const double size : {0.05, 0.5}) {
-        const Mesh mesh = soup(500, size, random);
-        const MeshIndex index(mesh);
+        const mesh::Mesh mesh = soup(500, size, random);
+        const mesh::MeshIndex index(mesh);
         for (int i = 0; i < 1000; ++i) {
             const Eigen::Vector3d origin = (i % 2 == 0 ? 1.0 : 1e4) * Eigen::Vector3d(place(random), place(random), 2);
             const Eigen::Vector3d aim(place(random), place(random), place(random));
@@ -245,8 +246,8 @@ TEST(MeshIndex, CastIsThatOfBruteForceOnSoups)
 TEST(MeshIndex, VerticalRaysThroughVerticesAndEdges)
 {
     const int n = 8;
-    const Mesh mesh = grid(n);
-    const MeshIndex index(mesh);
+    const mesh::Mesh mesh = grid(n);
+    const mesh::MeshIndex index(mesh);
     for (int j = 0; j <= 2 * n; ++j)
         for (int i = 0; i <= 2 * n; ++i) {
             const auto found = index.highest(0.5 * i, 0.5 * j);
@@ -266,7 +267,7 @@ TEST(MeshIndex, NoCracksBetweenNeighbours)
     std::mt19937 random(3);
     std::uniform_real_distribution<double> place(-100, 100), part(0, 1);
     for (int trial = 0; trial < 2000; ++trial) {
-        Mesh mesh;
+        mesh::Mesh mesh;
         mesh.vertices.resize(3, 4);
         for (int k = 0; k < 4; ++k) mesh.vertices.col(k) << place(random), place(random), place(random);
         const Eigen::Vector2d a = mesh.vertices.col(0).head<2>(), b = mesh.vertices.col(1).head<2>();
@@ -276,18 +277,18 @@ TEST(MeshIndex, NoCracksBetweenNeighbours)
         mesh.triangles.resize(3, 2);
         mesh.triangles << 0, 1, 1, 0, 2, 3;
         const Eigen::Vector2d on = a + part(random) * (b - a);
-        EXPECT_TRUE(MeshIndex(mesh).highest(on.x(), on.y()));
+        EXPECT_TRUE(mesh::MeshIndex(mesh).highest(on.x(), on.y()));
     }
 }
 
 TEST(MeshIndex, EmptyAndUndefined)
 {
-    const Mesh empty{Eigen::Matrix3Xd(3, 0), Eigen::Matrix3Xi(3, 0)};
-    const MeshIndex nothing(empty);
+    const mesh::Mesh empty{Eigen::Matrix3Xd(3, 0), Eigen::Matrix3Xi(3, 0)};
+    const mesh::MeshIndex nothing(empty);
     EXPECT_FALSE(nothing.highest(0, 0));
     EXPECT_FALSE(nothing.closest({0, 0, 0}, 1));
-    const Mesh mesh = grid(1);
-    const MeshIndex index(mesh);
+    const mesh::Mesh mesh = grid(1);
+    const mesh::MeshIndex index(mesh);
     const double nan = std::numeric_limits<double>::quiet_NaN();
     EXPECT_FALSE(index.closest({nan, 0, 0}, 1));
     EXPECT_FALSE(index.highest(nan, 0));
@@ -296,10 +297,10 @@ TEST(MeshIndex, EmptyAndUndefined)
 // Detail of 1e-4 at coordinates of 1e7: the index works around its own centre.
 TEST(MeshIndex, FarFromTheOrigin)
 {
-    Mesh mesh = grid(4);
+    mesh::Mesh mesh = grid(4);
     mesh.vertices *= 1e-4;
     mesh.vertices.colwise() += Eigen::Vector3d(1e7, -1e7, 1e7);
-    const MeshIndex index(mesh);
+    const mesh::MeshIndex index(mesh);
     const auto found = index.highest(1e7 + 2.5e-4, -1e7 + 1.25e-4);
     ASSERT_TRUE(found);
     EXPECT_NEAR(found->point.z(), 1e7 + 1e-4, 1.5e-4);

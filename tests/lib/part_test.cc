@@ -1,6 +1,7 @@
 // Parts against closed forms: volumes of anomalies (solids of revolution, frustums), surfaces that are exact, meshes
 // without cracks.
 
+#include "geometry/bounding_box.h"
 #include "own_folder.h"
 #include "part/anomalies.h"
 #include "part/part.h"
@@ -19,22 +20,22 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-Anomaly anomaly(const std::string& text) { return read_anomaly(json::Reader::parse(text, "test"), 1); }
+part::Anomaly anomaly(const std::string& text) { return part::read_anomaly(json::Reader::parse(text, "test"), 1); }
 
-PartSpec plate(const std::vector<Anomaly>& anomalies, double step = 0.5)
+part::PartSpec plate(const std::vector<part::Anomaly>& anomalies, double step = 0.5)
 {
-    PartSpec spec;
-    spec.surface =
-        MadeSurface{[](const Eigen::Vector2d&) { return 5.0; }, {Eigen::Vector2d(-20, -15), Eigen::Vector2d(20, 15)}};
+    part::PartSpec spec;
+    spec.surface = part::AnalyticSurface{[](const Eigen::Vector2d&) { return 5.0; },
+                                         {Eigen::Vector2d(-20, -15), Eigen::Vector2d(20, 15)}};
     spec.step = step;
     spec.anomalies = anomalies;
     return spec;
 }
 
-Mesh mesh_of(const PartSpec& spec) { return std::get<Mesh>(make_part(spec, 1)); }
+mesh::Mesh mesh_of(const part::PartSpec& spec) { return std::get<mesh::Mesh>(part::make_part(spec, 1)); }
 
 /// Between the mesh and z = 5.
-double volume_above_plate(const Mesh& mesh)
+double volume_above_plate(const mesh::Mesh& mesh)
 {
     double sum = 0;
     for (const Eigen::Vector3i& t : mesh.triangles.colwise()) {
@@ -66,7 +67,7 @@ class Volume : public testing::TestWithParam<Solid> {};
 // Chords of 0.02 mm over anomalies 2 to 4 mm high, of which some lie inside and some outside.
 TEST_P(Volume, IsThatOfTheSolid)
 {
-    const Mesh mesh = mesh_of(plate({anomaly(GetParam().text)}));
+    const mesh::Mesh mesh = mesh_of(plate({anomaly(GetParam().text)}));
     EXPECT_NEAR(volume_above_plate(mesh), GetParam().volume, 0.006 * GetParam().volume);
 }
 
@@ -92,7 +93,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(Part, SlopedHGrowsAlongItsDirection)
 {
-    const Anomaly h =
+    const part::Anomaly h =
         anomaly(R"({"type": "stub", "outline": {"letter_h": {"centre": [0, 0], "size": [20, 20], "stroke": 6}},
         "height": 2, "height_end": 4, "direction_deg": 0, "draft_deg": 5})");
     EXPECT_NEAR(h.height({-7, 0}), 2 + 2 * 3.0 / 20, 1e-12);
@@ -102,7 +103,7 @@ TEST(Part, SlopedHGrowsAlongItsDirection)
 
 TEST(Part, MoonIsTheDiscWithoutTheBite)
 {
-    const Anomaly moon = anomaly(R"({"type": "blob", "outline": {"moon": {"centre": [0, 0], "radius": 9,
+    const part::Anomaly moon = anomaly(R"({"type": "blob", "outline": {"moon": {"centre": [0, 0], "radius": 9,
         "bite": {"centre": [5, 0], "radius": 7}}}, "height": 1, "falloff": 0.01})");
     for (double x = -10; x <= 10; x += 0.7)
         for (double y = -10; y <= 10; y += 0.7) {
@@ -115,9 +116,9 @@ TEST(Part, MoonIsTheDiscWithoutTheBite)
 TEST(Part, RoughnessKeepsTheFootAndStaysWithinItsSize)
 {
     const std::string smooth = R"({"type": "dot", "centre": [0, 0], "radius": 6, "height": 4)";
-    const Anomaly plain = anomaly(smooth + "}");
-    const Anomaly rough = anomaly(smooth + R"(, "roughness": {"size": 0.2, "grain": 1, "seed": 3}})");
-    double least = 1, most = 1;
+    const part::Anomaly plain = anomaly(smooth + "}");
+    const part::Anomaly rough = anomaly(smooth + R"(, "roughness": {"size": 0.2, "grain": 1, "seed": 3}})");
+    double min = 1, max = 1;
     for (double x = -7; x <= 7; x += 0.1)
         for (double y = -7; y <= 7; y += 0.1) {
             const double h = plain.height({x, y});
@@ -125,19 +126,19 @@ TEST(Part, RoughnessKeepsTheFootAndStaysWithinItsSize)
                 EXPECT_EQ(rough.height({x, y}), 0);
                 continue;
             }
-            least = std::min(least, rough.height({x, y}) / h);
-            most = std::max(most, rough.height({x, y}) / h);
+            min = std::min(min, rough.height({x, y}) / h);
+            max = std::max(max, rough.height({x, y}) / h);
         }
-    EXPECT_GT(least, 0.8 - 1e-12);
-    EXPECT_LT(most, 1.2 + 1e-12);
-    EXPECT_LT(least, 0.9); // and it is rough
-    EXPECT_GT(most, 1.1);
+    EXPECT_GT(min, 0.8 - 1e-12);
+    EXPECT_LT(max, 1.2 + 1e-12);
+    EXPECT_LT(min, 0.9); // and it is rough
+    EXPECT_GT(max, 1.1);
 }
 
 // No T-junction: every edge belongs to two triangles, or lies on the rim of the plate.
 TEST(Part, MeshHasNoCracks)
 {
-    const Mesh mesh =
+    const mesh::Mesh mesh =
         mesh_of(plate({anomaly(R"({"type": "stub", "outline": {"letter_h": {"centre": [0, 0], "size": [20, 18],
         "stroke": 6, "angle_deg": 10}}, "height": 2, "draft_deg": 5})"),
                        anomaly(R"({"type": "dot", "centre": [2, 2], "radius": 5, "height": 3})")}));
@@ -157,8 +158,8 @@ TEST(Part, MeshHasNoCracks)
 
 TEST(Part, BesideTheAnomalyNothingChanges)
 {
-    PartSpec spec = plate({anomaly(R"({"type": "dot", "centre": [1, 2], "radius": 6, "height": 4})")});
-    const Mesh mesh = mesh_of(spec);
+    part::PartSpec spec = plate({anomaly(R"({"type": "dot", "centre": [1, 2], "radius": 6, "height": 4})")});
+    const mesh::Mesh mesh = mesh_of(spec);
     for (const Eigen::Vector3d& v : mesh.vertices.colwise()) {
         if (std::hypot(v.x() - 1, v.y() - 2) >= 6)
             EXPECT_EQ(v.z(), 5);
@@ -169,9 +170,9 @@ TEST(Part, BesideTheAnomalyNothingChanges)
 
 TEST(Part, NoiseHasItsSize)
 {
-    PartSpec spec = plate({});
-    spec.noise = {TouchNoise::Kind::uniform, 0.1};
-    const Mesh mesh = mesh_of(spec);
+    part::PartSpec spec = plate({});
+    spec.noise = {sampling::TouchNoise::Kind::uniform, 0.1};
+    const mesh::Mesh mesh = mesh_of(spec);
     const Eigen::ArrayXd z = mesh.vertices.row(2).array() - 5;
     EXPECT_LE(z.abs().maxCoeff(), 0.1);
     // 4941 draws: standard error of the deviation 0.4 %.
@@ -181,10 +182,10 @@ TEST(Part, NoiseHasItsSize)
 TEST(Surface, RoundOnesHaveTheirRadius)
 {
     const auto read = [](const std::string& text) {
-        return read_part_surface(json::Reader::parse(text, "test"), 1, ".");
+        return part::read_part_surface(json::Reader::parse(text, "test"), 1, ".");
     };
-    const OverPlane sphere = read(R"({"type": "sphere", "centre": [1, 2, 3], "radius": 10})");
-    const OverPlane hollow =
+    const part::ScalarField2d sphere = read(R"({"type": "sphere", "centre": [1, 2, 3], "radius": 10})");
+    const part::ScalarField2d hollow =
         read(R"({"type": "cylinder", "point": [1, 2, 30], "direction_deg": 30, "radius": 25, "concave": true})");
     const Eigen::Vector3d axis(std::cos(pi / 6), std::sin(pi / 6), 0);
     for (double x = -4; x <= 6; ++x)
@@ -197,14 +198,14 @@ TEST(Surface, RoundOnesHaveTheirRadius)
     EXPECT_TRUE(std::isnan(sphere({12, 2})));
 }
 
-// The spline space holds every cubic, so its interpolant is the cubic.
+// The spline space contains every cubic, so its interpolant is the cubic.
 TEST(Surface, SweptReproducesACubicSection)
 {
     const auto cubic = [](double s) { return 1 + 0.3 * s - 0.05 * s * s + 0.01 * s * s * s; };
     std::string section;
     for (const double s : {-6.0, -4.0, -1.0, 0.5, 2.0, 5.0, 6.0})
         section += (section.empty() ? "" : ", ") + ("[" + std::to_string(s) + ", " + std::to_string(cubic(s)) + "]");
-    const OverPlane z = read_part_surface(
+    const part::ScalarField2d z = part::read_part_surface(
         json::Reader::parse(R"({"type": "swept", "point": [2, 1, 7], "direction_deg": 90, "slope": 0.1, "section": [)" +
                                 section + "]}",
                             "test"),
@@ -220,12 +221,12 @@ TEST(Scan, OnlyWhatIsSeenFromAboveIsLifted)
     const OwnFolder folder;
     std::ofstream("box.off") << "OFF\n8 6 0\n-9 -9 0\n9 -9 0\n9 9 0\n-9 9 0\n-9 -9 8\n9 -9 8\n9 9 8\n-9 9 8\n"
                                 "4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n";
-    PartSpec spec;
-    spec.surface = ScannedSurface{"box.off", Units::Length::mm, {}};
+    part::PartSpec spec;
+    spec.surface = part::ScannedSurface{"box.off", units::Units::Length::mm, {}};
     spec.step = 0.5;
     spec.anomalies = {anomaly(R"({"type": "dot", "centre": [0, 0], "radius": 6, "height": 3})")};
     double highest = 0;
-    const Mesh mesh = mesh_of(spec);
+    const mesh::Mesh mesh = mesh_of(spec);
     for (const Eigen::Vector3d& v : mesh.vertices.colwise()) {
         const double r = v.head<2>().norm();
         if (v.z() < 8) {
@@ -250,16 +251,16 @@ TEST(Scan, MeshIsCropped)
             file << "4 " << 21 * i + j << ' ' << 21 * (i + 1) + j << ' ' << 21 * (i + 1) + j + 1 << ' '
                  << 21 * i + j + 1 << '\n';
     file.close();
-    PartSpec spec;
-    spec.surface = ScannedSurface{"grid.off", Units::Length::mm,
-                                  Eigen::AlignedBox2d(Eigen::Vector2d(4.5, 7), Eigen::Vector2d(10.5, 9.9))};
+    part::PartSpec spec;
+    spec.surface = part::ScannedSurface{"grid.off", units::Units::Length::mm,
+                                        Eigen::AlignedBox2d(Eigen::Vector2d(4.5, 7), Eigen::Vector2d(10.5, 9.9))};
     spec.step = 0.5;
-    const Mesh mesh = mesh_of(spec);
+    const mesh::Mesh mesh = mesh_of(spec);
     EXPECT_EQ(mesh.triangles.cols(), 2 * 5 * 2);
     EXPECT_EQ(mesh.vertices.cols(), 6 * 3);
-    EXPECT_EQ(bounding_box(mesh.vertices).col(0), Eigen::Vector3d(5, 7, 0.5));
-    EXPECT_EQ(bounding_box(mesh.vertices).col(1), Eigen::Vector3d(10, 9, 1));
-    const Eigen::Matrix3Xd normals = triangle_normals(mesh);
+    EXPECT_EQ(geometry::finite_bounding_box(mesh.vertices).min(), Eigen::Vector3d(5, 7, 0.5));
+    EXPECT_EQ(geometry::finite_bounding_box(mesh.vertices).max(), Eigen::Vector3d(10, 9, 1));
+    const Eigen::Matrix3Xd normals = mesh::triangle_normals(mesh);
     for (const Eigen::Vector3d& normal : normals.colwise())
         EXPECT_LT((normal - Eigen::Vector3d(-0.1, 0, 1).normalized()).norm(), 1e-6);
 }
@@ -271,16 +272,17 @@ TEST(Scan, CloudIsLiftedAndDensified)
     for (int i = -20; i <= 20; ++i)
         for (int j = -20; j <= 20; ++j) file << i << ' ' << j << ' ' << 0.1 * i << '\n';
     file.close();
-    PartSpec spec;
-    spec.surface = ScannedSurface{"plate.xyz", Units::Length::mm,
-                                  Eigen::AlignedBox2d(Eigen::Vector2d(-15.5, -15.5), Eigen::Vector2d(15.5, 15.5))};
+    part::PartSpec spec;
+    spec.surface =
+        part::ScannedSurface{"plate.xyz", units::Units::Length::mm,
+                             Eigen::AlignedBox2d(Eigen::Vector2d(-15.5, -15.5), Eigen::Vector2d(15.5, 15.5))};
     spec.step = 0.5;
     spec.anomalies = {anomaly(R"({"type": "dot", "centre": [0, 0], "radius": 6, "height": 3})")};
-    const Cloud cloud = std::get<Cloud>(make_part(spec, 1));
+    const cloud::Cloud cloud = std::get<cloud::Cloud>(part::make_part(spec, 1));
     EXPECT_GT(cloud.size(), 31 * 31 + 400); // π 6² / 0.5² = 452 points of its own, and some at the rim
     EXPECT_LT(cloud.size(), 31 * 31 + 500);
     for (const Eigen::Vector3d& p : cloud.xyz.colwise())
-        EXPECT_NEAR(p.z(), 0.1 * p.x() + height(spec.anomalies, p.head<2>()), 1e-6) << p.transpose();
+        EXPECT_NEAR(p.z(), 0.1 * p.x() + part::height(spec.anomalies, p.head<2>()), 1e-6) << p.transpose();
 }
 
 } // namespace

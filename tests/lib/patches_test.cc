@@ -21,9 +21,9 @@ std::string sample(const std::string& name)
 
 /// A bicubic patch over [0, 30] x [0, 20], x and y linear in u and v, with the net of z = q(x) r(y) for quadratics
 /// q(t) = r(t) = t²: the control value of t² over knots a b c is (ab + bc + ca) / 3 (blossom).
-Patch quadratic_patch()
+surface::Patch quadratic_patch()
 {
-    Patch patch;
+    surface::Patch patch;
     patch.knots_u = Eigen::VectorXd(10);
     patch.knots_u << 0, 0, 0, 0, 10, 17, 30, 30, 30, 30;
     patch.knots_v = Eigen::VectorXd(8);
@@ -44,30 +44,30 @@ Patch quadratic_patch()
 
 TEST(Patch, reproduces_quadratics_and_their_slopes)
 {
-    const Patch patch = quadratic_patch();
+    const surface::Patch patch = quadratic_patch();
     for (double x = 0; x <= 30; x += 2.5)
         for (double y = 0; y <= 20; y += 2.5) {
-            const Eigen::Matrix3d here = point_and_tangents(patch, {x, y});
+            const Eigen::Matrix3d here = surface::point_and_tangents(patch, {x, y});
             EXPECT_NEAR(here(0, 0), x, 1e-12);
             EXPECT_NEAR(here(2, 0), x * x * y * y, 1e-9);
             EXPECT_NEAR(here(2, 1), 2 * x * y * y, 1e-9);
             EXPECT_NEAR(here(2, 2), 2 * x * x * y, 1e-9);
-            EXPECT_NEAR(height(patch, {x, y}), x * x * y * y, 1e-9);
+            EXPECT_NEAR(surface::height(patch, {x, y}), x * x * y * y, 1e-9);
         }
 }
 
 TEST(Patch, is_not_defined_outside)
 {
-    const Patch patch = quadratic_patch();
+    const surface::Patch patch = quadratic_patch();
     for (const Eigen::Vector2d& xy : {Eigen::Vector2d(-0.001, 5), Eigen::Vector2d(30.001, 5),
                                       Eigen::Vector2d(5, 20.001), Eigen::Vector2d(500, -500), Eigen::Vector2d(NAN, 0)})
-        EXPECT_TRUE(std::isnan(height(patch, xy))) << xy.transpose();
+        EXPECT_TRUE(std::isnan(surface::height(patch, xy))) << xy.transpose();
 }
 
 // A quarter of a cylinder of radius 2 by the rational quadratic that is exactly a circle: u is not linear in x.
 TEST(Patch, is_exact_for_a_rational_cylinder)
 {
-    Patch patch;
+    surface::Patch patch;
     patch.degree_u = 2;
     patch.degree_v = 1;
     patch.knots_u = Eigen::VectorXd(6);
@@ -79,7 +79,8 @@ TEST(Patch, is_exact_for_a_rational_cylinder)
     patch.control[2] << 2, 2, 2, 2, 0, 0;
     patch.weights.setOnes(3, 2);
     patch.weights.row(1).setConstant(std::numbers::sqrt2 / 2);
-    for (double x = 0; x < 1.99; x += 0.1) EXPECT_NEAR(height(patch, {x, 3}), std::sqrt(4 - x * x), 1e-10) << x;
+    for (double x = 0; x < 1.99; x += 0.1)
+        EXPECT_NEAR(surface::height(patch, {x, 3}), std::sqrt(4 - x * x), 1e-10) << x;
 }
 
 // The shipped patches: 5 x 4 in, x and y linear, and no quadric: a quadratic leaves more than ten touch errors.
@@ -87,22 +88,23 @@ TEST(Patch, samples_are_what_they_are_said_to_be)
 {
     constexpr double inch = 25.4;
     for (const char* name : {"patch_concave.json", "patch_convex.json", "patch_saddle.json"}) {
-        const Patch patch = read_patches(sample(name)).at(0);
-        EXPECT_TRUE(std::isnan(height(patch, {5.001 * inch, 2 * inch})));
-        EXPECT_NEAR(point_and_tangents(patch, {1.7, 2.3})(0, 0), 1.7 * inch, 1e-9);
-        EXPECT_NEAR(point_and_tangents(patch, {1.7, 2.3})(1, 0), 2.3 * inch, 1e-9);
-        EXPECT_NEAR(height(patch, {1.7 * inch, 2.3 * inch}), point_and_tangents(patch, {1.7, 2.3})(2, 0), 1e-9);
+        const surface::Patch patch = surface::read_patches(sample(name)).at(0);
+        EXPECT_TRUE(std::isnan(surface::height(patch, {5.001 * inch, 2 * inch})));
+        EXPECT_NEAR(surface::point_and_tangents(patch, {1.7, 2.3})(0, 0), 1.7 * inch, 1e-9);
+        EXPECT_NEAR(surface::point_and_tangents(patch, {1.7, 2.3})(1, 0), 2.3 * inch, 1e-9);
+        EXPECT_NEAR(surface::height(patch, {1.7 * inch, 2.3 * inch}),
+                    surface::point_and_tangents(patch, {1.7, 2.3})(2, 0), 1e-9);
         // third differences of a quadratic vanish
         double largest = 0;
         for (double x = 0; x <= 2; x += 0.25) {
-            const auto z = [&](double shift) { return height(patch, {(x + shift) * inch, 2 * inch}); };
+            const auto z = [&](double shift) { return surface::height(patch, {(x + shift) * inch, 2 * inch}); };
             largest = std::max(largest, std::abs(z(3) - 3 * z(2) + 3 * z(1) - z(0)));
         }
         EXPECT_GT(largest, 10 * 0.005 * inch) << name;
     }
 }
 
-/// What reading a patch says with one piece of it replaced.
+/// Message of reading a patch with one piece of it replaced.
 std::string refusal(const std::string& piece, const std::string& replacement)
 {
     std::string text = R"({"kind": "patches", "units": {"length": "mm"}, "patches": [{"degree": [1, 1],
@@ -113,8 +115,8 @@ std::string refusal(const std::string& piece, const std::string& replacement)
     const std::string path = "patch.json";
     std::ofstream(path) << text;
     try {
-        read_patches(path);
-    } catch (const InputError& error) {
+        surface::read_patches(path);
+    } catch (const core::InputError& error) {
         return error.what();
     }
     return "";
@@ -123,21 +125,21 @@ std::string refusal(const std::string& piece, const std::string& replacement)
 TEST(Patch, refuses_bad_files_with_the_place)
 {
     EXPECT_EQ(refusal("", ""), "");
-    const auto says = [](const std::string& message, const std::string& part) {
+    const auto expect_message = [](const std::string& message, const std::string& part) {
         EXPECT_NE(message.find(part), std::string::npos) << message;
     };
-    says(refusal("\"patches\", ", "\"job\", "), "kind");
-    says(refusal("[1, 1],", "[1, 9],"), "degree");
-    says(refusal("[1, 1],", "[2, 1],"), "patches[0].control");
-    says(refusal("\"knots_u\": [0, 0, 1, 1]", "\"knots_u\": [0, 0, 1]"), "patches[0].knots_u");
-    says(refusal("\"knots_u\": [0, 0, 1, 1]", "\"knots_u\": [0, 1, 0, 1]"), "patches[0].knots_u[2]");
-    says(refusal("\"knots_v\": [0, 0, 1, 1]", "\"knots_v\": [1, 1, 1, 1]"), "patches[0].knots_v");
-    says(refusal("[0, 1, 1]]", "[0, 1]]"), "patches[0].control[0][1]");
-    says(refusal("[0, 1, 1]]", "[0, 1, \"x\"]]"), "patches[0].control[0][1][2]");
-    says(refusal("[[1, 0, 1], ", "["), "patches[0].control");
-    says(refusal("null", "[[1, 1]]"), "patches[0].weights");
-    says(refusal("null", "[[1, 1], [1, 0]]"), "patches[0].weights");
-    says(refusal("\"weights\"", "\"wieghts\""), "wieghts");
+    expect_message(refusal("\"patches\", ", "\"job\", "), "kind");
+    expect_message(refusal("[1, 1],", "[1, 9],"), "degree");
+    expect_message(refusal("[1, 1],", "[2, 1],"), "patches[0].control");
+    expect_message(refusal("\"knots_u\": [0, 0, 1, 1]", "\"knots_u\": [0, 0, 1]"), "patches[0].knots_u");
+    expect_message(refusal("\"knots_u\": [0, 0, 1, 1]", "\"knots_u\": [0, 1, 0, 1]"), "patches[0].knots_u[2]");
+    expect_message(refusal("\"knots_v\": [0, 0, 1, 1]", "\"knots_v\": [1, 1, 1, 1]"), "patches[0].knots_v");
+    expect_message(refusal("[0, 1, 1]]", "[0, 1]]"), "patches[0].control[0][1]");
+    expect_message(refusal("[0, 1, 1]]", "[0, 1, \"x\"]]"), "patches[0].control[0][1][2]");
+    expect_message(refusal("[[1, 0, 1], ", "["), "patches[0].control");
+    expect_message(refusal("null", "[[1, 1]]"), "patches[0].weights");
+    expect_message(refusal("null", "[[1, 1], [1, 0]]"), "patches[0].weights");
+    expect_message(refusal("\"weights\"", "\"wieghts\""), "wieghts");
 }
 
 } // namespace

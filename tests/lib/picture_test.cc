@@ -1,12 +1,12 @@
 // Pictures read back: the colours at known places are those of the values there.
-#include "compare/picture.h"
+#include "draw/picture.h"
 
-#include "compare/canvas.h"
-#include "compare/colours.h"
-#include "compare/png.h"
-#include "compare/raster.h"
-#include "compare/view.h"
 #include "core/error.h"
+#include "draw/canvas.h"
+#include "draw/colours.h"
+#include "draw/png.h"
+#include "draw/raster.h"
+#include "draw/view.h"
 
 #include <Eigen/LU>
 #include <gtest/gtest.h>
@@ -20,13 +20,13 @@ namespace fettle {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-const ColourScale kUnit{1};
+const draw::ColourScale kUnit{1};
 
 /// 20 x 20 points, 2 mm apart; their error is that of `error` over the grid's own coordinates.
 template <typename Error>
-Cloud grid(const Error& error, double angle = 0)
+cloud::Cloud grid(const Error& error, double angle = 0)
 {
-    Cloud cloud;
+    cloud::Cloud cloud;
     cloud.xyz.resize(3, 400);
     Eigen::VectorXd errors(400);
     const Eigen::Matrix2d turn = Eigen::Rotation2Dd(angle).toRotationMatrix();
@@ -35,7 +35,7 @@ Cloud grid(const Error& error, double angle = 0)
         cloud.xyz.col(i) << turn * at, 1;
         errors[i] = error(at);
     }
-    set_field(cloud, "error", errors);
+    cloud::set_field(cloud, "error", errors);
     return cloud;
 }
 
@@ -57,32 +57,32 @@ Sheet decoded(const std::string& bytes)
     return sheet;
 }
 
-Sheet drawn(const std::variant<Cloud, Mesh>& part, const PictureOptions& options)
+Sheet drawn(const std::variant<cloud::Cloud, mesh::Mesh>& part, const draw::PictureOptions& options)
 {
-    return decoded(picture(part, options));
+    return decoded(draw::picture(part, options));
 }
 
-Rgb at(const Sheet& sheet, int column, int row)
+draw::Rgb at(const Sheet& sheet, int column, int row)
 {
     const std::size_t red =
         3 * (static_cast<std::size_t>(row) * static_cast<std::size_t>(sheet.width) + static_cast<std::size_t>(column));
     return {sheet.rgb.at(red), sheet.rgb.at(red + 1), sheet.rgb.at(red + 2)};
 }
 
-PictureOptions errors_to(double limit)
+draw::PictureOptions errors_to(double limit)
 {
-    PictureOptions options;
+    draw::PictureOptions options;
     options.field = "error";
     options.scale = limit;
     return options;
 }
 
-// A square map of 680 pixels stands in the middle of the frame of 900 x 680 whose corner is (84, 36).
+// A square map of 680 pixels is in the middle of the frame of 900 x 680 whose corner is (84, 36).
 constexpr int kLeft = 84 + 110, kTop = 36, kSide = 680;
 
 TEST(Picture, EachPointIsItsCellWithTheColourOfItsValue)
 {
-    const Cloud cloud = grid([](const Eigen::Vector2d& p) {
+    const cloud::Cloud cloud = grid([](const Eigen::Vector2d& p) {
         return p.x() < 19 ? p.y() < 19 ? -1 : 0 : p.y() < 19 ? kNaN : 1;
     });
     const Sheet sheet = drawn(cloud, errors_to(1));
@@ -95,7 +95,7 @@ TEST(Picture, EachPointIsItsCellWithTheColourOfItsValue)
             ASSERT_EQ(at(sheet, kLeft + column, kTop + row), kUnit(error)) << column << ' ' << row;
         }
     // The legend: material left on top, over-cut at the bottom.
-    const double third_row = 1 - 2 * 2.5 / (kSide - 124); // of a bar that stands 62 pixels inside the frame
+    const double third_row = 1 - 2 * 2.5 / (kSide - 124); // of a bar 62 pixels inside the frame
     EXPECT_EQ(at(sheet, 84 + 900 + 40 + 10, kTop + 62 + 2), kUnit(third_row));
     EXPECT_EQ(at(sheet, 84 + 900 + 40 + 10, kTop + kSide - 62 - 3), kUnit(-third_row));
 }
@@ -113,7 +113,7 @@ TEST(Picture, TurnedGridsHaveNoHoles)
 
 TEST(Picture, BandsAreStepsOfColour)
 {
-    PictureOptions options = errors_to(1);
+    draw::PictureOptions options = errors_to(1);
     options.bands = 4; // middles at ±0.25 and ±0.75
     const Sheet sheet = drawn(grid([](const Eigen::Vector2d& p) { return p.x() < 19 ? 0.01 : 0.49; }), options);
     EXPECT_EQ(at(sheet, kLeft + 100, kTop + 300), kUnit(0.25));
@@ -122,34 +122,34 @@ TEST(Picture, BandsAreStepsOfColour)
 
 TEST(Picture, IsTheSameEachTime)
 {
-    const Cloud cloud = grid([](const Eigen::Vector2d& p) { return std::sin(p.x()); });
-    EXPECT_EQ(picture(cloud, errors_to(1)), picture(cloud, errors_to(1)));
+    const cloud::Cloud cloud = grid([](const Eigen::Vector2d& p) { return std::sin(p.x()); });
+    EXPECT_EQ(draw::picture(cloud, errors_to(1)), draw::picture(cloud, errors_to(1)));
 }
 
 /// A square of 21 x 21 points, 1 mm apart, upright in the plane y = `y`, x and z from -10 to 10, all of one error.
-void add_wall(Cloud& cloud, double y, double error)
+void add_wall(cloud::Cloud& cloud, double y, double error)
 {
-    Cloud wall;
+    cloud::Cloud wall;
     wall.xyz.resize(3, 441);
     for (int i = 0; i < 441; ++i) wall.xyz.col(i) << i % 21 - 10, y, i / 21 - 10;
     const Eigen::Index known = cloud.size();
     Eigen::VectorXd errors(known + 441);
-    if (known > 0) errors.head(known) = field(cloud, "error");
+    if (known > 0) errors.head(known) = cloud::field(cloud, "error");
     errors.tail(441).setConstant(error);
     cloud.xyz.conservativeResize(3, known + 441);
     cloud.xyz.rightCols(441) = wall.xyz;
-    set_field(cloud, "error", errors);
+    cloud::set_field(cloud, "error", errors);
 }
 
-// Two walls behind each other, 3 mm apart: of either side one is seen, all over.
+// Two walls behind each other, 3 mm apart: from either side only the nearer one is visible.
 TEST(Picture, WhatIsBehindIsHidden)
 {
-    Cloud cloud;
+    cloud::Cloud cloud;
     add_wall(cloud, 0, 0.5);
     add_wall(cloud, 3, -0.5);
     for (const double side : {-1.0, 1.0}) {
-        PictureOptions options = errors_to(1);
-        options.from = {0, side, 0};
+        draw::PictureOptions options = errors_to(1);
+        options.towards_eye = {0, side, 0};
         const Sheet sheet = drawn(cloud, options);
         for (int column = 5; column < kSide - 5; ++column)
             for (int row = 5; row < kSide - 5; ++row)
@@ -161,7 +161,7 @@ TEST(Picture, WhatIsBehindIsHidden)
 TEST(View, ZIsUpOnTheSheet)
 {
     const auto expect = [](const Eigen::Vector3d& from, const Eigen::Vector3d& right, const Eigen::Vector3d& up) {
-        const Eigen::Matrix3d rotation = view_rotation(from);
+        const Eigen::Matrix3d rotation = draw::view_rotation(from);
         EXPECT_LT((rotation.row(0).transpose() - right).norm(), 1e-15);
         EXPECT_LT((rotation.row(1).transpose() - up).norm(), 1e-15);
         EXPECT_LT((rotation.row(2).transpose() - from).norm(), 1e-15);
@@ -175,17 +175,17 @@ TEST(View, ZIsUpOnTheSheet)
     expect({0, -half, half}, {1, 0, 0}, {0, half, half});
 }
 
-// Where an edge lies between colours tells where the eye is: a step of the error at x = 1 on a plane that is seen at
-// 60° from its normal, so that y is half as long on the sheet and x is not.
-TEST(Picture, LengthsAreThoseSeen)
+// The position of an edge between colours shows the direction of view: a step of the error at x = 1 on a plane that is
+// seen at 60° from its normal, so that y is half as long on the sheet and x is not.
+TEST(Picture, LengthsAreProjectedLengths)
 {
-    PictureOptions options = errors_to(1);
-    options.from = {0, -std::sqrt(0.75), 0.5};
+    draw::PictureOptions options = errors_to(1);
+    options.towards_eye = {0, -std::sqrt(0.75), 0.5};
     const Sheet sheet = drawn(grid([](const Eigen::Vector2d& p) { return p.y() < 9 ? 1 : -1; }), options); // 40 x 40 mm
     const double pixel = 40.0 / 900;
     int blue = 0, red = 0; // rows in the middle column
     for (int row = 0; row < 480; ++row) {
-        const Rgb colour = at(sheet, 84 + 450, kTop + row);
+        const draw::Rgb colour = at(sheet, 84 + 450, kTop + row);
         blue += colour[2] > colour[0] + 30;
         red += colour[0] > colour[2] + 30;
     }
@@ -197,14 +197,14 @@ TEST(Picture, LengthsAreThoseSeen)
 // Numbers do not depend on where a mesh is seen from. Reference: those from above. A roof of 20 x 20 mm, 5 mm high.
 TEST(Picture, HeightsAreThoseOfThePart)
 {
-    Mesh roof;
+    mesh::Mesh roof;
     roof.vertices.resize(3, 6);
     roof.vertices << 0, 20, 20, 0, 0, 20, 0, 0, 20, 20, 10, 10, 0, 0, 0, 0, 5, 5;
     roof.triangles.resize(3, 4);
     roof.triangles.transpose() << 0, 1, 5, 0, 5, 4, 2, 3, 4, 2, 4, 5;
-    PictureOptions options;
+    draw::PictureOptions options;
     const Sheet above = drawn(roof, options);
-    options.from = Eigen::Vector3d(0, -1, 1).normalized();
+    options.towards_eye = Eigen::Vector3d(0, -1, 1).normalized();
     const Sheet aside = drawn(roof, options);
     ASSERT_EQ(above.width, aside.width);
     const auto numbers = [](const Sheet& sheet) { // the last line
@@ -215,12 +215,12 @@ TEST(Picture, HeightsAreThoseOfThePart)
     EXPECT_NE(above.rgb, aside.rgb);
 }
 
-// Of the legend: pointed where values lie beyond, else not. The tips stand 2 pixels beyond the bar's frame.
+// The legend has pointed ends where values lie beyond, else not. The tips are 2 pixels beyond the bar's frame.
 TEST(Picture, MarksTheEndsThatValuesExceed)
 {
     const int middle = 84 + 900 + 40 + 11, top = kTop + 62 - 6, bottom = kTop + kSide - 62 + 6;
-    const Rgb white = {255, 255, 255};
-    const Cloud cloud = grid([](const Eigen::Vector2d& p) { return p.x() < 1 ? 2 : 0.5; });
+    const draw::Rgb white = {255, 255, 255};
+    const cloud::Cloud cloud = grid([](const Eigen::Vector2d& p) { return p.x() < 1 ? 2 : 0.5; });
     const Sheet beyond = drawn(cloud, errors_to(1)), within = drawn(cloud, errors_to(2));
     EXPECT_EQ(at(beyond, middle, top), kUnit(1));
     EXPECT_EQ(at(beyond, middle, bottom), white);
@@ -230,12 +230,12 @@ TEST(Picture, MarksTheEndsThatValuesExceed)
 // Outlines beyond the part belong to the picture: they lie in the frame, and the part where it is.
 TEST(Picture, BoundariesAreInTheFrame)
 {
-    PictureOptions options = errors_to(1);
-    options.within.emplace();
-    options.within->anomaly.resize(3, 4);
-    options.within->anomaly << 10, 28, 28, 10, 10, 10, 28, 28, 1, 1, 1, 1;
-    options.within->sampling.resize(3, 4);
-    options.within->sampling << -31, 69, 69, -31, -31, -31, 69, 69, kNaN, kNaN, kNaN, kNaN;
+    draw::PictureOptions options = errors_to(1);
+    options.job.emplace();
+    options.job->anomaly.resize(3, 4);
+    options.job->anomaly << 10, 28, 28, 10, 10, 10, 28, 28, 1, 1, 1, 1;
+    options.job->sampling.resize(3, 4);
+    options.job->sampling << -31, 69, 69, -31, -31, -31, 69, 69, kNaN, kNaN, kNaN, kNaN;
     const Sheet sheet = drawn(grid([](const Eigen::Vector2d&) { return 1; }), options); // from 0 to 38
     // S, and half a spacing around it, fill the frame's height: 102 mm on 680 pixels.
     const double pixel = 102.0 / kSide;
@@ -245,25 +245,25 @@ TEST(Picture, BoundariesAreInTheFrame)
     EXPECT_EQ(place(5, 5), kUnit(1));
     EXPECT_NE(place(-10, -10), kUnit(1));
     for (const double end : {-31.0, 69.0}) {
-        const Rgb edge = place(end, 19); // violet
+        const draw::Rgb edge = place(end, 19); // violet
         EXPECT_GT(edge[2], edge[1] + 40) << end;
     }
     // Errors of 2 outside B: the legend's end is pointed although none of those that count lies beyond.
-    const Cloud steps = grid([](const Eigen::Vector2d& p) { return p.x() < 7 ? 2 : 0.5; });
+    const cloud::Cloud steps = grid([](const Eigen::Vector2d& p) { return p.x() < 7 ? 2 : 0.5; });
     EXPECT_EQ(at(drawn(steps, options), 84 + 900 + 40 + 11, kTop + 62 - 6), kUnit(1));
-    const Rgb inner = place(10, 19); // black, on blue
+    const draw::Rgb inner = place(10, 19); // black, on blue
     EXPECT_LT(inner[2], 60);
 }
 
 // A pyramid under light from the upper left.
 TEST(Picture, HeightsAreShaded)
 {
-    Mesh mesh;
+    mesh::Mesh mesh;
     mesh.vertices.resize(3, 5);
     mesh.vertices << -10, 10, 10, -10, 0, -10, -10, 10, 10, 0, 0, 0, 0, 0, 5;
     mesh.triangles.resize(3, 4);
     mesh.triangles << 0, 1, 2, 3, 1, 2, 3, 0, 4, 4, 4, 4;
-    PictureOptions options;
+    draw::PictureOptions options;
     options.scale = 1e6; // one colour: what differs is the light
     const Sheet sheet = drawn(mesh, options);
     const auto light = [&](int column, int row) { return at(sheet, kLeft + column, kTop + row)[1]; };
@@ -273,28 +273,28 @@ TEST(Picture, HeightsAreShaded)
 
 TEST(Picture, HasRoomForOnePoint)
 {
-    Cloud cloud;
+    cloud::Cloud cloud;
     cloud.xyz = Eigen::Vector3d(3, 4, 5);
     const Sheet sheet = drawn(cloud, {});
-    EXPECT_NE(at(sheet, 84 + 450, kTop + 340), (Rgb{228, 228, 232})); // the disc in the middle
-    EXPECT_EQ(at(sheet, 84 + 450 + 100, kTop + 340), (Rgb{228, 228, 232}));
+    EXPECT_NE(at(sheet, 84 + 450, kTop + 340), (draw::Rgb{228, 228, 232})); // the disc in the middle
+    EXPECT_EQ(at(sheet, 84 + 450 + 100, kTop + 340), (draw::Rgb{228, 228, 232}));
 }
 
 TEST(Picture, RefusesWhatItCannotDraw)
 {
-    Cloud cloud;
-    EXPECT_THROW(picture(cloud, {}), InputError);
+    cloud::Cloud cloud;
+    EXPECT_THROW(draw::picture(cloud, {}), core::InputError);
     cloud.xyz = Eigen::Matrix3Xd::Constant(3, 4, kNaN);
-    EXPECT_THROW(picture(cloud, {}), InputError);
+    EXPECT_THROW(draw::picture(cloud, {}), core::InputError);
     cloud.xyz.setRandom();
-    EXPECT_THROW(picture(cloud, errors_to(1)), InputError); // no such field
+    EXPECT_THROW(draw::picture(cloud, errors_to(1)), core::InputError); // no such field
 }
 
 // The font is ASCII: what it lacks is written with what it has. Reference: the same words in ASCII.
 TEST(Canvas, WritesWesternLettersByOthers)
 {
     const auto drawn_text = [](const std::string& words) {
-        Canvas sheet(700, 40);
+        draw::Canvas sheet(700, 40);
         sheet.text(words, {10, 20}, 12);
         return sheet.png();
     };
@@ -311,22 +311,22 @@ TEST(Png, HoldsEveryPixel)
     for (const auto& [width, height] : {std::pair{1, 1}, {7, 3}, {1294, 880}}) {
         std::vector<std::uint8_t> rgb(static_cast<std::size_t>(3 * width * height));
         for (std::uint8_t& value : rgb) value = static_cast<std::uint8_t>(random());
-        const Sheet sheet = decoded(encode_png(rgb, width, height));
+        const Sheet sheet = decoded(draw::encode_png(rgb, width, height));
         EXPECT_EQ(sheet.width, width);
         EXPECT_EQ(sheet.rgb, rgb);
     }
-    EXPECT_THROW(encode_png(std::vector<std::uint8_t>(3), 0, 1), std::runtime_error);
+    EXPECT_THROW(draw::encode_png(std::vector<std::uint8_t>(3), 0, 1), std::runtime_error);
 }
 
 TEST(Raster, SpacingOfAGridIsItsCell)
 {
     for (const double angle : {0.0, 0.3, std::numbers::pi / 4})
-        EXPECT_NEAR(point_spacing(grid([](const Eigen::Vector2d&) { return 0; }, angle).xyz), 2, 1e-12);
-    EXPECT_EQ(point_spacing(Eigen::Matrix3Xd::Constant(3, 3, 7)), 0);
+        EXPECT_NEAR(draw::point_spacing(grid([](const Eigen::Vector2d&) { return 0; }, angle).xyz), 2, 1e-12);
+    EXPECT_EQ(draw::point_spacing(Eigen::Matrix3Xd::Constant(3, 3, 7)), 0);
     Eigen::Matrix3Xd line = Eigen::Matrix3Xd::Zero(3, 5);
     line.row(0) << 0, 3, 6, 9, kNaN; // each has a neighbour 3 away and one 6 away; nothing is farther than two shares
-    EXPECT_GE(point_spacing(line), 3);
-    EXPECT_LE(point_spacing(line), 6);
+    EXPECT_GE(draw::point_spacing(line), 3);
+    EXPECT_LE(draw::point_spacing(line), 6);
 }
 
 } // namespace

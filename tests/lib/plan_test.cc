@@ -24,29 +24,29 @@ constexpr double kInch = 25.4;
 TEST(Layers, FollowWang)
 {
     // 20 / 40 / 60 lbf on 200 lbf/in: thickness 0.2 in (5-1), distance 0.1 in (5-2); in inches and pounds.
-    const Layers layers = layers_of({20, 40, 60, 200, 0});
+    const plan::Layers layers = plan::compute_layers({20, 40, 60, 200, 0});
     EXPECT_DOUBLE_EQ(layers.thickness, 0.2);
     EXPECT_DOUBLE_EQ(layers.distance, 0.1);
     EXPECT_EQ(layers.overlap_case, 3);
-    EXPECT_EQ(reference_offset(layers, 1), 0);
-    EXPECT_DOUBLE_EQ(reference_offset(layers, 4), 0.3); // (5-3)
-    EXPECT_EQ(layers_of({20, 50, 60, 200, 0}).overlap_case, 1);
-    EXPECT_EQ(layers_of({20, 30, 60, 200, 0}).overlap_case, 2);
+    EXPECT_EQ(plan::reference_offset(layers, 1), 0);
+    EXPECT_DOUBLE_EQ(plan::reference_offset(layers, 4), 0.3); // (5-3)
+    EXPECT_EQ(plan::compute_layers({20, 50, 60, 200, 0}).overlap_case, 1);
+    EXPECT_EQ(plan::compute_layers({20, 30, 60, 200, 0}).overlap_case, 2);
 }
 
 // --- the staircase ---------------------------------------------------------------------------------------------------
 
-Polygon polygon(std::initializer_list<std::pair<double, double>> corners)
+job::Polygon polygon(std::initializer_list<std::pair<double, double>> corners)
 {
-    Polygon result(2, Eigen::Index(corners.size()));
+    job::Polygon result(2, Eigen::Index(corners.size()));
     Eigen::Index i = 0;
     for (const auto& [x, y] : corners) result.col(i++) << x, y;
     return result;
 }
 
-Polygon moon()
+job::Polygon moon()
 {
-    Polygon result(2, 60);
+    job::Polygon result(2, 60);
     for (int i = 0; i < 30; ++i) {
         const double a = std::numbers::pi * (0.2 + 1.6 * i / 29), b = std::numbers::pi * (1.7 - 1.4 * i / 29);
         result.col(i) << 20 * std::cos(a), 20 * std::sin(a);
@@ -58,21 +58,21 @@ Polygon moon()
 Eigen::VectorXd level(const Eigen::Matrix2Xd& places) { return Eigen::VectorXd::Zero(places.cols()); }
 
 // Inside the strip of the wheel around one of the passes?
-bool is_covered(const std::vector<Pass>& passes, double half_width, const Eigen::Vector2d& point)
+bool is_covered(const std::vector<plan::Pass>& passes, double half_width, const Eigen::Vector2d& point)
 {
     constexpr double kRounding = 1e-9;
-    for (const Pass& pass : passes)
+    for (const plan::Pass& pass : passes)
         if (std::abs(pass.line - point.x()) <= half_width + kRounding)
-            for (const Interval& interval : pass.intervals)
+            for (const job::Interval& interval : pass.intervals)
                 if (point.y() >= interval.first - kRounding && point.y() <= interval.second + kRounding) return true;
     return false;
 }
 
 class StaircaseTest : public testing::TestWithParam<int> {
   protected:
-    Polygon region() const
+    job::Polygon region() const
     {
-        const Polygon regions[] = {
+        const job::Polygon regions[] = {
             polygon({{0, 0}, {50, 0}, {50, 50}, {0, 50}}),
             polygon({{3, 1}, {41, 22}, {9, 37}}),          // pointed at all ends
             polygon({{0, 0}, {30, 25}, {31, 28}, {1, 3}}), // a slanted strip
@@ -88,26 +88,28 @@ class StaircaseTest : public testing::TestWithParam<int> {
 TEST_P(StaircaseTest, CoversTheRegionAndStaysOnIt)
 {
     for (const double step_over : {2.0, 5.0, 6.0}) {
-        const std::vector<Pass> passes =
-            staircase(region(), level, wheel_sections(25, kWidth, 'y'), {.step_over = step_over, .leftover = 0.05});
+        const std::vector<plan::Pass> passes = plan::staircase(region(), level, plan::wheel_sections(25, kWidth, 'y'),
+                                                               {.step_over = step_over, .max_scallop = 0.05});
         const Eigen::Vector2d low = region().rowwise().minCoeff(), high = region().rowwise().maxCoeff();
         for (double y = low.y(); y <= high.y(); y += 0.37)
             for (double x = low.x(); x <= high.x(); x += 0.37)
-                EXPECT_TRUE(!contains(region(), {x, y}) || is_covered(passes, kWidth / 2, {x, y})) << x << " " << y;
+                EXPECT_TRUE(!job::contains(region(), {x, y}) || is_covered(passes, kWidth / 2, {x, y}))
+                    << x << " " << y;
         for (Eigen::Index i = 0; i < region().cols(); ++i)
             EXPECT_TRUE(is_covered(passes, kWidth / 2, region().col(i))) << region().col(i).transpose();
 
-        // Wherever the wheel stands, its width is over the region.
+        // At each position of the wheel, its width is over the region.
         for (std::size_t p = 0; p < passes.size(); ++p) {
             if (p > 0) {
                 EXPECT_GT(passes[p].line, passes[p - 1].line);
                 EXPECT_LE(passes[p].line, passes[p - 1].line + step_over * (1 + 1e-9));
             }
-            for (const Interval& interval : passes[p].intervals)
+            for (const job::Interval& interval : passes[p].intervals)
                 for (const double y :
                      {interval.first + 0.05, (interval.first + interval.second) / 2, interval.second - 0.05}) {
                     const Eigen::Vector2d edge(passes[p].line - kWidth / 2, y);
-                    const auto over = intersect(inside(region(), edge, Eigen::Vector2d::UnitX()), {{0, kWidth}});
+                    const auto over =
+                        job::intersect(job::intervals_inside(region(), edge, Eigen::Vector2d::UnitX()), {{0, kWidth}});
                     EXPECT_FALSE(over.empty()) << passes[p].line << " " << y;
                 }
         }
@@ -118,21 +120,23 @@ INSTANTIATE_TEST_SUITE_P(Regions, StaircaseTest, testing::Range(0, 6));
 
 TEST(Staircase, LiesFlushWithARectangle)
 {
-    const std::vector<Pass> passes = staircase(polygon({{10, 0}, {60, 0}, {60, 40}, {10, 40}}), level,
-                                               wheel_sections(25, 6, 'y'), {.step_over = 5, .leftover = 0.05});
+    const std::vector<plan::Pass> passes =
+        plan::staircase(polygon({{10, 0}, {60, 0}, {60, 40}, {10, 40}}), level, plan::wheel_sections(25, 6, 'y'),
+                        {.step_over = 5, .max_scallop = 0.05});
     EXPECT_NEAR(passes.front().line, 13, 1e-9);
     EXPECT_NEAR(passes.back().line, 57, 6.0 / 64);
     EXPECT_EQ(passes.size(), 10u); // 44 mm in steps of at most 5
-    for (const Pass& pass : passes) EXPECT_EQ(pass.intervals, (std::vector<Interval>{{0, 40}}));
+    for (const plan::Pass& pass : passes) EXPECT_EQ(pass.intervals, (std::vector<job::Interval>{{0, 40}}));
 }
 
 // On a slope s across the passes the level wheel leaves steps of s times their distance.
-TEST(Staircase, StandsCloserOnASlope)
+TEST(Staircase, PassesAreCloserOnASlope)
 {
     const double slope = 0.25, leftover = 0.05;
     const auto tilted = [&](const Eigen::Matrix2Xd& places) -> Eigen::VectorXd { return slope * places.row(0); };
-    const std::vector<Pass> passes = staircase(polygon({{0, 0}, {20, 0}, {20, 20}, {0, 20}}), tilted,
-                                               wheel_sections(25, 6, 'y'), {.step_over = 5, .leftover = leftover});
+    const std::vector<plan::Pass> passes =
+        plan::staircase(polygon({{0, 0}, {20, 0}, {20, 20}, {0, 20}}), tilted, plan::wheel_sections(25, 6, 'y'),
+                        {.step_over = 5, .max_scallop = leftover});
     // The wheel touches with its uphill edge, so the lowest line lies half a width outside.
     EXPECT_NEAR(passes.front().line, -3 + leftover / slope, 0.1);
     for (std::size_t p = 1; p < passes.size(); ++p) {
@@ -145,8 +149,9 @@ TEST(Staircase, AlongTheWheelsAxisKeepsTheScallopsLow)
 {
     // A round section leaves scallops of spacing² / 8R.
     const double leftover = 0.05, radius = 25;
-    const std::vector<Pass> passes = staircase(polygon({{0, 0}, {20, 0}, {20, 20}, {0, 20}}), level,
-                                               wheel_sections(radius, 6, 'x'), {.step_over = 5, .leftover = leftover});
+    const std::vector<plan::Pass> passes =
+        plan::staircase(polygon({{0, 0}, {20, 0}, {20, 20}, {0, 20}}), level, plan::wheel_sections(radius, 6, 'x'),
+                        {.step_over = 5, .max_scallop = leftover});
     for (std::size_t p = 1; p < passes.size(); ++p) {
         const double spacing = passes[p].line - passes[p - 1].line;
         EXPECT_LE(spacing * spacing / (8 * radius), leftover);
@@ -156,17 +161,17 @@ TEST(Staircase, AlongTheWheelsAxisKeepsTheScallopsLow)
 
 TEST(StripProjection, IsExact)
 {
-    const Polygon triangle = polygon({{0, 0}, {10, 0}, {0, 10}});
-    EXPECT_EQ(strip_projection(triangle, 0, 2, 4), (std::vector<Interval>{{0, 8}}));
-    EXPECT_EQ(strip_projection(triangle, 1, 5, 20), (std::vector<Interval>{{0, 5}}));
-    EXPECT_TRUE(strip_projection(triangle, 0, 11, 12).empty());
+    const job::Polygon triangle = polygon({{0, 0}, {10, 0}, {0, 10}});
+    EXPECT_EQ(plan::strip_projection(triangle, 0, 2, 4), (std::vector<job::Interval>{{0, 8}}));
+    EXPECT_EQ(plan::strip_projection(triangle, 1, 5, 20), (std::vector<job::Interval>{{0, 5}}));
+    EXPECT_TRUE(plan::strip_projection(triangle, 0, 11, 12).empty());
 }
 
 // --- compensation ----------------------------------------------------------------------------------------------------
 
-Job job_with(double radius, double width)
+job::Job job_with(double radius, double width)
 {
-    Job job;
+    job::Job job;
     job.wheel = {radius, width, radius / 2};
     job.anomaly.resize(3, 4);
     job.anomaly << -10, 10, 10, -10, -10, -10, 10, 10, 0, 0, 0, 0;
@@ -176,15 +181,15 @@ Job job_with(double radius, double width)
 }
 
 // In the plane of the wheel: centre = contact + R n; the point that a pass touches first and last is its interval's.
-TEST(ToolPath, OnAPlaneStandsOffAlongTheNormal)
+TEST(ToolPath, OnAPlaneIsOffsetAlongTheNormal)
 {
     const double a = 0.1, b = 0.3, radius = 25, width = 6;
-    Surface surface;
-    surface.shape = Plane{{0, 0}, 5, {a, b}};
-    const Job job = job_with(radius, width);
-    const ToolPath path(job, surface, {{2, {{-10, 10}}}}, 1);
+    surface::Surface surface;
+    surface.shape = surface::Plane{{0, 0}, 5, {a, b}};
+    const job::Job job = job_with(radius, width);
+    const plan::ToolPath path(job, surface, {{2, {{-10, 10}}}}, 1);
     const double c = 1 / std::hypot(1, b);
-    for (const ToolPass& pass : path.passes())
+    for (const plan::ToolPass& pass : path.passes())
         for (std::size_t i = 0; i < pass.points.size(); ++i) {
             const Eigen::Vector3d& tool = pass.points[i];
             // Contact below the centre along the normal, on the edge that is uphill.
@@ -194,10 +199,10 @@ TEST(ToolPath, OnAPlaneStandsOffAlongTheNormal)
         }
 }
 
-Surface sphere(double radius)
+surface::Surface sphere(double radius)
 {
-    Surface surface;
-    Sphere shape;
+    surface::Surface surface;
+    surface::Sphere shape;
     shape.point = Eigen::Vector3d::Zero();
     shape.normal = Eigen::Vector3d::UnitZ();
     shape.curvature = 1 / radius;
@@ -205,19 +210,22 @@ Surface sphere(double radius)
     return surface;
 }
 
-// Which sign of curvature is a crown is the surface's business: it is told by its heights.
-bool is_crown(const Surface& surface) { return height(surface, {5, 0}) < height(surface, {0, 0}); }
+// The sign convention of the curvature is the surface's: a crown is recognised by its heights.
+bool is_crown(const surface::Surface& surface)
+{
+    return surface::height(surface, {5, 0}) < surface::height(surface, {0, 0});
+}
 
 TEST(ToolPath, OnASphereTheCentreIsARadiusAway)
 {
     // A wheel as thin as a disc rolls over a sphere: its centre is at R_sphere ± R from the sphere's in its plane.
     const double R = 100, r = 25;
     for (const double sign : {1.0, -1.0}) {
-        const Surface surface = sphere(sign * R);
+        const surface::Surface surface = sphere(sign * R);
         const bool crown = is_crown(surface);
-        const Job job = job_with(r, 1e-6);
-        const ToolPath path(job, surface, {{0, {{-10, 10}}}}, 1);
-        const ToolPass& pass = path.passes().front();
+        const job::Job job = job_with(r, 1e-6);
+        const plan::ToolPath path(job, surface, {{0, {{-10, 10}}}}, 1);
+        const plan::ToolPass& pass = path.passes().front();
         const double centre_z = crown ? -R : R, reach = crown ? R + r : R - r;
         for (const Eigen::Vector3d& tool : pass.points)
             EXPECT_NEAR(std::hypot(tool.y(), tool.z() + r - centre_z), reach, 1e-4);
@@ -230,14 +238,14 @@ TEST(ToolPath, OnACylinderAcrossTheWheelOnlyItsWidthMatters)
 {
     // Axis along y: the section along the passes is level. Hollow: both edges touch; crown: the middle does.
     for (const double sign : {1.0, -1.0}) {
-        Surface surface;
-        Cylinder shape;
+        surface::Surface surface;
+        surface::Cylinder shape;
         shape.point = Eigen::Vector3d::Zero();
         shape.normal = Eigen::Vector3d::UnitZ();
         shape.axis = Eigen::Vector3d::UnitY();
         shape.curvature = sign / 100;
         surface.shape = shape;
-        const ToolPath path(job_with(25, 8), surface, {{0, {{-10, 10}}}}, 1);
+        const plan::ToolPath path(job_with(25, 8), surface, {{0, {{-10, 10}}}}, 1);
         const double expected = is_crown(surface) ? 0 : 100 - std::sqrt(100 * 100 - 4 * 4.0);
         for (const Eigen::Vector3d& tool : path.passes().front().points) EXPECT_NEAR(tool.z(), expected, 1e-6);
     }
@@ -246,8 +254,8 @@ TEST(ToolPath, OnACylinderAcrossTheWheelOnlyItsWidthMatters)
 // The identity behind it all: nowhere in its footprint is the wheel below the surface, and somewhere it touches.
 TEST(ToolPath, NeverCutsBelowTheSurface)
 {
-    Surface surface;
-    Swept shape;
+    surface::Surface surface;
+    surface::Swept shape;
     shape.origin = {0, 0};
     shape.ruling = Eigen::Vector2d(1, 2).normalized(); // askew to the wheel
     shape.scale = 20;
@@ -256,22 +264,22 @@ TEST(ToolPath, NeverCutsBelowTheSurface)
     surface.shape = shape;
     for (const char axis : {'y', 'x'})
         for (const double worn : {25.0, 18.0}) {
-            Job job = job_with(25, 6);
+            job::Job job = job_with(25, 6);
             job.theta = 0.4;
             job.feed.axis = axis;
-            ToolPath path(job, surface, {{-4, {{-8, -1}, {3, 9}}}, {5, {{-9, 9}}}}, 1);
+            plan::ToolPath path(job, surface, {{-4, {{-8, -1}, {3, 9}}}, {5, {{-9, 9}}}}, 1);
             path.set_radius(worn);
-            const Eigen::Matrix2d machine_working = rotation_working_machine(job.theta).transpose();
-            for (const ToolPass& pass : path.passes())
+            const Eigen::Matrix2d machine_working = job::rotation_working_machine(job.theta).transpose();
+            for (const plan::ToolPass& pass : path.passes())
                 for (const Eigen::Vector3d& tool : pass.points) {
                     double gap = 1e9;
                     for (double dx = -3; dx <= 3; dx += 0.25)
                         for (double dy = -15; dy <= 15; dy += 0.1) {
                             const double rim = tool.z() + worn - std::sqrt(worn * worn - dy * dy);
                             const Eigen::Vector2d xy = tool.head<2>() + machine_working * Eigen::Vector2d(dx, dy);
-                            gap = std::min(gap, rim - height(surface, xy));
+                            gap = std::min(gap, rim - surface::height(surface, xy));
                         }
-                    EXPECT_NEAR(gap, 0, 4e-4); // the wheel is looked at every 0.1 mm, a sag of 5e-5
+                    EXPECT_NEAR(gap, 0, 4e-4); // the wheel is sampled every 0.1 mm, a sag of 5e-5
                     EXPECT_GT(gap, -2e-4);
                 }
         }
@@ -279,11 +287,11 @@ TEST(ToolPath, NeverCutsBelowTheSurface)
 
 // --- a wheel that does not fit ---------------------------------------------------------------------------------------
 
-std::string refusal(const Job& job, const Surface& surface)
+std::string refusal(const job::Job& job, const surface::Surface& surface)
 {
     try {
-        check_wheel_fits(job, surface);
-    } catch (const InputError& error) {
+        plan::check_wheel_fits(job, surface);
+    } catch (const core::InputError& error) {
         return error.what();
     }
     return "";
@@ -291,9 +299,9 @@ std::string refusal(const Job& job, const Surface& surface)
 
 TEST(WheelFit, RadiusAgainstAHollow)
 {
-    Surface hollow = sphere(30);
+    surface::Surface hollow = sphere(30);
     if (is_crown(hollow)) hollow = sphere(-30);
-    Surface crown = sphere(30);
+    surface::Surface crown = sphere(30);
     if (!is_crown(crown)) crown = sphere(-30);
     // In the wheel's plane the tightest section of the sphere over B is that at x = 10: √(30² − 10²) = 28.28.
     EXPECT_EQ(refusal(job_with(28.2, 6), hollow), "");
@@ -305,8 +313,8 @@ TEST(WheelFit, RadiusAgainstAHollow)
 
 TEST(WheelFit, WidthAgainstTheTolerance)
 {
-    const Surface surface = sphere(100);
-    Job job = job_with(25, 8);
+    const surface::Surface surface = sphere(100);
+    job::Job job = job_with(25, 8);
     job.tolerance = 8 * 8 / (8 * std::sqrt(100 * 100 - 10 * 10.0)) * 1.01;
     EXPECT_EQ(refusal(job, surface), "");
     job.tolerance *= 0.98;
@@ -317,15 +325,15 @@ TEST(WheelFit, WidthAgainstTheTolerance)
 TEST(WheelFit, NamesThePlaceInTheJobsUnits)
 {
     // z = y³ / 1000: a hollow that tightens towards y = 10.
-    Surface surface;
-    Swept shape;
+    surface::Surface surface;
+    surface::Swept shape;
     shape.origin = {0, 0};
     shape.ruling = {1, 0};
     shape.scale = 10;
     shape.section = {0, 0, 0, 1};
     surface.shape = shape;
-    Job job = job_with(25, 6);
-    job.units.length = Units::Length::in;
+    job::Job job = job_with(25, 6);
+    job.units.length = units::Units::Length::in;
     const std::string message = refusal(job, surface);
     EXPECT_NE(message.find("in"), std::string::npos) << message;
     EXPECT_NE(message.find("wheel.radius: 0.984252"), std::string::npos) << message;
@@ -335,33 +343,33 @@ TEST(WheelFit, NamesThePlaceInTheJobsUnits)
 
 TEST(Plan, StartsAtTheSmallestXThenY)
 {
-    Job job = job_with(25, 6);
-    Surface surface;
-    surface.shape = Plane{{0, 0}, 1, {0.1, 0}};
-    const Plan along_y = make_plan(job, surface);
+    job::Job job = job_with(25, 6);
+    surface::Surface surface;
+    surface.shape = surface::Plane{{0, 0}, 1, {0.1, 0}};
+    const plan::Plan along_y = plan::make_plan(job, surface);
     EXPECT_TRUE(along_y.start.isApprox(Eigen::Vector3d(-10, -10, 0))); // (5-4), (5-5)
     EXPECT_EQ(along_y.bounds.layers, 1 + int(std::floor((50.8 - 0) / along_y.layers.distance)));
 
     job.anomaly.col(0) << -4, -12, 0;
     job.feed.axis = 'x'; // smallest y, then smallest x
-    EXPECT_TRUE(make_plan(job, surface).start.isApprox(Eigen::Vector3d(-4, -12, 0.6)));
+    EXPECT_TRUE(plan::make_plan(job, surface).start.isApprox(Eigen::Vector3d(-4, -12, 0.6)));
 }
 
 TEST(Plan, ComesBackFromItsFile)
 {
-    Job job = job_with(25, 6);
-    job.units = {Units::Length::in, Units::Force::lbf};
+    job::Job job = job_with(25, 6);
+    job.units = {units::Units::Length::in, units::Units::Force::lbf};
     job.theta = 0.3;
     job.feed.axis = 'x';
-    Surface surface;
+    surface::Surface surface;
     surface.units = job.units;
-    surface.shape = Plane{{0, 0}, 1, {0.01, 0.02}};
-    const Plan plan = make_plan(job, surface);
+    surface.shape = surface::Plane{{0, 0}, 1, {0.01, 0.02}};
+    const plan::Plan plan = plan::make_plan(job, surface);
     const OwnFolder folder;
     const std::string path = "plan.json";
-    std::ofstream(path) << to_json(plan);
-    const Plan read = read_plan(path);
-    EXPECT_EQ(to_json(read).text(), to_json(read_plan(path)).text());
+    std::ofstream(path) << plan::to_json(plan);
+    const plan::Plan read = plan::read_plan(path);
+    EXPECT_EQ(plan::to_json(read).text(), plan::to_json(plan::read_plan(path)).text());
     ASSERT_EQ(read.passes.size(), plan.passes.size());
     for (std::size_t p = 0; p < plan.passes.size(); ++p) {
         EXPECT_NEAR(read.passes[p].line, plan.passes[p].line, 1e-12);
@@ -378,26 +386,26 @@ TEST(Plan, ComesBackFromItsFile)
 
 TEST(Plan, RefusesASafeHeightBelowTheSurface)
 {
-    Job job = job_with(25, 6);
+    job::Job job = job_with(25, 6);
     job.safe_height = 0.5;
-    Surface surface;
-    surface.shape = Plane{{0, 0}, 1, {0, 0}};
-    EXPECT_THROW(make_plan(job, surface), InputError);
+    surface::Surface surface;
+    surface.shape = surface::Plane{{0, 0}, 1, {0, 0}};
+    EXPECT_THROW(plan::make_plan(job, surface), core::InputError);
 }
 
 // Every straight move of the program stays within the chord error of the exact path.
 TEST(Gcode, KeepsTheChordError)
 {
-    Surface surface = sphere(100);
+    surface::Surface surface = sphere(100);
     if (!is_crown(surface)) surface = sphere(-100);
-    const Plan plan = make_plan(job_with(25, 6), surface);
-    const ToolPath path(plan.job, plan.surface, plan.passes, plan.step);
+    const plan::Plan plan = plan::make_plan(job_with(25, 6), surface);
+    const plan::ToolPath path(plan.job, plan.surface, plan.passes, plan.step);
     std::ostringstream out;
-    write_gcode(out, plan, path, GcodeDialect::linuxcnc, 0.01);
+    plan::write_gcode(out, plan, path, plan::GcodeDialect::linuxcnc, 0.01);
     std::istringstream lines(out.str());
     std::string line;
     std::vector<Eigen::Vector3d> ends;
-    double most = 0;
+    double max = 0;
     bool units = false, feed = false;
     while (std::getline(lines, line)) {
         units = units || line == "G21";
@@ -408,13 +416,13 @@ TEST(Gcode, KeepsTheChordError)
         if (!ends.empty())
             for (double s = 0.1; s < 1; s += 0.1) {
                 const Eigen::Vector3d on = ends.back() + s * (point - ends.back());
-                most = std::max(most, std::abs(on.z() - path.tool_point(path.across_along(on)).z()));
+                max = std::max(max, std::abs(on.z() - path.tool_point(path.across_along(on)).z()));
             }
         ends.push_back(point);
     }
     EXPECT_TRUE(units && feed);
-    EXPECT_GT(most, 0.001);  // it is used
-    EXPECT_LT(most, 0.0105); // along z instead of across the chord; rounding of the digits
+    EXPECT_GT(max, 0.001);  // it is used
+    EXPECT_LT(max, 0.0105); // along z instead of across the chord; rounding of the digits
 }
 
 } // namespace

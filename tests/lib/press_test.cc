@@ -19,7 +19,7 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-const Gridding kBoth[] = {Gridding::shepard, Gridding::kriging};
+const belt::Gridding kBoth[] = {belt::Gridding::shepard, belt::Gridding::kriging};
 
 /// Places spread evenly and in no rows over a square about the origin (additive recurrence of the plastic number).
 Eigen::Matrix3Xd spread(Index count, double side, double (*height)(double, double))
@@ -36,12 +36,12 @@ Eigen::Matrix3Xd spread(Index count, double side, double (*height)(double, doubl
 
 TEST(Gridding, KeepsTheSurfelsAndTheLevel)
 {
-    const ContactCells cells{{1, 1}, 11, 11};
-    for (const Gridding gridding : kBoth) {
+    const belt::ContactGrid cells{{1, 1}, 11, 11};
+    for (const belt::Gridding gridding : kBoth) {
         Eigen::Matrix3Xd points = spread(400, 14, [](double, double) { return 3.0; });
-        EXPECT_LE((heights_on(cells, points, gridding).array() - 3).abs().maxCoeff(), 1e-12);
-        points.col(7) << cells.middle(4, 9), 5;
-        EXPECT_NEAR(heights_on(cells, points, gridding)(4, 9), 5, 1e-12);
+        EXPECT_LE((belt::interpolate_heights(cells, points, gridding).array() - 3).abs().maxCoeff(), 1e-12);
+        points.col(7) << cells.cell_center(4, 9), 5;
+        EXPECT_NEAR(belt::interpolate_heights(cells, points, gridding)(4, 9), 5, 1e-12);
     }
 }
 
@@ -50,9 +50,9 @@ TEST(Gridding, WeighsTwoSurfels)
 {
     Eigen::Matrix3Xd points(3, 2);
     points << -1, 3, 0, 0, 10, 20;
-    const ContactCells one{{1, 1}, 1, 1};
-    EXPECT_NEAR(heights_on(one, points, Gridding::kriging)(0, 0), 12.5, 1e-12);
-    EXPECT_NEAR(heights_on(one, points, Gridding::shepard)(0, 0), 11, 1e-12);
+    const belt::ContactGrid one{{1, 1}, 1, 1};
+    EXPECT_NEAR(belt::interpolate_heights(one, points, belt::Gridding::kriging)(0, 0), 12.5, 1e-12);
+    EXPECT_NEAR(belt::interpolate_heights(one, points, belt::Gridding::shepard)(0, 0), 11, 1e-12);
 }
 
 // Kriging's system with a mirror: two surfels on either side at distance 1, weight w each, a third across, weight v.
@@ -60,27 +60,27 @@ TEST(Gridding, WeighsThreeSurfels)
 {
     Eigen::Matrix3Xd points(3, 3);
     points << -1, 1, 0, 0, 0, 1, 1, 2, 6;
-    const ContactCells one{{1, 1}, 1, 1};
+    const belt::ContactGrid one{{1, 1}, 1, 1};
     // Symmetry: w0 = w1 = w. 2 w + √2 v + μ = 1;  2 √2 w + μ = 1;  2 w + v = 1.
     const double root = std::sqrt(2.0), w = root / (4 * root - 2), v = 1 - 2 * w;
-    EXPECT_NEAR(heights_on(one, points, Gridding::kriging)(0, 0), 3 * w + 6 * v, 1e-12);
+    EXPECT_NEAR(belt::interpolate_heights(one, points, belt::Gridding::kriging)(0, 0), 3 * w + 6 * v, 1e-12);
 }
 
 TEST(Gridding, StopsWhereThereAreNoSurfels)
 {
     Eigen::Matrix3Xd points = spread(900, 30, [](double x, double) { return 0.1 * x; });
     points.row(0) = points.row(0).array() / 2 + 7.5; // x from 0 to 15
-    for (const Gridding gridding : kBoth) {
-        const MatrixXd heights = heights_on({{1, 1}, 20, 20}, points, gridding);
+    for (const belt::Gridding gridding : kBoth) {
+        const MatrixXd heights = belt::interpolate_heights({{1, 1}, 20, 20}, points, gridding);
         EXPECT_TRUE(heights.topRows(8).array().isNaN().all());
         EXPECT_TRUE(heights.bottomRows(10).array().isFinite().all());
     }
 }
 
-Surfels sphere(double radius, double side, double spacing, double displacement)
+belt::Surfels sphere(double radius, double side, double spacing, double displacement)
 {
     const auto n = static_cast<Index>(side / spacing);
-    Surfels surfels;
+    belt::Surfels surfels;
     surfels.position.resize(3, n * n);
     surfels.normal.resize(3, n * n);
     for (Index i = 0; i < n; ++i)
@@ -98,9 +98,9 @@ Surfels sphere(double radius, double side, double spacing, double displacement)
     return surfels;
 }
 
-ContactWheel wheel()
+belt::ContactWheel wheel()
 {
-    ContactWheel wheel;
+    belt::ContactWheel wheel;
     wheel.radius = 100;
     wheel.width = 50;
     wheel.layer = {10, 5, 0.45};
@@ -109,60 +109,63 @@ ContactWheel wheel()
 
 /// Of a sphere with an even stock, tilted and shifted: the pressure's distance from that on the exact gap, over its
 /// size.
-double pressure_error(double spacing, Gridding gridding)
+double pressure_error(double spacing, belt::Gridding gridding)
 {
     const double R = 60, stock = 0.2;
-    Surfels surfels = sphere(R, 40, spacing, stock);
+    belt::Surfels surfels = sphere(R, 40, spacing, stock);
     Eigen::Isometry3d at = Eigen::Isometry3d::Identity();
     at.linear() = Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
     at.translation() << 5, -80, 33;
     surfels.position = (at.linear() * surfels.position).colwise() + at.translation();
     surfels.normal = at.linear() * surfels.normal;
     at.translation() += stock * at.linear().col(2); // on the stock
-    const ContactWheel rubber = wheel();
-    PressOptions options;
+    const belt::ContactWheel rubber = wheel();
+    belt::WheelContactOptions options;
     options.gridding = gridding;
-    WheelPress press(surfels, rubber, options);
-    const Press found = press.at(at, {true, 30});
+    belt::WheelContactSolver press(surfels, rubber, options);
+    const belt::WheelContact found = press.solve(at, {true, 30});
     EXPECT_TRUE(found.contact.converged);
     EXPECT_NEAR(found.contact.force, 30, 1e-9);
     EXPECT_FALSE(found.is_near_edge);
 
-    const ContactCells& cells = found.cells;
+    const belt::ContactGrid& cells = found.grid;
     MatrixXd gap(cells.rows, cells.columns);
     for (Index j = 0; j < cells.columns; ++j)
         for (Index i = 0; i < cells.rows; ++i) {
-            const Eigen::Vector2d p = cells.middle(i, j);
-            gap(i, j) = profile(rubber, p.x(), p.y()) + R + stock - std::sqrt(std::pow(R + stock, 2) - p.squaredNorm());
+            const Eigen::Vector2d p = cells.cell_center(i, j);
+            gap(i, j) = belt::wheel_profile(rubber, p.x(), p.y()) + R + stock -
+                        std::sqrt(std::pow(R + stock, 2) - p.squaredNorm());
         }
-    const Contact exact = LayerContact(rubber.layer, cells.cell, cells.rows, cells.columns).by_force(gap, 30, 1e-8);
+    const belt::Contact exact =
+        belt::LayerContact(rubber.layer, cells.cell_size, cells.rows, cells.columns).solve_by_force(gap, 30, 1e-8);
     EXPECT_NEAR(found.contact.indentation, exact.indentation, 0.01 * exact.indentation);
-    EXPECT_NEAR(press.at(at, {false, found.contact.indentation}).contact.force, 30, 1e-3);
+    EXPECT_NEAR(press.solve(at, {false, found.contact.indentation}).contact.force, 30, 1e-3);
     return (found.contact.pressure - exact.pressure).norm() / exact.pressure.norm();
 }
 
-// The surfels' spacing is all that stands between the two: of second order.
+// The two differ only by the spacing of the surfels, in second order.
 TEST(Press, AgreesWithTheExactGap)
 {
-    const double coarse = pressure_error(0.4, Gridding::kriging), fine = pressure_error(0.2, Gridding::kriging);
+    const double coarse = pressure_error(0.4, belt::Gridding::kriging),
+                 fine = pressure_error(0.2, belt::Gridding::kriging);
     EXPECT_LE(coarse, 0.04);
     EXPECT_LE(fine, coarse / 2);
-    EXPECT_LE(coarse, pressure_error(0.4, Gridding::shepard)); // which is flat at every surfel
+    EXPECT_LE(coarse, pressure_error(0.4, belt::Gridding::shepard)); // which is flat at every surfel
 }
 
 // Fields of the answer are the contact's, at the surface, in the part frame.
 TEST(Press, WritesTheContactInThePartFrame)
 {
-    const Surfels surfels = sphere(60, 30, 0.5, 0);
-    const ContactWheel rubber = wheel();
-    PressOptions options;
-    options.cells = 32;
-    WheelPress press(surfels, rubber, options);
-    const Press& found = press.at(Eigen::Isometry3d::Identity(), {true, 5});
-    const Cloud cloud = to_cloud(found, press.gap_left(), Eigen::Isometry3d::Identity());
+    const belt::Surfels surfels = sphere(60, 30, 0.5, 0);
+    const belt::ContactWheel rubber = wheel();
+    belt::WheelContactOptions options;
+    options.cells_per_side = 32;
+    belt::WheelContactSolver press(surfels, rubber, options);
+    const belt::WheelContact& found = press.solve(Eigen::Isometry3d::Identity(), {true, 5});
+    const cloud::Cloud cloud = belt::to_cloud(found, press.residual_gap(), Eigen::Isometry3d::Identity());
     EXPECT_EQ(cloud.size(), 32 * 32);
-    EXPECT_NEAR(field(cloud, "pressure").sum() * found.cells.cell.prod(), 5, 1e-6);
-    EXPECT_GE(field(cloud, "gap").minCoeff(), 0);
+    EXPECT_NEAR(cloud::field(cloud, "pressure").sum() * found.grid.cell_size.prod(), 5, 1e-6);
+    EXPECT_GE(cloud::field(cloud, "gap").minCoeff(), 0);
     for (Index i = 0; i < cloud.size(); ++i)
         EXPECT_NEAR((cloud.xyz.col(i) + Eigen::Vector3d(0, 0, 60)).norm(), 60, 0.005);
 }
@@ -170,15 +173,15 @@ TEST(Press, WritesTheContactInThePartFrame)
 // One pose after the other is the same as each alone, also where the next one needs a larger grid.
 TEST(Press, ForgetsWhatWasBefore)
 {
-    const Surfels surfels = sphere(60, 40, 0.5, 0);
-    const ContactWheel rubber = wheel();
-    WheelPress in_turn(surfels, rubber, {});
+    const belt::Surfels surfels = sphere(60, 40, 0.5, 0);
+    const belt::ContactWheel rubber = wheel();
+    belt::WheelContactSolver in_turn(surfels, rubber, {});
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
     for (const double force : {5.0, 6.0, 40.0, 8.0}) {
         pose.rotate(Eigen::AngleAxisd(0.02, Eigen::Vector3d::UnitY()));
-        const Contact& one = in_turn.at(pose, {true, force}).contact;
-        WheelPress alone(surfels, rubber, {});
-        const Contact& other = alone.at(pose, {true, force}).contact;
+        const belt::Contact& one = in_turn.solve(pose, {true, force}).contact;
+        belt::WheelContactSolver alone(surfels, rubber, {});
+        const belt::Contact& other = alone.solve(pose, {true, force}).contact;
         EXPECT_NEAR(one.indentation, other.indentation, 0.01 * other.indentation); // another grid, the same contact
         EXPECT_NEAR(one.force, force, 1e-9 * force);
     }
@@ -186,19 +189,19 @@ TEST(Press, ForgetsWhatWasBefore)
 
 TEST(Press, RefusesWhereThereIsNothing)
 {
-    const Surfels surfels = sphere(60, 30, 0.5, 0);
-    const ContactWheel rubber = wheel();
-    WheelPress press(surfels, rubber, {});
+    const belt::Surfels surfels = sphere(60, 30, 0.5, 0);
+    const belt::ContactWheel rubber = wheel();
+    belt::WheelContactSolver press(surfels, rubber, {});
     Eigen::Isometry3d away = Eigen::Isometry3d::Identity();
     away.translation() << 500, 0, 0;
-    EXPECT_THROW(press.at(away, {true, 5}), InputError);
+    EXPECT_THROW(press.solve(away, {true, 5}), core::InputError);
     Eigen::Isometry3d under = Eigen::Isometry3d::Identity();
     under.linear() = Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitX()).toRotationMatrix();
-    EXPECT_THROW(press.at(under, {true, 5}), InputError); // from behind
+    EXPECT_THROW(press.solve(under, {true, 5}), core::InputError); // from behind
 }
 
 // The refusal of a wheel in inches to which `keys` are added, "read" if there is none.
-std::string reading(const std::string& keys, ContactWheel* wheel = nullptr)
+std::string reading(const std::string& keys, belt::ContactWheel* wheel = nullptr)
 {
     const OwnFolder folder;
     std::ofstream("wheel.json")
@@ -206,9 +209,9 @@ std::string reading(const std::string& keys, ContactWheel* wheel = nullptr)
         "layer": {"thickness": 0.5, "young": 3, "poisson": 0.4}, "belt_speed": 600, "law": {"type": "preston", "coefficient": 1e-8})"
         << keys << "}";
     try {
-        const ContactWheel found = read_contact_wheel("wheel.json");
+        const belt::ContactWheel found = belt::read_contact_wheel("wheel.json");
         if (wheel != nullptr) *wheel = found;
-    } catch (const InputError& error) {
+    } catch (const core::InputError& error) {
         return error.what();
     }
     return "read";
@@ -216,7 +219,7 @@ std::string reading(const std::string& keys, ContactWheel* wheel = nullptr)
 
 TEST(ContactWheel, IsReadInMillimetres)
 {
-    ContactWheel wheel;
+    belt::ContactWheel wheel;
     const std::string serration = R"(, "serration": {"pitch": 0.4, "land": 0.3, "depth": 0.1, "angle_deg": 45})";
     EXPECT_EQ(reading(R"(, "crown_radius": 12)" + serration, &wheel), "read");
     EXPECT_DOUBLE_EQ(wheel.radius, 101.6);
@@ -234,19 +237,19 @@ TEST(ContactWheel, IsReadInMillimetres)
 
 TEST(ContactWheel, HasItsProfile)
 {
-    ContactWheel crowned = wheel();
+    belt::ContactWheel crowned = wheel();
     crowned.crown_radius = 300;
-    EXPECT_NEAR(profile(crowned, 60, 0), 20, 1e-12);
-    EXPECT_NEAR(profile(crowned, 0, 20), 300 - std::sqrt(300.0 * 300 - 400), 1e-12);
-    EXPECT_TRUE(std::isinf(profile(crowned, 0, 25.1)));
-    EXPECT_TRUE(std::isinf(profile(crowned, 100, 0)));
+    EXPECT_NEAR(belt::wheel_profile(crowned, 60, 0), 20, 1e-12);
+    EXPECT_NEAR(belt::wheel_profile(crowned, 0, 20), 300 - std::sqrt(300.0 * 300 - 400), 1e-12);
+    EXPECT_TRUE(std::isinf(belt::wheel_profile(crowned, 0, 25.1)));
+    EXPECT_TRUE(std::isinf(belt::wheel_profile(crowned, 100, 0)));
     crowned.crown_radius = 0;
     crowned.serration = {10, 6, 3, std::numbers::pi / 2}; // grooves across the axis
-    EXPECT_EQ(profile(crowned, 0, 5.9), 0);
-    EXPECT_EQ(profile(crowned, 0, 6.1), 3);
-    EXPECT_EQ(profile(crowned, 0, -0.1), 3);
+    EXPECT_EQ(belt::wheel_profile(crowned, 0, 5.9), 0);
+    EXPECT_EQ(belt::wheel_profile(crowned, 0, 6.1), 3);
+    EXPECT_EQ(belt::wheel_profile(crowned, 0, -0.1), 3);
     // Gent's formula, tabled: 2.1 MPa at 45, 3.6 MPa at 60 Shore A (Gent 1958).
-    EXPECT_NEAR(young_of_shore(60), 3.6, 0.1);
+    EXPECT_NEAR(belt::young_from_shore_a(60), 3.6, 0.1);
 }
 
 } // namespace

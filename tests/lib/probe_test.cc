@@ -1,4 +1,4 @@
-// Probing: errors of the touches, and the way from the ball's centre back to the surface.
+// Probing: errors of the touches, and the step from the ball's centre back to the surface.
 #include "core/error.h"
 #include "sampling/noise.h"
 #include "sampling/probe.h"
@@ -14,9 +14,9 @@ namespace {
 
 using Eigen::Vector2d;
 
-Job freeform_job()
+job::Job freeform_job()
 {
-    Job job;
+    job::Job job;
     job.anomaly = Eigen::Matrix3Xd::Zero(3, 4);
     job.sampling = Eigen::Matrix3Xd::Zero(3, 4);
     job.anomaly.topRows<2>() << 30, 60, 60, 30, 30, 30, 60, 60;
@@ -26,19 +26,19 @@ Job freeform_job()
 
 TEST(Noise, IsReadInTheJobsUnit)
 {
-    const TouchNoise noise = parse_noise("normal:0.005", 25.4);
-    EXPECT_EQ(noise.kind, TouchNoise::Kind::normal);
+    const sampling::TouchNoise noise = sampling::parse_noise("normal:0.005", 25.4);
+    EXPECT_EQ(noise.kind, sampling::TouchNoise::Kind::normal);
     EXPECT_DOUBLE_EQ(noise.amplitude, 0.127);
-    EXPECT_EQ(parse_noise("", 1).kind, TouchNoise::Kind::none);
+    EXPECT_EQ(sampling::parse_noise("", 1).kind, sampling::TouchNoise::Kind::none);
     for (const char* wrong :
          {"normal", "gauss:1", "uniform:", "uniform:-1", "uniform:1,5", "normal:nan", ":1", "normal:inf"})
-        EXPECT_THROW(parse_noise(wrong, 1), InputError) << wrong;
+        EXPECT_THROW(sampling::parse_noise(wrong, 1), core::InputError) << wrong;
 }
 
 TEST(Noise, UniformFillsItsInterval)
 {
     const int n = 100000;
-    const Eigen::VectorXd errors = draw_noise({TouchNoise::Kind::uniform, 2}, n, 7);
+    const Eigen::VectorXd errors = sampling::draw_noise({sampling::TouchNoise::Kind::uniform, 2}, n, 7);
     EXPECT_LE(errors.cwiseAbs().maxCoeff(), 2);
     // mean and variance of a uniform distribution, A²/3; four standard errors
     EXPECT_NEAR(errors.mean(), 0, 4 * 2 / std::sqrt(3.0 * n));
@@ -48,7 +48,7 @@ TEST(Noise, UniformFillsItsInterval)
 TEST(Noise, NormalHas99PercentInside)
 {
     const int n = 100000;
-    const Eigen::VectorXd errors = draw_noise({TouchNoise::Kind::normal, 2}, n, 7);
+    const Eigen::VectorXd errors = sampling::draw_noise({sampling::TouchNoise::Kind::normal, 2}, n, 7);
     const double sigma = 2 / 2.5758;
     EXPECT_NEAR((errors.array().abs() <= 2).cast<double>().mean(), 0.99, 4 * std::sqrt(0.99 * 0.01 / n));
     EXPECT_NEAR((errors.array().abs() <= sigma).cast<double>().mean(), 0.6827, 4 * std::sqrt(0.68 * 0.32 / n));
@@ -57,23 +57,23 @@ TEST(Noise, NormalHas99PercentInside)
 
 TEST(Noise, OfATouchDependsOnItsNumberAlone)
 {
-    for (const auto kind : {TouchNoise::Kind::uniform, TouchNoise::Kind::normal}) {
-        EXPECT_EQ(draw_noise({kind, 1}, 5, 3), draw_noise({kind, 1}, 50, 3).head(5));
-        EXPECT_NE(draw_noise({kind, 1}, 5, 3), draw_noise({kind, 1}, 5, 4));
+    for (const auto kind : {sampling::TouchNoise::Kind::uniform, sampling::TouchNoise::Kind::normal}) {
+        EXPECT_EQ(sampling::draw_noise({kind, 1}, 5, 3), sampling::draw_noise({kind, 1}, 50, 3).head(5));
+        EXPECT_NE(sampling::draw_noise({kind, 1}, 5, 3), sampling::draw_noise({kind, 1}, 5, 4));
     }
     // std::mt19937_64 is the same on every platform: its first two numbers for seed 1, scaled
     const double u = (static_cast<double>(2469588189546311528ULL >> 11) + 0.5) / 9007199254740992.0;
-    EXPECT_DOUBLE_EQ(draw_noise({TouchNoise::Kind::uniform, 1}, 1, 1)[0], 2 * u - 1);
+    EXPECT_DOUBLE_EQ(sampling::draw_noise({sampling::TouchNoise::Kind::uniform, 1}, 1, 1)[0], 2 * u - 1);
 }
 
 // Mean and largest distance off the surface along z of the touches of a ball.
-double largest_error(const Job& job, const std::function<double(Vector2d)>& surface,
+double largest_error(const job::Job& job, const std::function<double(Vector2d)>& surface,
                      const std::function<double(Vector2d)>& centre_over, double radius)
 {
-    const TouchPlan plan = plan_touches(job);
+    const sampling::TouchPlan plan = sampling::plan_touches(job);
     Eigen::Matrix3Xd centres(3, plan.size());
     for (Eigen::Index i = 0; i < plan.size(); ++i) centres.col(i) << plan.xy.col(i), centre_over(plan.xy.col(i));
-    const Eigen::Matrix3Xd contacts = contact_points(job, centres, radius);
+    const Eigen::Matrix3Xd contacts = sampling::contact_points(job, centres, radius);
     double largest = 0;
     for (Eigen::Index i = 0; i < plan.size(); ++i)
         largest = std::max(largest, std::abs(contacts(2, i) - surface(contacts.col(i).head<2>())));
@@ -82,10 +82,11 @@ double largest_error(const Job& job, const std::function<double(Vector2d)>& surf
 
 TEST(Tip, ContactOnAPlaneIsExact)
 {
-    Job job = freeform_job();
+    job::Job job = freeform_job();
     const auto plane = [](const Vector2d& xy) { return 4 + 0.4 * xy.x() - 0.3 * xy.y(); };
     const auto centre = [&](const Vector2d& xy) { return plane(xy) + 3 * std::sqrt(1.25); };
-    for (const SurfaceType surface : {SurfaceType::plane, SurfaceType::swept, SurfaceType::freeform}) {
+    for (const job::SurfaceType surface :
+         {job::SurfaceType::plane, job::SurfaceType::swept, job::SurfaceType::freeform}) {
         job.surface = surface;
         EXPECT_LT(largest_error(job, plane, centre, 3), 1e-11);
     }
@@ -94,7 +95,7 @@ TEST(Tip, ContactOnAPlaneIsExact)
 TEST(Tip, ContactOnASphereIsOffByTheSquareOfTheSlopesError)
 {
     // R = 4 in as Wang's part 3, a tip of 3 mm: the centres lie on a sphere of radius R + 3
-    const Job job = freeform_job();
+    const job::Job job = freeform_job();
     const double R = 101.6, tip = 3;
     const auto ball = [](double radius) {
         return
@@ -107,8 +108,8 @@ TEST(Tip, ContactOnASphereIsOffByTheSquareOfTheSlopesError)
 
 TEST(Tip, SweptSectionIsFollowed)
 {
-    Job job = freeform_job();
-    job.surface = SurfaceType::swept; // a concave cylinder along x
+    job::Job job = freeform_job();
+    job.surface = job::SurfaceType::swept; // a concave cylinder along x
     const double R = 101.6, tip = 3;
     const auto trough = [](double radius) {
         return [radius](const Vector2d& xy) { return 200 - std::sqrt(radius * radius - std::pow(xy.y() - 45, 2)); };
@@ -118,38 +119,38 @@ TEST(Tip, SweptSectionIsFollowed)
 
 TEST(Probe, TouchesAPlateWithPointAndBall)
 {
-    Mesh plate;
+    mesh::Mesh plate;
     plate.vertices.resize(3, 4);
     plate.vertices << 0, 90, 90, 0, 0, 0, 90, 90, 1, 19, 19, 1; // z = 1 + x/5
     plate.triangles.resize(3, 2);
     plate.triangles << 0, 0, 1, 2, 2, 3;
-    const Scan scan(plate);
-    Job job = freeform_job();
-    const TouchPlan plan = plan_touches(job);
+    const sampling::Scan scan(plate);
+    job::Job job = freeform_job();
+    const sampling::TouchPlan plan = sampling::plan_touches(job);
     for (const double tip : {0.0, 2.0}) {
         job.probe.tip_radius = tip;
-        const Eigen::Matrix3Xd touches = probe(scan, job, plan, {}, 1);
+        const Eigen::Matrix3Xd touches = sampling::probe(scan, job, plan, {}, 1);
         EXPECT_LT((touches.row(2).array() - 1 - touches.row(0).array() / 5).abs().maxCoeff(), 1e-12);
         // the contact lies beside the planned place by R sin of the slope
         EXPECT_NEAR(touches(0, 0) - plan.xy(0, 0), tip * 0.2 / std::sqrt(1.04), 1e-12);
     }
-    const Eigen::VectorXd errors = draw_noise({TouchNoise::Kind::uniform, 0.1}, plan.size(), 9);
+    const Eigen::VectorXd errors = sampling::draw_noise({sampling::TouchNoise::Kind::uniform, 0.1}, plan.size(), 9);
     job.probe.tip_radius = 0;
-    const Eigen::Matrix3Xd noisy = probe(scan, job, plan, {TouchNoise::Kind::uniform, 0.1}, 9);
+    const Eigen::Matrix3Xd noisy = sampling::probe(scan, job, plan, {sampling::TouchNoise::Kind::uniform, 0.1}, 9);
     EXPECT_LT((noisy.row(2).array() - 1 - noisy.row(0).array() / 5 - errors.transpose().array()).abs().maxCoeff(),
               1e-12);
 }
 
 TEST(Probe, NoSurfaceIsNaN)
 {
-    Mesh half;
+    mesh::Mesh half;
     half.vertices.resize(3, 3);
     half.vertices << 0, 90, 0, 0, 0, 90, 0, 0, 0;
     half.triangles.resize(3, 1);
     half.triangles << 0, 1, 2;
-    const Job job = freeform_job();
-    const TouchPlan plan = plan_touches(job);
-    const Eigen::Matrix3Xd touches = probe(Scan(half), job, plan, {}, 1);
+    const job::Job job = freeform_job();
+    const sampling::TouchPlan plan = sampling::plan_touches(job);
+    const Eigen::Matrix3Xd touches = sampling::probe(sampling::Scan(half), job, plan, {}, 1);
     for (Eigen::Index i = 0; i < plan.size(); ++i) EXPECT_EQ(std::isnan(touches(2, i)), plan.xy.col(i).sum() > 90) << i;
 }
 

@@ -16,11 +16,11 @@ using namespace fettle;
 
 namespace {
 
-std::vector<CutterMove> moves_through(const std::vector<Eigen::Vector3d>& tips)
+std::vector<machining::CutterMove> moves_through(const std::vector<Eigen::Vector3d>& tips)
 {
-    std::vector<CutterMove> moves;
+    std::vector<machining::CutterMove> moves;
     for (std::size_t i = 0; i + 1 < tips.size(); ++i) {
-        CutterMove move;
+        machining::CutterMove move;
         move.from = tips[i];
         move.to = tips[i + 1];
         move.feed = 10;
@@ -30,21 +30,22 @@ std::vector<CutterMove> moves_through(const std::vector<Eigen::Vector3d>& tips)
 }
 
 struct Machined {
-    Workpiece piece;
-    HeightField left;
+    machining::Workpiece piece;
+    removal::HeightField left;
 };
-Machined machined(const std::string& box, double cell, const Cutter& cutter, const std::vector<CutterMove>& moves)
+Machined machined(const std::string& box, double cell, const machining::Cutter& cutter,
+                  const std::vector<machining::CutterMove>& moves)
 {
-    Machined result{box_workpiece(box, cell), {}};
+    Machined result{machining::box_workpiece(box, cell), {}};
     result.left = result.piece.stock;
-    MillingOptions options;
+    machining::MillingOptions options;
     options.floor = result.piece.floor;
-    mill(result.left, cutter, moves, options);
+    machining::mill(result.left, cutter, moves, options);
     return result;
 }
 
-/// Edges that lack the neighbour that runs along them the other way, but for the border's.
-std::size_t gaps(const Mesh& mesh, const HeightField& field)
+/// Edges without a neighbour of opposite direction, but for those of the border.
+std::size_t gaps(const mesh::Mesh& mesh, const removal::HeightField& field)
 {
     using Key = std::array<double, 6>;
     std::map<Key, int> edges;
@@ -65,7 +66,7 @@ std::size_t gaps(const Mesh& mesh, const HeightField& field)
 }
 
 /// ∫ (top − z) over the mesh.
-double volume_under(const Mesh& mesh, double top)
+double volume_under(const mesh::Mesh& mesh, double top)
 {
     double volume = 0;
     for (const auto& t : mesh.triangles.colwise()) {
@@ -80,15 +81,15 @@ double volume_under(const Mesh& mesh, double top)
 TEST(Refinement, SharpensWalls)
 {
     // A slot of 6 mm, 3 deep, askew through a block: straight walls, at one end a half circle.
-    const Cutter cutter = parse_cutter("flat:6");
+    const machining::Cutter cutter = machining::parse_cutter("flat:6");
     const Eigen::Vector3d from(-10, 3.3, -3), to(25.3, 21.7, -3);
     const auto moves = moves_through({from, to});
     const Machined part = machined("0,0,-10,40,30,0", 0.5, cutter, moves);
-    // of the half circle all lies in the block; the way in it begins at its side x = 0.25, the first cells' centres
+    // of the half circle all lies in the block; the path in it begins at its side x = 0.25, the first cells' centres
     for (const int factor : {1, 2, 8}) {
-        const Refinement map(part.piece, part.left, cutter, moves, factor);
-        const Refinement* used = factor > 1 ? &map : nullptr;
-        const Mesh mesh = surface_between(part.left, 0, part.left.rows() - 1, used);
+        const machining::Refinement map(part.piece, part.left, cutter, moves, factor);
+        const machining::Refinement* used = factor > 1 ? &map : nullptr;
+        const mesh::Mesh mesh = machining::triangulate_rows(part.left, 0, part.left.rows() - 1, used);
         EXPECT_EQ(gaps(mesh, part.left), 0u) << factor;
         // no triangle leads from the bottom to the top over more than one place and its diagonal
         double widest = 0;
@@ -100,9 +101,9 @@ TEST(Refinement, SharpensWalls)
         EXPECT_NEAR(widest, std::sqrt(2) * 0.5 / factor, 1e-12);
         for (const auto& p : mesh.vertices.colwise()) {
             if (std::isnan(p.z())) continue;
-            const Eigen::Vector2d way = (to - from).head<2>(), off = p.head<2>() - from.head<2>();
-            const double share = std::clamp(off.dot(way) / way.squaredNorm(), 0.0, 1.0);
-            const double beside = (off - share * way).norm();
+            const Eigen::Vector2d step = (to - from).head<2>(), off = p.head<2>() - from.head<2>();
+            const double share = std::clamp(off.dot(step) / step.squaredNorm(), 0.0, 1.0);
+            const double beside = (off - share * step).norm();
             if (std::abs(beside - 3) > 1e-6) {
                 EXPECT_EQ(p.z(), beside < 3 ? -3 : 0);
             }
@@ -118,34 +119,34 @@ TEST(Refinement, SharpensWalls)
 
 TEST(Refinement, LeavesNoGapsAndAgreesWithFinerMaps)
 {
-    const Cutter cutter = parse_cutter("ball:5");
+    const machining::Cutter cutter = machining::parse_cutter("ball:5");
     std::vector<Eigen::Vector3d> tips;
     for (int k = 0; k < 60; ++k)
         tips.emplace_back(10 + 6 * std::cos(0.4 * k) + 0.05 * k, 10 + 5 * std::sin(0.55 * k),
                           -4 + 2.5 * std::sin(0.7 * k));
     const auto moves = moves_through(tips);
     const Machined part = machined("0,0,-5,20,20,0", 0.4, cutter, moves); // here and there cut through
-    const Refinement map(part.piece, part.left, cutter, moves, 4);
+    const machining::Refinement map(part.piece, part.left, cutter, moves, 4);
     EXPECT_GT(map.count(), 100u);
     EXPECT_GT(part.left.z.isNaN().count(), 10);
-    const Mesh mesh = surface_between(part.left, 0, part.left.rows() - 1, &map);
-    const Mesh coarse = surface_between(part.left, 0, part.left.rows() - 1);
+    const mesh::Mesh mesh = machining::triangulate_rows(part.left, 0, part.left.rows() - 1, &map);
+    const mesh::Mesh coarse = machining::triangulate_rows(part.left, 0, part.left.rows() - 1);
     // along the rims of holes there are no neighbours, refined or not
     EXPECT_LE(gaps(mesh, part.left), 6 * gaps(coarse, part.left));
     // Every place is that of a map which has a cell there.
-    HeightField fine = part.piece.stock;
+    removal::HeightField fine = part.piece.stock;
     fine.cell = 0.1;
     fine.origin = part.left.centre(0, 0).array() - 0.05;
     fine.z = Eigen::ArrayXXd::Constant(4 * 49 + 1, 4 * 49 + 1, 0);
-    MillingOptions options;
+    machining::MillingOptions options;
     options.floor = -5;
-    mill(fine, cutter, moves, options);
+    machining::mill(fine, cutter, moves, options);
     for (Eigen::Index j = 0; j < 49; ++j)
         for (Eigen::Index i = 0; i < 49; ++i) {
-            if (!map.refined(i, j)) continue;
+            if (!map.is_refined(i, j)) continue;
             for (int b = 0; b <= 4; ++b)
                 for (int a = 0; a <= 4; ++a) {
-                    const Eigen::Vector3d place = map.place(i, j, a, b);
+                    const Eigen::Vector3d place = map.point(i, j, a, b);
                     const double z = fine.z(4 * i + a, 4 * j + b);
                     ASSERT_EQ(std::isnan(place.z()), std::isnan(z));
                     if (!std::isnan(z)) {
@@ -155,7 +156,7 @@ TEST(Refinement, LeavesNoGapsAndAgreesWithFinerMaps)
         }
     // The STL is that mesh.
     std::ostringstream out;
-    EXPECT_EQ(write_stl(out, part.left, &map), static_cast<std::size_t>(mesh.triangles.cols()));
+    EXPECT_EQ(machining::write_stl(out, part.left, &map), static_cast<std::size_t>(mesh.triangles.cols()));
     EXPECT_EQ(out.str().size(), 84 + 50 * static_cast<std::size_t>(mesh.triangles.cols()));
 }
 

@@ -14,12 +14,13 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-std::vector<RemovalTrial> drawn(const RemovalLaw& law, int count)
+std::vector<belt::RemovalTrial> drawn(const belt::RemovalLaw& law, int count)
 {
-    std::vector<RemovalTrial> trials;
+    std::vector<belt::RemovalTrial> trials;
     for (int k = 0; k < count; ++k) {
-        RemovalTrial trial{3.0 + k % 7, 100.0 + 10 * (k % 4), kNone, 5.0 + 3 * (k % 5), 1e4 * ((k * 7) % count), 0};
-        trial.volume = removed_volume(law, trial);
+        belt::RemovalTrial trial{3.0 + k % 7,       100.0 + 10 * (k % 4),    kNone,
+                                 5.0 + 3 * (k % 5), 1e4 * ((k * 7) % count), 0};
+        trial.volume = belt::removed_volume(law, trial);
         trials.push_back(trial);
     }
     return trials;
@@ -27,50 +28,50 @@ std::vector<RemovalTrial> drawn(const RemovalLaw& law, int count)
 
 TEST(RemovalFit, FindsTheLawAgain)
 {
-    RemovalLaw law;
+    belt::RemovalLaw law;
     law.log_coefficient = -12;
-    law.force = 1.2;
-    law.speed = 1.7;
-    law.duration = 1.4;
+    law.force_exponent = 1.2;
+    law.speed_exponent = 1.7;
+    law.duration_exponent = 1.4;
     law.threshold = 1.9;
-    law.wear = 1 / 2e5;
-    const RemovalLaw found = fit_removal(drawn(law, 24), {true, true, true});
+    law.wear_rate = 1 / 2e5;
+    const belt::RemovalLaw found = belt::fit_removal(drawn(law, 24), {true, true, true});
     EXPECT_NEAR(found.threshold, 1.9, 1e-6);
-    EXPECT_NEAR(found.force, 1.2, 1e-6);
-    EXPECT_NEAR(found.speed, 1.7, 1e-6);
-    EXPECT_EQ(found.feed, 0);
-    EXPECT_NEAR(found.duration, 1.4, 1e-6);
-    EXPECT_NEAR(found.wear * 2e5, 1, 1e-6);
-    EXPECT_NEAR(score_removal(drawn(law, 24), {true, true, true}).left_out_r2, 1, 1e-9);
+    EXPECT_NEAR(found.force_exponent, 1.2, 1e-6);
+    EXPECT_NEAR(found.speed_exponent, 1.7, 1e-6);
+    EXPECT_EQ(found.feed_exponent, 0);
+    EXPECT_NEAR(found.duration_exponent, 1.4, 1e-6);
+    EXPECT_NEAR(found.wear_rate * 2e5, 1, 1e-6);
+    EXPECT_NEAR(belt::score_removal(drawn(law, 24), {true, true, true}).leave_one_out_r2, 1, 1e-9);
 }
 
 // One trial of Preston's law left out: its miss is its own distance from the mean of the others' logarithms.
 TEST(RemovalFit, LeavesOut)
 {
-    std::vector<RemovalTrial> trials;
+    std::vector<belt::RemovalTrial> trials;
     for (const double volume : {1.0, 2.0, 8.0}) trials.push_back({1, kNone, 1, kNone, 0, volume});
-    const RemovalScore score = score_removal(trials, {false, false, false});
+    const belt::RemovalScore score = belt::score_removal(trials, {false, false, false});
     const double step = std::log(2.0), mean = 4 * step / 3;
     EXPECT_NEAR(score.r2, 0, 1e-12);
-    EXPECT_NEAR(score.left_out_r2, 1 - 2.25, 1e-12); // each miss is 3/2 of that from the mean of all
+    EXPECT_NEAR(score.leave_one_out_r2, 1 - 2.25, 1e-12); // each miss is 3/2 of that from the mean of all
     EXPECT_NEAR(score.worst_factor, std::exp(1.5 * (3 * step - mean)), 1e-9);
 }
 
 // A belt that cut better with time is not taken to sharpen.
 TEST(RemovalFit, WearsOnly)
 {
-    RemovalLaw law;
-    law.wear = -1 / 2e5;
-    EXPECT_EQ(fit_removal(drawn(law, 20), {true, true, false}).wear, 0);
+    belt::RemovalLaw law;
+    law.wear_rate = -1 / 2e5;
+    EXPECT_EQ(belt::fit_removal(drawn(law, 20), {true, true, false}).wear_rate, 0);
 }
 
 TEST(RemovalFit, Refuses)
 {
-    const std::vector<RemovalTrial> trials = drawn({}, 4);
-    EXPECT_THROW(fit_removal(trials, {true, true, false}), InputError); // 5 unknowns
-    std::vector<RemovalTrial> bad = drawn({}, 10);
+    const std::vector<belt::RemovalTrial> trials = drawn({}, 4);
+    EXPECT_THROW(belt::fit_removal(trials, {true, true, false}), core::InputError); // 5 unknowns
+    std::vector<belt::RemovalTrial> bad = drawn({}, 10);
     bad[3].volume = 0;
-    EXPECT_THROW(fit_removal(bad, {true, false, false}), InputError);
+    EXPECT_THROW(belt::fit_removal(bad, {true, false, false}), core::InputError);
 }
 
 } // namespace

@@ -21,11 +21,10 @@ constexpr double kRadius = 25.4;
 constexpr double kWidth = 6.4; // 64 cells of 0.1 mm
 
 /// A flat stock at height z, 40 mm along X_w, 80 mm along Y_w.
-HeightField flat(double z, double cell, double theta = 0)
+removal::HeightField flat(double z, double cell, double theta = 0)
 {
-    Eigen::Matrix2d box;
-    box << -20, 20, -40, 40;
-    HeightField field = empty_height_field(box, {0, 0}, theta, cell);
+    const Eigen::AlignedBox2d box(Eigen::Vector2d(-20, -40), Eigen::Vector2d(20, 40));
+    removal::HeightField field = removal::empty_height_field(box, {0, 0}, theta, cell);
     field.z.setConstant(z);
     return field;
 }
@@ -38,8 +37,8 @@ double segment(double radius, double d)
 
 double segment_error(double cell, double depth)
 {
-    HeightField stock = flat(3, cell);
-    WheelInStock wheel(stock, kWidth);
+    removal::HeightField stock = flat(3, cell);
+    removal::WheelInStock wheel(stock, kWidth);
     wheel.place({0.017, 0.023}, kRadius, 3 - depth);
     return std::abs(wheel.overlap(3 - depth).volume / (kWidth * segment(kRadius, depth)) - 1);
 }
@@ -56,8 +55,8 @@ TEST(WheelInStock, OverlapWithFlatIsSegment)
 
 TEST(WheelInStock, AreaIsTheSlopeOfTheVolume)
 {
-    HeightField stock = flat(3, 0.1);
-    WheelInStock wheel(stock, kWidth);
+    removal::HeightField stock = flat(3, 0.1);
+    removal::WheelInStock wheel(stock, kWidth);
     wheel.place({0, 0}, kRadius, 2);
     constexpr double dz = 1e-9; // within one linear piece
     const auto above = wheel.overlap(2.4), below = wheel.overlap(2.4 - dz);
@@ -67,13 +66,13 @@ TEST(WheelInStock, AreaIsTheSlopeOfTheVolume)
 
 TEST(WheelInStock, CutRemovesTheOverlapAndNothingElse)
 {
-    HeightField stock = flat(3, 0.1);
-    const HeightField before = stock;
-    WheelInStock wheel(stock, kWidth);
+    removal::HeightField stock = flat(3, 0.1);
+    const removal::HeightField before = stock;
+    removal::WheelInStock wheel(stock, kWidth);
     wheel.place({5, 10}, kRadius, 2);
     const double volume = wheel.overlap(2).volume;
     wheel.cut(2);
-    EXPECT_NEAR(volume_between(before, stock), volume, 1e-12 * volume);
+    EXPECT_NEAR(removal::volume_between(before, stock), volume, 1e-12 * volume);
     EXPECT_EQ(wheel.overlap(2).volume, 0);
     const double reach = std::sqrt(2 * kRadius - 1);
     for (Eigen::Index j = 0; j < stock.rows(); ++j)
@@ -82,16 +81,16 @@ TEST(WheelInStock, CutRemovesTheOverlapAndNothingElse)
             const bool under = std::abs(from.x()) < kWidth / 2 && std::abs(from.y()) < reach;
             EXPECT_EQ(stock.z(i, j) < 3, under) << from.transpose();
         }
-    // A second look, from a place that shares the columns, knows the lowered rows.
+    // A second window that shares the columns contains the lowered rows.
     wheel.place({5, 10.3}, kRadius, 2);
     EXPECT_LT(wheel.overlap(2).volume, 0.05 * volume);
 }
 
 TEST(WheelInStock, TouchIsWhereTheOverlapBegins)
 {
-    HeightField stock = flat(3, 0.1);
+    removal::HeightField stock = flat(3, 0.1);
     stock.z.block(190, 350, 20, 20) += 2; // a block 2 mm high before the wheel, 3 to 5 mm off
-    WheelInStock wheel(stock, kWidth);
+    removal::WheelInStock wheel(stock, kWidth);
     wheel.place({0, 0}, kRadius, 0);
     const double y = 3.05; // nearest row of the block
     EXPECT_NEAR(wheel.touch(), 5 - (kRadius - std::sqrt(kRadius * kRadius - y * y)), 1e-12);
@@ -100,7 +99,7 @@ TEST(WheelInStock, TouchIsWhereTheOverlapBegins)
 }
 
 /// The volume over the rim, cell by cell.
-double volume_over(const HeightField& stock, const Eigen::Vector2d& xy, double z_tip)
+double volume_over(const removal::HeightField& stock, const Eigen::Vector2d& xy, double z_tip)
 {
     double height = 0;
     for (Eigen::Index j = 0; j < stock.rows(); ++j)
@@ -113,14 +112,14 @@ double volume_over(const HeightField& stock, const Eigen::Vector2d& xy, double z
     return height * stock.cell * stock.cell;
 }
 
-TEST(WheelInStock, KnowsTheStockWhereverItGoes)
+TEST(WheelInStock, FollowsTheStockUnderEveryMove)
 {
-    HeightField stock = flat(0, 0.25);
+    removal::HeightField stock = flat(0, 0.25);
     std::mt19937 random(1);
     for (double& z : stock.z.reshaped()) z = std::uniform_real_distribution<double>(0, 3)(random);
     stock.z.block(60, 100, 20, 30).setConstant(std::numeric_limits<double>::quiet_NaN());
     stock.z.block(70, 200, 30, 10) += 4;
-    WheelInStock wheel(stock, kWidth);
+    removal::WheelInStock wheel(stock, kWidth);
     // Along a pass, over rows that it has not seen to others and back, to the grid's ends, beside, across.
     for (const Eigen::Vector2d& xy : {Eigen::Vector2d(0, -30),
                                       {0, -29.5},
@@ -146,13 +145,13 @@ TEST(WheelInStock, KnowsTheStockWhereverItGoes)
 
 TEST(WheelInStock, NoMaterialNoContact)
 {
-    HeightField stock = flat(std::numeric_limits<double>::quiet_NaN(), 0.1);
-    WheelInStock wheel(stock, kWidth);
+    removal::HeightField stock = flat(std::numeric_limits<double>::quiet_NaN(), 0.1);
+    removal::WheelInStock wheel(stock, kWidth);
     wheel.place({0, 0}, kRadius, -100);
     EXPECT_EQ(wheel.touch(), -std::numeric_limits<double>::infinity());
 
     stock.z.leftCols(stock.rows() / 2).setConstant(1); // a hole over y > 0
-    WheelInStock half(stock, kWidth);
+    removal::WheelInStock half(stock, kWidth);
     half.place({0, 0}, kRadius, 0);
     EXPECT_NEAR(half.overlap(0).volume, kWidth * segment(kRadius, 1) / 2, 1e-3 * segment(kRadius, 1));
     half.cut(0);
@@ -164,15 +163,15 @@ TEST(WheelInStock, NoMaterialNoContact)
 
 TEST(Press, BalancesVolumeAndForce)
 {
-    HeightField stock = flat(3, 0.1);
-    WheelInStock wheel(stock, kWidth);
+    removal::HeightField stock = flat(3, 0.1);
+    removal::WheelInStock wheel(stock, kWidth);
     for (const double preload : {0.0, 20.0})
         for (const double stop : {2.9, 1.0, -5.0})
             for (const double guess : {stop, stop + 0.3, 3.0, 50.0}) {
-                const Spring spring{preload, 35};
+                const removal::Spring spring{preload, 35};
                 const double c_dt = 7.4 * 0.004;
                 wheel.place({0, 0}, kRadius, stop);
-                const Balance balance = press(wheel, spring, stop, c_dt, guess);
+                const removal::Balance balance = removal::press(wheel, spring, stop, c_dt, guess);
                 ASSERT_GT(balance.z_tip, stop);
                 EXPECT_NEAR(balance.force, preload + 35 * (balance.z_tip - stop), 1e-12);
                 EXPECT_NEAR(balance.volume, c_dt * balance.force, 1e-10 * balance.volume);
@@ -182,65 +181,64 @@ TEST(Press, BalancesVolumeAndForce)
 
 TEST(Press, RestsOnTheStopWithinThePreload)
 {
-    HeightField stock = flat(3, 0.1);
-    WheelInStock wheel(stock, kWidth);
+    removal::HeightField stock = flat(3, 0.1);
+    removal::WheelInStock wheel(stock, kWidth);
     wheel.place({0, 0}, kRadius, 2.99);
     const double c_dt = 0.03;
-    const Balance balance = press(wheel, {50, 35}, 2.99, c_dt, 2.99);
+    const removal::Balance balance = removal::press(wheel, {50, 35}, 2.99, c_dt, 2.99);
     EXPECT_EQ(balance.z_tip, 2.99);
     EXPECT_EQ(balance.volume, wheel.overlap(2.99).volume);
     EXPECT_DOUBLE_EQ(balance.force, balance.volume / c_dt);
     EXPECT_LT(balance.force, 50);
 
     wheel.place({0, 0}, kRadius, 3);
-    const Balance off = press(wheel, {50, 35}, 3, c_dt, 3);
+    const removal::Balance off = removal::press(wheel, {50, 35}, 3, c_dt, 3);
     EXPECT_EQ(off.force, 0);
     EXPECT_EQ(off.volume, 0);
 }
 
 TEST(HeightField, GridMovesWithItsBox)
 {
-    Eigen::Matrix2d box;
-    box << 1.25, 52.05, -3, 47.8; // 50.8 by 50.8
-    const HeightField field = empty_height_field(box, {3.175, 25.4}, 0, 0.1);
+    const Eigen::AlignedBox2d box(Eigen::Vector2d(1.25, -3), Eigen::Vector2d(52.05, 47.8)); // 50.8 by 50.8
+    const removal::HeightField field = removal::empty_height_field(box, {3.175, 25.4}, 0, 0.1);
     EXPECT_EQ(field.columns(), 508 + 2 * 32);
     EXPECT_EQ(field.rows(), 508 + 2 * 254);
     EXPECT_NEAR(field.origin.x(), 1.25 - 3.2, 1e-12);
     for (int n = 1; n < 50; ++n) {
         const Eigen::Vector2d shift(0.31 * n, -17.77 * n);
-        const HeightField moved = empty_height_field(box.colwise() + shift, {3.175, 25.4}, 0, 0.1);
+        const removal::HeightField moved = removal::empty_height_field(box.translated(shift), {3.175, 25.4}, 0, 0.1);
         EXPECT_EQ(moved.columns(), field.columns());
         EXPECT_EQ(moved.rows(), field.rows());
         EXPECT_NEAR((moved.origin - shift - field.origin).norm(), 0, 1e-11);
     }
-    EXPECT_THROW(empty_height_field(box, {1, 1}, 0, 0), InputError);
-    EXPECT_THROW(empty_height_field(box, {1, 1}, 0, -0.1), InputError);
-    EXPECT_THROW(empty_height_field(box, {1, 1}, 0, std::nan("")), InputError);
-    EXPECT_THROW(empty_height_field(box, {1, 1}, 0, 1e-5), InputError);
-    EXPECT_THROW(empty_height_field(box, {1, 1}, 0, 1e-300), InputError);
+    EXPECT_THROW(removal::empty_height_field(box, {1, 1}, 0, 0), core::InputError);
+    EXPECT_THROW(removal::empty_height_field(box, {1, 1}, 0, -0.1), core::InputError);
+    EXPECT_THROW(removal::empty_height_field(box, {1, 1}, 0, std::nan("")), core::InputError);
+    EXPECT_THROW(removal::empty_height_field(box, {1, 1}, 0, 1e-5), core::InputError);
+    EXPECT_THROW(removal::empty_height_field(box, {1, 1}, 0, 1e-300), core::InputError);
 }
 
 TEST(HeightField, CloudHasThePointsWithMaterialInM)
 {
     const double theta = 0.4;
-    HeightField before = flat(3, 5, theta);
+    removal::HeightField before = flat(3, 5, theta);
     before.z(2, 3) = std::nan("");
-    HeightField after = before;
+    removal::HeightField after = before;
     after.z(1, 0) = 2.5;
-    const Cloud cloud = to_cloud(before, after);
+    const cloud::Cloud cloud = removal::to_cloud(before, after);
     ASSERT_EQ(cloud.size(), 8 * 16 - 1);
     const Eigen::Vector2d second = Eigen::Rotation2Dd(theta) * Eigen::Vector2d(-20 + 7.5, -40 + 2.5);
     EXPECT_NEAR((cloud.xyz.col(1) - Eigen::Vector3d(second.x(), second.y(), 2.5)).norm(), 0, 1e-12);
-    const Eigen::VectorXd removed = field(cloud, "removed");
+    const Eigen::VectorXd removed = cloud::field(cloud, "removed");
     EXPECT_EQ(removed[1], 0.5);
     EXPECT_EQ(removed.sum(), 0.5);
-    EXPECT_EQ(volume_between(before, after), 0.5 * 25);
+    EXPECT_EQ(removal::volume_between(before, after), 0.5 * 25);
 }
 
 /// Two triangles in the plane z = 2 + 0.1 x − 0.2 y over [−100, 100]².
-Mesh slope()
+mesh::Mesh slope()
 {
-    Mesh mesh;
+    mesh::Mesh mesh;
     mesh.vertices.resize(3, 4);
     mesh.triangles.resize(3, 2);
     for (int n = 0; n < 4; ++n) {
@@ -251,10 +249,10 @@ Mesh slope()
     return mesh;
 }
 
-Job square_job(const Eigen::Vector2d& centre)
+job::Job square_job(const Eigen::Vector2d& centre)
 {
-    Job job;
-    job.surface = SurfaceType::plane; // needs no sampling boundary
+    job::Job job;
+    job.surface = job::SurfaceType::plane; // needs no sampling boundary
     job.anomaly.resize(3, 4);
     job.anomaly << -10, 10, 10, -10, -10, -10, 10, 10, 0, 0, 0, 0;
     job.anomaly.topRows<2>().colwise() += centre;
@@ -263,10 +261,10 @@ Job square_job(const Eigen::Vector2d& centre)
 
 TEST(HeightField, StandsOnTheScan)
 {
-    const Scan scan(slope());
-    Job job = square_job({20, 30});
+    const sampling::Scan scan(slope());
+    job::Job job = square_job({20, 30});
     job.theta = 0.3;
-    const HeightField stock = height_field(scan, job, 0.5);
+    const removal::HeightField stock = removal::stock_from_scan(scan, job, 0.5);
     for (Eigen::Index j = 0; j < stock.rows(); ++j)
         for (Eigen::Index i = 0; i < stock.columns(); ++i) {
             const Eigen::Vector2d at = Eigen::Rotation2Dd(job.theta) * stock.centre(i, j);
@@ -277,12 +275,12 @@ TEST(HeightField, StandsOnTheScan)
     EXPECT_NEAR(stock.columns() * stock.cell, side + job.wheel.width, 4 * stock.cell);
     EXPECT_NEAR(stock.rows() * stock.cell, side + 2 * job.wheel.radius, 4 * stock.cell);
 
-    EXPECT_THROW(height_field(scan, square_job({500, 0}), 0.5), InputError);
-    EXPECT_TRUE(height_field(scan, square_job({88, 0}), 0.5).z.isNaN().any()); // around B only
+    EXPECT_THROW(removal::stock_from_scan(scan, square_job({500, 0}), 0.5), core::InputError);
+    EXPECT_TRUE(removal::stock_from_scan(scan, square_job({88, 0}), 0.5).z.isNaN().any()); // around B only
     try {
-        height_field(scan, square_job({95, 0}), 0.5, "part.stl");
+        removal::stock_from_scan(scan, square_job({95, 0}), 0.5, "part.stl");
         FAIL() << "a quarter of B has no surface";
-    } catch (const InputError& error) {
+    } catch (const core::InputError& error) {
         EXPECT_STREQ(error.what(), "part.stl: no surface over 25 % of the anomaly, first at x 100.25, y -9.75");
     }
 }
@@ -290,11 +288,11 @@ TEST(HeightField, StandsOnTheScan)
 /// A sheet of n x n squares of `step` from `corner` on, in two triangles each, at random heights; `keep` says which
 /// squares there are.
 template <typename Keep>
-Mesh rough_sheet(const Eigen::Vector2d& corner, double step, int n, const Keep& keep)
+mesh::Mesh rough_sheet(const Eigen::Vector2d& corner, double step, int n, const Keep& keep)
 {
     std::mt19937 random(7);
     std::uniform_real_distribution<double> height(-3, 3);
-    Mesh mesh;
+    mesh::Mesh mesh;
     mesh.vertices.resize(3, (n + 1) * (n + 1));
     for (int j = 0; j <= n; ++j)
         for (int i = 0; i <= n; ++i)
@@ -311,14 +309,14 @@ Mesh rough_sheet(const Eigen::Vector2d& corner, double step, int n, const Keep& 
     return mesh;
 }
 
-/// Each cell holds what a touch at its centre finds, to the last digit. @return  cells without material
-Eigen::Index expect_as_touched(const Mesh& mesh, const Job& job, double cell)
+/// Each cell has the height that a touch at its centre finds, to the last digit. @return  cells without material
+Eigen::Index expect_as_touched(const mesh::Mesh& mesh, const job::Job& job, double cell)
 {
-    const Scan scan(mesh);
-    const HeightField field = height_field(scan, job, cell);
+    const sampling::Scan scan(mesh);
+    const removal::HeightField field = removal::stock_from_scan(scan, job, cell);
     for (Eigen::Index j = 0; j < field.rows(); ++j)
         for (Eigen::Index i = 0; i < field.columns(); ++i) {
-            const auto z = scan.height(rotation_working_machine(job.theta).transpose() * field.centre(i, j));
+            const auto z = scan.height(job::rotation_working_machine(job.theta).transpose() * field.centre(i, j));
             EXPECT_TRUE(z ? field.z(i, j) == *z : std::isnan(field.z(i, j))) << i << ' ' << j << ": " << field.z(i, j);
         }
     return field.z.isNaN().count();
@@ -330,8 +328,8 @@ TEST(HeightField, OfAMeshIsWhatTouchesFind)
 {
     // Cells of 0.5 have their centres at odd quarters: with squares of 1.5 from a quarter on, vertices and edges of all
     // three directions lie on centres.
-    const Job job = square_job({0, 0});
-    const Mesh on_centres = rough_sheet({-30.25, -45.25}, 1.5, 61, everywhere);
+    const job::Job job = square_job({0, 0});
+    const mesh::Mesh on_centres = rough_sheet({-30.25, -45.25}, 1.5, 61, everywhere);
     EXPECT_EQ(expect_as_touched(on_centres, job, 0.5), 0);
     // Squares far smaller and far larger than cells.
     EXPECT_EQ(expect_as_touched(rough_sheet({-47, -47}, 0.37, 254, everywhere), job, 1.1), 0);
@@ -346,15 +344,15 @@ TEST(HeightField, OfAMeshIsWhatTouchesFind)
 TEST(HeightField, OfATurnedJobIsWhatTouchesFind)
 {
     for (const double theta : {0.3, -1.2, std::numbers::pi / 2, 3.0}) {
-        Job job = square_job({20, 30});
+        job::Job job = square_job({20, 30});
         job.theta = theta;
-        const Mesh sheet = rough_sheet({-40, -30}, 1.5, 80, everywhere);
+        const mesh::Mesh sheet = rough_sheet({-40, -30}, 1.5, 80, everywhere);
         EXPECT_EQ(expect_as_touched(sheet, job, 0.7), 0) << theta;
         // The mesh turned with the job: its lines run along rows and columns but for rounding.
-        Mesh turned = rough_sheet({-30.25, -45.25}, 1.5, 61, everywhere);
-        const Eigen::Matrix2d R_machine_working = rotation_working_machine(theta).transpose();
+        mesh::Mesh turned = rough_sheet({-30.25, -45.25}, 1.5, 61, everywhere);
+        const Eigen::Matrix2d R_machine_working = job::rotation_working_machine(theta).transpose();
         turned.vertices.topRows<2>() = R_machine_working * turned.vertices.topRows<2>();
-        Job there = square_job({0, 0});
+        job::Job there = square_job({0, 0});
         there.theta = theta;
         there.anomaly.topRows<2>() = R_machine_working * there.anomaly.topRows<2>();
         EXPECT_EQ(expect_as_touched(turned, there, 0.5), 0) << theta;
@@ -365,7 +363,7 @@ TEST(HeightField, TakesTheUpperSideOfABodyWithNeedlesAndWalls)
 {
     // A fan of needles from one corner of the square, its mirror image below, and upright walls between the two.
     constexpr int kNeedles = 400;
-    Mesh body;
+    mesh::Mesh body;
     body.vertices.resize(3, 2 * (kNeedles + 2));
     body.triangles.resize(3, 4 * kNeedles);
     for (int n = 0; n <= kNeedles + 1; ++n) {
@@ -380,11 +378,11 @@ TEST(HeightField, TakesTheUpperSideOfABodyWithNeedlesAndWalls)
         const int a = 2 * (n + 1), b = a + 2;
         body.triangles.middleCols<4>(4 * n) << 0, 1, a, a, a, b + 1, a + 1, b + 1, b, a + 1, b + 1, b;
     }
-    Job job = square_job({0, 0});
+    job::Job job = square_job({0, 0});
     EXPECT_EQ(expect_as_touched(body, job, 0.5), 0);
     job.theta = 0.7;
     EXPECT_EQ(expect_as_touched(body, job, 0.5), 0);
-    EXPECT_GT(height_field(Scan(body), job, 0.5).z.minCoeff(), 4);
+    EXPECT_GT(removal::stock_from_scan(sampling::Scan(body), job, 0.5).z.minCoeff(), 4);
 }
 
 } // namespace

@@ -1,10 +1,10 @@
 // The page's parts: escaping, checksums, encodings and numbers against known answers.
-#include "report/base64.h"
-#include "report/checksum.h"
-#include "report/figures.h"
-#include "report/html.h"
-#include "report/svg.h"
-#include "report/svg_sheet.h"
+#include "core/digest.h"
+#include "draw/base64.h"
+#include "draw/figures.h"
+#include "draw/html.h"
+#include "draw/svg.h"
+#include "draw/svg_sheet.h"
 
 #include <gtest/gtest.h>
 
@@ -15,82 +15,82 @@ namespace {
 
 TEST(Html, TextIsNeverMarkup)
 {
-    EXPECT_EQ(Html("<b>&\"'").bytes(), "&lt;b&gt;&amp;&quot;&#39;");
-    EXPECT_EQ(element("p", {{"title", "\" onclick=\"x"}}, "a<b").bytes(),
+    EXPECT_EQ(draw::Html("<b>&\"'").bytes(), "&lt;b&gt;&amp;&quot;&#39;");
+    EXPECT_EQ(draw::element("p", {{"title", "\" onclick=\"x"}}, "a<b").bytes(),
               "<p title=\"&quot; onclick=&quot;x\">a&lt;b</p>");
-    EXPECT_EQ((element("i", "1") + "<").bytes(), "<i>1</i>&lt;");
-    EXPECT_EQ(symbol("F_max").bytes(), "F<sub>max</sub>");
+    EXPECT_EQ((draw::element("i", "1") + "<").bytes(), "<i>1</i>&lt;");
+    EXPECT_EQ(draw::symbol_with_subscript("F_max").bytes(), "F<sub>max</sub>");
 }
 
 // Table 3-7 of Unicode: overlong forms, surrogates, beyond U+10FFFF, cut off.
 TEST(Html, WhatIsNoUtf8IsReplaced)
 {
     const std::string r = "\uFFFD";
-    EXPECT_EQ(Html("\u00E4\u20AC\U0001F600").bytes(), "\u00E4\u20AC\U0001F600");
-    EXPECT_EQ(Html("\xC0\xAF").bytes(), r + r);
-    EXPECT_EQ(Html("\xE0\x80\xAF").bytes(), r + r + r);
-    EXPECT_EQ(Html("\xED\xA0\x80").bytes(), r + r + r);
-    EXPECT_EQ(Html("\xF4\x90\x80\x80").bytes(), r + r + r + r);
-    EXPECT_EQ(Html("a\xE2\x82").bytes(), "a" + r + r);
-    EXPECT_EQ(Html("\u202Ex\u2066\x1B\x7F\u0085").bytes(), r + "x" + r + r + r + r);
-    EXPECT_EQ(Html("a\n\tb").bytes(), "a\n\tb");
+    EXPECT_EQ(draw::Html("\u00E4\u20AC\U0001F600").bytes(), "\u00E4\u20AC\U0001F600");
+    EXPECT_EQ(draw::Html("\xC0\xAF").bytes(), r + r);
+    EXPECT_EQ(draw::Html("\xE0\x80\xAF").bytes(), r + r + r);
+    EXPECT_EQ(draw::Html("\xED\xA0\x80").bytes(), r + r + r);
+    EXPECT_EQ(draw::Html("\xF4\x90\x80\x80").bytes(), r + r + r + r);
+    EXPECT_EQ(draw::Html("a\xE2\x82").bytes(), "a" + r + r);
+    EXPECT_EQ(draw::Html("\u202Ex\u2066\x1B\x7F\u0085").bytes(), r + "x" + r + r + r + r);
+    EXPECT_EQ(draw::Html("a\n\tb").bytes(), "a\n\tb");
 }
 
 // FIPS 180-4's examples.
 TEST(Checksum, IsSha256)
 {
-    EXPECT_EQ(sha256(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
-    EXPECT_EQ(sha256("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+    EXPECT_EQ(core::sha256(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+    EXPECT_EQ(core::sha256("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
 }
 
 // RFC 4648, section 10.
 TEST(Base64, IsThatOfTheRfc)
 {
-    EXPECT_EQ(base64(""), "");
-    EXPECT_EQ(base64("f"), "Zg==");
-    EXPECT_EQ(base64("fo"), "Zm8=");
-    EXPECT_EQ(base64("foo"), "Zm9v");
-    EXPECT_EQ(base64("foobar"), "Zm9vYmFy");
-    EXPECT_EQ(base64("\xFF\xFE\xFD"), "//79");
+    EXPECT_EQ(draw::base64(""), "");
+    EXPECT_EQ(draw::base64("f"), "Zg==");
+    EXPECT_EQ(draw::base64("fo"), "Zm8=");
+    EXPECT_EQ(draw::base64("foo"), "Zm9v");
+    EXPECT_EQ(draw::base64("foobar"), "Zm9vYmFy");
+    EXPECT_EQ(draw::base64("\xFF\xFE\xFD"), "//79");
 }
 
 TEST(Figures, HaveThreeDigitsThatMatter)
 {
-    EXPECT_EQ(short_text(0), "0");
-    EXPECT_EQ(short_text(-0.0), "0");
-    EXPECT_EQ(short_text(2.5), "2.5");
-    EXPECT_EQ(short_text(-0.012345), "\u22120.0123");
-    EXPECT_EQ(short_text(1234.5), "1234"); // half to even, as printf rounds
-    EXPECT_EQ(short_text(1e-9), "1.00e-09");
-    EXPECT_EQ(short_text(std::numeric_limits<double>::quiet_NaN()), "\u2013");
-    EXPECT_EQ(fixed_text(-0.0004, 3), "0.000"); // no minus before 0
-    EXPECT_EQ(fixed_text(-0.0006, 3), "\u22120.001");
-    EXPECT_EQ(decimals_for(0.209), 3);
-    EXPECT_EQ(decimals_for(12), 1);
-    EXPECT_EQ(decimals_for(0), 2);
-    EXPECT_EQ(count_text(1234567), "1\u202F234\u202F567");
-    EXPECT_EQ(count_text(123), "123");
+    EXPECT_EQ(draw::short_text(0), "0");
+    EXPECT_EQ(draw::short_text(-0.0), "0");
+    EXPECT_EQ(draw::short_text(2.5), "2.5");
+    EXPECT_EQ(draw::short_text(-0.012345), "\u22120.0123");
+    EXPECT_EQ(draw::short_text(1234.5), "1234"); // half to even, as printf rounds
+    EXPECT_EQ(draw::short_text(1e-9), "1.00e-09");
+    EXPECT_EQ(draw::short_text(std::numeric_limits<double>::quiet_NaN()), "\u2013");
+    EXPECT_EQ(draw::fixed_text(-0.0004, 3), "0.000"); // no minus before 0
+    EXPECT_EQ(draw::fixed_text(-0.0006, 3), "\u22120.001");
+    EXPECT_EQ(draw::decimals_for(0.209), 3);
+    EXPECT_EQ(draw::decimals_for(12), 1);
+    EXPECT_EQ(draw::decimals_for(0), 2);
+    EXPECT_EQ(draw::count_text(1234567), "1\u202F234\u202F567");
+    EXPECT_EQ(draw::count_text(123), "123");
 }
 
 TEST(Figures, DurationsCarryOver)
 {
-    EXPECT_EQ(duration_text(12.54), "12.5 s");
-    EXPECT_EQ(duration_text(270.8), "4 min 31 s");
-    EXPECT_EQ(duration_text(119.7), "2 min 00 s");
-    EXPECT_EQ(duration_text(7260), "2 h 01 min");
+    EXPECT_EQ(draw::duration_text(12.54), "12.5 s");
+    EXPECT_EQ(draw::duration_text(270.8), "4 min 31 s");
+    EXPECT_EQ(draw::duration_text(119.7), "2 min 00 s");
+    EXPECT_EQ(draw::duration_text(7260), "2 h 01 min");
 }
 
 // Widths as in Helvetica's metrics: m is 833, e, a and n 556 thousandths.
 TEST(SvgSheet, KnowsHowWideTextIs)
 {
-    const SvgSheet sheet(100, 100);
+    const draw::SvgSheet sheet(100, 100);
     EXPECT_NEAR(sheet.text_width("mean", 7.18), (833 + 3 * 556) / 100.0, 1e-12);
     EXPECT_NEAR(sheet.text_width("\u00E4", 7.18), 5.56, 1e-12);
 }
 
 TEST(SvgSheet, DrawsTextPicturesAndSigns)
 {
-    SvgSheet sheet(100, 50);
+    draw::SvgSheet sheet(100, 50);
     sheet.text("-1 a-b <", {10, 20}, 7.18, {1, 2, 3});
     const std::vector<std::uint8_t> pixels = {255, 0, 0, 0, 0, 255};
     sheet.image({1, 2}, {20, 10}, 2, pixels);
@@ -103,15 +103,15 @@ TEST(SvgSheet, DrawsTextPicturesAndSigns)
 
 TEST(Svg, TicksAreRoundAndInside)
 {
-    const svg::Axis axis = {0, 1, 100, 200};
+    const draw::svg::Axis axis = {0, 1, 100, 200};
     EXPECT_DOUBLE_EQ(axis(0.25), 125);
-    const std::string html = svg::ticks_below(axis, 0, 50, 5).bytes();
+    const std::string html = draw::svg::ticks_below(axis, 0, 50, 5).bytes();
     for (const char* tick : {">0.0<", ">0.2<", ">0.8<", ">1.0<"}) EXPECT_NE(html.find(tick), std::string::npos) << tick;
     EXPECT_EQ(html.find(">1.2<"), std::string::npos);
-    EXPECT_EQ(svg::coordinate(12.5), "12.5");
-    EXPECT_EQ(svg::coordinate(-0.001), "0");
+    EXPECT_EQ(draw::svg::coordinate(12.5), "12.5");
+    EXPECT_EQ(draw::svg::coordinate(-0.001), "0");
     EXPECT_EQ(
-        svg::text({0, 0}, "F_max 15").bytes(),
+        draw::svg::text({0, 0}, "F_max 15").bytes(),
         "<text x=\"0\" y=\"0\" text-anchor=\"start\">F<tspan dy=\"3\">max</tspan><tspan dy=\"-3\" class=\"line\"> "
         "15</tspan></text>");
 }

@@ -19,17 +19,17 @@ namespace {
 constexpr double kPeriod = 1e-3; // of the controller, s
 
 /// Leads it in a straight line, period by period.
-void lead(SimulatedHead& head, const Eigen::Vector3d& from, const Eigen::Vector3d& to, double speed)
+void lead(gantry::SimulatedHead& head, const Eigen::Vector3d& from, const Eigen::Vector3d& to, double speed)
 {
     const int periods = static_cast<int>(std::ceil((to - from).norm() / speed / kPeriod));
     for (int n = 1; n <= periods; ++n)
-        head.step(from + (to - from) * n / periods, kPeriod, SimulatedHead::Tool::wheel, {});
+        head.step(from + (to - from) * n / periods, kPeriod, gantry::SimulatedHead::Tool::wheel, {});
 }
 
 /// Down beside the hills, over them, and up, along Y_w (or X_w). The stock in the end.
-HeightField led(const Job& job, const Eigen::Vector3d& from, const Eigen::Vector3d& to)
+removal::HeightField led(const job::Job& job, const Eigen::Vector3d& from, const Eigen::Vector3d& to)
 {
-    SimulatedHead head(head_and_stock(stock(hills), job));
+    gantry::SimulatedHead head(gantry::head_and_stock(stock(hills), job));
     const Eigen::Vector3d up(0, 0, 5);
     lead(head, from + up, from, 20);
     lead(head, from, to, job.feed.rate);
@@ -37,11 +37,11 @@ HeightField led(const Job& job, const Eigen::Vector3d& from, const Eigen::Vector
     return head.head().stock;
 }
 
-HeightField driven(const Job& job, const Eigen::Vector3d& from, const Eigen::Vector3d& to)
+removal::HeightField driven(const job::Job& job, const Eigen::Vector3d& from, const Eigen::Vector3d& to)
 {
-    QuasiStaticOptions options;
+    gantry::QuasiStaticOptions options;
     options.lift_speed = 20;
-    QuasiStaticGantry gantry(stock(hills), job, options);
+    gantry::QuasiStaticGantry gantry(stock(hills), job, options);
     gantry.travel(from);
     constexpr int kSteps = 100;
     for (int n = 1; n <= kSteps; ++n) gantry.grind(from + (to - from) * n / kSteps, job.feed.rate);
@@ -49,15 +49,18 @@ HeightField driven(const Job& job, const Eigen::Vector3d& from, const Eigen::Vec
     return gantry.stock();
 }
 
-double largest_difference(const HeightField& a, const HeightField& b) { return (a.z - b.z).abs().maxCoeff(); }
+double largest_difference(const removal::HeightField& a, const removal::HeightField& b)
+{
+    return (a.z - b.z).abs().maxCoeff();
+}
 
 } // namespace
 
 TEST(SimulatedHead, GrindsWhatTheQuasiStaticGantryGrinds)
 {
-    // Both ways begin and end beside the hills. Both cut what the rim does not leave between places two cells apart:
+    // Both paths begin and end beside the hills. Both cut what the rim does not leave between places two cells apart:
     // ridges of (0.2 mm)² / 8R = 2e-4 mm. Along the axis a sub-step is two columns of 64.
-    Job job = small_job();
+    job::Job job = small_job();
     job.force.max = 1e9;
     EXPECT_LT(largest_difference(led(job, {0, -30, 8}, {0, 30, 8.9}), driven(job, {0, -30, 8}, {0, 30, 8.9})), 2e-3);
     EXPECT_LT(largest_difference(led(job, {-12, 0, 9}, {12, 0, 9}), driven(job, {-12, 0, 9}, {12, 0, 9})), 1e-2);
@@ -65,35 +68,35 @@ TEST(SimulatedHead, GrindsWhatTheQuasiStaticGantryGrinds)
 
 TEST(SimulatedHead, WaitsAtRestUntilTheWheelIsOnItsStop)
 {
-    // Pressed on one place it grinds until nothing is in its way: no force is left, and no more than the wheel is gone.
-    Job job = small_job();
-    SimulatedHead head(head_and_stock(flat(), job));
-    for (int n = 0; n < 20000; ++n) head.step({0, 0, kTop - 0.3}, kPeriod, SimulatedHead::Tool::wheel, {});
+    // Pressed on one place it grinds until nothing touches it: no force is left, and no more than the wheel is removed.
+    job::Job job = small_job();
+    gantry::SimulatedHead head(gantry::head_and_stock(flat(), job));
+    for (int n = 0; n < 20000; ++n) head.step({0, 0, kTop - 0.3}, kPeriod, gantry::SimulatedHead::Tool::wheel, {});
     EXPECT_LT(head.force(), 0.01);
     EXPECT_NEAR(head.head().stock.z.minCoeff(), kTop - 0.3, 1e-3);
 }
 
 TEST(SimulatedHead, TouchesWithoutGrinding)
 {
-    Job job = small_job();
-    SimulatedHead head(head_and_stock(stock(hills), job));
+    job::Job job = small_job();
+    gantry::SimulatedHead head(gantry::head_and_stock(stock(hills), job));
     const double surface = hills(1, 2);
-    head.step({1, 2, surface + 0.1}, kPeriod, SimulatedHead::Tool::probe, {});
+    head.step({1, 2, surface + 0.1}, kPeriod, gantry::SimulatedHead::Tool::probe, {});
     EXPECT_EQ(head.deflection(), 0);
-    head.step({1, 2, surface - 0.1}, kPeriod, SimulatedHead::Tool::probe, {});
+    head.step({1, 2, surface - 0.1}, kPeriod, gantry::SimulatedHead::Tool::probe, {});
     EXPECT_NEAR(head.deflection(), 0.1, 1e-4); // the hills bend by less between two cells
     EXPECT_NEAR(head.force(), job.force.stiffness * 0.1, 0.01);
     EXPECT_EQ(largest_difference(head.head().stock, stock(hills)), 0);
 }
 
-TEST(SimulatedHead, ThePlateTellsTheWheelsRadius)
+TEST(SimulatedHead, TouchOffMeasuresTheWheelsRadius)
 {
-    Job job = small_job();
-    SimulatedHead head(head_and_stock(flat(), job));
-    const Plate plate{{-40, 0, 12}, 5};
+    job::Job job = small_job();
+    gantry::SimulatedHead head(gantry::head_and_stock(flat(), job));
+    const gantry::Plate plate{{-40, 0, 12}, 5};
     lead(head, {0, -40, kTop - 1}, {0, 40, kTop - 1}, 5); // it wears
     ASSERT_LT(head.radius(), job.wheel.radius);
-    head.step({-40, 1, 12 - 0.5}, kPeriod, SimulatedHead::Tool::wheel, plate);
+    head.step({-40, 1, 12 - 0.5}, kPeriod, gantry::SimulatedHead::Tool::wheel, plate);
     EXPECT_NEAR(head.deflection(), 0.5 - (job.wheel.radius - head.radius()), 1e-12);
     head.renew_wheel();
     EXPECT_EQ(head.radius(), job.wheel.radius);
@@ -103,17 +106,17 @@ TEST(SimulatedHead, IsTheSameFromAFile)
 {
     const OwnFolder folder;
     const std::string path = "head";
-    const HeadAndStock head = head_and_stock(stock(hills, 0.1, 0.3), small_job());
+    const gantry::HeadAndStock head = gantry::head_and_stock(stock(hills, 0.1, 0.3), small_job());
     {
         std::ofstream out(path, std::ios::binary);
-        write_head(out, head);
+        gantry::write_head(out, head);
     }
-    const HeadAndStock again = read_head(path);
+    const gantry::HeadAndStock again = gantry::read_head(path);
     EXPECT_TRUE((again.stock.z == head.stock.z).all());
     EXPECT_EQ(again.stock.origin, head.stock.origin);
     EXPECT_EQ(again.stock.theta, 0.3);
     EXPECT_EQ(again.spring.stiffness, head.spring.stiffness);
     EXPECT_EQ(again.removal, head.removal);
-    EXPECT_EQ(again.grind_ratio, head.grind_ratio);
-    EXPECT_THROW(read_head("nowhere"), InputError);
+    EXPECT_EQ(again.grinding_ratio, head.grinding_ratio);
+    EXPECT_THROW(gantry::read_head("nowhere"), core::InputError);
 }

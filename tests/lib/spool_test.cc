@@ -15,7 +15,7 @@ TEST(Spool, GivesBackWhatItTook)
 {
     std::mt19937 random(1);
     for (const std::size_t memory : {std::size_t{0}, std::size_t{1000}, std::size_t{1 << 21}, std::size_t{1} << 40}) {
-        Spool spool(memory);
+        core::Spool spool(memory);
         std::string all;
         for (int part = 0; part < 40; ++part) {
             std::string bytes(random() % 200000, '\0');
@@ -33,17 +33,17 @@ TEST(Spool, GivesBackWhatItTook)
     }
 }
 
-TEST(Spool, SaysWhereItCannotWrite)
+TEST(Spool, NamesTheFileThatItCannotWrite)
 {
     const char* before = std::getenv("TMPDIR");
     const std::string kept = before == nullptr ? "" : before;
     setenv("TMPDIR", "/no/where", 1);
-    Spool spool(10);
+    core::Spool spool(10);
     spool.append("in memory");
     std::string message;
     try {
         spool.append("no longer");
-    } catch (const InputError& error) {
+    } catch (const core::InputError& error) {
         message = error.what();
     }
     before == nullptr ? unsetenv("TMPDIR") : setenv("TMPDIR", kept.c_str(), 1);

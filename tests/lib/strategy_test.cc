@@ -21,16 +21,16 @@
 namespace fettle {
 namespace {
 
-using Kind = Action::Kind;
+using Kind = strategy::Action::Kind;
 
 constexpr double kMin = 5, kDown = 10, kMax = 15;
 
 // `count` lines one apart, each with places 0, 1, … `points` - 1.
-std::vector<ToolPass> square(int count, int points, double spacing = 1)
+std::vector<plan::ToolPass> square(int count, int points, double spacing = 1)
 {
-    std::vector<ToolPass> passes(static_cast<std::size_t>(count));
+    std::vector<plan::ToolPass> passes(static_cast<std::size_t>(count));
     for (int p = 0; p < count; ++p) {
-        ToolPass& pass = passes[static_cast<std::size_t>(p)];
+        plan::ToolPass& pass = passes[static_cast<std::size_t>(p)];
         pass.line = p * spacing;
         pass.starts = {0};
         for (int i = 0; i < points; ++i) pass.along.push_back(i);
@@ -38,12 +38,12 @@ std::vector<ToolPass> square(int count, int points, double spacing = 1)
     return passes;
 }
 
-LayerSwitching::Settings settings()
+strategy::LayerSwitching::Settings settings()
 {
-    LayerSwitching::Settings s;
+    strategy::LayerSwitching::Settings s;
     s.force_min = kMin, s.force_down = kDown, s.force_max = kMax;
     s.step_over = 1;
-    s.remaining = 0.1;
+    s.max_remaining = 0.1;
     s.bounds = {.layers = 5, .re_cuts = 3, .coverings = 3, .time = 1000, .steps = 1000};
     return s;
 }
@@ -51,7 +51,7 @@ LayerSwitching::Settings settings()
 // Forces in, what was decided out: "event layer pass.point".
 class Script {
   public:
-    explicit Script(std::vector<ToolPass> passes, LayerSwitching::Settings s = settings())
+    explicit Script(std::vector<plan::ToolPass> passes, strategy::LayerSwitching::Settings s = settings())
         : passes_(std::move(passes)), strategy_(passes_, s), action_(strategy_.first())
     {
     }
@@ -60,7 +60,7 @@ class Script {
     {
         action_ = strategy_.next({f, remaining, time_});
         time_ += 1;
-        return said();
+        return command_text();
     }
     // The same force n times; the last decision.
     std::string forces(double f, int n)
@@ -69,7 +69,7 @@ class Script {
         for (int i = 0; i < n; ++i) last = force(f);
         return last;
     }
-    std::string said() const
+    std::string command_text() const
     {
         static const char* names[] = {"go",      "start",  "up",       "down", "step-over",
                                       "cut-end", "re-cut", "covering", "done", "bound"};
@@ -77,19 +77,19 @@ class Script {
                std::to_string(action_.to.pass) + "." + std::to_string(action_.to.point);
     }
     Kind kind() const { return action_.kind; }
-    const LayerSwitching& strategy() const { return strategy_; }
+    const strategy::LayerSwitching& strategy() const { return strategy_; }
 
   private:
-    std::vector<ToolPass> passes_;
-    LayerSwitching strategy_;
-    Action action_;
+    std::vector<plan::ToolPass> passes_;
+    strategy::LayerSwitching strategy_;
+    strategy::Action action_;
     double time_ = 0;
 };
 
 TEST(LayerSwitching, CoversLayer1InZigZagWithoutForce)
 {
     Script s(square(2, 3));
-    EXPECT_EQ(s.said(), "start 1 0.0");
+    EXPECT_EQ(s.command_text(), "start 1 0.0");
     EXPECT_EQ(s.kind(), Kind::travel);
     EXPECT_EQ(s.force(0), "go 1 0.1");
     EXPECT_EQ(s.kind(), Kind::grind);
@@ -116,8 +116,8 @@ TEST(LayerSwitching, CoversLayer1AgainUntilWithinTolerance)
 
 TEST(LayerSwitching, TravelsOverAGapInLayer1)
 {
-    std::vector<ToolPass> passes = square(2, 4);
-    for (ToolPass& pass : passes) pass.starts = {0, 2};
+    std::vector<plan::ToolPass> passes = square(2, 4);
+    for (plan::ToolPass& pass : passes) pass.starts = {0, 2};
     Script s(passes);
     s.force(0);
     EXPECT_EQ(s.force(0), "go 1 0.2");
@@ -216,7 +216,7 @@ TEST(LayerSwitching, EndsTheCutAtTheLastLineOfB)
 
 TEST(LayerSwitching, EndsAPassAtTheBoundaryAndClampsTheStepOverToB)
 {
-    std::vector<ToolPass> passes = square(3, 6);
+    std::vector<plan::ToolPass> passes = square(3, 6);
     passes[1].along = {0, 1, 2}; // B is narrower there
     Script s(passes);
     s.forces(0, 3);
@@ -265,7 +265,7 @@ TEST(LayerSwitching, NestedRaisesComeDownOneByOne)
 
 TEST(LayerSwitching, PassesOverCloseLinesAboveLayer1)
 {
-    LayerSwitching::Settings fine = settings();
+    strategy::LayerSwitching::Settings fine = settings();
     fine.step_over = 2;
     Script s(square(5, 4), fine);
     s.force(16);
@@ -310,23 +310,23 @@ TEST(LayerSwitching, Bounds)
     EXPECT_EQ(coverings.force(1, 1), "bound 1 0.1");
     EXPECT_NE(coverings.strategy().failure().find("coverings of layer 1 3"), std::string::npos);
 
-    LayerSwitching::Settings finishing = settings();
+    strategy::LayerSwitching::Settings finishing = settings();
     finishing.finish_passes = true;
     Script strokes(square(1, 3), finishing);
-    int asked = 0;
-    for (; strokes.kind() != Kind::fail && asked < 100; ++asked) strokes.force(1, 1);
-    EXPECT_EQ(strokes.said(), "bound 1 0.0");
+    int calls = 0;
+    for (; strokes.kind() != Kind::fail && calls < 100; ++calls) strokes.force(1, 1);
+    EXPECT_EQ(strokes.command_text(), "bound 1 0.0");
     EXPECT_EQ(strokes.strategy().counts().coverings, 0);
     EXPECT_NE(strokes.strategy().failure().find("strokes of a pass 3"), std::string::npos);
-    EXPECT_LT(asked, 100);
+    EXPECT_LT(calls, 100);
 
-    LayerSwitching::Settings few = settings();
+    strategy::LayerSwitching::Settings few = settings();
     few.bounds.steps = 2;
     Script steps(square(1, 9), few);
     steps.forces(0, 2);
     EXPECT_EQ(steps.force(0), "bound 1 0.2");
 
-    LayerSwitching::Settings quick = settings();
+    strategy::LayerSwitching::Settings quick = settings();
     quick.bounds.time = 1;
     Script time(square(1, 9), quick);
     time.forces(0, 2);
@@ -337,9 +337,9 @@ TEST(LayerSwitching, Bounds)
 // --- the runner on a simple machine: columns of stock, a thin wheel, a spring
 // -----------------------------------------
 
-// Each place has a height; the tool rests on it and takes off a share of what stands over the commanded height
+// Each place has a height; the tool rests on it and removes a share of the material above the commanded height
 // where it begins to move and where it ends.
-class ColumnGantry final : public Gantry {
+class ColumnGantry final : public gantry::Gantry {
   public:
     using Heights = std::function<double(double x, double y)>;
     ColumnGantry(const Heights& stock, double stiffness) : stiffness_(stiffness)
@@ -347,9 +347,9 @@ class ColumnGantry final : public Gantry {
         for (int i = 0; i < kColumns; ++i)
             for (int j = 0; j < kColumns; ++j) z_[i][j] = stock(i * kSide, j * kSide);
     }
-    GantryStatus travel(const Eigen::Vector3d& point) override { return move(point, 1); }
-    GantryStatus lift(double z) override { return move({at_.x(), at_.y(), z}, 0.1); }
-    GantryStatus grind(const Eigen::Vector3d& point, double feed) override
+    gantry::GantryStatus travel(const Eigen::Vector3d& point) override { return move(point, 1); }
+    gantry::GantryStatus lift(double z) override { return move({at_.x(), at_.y(), z}, 0.1); }
+    gantry::GantryStatus grind(const Eigen::Vector3d& point, double feed) override
     {
         const double duration = (point - at_).norm() / feed;
         for (int end = 0; end < 2; ++end, at_ = point) // where it comes from and where it goes to
@@ -359,21 +359,21 @@ class ColumnGantry final : public Gantry {
     double touch_off() override { return radius; }
     void change_wheel() override { radius = new_radius; }
     double probe(const Eigen::Vector2d& /*xy*/, double lowest) override { return lowest; }
-    GantryStatus status() const override { return status_; }
+    gantry::GantryStatus status() const override { return status_; }
 
     double highest(const Heights& reference) const
     {
-        double most = -1;
+        double max = -1;
         for (int i = 0; i < kColumns; ++i)
-            for (int j = 0; j < kColumns; ++j) most = std::max(most, z_[i][j] - reference(i * kSide, j * kSide));
-        return most;
+            for (int j = 0; j < kColumns; ++j) max = std::max(max, z_[i][j] - reference(i * kSide, j * kSide));
+        return max;
     }
     double lowest() const
     {
-        double least = 1e9;
+        double min = 1e9;
         for (const auto& row : z_)
-            for (const double z : row) least = std::min(least, z);
-        return least;
+            for (const double z : row) min = std::min(min, z);
+        return min;
     }
     double radius = 25.4, new_radius = 25.4;
 
@@ -386,7 +386,7 @@ class ColumnGantry final : public Gantry {
         const auto index = [](double c) { return std::clamp(int(std::lround(c / kSide)), 0, kColumns - 1); };
         return z_[index(at_.x())][index(at_.y())];
     }
-    GantryStatus move(const Eigen::Vector3d& point, double duration)
+    gantry::GantryStatus move(const Eigen::Vector3d& point, double duration)
     {
         at_ = point;
         status_.time += duration;
@@ -399,19 +399,19 @@ class ColumnGantry final : public Gantry {
     double z_[kColumns][kColumns];
     double stiffness_;
     Eigen::Vector3d at_ = Eigen::Vector3d(0, 0, 50);
-    GantryStatus status_;
+    gantry::GantryStatus status_;
 };
 
 // B: a square of 40 mm, the desired surface z = 0; lines and places on the columns.
-Plan square_plan()
+plan::Plan square_plan()
 {
-    Plan plan;
+    plan::Plan plan;
     plan.job.wheel = {25.4, 1, 12.7};
     plan.job.force = {5, 10, 15, 10, 0};
     plan.job.feed = {'y', 25, 1};
     plan.job.tolerance = 0.1;
-    plan.surface.shape = Plane{{0, 0}, 0, {0, 0}};
-    plan.layers = layers_of(plan.job.force); // thickness 1, distance 0.5
+    plan.surface.shape = surface::Plane{{0, 0}, 0, {0, 0}};
+    plan.layers = plan::compute_layers(plan.job.force); // thickness 1, distance 0.5
     plan.start = Eigen::Vector3d::Zero();
     for (int p = 0; p <= 40; ++p) plan.passes.push_back({double(p), {{0, 40}}});
     plan.bounds.layers = 40;
@@ -436,143 +436,143 @@ TEST_P(Figure58Test, IsGroundToTheDesiredSurface)
         [](double x, double y) { return std::max(dome(x, y, 10, 12, 7, 3.2), dome(x, y, 28, 27, 9, 2.2)); },
         [](double x, double y) { return dome(x, y, 16, 20, 8, 9) > 0 ? 0.0 : dome(x, y, 20, 20, 14, 4); },
     };
-    const Plan plan = square_plan();
+    const plan::Plan plan = square_plan();
     ColumnGantry gantry(stocks[GetParam()], plan.job.force.stiffness);
-    const GrindRun result = run(plan, gantry);
+    const strategy::GrindRun result = strategy::run(plan, gantry);
     EXPECT_TRUE(result.finished) << result.failure;
     EXPECT_LE(gantry.highest(flat), plan.job.tolerance);
     EXPECT_GE(gantry.lowest(), 0);
     EXPECT_GE(result.counts.highest_layer, 3);
     // Every reading of the force in range is ground where it is; the layers end one below the other.
     int layer = 1;
-    for (const TraceRow& row : result.trace) {
+    for (const strategy::TraceRow& row : result.trace) {
         EXPECT_LE(std::abs(row.layer - layer), 1);
-        if (row.event == Event::up)
+        if (row.event == strategy::Event::up)
             EXPECT_EQ(row.layer, layer + 1);
-        else if (row.event == Event::down)
+        else if (row.event == strategy::Event::down)
             EXPECT_EQ(row.layer, layer - 1);
         else
             EXPECT_EQ(row.layer, layer);
         layer = row.layer;
     }
-    EXPECT_EQ(result.trace.back().event, Event::finished);
+    EXPECT_EQ(result.trace.back().event, strategy::Event::finished);
 }
 
 INSTANTIATE_TEST_SUITE_P(Wang2007, Figure58Test, testing::Values(0, 1, 2));
 
 TEST(Run, StopsAtABoundAndSaysWhere)
 {
-    Plan plan = square_plan();
+    plan::Plan plan = square_plan();
     plan.bounds.layers = 3;
     ColumnGantry gantry([](double x, double y) { return dome(x, y, 20, 20, 12, 9); }, plan.job.force.stiffness);
-    const GrindRun result = run(plan, gantry);
+    const strategy::GrindRun result = strategy::run(plan, gantry);
     EXPECT_FALSE(result.finished);
     EXPECT_NE(result.failure.find("layers 3"), std::string::npos) << result.failure;
-    EXPECT_EQ(result.trace.back().event, Event::bound);
+    EXPECT_EQ(result.trace.back().event, strategy::Event::limit_reached);
 }
 
 TEST(Run, ChangesAWornWheelAndRefusesANewOneThatIsTooSmall)
 {
-    Plan plan = square_plan();
+    plan::Plan plan = square_plan();
     ColumnGantry gantry(flat, plan.job.force.stiffness);
     gantry.radius = 12;
-    const GrindRun result = run(plan, gantry);
+    const strategy::GrindRun result = strategy::run(plan, gantry);
     EXPECT_TRUE(result.finished);
     EXPECT_EQ(result.wheel_changes, 1);
     EXPECT_EQ(result.touch_offs, 2);
     EXPECT_EQ(result.wheel_radius, 25.4);
 
     gantry.radius = gantry.new_radius = 12;
-    EXPECT_THROW(run(plan, gantry), InputError);
+    EXPECT_THROW(strategy::run(plan, gantry), core::InputError);
 }
 
 TEST(Run, MeasuresTheWheelOnItsPeriod)
 {
-    Plan plan = square_plan(); // 41 · 40 mm and 40 step-overs at 25 mm/s: 67.2 s
+    plan::Plan plan = square_plan(); // 41 · 40 mm and 40 step-overs at 25 mm/s: 67.2 s
     ColumnGantry gantry(flat, plan.job.force.stiffness);
-    RunOptions options;
+    strategy::RunOptions options;
     options.touch_off_period = 20;
-    const GrindRun result = run(plan, gantry, options);
+    const strategy::GrindRun result = strategy::run(plan, gantry, options);
     EXPECT_EQ(result.touch_offs, 1 + 3);
 }
 
 /// A machine that stops for good at its Nth command, like one whose driver dies.
-class FailingGantry final : public Gantry {
+class FailingGantry final : public gantry::Gantry {
   public:
-    FailingGantry(Gantry& gantry, int commands) : gantry_(gantry), left_(commands) {}
+    FailingGantry(gantry::Gantry& gantry, int commands) : gantry_(gantry), left_(commands) {}
 
-    GantryStatus travel(const Eigen::Vector3d& p) override { return obey().travel(p); }
-    GantryStatus grind(const Eigen::Vector3d& p, double feed) override
+    gantry::GantryStatus travel(const Eigen::Vector3d& p) override { return obey().travel(p); }
+    gantry::GantryStatus grind(const Eigen::Vector3d& p, double feed) override
     {
         ground = obey().grind(p, feed).time;
         return gantry_.status();
     }
-    GantryStatus lift(double z) override { return obey().lift(z); }
+    gantry::GantryStatus lift(double z) override { return obey().lift(z); }
     double touch_off() override { return obey().touch_off(); }
     void change_wheel() override { obey().change_wheel(); }
     double probe(const Eigen::Vector2d& xy, double lowest) override { return gantry_.probe(xy, lowest); }
-    GantryStatus status() const override { return gantry_.status(); }
+    gantry::GantryStatus status() const override { return gantry_.status(); }
     double ground = 0;
 
   private:
-    Gantry& obey()
+    gantry::Gantry& obey()
     {
-        if (left_-- == 0) throw GantryFault("dead");
+        if (left_-- == 0) throw gantry::GantryFault("dead");
         return gantry_;
     }
-    Gantry& gantry_;
+    gantry::Gantry& gantry_;
     int left_;
 };
 
 TEST(Run, GoesOnWhereverItWasCutOff)
 {
     // The machine keeps its stock and dies at every seventh command; every time the run goes on from its trace. In the
-    // end the same has been done as without: the rows that are no touch-off and no way back are the same, but for the
+    // end the same has been done as without: the rows other than touch-offs and returns are the same, but for the
     // readings, and the ground surface is the same within a step's repetition.
     const auto hills = [](double x, double y) {
         return std::max(dome(x, y, 10, 12, 7, 3.2), dome(x, y, 28, 27, 9, 2.2));
     };
-    const Plan plan = square_plan();
+    const plan::Plan plan = square_plan();
     ColumnGantry undisturbed(hills, plan.job.force.stiffness), mortal(hills, plan.job.force.stiffness);
-    const GrindRun whole = run(plan, undisturbed);
+    const strategy::GrindRun whole = strategy::run(plan, undisturbed);
     ASSERT_TRUE(whole.finished);
 
-    RunOptions options;
-    int cut_off = 0;
-    for (int commands = 700;; ++cut_off) {
+    strategy::RunOptions options;
+    int interruptions = 0;
+    for (int commands = 700;; ++interruptions) {
         FailingGantry gantry(mortal, commands);
-        const GrindRun part = run(plan, gantry, options);
+        const strategy::GrindRun part = strategy::run(plan, gantry, options);
         if (part.finished) {
             EXPECT_EQ(part.counts.highest_layer, whole.counts.highest_layer);
             EXPECT_NEAR(part.counts.steps, whole.counts.steps, 0.05 * whole.counts.steps);
             EXPECT_LE(mortal.highest(flat), plan.job.tolerance);
             break;
         }
-        ASSERT_LT(cut_off, 100);
-        EXPECT_EQ(part.trace.back().event, Event::fault);
-        ASSERT_GT(part.trace.size(), options.done.size());
-        for (std::size_t n = 0; n < options.done.size(); ++n) // what was done is not done again
-            ASSERT_EQ(part.trace[n].time, options.done[n].time) << n;
+        ASSERT_LT(interruptions, 100);
+        EXPECT_EQ(part.trace.back().event, strategy::Event::fault);
+        ASSERT_GT(part.trace.size(), options.previous_trace.size());
+        for (std::size_t n = 0; n < options.previous_trace.size(); ++n) // what was done is not done again
+            ASSERT_EQ(part.trace[n].time, options.previous_trace[n].time) << n;
         for (std::size_t n = 1; n < part.trace.size(); ++n) ASSERT_GE(part.trace[n].time, part.trace[n - 1].time) << n;
-        options.done = part.trace;
-        options.done.pop_back();
+        options.previous_trace = part.trace;
+        options.previous_trace.pop_back();
     }
-    EXPECT_GT(cut_off, 3);
+    EXPECT_GT(interruptions, 3);
 }
 
 // Between the measurement of a worn wheel and the first move: measured, changed, measured.
 TEST(Run, GoesOnInTheMiddleOfAChangeOfTheWheel)
 {
-    const Plan plan = square_plan();
+    const plan::Plan plan = square_plan();
     for (const int commands : {1, 2, 3}) {
         ColumnGantry gantry(flat, plan.job.force.stiffness);
         gantry.radius = 12;
         FailingGantry mortal(gantry, commands);
-        RunOptions options;
-        options.done = run(plan, mortal).trace;
-        options.done.pop_back();
-        ASSERT_EQ(int(options.done.size()), commands);
-        const GrindRun result = run(plan, gantry, options);
+        strategy::RunOptions options;
+        options.previous_trace = strategy::run(plan, mortal).trace;
+        options.previous_trace.pop_back();
+        ASSERT_EQ(int(options.previous_trace.size()), commands);
+        const strategy::GrindRun result = strategy::run(plan, gantry, options);
         EXPECT_TRUE(result.finished) << commands;
         EXPECT_EQ(result.wheel_changes, 1) << commands;
         EXPECT_EQ(result.wheel_radius, 25.4) << commands;
@@ -582,109 +582,110 @@ TEST(Run, GoesOnInTheMiddleOfAChangeOfTheWheel)
 
 TEST(Run, RefusesToGoOnWithAnotherRun)
 {
-    Plan plan = square_plan();
+    plan::Plan plan = square_plan();
     ColumnGantry gantry(flat, plan.job.force.stiffness);
-    RunOptions options;
-    options.done = run(plan, gantry).trace;
+    strategy::RunOptions options;
+    options.previous_trace = strategy::run(plan, gantry).trace;
     plan.passes.erase(plan.passes.begin() + 20);
-    EXPECT_THROW(run(plan, gantry, options), InputError);
+    EXPECT_THROW(strategy::run(plan, gantry, options), core::InputError);
 }
 
-// By the kernel's description: axis 0 to the right, axis 1 towards the operator, 32767 the full way; buttons from 0.
+// By the kernel's description: axis 0 to the right, axis 1 towards the operator, 32767 at full deflection; buttons from
+// 0.
 TEST(Joystick, MovesTheStick)
 {
-    Stick stick;
+    strategy::Stick stick;
     const auto event = [&](int type, int number, int value) {
         js_event e = {};
         e.type = static_cast<__u8>(type), e.number = static_cast<__u8>(number), e.value = static_cast<__s16>(value);
-        hear(e, stick);
+        strategy::apply_event(e, stick);
     };
     event(JS_EVENT_AXIS | JS_EVENT_INIT, 0, 32767);
     event(JS_EVENT_AXIS, 1, -32767);
     event(JS_EVENT_AXIS, 2, 20000); // a throttle
-    EXPECT_EQ(stick.way, Eigen::Vector2d(1, 1));
+    EXPECT_EQ(stick.direction, Eigen::Vector2d(1, 1));
     event(JS_EVENT_AXIS, 0, 3000); // at rest, but for the springs
     event(JS_EVENT_AXIS, 1, 3300);
-    EXPECT_EQ(stick.way.x(), 0);
-    EXPECT_NEAR(stick.way.y(), -0.1, 1e-3);
-    EXPECT_TRUE(stick.press);
+    EXPECT_EQ(stick.direction.x(), 0);
+    EXPECT_NEAR(stick.direction.y(), -0.1, 1e-3);
+    EXPECT_TRUE(stick.on_part);
     event(JS_EVENT_BUTTON | JS_EVENT_INIT, 0, 1);
-    EXPECT_FALSE(stick.press);
+    EXPECT_FALSE(stick.on_part);
     event(JS_EVENT_BUTTON, 0, 0);
-    EXPECT_TRUE(stick.press);
+    EXPECT_TRUE(stick.on_part);
     for (int button = 1; button <= 3; ++button) {
         event(JS_EVENT_BUTTON | JS_EVENT_INIT, button, 1);
         event(JS_EVENT_BUTTON, button, 0);
     }
-    EXPECT_EQ(stick.button, Button::none);
+    EXPECT_EQ(stick.button, strategy::Button::none);
     EXPECT_FALSE(stick.end);
     event(JS_EVENT_BUTTON, 2, 1);
-    EXPECT_EQ(stick.button, Button::record);
+    EXPECT_EQ(stick.button, strategy::Button::record);
     event(JS_EVENT_BUTTON, 3, 1);
-    EXPECT_EQ(stick.button, Button::next);
+    EXPECT_EQ(stick.button, strategy::Button::next);
     event(JS_EVENT_BUTTON, 1, 1);
     EXPECT_TRUE(stick.end);
 }
 
 TEST(Trace, RefusesEventsThatThereAreNot)
 {
-    const std::vector<TraceRow> rows = {{.layer = 1, .pass = 1}, {.time = 1, .layer = 1, .pass = 1}};
-    Cloud cloud = to_cloud(rows);
-    EXPECT_EQ(trace_of(cloud, "trace").size(), 2u);
-    set_field(cloud, "event", Eigen::Vector2d(0, 99));
+    const std::vector<strategy::TraceRow> rows = {{.layer = 1, .pass = 1}, {.time = 1, .layer = 1, .pass = 1}};
+    cloud::Cloud cloud = strategy::to_cloud(rows);
+    EXPECT_EQ(strategy::trace_from_cloud(cloud, "trace").size(), 2u);
+    cloud::set_field(cloud, "event", Eigen::Vector2d(0, 99));
     try {
-        trace_of(cloud, "trace");
+        strategy::trace_from_cloud(cloud, "trace");
         FAIL();
-    } catch (const InputError& error) {
-        EXPECT_STREQ(error.what(), "trace: event 99 of point 2 is none of a trace");
+    } catch (const core::InputError& error) {
+        EXPECT_STREQ(error.what(), "trace: event 99 of point 2 is not an event of a trace");
     }
 }
 
-TEST(TraceFile, SaysWhereItCannotWrite)
+TEST(TraceFile, NamesTheFileThatItCannotWrite)
 {
     const OwnFolder folder;
-    EXPECT_THROW(TraceFile("no/where", {}, PcdEncoding::ascii, {}), InputError);
+    EXPECT_THROW(strategy::TraceFile("no/where", {}, cloud::PcdEncoding::ascii, {}), core::InputError);
     std::filesystem::create_directory("folder");
-    EXPECT_THROW(TraceFile("folder", {}, PcdEncoding::ascii, {}), InputError);
+    EXPECT_THROW(strategy::TraceFile("folder", {}, cloud::PcdEncoding::ascii, {}), core::InputError);
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator("."), {}), 1); // it leaves nothing
 }
 
 TEST(TraceFile, HoldsEveryRowAtEveryMoment)
 {
     const OwnFolder folder;
-    const Units inches{Units::Length::in, Units::Force::lbf};
-    for (const PcdEncoding encoding : {PcdEncoding::ascii, PcdEncoding::binary}) {
+    const units::Units inches{units::Units::Length::in, units::Units::Force::lbf};
+    for (const cloud::PcdEncoding encoding : {cloud::PcdEncoding::ascii, cloud::PcdEncoding::binary}) {
         const std::string path = "trace.pcd";
         const auto row = [](int n) {
-            return TraceRow{.time = n + 0.1,
-                            .tool = {n * 1.7, -n * 0.3, 20},
-                            .layer = 2,
-                            .pass = n,
-                            .event = Event::none,
-                            .force = 10.3 * n,
-                            .feed = 25.4,
-                            .peak_force = 11.0 * n,
-                            .deflection = 0.01 * n,
-                            .radius = 25};
+            return strategy::TraceRow{.time = n + 0.1,
+                                      .tool = {n * 1.7, -n * 0.3, 20},
+                                      .layer = 2,
+                                      .pass = n,
+                                      .event = strategy::Event::none,
+                                      .force = 10.3 * n,
+                                      .feed = 25.4,
+                                      .peak_force = 11.0 * n,
+                                      .deflection = 0.01 * n,
+                                      .radius = 25};
         };
-        TraceFile file(path, inches, encoding, {row(1)});
+        strategy::TraceFile file(path, inches, encoding, {row(1)});
         for (int n = 2; n < 30; ++n) {
-            TraceRow begun = row(n);
-            begun.event = Event::begun;
-            file.begin(begun);
-            EXPECT_EQ(int(read_cloud(path, inches).cloud.size()), n);
-            EXPECT_EQ(int(read_trace(path, inches).size()), n - 1);
-            file.done(row(n));
-            const std::vector<TraceRow> rows = read_trace(path, inches);
+            strategy::TraceRow begun = row(n);
+            begun.event = strategy::Event::in_progress;
+            file.begin_row(begun);
+            EXPECT_EQ(int(cloud::read_cloud(path, inches).cloud.size()), n);
+            EXPECT_EQ(int(strategy::read_trace(path, inches).size()), n - 1);
+            file.complete_row(row(n));
+            const std::vector<strategy::TraceRow> rows = strategy::read_trace(path, inches);
             ASSERT_EQ(int(rows.size()), n);
             EXPECT_NEAR(rows.back().force, row(n).force, 1e-4);
             EXPECT_EQ(rows.back().time, row(n).time);
             EXPECT_NEAR((rows.back().tool - row(n).tool).norm(), 0, 1e-4);
         }
         // Killed after a row, before its count: the row is passed over.
-        std::string bytes = read_whole(path);
+        std::string bytes = core::read_file(path);
         std::ofstream(path) << bytes << bytes.substr(bytes.size() - 3);
-        EXPECT_EQ(read_trace(path, inches).size(), 29u);
+        EXPECT_EQ(strategy::read_trace(path, inches).size(), 29u);
     }
 }
 
@@ -696,23 +697,23 @@ TEST(TraceFile, CountsNoRowThatIsWrittenInPart)
     std::signal(SIGXFSZ, SIG_IGN); // as the tools do
     rlimit before{};
     ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
-    for (const PcdEncoding encoding : {PcdEncoding::ascii, PcdEncoding::binary}) {
+    for (const cloud::PcdEncoding encoding : {cloud::PcdEncoding::ascii, cloud::PcdEncoding::binary}) {
         const std::string path = "trace.pcd";
-        TraceFile file(path, {}, encoding, {{.time = 1.25, .pass = 1, .feed = 25}});
+        strategy::TraceFile file(path, {}, encoding, {{.time = 1.25, .pass = 1, .feed = 25}});
         const rlim_t start = std::filesystem::file_size(path);
-        file.begin({.time = 1.25, .pass = 2, .event = Event::begun});
+        file.begin_row({.time = 1.25, .pass = 2, .event = strategy::Event::in_progress});
         for (rlim_t cut = start + 1; cut < std::filesystem::file_size(path); cut += 3) {
             const rlimit limit{cut, before.rlim_max};
             ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &limit), 0);
-            EXPECT_THROW(file.done({.time = 2.5, .pass = 2, .feed = 25}), InputError);
+            EXPECT_THROW(file.complete_row({.time = 2.5, .pass = 2, .feed = 25}), core::InputError);
             ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
-            const std::vector<TraceRow> rows = read_trace(path, {});
+            const std::vector<strategy::TraceRow> rows = strategy::read_trace(path, {});
             ASSERT_EQ(rows.size(), 1u);
             EXPECT_EQ(rows[0].time, 1.25);
             EXPECT_EQ(rows[0].pass, 1);
         }
-        file.done({.time = 2.5, .pass = 2, .feed = 25}); // there is room again
-        EXPECT_EQ(read_trace(path, {}).size(), 2u);
+        file.complete_row({.time = 2.5, .pass = 2, .feed = 25}); // there is room again
+        EXPECT_EQ(strategy::read_trace(path, {}).size(), 2u);
     }
 }
 

@@ -18,46 +18,49 @@ namespace {
 
 constexpr double kInch = 25.4;
 
-Bspline some_bspline()
+surface::Bspline some_bspline()
 {
-    Bspline spline{0.4, {-30, -20}, {11, 9}, Eigen::MatrixXd(9, 8)};
+    surface::Bspline spline{0.4, {-30, -20}, {11, 9}, Eigen::MatrixXd(9, 8)};
     for (Eigen::Index i = 0; i < spline.heights.size(); ++i)
         spline.heights.data()[i] = 5 * std::sin(1.7 * static_cast<double>(i)) + 0.1 * static_cast<double>(i);
     return spline;
 }
 
-Cylinder some_cylinder(double curvature)
+surface::Cylinder some_cylinder(double curvature)
 {
     const Eigen::Vector3d normal = Eigen::Vector3d(0.2, -0.3, 1).normalized();
     const Eigen::Vector3d axis = normal.cross(Eigen::Vector3d(0.5, 0.7, 0.1)).normalized();
     return {{3, -2, 7}, normal, axis, curvature};
 }
 
-Sphere some_sphere(double curvature) { return {{3, -2, 7}, Eigen::Vector3d(-0.3, 0.25, 1).normalized(), curvature}; }
-
-Cone some_cone(double around, double lean)
+surface::Sphere some_sphere(double curvature)
 {
-    const Cylinder frame = some_cylinder(0);
+    return {{3, -2, 7}, Eigen::Vector3d(-0.3, 0.25, 1).normalized(), curvature};
+}
+
+surface::Cone some_cone(double around, double lean)
+{
+    const surface::Cylinder frame = some_cylinder(0);
     return {frame.point, frame.normal, frame.axis, around, lean};
 }
 
-Torus some_torus(double around, double lean, double along)
+surface::Torus some_torus(double around, double lean, double along)
 {
-    const Cylinder frame = some_cylinder(0);
+    const surface::Cylinder frame = some_cylinder(0);
     return {frame.point, frame.normal, frame.axis, around, lean, along};
 }
 
 /// Its curvatures are those of no sphere, and change.
-Quadric some_quadric()
+surface::Quadric some_quadric()
 {
     Eigen::Matrix3d form;
     form << 9, 2, -1, 2, -7, 3, -1, 3, 12;
     return {{3, -2, 7}, Eigen::Vector3d(-0.3, 0.25, 1).normalized(), form / 1000};
 }
 
-std::vector<Shape> some_shapes()
+std::vector<surface::Shape> some_shapes()
 {
-    return {Plane{{2, -5}, 3, {0.4, -1.5}},
+    return {surface::Plane{{2, -5}, 3, {0.4, -1.5}},
             some_sphere(1 / 90.0),
             some_sphere(-1 / 90.0),
             some_cylinder(1 / 70.0),
@@ -68,8 +71,8 @@ std::vector<Shape> some_shapes()
             some_torus(-1 / 150.0, -0.5, 1 / 60.0),
             some_torus(0, 0.1, 0),
             some_quadric(),
-            Polynomial{{3, -2}, 20, Eigen::VectorXd::LinSpaced(10, -3, 4)},
-            Swept{{1, 2}, Eigen::Vector2d(0.6, 0.8), 25, {1, -2, 3, 0.5}, 0.2, -25, 25},
+            surface::Polynomial{{3, -2}, 20, Eigen::VectorXd::LinSpaced(10, -3, 4)},
+            surface::Swept{{1, 2}, Eigen::Vector2d(0.6, 0.8), 25, {1, -2, 3, 0.5}, 0.2, -25, 25},
             some_bspline()};
 }
 
@@ -95,29 +98,29 @@ Revolution changed_revolution(const Revolution& shape, Eigen::Index j, double by
         result.axis = (shape.axis - by * shape.normal).normalized();
     }
     if (j == 3) result.axis = (shape.axis + by * across).normalized();
-    if (j == 4) result.around += by;
+    if (j == 4) result.curvature_around += by;
     if (j == 5) result.lean += by;
     return result;
 }
 
 /// The shape with θ_j changed by `by`, in the parameters that surface.h states.
-Shape changed(const Shape& shape, Eigen::Index j, double by)
+surface::Shape changed(const surface::Shape& shape, Eigen::Index j, double by)
 {
-    if (const Plane* plane = std::get_if<Plane>(&shape)) {
-        Plane result = *plane;
+    if (const surface::Plane* plane = std::get_if<surface::Plane>(&shape)) {
+        surface::Plane result = *plane;
         (j == 0 ? result.z0 : result.slope[j - 1]) += by;
         return result;
     }
-    if (const Sphere* sphere = std::get_if<Sphere>(&shape)) {
-        Sphere result = *sphere;
+    if (const surface::Sphere* sphere = std::get_if<surface::Sphere>(&shape)) {
+        surface::Sphere result = *sphere;
         if (j == 0) result.point += by * sphere->normal;
-        if (j == 1 || j == 2) result.normal += by * tangents(sphere->normal)[static_cast<std::size_t>(j - 1)];
+        if (j == 1 || j == 2) result.normal += by * surface::tangents(sphere->normal)[static_cast<std::size_t>(j - 1)];
         result.normal.normalize();
         if (j == 3) result.curvature += by;
         return result;
     }
-    if (const Cylinder* cylinder = std::get_if<Cylinder>(&shape)) {
-        Cylinder result = *cylinder;
+    if (const surface::Cylinder* cylinder = std::get_if<surface::Cylinder>(&shape)) {
+        surface::Cylinder result = *cylinder;
         const Eigen::Vector3d across = cylinder->axis.cross(cylinder->normal);
         if (j == 0) result.point += by * cylinder->normal;
         if (j == 1) result.normal = (cylinder->normal + by * across).normalized();
@@ -129,16 +132,16 @@ Shape changed(const Shape& shape, Eigen::Index j, double by)
         if (j == 4) result.curvature += by;
         return result;
     }
-    if (const Cone* cone = std::get_if<Cone>(&shape)) return changed_revolution(*cone, j, by);
-    if (const Torus* torus = std::get_if<Torus>(&shape)) {
-        Torus result = changed_revolution(*torus, j, by);
-        if (j == 6) result.along += by;
+    if (const surface::Cone* cone = std::get_if<surface::Cone>(&shape)) return changed_revolution(*cone, j, by);
+    if (const surface::Torus* torus = std::get_if<surface::Torus>(&shape)) {
+        surface::Torus result = changed_revolution(*torus, j, by);
+        if (j == 6) result.curvature_along += by;
         return result;
     }
-    if (const Quadric* quadric = std::get_if<Quadric>(&shape)) {
-        Quadric result = *quadric;
+    if (const surface::Quadric* quadric = std::get_if<surface::Quadric>(&shape)) {
+        surface::Quadric result = *quadric;
         Eigen::Matrix3d frame;
-        frame << tangents(quadric->normal)[0], tangents(quadric->normal)[1], quadric->normal;
+        frame << surface::tangents(quadric->normal)[0], surface::tangents(quadric->normal)[1], quadric->normal;
         if (j == 0) result.point += by * quadric->normal;
         if (j == 1 || j == 2) result.normal = (quadric->normal + by * frame.col(j - 1)).normalized();
         const Eigen::Index row = j < 4 ? 0 : j < 6 ? 1 : 2, column = j - 3 - row * (row + 1) / 2;
@@ -147,17 +150,17 @@ Shape changed(const Shape& shape, Eigen::Index j, double by)
         result.form += frame * change * frame.transpose();
         return result;
     }
-    if (const Polynomial* polynomial = std::get_if<Polynomial>(&shape)) {
-        Polynomial result = *polynomial;
+    if (const surface::Polynomial* polynomial = std::get_if<surface::Polynomial>(&shape)) {
+        surface::Polynomial result = *polynomial;
         result.coefficients[j] += by;
         return result;
     }
-    if (const Swept* swept = std::get_if<Swept>(&shape)) {
-        Swept result = *swept;
+    if (const surface::Swept* swept = std::get_if<surface::Swept>(&shape)) {
+        surface::Swept result = *swept;
         (j < 4 ? result.section[j] : result.slope) += by;
         return result;
     }
-    Bspline result = std::get<Bspline>(shape);
+    surface::Bspline result = std::get<surface::Bspline>(shape);
     result.heights.data()[j] += by;
     return result;
 }
@@ -166,18 +169,18 @@ const Eigen::Vector2d kPlaces[] = {{3, -2}, {10, 4}, {-7, 11}, {0, 0}};
 
 TEST(Surface, GradientsAgreeWithDifferences)
 {
-    for (const Shape& shape : some_shapes()) {
-        const Eigen::VectorXi powers = parameter_powers(shape);
+    for (const surface::Shape& shape : some_shapes()) {
+        const Eigen::VectorXi powers = surface::parameter_powers(shape);
         for (const Eigen::Vector2d& xy : kPlaces) {
-            const Eigen::VectorXd gradient = height_gradients(shape, xy).col(0);
+            const Eigen::VectorXd gradient = surface::height_gradients(shape, xy).col(0);
             ASSERT_EQ(gradient.size(), powers.size());
             for (Eigen::Index j = 0; j < gradient.size(); ++j) {
                 // Curvatures are of the order of 1/100: their step is smaller by as much.
                 const double unit = powers[j] < 0 ? 1e-3 : 1;
                 const auto along = [&](double h) {
-                    Surface surface;
+                    surface::Surface surface;
                     surface.shape = changed(shape, j, unit * h);
-                    return height(surface, xy);
+                    return surface::height(surface, xy);
                 };
                 EXPECT_LT(difference_error(along, unit * gradient[j]), 1e-8 * (1 + std::abs(unit * gradient[j])))
                     << "shape " << shape.index() << ", parameter " << j;
@@ -188,14 +191,16 @@ TEST(Surface, GradientsAgreeWithDifferences)
 
 TEST(Surface, NormalsAgreeWithDifferences)
 {
-    for (const Shape& shape : some_shapes()) {
-        Surface surface;
+    for (const surface::Shape& shape : some_shapes()) {
+        surface::Surface surface;
         surface.shape = shape;
         for (const Eigen::Vector2d& xy : kPlaces) {
-            const Eigen::Vector3d n = normal(surface, xy);
+            const Eigen::Vector3d n = surface::normal(surface, xy);
             EXPECT_NEAR(n.norm(), 1, 1e-15);
             for (int axis = 0; axis < 2; ++axis) {
-                const auto along = [&](double h) { return height(surface, xy + h * Eigen::Vector2d::Unit(axis)); };
+                const auto along = [&](double h) {
+                    return surface::height(surface, xy + h * Eigen::Vector2d::Unit(axis));
+                };
                 EXPECT_LT(difference_error(along, -n[axis] / n.z()), 1e-8) << "shape " << shape.index();
             }
         }
@@ -207,18 +212,18 @@ TEST(Surface, SphereAndCylinderByCentreAndRadius)
     // z = cz ± √(R² - r²), exactly.
     for (const bool convex : {true, false}) {
         const double side = convex ? 1 : -1;
-        const Sphere sphere = sphere_about({1, 2, 3}, 50, convex);
-        EXPECT_NEAR(height(sphere, {31, 2}), 3 + side * 40, 1e-12);
-        EXPECT_TRUE(std::isnan(height(sphere, {52, 2})));
-        EXPECT_LT((centre(sphere) - Eigen::Vector3d(1, 2, 3)).norm(), 1e-12);
-        EXPECT_NEAR(radius(sphere), 50, 1e-12);
+        const surface::Sphere sphere = surface::sphere_from_centre({1, 2, 3}, 50, convex);
+        EXPECT_NEAR(surface::height(sphere, {31, 2}), 3 + side * 40, 1e-12);
+        EXPECT_TRUE(std::isnan(surface::height(sphere, {52, 2})));
+        EXPECT_LT((sphere.point - sphere.normal / sphere.curvature - Eigen::Vector3d(1, 2, 3)).norm(), 1e-12);
+        EXPECT_NEAR(std::abs(1 / sphere.curvature), 50, 1e-12);
 
-        const Cylinder cylinder = cylinder_about({1, 2, 3}, {0, 3, 4}, 50, convex);
+        const surface::Cylinder cylinder = surface::cylinder_from_axis({1, 2, 3}, {0, 3, 4}, 50, convex);
         // Across the axis at its own height: the section is a circle.
-        EXPECT_NEAR(height(cylinder, {31, 2}), 3 + side * 40 / 0.6, 1e-12);
+        EXPECT_NEAR(surface::height(cylinder, {31, 2}), 3 + side * 40 / 0.6, 1e-12);
         // Along the axis the height rises by 4/3.
-        EXPECT_NEAR(height(cylinder, {31, 5}) - height(cylinder, {31, 2}), 4, 1e-12);
-        EXPECT_TRUE(std::isnan(height(cylinder, {52, 2})));
+        EXPECT_NEAR(surface::height(cylinder, {31, 5}) - surface::height(cylinder, {31, 2}), 4, 1e-12);
+        EXPECT_TRUE(std::isnan(surface::height(cylinder, {52, 2})));
     }
 }
 
@@ -227,18 +232,18 @@ TEST(Surface, ConeAndTorusLieAboutTheirAxis)
 {
     for (const double side : {1.0, -1.0})
         for (const double lean : {0.3, -0.6}) {
-            const Cone cone = some_cone(side / 80, lean);
+            const surface::Cone cone = some_cone(side / 80, lean);
             const Eigen::Vector3d w = std::sin(lean) * cone.normal + std::cos(lean) * cone.axis;
             const Eigen::Vector3d m = std::cos(lean) * cone.normal - std::sin(lean) * cone.axis; // from the axis
-            const Eigen::Vector3d c = cone.point - m / cone.around;
-            const Torus torus = {cone.point, cone.normal, cone.axis, cone.around, lean, side / 30};
-            const Eigen::Vector3d ring = torus.point - torus.normal / torus.along; // a point of its ring
+            const Eigen::Vector3d c = cone.point - m / cone.curvature_around;
+            const surface::Torus torus = {cone.point, cone.normal, cone.axis, cone.curvature_around, lean, side / 30};
+            const Eigen::Vector3d ring = torus.point - torus.normal / torus.curvature_along; // a point of its ring
             const double ring_radius = std::abs((ring - c).dot(m)), ring_height = (ring - c).dot(w);
             for (const Eigen::Vector2d& xy : kPlaces) {
-                const Eigen::Vector3d p = Eigen::Vector3d(xy.x(), xy.y(), height(cone, xy)) - c;
+                const Eigen::Vector3d p = Eigen::Vector3d(xy.x(), xy.y(), surface::height(cone, xy)) - c;
                 const double from_axis = (p - p.dot(w) * w).norm();
                 EXPECT_NEAR(from_axis, 80 - side * std::tan(lean) * p.dot(w), 1e-11);
-                const Eigen::Vector3d q = Eigen::Vector3d(xy.x(), xy.y(), height(torus, xy)) - c;
+                const Eigen::Vector3d q = Eigen::Vector3d(xy.x(), xy.y(), surface::height(torus, xy)) - c;
                 EXPECT_NEAR(std::hypot((q - q.dot(w) * w).norm() - ring_radius, q.dot(w) - ring_height), 30, 1e-11);
             }
         }
@@ -246,119 +251,124 @@ TEST(Surface, ConeAndTorusLieAboutTheirAxis)
 
 TEST(Surface, ConesAndToriHoldCylindersAndSpheres)
 {
-    const Cylinder cylinder = some_cylinder(1 / 70.0);
-    const Sphere sphere = {cylinder.point, cylinder.normal, -1 / 70.0};
+    const surface::Cylinder cylinder = some_cylinder(1 / 70.0);
+    const surface::Sphere sphere = {cylinder.point, cylinder.normal, -1 / 70.0};
     for (const Eigen::Vector2d& xy : kPlaces) {
-        EXPECT_NEAR(height(some_cone(1 / 70.0, 0), xy), height(cylinder, xy), 1e-12);
-        EXPECT_NEAR(height(some_torus(-1 / 70.0, 0, -1 / 70.0), xy), height(sphere, xy), 1e-12);
+        EXPECT_NEAR(surface::height(some_cone(1 / 70.0, 0), xy), surface::height(cylinder, xy), 1e-12);
+        EXPECT_NEAR(surface::height(some_torus(-1 / 70.0, 0, -1 / 70.0), xy), surface::height(sphere, xy), 1e-12);
     }
 }
 
 TEST(Surface, QuadricsHoldSpheresCylindersAndPlanes)
 {
-    const Sphere sphere = some_sphere(1 / 90.0);
-    const Cylinder cylinder = some_cylinder(-1 / 70.0);
+    const surface::Sphere sphere = some_sphere(1 / 90.0);
+    const surface::Cylinder cylinder = some_cylinder(-1 / 70.0);
     const Eigen::Matrix3d one = Eigen::Matrix3d::Identity();
     const Eigen::Matrix3d across = one - cylinder.axis * cylinder.axis.transpose();
     const Eigen::Vector3d u(0.01, -0.02, 0.005);
     const Eigen::Matrix3d pair = u * sphere.normal.transpose() + sphere.normal * u.transpose(); // n·d (1 + u·d)
     for (const Eigen::Vector2d& xy : kPlaces) {
-        EXPECT_NEAR(height(Quadric{sphere.point, sphere.normal, one / 90}, xy), height(sphere, xy), 1e-12);
-        EXPECT_NEAR(height(Quadric{cylinder.point, cylinder.normal, across / -70}, xy), height(cylinder, xy), 1e-12);
-        EXPECT_NEAR(height(Quadric{sphere.point, sphere.normal, pair}, xy),
-                    height(Sphere{sphere.point, sphere.normal, 0}, xy), 1e-12);
+        EXPECT_NEAR(surface::height(surface::Quadric{sphere.point, sphere.normal, one / 90}, xy),
+                    surface::height(sphere, xy), 1e-12);
+        EXPECT_NEAR(surface::height(surface::Quadric{cylinder.point, cylinder.normal, across / -70}, xy),
+                    surface::height(cylinder, xy), 1e-12);
+        EXPECT_NEAR(surface::height(surface::Quadric{sphere.point, sphere.normal, pair}, xy),
+                    surface::height(surface::Sphere{sphere.point, sphere.normal, 0}, xy), 1e-12);
     }
 }
 
 // The mean of a mixture, its variance within and between, and its slope.
 TEST(Surface, IsTheMeanOfItsAlternatives)
 {
-    Surface surface;
-    surface.shape = Plane{{0, 0}, 1, {0.1, 0}};
+    surface::Surface surface;
+    surface.shape = surface::Plane{{0, 0}, 1, {0.1, 0}};
     surface.covariance = Eigen::Vector3d(0.04, 0, 0).asDiagonal();
     surface.weight = 0.75;
-    surface.alternatives = {{"other", 0, 0.25, Plane{{0, 0}, 3, {0.5, 0.2}}, Eigen::Vector3d(0.16, 0, 0).asDiagonal()},
-                            {"unlikely", 9, 0, {}, {}}};
-    EXPECT_NEAR(height(surface, {2, 0}), 0.75 * 1.2 + 0.25 * 4, 1e-15);
+    surface.alternatives = {
+        {"other", 0, 0.25, surface::Plane{{0, 0}, 3, {0.5, 0.2}}, Eigen::Vector3d(0.16, 0, 0).asDiagonal()},
+        {"unlikely", 9, 0, {}, {}}};
+    EXPECT_NEAR(surface::height(surface, {2, 0}), 0.75 * 1.2 + 0.25 * 4, 1e-15);
     const double spread = 0.75 * std::pow(1.2 - 1.9, 2) + 0.25 * std::pow(4 - 1.9, 2);
-    EXPECT_NEAR(sigma(surface, {2, 0}), std::sqrt(0.75 * 0.04 + 0.25 * 0.16 + spread), 1e-15);
-    const Eigen::Vector3d n = normal(surface, {2, 0});
+    EXPECT_NEAR(surface::sigma(surface, {2, 0}), std::sqrt(0.75 * 0.04 + 0.25 * 0.16 + spread), 1e-15);
+    const Eigen::Vector3d n = surface::normal(surface, {2, 0});
     EXPECT_NEAR(-n.x() / n.z(), 0.2, 1e-15);
     EXPECT_NEAR(-n.y() / n.z(), 0.05, 1e-15);
     surface.touches = Eigen::Matrix3Xd::Zero(3, 4);
     surface.roles = Eigen::VectorXi::Ones(4);
-    surface.gross_errors = {1, 3};
-    const Surface back = parse_surface(json::Reader::parse(to_json(surface).text(), "s.json"));
-    EXPECT_EQ(back.gross_errors, surface.gross_errors);
+    surface.outliers = {1, 3};
+    const surface::Surface back =
+        surface::parse_surface(json::Reader::parse(surface::to_json(surface).text(), "s.json"));
+    EXPECT_EQ(back.outliers, surface.outliers);
     EXPECT_EQ(back.alternatives.size(), 2U);
-    EXPECT_EQ(height(back, {2, 0}), height(surface, {2, 0}));
-    EXPECT_EQ(sigma(back, {2, 0}), sigma(surface, {2, 0}));
+    EXPECT_EQ(surface::height(back, {2, 0}), surface::height(surface, {2, 0}));
+    EXPECT_EQ(surface::sigma(back, {2, 0}), surface::sigma(surface, {2, 0}));
 }
 
 TEST(Surface, FlatSphereIsAPlane)
 {
-    const Sphere flat = some_sphere(0);
-    const Plane plane{flat.point.head<2>(), flat.point.z(), -flat.normal.head<2>() / flat.normal.z()};
+    const surface::Sphere flat = some_sphere(0);
+    const surface::Plane plane{flat.point.head<2>(), flat.point.z(), -flat.normal.head<2>() / flat.normal.z()};
     for (const Eigen::Vector2d& xy : kPlaces) {
-        EXPECT_NEAR(height(flat, xy), height(plane, xy), 1e-14);
-        EXPECT_NEAR(height(some_sphere(1e-12), xy), height(plane, xy), 1e-9); // sag r²/2R
+        EXPECT_NEAR(surface::height(flat, xy), surface::height(plane, xy), 1e-14);
+        EXPECT_NEAR(surface::height(some_sphere(1e-12), xy), surface::height(plane, xy), 1e-9); // sag r²/2R
     }
 }
 
 TEST(Surface, BsplineOfLinearControlsIsLinear)
 {
-    Bspline spline = some_bspline();
+    surface::Bspline spline = some_bspline();
     for (Eigen::Index j = 0; j < spline.heights.cols(); ++j)
         for (Eigen::Index i = 0; i < spline.heights.rows(); ++i)
             spline.heights(i, j) = 2 + 3 * static_cast<double>(i - 1) - 4 * static_cast<double>(j - 1);
     for (const Eigen::Vector2d& xy : kPlaces) {
         const Eigen::Vector2d uv =
             (Eigen::Rotation2Dd(-spline.angle) * (xy - spline.origin)).cwiseQuotient(spline.cell);
-        EXPECT_NEAR(height(spline, xy), 2 + 3 * uv.x() - 4 * uv.y(), 1e-12);
+        EXPECT_NEAR(surface::height(spline, xy), 2 + 3 * uv.x() - 4 * uv.y(), 1e-12);
     }
     const Eigen::Vector2d far = Eigen::Rotation2Dd(spline.angle) * Eigen::Vector2d(6 * 11, 5 * 9) + spline.origin;
-    EXPECT_NEAR(height(spline, far), 2 + 18 - 20, 1e-12); // the last corner belongs to it
-    EXPECT_TRUE(std::isnan(height(spline, far + Eigen::Vector2d(1, 1))));
+    EXPECT_NEAR(surface::height(spline, far), 2 + 18 - 20, 1e-12); // the last corner belongs to it
+    EXPECT_TRUE(std::isnan(surface::height(spline, far + Eigen::Vector2d(1, 1))));
 }
 
-Surface with_everything(const Shape& shape, Units::Length unit)
+surface::Surface with_everything(const surface::Shape& shape, units::Units::Length unit)
 {
-    Surface surface;
+    surface::Surface surface;
     surface.units.length = unit;
     surface.shape = shape;
     surface.shift = 0.123;
     surface.method = "some";
-    const Eigen::Index n = parameter_powers(shape).size();
+    const Eigen::Index n = surface::parameter_powers(shape).size();
     const Eigen::MatrixXd root = Eigen::MatrixXd::NullaryExpr(
         n, n, [](Eigen::Index i, Eigen::Index j) { return std::cos(1.0 + static_cast<double>(3 * i + 7 * j)); });
     surface.covariance = root * root.transpose();
     surface.touch_sigma = 0.05;
-    surface.touch_freedom = 6;
+    surface.touch_sigma_dof = 6;
     surface.rms = 0.03;
     surface.goodness = 0.7;
     surface.touches.resize(3, 2);
     surface.touches << 1, 2, 3, 4, 5, 6;
     surface.roles = Eigen::Vector2i(1, 5);
     surface.ignored = 3;
-    surface.prediction = Prediction{"posterior", 0.99, 0.4, 0.2, true};
+    surface.prediction = surface::Prediction{"posterior", 0.99, 0.4, 0.2, true};
     return surface;
 }
 
 TEST(SurfaceJson, RoundTripInAnyUnit)
 {
-    for (const Shape& shape : some_shapes())
-        for (const Units::Length unit : {Units::Length::mm, Units::Length::in}) {
-            const Surface surface = with_everything(shape, unit);
-            const Surface back = parse_surface(json::Reader::parse(to_json(surface).text(), "test"));
+    for (const surface::Shape& shape : some_shapes())
+        for (const units::Units::Length unit : {units::Units::Length::mm, units::Units::Length::in}) {
+            const surface::Surface surface = with_everything(shape, unit);
+            const surface::Surface back =
+                surface::parse_surface(json::Reader::parse(surface::to_json(surface).text(), "test"));
             EXPECT_EQ(back.shape.index(), shape.index());
             for (const Eigen::Vector2d& xy : kPlaces) {
-                EXPECT_NEAR(height(back, xy), height(surface, xy), 1e-12);
-                EXPECT_NEAR(sigma(back, xy) / sigma(surface, xy), 1, 1e-12);
+                EXPECT_NEAR(surface::height(back, xy), surface::height(surface, xy), 1e-12);
+                EXPECT_NEAR(surface::sigma(back, xy) / surface::sigma(surface, xy), 1, 1e-12);
             }
             EXPECT_LT((back.touches - surface.touches).norm(), 1e-12);
             EXPECT_EQ(back.roles, surface.roles);
             EXPECT_NEAR(back.touch_sigma, 0.05, 1e-15);
-            EXPECT_EQ(back.touch_freedom, 6);
+            EXPECT_EQ(back.touch_sigma_dof, 6);
             EXPECT_NEAR(back.rms, 0.03, 1e-15);
             EXPECT_EQ(back.goodness, 0.7);
             EXPECT_EQ(back.ignored, 3);
@@ -371,10 +381,10 @@ TEST(SurfaceJson, RoundTripInAnyUnit)
 
 TEST(SurfaceJson, UnitsAreTheFiles)
 {
-    Surface surface;
-    surface.units.length = Units::Length::in;
-    surface.shape = sphere_about({0, 0, 0}, 4 * kInch, true);
-    json::Reader shape = json::Reader::parse(to_json(surface).text(), "test").object("shape");
+    surface::Surface surface;
+    surface.units.length = units::Units::Length::in;
+    surface.shape = surface::sphere_from_centre({0, 0, 0}, 4 * kInch, true);
+    json::Reader shape = json::Reader::parse(surface::to_json(surface).text(), "test").object("shape");
     EXPECT_NEAR(shape.number("curvature"), 0.25, 1e-15);
     EXPECT_NEAR(shape.vector("point")[2], 4, 1e-15);
 }
@@ -382,8 +392,8 @@ TEST(SurfaceJson, UnitsAreTheFiles)
 std::string refusal(const std::string& text)
 {
     try {
-        parse_surface(json::Reader::parse(text, "s.json"));
-    } catch (const InputError& error) {
+        surface::parse_surface(json::Reader::parse(text, "s.json"));
+    } catch (const core::InputError& error) {
         return error.what();
     }
     return "";
@@ -403,7 +413,7 @@ TEST(SurfaceJson, RefusesWhatIsWrong)
     EXPECT_EQ(refusal(surface_text(plane, R"(, "covariance": [-1, 0, 1, 0, 0, 1])")),
               "s.json: covariance: has a negative variance");
     EXPECT_EQ(refusal(surface_text(plane, R"(, "touches": [[1, 2, 3, 9]])")),
-              "s.json: touches[0][3]: is no role (0 to 5)");
+              "s.json: touches[0][3]: is no touch role (0 to 5)");
     EXPECT_EQ(refusal(surface_text(plane, R"(, "shiftt": 1)")), "s.json: shiftt: unknown key, did you mean \"shift\"?");
     EXPECT_EQ(refusal(surface_text(R"({"type": "plan", "origin": [0, 0], "z0": 1, "slope": [0, 0]})")),
               "s.json: shape.type: \"plan\" is none of plane, sphere, cylinder, cone, torus, quadric, polynomial, "
@@ -428,19 +438,19 @@ TEST(SurfaceJson, RefusesWhatIsWrong)
         refusal(surface_text(
             plane,
             R"(, "fit": {"method": "plane", "touch_sigma": 1, "rms": 1, "ignored": 0, "gross_errors": [1, 1.5]})")),
-        "s.json: fit.gross_errors: 1.5 is no number of a touch");
+        "s.json: fit.gross_errors: 1.5 is not the index of a touch");
 }
 
 TEST(SurfaceGrid, CoversTheOutlineOnce)
 {
-    Polygon square(2, 4);
+    job::Polygon square(2, 4);
     square << 0, 10, 10, 0, 0, 0, 5, 5;
-    const SurfaceGrid grid = grid_over(square, 0.3, 2.5);
+    const surface::SurfaceGrid grid = surface::make_surface_grid(square, 0.3, 2.5);
     ASSERT_EQ(grid.xy.cols(), 5 * 3);
     ASSERT_EQ(grid.triangles.cols(), 2 * 4 * 2);
-    Surface surface;
-    surface.shape = Plane{{0, 0}, 1, {0, 0}};
-    const Mesh mesh = mesh_of(surface, grid);
+    surface::Surface surface;
+    surface.shape = surface::Plane{{0, 0}, 1, {0, 0}};
+    const mesh::Mesh mesh = surface::mesh_of(surface, grid);
     double total = 0;
     for (Eigen::Index i = 0; i < mesh.triangles.cols(); ++i) {
         const Eigen::Vector3d a = mesh.vertices.col(mesh.triangles(0, i));
@@ -450,56 +460,60 @@ TEST(SurfaceGrid, CoversTheOutlineOnce)
     EXPECT_NEAR(total, 50, 1e-12);
     // Aligned with the turned frame: the second point is one step along its x axis.
     EXPECT_LT((grid.xy.col(1) - 2.5 * Eigen::Vector2d(std::cos(0.3), std::sin(0.3))).norm(), 1e-12);
-    EXPECT_THROW(grid_over(square, 0, 1e-4), InputError);
+    EXPECT_THROW(surface::make_surface_grid(square, 0, 1e-4), core::InputError);
 }
 
-Surface precise_surface()
+surface::Surface precise_surface()
 {
-    Surface surface;
+    surface::Surface surface;
     surface.shape = some_bspline();
     Eigen::MatrixXd weights = Eigen::MatrixXd::Constant(6, 5, 30);
     weights.block(2, 1, 2, 3).setZero(); // a hole
-    surface.precision = SplinePrecision{weights, 1e-3};
+    surface.precision = surface::SplinePrecision{weights, 1e-3};
     return surface;
 }
 
 // Reference: the inverse of the precision by Eigen.
 TEST(Precision, GivesSigmaAndCovariance)
 {
-    const Surface surface = precise_surface();
-    const BandMatrix band = precision_matrix(std::get<Bspline>(surface.shape), *surface.precision);
+    const surface::Surface surface = precise_surface();
+    const surface::BandMatrix band =
+        surface::precision_matrix(std::get<surface::Bspline>(surface.shape), *surface.precision);
     Eigen::MatrixXd H(band.size(), band.size());
     H.setZero();
     for (Eigen::Index i = 0; i < band.size(); ++i)
-        for (Eigen::Index j = std::max<Eigen::Index>(0, i - band.half()); j <= i; ++j) H(i, j) = H(j, i) = band(i, j);
+        for (Eigen::Index j = std::max<Eigen::Index>(0, i - band.half_bandwidth()); j <= i; ++j)
+            H(i, j) = H(j, i) = band(i, j);
     const Eigen::Matrix2d turn = Eigen::Rotation2Dd(0.4).toRotationMatrix();
     Eigen::Matrix2Xd xy = turn * (66 * Eigen::Matrix2Xd::Random(2, 30).cwiseAbs());
     xy.row(1) *= 0.6;
     xy.colwise() += Eigen::Vector2d(-30, -20);
     Eigen::Index inside = 0;
     for (Eigen::Index i = 0; i < xy.cols(); ++i)
-        if (std::isfinite(height(surface, xy.col(i)))) xy.col(inside++) = xy.col(i).eval();
+        if (std::isfinite(surface::height(surface, xy.col(i)))) xy.col(inside++) = xy.col(i).eval();
     ASSERT_GT(inside, 10);
     xy.conservativeResize(2, inside);
-    const Eigen::MatrixXd G = height_gradients(surface.shape, xy);
+    const Eigen::MatrixXd G = surface::height_gradients(surface.shape, xy);
     const Eigen::MatrixXd expected = G.transpose() * H.inverse() * G;
-    EXPECT_LT(
-        (height_covariance(std::get<Bspline>(surface.shape), *surface.precision, xy) - expected).cwiseAbs().maxCoeff(),
-        1e-9 * expected.maxCoeff());
-    EXPECT_LT((sigmas(surface, xy).cwiseAbs2() - expected.diagonal()).cwiseAbs().maxCoeff(),
+    EXPECT_LT((surface::height_covariance(std::get<surface::Bspline>(surface.shape), *surface.precision, xy) - expected)
+                  .cwiseAbs()
+                  .maxCoeff(),
               1e-9 * expected.maxCoeff());
-    EXPECT_NEAR(sigma(surface, xy.col(3)), std::sqrt(expected(3, 3)), 1e-9);
-    EXPECT_TRUE(std::isnan(sigma(surface, {1000, 0})));
-    EXPECT_TRUE(knows_sigma(surface));
+    EXPECT_LT((surface::sigmas(surface, xy).cwiseAbs2() - expected.diagonal()).cwiseAbs().maxCoeff(),
+              1e-9 * expected.maxCoeff());
+    EXPECT_NEAR(surface::sigma(surface, xy.col(3)), std::sqrt(expected(3, 3)), 1e-9);
+    EXPECT_TRUE(std::isnan(surface::sigma(surface, {1000, 0})));
+    EXPECT_TRUE(surface::has_sigma(surface));
 }
 
 TEST(Precision, IsWrittenAndRead)
 {
-    Surface surface = precise_surface();
+    surface::Surface surface = precise_surface();
     surface.precision->weights(0, 0) = 1234.5678;
-    for (const Units::Length unit : {Units::Length::mm, Units::Length::in}) {
+    for (const units::Units::Length unit : {units::Units::Length::mm, units::Units::Length::in}) {
         surface.units.length = unit;
-        const Surface back = parse_surface(json::Reader::parse(to_json(surface).text(), "test"));
+        const surface::Surface back =
+            surface::parse_surface(json::Reader::parse(surface::to_json(surface).text(), "test"));
         ASSERT_TRUE(back.precision);
         EXPECT_NEAR(back.precision->amplitude, 1e-3, 1e-12);
         // four digits
@@ -508,16 +522,17 @@ TEST(Precision, IsWrittenAndRead)
                       .maxCoeff(),
                   1e-12);
     }
-    const std::string text = to_json(surface).text();
+    const std::string text = surface::to_json(surface).text();
     const auto refused = [&](const std::string& from, const std::string& to) {
         std::string changed = text;
         changed.replace(changed.find(from), from.size(), to);
-        EXPECT_THROW(parse_surface(json::Reader::parse(changed, "test")), InputError) << to;
+        EXPECT_THROW(surface::parse_surface(json::Reader::parse(changed, "test")), core::InputError) << to;
     };
     refused("\"amplitude\"", "\"amplitud\"");
     refused("\"weights\": [\n", "\"weights\": [[1],\n");
     surface.precision->weights.conservativeResize(Eigen::NoChange, surface.precision->weights.cols() - 1);
-    EXPECT_THROW(parse_surface(json::Reader::parse(to_json(surface).text(), "test")), InputError);
+    EXPECT_THROW(surface::parse_surface(json::Reader::parse(surface::to_json(surface).text(), "test")),
+                 core::InputError);
 }
 
 } // namespace

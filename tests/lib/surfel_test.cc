@@ -16,11 +16,11 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-Mesh box(const Eigen::Vector3d& least, const Eigen::Vector3d& most)
+mesh::Mesh box(const Eigen::Vector3d& min, const Eigen::Vector3d& max)
 {
-    Mesh mesh{Eigen::Matrix3Xd(3, 8), Eigen::Matrix3Xi(3, 12)};
+    mesh::Mesh mesh{Eigen::Matrix3Xd(3, 8), Eigen::Matrix3Xi(3, 12)};
     for (int i = 0; i < 8; ++i)
-        mesh.vertices.col(i) << (i & 1 ? most : least).x(), (i & 2 ? most : least).y(), (i & 4 ? most : least).z();
+        mesh.vertices.col(i) << (i & 1 ? max : min).x(), (i & 2 ? max : min).y(), (i & 4 ? max : min).z();
     const int quads[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
     for (int k = 0; k < 6; ++k) {
         mesh.triangles.col(2 * k) << quads[k][0], quads[k][1], quads[k][2];
@@ -29,13 +29,13 @@ Mesh box(const Eigen::Vector3d& least, const Eigen::Vector3d& most)
     return mesh;
 }
 
-Mesh sphere(double radius, int rings)
+mesh::Mesh sphere(double radius, int rings)
 {
     const int last = (rings - 1) * 2 * rings + 1; // the poles are the first vertex and the last
     const auto at = [&](int i, int j) {
         return i == 0 ? 0 : i == rings ? last : 1 + (i - 1) * 2 * rings + j % (2 * rings);
     };
-    Mesh mesh{Eigen::Matrix3Xd(3, last + 1), Eigen::Matrix3Xi(3, 4 * rings * (rings - 1))};
+    mesh::Mesh mesh{Eigen::Matrix3Xd(3, last + 1), Eigen::Matrix3Xi(3, 4 * rings * (rings - 1))};
     Eigen::Index t = 0;
     for (int i = 0; i <= rings; ++i)
         for (int j = 0; j < 2 * rings; ++j) {
@@ -50,9 +50,9 @@ Mesh sphere(double radius, int rings)
 
 /// A quarter of a cylinder of radius 10 about y, 20 long, by the rational quadratic that is exactly one; u from 0 to 1
 /// around from +z to +x, v along -y. P_u × P_v points inward.
-Patch quarter_cylinder()
+surface::Patch quarter_cylinder()
 {
-    Patch patch;
+    surface::Patch patch;
     patch.degree_u = 2;
     patch.degree_v = 1;
     patch.knots_u = Eigen::VectorXd(6);
@@ -68,9 +68,9 @@ Patch quarter_cylinder()
 }
 
 /// [0, 10] x [0, 6] in the plane z = 0, u = x, v = y.
-Patch plate()
+surface::Patch plate()
 {
-    Patch patch;
+    surface::Patch patch;
     patch.degree_u = patch.degree_v = 1;
     patch.knots_u = Eigen::Vector4d(0, 0, 10, 10);
     patch.knots_v = Eigen::Vector4d(0, 0, 6, 6);
@@ -80,32 +80,32 @@ Patch plate()
     return patch;
 }
 
-SurfelSampling spaced(double spacing)
+belt::SurfelSampling spaced(double spacing)
 {
-    SurfelSampling options;
+    belt::SurfelSampling options;
     options.spacing = spacing;
     return options;
 }
 
 /// Distance of the nearest surfel with such a normal.
-double nearest(const Surfels& surfels, const Eigen::Vector3d& point, const Eigen::Vector3d& normal)
+double nearest(const belt::Surfels& surfels, const Eigen::Vector3d& point, const Eigen::Vector3d& normal)
 {
-    double least = 1e9;
+    double min = 1e9;
     for (Eigen::Index i = 0; i < surfels.size(); ++i)
-        if (surfels.normal.col(i).dot(normal) > 0.9) least = std::min(least, (surfels.position.col(i) - point).norm());
-    return least;
+        if (surfels.normal.col(i).dot(normal) > 0.9) min = std::min(min, (surfels.position.col(i) - point).norm());
+    return min;
 }
 
 // 20 x 10 x 5 mm at 1 mm: whole cells, so 700 middles; along each of the edges, on both faces, half-millimetres: 2 x 2
 // x 140. A disc inside never reaches over an edge.
 TEST(SurfelSampling, of_a_box_is_counted_exactly)
 {
-    const SampledDesign sampled = sample_surfels(box({0, 0, 0}, {20, 10, 5}), spaced(1));
+    const belt::SampledDesign sampled = belt::sample_surfels(box({0, 0, 0}, {20, 10, 5}), spaced(1));
     EXPECT_EQ(sampled.patches, 6);
     EXPECT_EQ(sampled.edges.on_edges, 560);
     EXPECT_EQ(sampled.surfels.size(), 700 + 560);
     EXPECT_EQ(sampled.edges.shrunk, 2 * (2 * 20 + 2 * 8 + 2 * 20 + 2 * 3 + 2 * 10 + 2 * 3));
-    const Surfels& s = sampled.surfels;
+    const belt::Surfels& s = sampled.surfels;
     for (Eigen::Index i = 0; i < s.size(); ++i) {
         const Eigen::Vector3d from = s.position.col(i), to = Eigen::Vector3d(20, 10, 5) - from;
         int axis;
@@ -121,15 +121,15 @@ TEST(SurfelSampling, of_a_box_is_counted_exactly)
     }
 }
 
-// Faces that stand askew, and sides that are no whole number of cells: no point of a face is farther than the spacing
+// Inclined faces, and sides that are no whole number of cells: no point of a face is farther than the spacing
 // from one of its surfels.
 TEST(SurfelSampling, covers_every_face_of_a_turned_box)
 {
     const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
     const Eigen::Vector3d size(7.3, 4.1, 2.2);
-    Mesh mesh = box({0, 0, 0}, size);
+    mesh::Mesh mesh = box({0, 0, 0}, size);
     mesh.vertices = (turn * mesh.vertices).eval();
-    const Surfels s = sample_surfels(mesh, spaced(0.5)).surfels;
+    const belt::Surfels s = belt::sample_surfels(mesh, spaced(0.5)).surfels;
     for (int axis = 0; axis < 3; ++axis)
         for (const double side : {0.0, 1.0})
             for (double a = 0; a <= 1; a += 0.0625)
@@ -150,14 +150,14 @@ TEST(BoundaryResampling, inserts_what_the_paper_says)
     for (const auto& [e, wanted] : {std::pair(0.3, std::vector{0.0, 0.3, 0.6, 0.9, 1.0, 1.3, 1.6, 1.9}),
                                     std::pair(0.25, std::vector{0.0, 0.25, 0.5, 0.75, 1.0, 1.25, 1.5, 1.75}),
                                     std::pair(1.0, std::vector{0.0, 1.0}), std::pair(3.0, std::vector{0.0, 1.0})}) {
-        EdgeCurve curve;
+        belt::EdgeCurve curve;
         curve.points = (Eigen::Matrix3Xd(3, 3) << 0, 0.7, 2, 0, 0, 0, 0, 0, 0).finished();
         curve.normals = Eigen::Vector3d::UnitZ().replicate(1, 3);
         curve.uv = curve.points.topRows<2>();
         curve.patch = 4;
         curve.spacing = 1;
-        std::vector<Surfel> surfels;
-        EXPECT_EQ(resample_boundaries(surfels, {curve}, e).on_edges, static_cast<Eigen::Index>(wanted.size()));
+        std::vector<belt::Surfel> surfels;
+        EXPECT_EQ(belt::resample_boundaries(surfels, {curve}, e).on_edges, static_cast<Eigen::Index>(wanted.size()));
         ASSERT_EQ(surfels.size(), wanted.size());
         for (std::size_t i = 0; i < wanted.size(); ++i) {
             EXPECT_NEAR(surfels[i].position.x(), wanted[i], 1e-12) << e;
@@ -169,15 +169,15 @@ TEST(BoundaryResampling, inserts_what_the_paper_says)
 
 TEST(BoundaryResampling, shrinks_discs_that_reach_over_the_curve)
 {
-    EdgeCurve curve;
+    belt::EdgeCurve curve;
     curve.points = (Eigen::Matrix3Xd(3, 2) << 0, 2, 0, 0, 0, 0).finished();
     curve.normals = Eigen::Vector3d::UnitZ().replicate(1, 2);
     curve.uv = curve.points.topRows<2>();
     curve.spacing = 1;
-    std::vector<Surfel> surfels;
+    std::vector<belt::Surfel> surfels;
     for (const double y : {0.05, 0.3, 0.8}) surfels.push_back({{1, y, 0}, Eigen::Vector3d::UnitZ(), {1, y}, 0.5, 0});
-    EXPECT_EQ(resample_boundaries(surfels, {curve}, 0.25).shrunk, 1);
-    ASSERT_EQ(surfels.size(), 2u + 8u); // the one nearer than e / 2 gave way
+    EXPECT_EQ(belt::resample_boundaries(surfels, {curve}, 0.25).shrunk, 1);
+    ASSERT_EQ(surfels.size(), 2u + 8u); // the one nearer than e / 2 was removed
     EXPECT_NEAR(surfels[0].radius, 0.3, 1e-12);
     EXPECT_EQ(surfels[1].radius, 0.5);
 }
@@ -187,13 +187,13 @@ TEST(SurfelSampling, of_a_sphere_has_its_normals_and_the_offset_of_its_stock)
 {
     const int rings = 60;
     const double sagitta = 10 * (1 - std::cos(kPi / 2 / rings));
-    SampledDesign sampled = sample_surfels(sphere(10, rings), spaced(0.8));
-    Surfels& s = sampled.surfels;
+    belt::SampledDesign sampled = belt::sample_surfels(sphere(10, rings), spaced(0.8));
+    belt::Surfels& s = sampled.surfels;
     EXPECT_EQ(sampled.edges.on_edges, 0);
-    const StockRays rays = cast_on_stock(s, sphere(10.4, rings), 2);
+    const belt::StockRays rays = belt::cast_rays_on_stock(s, sphere(10.4, rings), 2);
     EXPECT_EQ(rays.missed, 0);
-    EXPECT_EQ(rays.several, 0);
-    EXPECT_EQ(rays.turned_patches, 0);
+    EXPECT_EQ(rays.multiple, 0);
+    EXPECT_EQ(rays.flipped_patches, 0);
     for (Eigen::Index i = 0; i < s.size(); ++i) {
         EXPECT_GT(s.position.col(i).normalized().dot(s.normal.col(i)), std::cos(0.004));
         EXPECT_NEAR(s.displacement[i], 0.4, 0.1 * sagitta);
@@ -209,26 +209,26 @@ TEST(SurfelSampling, of_a_sphere_has_its_normals_and_the_offset_of_its_stock)
 TEST(StockRays, of_a_stock_without_allowance_are_zero)
 {
     const Eigen::Matrix3d turn = Eigen::AngleAxisd(1.1, Eigen::Vector3d(2, -1, 3).normalized()).toRotationMatrix();
-    Mesh mesh = box({0, 0, 0}, {7.3, 4.1, 2.2});
+    mesh::Mesh mesh = box({0, 0, 0}, {7.3, 4.1, 2.2});
     mesh.vertices = (turn * mesh.vertices).eval();
-    Surfels s = sample_surfels(mesh, spaced(0.5)).surfels;
-    EXPECT_EQ(cast_on_stock(s, mesh, 1).missed, 0);
+    belt::Surfels s = belt::sample_surfels(mesh, spaced(0.5)).surfels;
+    EXPECT_EQ(belt::cast_rays_on_stock(s, mesh, 1).missed, 0);
     EXPECT_LT(s.displacement.cwiseAbs().maxCoeff(), 1e-5);
 }
 
 // Over a plate: one block 1 mm high over x < 4, and over x < 2 a second one from 2 to 3 mm.
 TEST(StockRays, counts_no_hit_and_several)
 {
-    Mesh stock = box({-1, -1, -3}, {4, 7, 1});
-    const Mesh above = box({-1, -1, 2}, {2, 7, 3});
+    mesh::Mesh stock = box({-1, -1, -3}, {4, 7, 1});
+    const mesh::Mesh above = box({-1, -1, 2}, {2, 7, 3});
     stock.vertices.conservativeResize(3, 16);
     stock.vertices.rightCols(8) = above.vertices;
     stock.triangles.conservativeResize(3, 24);
     stock.triangles.rightCols(12) = above.triangles.array() + 8;
-    const SampledDesign sampled = sample_surfels({plate()}, spaced(1));
+    const belt::SampledDesign sampled = belt::sample_surfels({plate()}, spaced(1));
     for (const double reach : {5.0, 2.5}) {
-        Surfels s = sampled.surfels;
-        const StockRays rays = cast_on_stock(s, stock, reach);
+        belt::Surfels s = sampled.surfels;
+        const belt::StockRays rays = belt::cast_rays_on_stock(s, stock, reach);
         Eigen::Index missed = 0, several = 0;
         for (Eigen::Index i = 0; i < s.size(); ++i) {
             const double x = s.position(0, i);
@@ -241,14 +241,14 @@ TEST(StockRays, counts_no_hit_and_several)
             several += x < 2 && reach > 3;
         }
         EXPECT_NEAR(static_cast<double>(rays.missed - missed), 0, 4);
-        EXPECT_NEAR(static_cast<double>(rays.several - several), 0, 4);
+        EXPECT_NEAR(static_cast<double>(rays.multiple - several), 0, 4);
     }
 }
 
 TEST(SurfelSampling, of_a_rational_patch_is_exactly_on_the_cylinder)
 {
-    SampledDesign sampled = sample_surfels({quarter_cylinder()}, spaced(0.5));
-    Surfels& s = sampled.surfels;
+    belt::SampledDesign sampled = belt::sample_surfels({quarter_cylinder()}, spaced(0.5));
+    belt::Surfels& s = sampled.surfels;
     EXPECT_EQ(sampled.patches, 1);
     double largest_gap = 0;
     std::map<double, double> around; // u -> angle
@@ -266,8 +266,8 @@ TEST(SurfelSampling, of_a_rational_patch_is_exactly_on_the_cylinder)
     EXPECT_EQ(sampled.edges.on_edges, 2 * (2 * 32 + 2 * 40));
 
     // Which side is out the stock decides: its faces x = 12 and z = 12 lie before the design.
-    const Mesh stock = box({-1, -1, -1}, {12, 21, 12});
-    EXPECT_EQ(cast_on_stock(s, stock, 8).turned_patches, 1);
+    const mesh::Mesh stock = box({-1, -1, -1}, {12, 21, 12});
+    EXPECT_EQ(belt::cast_rays_on_stock(s, stock, 8).flipped_patches, 1);
     for (Eigen::Index i = 0; i < s.size(); ++i) {
         const Eigen::Vector3d n = s.normal.col(i), p = s.position.col(i);
         const Eigen::Vector3d along = n.cwiseMax(1e-9);
@@ -276,9 +276,9 @@ TEST(SurfelSampling, of_a_rational_patch_is_exactly_on_the_cylinder)
 }
 
 /// An eighth of the sphere of radius 10 about the origin; v = 1 is its pole, a single point.
-Patch eighth_of_a_sphere()
+surface::Patch eighth_of_a_sphere()
 {
-    Patch patch;
+    surface::Patch patch;
     patch.degree_u = patch.degree_v = 2;
     patch.knots_u = patch.knots_v = (Eigen::VectorXd(6) << 0, 0, 0, 1, 1, 1).finished();
     const Eigen::Vector3d x(10, 10, 0), y(0, 10, 10), across(10, 10, 0), up(0, 10, 10), w(1, std::sqrt(0.5), 1);
@@ -292,7 +292,7 @@ Patch eighth_of_a_sphere()
 // At the pole all of u is one place: the tangents say nothing of the normal there.
 TEST(SurfelSampling, has_a_normal_at_a_pole)
 {
-    const Surfels s = sample_surfels({eighth_of_a_sphere()}, spaced(0.5)).surfels;
+    const belt::Surfels s = belt::sample_surfels({eighth_of_a_sphere()}, spaced(0.5)).surfels;
     bool at_pole = false;
     for (Eigen::Index i = 0; i < s.size(); ++i) {
         EXPECT_LT((s.normal.col(i).cwiseAbs() - s.position.col(i) / 10).norm(), 1e-4);
@@ -304,22 +304,22 @@ TEST(SurfelSampling, has_a_normal_at_a_pole)
 // Neighbours 2 √(p / κ) apart: 0.02 mm on a radius of 10 mm.
 TEST(SurfelSampling, follows_the_precision_where_it_is_curved)
 {
-    SurfelSampling options = spaced(2);
+    belt::SurfelSampling options = spaced(2);
     options.precision = 0.02;
     const double wanted = 2 * std::sqrt(0.02 * 10);
-    EXPECT_NEAR(sample_surfels({quarter_cylinder()}, options).least_spacing, wanted, 1e-3 * wanted);
-    EXPECT_EQ(sample_surfels({plate()}, options).least_spacing, 2);
-    EXPECT_NEAR(sample_surfels(sphere(10, 60), options).least_spacing, wanted, 1e-2 * wanted);
+    EXPECT_NEAR(belt::sample_surfels({quarter_cylinder()}, options).min_spacing, wanted, 1e-3 * wanted);
+    EXPECT_EQ(belt::sample_surfels({plate()}, options).min_spacing, 2);
+    EXPECT_NEAR(belt::sample_surfels(sphere(10, 60), options).min_spacing, wanted, 1e-2 * wanted);
 }
 
 // A plate with a round hole, by the trimming curves alone.
 TEST(SurfelSampling, keeps_inside_the_trimming_curves)
 {
-    Patch patch = plate();
-    TrimCurve outer;
+    surface::Patch patch = plate();
+    surface::TrimCurve outer;
     outer.knots = (Eigen::VectorXd(7) << 0, 0, 1, 2, 3, 4, 4).finished();
     outer.control = (Eigen::Matrix2Xd(2, 5) << 0, 10, 10, 0, 0, 0, 0, 6, 6, 0).finished();
-    TrimCurve hole;
+    surface::TrimCurve hole;
     hole.degree = 2;
     hole.knots = (Eigen::VectorXd(12) << 0, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 4).finished();
     hole.control = (Eigen::Matrix2Xd(2, 9) << 1, 1, 0, -1, -1, -1, 0, 1, 1, 0, 1, 1, 1, 0, -1, -1, -1, 0).finished();
@@ -328,8 +328,8 @@ TEST(SurfelSampling, keeps_inside_the_trimming_curves)
     hole.weights = Eigen::VectorXd::Ones(9);
     for (int i = 1; i < 9; i += 2) hole.weights[i] = std::sqrt(0.5);
     patch.trim = {outer, hole};
-    const SampledDesign sampled = sample_surfels({patch}, spaced(0.25));
-    const Surfels& s = sampled.surfels;
+    const belt::SampledDesign sampled = belt::sample_surfels({patch}, spaced(0.25));
+    const belt::Surfels& s = sampled.surfels;
     Eigen::Index on_hole = 0;
     for (Eigen::Index i = 0; i < s.size(); ++i) {
         const double from_hole = std::hypot(s.position(0, i) - 4, s.position(1, i) - 3) - 1;
@@ -341,22 +341,22 @@ TEST(SurfelSampling, keeps_inside_the_trimming_curves)
     }
     EXPECT_EQ(on_hole, 2 * 26); // 2 π in 26 pieces of at most 0.25
     EXPECT_EQ(sampled.edges.on_edges, 2 * 26 + 2 * 128);
-    EXPECT_TRUE(std::isnan(height(patch, {4, 3.5})));
-    EXPECT_EQ(height(patch, {4, 4.5}), 0);
+    EXPECT_TRUE(std::isnan(surface::height(patch, {4, 3.5})));
+    EXPECT_EQ(surface::height(patch, {4, 4.5}), 0);
 }
 
 // Two halves of a plate: no edge between them.
 TEST(SurfelSampling, sees_where_patches_join_without_an_edge)
 {
-    Patch left = plate(), right = plate();
+    surface::Patch left = plate(), right = plate();
     right.control[0].array() += 10;
-    const SampledDesign flat = sample_surfels({left, right}, spaced(1));
+    const belt::SampledDesign flat = belt::sample_surfels({left, right}, spaced(1));
     EXPECT_EQ(flat.edges.on_edges, 2 * 2 * (10 + 10 + 6));
     right.control[2].row(1).setConstant(10); // now it rises by 45 degrees
-    EXPECT_EQ(sample_surfels({left, right}, spaced(1)).edges.on_edges, 2 * (2 * (10 + 6) + 2 * (15 + 6)));
+    EXPECT_EQ(belt::sample_surfels({left, right}, spaced(1)).edges.on_edges, 2 * (2 * (10 + 6) + 2 * (15 + 6)));
 }
 
-double area_of(const Mesh& mesh)
+double area_of(const mesh::Mesh& mesh)
 {
     double area = 0;
     for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
@@ -370,44 +370,44 @@ double area_of(const Mesh& mesh)
 // Surfels share the design out among them: a mesh to the last digits, patches by the midpoint rule.
 TEST(SurfelSampling, shares_out_the_area)
 {
-    const Mesh whole = box({0, 0, 0}, {20, 10, 5}), odd = box({0, 0, 0}, {7.3, 4.1, 2.2}), round = sphere(10, 60);
-    for (const Mesh* mesh : {&whole, &odd, &round}) {
-        const Surfels s = sample_surfels(*mesh, spaced(1)).surfels;
+    const mesh::Mesh whole = box({0, 0, 0}, {20, 10, 5}), odd = box({0, 0, 0}, {7.3, 4.1, 2.2}), round = sphere(10, 60);
+    for (const mesh::Mesh* mesh : {&whole, &odd, &round}) {
+        const belt::Surfels s = belt::sample_surfels(*mesh, spaced(1)).surfels;
         EXPECT_NEAR(s.area.sum(), area_of(*mesh), 1e-9 * area_of(*mesh));
         EXPECT_GE(s.area.minCoeff(), 0);
         EXPECT_LE(s.area.maxCoeff(), 2);
     }
-    const Surfels face = sample_surfels(whole, spaced(1)).surfels;
+    const belt::Surfels face = belt::sample_surfels(whole, spaced(1)).surfels;
     for (Eigen::Index i = 0; i < 700; ++i) EXPECT_NEAR(face.area[i], 1, 1e-9); // a millimetre's square each
-    const Surfels cylinder = sample_surfels({quarter_cylinder()}, spaced(0.5)).surfels;
+    const belt::Surfels cylinder = belt::sample_surfels({quarter_cylinder()}, spaced(0.5)).surfels;
     EXPECT_NEAR(cylinder.area.sum(), 5 * kPi * 20, 1e-3 * 100 * kPi);
 }
 
 // 20 x 10 x 5 mm with 0.3 mm more on every side: 700 mm² times 0.3 mm, and 0.3 mm too little over a stock that is
 // smaller.
-TEST(SurfelSampling, tells_volumes)
+TEST(SurfelSampling, reports_volumes)
 {
-    Surfels s = sample_surfels(box({0, 0, 0}, {20, 10, 5}), spaced(0.7)).surfels;
-    cast_on_stock(s, box({-0.3, -0.3, -0.3}, {20.3, 10.3, 5.3}), 2);
-    const Statistics over = displacement_statistics(s);
+    belt::Surfels s = belt::sample_surfels(box({0, 0, 0}, {20, 10, 5}), spaced(0.7)).surfels;
+    belt::cast_rays_on_stock(s, box({-0.3, -0.3, -0.3}, {20.3, 10.3, 5.3}), 2);
+    const geometry::Statistics over = belt::displacement_statistics(s);
     EXPECT_NEAR(over.under_cut_volume, 210, 1e-3);
     EXPECT_NEAR(over.under_cut_area, 700, 1e-3);
     EXPECT_EQ(over.over_cut_volume, 0);
     s.displacement.array() -= 0.4;
-    EXPECT_NEAR(displacement_statistics(s).over_cut_volume, 70, 1e-3);
+    EXPECT_NEAR(belt::displacement_statistics(s).over_cut_volume, 70, 1e-3);
     s.area.resize(0);
-    EXPECT_TRUE(std::isnan(displacement_statistics(s).over_cut_volume));
+    EXPECT_TRUE(std::isnan(belt::displacement_statistics(s).over_cut_volume));
 }
 
 TEST(SurfelSampling, thins_a_scan)
 {
-    Cloud scan;
+    cloud::Cloud scan;
     scan.xyz.resize(3, 101 * 101);
     for (int i = 0; i < 101; ++i)
         for (int j = 0; j < 101; ++j) scan.xyz.col(101 * i + j) << 0.1 * i, 0.1 * j, 5;
-    set_normals(scan, Eigen::Vector3d::UnitZ().replicate(1, scan.size()));
-    const SampledDesign sampled = sample_surfels(scan, "scan", spaced(0.5));
-    const Surfels& s = sampled.surfels;
+    cloud::set_normals(scan, Eigen::Vector3d::UnitZ().replicate(1, scan.size()));
+    const belt::SampledDesign sampled = belt::sample_surfels(scan, "scan", spaced(0.5));
+    const belt::Surfels& s = sampled.surfels;
     EXPECT_EQ(sampled.patches, 1);
     for (Eigen::Index i = 0; i < s.size(); ++i)
         for (Eigen::Index j = 0; j < i; ++j) EXPECT_GE((s.position.col(i) - s.position.col(j)).norm(), 0.5 - 1e-9);
@@ -419,20 +419,20 @@ TEST(SurfelSampling, thins_a_scan)
 
 TEST(Surfels, refuse_a_normal_without_direction)
 {
-    Cloud cloud;
+    cloud::Cloud cloud;
     cloud.xyz = Eigen::Matrix3Xd::Identity(3, 2);
-    set_normals(cloud, Eigen::Matrix3Xd::Identity(3, 2));
-    EXPECT_EQ(surfels_of(cloud, "cloud").normal, Eigen::Matrix3Xd(Eigen::Matrix3Xd::Identity(3, 2)));
-    set_normals(cloud, (Eigen::Matrix3Xd(3, 2) << 1, 0, 0, 0, 0, 0).finished());
-    EXPECT_THROW(surfels_of(cloud, "cloud"), InputError);
-    cloud.xyz.col(1).setConstant(NAN); // nothing is asked of what is nowhere
-    EXPECT_EQ(surfels_of(cloud, "cloud").size(), 2);
+    cloud::set_normals(cloud, Eigen::Matrix3Xd::Identity(3, 2));
+    EXPECT_EQ(belt::surfels_from_cloud(cloud, "cloud").normal, Eigen::Matrix3Xd(Eigen::Matrix3Xd::Identity(3, 2)));
+    cloud::set_normals(cloud, (Eigen::Matrix3Xd(3, 2) << 1, 0, 0, 0, 0, 0).finished());
+    EXPECT_THROW(belt::surfels_from_cloud(cloud, "cloud"), core::InputError);
+    cloud.xyz.col(1).setConstant(NAN); // undefined positions need no normal
+    EXPECT_EQ(belt::surfels_from_cloud(cloud, "cloud").size(), 2);
 }
 
 TEST(Assessment, is_by_the_range)
 {
     const Eigen::VectorXd d = (Eigen::VectorXd(6) << -0.3, -0.1, 0, 0.2, 0.21, NAN).finished();
-    const AssessmentCounts counts = count(d, {-0.1, 0.2});
+    const belt::AssessmentCounts counts = belt::count_assessments(d, {-0.1, 0.2});
     EXPECT_EQ(counts.gouge, 1);
     EXPECT_EQ(counts.within, 3);
     EXPECT_EQ(counts.undercut, 1);
@@ -443,11 +443,11 @@ TEST(Assessment, is_by_the_range)
 // last product, y has the wrong sign.
 TEST(DisplacedNormals, are_exact_on_a_plane)
 {
-    Surfels s = sample_surfels({plate()}, spaced(0.5)).surfels;
+    belt::Surfels s = belt::sample_surfels({plate()}, spaced(0.5)).surfels;
     s.displacement = 0.2 * s.position.row(0).transpose() + 0.3 * s.position.row(1).transpose();
-    const DisplacedNormals found = displaced_normals(s);
+    const belt::DisplacedNormals found = belt::displaced_normals(s);
     EXPECT_EQ(found.undetermined, 0);
-    EXPECT_EQ(found.beyond, 0);
+    EXPECT_EQ(found.above_limit, 0);
     const Eigen::Vector3d P_u = Eigen::Vector3d::UnitX(), P_v = Eigen::Vector3d::UnitY(), n = P_u.cross(P_v);
     const Eigen::Vector3d printed = (P_u.cross(P_v) + 0.2 * n.cross(P_v) + 0.3 * n.cross(P_u)).normalized();
     const Eigen::Vector3d exact = Eigen::Vector3d(-0.2, -0.3, 1).normalized();
@@ -459,14 +459,14 @@ TEST(DisplacedNormals, are_exact_on_a_plane)
 /// over the surfels that are not on the boundary.
 double worst_on_cylinder(double a, double spacing, bool outward)
 {
-    SampledDesign sampled = sample_surfels({quarter_cylinder()}, spaced(spacing));
-    Surfels& s = sampled.surfels;
+    belt::SampledDesign sampled = belt::sample_surfels({quarter_cylinder()}, spaced(spacing));
+    belt::Surfels& s = sampled.surfels;
     if (outward) s.normal *= -1;
     const double side = outward ? 1 : -1;
     const auto angle = [&](Eigen::Index i) { return std::atan2(s.position(0, i), s.position(2, i)); };
     for (Eigen::Index i = 0; i < s.size(); ++i)
         s.displacement[i] = a * (1 + std::sin(s.position(1, i)) / 5 + angle(i) / 2);
-    const DisplacedNormals found = displaced_normals(s);
+    const belt::DisplacedNormals found = belt::displaced_normals(s);
     double worst = 0;
     for (Eigen::Index i = 0; i < s.size() - sampled.edges.on_edges; ++i) {
         const double phi = angle(i), y = s.position(1, i), r = 10 + side * s.displacement[i];
@@ -491,12 +491,12 @@ TEST(DisplacedNormals, approach_the_exact_ones_on_a_cylinder)
 
 TEST(DisplacedNormals, warn_where_displacements_are_no_longer_small)
 {
-    Surfels s = sample_surfels({quarter_cylinder()}, spaced(0.5)).surfels;
+    belt::Surfels s = belt::sample_surfels({quarter_cylinder()}, spaced(0.5)).surfels;
     for (const double d : {0.9, 1.1}) {
         s.displacement.setConstant(d);
-        const DisplacedNormals found = displaced_normals(s);
-        EXPECT_NEAR(found.largest_bend, d / 10, 0.02 * d / 10);
-        EXPECT_EQ(found.beyond > 0, d > 1);
+        const belt::DisplacedNormals found = belt::displaced_normals(s);
+        EXPECT_NEAR(found.max_displacement_curvature, d / 10, 0.02 * d / 10);
+        EXPECT_EQ(found.above_limit > 0, d > 1);
     }
 }
 

@@ -15,9 +15,9 @@ using Eigen::Isometry3d, Eigen::Vector3d;
 // A sheet z = 5 sin(x / 9) cos(y / 7) over a square; with a floor and walls it is a body.
 double height(double x, double y) { return 5 * std::sin(x / 9) * std::cos(y / 7); }
 
-Mesh sheet(int cells, double side)
+mesh::Mesh sheet(int cells, double side)
 {
-    Mesh mesh;
+    mesh::Mesh mesh;
     mesh.vertices.resize(3, (cells + 1) * (cells + 1));
     mesh.triangles.resize(3, 2 * cells * cells);
     for (int j = 0; j <= cells; ++j)
@@ -35,9 +35,9 @@ Mesh sheet(int cells, double side)
     return mesh;
 }
 
-Mesh cube(double side)
+mesh::Mesh cube(double side)
 {
-    Mesh mesh;
+    mesh::Mesh mesh;
     mesh.vertices.resize(3, 8);
     for (int k = 0; k < 8; ++k)
         mesh.vertices.col(k) << (k & 1 ? side : -side) / 2, (k & 2 ? side : -side) / 2, (k & 4 ? side : -side) / 2;
@@ -50,50 +50,51 @@ Mesh cube(double side)
     return mesh;
 }
 
-// The least distance of points of a triangle, 40 along each side.
-double deepest(const PlacedSolid& body, const Triangle& t)
+// The smallest distance of points of a triangle, 40 along each side.
+double deepest(const robot::PlacedSolid& body, const mesh::Triangle& t)
 {
-    double least = INFINITY;
+    double min = INFINITY;
     for (int i = 0; i <= 40; ++i)
         for (int j = 0; j <= 40 - i; ++j)
-            least = std::min(least, body.distance((i * t.col(0) + j * t.col(1) + (40 - i - j) * t.col(2)) / 40).value);
-    return least;
+            min =
+                std::min(min, body.signed_distance((i * t.col(0) + j * t.col(1) + (40 - i - j) * t.col(2)) / 40).value);
+    return min;
 }
 
 // Reference: every triangle, one by one.
 TEST(Workpiece, NearestAsByBruteForce)
 {
-    const Mesh mesh = sheet(24, 100);
-    const Workpiece workpiece(mesh);
+    const mesh::Mesh mesh = sheet(24, 100);
+    const robot::Workpiece workpiece(mesh);
     EXPECT_FALSE(workpiece.closed());
     std::mt19937 random(11);
-    const auto number = [&](double least, double most) {
-        return std::uniform_real_distribution<double>(least, most)(random);
+    const auto number = [&](double min, double max) {
+        return std::uniform_real_distribution<double>(min, max)(random);
     };
     int touching = 0;
     for (int k = 0; k < 600; ++k) {
         const Vector3d at(number(-70, 70), number(-70, 70), number(-15, 30));
         const Vector3d to = at + Vector3d(number(-20, 20), number(-20, 20), number(1, 40));
-        const Solid solid = k % 3 == 0   ? Solid(solid::Sphere{at, number(1, 8)})
-                            : k % 3 == 1 ? Solid(solid::Cylinder{at, to, number(1, 15)})
-                                         : Solid(solid::Cone{at, to, number(0, 5), number(5, 20)});
-        const PlacedSolid body(solid, Isometry3d::Identity());
-        double least = INFINITY;
+        const robot::Solid solid = k % 3 == 0   ? robot::Solid(robot::solid::Sphere{at, number(1, 8)})
+                                   : k % 3 == 1 ? robot::Solid(robot::solid::Cylinder{at, to, number(1, 15)})
+                                                : robot::Solid(robot::solid::Cone{at, to, number(0, 5), number(5, 20)});
+        const robot::PlacedSolid body(solid, Isometry3d::Identity());
+        double min = INFINITY;
         for (const auto t : mesh.triangles.colwise()) {
-            Triangle corners;
+            mesh::Triangle corners;
             for (int i = 0; i < 3; ++i) corners.col(i) = mesh.vertices.col(t[i]);
-            const double apart = clearance(body, PlacedSolid(corners)).distance;
-            least = std::min(least, apart > 0 ? apart : deepest(body, corners));
+            const double separation = robot::clearance(body, robot::PlacedSolid(corners)).distance;
+            min = std::min(min, separation > 0 ? separation : deepest(body, corners));
         }
-        const Workpiece::Nearest found = workpiece.nearest(body);
-        const double sure = least > 0 ? 2 * kClearanceTolerance : 0.1; // depths: of points 0.15 mm apart
-        EXPECT_NEAR(found.clearance.distance, least, sure);
-        EXPECT_LE(found.clearance.distance, least + 1e-3); // none of them is deeper
+        const robot::Workpiece::Nearest found = workpiece.nearest(body);
+        const double tolerance = min > 0 ? 2 * robot::kClearanceAccuracy : 0.1; // depths: of points 0.15 mm apart
+        EXPECT_NEAR(found.clearance.distance, min, tolerance);
+        EXPECT_LE(found.clearance.distance, min + 1e-3); // none of them is deeper
         EXPECT_GE(found.triangle, 0);
-        const Workpiece::Nearest near = workpiece.nearest(body, 3);
-        EXPECT_NEAR(near.clearance.distance, std::min(least, 3.0), sure);
-        EXPECT_EQ(near.triangle >= 0, least < 3);
-        if (least < 0) ++touching;
+        const robot::Workpiece::Nearest near = workpiece.nearest(body, 3);
+        EXPECT_NEAR(near.clearance.distance, std::min(min, 3.0), tolerance);
+        EXPECT_EQ(near.triangle >= 0, min < 3);
+        if (min < 0) ++touching;
     }
     EXPECT_GT(touching, 100);
     EXPECT_LT(touching, 500);
@@ -102,21 +103,21 @@ TEST(Workpiece, NearestAsByBruteForce)
 // A box by its corners. Reference: the box.
 TEST(Workpiece, AHullIsMetAsItsBox)
 {
-    const Mesh mesh = sheet(24, 100);
-    const Workpiece workpiece(mesh);
+    const mesh::Mesh mesh = sheet(24, 100);
+    const robot::Workpiece workpiece(mesh);
     std::mt19937 random(17);
     std::uniform_real_distribution<double> place(-60, 60), height_over(-12, 30);
     const Vector3d half(9, 6, 4);
-    solid::Hull hull{Eigen::Matrix3Xd(3, 8)};
+    robot::solid::Hull hull{Eigen::Matrix3Xd(3, 8)};
     for (int k = 0; k < 8; ++k)
         hull.points.col(k) << (k & 1 ? 1 : -1) * half.x(), (k & 2 ? 1 : -1) * half.y(), (k & 4 ? 1 : -1) * half.z();
-    const Solid box = solid::Box{Isometry3d::Identity(), half}, same = hull;
+    const robot::Solid box = robot::solid::Box{Isometry3d::Identity(), half}, same = hull;
     int touching = 0;
     for (int k = 0; k < 200; ++k) {
         Isometry3d T(Eigen::AngleAxisd(k, Vector3d(1, 2, 3).normalized()));
         T.pretranslate(Vector3d(place(random), place(random), height_over(random)));
-        const double expected = workpiece.nearest(PlacedSolid(box, T)).clearance.distance;
-        EXPECT_NEAR(workpiece.nearest(PlacedSolid(same, T)).clearance.distance, expected, 1e-3);
+        const double expected = workpiece.nearest(robot::PlacedSolid(box, T)).clearance.distance;
+        EXPECT_NEAR(workpiece.nearest(robot::PlacedSolid(same, T)).clearance.distance, expected, 1e-3);
         touching += expected < 0;
     }
     EXPECT_GT(touching, 20);
@@ -128,16 +129,16 @@ TEST(Workpiece, AHullIsMetAsItsBox)
 TEST(Workpiece, VerdictsAsByBruteForce)
 {
     constexpr double kTolerance = 0.01;
-    const Mesh mesh = boat::hull(20000);
-    const Workpiece workpiece(mesh);
-    const Solid tool[] = {solid::Sphere{{0, 0, 0}, 6}, solid::Cylinder{{0, 0, 0}, {0, 0, 40}, 5},
-                          solid::Cylinder{{0, 0, 40}, {0, 0, 130}, 45}};
+    const mesh::Mesh mesh = boat::hull(20000);
+    const robot::Workpiece workpiece(mesh);
+    const robot::Solid tool[] = {robot::solid::Sphere{{0, 0, 0}, 6}, robot::solid::Cylinder{{0, 0, 0}, {0, 0, 40}, 5},
+                                 robot::solid::Cylinder{{0, 0, 40}, {0, 0, 130}, 45}};
     int deeper = 0, clear = 0;
     for (const Isometry3d& T : boat::poses(1500))
-        for (const Solid& part : tool) {
-            const double clearance = workpiece.nearest(PlacedSolid(part, T), 50).clearance.distance;
+        for (const robot::Solid& part : tool) {
+            const double clearance = workpiece.nearest(robot::PlacedSolid(part, T), 50).clearance.distance;
             const bool deep = any_deeper(mesh, part, T, kTolerance);
-            if (std::abs(clearance + kTolerance) > kClearanceTolerance) {
+            if (std::abs(clearance + kTolerance) > robot::kClearanceAccuracy) {
                 EXPECT_EQ(clearance < -kTolerance, deep);
             }
             ++(deep ? deeper : clear);
@@ -149,28 +150,29 @@ TEST(Workpiece, VerdictsAsByBruteForce)
 // Where a search begins changes nothing.
 TEST(Workpiece, BeginsAnywhere)
 {
-    const Mesh mesh = sheet(40, 100);
-    const Workpiece workpiece(mesh);
+    const mesh::Mesh mesh = sheet(40, 100);
+    const robot::Workpiece workpiece(mesh);
     std::mt19937 random(13);
     for (int k = 0; k < 300; ++k) {
         const Vector3d at = Vector3d::NullaryExpr([&] { return std::uniform_real_distribution(-40.0, 40.0)(random); });
-        const Solid solid = k % 2 == 0 ? Solid(solid::Cylinder{at, at + Vector3d(3, 8, 20), 7})
-                                       : Solid(solid::Box{Isometry3d(Eigen::Translation3d(at)), {9, 6, 4}});
-        const PlacedSolid body(solid, Isometry3d::Identity());
-        const double least = workpiece.nearest(body).clearance.distance;
+        const robot::Solid solid =
+            k % 2 == 0 ? robot::Solid(robot::solid::Cylinder{at, at + Vector3d(3, 8, 20), 7})
+                       : robot::Solid(robot::solid::Box{Isometry3d(Eigen::Translation3d(at)), {9, 6, 4}});
+        const robot::PlacedSolid body(solid, Isometry3d::Identity());
+        const double min = workpiece.nearest(body).clearance.distance;
         for (const std::uint32_t leaf : {7u, 211u, 399u, 100000u})
-            EXPECT_NEAR(workpiece.nearest(body, 1000, leaf).clearance.distance, least, k % 2 == 0 ? 1e-6 : 1e-3);
+            EXPECT_NEAR(workpiece.nearest(body, 1000, leaf).clearance.distance, min, k % 2 == 0 ? 1e-6 : 1e-3);
     }
 }
 
 TEST(Workpiece, BallOnAPlane)
 {
-    const Mesh mesh = cube(100);
-    const Workpiece workpiece(mesh);
+    const mesh::Mesh mesh = cube(100);
+    const robot::Workpiece workpiece(mesh);
     EXPECT_TRUE(workpiece.closed());
     const auto gap = [&](double z) {
-        const Solid ball = solid::Sphere{{10, 5, z}, 6};
-        return workpiece.nearest(PlacedSolid(ball, Isometry3d::Identity()));
+        const robot::Solid ball = robot::solid::Sphere{{10, 5, z}, 6};
+        return workpiece.nearest(robot::PlacedSolid(ball, Isometry3d::Identity()));
     };
     EXPECT_NEAR(gap(57).clearance.distance, 1, 1e-8);
     EXPECT_NEAR(gap(56).clearance.distance, 0, 1e-8);
@@ -183,32 +185,33 @@ TEST(Workpiece, BallOnAPlane)
     EXPECT_NEAR(gap(51).clearance.distance, -5, 1e-8);
     EXPECT_NEAR(gap(49).clearance.distance, -7, 1e-8);
     EXPECT_FALSE(gap(57).inside);
-    const Solid ball = solid::Sphere{{10, 20, 20}, 6};
-    EXPECT_NEAR(workpiece.nearest(PlacedSolid(ball, Isometry3d::Identity()), 2).clearance.distance, -36, 1e-8);
+    const robot::Solid ball = robot::solid::Sphere{{10, 20, 20}, 6};
+    EXPECT_NEAR(workpiece.nearest(robot::PlacedSolid(ball, Isometry3d::Identity()), 2).clearance.distance, -36, 1e-8);
     // in a pocket of the box around the mesh, but outside the metal
-    Mesh wedge = mesh;
+    mesh::Mesh wedge = mesh;
     wedge.vertices(2, 6) = wedge.vertices(2, 7) = -49; // two corners of the top pressed down: a slope
-    const Solid small = solid::Sphere{{0, 30, 30}, 1};
-    const Workpiece::Nearest over = Workpiece(wedge).nearest(PlacedSolid(small, Isometry3d::Identity()));
+    const robot::Solid small = robot::solid::Sphere{{0, 30, 30}, 1};
+    const robot::Workpiece::Nearest over =
+        robot::Workpiece(wedge).nearest(robot::PlacedSolid(small, Isometry3d::Identity()));
     EXPECT_FALSE(over.inside);
     EXPECT_GT(over.clearance.distance, 1);
     // a hole in the mesh: it has no inside
-    Mesh open = mesh;
+    mesh::Mesh open = mesh;
     open.triangles.conservativeResize(3, 11);
-    EXPECT_FALSE(is_closed(open));
-    EXPECT_FALSE(Workpiece(open).nearest(PlacedSolid(ball, Isometry3d::Identity())).inside);
+    EXPECT_FALSE(robot::is_closed(open));
+    EXPECT_FALSE(robot::Workpiece(open).nearest(robot::PlacedSolid(ball, Isometry3d::Identity())).inside);
 }
 
 // A cell crossed only by an edge of a long needle, corners far away: it is found all the same.
 TEST(Workpiece, NeedlesAreNotMissed)
 {
-    Mesh mesh;
+    mesh::Mesh mesh;
     mesh.vertices.resize(3, 3);
     mesh.vertices << -1000, 1000, 1000, 0, 0.01, -0.01, 0, 0, 0;
     mesh.triangles = Eigen::Vector3i(0, 1, 2);
-    const Workpiece workpiece(mesh);
-    const Solid ball = solid::Sphere{{3, 0, 7}, 6};
-    EXPECT_NEAR(workpiece.nearest(PlacedSolid(ball, Isometry3d::Identity())).clearance.distance, 1, 1e-8);
+    const robot::Workpiece workpiece(mesh);
+    const robot::Solid ball = robot::solid::Sphere{{3, 0, 7}, 6};
+    EXPECT_NEAR(workpiece.nearest(robot::PlacedSolid(ball, Isometry3d::Identity())).clearance.distance, 1, 1e-8);
 }
 
 } // namespace

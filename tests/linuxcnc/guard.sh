@@ -1,4 +1,4 @@
-# The guard on stock that hardly yields: a way down ends at F_max (15 N on a spring of 10 N/mm), so does a step that climbs a hill; a force
+# The guard on stock that barely yields: a move down ends at F_max (15 N on a spring of 10 N/mm), so does a step that climbs a hill; a force
 # above the hard limit switches the machine off, and says so; the next client finds a machine that works. References: the spring;
 # what the machine needs to stop, 0.4 mm from 20 mm/s with blended corners and two periods.
 # shellcheck source=tests/linuxcnc/machine.bash
@@ -12,17 +12,17 @@ fettle-stock-linuxcnc hard.json --stock stock.stl --cell 0.2 > before
 start before
 talk_to hard.json
 field() { cut -d ' ' -f "$1" <<< "$answer"; }
-between() { awk -v a="$1" -v least="$2" -v most="$3" 'BEGIN { exit !(a >= least && a <= most) }' || { echo "$answer: $1"; exit 1; }; }
-tell 'travel -5 -6 3'
+between() { awk -v a="$1" -v min="$2" -v max="$3" 'BEGIN { exit !(a >= min && a <= max) }' || { echo "$answer: $1"; exit 1; }; }
+send 'travel -5 -6 3'
 between "$(field 6)" 3.2 3.5
 between "$(field 8)" 15 18
-tell 'lift 6'
+send 'lift 6'
 between "$(field 8)" 0 0
-tell 'travel 0.5 -13 5.2'
-tell 'move 0.5 2 5.2 20'
+send 'travel 0.5 -13 5.2'
+send 'move 0.5 2 5.2 20'
 between "$(field 5)" -12 1.9
 between "$(field 9)" 15 30
-tell 'lift 10'
+send 'lift 10'
 inside halcmd setp trip.in0 10
 printf '99 travel -5 -6 3\n' >&"${DRIVER[1]}"
 read -r answer <&"${DRIVER[0]}"
@@ -31,7 +31,7 @@ printf '100 quit\n' >&"${DRIVER[1]}"
 wait "$DRIVER_PID" || true
 inside halcmd setp trip.in0 267
 talk_to hard.json
-tell 'travel -5 -6 6'
+send 'travel -5 -6 6'
 between "$(field 6)" 5.99 6.01
-tell quit
+send quit
 stop

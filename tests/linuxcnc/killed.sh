@@ -1,4 +1,4 @@
-# A client that is killed with -9 in the cut, 50 times: each time the machine stands and the force is gone 0.25 s after the last
+# A client that is killed with -9 in the cut, 50 times: each time the machine is at rest without force 0.25 s after the last
 # heartbeat, and the next client finds a machine that works. Reference: every period of the servo thread.
 # shellcheck source=tests/linuxcnc/machine.bash
 . "$HERE/machine.bash"
@@ -13,8 +13,8 @@ record
 RANDOM=1
 for k in {1..50}; do
     talk_to light.json
-    tell "travel 0 -6 $(printf '4.%02d' $((80 - k)))"
-    for i in $(seq -59 $((RANDOM % 30 - 30))); do tell "move 0 $(awk -v i="$i" 'BEGIN { print i / 10 }') 4.3 20"; done
+    send "travel 0 -6 $(printf '4.%02d' $((80 - k)))"
+    for i in $(seq -59 $((RANDOM % 30 - 30))); do send "move 0 $(awk -v i="$i" 'BEGIN { print i / 10 }') 4.3 20"; done
     kill_driver light.json
     sleep 0.6
 done

@@ -19,10 +19,10 @@ talk_to light.json
 end=$((SECONDS + 60 * ${MINUTES:-1}))
 passes=0
 while [ $SECONDS -lt $end ]; do
-    tell "travel $((passes % 10 - 5)) -6 4.8"
-    for i in {-59..60}; do tell "move $((passes % 10 - 5)) $(awk -v i="$i" 'BEGIN { print i / 10 }') 4.8 20"; done
+    send "travel $((passes % 10 - 5)) -6 4.8"
+    for i in {-59..60}; do send "move $((passes % 10 - 5)) $(awk -v i="$i" 'BEGIN { print i / 10 }') 4.8 20"; done
     passes=$((passes + 1))
 done
-tell quit
+send quit
 stop
 echo "$passes passes in ${MINUTES:-1} min, no stop"

@@ -44,11 +44,11 @@ talk_to() { # PLAN
     # shellcheck disable=SC2046
     coproc DRIVER { exec $(driver "$1"); }
     n=0
-    tell 'connect fettle-gantry 1'
-    tell "limit $(jq 'if .kind == "plan" then .job else . end | .force.max * (if .units.force == "lbf" then 4.4482216152605 else 1 end)' "$1")"
-    tell "home $(jq 'if .kind == "plan" then .job else . end | (.frame.theta_deg // 0) * 3.141592653589793 / 180' "$1")"
+    send 'connect fettle-gantry 1'
+    send "limit $(jq 'if .kind == "plan" then .job else . end | .force.max * (if .units.force == "lbf" then 4.4482216152605 else 1 end)' "$1")"
+    send "home $(jq 'if .kind == "plan" then .job else . end | (.frame.theta_deg // 0) * 3.141592653589793 / 180' "$1")"
 }
-tell() { # COMMAND: its answer is in `answer`
+send() { # COMMAND: its answer is in `answer`
     n=$((n + 1))
     printf '%s %s\n' $n "$1" >&"${DRIVER[1]}"
     read -r answer <&"${DRIVER[0]}"

@@ -5,7 +5,7 @@
 . "$HERE/machine.bash"
 fettle-part "$SAMPLES/parts/wang1.json" > part.stl
 fettle-stock-linuxcnc "$SAMPLES/jobs/wang1.json" --stock part.stl > before
-# The machine stands over its zero; the steering begins over the middle of the part.
+# The machine is over its zero; the steering begins over the middle of the part.
 middle=$(jq '.region | (.x[0] + .x[1]) / 2' "$SAMPLES/parts/wang1.json")
 awk -v way="$middle" 'BEGIN { time = way * sqrt(2); print "0 1 1 up" } { $1 += time; print }' "$SAMPLES/steering/h.txt" > steer.txt
 start before
@@ -21,8 +21,8 @@ awk -v lbf=4.4482216 '{ f = $4 / lbf } f > 0.5 { ++n; if (f >= 9 && f <= 11) ++g
 job=$SAMPLES/jobs/wang1.json
 for k in {1..5}; do
     talk_to "$job"
-    tell 'travel 20 10 50'
-    for i in {0..80}; do tell "press 20 $(awk -v i="$i" 'BEGIN { print 10 + i / 4 }') 0 25 44.5"; done
+    send 'travel 20 10 50'
+    for i in {0..80}; do send "press 20 $(awk -v i="$i" 'BEGIN { print 10 + i / 4 }') 0 25 44.5"; done
     kill_driver "$job"
     sleep 0.6
 done

@@ -14,20 +14,20 @@ talk_to plan.json
 [[ $answer =~ ^3\ ok\ [0-9.]+\ -?[0-9.e-]+\ -?[0-9.e-]+\ ([0-9.]+)\  ]] && awk -v z="${BASH_REMATCH[1]}" 'BEGIN { exit !(z >= 20) }'
 near() { awk -v a="$1" -v b="$2" -v tol="$3" 'BEGIN { exit !(a >= b - tol && a <= b + tol) }' || { echo "$answer: $1 is not $2"; exit 1; }; }
 field() { cut -d ' ' -f "$1" <<< "$answer"; }
-tell touch_off
+send touch_off
 near "$(field 3)" 10 0.005
-tell 'travel -3 -3 4.9'
+send 'travel -3 -3 4.9'
 near "$(field 6)" 4.9 0.01
-tell 'move -3 3 4.9 20'
-tell 'lift 8'
+send 'move -3 3 4.9 20'
+send 'lift 8'
 near "$(field 6)" 8 0.01
 near "$(field 8)" 0 0
-tell 'probe 0.5 -0.5 2'
+send 'probe 0.5 -0.5 2'
 near "$(field 3)" 5.01 0.005
-tell 'probe 30 30 3'
+send 'probe 30 30 3'
 [ "$(field 3)" = none ]
-tell change_wheel
-tell quit
+send change_wheel
+send quit
 wait "$DRIVER_PID"
 stop
 state | diff outside -

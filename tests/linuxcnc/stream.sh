@@ -1,5 +1,5 @@
-# Steps of 0.01 in at 1 in/s, one after the other as the answers come: between its first and its last motion the machine never stands
-# still. Reference: every period of the servo thread.
+# Steps of 0.01 in at 1 in/s, one after the other as the answers come: between its first and its last motion the machine never
+# stops. Reference: every period of the servo thread.
 # shellcheck source=tests/linuxcnc/machine.bash
 . "$HERE/machine.bash"
 # shellcheck source=tests/fettle-grind/stock.bash
@@ -9,13 +9,13 @@ make_stock 0.01
 fettle-stock-linuxcnc plan.json --stock stock.stl --cell 0.2 > before
 start before
 talk_to plan.json
-tell 'travel 0 0 10'
+send 'travel 0 0 10'
 record
-for i in {1..400}; do tell "move 0 $(printf '%d.%03d' $((i * 254 / 1000)) $((i * 254 % 1000))) 10 25.4"; done
-tell status
+for i in {1..400}; do send "move 0 $(printf '%d.%03d' $((i * 254 / 1000)) $((i * 254 % 1000))) 10 25.4"; done
+send status
 sleep 0.3
 end_record
-tell quit
+send quit
 stop
 awk '{ v = NR > 1 ? $2 - y : 0; y = $2; moved[NR] = v > 1e-6; if (v > 1e-6) { if (!first) first = NR; last = NR } }
     END { for (i = first; i <= last; ++i) standing += !moved[i]

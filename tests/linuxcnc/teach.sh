@@ -1,5 +1,5 @@
 # Four points of Wang's part 3 shown on LinuxCNC from its zero on: where the events lead at 1 in/s, touched on the sphere within 0.0005 in,
-# with the C axis at θ. References: the formulas; what the C axis' encoder tells.
+# with the C axis at θ. References: the formulas; the encoder of the C axis.
 # shellcheck source=tests/linuxcnc/machine.bash
 . "$HERE/machine.bash"
 fettle-part "$SAMPLES/parts/wang3.json" > part.stl

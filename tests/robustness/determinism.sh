@@ -19,7 +19,7 @@ for name in $names; do
     tool=fettle-$name
     rm -rf once again
     outputs once
-    "$tool" "${command[@]}" "${named[@]}" -q --threads 1 >told 2>err <<<"$lines" || [ $? = 1 ] || say "$(cat err)" "$name"
+    "$tool" "${command[@]}" "${named[@]}" -q --threads 1 >printed 2>err <<<"$lines" || [ $? = 1 ] || say "$(cat err)" "$name"
     run '2 threads' "$tool" --threads 2
     run '8 threads' "$tool" --threads 8
     run 'no home, decimal commas' env -i PATH="$PATH" "${commas[@]}" "$tool" --threads 1

@@ -1,5 +1,5 @@
 # Killed at any moment, by KILL, TERM or INT, a tool leaves its outputs as they were or all of them whole: never a part of a file, and no
-# other file, but after KILL perhaps a hidden one, which is in nobody's way. Exceptions are what is written ahead, line by line: traces of
+# other file, but after KILL perhaps a hidden temporary file, which is harmless. Exceptions are what is written ahead, line by line: traces of
 # machines, --watch; and the journal, which is there to go on from (tests/fettle-belt/journal.sh, tests/fettle-grind/resume.sh).
 # shellcheck source=tests/robustness/tools.bash
 . "$HERE/tools.bash"
@@ -30,7 +30,7 @@ for name in $names; do
         hidden=$(find place -name '.*' ! -name place)
         [ -z "$hidden" ] || [ $signal = KILL ] || say "left $hidden" "$name $moment"
     done
-    # What a run with this number left when it was killed is in nobody's way.
+    # Temporary files left by a killed run with this number are harmless.
     [ ${#bulk[@]} = 1 ] || continue
     elsewhere -o place/-o
     bash -c ': >place/.fettle-$$--o; exec "$@"' - "fettle-$name" "${command[@]}" "${named[@]}" -q >out 2>err || say "$(cat err)" "$name"

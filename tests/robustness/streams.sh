@@ -1,5 +1,5 @@
-# Streams that end early or are none, for every tool: a closed stdout is a failed write, a pipe that nobody reads any more is quiet, a
-# terminal is no place to type points on, nor one for binary data, and an input that is a FIFO whose writer has gone is refused as a
+# Streams that end early or are none, for every tool: a closed stdout is a failed write, a pipe whose reader has ended gives no message, a
+# terminal is no place to type points on, nor one for binary data, and an input that is a FIFO whose writer has ended is refused as a
 # file that was cut off: within the bounds of probe.bash.
 # shellcheck source=tests/robustness/tools.bash
 . "$HERE/tools.bash"
@@ -12,7 +12,7 @@ for name in $names; do
     status=0
     "fettle-$name" "${command[@]}" "${side[@]}" -q >&- 2>err <<<"$lines" || status=$?
     : >out
-    [ ${#bulk[@]} = 0 ] || is_refusal $status stdout || say "status $status: $(cat err)" "$name with a closed stdout" # a driver's client has gone
+    [ ${#bulk[@]} = 0 ] || is_refusal $status stdout || say "status $status: $(cat err)" "$name with a closed stdout" # a driver's client has ended
     { "fettle-$name" "${command[@]}" "${side[@]}" -q 2>err <<<"$lines"; echo $? >status; } | head -c 1 >out || true
     case $(cat status) in 0 | 1 | 141) ;; *) say "status $(cat status)" "$name, a pipe that is closed" ;; esac
     [ ! -s err ] || say "a closed pipe: $(cat err)" "$name"

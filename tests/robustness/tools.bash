@@ -6,7 +6,7 @@
 #                    command   its words, without outputs; the last is the input that may come from stdin, if it has one
 #                    bulk      -o; nothing if stdout is a conversation
 #                    writes    options that name an output each, besides -o and --report
-#                    lines     what it is told on stdin
+#                    lines     lines on its stdin
 # shellcheck source=tests/bad-inputs/probe.bash
 . "$HERE/../bad-inputs/probe.bash"
 

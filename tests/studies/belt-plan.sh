@@ -1,5 +1,5 @@
 # Feeds planned for the blade, through the make file: less than a third of what the best constant leaves, on surfels other than those
-# planned on; the table tells when it is not so. Reference: fettle-belt and fettle-assess with the constant.
+# planned on; the table reports when it is not so. Reference: fettle-belt and fettle-assess with the constant.
 root=$HERE/../..
 build=$(dirname "$(dirname "$(command -v fettle-feed)")")
 unset MAKEFLAGS MFLAGS MAKELEVEL

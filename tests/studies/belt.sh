@@ -1,5 +1,5 @@
 # The blade from its patches to the page: its displacements are the allowance that its stock was given, every ray meets the stock once,
-# and the table tells when they are not. Of a mesh (a box in metres) it takes the same way. Reference: the allowance.
+# and the table reports when they are not. A mesh (a box in metres) goes through the same steps. Reference: the allowance.
 # shellcheck source=tests/fettle-surfel/box.bash
 . "$HERE/../fettle-surfel/box.bash"
 root=$HERE/../..
@@ -11,7 +11,7 @@ for file in work.pcd errors.pcd surface.pcd rows.pcd ground.pcd report.html {con
     test -s out/blade/$file
 done
 for picture in $(grep -o 'src="[a-z]*.png"' out/blade/report.html | cut -d'"' -f2); do test -s "out/blade/$picture"; done
-# Preston's law takes C V_b F t, over the whole path; hardly a contact comes near the edge of the wheel.
+# Preston's law takes C V_b F t, over the whole path; few contacts come near the edge of the wheel.
 jq -e '.near_edge <= 5 and (.removed_volume / (3e-5 * 15000 * 10 * .time) - 1 | fabs) < 1e-3' out/blade/ground.json > ok
 jq -e -n --slurpfile b out/blade/errors.json --slurpfile a out/blade/left.json '$a[0].rms < 0.35 * $b[0].rms' > ok
 test "$(tail -1 out/blade/watch.csv | cut -d, -f5)" = "$(jq .undercut out/blade/left.json)"

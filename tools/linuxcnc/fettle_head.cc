@@ -1,7 +1,7 @@
 // Copyright: the authors of fettle.  SPDX-License-Identifier: Apache-2.0 OR GPL-2.0-or-later
 //
 // A realtime component of LinuxCNC's HAL, for its simulation: the head over its stock, stepped by the servo thread, so
-// that what the transducer says belongs to where the drives stand whatever the load of the computer. Loaded with
+// that the transducer's reading belongs to the position of the drives, whatever the load of the computer. Loaded with
 // stock=FILE (fettle-stock-linuxcnc); when it is unloaded the ground stock is in FILE.ground.
 
 #include "core/error.h"
@@ -25,32 +25,32 @@ namespace {
 
 struct Pins {
     hal_float_t *x, *y, *z, *plate_x, *plate_y, *plate_z, *plate_radius; // in, mm
-    hal_bit_t *known, *probe, *new_wheel;     // in; until it is known where the drives stand the head is up and away
+    hal_bit_t *known, *probe, *new_wheel;     // in; until the position of the drives is known there is no contact
     hal_float_t *deflection, *force, *radius; // out, mm, N
 };
 
-// Positions follow the flag that the zeros are found a period later.
-constexpr long kSettled = 10;
+// The positions are valid a period after the flag that homing has ended.
+constexpr long kSettlingPeriods = 10;
 
 int component = -1;
-long known_for = 0; // periods
+long known_periods = 0; // periods
 Pins* pins = nullptr;
-std::unique_ptr<SimulatedHead> head;
+std::unique_ptr<gantry::SimulatedHead> head;
 
 Eigen::Vector3d point(const hal_float_t* x, const hal_float_t* y, const hal_float_t* z)
 {
-    const double at[] = {*x, *y, *z}; // no longer volatile
+    const double at[] = {*x, *y, *z}; // a copy that is not volatile
     return {at[0], at[1], at[2]};
 }
 
 void step(void*, long period)
 {
-    known_for = *pins->known ? known_for + 1 : 0;
-    if (known_for < kSettled) return;
+    known_periods = *pins->known ? known_periods + 1 : 0;
+    if (known_periods < kSettlingPeriods) return;
     if (*pins->new_wheel) head->renew_wheel();
     const double radius = *pins->plate_radius;
     head->step(point(pins->x, pins->y, pins->z), static_cast<double>(period) * kNanosecond,
-               *pins->probe ? SimulatedHead::Tool::probe : SimulatedHead::Tool::wheel,
+               *pins->probe ? gantry::SimulatedHead::Tool::probe : gantry::SimulatedHead::Tool::wheel,
                {point(pins->plate_x, pins->plate_y, pins->plate_z), radius});
     *pins->deflection = head->deflection();
     *pins->force = head->force();
@@ -81,7 +81,7 @@ extern "C" __attribute__((visibility("default"))) int rtapi_app_main(void)
     component = hal_init("fettle_head");
     if (component < 0) return component;
     try {
-        head = std::make_unique<SimulatedHead>(read_head(stock == nullptr ? "" : stock));
+        head = std::make_unique<gantry::SimulatedHead>(gantry::read_head(stock == nullptr ? "" : stock));
         pins = static_cast<Pins*>(hal_malloc(sizeof(Pins)));
         if (pins != nullptr && export_pins() && hal_ready(component) == 0) return 0;
         rtapi_print_msg(RTAPI_MSG_ERR, "fettle_head: no room in HAL\n");
@@ -96,5 +96,5 @@ extern "C" __attribute__((visibility("default"))) void rtapi_app_exit(void)
 {
     hal_exit(component);
     std::ofstream out(std::string(stock) + ".ground", std::ios::binary);
-    write_head(out, head->head());
+    gantry::write_head(out, head->head());
 }

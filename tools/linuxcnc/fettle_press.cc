@@ -20,22 +20,22 @@ using namespace fettle;
 
 namespace {
 
-// Above its lowest place it goes no faster than it can stop with this share of its acceleration.
-constexpr double kBraking = 0.5;
-// On the part, and so free of the speed of the search: a share of the deflection to be held.
-constexpr double kFelt = 0.1;
+// The speed is limited so that Z can stop at its lowest position with this share of its acceleration.
+constexpr double kBrakingShare = 0.5;
+// Share of the desired deflection that counts as a contact: from then on the speed of the search is no limit.
+constexpr double kContactShare = 0.1;
 
 struct Pins {
-    hal_bit_t *hold, *freeze;                          // in; held: the offset follows the force; frozen: it stays
-    hal_float_t *wanted, *seen;                        // in, deflection, mm
-    hal_float_t *z, *lowest, *applied;                 // in, of Z, and its offset as it is now, mm
+    hal_bit_t *hold, *freeze;                          // in; hold: the offset controls the force; freeze: it stays
+    hal_float_t *wanted, *seen;                        // in, desired and measured deflection, mm
+    hal_float_t *z, *lowest, *applied;                 // in, position of Z, its lower bound, its current offset, mm
     hal_float_t *gain, *speed, *acceleration, *search; // in, 1/s, mm/s, mm/s², mm/s
     hal_float_t* offset;                               // out, mm
 };
 
 int component = -1;
 Pins* pins = nullptr;
-std::optional<ForceLoop> loop;
+std::optional<gantry::ForceLoop> loop;
 double velocity = 0; // mm/s
 
 void step(void*, long period)
@@ -49,13 +49,13 @@ void step(void*, long period)
     }
     const double dt = static_cast<double>(period) * kNanosecond;
     const double acceleration = *pins->acceleration, speed = *pins->speed;
-    if (!loop) loop.emplace(force_gains(*pins->gain), dt, speed, acceleration);
-    const double most_down = std::min(*pins->lowest - (*pins->z - *pins->applied), 0.0);
-    const double offset = *pins->offset, rest = std::max(offset - most_down, 0.0);
-    const double down = *pins->seen > kFelt * *pins->wanted ? speed : double(*pins->search);
-    const double stop = std::sqrt(2 * kBraking * acceleration * rest);
-    velocity = loop->step(*pins->wanted, *pins->seen, velocity, std::min(down, stop));
-    const double next = std::clamp(offset + velocity * dt, most_down, 0.0);
+    if (!loop) loop.emplace(gantry::force_gains(*pins->gain), dt, speed, acceleration);
+    const double min_offset = std::min(*pins->lowest - (*pins->z - *pins->applied), 0.0);
+    const double offset = *pins->offset, distance = std::max(offset - min_offset, 0.0);
+    const double max_down = *pins->seen > kContactShare * *pins->wanted ? speed : double(*pins->search);
+    const double braking_speed = std::sqrt(2 * kBrakingShare * acceleration * distance);
+    velocity = loop->step(*pins->wanted, *pins->seen, velocity, std::min(max_down, braking_speed));
+    const double next = std::clamp(offset + velocity * dt, min_offset, 0.0);
     velocity = (next - offset) / dt;
     *pins->offset = next;
 }

@@ -1,0 +1,44 @@
+#include "belt/belt_options.h"
+
+namespace fettle::belt {
+
+ContactOptions::ContactOptions(cli::Tool& tool, int default_cells, double default_tolerance)
+    : gridding(tool.choice<Gridding>("--gridding", {{"kriging", Gridding::kriging}, {"shepard", Gridding::shepard}},
+                                     "How heights between surfels are estimated")),
+      cells(tool.count("--cells", default_cells, "Number of cells along each side of the grid", 8, 512)),
+      tolerance(tool.number("--tolerance", default_tolerance, "SHARE",
+                            "Maximum of pressure times gap, as a share of peak pressure times indentation",
+                            {1e-9, 1e-2}))
+{
+}
+
+WheelContactOptions ContactOptions::values() const { return {gridding, cells, tolerance}; }
+
+GrindingOptions::GrindingOptions(cli::Tool& tool)
+    : force(tool.optional_number("--force", "FORCE", "At all points, N", core::Range::positive())),
+      depth(tool.optional_number("--depth", "LENGTH", "Indentation at all points", core::Range::positive())),
+      feed(tool.optional_number("--feed", "LENGTH/S", "Where the path has no field feed [20 mm/s]",
+                                core::Range::positive())),
+      dwell(tool.number("--dwell", 0, "S", "Additional time at both ends of each run", core::Range::at_least(0))),
+      worn(tool.number("--worn", 0, "J", "Work that the belt has done before (report: work)", core::Range::at_least(0)))
+{
+}
+
+void GrindingOptions::check() const
+{
+    if (force && depth) throw core::InputError("--force", "and --depth: one of them says how the wheel is pressed on");
+}
+
+BeltSettings GrindingOptions::settings(double mm) const
+{
+    BeltSettings settings;
+    settings.force = force;
+    if (depth) settings.depth = *depth * mm;
+    if (feed) settings.feed = *feed * mm;
+    settings.dwell = dwell;
+    return settings;
+}
+
+double GrindingOptions::prior_work() const { return worn * kNewtonMmPerJoule; }
+
+} // namespace fettle::belt

@@ -1,0 +1,97 @@
+#include "belt/belt_report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace fettle::belt {
+
+json::Value to_json(const WheelContact& press, const units::Units& units)
+{
+    const double mm = units.mm(), newton = units.newton();
+    const Contact& contact = press.contact;
+    json::Value report;
+    return report.set("force", contact.force / newton)
+        .set("peak_pressure", contact.pressure.maxCoeff() * mm * mm / newton)
+        .set("indentation", contact.indentation / mm)
+        .set("area", press.area() / (mm * mm))
+        .set("cell", Eigen::VectorXd(press.grid.cell_size / mm))
+        .set("iterations", contact.iterations)
+        .set("near_edge", press.is_near_edge);
+}
+
+json::Value to_json(const BeltRun& run, const units::Units& units)
+{
+    const double mm = units.mm(), newton = units.newton();
+    double force = 0, peak = 0, area = 0;
+    for (const BeltTrace& at : run.trace)
+        if (!std::isnan(at.force)) {
+            force = std::max(force, at.force);
+            peak = std::max(peak, at.peak_pressure);
+            area = std::max(area, at.area);
+        }
+    json::Value report;
+    return report.set("points", run.trace.size())
+        .set("time", run.trace.empty() ? 0 : run.trace.back().time)
+        .set("removed_volume", run.removed_volume / (mm * mm * mm))
+        .set("work", run.work / kNewtonMmPerJoule)
+        .set("touched", (run.removed.array() > 0).count())
+        .set("surfels", run.removed.size())
+        .set("deepest", run.removed.maxCoeff() / mm)
+        .set("max_force", force / newton)
+        .set("peak_pressure", peak * mm * mm / newton)
+        .set("max_area", area / (mm * mm))
+        .set("near_edge", run.near_edge);
+}
+
+json::Value to_json(const BeltPlan& plan, bool by_force, const units::Units& units)
+{
+    const double mm = units.mm();
+    json::Value report;
+    return report.set("points", plan.path.size())
+        .set("touched", plan.touched)
+        .set("reached", plan.reached)
+        .set("constant", plan.constant / (by_force ? units.newton() : mm))
+        .set("rms_before", plan.rms_before / mm)
+        .set("rms_constant", plan.rms_constant / mm)
+        .set("rms_planned", plan.rms_planned / mm)
+        .set("ratio", plan.rms_planned / plan.rms_constant)
+        .set("time_constant", plan.time_constant)
+        .set("time_planned", plan.time_planned)
+        .set("at_least", plan.at_min)
+        .set("at_most", plan.at_max)
+        .set("rounds", plan.rounds)
+        .set("converged", plan.converged);
+}
+
+void set_trace(cloud::Cloud& path, const std::vector<BeltTrace>& trace)
+{
+    const auto add = [&](const char* name, double BeltTrace::*member) {
+        Eigen::VectorXd values(path.size());
+        for (Eigen::Index i = 0; i < path.size(); ++i) values[i] = trace[static_cast<std::size_t>(i)].*member;
+        cloud::set_field(path, name, values, 8);
+    };
+    add("t", &BeltTrace::time);
+    add("force", &BeltTrace::force);
+    add("indentation", &BeltTrace::indentation);
+    add("pressure", &BeltTrace::peak_pressure);
+    add("area", &BeltTrace::area);
+    add("removed_volume", &BeltTrace::removed_volume);
+}
+
+void set_plan(cloud::Cloud& path, const BeltPlan& plan)
+{
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    Eigen::VectorXd force = Eigen::VectorXd::Constant(path.size(), kNone), depth = force, feed = force;
+    for (Eigen::Index i = 0; i < path.size(); ++i) {
+        const BeltPoint& point = plan.path[static_cast<std::size_t>(i)];
+        if (!point.is_on_part()) continue;
+        (point.load.by_force ? force : depth)[i] = point.load.value;
+        feed[i] = point.feed;
+    }
+    if (!force.array().isNaN().all()) cloud::set_field(path, "force", force, 8);
+    if (!depth.array().isNaN().all()) cloud::set_field(path, "depth", depth, 8);
+    cloud::set_field(path, "feed", feed, 8);
+}
+
+} // namespace fettle::belt

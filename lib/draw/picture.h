@@ -1,0 +1,39 @@
+#pragma once
+
+#include "draw/sheet.h"
+#include "job/job.h"
+#include "mesh/shape_file.h"
+#include "units/units.h"
+
+#include <functional>
+#include <optional>
+#include <string>
+
+namespace fettle::draw {
+
+struct PictureOptions {
+    std::string title;
+    std::string field = "z"; ///< shown as colours: z or a field of the cloud
+    std::optional<double>
+        scale;          ///< colours from -scale to +scale (error), else from the minimum to the minimum + scale
+    int bands = 0;      ///< number of equal colour steps; 0: continuous
+    units::Units units; ///< of the numbers in the picture
+    std::optional<job::Job> job; ///< its B and S are drawn; statistics and colours are those of B
+    int width = 900;             ///< largest width of the map, pixels; the sheet is 394 wider
+    int supersampling = 1;       ///< map pixels per pixel of the sheet, each way: for print
+    Eigen::Vector3d towards_eye = Eigen::Vector3d::UnitZ(); ///< unit, M: towards the eye, which is at infinity
+};
+
+/// Renders a part in parallel projection from above, x to the right and y upwards, or from any other direction
+/// (view_rotation()): values as colours, with legend, histogram, scale and statistics. `error` has the diverging
+/// colours of ColourScale, every other field a sequential map. Hill shading is applied to z and, more lightly, to all
+/// fields seen from the side. Undefined values are grey.
+/// @return the bytes of a PNG, the same for the same input
+/// @throws InputError if there is no such field, or no point with finite x and y
+std::string picture(const mesh::MeshOrCloud& part, const PictureOptions& options);
+
+/// Draws the picture on a sheet that `make` creates for a width and a height in pixels.
+void draw_picture(const mesh::MeshOrCloud& part, const PictureOptions& options,
+                  const std::function<Sheet&(int width, int height)>& make);
+
+} // namespace fettle::draw

@@ -1,0 +1,196 @@
+#include "draw/picture_parts.h"
+#include "draw/ticks.h"
+#include "geometry/statistics.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fettle::draw {
+namespace {
+
+using Align = Sheet::Align;
+using Eigen::Index;
+using Eigen::Vector2d;
+
+// YlGnBu of ColorBrewer (Cynthia Brewer, Apache-2.0) without its palest and its darkest two: darkens evenly, is safe
+// for colour blindness, and light enough for shading.
+constexpr std::array<Rgb, 6> kSequential = {
+    {{237, 248, 177}, {199, 233, 180}, {127, 205, 187}, {65, 182, 196}, {29, 145, 192}, {34, 94, 168}}};
+
+Rgb sequential(double share)
+{
+    const double position = std::clamp(share, 0.0, 1.0) * (kSequential.size() - 1);
+    const std::size_t below = std::min(static_cast<std::size_t>(position), kSequential.size() - 2);
+    Rgb mixed;
+    for (std::size_t i = 0; i < 3; ++i)
+        mixed[i] = static_cast<std::uint8_t>(
+            std::lround(std::lerp(kSequential[below][i], kSequential[below + 1][i], position - double(below))));
+    return mixed;
+}
+
+// Legend, pixels: distance from the map, widths of bar and ticks, and margin above and below for tips and names.
+constexpr double kMapDistance = 40, kBarWidth = 22, kTicksWidth = 70, kBarMargin = 62;
+
+/// "1.2 % beyond", at least "< 0.1 % beyond".
+std::string beyond_text(Index beyond, Index count)
+{
+    const double percent = 100 * double(beyond) / double(count);
+    char buffer[32];
+    std::snprintf(buffer, sizeof buffer, percent < 9.95 ? "%.1f" : "%.0f", percent);
+    return (percent < 0.05 ? "< 0.1" : std::string(buffer)) + " % beyond";
+}
+
+/// Colour bar.
+struct Bar {
+    Vector2d corner;
+    double height;
+    const PictureScale& scale;
+
+    double row_of(double value) const { return corner.y() + height * (scale.high - value) / (scale.high - scale.low); }
+};
+
+void draw_bar(Sheet& sheet, const Bar& bar)
+{
+    const PictureScale& scale = bar.scale;
+    for (int row = 0; row < static_cast<int>(bar.height); ++row)
+        sheet.box(bar.corner + Vector2d(0, row), {kBarWidth, 1},
+                  scale(scale.high - (row + 0.5) / bar.height * (scale.high - scale.low)));
+    sheet.line(rectangle_corners(bar.corner, {kBarWidth, bar.height}), kFrameGrey, 1, true);
+    const double step = tick_step(scale.high - scale.low, 8);
+    for (double k = std::ceil(scale.low / step - 1e-9); k * step <= scale.high + 1e-9 * step; ++k) {
+        const Vector2d at(bar.corner.x() + kBarWidth, bar.row_of(k * step));
+        sheet.box(at, {5, 0}, kTextGrey);
+        const std::string sign = scale.diverging && k > 0.5 ? "+" : "";
+        sheet.text(sign + tick_text(k * step, step), at + Vector2d(10, 0), kSmallCapitals);
+    }
+}
+
+/// Histogram of the finite values over the scale.
+struct ScaleHistogram {
+    Eigen::ArrayXd bins;
+    Index above = 0, below = 0, all = 0; ///< number of values
+};
+
+ScaleHistogram scale_histogram(const Eigen::VectorXd& numbers, const PictureScale& scale)
+{
+    constexpr int kBins = 60;
+    ScaleHistogram counts;
+    counts.bins = Eigen::ArrayXd::Zero(kBins);
+    // The ends belong to the scale, up to the rounding of float fields.
+    const double rounding = 1e-6 * std::max(std::abs(scale.low), std::abs(scale.high));
+    for (const double value : numbers) {
+        if (!std::isfinite(value)) continue;
+        ++counts.all;
+        if (value > scale.high + rounding)
+            ++counts.above;
+        else if (value < scale.low - rounding)
+            ++counts.below;
+        else
+            counts.bins[std::clamp(static_cast<int>((value - scale.low) / (scale.high - scale.low) * kBins), 0,
+                                   kBins - 1)] += 1;
+    }
+    return counts;
+}
+
+void draw_histogram(Sheet& sheet, const Bar& bar, const Eigen::ArrayXd& bins)
+{
+    constexpr double kWidth = 150;
+    const double left = bar.corner.x() + kBarWidth + kTicksWidth, max = bins.maxCoeff(),
+                 half = bar.height / double(bins.size()) / 2;
+    for (Index i = 0; i < bins.size(); ++i) {
+        if (!(bins[i] > 0)) continue;
+        const double value = std::lerp(bar.scale.low, bar.scale.high, (double(i) + 0.5) / double(bins.size()));
+        const double upper = std::round(bar.row_of(value) - half), lower = std::round(bar.row_of(value) + half);
+        Rgb colour = bar.scale(value);
+        for (std::uint8_t& c : colour) c = static_cast<std::uint8_t>(0.9 * c); // keeps the palest visible on white
+        sheet.box({left, upper}, {std::max(1.0, kWidth * bins[i] / max), lower - upper - 2}, colour);
+    }
+    sheet.box({left - 1, bar.corner.y()}, {0, bar.height}, kFrameGrey);
+}
+
+/// Draws a tip at an end of the bar if values lie beyond it, with their share of those in the statistics.
+/// @param shown  whether the map shows any
+void draw_end(Sheet& sheet, const Bar& bar, bool upper, Index beyond, Index all, bool shown)
+{
+    if (beyond == 0 && !shown) return;
+    constexpr int kTipHeight = 14;
+    const Vector2d middle(bar.corner.x() + kBarWidth / 2, bar.corner.y() + (upper ? -2 : bar.height + 3));
+    for (int row = 0; row < kTipHeight; ++row) {
+        const double half = kBarWidth / 2 * (1 - (row + 0.5) / kTipHeight);
+        sheet.box(middle + Vector2d(-half, upper ? -row - 1 : row), {2 * half, 1},
+                  bar.scale(upper ? bar.scale.high : bar.scale.low));
+    }
+    sheet.text(beyond > 0 ? beyond_text(beyond, all) : "some beyond",
+               {bar.corner.x() + kBarWidth + kTicksWidth, middle.y() + (upper ? -10 : 10)}, kSmallCapitals, kTextGrey);
+}
+
+} // namespace
+
+Rgb PictureScale::operator()(double value) const
+{
+    if (std::isnan(value)) return kUndefinedColour;
+    double share = std::clamp((value - low) / (high - low), 0.0, 1.0);
+    if (bands > 0) share = (std::min(std::floor(share * bands), bands - 1.0) + 0.5) / bands;
+    return diverging ? ColourScale{1}(2 * share - 1) : sequential(share);
+}
+
+void draw_legend(Sheet& sheet, const Layout& layout, const PictureValues& values, const PictureScale& scale)
+{
+    const Vector2d corner = layout.map_corner + Vector2d(layout.map_size.x() + kMapDistance, 0);
+    const Bar bar = {corner + Vector2d(0, kBarMargin), layout.map_size.y() - 2 * kBarMargin, scale};
+    sheet.text(values.name + (values.unit.empty() ? "" : ", " + values.unit), corner + Vector2d(0, 4), kLabelCapitals,
+               Sheet::kInk, Align::left, true);
+    if (scale.diverging) {
+        sheet.text("material left", corner + Vector2d(0, 28), kSmallCapitals, kTextGrey);
+        sheet.text("over-cut", corner + Vector2d(0, layout.map_size.y() - 28), kSmallCapitals, kTextGrey);
+    }
+    draw_bar(sheet, bar);
+    // The map of a mesh from the side shows other points than its statistics, so values may lie slightly beyond.
+    constexpr double kRelativeTolerance = 0.01;
+    const double tolerance = kRelativeTolerance * (scale.high - scale.low);
+    const ScaleHistogram counts = scale_histogram(values.numbers, scale);
+    draw_histogram(sheet, bar, counts.bins);
+    draw_end(sheet, bar, true, counts.above, counts.all, values.max_shown > scale.high + tolerance);
+    draw_end(sheet, bar, false, counts.below, counts.all, values.min_shown < scale.low - tolerance);
+}
+
+void draw_numbers(Sheet& sheet, const Layout& layout, const PictureValues& values, const std::string& region)
+{
+    const geometry::Statistics s =
+        geometry::statistics(values.numbers, Eigen::VectorXd::Zero(values.numbers.size()), std::nullopt);
+    // Numbers below this share of the largest are shown as 0: rounding.
+    constexpr double kMinRelative = 1e-4;
+    const double largest = std::max(std::abs(s.min), std::abs(s.max));
+    const auto text = [&](double value) { return number_text(std::abs(value) < kMinRelative * largest ? 0 : value); };
+    std::vector<std::pair<std::string, std::string>> items = {{"mean", text(s.mean)}};
+    if (values.name == "error") items.insert(items.end(), {{"mean |error|", text(s.mean_abs)}, {"rms", text(s.rms)}});
+    items.insert(items.end(), {{"min", text(s.min)}, {"max", text(s.max)}});
+    items.insert(items.end(), {{values.counted, std::to_string(s.count)}, {"undefined", std::to_string(s.undefined)}});
+    // One line, or two on a narrow sheet.
+    constexpr double kBelowMapOffset = 88, kLineHeight = 22, kLegendColumn = 290;
+    const double right = layout.map_corner.x() + layout.map_size.x() + kLegendColumn;
+    Vector2d at = layout.map_corner + Vector2d(0, layout.map_size.y() + kBelowMapOffset);
+    const std::string head = region + (region.empty() || values.unit.empty() ? "" : ", ") + values.unit;
+    if (!head.empty()) {
+        sheet.text(head, at, kLabelCapitals, Sheet::kInk, Align::left, true);
+        at.x() += sheet.text_width(head, kLabelCapitals, true) + 30;
+    }
+    for (const auto& [name, value] : items) {
+        constexpr double kSwatch = 12, kGap = 8, kItemGap = 26;
+        const bool with_swatch = name == "undefined" && s.undefined > 0;
+        const double name_width = sheet.text_width(name, kLabelCapitals),
+                     value_width = sheet.text_width(value, kLabelCapitals);
+        if (at.x() + name_width + kGap + value_width + (with_swatch ? kSwatch + kGap : 0) > right)
+            at = Vector2d(layout.map_corner.x(), at.y() + kLineHeight);
+        if (with_swatch) {
+            sheet.box(at - Vector2d(0, kSwatch / 2), {kSwatch, kSwatch}, kUndefinedColour);
+            at.x() += kSwatch + kGap;
+        }
+        sheet.text(name, at, kLabelCapitals, kTextGrey);
+        at.x() += name_width + kGap;
+        sheet.text(value, at, kLabelCapitals);
+        at.x() += value_width + kItemGap;
+    }
+}
+
+} // namespace fettle::draw

@@ -1,0 +1,101 @@
+#include "fit/fit_file.h"
+
+#include "cloud/point_source.h"
+#include "core/error.h"
+#include "core/file.h"
+#include "fit/dense.h"
+#include "fit/input.h"
+#include "fit/report.h"
+#include "job/plausible.h"
+#include "job/region.h"
+
+namespace fettle::fit {
+
+namespace {
+
+/// Checks the fit's touches against the job, and adds the warnings to the run's.
+void check_touches(FitRun& run, const job::Job& job, const std::string& name)
+{
+    const job::PlacedTouches touches{run.fit.surface.touches, run.fit.surface.roles};
+    for (const std::string& warning :
+         {job::check_touch_places(touches, job, name), job::boundary_height_warning(touches, job)})
+        if (!warning.empty()) run.warnings.push_back(name + ": " + warning);
+}
+
+/// Checks the fit of a scan likewise. Its condensed touches are the middles of cells, which may lie a little outside S
+/// where no point does.
+void check_scan(FitRun& run, const job::Job& job, bool has_roles, const std::string& name)
+{
+    const job::PlacedTouches touches{run.fit.surface.touches, run.fit.surface.roles};
+    if (has_roles) job::check_touch_places(touches, job, name); // without roles, points outside S are left out
+    const std::string warning = job::boundary_height_warning(touches, job);
+    if (!warning.empty()) run.warnings.push_back(name + ": " + warning);
+}
+
+FitRun run_dense_fit(const cloud::PointSource& points, const job::Job& job, bool use_boundary, const std::string& name)
+{
+    FitRun run;
+    run.report.set("as", "scan");
+    if (use_boundary && !points.has_roles)
+        run.warnings.emplace_back(
+            "--use-boundary: a scan shows the metal at the boundary itself, the job's points are not added");
+    const DenseFit dense = fit_dense(points, job, use_boundary, name);
+    report(run.report, dense);
+    for (const std::string& warning : warnings(dense, job, name)) run.warnings.push_back(warning);
+    run.fit = dense.fit;
+    check_scan(run, job, points.has_roles, name);
+    run.touches = dense.counts.used;
+    run.ignored = dense.counts.ignored();
+    return run;
+}
+
+bool is_scan(const cloud::PointSource& points, const FitRequest& request)
+{
+    return request.kind == PointKind::scan ||
+           (request.kind == PointKind::by_number && points.points > kMaxExactTouches);
+}
+
+/// A scan covers the anomaly, too: its points inside B and outside S are no touches.
+void leave_out_by_place(FitInput& input)
+{
+    constexpr int kLeftOut = -1; // no role
+    const std::vector<job::Region> regions = job::classify_regions(input.job, input.xyz);
+    const bool has_sampling = input.job.sampling.cols() > 0;
+    for (std::size_t i = 0; i < regions.size(); ++i)
+        if (regions[i] == job::Region::inside || (has_sampling && regions[i] == job::Region::outside))
+            input.roles[static_cast<Eigen::Index>(i)] = kLeftOut;
+}
+
+} // namespace
+
+FitRun fit_file(const job::Job& job, const FitRequest& request)
+{
+    const std::string name = core::display_name(request.points);
+    const cloud::CloudStream stream(request.points,
+                                    units::Units{request.point_unit.value_or(job.units.length), job.units.force});
+    const cloud::PointSource& points = stream.points();
+    const bool scan = is_scan(points, request), can_be_dense = can_fit_dense(job, request.method);
+    if (scan && can_be_dense) return run_dense_fit(points, job, request.use_boundary, name);
+    if (request.kind == PointKind::touches && can_be_dense && points.points > kMaxTouches)
+        throw core::InputError(name, "--as touches: " + std::to_string(points.points) + " are more than " +
+                                         std::to_string(kMaxTouches) + ", which take too long");
+
+    FitInput input = fit_input(job, *stream.read_all(), name);
+    input.estimate_noise = request.estimate_noise;
+    input.is_exact = request.kind == PointKind::touches;
+    const bool is_cropped = scan && !points.has_roles;
+    if (is_cropped) leave_out_by_place(input);
+    if (request.use_boundary) add_boundary_touches(input);
+    if (request.spacing) input.spacing = *request.spacing * job.units.mm();
+    FitRun run;
+    run.fit = fit_surface(input, request.method);
+    run.touches = static_cast<std::size_t>(run.fit.surface.touches.cols());
+    run.ignored = static_cast<std::size_t>(run.fit.surface.ignored);
+    run.report.set("as", is_cropped ? "scan" : "touches");
+    report(run.report, run.fit);
+    run.warnings = warnings(run.fit, name);
+    check_touches(run, job, name);
+    return run;
+}
+
+} // namespace fettle::fit

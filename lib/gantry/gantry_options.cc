@@ -1,0 +1,89 @@
+#include "gantry/gantry_options.h"
+
+#include "core/file.h"
+#include "core/text.h"
+#include "gantry/driver.h"
+#include "gantry/make_virtual.h"
+#include "job/plausible.h"
+#include "sampling/scan.h"
+
+namespace fettle::gantry {
+namespace {
+
+const std::string kDriver = "exec:", kVirtual = "virtual", kDynamic = "virtual:dynamic"; // values of --gantry
+
+} // namespace
+
+GantryOptions::GantryOptions(cli::Tool& tool, const GantryOptionTexts& texts)
+    : kind(tool.text("--gantry", texts.fallback, texts.choices, texts.gantry)),
+      machine(tool.optional_file("--machine", "FILE", texts.machine)), timeout(declare_timeout(tool))
+{
+}
+
+bool GantryOptions::has_driver() const { return kind.starts_with(kDriver) && kind != kDriver; }
+
+void GantryOptions::check() const
+{
+    if (!has_driver() && kind != kVirtual && kind != kDynamic)
+        throw core::InputError("--gantry: '" + kind + "' is none of virtual, virtual:dynamic, exec:COMMAND");
+    if ((kind == kDynamic && machine.empty()) || (kind == kVirtual && !machine.empty()))
+        throw core::InputError("--machine",
+                               "goes with --gantry virtual:dynamic, which needs it, or exec:COMMAND; not with virtual");
+}
+
+const double& declare_timeout(cli::Tool& tool)
+{
+    return tool.number("--patience", 10, "SECONDS", "Timeout of a driver's answer, beyond the time of its move",
+                       core::Range::positive());
+}
+
+const double& declare_removal_factor(cli::Tool& tool)
+{
+    constexpr double kMaxFactor = 1000; // from chilled iron to wax; beyond it the sums of a run lose their digits
+    return tool.number("--removal-factor", 1, "FACTOR",
+                       "Removal coefficient of the simulated stock, relative to the job's",
+                       core::Range::between(1 / kMaxFactor, kMaxFactor));
+}
+
+StockOptions::StockOptions(cli::Tool& tool)
+    : file(tool.required_file_option("--stock", "PART", "The part as it is: STL, PLY, OBJ or PCD")),
+      unit(tool.length_unit("--stock-units", "Unit of PART, if it is not the job's")),
+      cell(tool.optional_number("--cell", "LENGTH", "Side of a cell of the stock; default: 1/64 of the wheel's width",
+                                core::Range::positive()))
+{
+}
+
+Stock read_stock(const StockOptions& options, const job::Job& job, removal::Extent extent)
+{
+    const sampling::Scan scan = sampling::read_scan(options.file, job.units, options.unit);
+    const std::string source = core::display_name(options.file);
+    const double cell = stock_cell_size(job, options.cell ? *options.cell * job.units.mm() : 0);
+    if (cell > job.wheel.width)
+        throw core::InputError("--cell", core::to_short_text(cell / job.units.mm()) + " is wider than the wheel, " +
+                                             core::to_short_text(job.wheel.width / job.units.mm()));
+    std::vector<std::string> warnings;
+    if (const std::string doubt = job::part_box_warning(scan.bounds(), job); !doubt.empty())
+        warnings.push_back(source + ": " + doubt);
+    const Eigen::Index dropped = scan.dropped_triangles();
+    if (dropped > 0)
+        warnings.push_back(source +
+                           ": facets with vertices that are not finite are left out: " + std::to_string(dropped));
+    return {removal::stock_from_scan(scan, job, cell, source, extent), warnings, dropped};
+}
+
+OpenGantry open_gantry(const GantryOptions& options, const job::Job& job, const removal::HeightField& stock,
+                       std::uint64_t seed, double removal_factor)
+{
+    if (options.has_driver()) {
+        std::optional<Head> head;
+        if (!options.machine.empty()) head = read_machine(options.machine).head;
+        auto driver = std::make_unique<DriverGantry>(options.kind.substr(kDriver.size()), job, options.timeout, head);
+        const protocol::Limits limits = driver->limits();
+        return {std::move(driver), limits, nullptr};
+    }
+    auto simulated = make_virtual_gantry(stock, job, {options.machine, removal_factor, seed});
+    const VirtualGantry* const same = simulated.get();
+    return {std::move(simulated), same->limits(), same};
+}
+
+} // namespace fettle::gantry

@@ -1,0 +1,39 @@
+#include "geometry/planar_grid.h"
+
+#include "geometry/bounding_box.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace fettle::geometry {
+
+PlanarGrid planar_grid(const Eigen::Ref<const Eigen::Matrix2Xd, 0, Eigen::OuterStride<>>& points,
+                       double points_per_cell)
+{
+    constexpr double kMinSide = 1e-9; // mm, if all points coincide
+    const Eigen::AlignedBox2d box = bounding_box(points);
+    const Eigen::Vector2d size = box.sizes();
+    const auto n = static_cast<double>(points.cols());
+    PlanarGrid grid;
+    grid.min = box.min();
+    // Points on a line parallel to an axis have no area.
+    grid.side =
+        std::max({std::sqrt(points_per_cell * size.prod() / n), points_per_cell * size.maxCoeff() / n, kMinSide});
+    grid.count = (size / grid.side).array().cast<int>() + 1;
+    // Counting sort.
+    std::vector<Eigen::Index> cells(points.cols());
+    grid.begin.assign(static_cast<std::size_t>(grid.count.x()) * grid.count.y() + 1, 0);
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+        const Eigen::Array2i cell = grid.cell_of(points.col(i));
+        cells[i] = static_cast<Eigen::Index>(cell.y()) * grid.count.x() + cell.x();
+        ++grid.begin[cells[i] + 1];
+    }
+    std::partial_sum(grid.begin.begin(), grid.begin.end(), grid.begin.begin());
+    std::vector<Eigen::Index> next = grid.begin;
+    grid.order.resize(points.cols());
+    for (Eigen::Index i = 0; i < points.cols(); ++i) grid.order[next[cells[i]]++] = i;
+    return grid;
+}
+
+} // namespace fettle::geometry

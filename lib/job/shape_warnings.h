@@ -1,0 +1,17 @@
+#pragma once
+
+#include "mesh/shape_file.h"
+#include "units/units.h"
+
+#include <string>
+#include <vector>
+
+namespace fettle::job {
+
+/// Warnings about a mesh or a cloud that was read: what was left out of it, and a size that is hardly meant.
+/// @param name   of the file, for messages
+/// @param units  in which the size is stated
+std::vector<std::string> shape_warnings(const mesh::ShapeFile& file, const std::string& name,
+                                        const units::Units& units);
+
+} // namespace fettle::job

@@ -1,0 +1,64 @@
+#include "strategy/contact_watch.h"
+
+#include "core/text.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fettle::strategy {
+namespace {
+
+/// Distance of two positions of the wheel, as in replay_removal().
+constexpr double kStepCells = 2;
+/// The stock may be that many times softer than the job's removal coefficient says.
+constexpr double kMaxSoftness = 10;
+/// A transducer that is good enough for the job's tolerance shows this share of the force over it.
+constexpr double kMinReadingShare = 0.1;
+
+} // namespace
+
+ContactWatch::ContactWatch(const removal::HeightField& stock, const job::Job& job)
+    : stock_(stock), wheel_(stock_, job.wheel.width), R_working_machine_(job::rotation_working_machine(job.theta)),
+      radius_(job.wheel.radius), width_(job.wheel.width), tolerance_(job.tolerance), removal_(job.removal_coefficient),
+      preload_(job.force.preload), min_force_(kMinReadingShare * job.force.stiffness * job.tolerance),
+      // Up to this distance the rim is within the tolerance of its lowest line: an edge may be that far off its place.
+      max_unfelt_(std::sqrt(2 * job.wheel.radius * job.tolerance))
+{
+}
+
+void ContactWatch::follow(const gantry::GantryStatus& status, double feed)
+{
+    const Eigen::Vector3d from = tip_, to = status.commanded + status.deflection * Eigen::Vector3d::UnitZ();
+    const double duration = status.time - time_, force = std::max(last_force_, status.peak_force);
+    const bool had_tip = has_tip_;
+    tip_ = to;
+    time_ = status.time;
+    last_force_ = status.force;
+    has_tip_ = true;
+    if (!had_tip || !(feed > 0)) return void(unfelt_ = 0);
+
+    const double length = (to - from).norm();
+    const int steps = std::max(1, int(std::ceil(length / (kStepCells * stock_.cell))));
+    double removed = -tolerance_ * width_ * length; // what lies no higher than the tolerance may not be there
+    for (int n = 1; n <= steps; ++n) removed += remove_to(from + (to - from) * (double(n) / steps));
+    // The force that removes this volume, if the clock of the machine is not too coarse for the step.
+    const double needed = removed / (removal_ * std::max(duration, length / feed));
+    if (!(needed > kMaxSoftness * (std::max(force, preload_) + min_force_))) return void(unfelt_ = 0);
+    unfelt_ += length;
+    if (unfelt_ < max_unfelt_) return;
+    throw gantry::GantryFault("no contact is felt at x " + core::to_short_text(to.x()) + ", y " +
+                              core::to_short_text(to.y()) + " mm: what stands there of the stock takes " +
+                              core::to_short_text(needed) + " N, at most " + core::to_short_text(force) +
+                              " N were reported");
+}
+
+/// Removes the stock above the wheel. @return  its volume, mm³
+double ContactWatch::remove_to(const Eigen::Vector3d& tip)
+{
+    wheel_.place(R_working_machine_ * tip.head<2>(), radius_, tip.z());
+    const double volume = wheel_.overlap(tip.z()).volume;
+    wheel_.cut(tip.z());
+    return volume;
+}
+
+} // namespace fettle::strategy
