@@ -25,7 +25,7 @@ refuses 'turned.pcd: point 1: joint1 is 1e+09 degrees, at most 720 either way' f
 joints away.pcd 0 -1e9
 refuses 'away.pcd: point 1: joint7 is -1e+09 mm, at most 100000 either way' fettle-arm good.json --forward away.pcd
 sed 's/joint1/jointA/' turned.pcd >no_joint1.pcd
-refuses "no_joint1.pcd: no field 'x'" fettle-arm good.json --forward no_joint1.pcd
+refuses "no_joint1.pcd: the points have no field 'joint1'" fettle-arm good.json --forward no_joint1.pcd
 sed 's/ qz$/ qq/' path.pcd >no_qz.pcd
 refuses "no_qz.pcd: the points have no field 'qz'" fettle-arm good.json --inverse no_qz.pcd
 sed '$s/.*/1000 1000 500 0 0 0 0/' path.pcd >zero.pcd
