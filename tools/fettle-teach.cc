@@ -19,8 +19,6 @@ using namespace fettle;
 
 namespace {
 
-const std::vector<std::string> kModes = {"automatic", "manual"};
-
 struct Options {
     cli::Tool& t;
     const std::string& job =
@@ -51,8 +49,6 @@ struct Options {
         t.optional_number("--direction", "DEG", "Direction of the rulings of a swept surface, from X_w");
     const std::optional<double>& theta =
         t.optional_number("--theta", "DEG", "Direction of the wheel's axis, counter-clockwise from X_m");
-    const std::string& mode =
-        t.choice("--mode", "", kModes, "With --gantry: how it is to be ground, for the report; default: automatic");
 };
 
 void add_usage(cli::Tool& t)
@@ -159,7 +155,6 @@ int main(int argc, char** argv)
         const bool was_plane = job.surface == job::SurfaceType::plane;
         apply_settings(job, o, prompt ? &*prompt : nullptr); // first: the head turns to θ before anything is touched
         if (prompt) {
-            t.report().set("mode", o.mode.empty() ? prompt->ask_choice("Mode", kModes, kModes[0]) : o.mode);
             teach_on_gantry(t, o, *prompt, job);
         } else {
             set_picked_points(job, o, was_plane);

@@ -16,8 +16,8 @@ refuses 'ended with status 3' --gantry 'exec:exit 3' --steer "$steer"
 refuses '--sampling, --file-units: go with' --gantry virtual --stock part.stl --steer "$steer" --sampling part.stl
 on "is not a number" < <(echo left)
 on "none of plane, swept, freeform" < <(printf '0\nround\n')
-on "none of automatic, manual" < <(printf '0\nplane\nslow\n')
-on 'stopped by the operator' < <(printf '0\nplane\nmanual\nstop\n')
+on "none of start, stop" < <(printf '0\nplane\nslow\n')
+on 'stopped by the operator' < <(printf '0\nplane\nstop\n')
 on '--direction: goes with' --direction 3
 
 teach() { refuses "$1" --gantry virtual --stock part.stl --steer events; }

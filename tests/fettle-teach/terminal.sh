@@ -17,7 +17,7 @@ jq -e '(.anomaly | map(.[:2]) | [., [[1.5, 1.5], [1.6, 1.5], [1.6, 1.6], [1.5, 1
     (has("sampling") | not)' keys.json > ok
 
 echo "$teach --steer $SAMPLES/steering/teach.txt -o asked.json" > ask.sh
-printf '%s\n' left 30 round swept 45 manual start | on_terminal ask.sh shown
+printf '%s\n' left 30 round swept 45 start | on_terminal ask.sh shown
 jq -e '.frame.theta_deg == 30 and .surface == {"type": "swept", "direction_deg": 45}' asked.json > ok
 grep -q "'left' is not a number" shown
 grep -q "'round' is none of plane, swept, freeform" shown
