@@ -22,7 +22,7 @@ JOBS     ?= $(shell nproc)
 
 # What needs LinuxCNC's headers (linuxcnc-uspace-dev) is built where they are.
 LINUXCNC := $(wildcard /usr/include/linuxcnc/emc_nml.hh)
-NEEDS_LINUXCNC := $(if $(LINUXCNC),,tools/fettle-gantry-linuxcnc.cc lib/gantry/linuxcnc.cc lib/gantry/linuxcnc_link.cc)
+NEEDS_LINUXCNC := $(if $(LINUXCNC),,tools/fettle-gantry-linuxcnc.cc lib/gantry/linuxcnc.cc lib/gantry/linuxcnc_touch.cc lib/gantry/linuxcnc_link.cc)
 TOOLS    := $(patsubst tools/%.cc,%,$(filter-out $(NEEDS_LINUXCNC),$(wildcard tools/fettle-*.cc)))
 BINARIES := $(TOOLS:%=$(B)/bin/%)
 # The command that lists them.

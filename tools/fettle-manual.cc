@@ -69,9 +69,11 @@ int main(int argc, char** argv)
         const auto journal = strategy::open_journal(o.trace, units, encoding);
 
         auto [machine, limits, simulated] = gantry::open_gantry(o.gantry, job, stock, t.seed());
-        const double force = o.force ? *o.force * units.newton() : job.force.down;
-        const double lowest = o.lowest ? *o.lowest * units.mm() : limits.min.z();
-        const strategy::ManualRun run = strategy::run_manual(job, *machine, steering, force, lowest, journal.get());
+        strategy::ManualOptions options;
+        options.force = o.force ? *o.force * units.newton() : job.force.down;
+        options.lowest = o.lowest ? *o.lowest * units.mm() : limits.min.z();
+        options.journal = journal.get();
+        const strategy::ManualRun run = strategy::run_manual(job, *machine, steering, options);
         if (simulated == nullptr) machine.reset(); // it lifts now, not after what is computed below
         const removal::HeightField ground =
             simulated ? simulated->stock() : strategy::replay_removal(run.trace, job, stock);

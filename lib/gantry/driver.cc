@@ -66,8 +66,10 @@ void DriverGantry::connect(const job::Job& job)
         throw core::InputError(job.source,
                                "force.max is above the " + core::to_short_text(limits_.force) + " N of the machine");
     set_limit(job.force.max);
-    execute("home " + core::to_text(job.theta), kServiceTime);
+    turn_to(job.theta);
 }
+
+void DriverGantry::turn_to(double theta) { execute("home " + core::to_text(theta), kServiceTime); }
 
 /// The answer says the force at which the machine guards its moves from now on.
 void DriverGantry::set_limit(double force)
@@ -159,12 +161,13 @@ void DriverGantry::change_wheel()
 /// Sends a command and waits for its answer. @return  the answer without number and "ok"
 std::string DriverGantry::request(const std::string& command, double duration)
 {
+    check_interrupt();
     const std::string number = std::to_string(++last_number_);
     const bool taken = child_.send(number + " " + command);
     const double time = timeout_ + kMaxDurationFactor * duration;
     max_duration_ = command.starts_with("move ") ? time : std::max(time, kMaxSimulatedTime);
     std::string line;
-    switch (child_.receive(taken ? time : 0, line)) {
+    switch (receive(taken ? time : 0, line)) {
     case ChildProcess::Received::timeout:
         if (taken) fail("does not answer '" + command + "' within " + core::to_short_text(time) + " s");
         [[fallthrough]];

@@ -19,6 +19,8 @@ namespace fettle::gantry {
 /// go forward in time, by no more than the move takes, move no farther than the machine is fast, end at the target of
 /// the move, and report a force and a deflection that agree. At the first violation the machine is stopped, the driver
 /// is terminated, and GantryFault names the driver and the fault.
+///
+/// An interruption sends `halt` while the command is under way. A driver that does not know it ends its move first.
 class DriverGantry final : public Gantry {
   public:
     /// Connects, sends the head's F_max, and homes: the head turns to θ.
@@ -40,6 +42,7 @@ class DriverGantry final : public Gantry {
     double touch_off() override;
     void change_wheel() override;
     double probe(const Eigen::Vector2d& xy, double lowest) override;
+    void turn_to(double theta) override;
     GantryStatus status() const override { return status_; }
     const protocol::Limits& limits() const { return limits_; }
 
@@ -47,6 +50,9 @@ class DriverGantry final : public Gantry {
     void connect(const job::Job& job);
     void set_limit(double force);
     std::string request(const std::string& command, double duration);
+    ChildProcess::Received receive(double timeout, std::string& line);
+    [[noreturn]] void halt(double timeout);
+    bool receive_answer_of_halt(const std::string& number, double timeout);
     double measure(const std::string& command, double duration);
     void execute(const std::string& command, double duration);
     const GantryStatus& move(const std::string& command, const Eigen::Vector3d& target, double duration, bool guarded);

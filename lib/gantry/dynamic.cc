@@ -264,6 +264,7 @@ void DynamicGantry::move_reference(const Eigen::Vector3d& velocity)
     simulate_period();
     reference_.p += (reference_.v + velocity) / 2 * machine_.period;
     reference_.v = velocity;
+    check_interrupt();
 }
 
 } // namespace fettle::gantry

@@ -4,12 +4,23 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
+#include <exception>
+#include <functional>
+#include <utility>
+
 namespace fettle::gantry {
 
 /// The machine has stopped for good: a drive cannot follow, the spindle stalls, the driver has died. One line.
 class GantryFault : public core::InputError {
   public:
     using core::InputError::InputError;
+};
+
+/// The operator has stopped the machine in a move, or before one. Nothing is wrong: it can be moved again.
+class Interrupted : public std::exception {
+  public:
+    const char* what() const noexcept override { return "stopped by the operator"; }
 };
 
 /// State that the machine reports: positions in the machine frame M, mm, N, s.
@@ -21,9 +32,12 @@ struct GantryStatus {
     double peak_force = 0; ///< the largest during the move
 };
 
+/// Tells a machine that moves whether it has to stop. @param now  the last known state
+using Interrupt = std::function<bool(const GantryStatus& now)>;
+
 /// A machine that carries the wheel. The tool point is the lowest point of the wheel, at the middle of its width.
 /// strategy/ uses this interface and knows no machine; a gantry knows no strategy. Every method that moves may throw
-/// GantryFault.
+/// GantryFault, and Interrupted.
 class Gantry {
   public:
     virtual ~Gantry() = default;
@@ -50,12 +64,48 @@ class Gantry {
     /// @param lowest  lower bound of the tip's z
     /// @return  z of the tip's lowest point at the touch; NaN if it met nothing
     virtual double probe(const Eigen::Vector2d& xy, double lowest) = 0;
+    /// Turns the head at the safe height, so that the wheel's axis is at θ, rad. A machine that cannot throws
+    /// GantryFault.
+    virtual void turn_to(double theta);
     virtual GantryStatus status() const = 0;
+
+    /// Lets the operator stop the machine: `interrupt` is asked before each move, and during it as often as the machine
+    /// can. Where it returns true the move ends at once with Interrupted, and nothing is asked until this is called
+    /// again: retract() can lift the wheel.
+    void set_interrupt(Interrupt interrupt) { interrupt_ = std::move(interrupt); }
+
+  protected:
+    /// True once, if the operator stops the machine.
+    bool is_interrupted()
+    {
+        if (!interrupt_ || !interrupt_(status())) return false;
+        interrupt_ = nullptr;
+        return true;
+    }
+    void check_interrupt()
+    {
+        if (is_interrupted()) throw Interrupted();
+    }
+
+  private:
+    Interrupt interrupt_;
 };
+
+/// Lifts the wheel off the part after an interruption, no higher than the safe height: by the spring's deflection and a
+/// clearance, so that it is off at once. @throws GantryFault
+inline GantryStatus retract(Gantry& gantry, double safe_height)
+{
+    constexpr double kClearance = 2; // mm: more than the drives of a machine overshoot
+    const GantryStatus now = gantry.status();
+    const double free = now.commanded.z() + now.deflection + kClearance;
+    return gantry.lift(std::max(std::min(free, safe_height), now.commanded.z()));
+}
 
 inline GantryStatus Gantry::press(const Eigen::Vector3d& /*tool_point*/, double /*feed*/, double /*force*/)
 {
     throw GantryFault("the machine cannot hold a force");
 }
+
+inline void Gantry::turn_to(double /*theta*/) { throw GantryFault("the machine cannot turn its head"); }
 
 } // namespace fettle::gantry

@@ -5,7 +5,6 @@
 #include "gantry/driver.h"
 #include "gantry/make_virtual.h"
 #include "job/plausible.h"
-#include "sampling/scan.h"
 
 namespace fettle::gantry {
 namespace {
@@ -45,8 +44,11 @@ const double& declare_removal_factor(cli::Tool& tool)
                        core::Range::between(1 / kMaxFactor, kMaxFactor));
 }
 
-StockOptions::StockOptions(cli::Tool& tool)
-    : file(tool.required_file_option("--stock", "PART", "The part as it is: STL, PLY, OBJ or PCD")),
+StockOptions::StockOptions(cli::Tool& tool, bool is_required)
+    : file(is_required ? tool.required_file_option("--stock", "PART", "The part as it is: STL, PLY, OBJ or PCD")
+                       : tool.optional_file("--stock", "PART",
+                                            "The part as it is, STL, PLY, OBJ or PCD: beneath a virtual gantry; of a "
+                                            "driver's machine if it is known")),
       unit(tool.length_unit("--stock-units", "Unit of PART, if it is not the job's")),
       cell(tool.optional_number("--cell", "LENGTH", "Side of a cell of the stock; default: 1/64 of the wheel's width",
                                 core::Range::positive()))
@@ -55,20 +57,25 @@ StockOptions::StockOptions(cli::Tool& tool)
 
 Stock read_stock(const StockOptions& options, const job::Job& job, removal::Extent extent)
 {
-    const sampling::Scan scan = sampling::read_scan(options.file, job.units, options.unit);
+    return stock_of_part(sampling::read_scan(options.file, job.units, options.unit), options, job, extent);
+}
+
+Stock stock_of_part(const sampling::Scan& part, const StockOptions& options, const job::Job& job,
+                    removal::Extent extent)
+{
     const std::string source = core::display_name(options.file);
     const double cell = stock_cell_size(job, options.cell ? *options.cell * job.units.mm() : 0);
     if (cell > job.wheel.width)
         throw core::InputError("--cell", core::to_short_text(cell / job.units.mm()) + " is wider than the wheel, " +
                                              core::to_short_text(job.wheel.width / job.units.mm()));
     std::vector<std::string> warnings;
-    if (const std::string doubt = job::part_box_warning(scan.bounds(), job); !doubt.empty())
+    if (const std::string doubt = job::part_box_warning(part.bounds(), job); !doubt.empty())
         warnings.push_back(source + ": " + doubt);
-    const Eigen::Index dropped = scan.dropped_triangles();
+    const Eigen::Index dropped = part.dropped_triangles();
     if (dropped > 0)
         warnings.push_back(source +
                            ": facets with vertices that are not finite are left out: " + std::to_string(dropped));
-    return {removal::stock_from_scan(scan, job, cell, source, extent), warnings, dropped};
+    return {removal::stock_from_scan(part, job, cell, source, extent), warnings, dropped};
 }
 
 OpenGantry open_gantry(const GantryOptions& options, const job::Job& job, const removal::HeightField& stock,

@@ -5,6 +5,7 @@
 #include "gantry/virtual_gantry.h"
 #include "job/job.h"
 #include "removal/height_field.h"
+#include "sampling/scan.h"
 
 #include <cstdint>
 #include <memory>
@@ -42,7 +43,8 @@ const double& declare_removal_factor(cli::Tool& tool);
 
 /// The options that name the part on a machine.
 struct StockOptions {
-    explicit StockOptions(cli::Tool& tool);
+    /// @param is_required  false: a driver's part may be unknown
+    explicit StockOptions(cli::Tool& tool, bool is_required = true);
 
     const std::string& file;                         ///< --stock
     const std::optional<units::Units::Length>& unit; ///< --stock-units
@@ -58,6 +60,9 @@ struct Stock {
 /// Reads the part as a height field.
 /// @throws InputError as read_scan() and stock_from_scan(), or for cells wider than the wheel
 Stock read_stock(const StockOptions& options, const job::Job& job, removal::Extent extent);
+/// The same of a part that has been read. @param part  of options.file
+Stock stock_of_part(const sampling::Scan& part, const StockOptions& options, const job::Job& job,
+                    removal::Extent extent);
 
 /// A machine that can be moved.
 struct OpenGantry {

@@ -1,9 +1,8 @@
 #include "gantry/linuxcnc.h"
 
-#include "core/fixed_text.h"
+#include "gantry/linuxcnc_words.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 #include <thread>
 
@@ -13,18 +12,10 @@ namespace {
 /// Period of the servo thread.
 constexpr std::chrono::milliseconds kPollPeriod{1};
 /// Descent to the work: at 20 mm/s a slow axis of 1000 mm/s² stops within 0.2 mm.
-constexpr double kDescentSpeed = 20; // mm/s
-/// Speeds of the search for the surface, and of the touch that is measured: 0.0005 mm in a period of the servo thread.
-constexpr double kSearchSpeed = 10, kTouchSpeed = 0.5; // mm/s
-constexpr double kRetract = 0.5;                       // after the first touch, mm
-constexpr double kPlateClearance = 3;                  // start of the search above P0, more than the wheel's wear, mm
-constexpr double kBlendTolerance = 0.01;               // of a blended corner (G64 P), mm
-constexpr double kPositionTolerance = 1e-4;            // mm
-constexpr double kContactShare = 0.1;                  // of the desired deflection, that counts as a contact
-
-std::string word(const char* name, double value) { return std::string(" ") + name + core::to_fixed_text(value, 5); }
-
-std::string feed_word(double mm_per_s) { return word("F", 60 * mm_per_s); }
+constexpr double kDescentSpeed = 20;        // mm/s
+constexpr double kBlendTolerance = 0.01;    // of a blended corner (G64 P), mm
+constexpr double kPositionTolerance = 1e-4; // mm
+constexpr double kContactShare = 0.1;       // of the desired deflection, that counts as a contact
 
 } // namespace
 
@@ -41,8 +32,14 @@ LinuxcncGantry::LinuxcncGantry(const std::string& ini, const job::Job& job)
     link_.enable();
     update_status();
     raise_to(job_.safe_height);
-    run("G0" + word("C", job.theta * 180 / std::numbers::pi));
-    update_status();
+    turn_to(job.theta);
+}
+
+void LinuxcncGantry::turn_to(double theta)
+{
+    finish_motion();
+    raise_to(job_.safe_height);
+    run("G0" + word("C", theta * 180 / std::numbers::pi));
 }
 
 protocol::Limits LinuxcncGantry::limits() const
@@ -105,8 +102,7 @@ void LinuxcncGantry::approach_part(double deflection, double lowest)
     link_.set_press(true, deflection, lowest);
     link_.set_hold(true);
     do {
-        std::this_thread::sleep_for(kPollPeriod);
-        update_status();
+        wait_a_period();
         link_.done(); // for faults
     } while (status_.deflection < kContactShare * deflection && link_.drives().z() > lowest + kPositionTolerance);
 }
@@ -125,8 +121,7 @@ void LinuxcncGantry::step_to(const Eigen::Vector3d& end, const std::string& word
     // With blended corners LinuxCNC brakes at half of the acceleration.
     const double ahead = feed * feed / acceleration_ + feed * latency_;
     for (bool done = false; !done && remaining_path_length() > ahead;) {
-        std::this_thread::sleep_for(kPollPeriod);
-        update_status();
+        wait_a_period();
         if (link_.held() && !pressing_) { // under force control Z yields, and the motion continues
             const double force = status_.peak_force;
             link_.abort();
@@ -140,57 +135,15 @@ void LinuxcncGantry::step_to(const Eigen::Vector3d& end, const std::string& word
     }
 }
 
-double LinuxcncGantry::touch_off()
-{
-    finish_motion();
-    update_status();
-    const Eigen::Vector2d xy = status_.commanded.head<2>();
-    travel_over(plate_.head<2>());
-    run("G0" + word("Z", plate_.z() + kPlateClearance));
-    const double z = touch_down(plate_.z() - new_radius_);
-    if (std::isnan(z)) throw GantryFault("the calibration plate was not found at its position");
-    measured_radius_ = z + new_radius_ - plate_.z();
-    travel_over(xy);
-    return measured_radius_;
-}
-
 void LinuxcncGantry::change_wheel()
 {
     finish_motion();
     raise_to(job_.safe_height);
-    wheel_ = 3 - wheel_;
-    run("T" + std::to_string(wheel_) + " M6");
+    const int other = 3 - wheel_;
+    run("T" + std::to_string(other) + " M6");
+    wheel_ = other;
     measured_radius_ = new_radius_;
     raise_to(job_.safe_height);
-}
-
-double LinuxcncGantry::probe(const Eigen::Vector2d& xy, double lowest)
-{
-    finish_motion();
-    travel_over(xy);
-    link_.set_tip(true);
-    const double z = touch_down(lowest);
-    raise_to(job_.safe_height);
-    link_.set_tip(false);
-    update_status();
-    return z;
-}
-
-/// Searches for a contact downwards; then touches again, slowly. @return  z of the machine; NaN: no contact
-double LinuxcncGantry::touch_down(double lowest)
-{
-    link_.set_touch(true);
-    run("G61 G38.3" + word("Z", lowest) + feed_word(kSearchSpeed));
-    blending_ = false;
-    double z = link_.touched();
-    link_.set_touch(false);
-    if (std::isnan(z)) return z;
-    run("G0" + word("Z", z + kRetract));
-    link_.set_touch(true);
-    run("G38.2" + word("Z", z - kRetract) + feed_word(kTouchSpeed));
-    z = link_.touched() + touch_deflection_;
-    link_.set_touch(false);
-    return z;
 }
 
 void LinuxcncGantry::travel_over(const Eigen::Vector2d& xy)
@@ -216,8 +169,7 @@ void LinuxcncGantry::lower_to(double z)
     link_.send_gcode("G61 G1" + word("Z", end) + feed_word(kDescentSpeed));
     blending_ = false;
     while (!link_.done()) {
-        std::this_thread::sleep_for(kPollPeriod);
-        update_status();
+        wait_a_period();
         if (!link_.held()) continue;
         link_.abort();
         break;
@@ -230,8 +182,7 @@ void LinuxcncGantry::run(const std::string& line)
 {
     link_.send_gcode(line);
     while (!link_.done()) {
-        std::this_thread::sleep_for(kPollPeriod);
-        update_status();
+        wait_a_period();
     }
     update_status();
 }
@@ -240,7 +191,7 @@ void LinuxcncGantry::run(const std::string& line)
 void LinuxcncGantry::finish_motion()
 {
     while (!path_.empty() && !link_.done()) {
-        std::this_thread::sleep_for(kPollPeriod);
+        wait_a_period();
         if (link_.held() && !pressing_) link_.abort();
     }
     path_.clear();
@@ -258,6 +209,25 @@ void LinuxcncGantry::end_press()
         link_.done(); // for faults
     }
     pressing_ = false;
+}
+
+/// Waits while the machine moves. @throws Interrupted
+void LinuxcncGantry::wait_a_period()
+{
+    std::this_thread::sleep_for(kPollPeriod);
+    update_status();
+    if (is_interrupted()) end_motion();
+}
+
+/// Brakes for the operator.
+void LinuxcncGantry::end_motion()
+{
+    link_.abort();
+    link_.set_touch(false);
+    path_.clear();
+    if (pressing_) end_press(); // Z goes up by itself
+    update_status();
+    throw Interrupted();
 }
 
 void LinuxcncGantry::update_status()

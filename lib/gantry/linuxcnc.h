@@ -30,10 +30,13 @@ class LinuxcncGantry final : public Gantry {
     double touch_off() override;
     void change_wheel() override;
     double probe(const Eigen::Vector2d& xy, double lowest) override;
+    void turn_to(double theta) override;
     GantryStatus status() const override { return status_; }
 
   private:
     void update_status();
+    void wait_a_period();
+    [[noreturn]] void end_motion();
     void run(const std::string& line);
     void finish_motion();
     void approach_part(double deflection, double lowest);

@@ -7,7 +7,7 @@
 #include <cerrno>
 #include <cmath>
 #include <csignal>
-#include <optional>
+#include <poll.h>
 
 namespace fettle::gantry {
 namespace {
@@ -17,18 +17,69 @@ constexpr double kAngleTolerance = 1e-9; // rad; rounding of its text
 constexpr double kMinFeed = 1e-6; // mm/s
 constexpr std::size_t kMaxLineLength = 4096;
 
+/// The client's lines.
+class Lines {
+  public:
+    explicit Lines(const core::FileDescriptor& in) : in_(in) {}
+
+    enum class Got { line, end, too_long };
+    Got next(std::string& line)
+    {
+        for (;;) {
+            const std::size_t end = pending_.find('\n');
+            if (end != std::string::npos) {
+                line = pending_.substr(0, end);
+                pending_.erase(0, end + 1);
+                return Got::line;
+            }
+            if (pending_.size() > kMaxLineLength) return Got::too_long;
+            if (!read()) return Got::end;
+        }
+    }
+
+    /// Has the client sent `halt` while a command is under way? Reads what has come, and keeps it.
+    bool halt_has_come()
+    {
+        pollfd readable{in_.get(), POLLIN, 0};
+        if (pending_.size() <= kMaxLineLength && ::poll(&readable, 1, 0) > 0) read();
+        std::string_view rest = pending_;
+        for (std::size_t end = rest.find('\n'); end != std::string_view::npos; end = rest.find('\n')) {
+            std::string_view line = rest.substr(0, end);
+            protocol::next_word(line); // its number
+            if (line == "halt") return true;
+            rest.remove_prefix(end + 1);
+        }
+        return false;
+    }
+
+  private:
+    bool read()
+    {
+        char buffer[4096];
+        const ssize_t n = core::read_some(in_, buffer, sizeof buffer);
+        if (n > 0) pending_.append(buffer, n);
+        return n > 0;
+    }
+
+    const core::FileDescriptor& in_;
+    std::string pending_;
+};
+
 class Server {
   public:
-    Server(Gantry& gantry, const protocol::Limits& limits, const job::Job& job)
-        : gantry_(gantry), limits_(limits), job_(job)
+    Server(Gantry& gantry, const protocol::Limits& limits, const job::Job& job, Lines& lines)
+        : gantry_(gantry), limits_(limits), job_(job), theta_(job.theta), lines_(lines)
     {
     }
 
     /// @return  the answer, without number
     std::string answer(std::string_view line)
     {
+        gantry_.set_interrupt([this](const GantryStatus& /*now*/) { return lines_.halt_has_come(); });
         try {
             return "ok " + execute(protocol::next_word(line), line);
+        } catch (const Interrupted& stop) {
+            return std::string("error ") + stop.what();
         } catch (const std::runtime_error& error) { // a fault of the machine, or a malformed command
             return std::string("error ") + error.what();
         }
@@ -44,7 +95,17 @@ class Server {
     }
 
   private:
-    GantryStatus retract() { return gantry_.lift(std::max(job_.safe_height, gantry_.status().commanded.z())); }
+    GantryStatus retract()
+    {
+        gantry_.set_interrupt({});
+        return gantry_.lift(std::max(job_.safe_height, gantry_.status().commanded.z()));
+    }
+
+    std::string halt()
+    {
+        gantry_.set_interrupt({});
+        return protocol::to_line(gantry::retract(gantry_, job_.safe_height));
+    }
 
     std::string execute(std::string_view command, std::string_view rest)
     {
@@ -88,6 +149,7 @@ class Server {
             gantry_.change_wheel();
             return protocol::to_line(gantry_.status());
         }
+        if (command == "halt") return halt();
         if (command == "stop" || command == "quit") {
             ended_ = true;
             return protocol::to_line(retract());
@@ -114,16 +176,18 @@ class Server {
         return core::to_text(force);
     }
 
-    std::string home(double theta) const
+    std::string home(double theta)
     {
-        if (std::abs(theta - job_.theta) > kAngleTolerance)
-            throw GantryFault("the head stands at " + core::to_text(job_.theta) + " rad");
+        if (std::abs(theta - theta_) > kAngleTolerance) gantry_.turn_to(theta);
+        theta_ = theta;
         return protocol::to_line(gantry_.status());
     }
 
     Gantry& gantry_;
     const protocol::Limits& limits_;
     const job::Job& job_;
+    double theta_; ///< of the head, rad
+    Lines& lines_;
     bool ended_ = false;
 };
 
@@ -134,23 +198,16 @@ void serve(Gantry& gantry, const protocol::Limits& limits, const job::Job& job, 
 {
     // The client may be gone before the answer; the head has to be raised nevertheless.
     std::signal(SIGPIPE, SIG_IGN);
-    Server server(gantry, limits, job);
-    std::string pending;
-    char buffer[4096];
+    Lines lines(in);
+    Server server(gantry, limits, job, lines);
+    std::string line;
     while (!server.ended()) {
-        const std::size_t end = pending.find('\n');
-        if (end == std::string::npos) {
-            if (pending.size() > kMaxLineLength) {
-                server.retract_ignoring_faults();
-                throw core::InputError("stdin", "a line of more than " + std::to_string(kMaxLineLength) + " bytes");
-            }
-            const ssize_t n = core::read_some(in, buffer, sizeof buffer);
-            if (n <= 0) return server.retract_ignoring_faults();
-            pending.append(buffer, n);
-            continue;
+        const Lines::Got got = lines.next(line);
+        if (got != Lines::Got::line) {
+            server.retract_ignoring_faults();
+            if (got == Lines::Got::end) return;
+            throw core::InputError("stdin", "a line of more than " + std::to_string(kMaxLineLength) + " bytes");
         }
-        const std::string line = pending.substr(0, end);
-        pending.erase(0, end + 1);
         std::string_view rest = line;
         const std::string number(protocol::next_word(rest));
         if (core::write_all(out, number + " " + server.answer(rest) + "\n")) continue;

@@ -10,11 +10,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace fettle::gantry {
 namespace {
 
 const std::string kGantry = "gantry:exec:";
+/// Places of touches that were written to a file and read again are equal but for rounding.
+constexpr double kSamePlace = 1e-6; // mm
 
 double search_limit(const job::Job& job)
 {
@@ -29,7 +32,9 @@ double search_limit(const job::Job& job)
 
 } // namespace
 
-GantryProbe::GantryProbe(Gantry& gantry, const job::Job& job) : gantry_(gantry), job_(job), lowest_(search_limit(job))
+GantryProbe::GantryProbe(Gantry& gantry, const job::Job& job, std::vector<Eigen::Vector3d> known,
+                         std::function<void(const Eigen::Vector3d&)> touched)
+    : gantry_(gantry), job_(job), lowest_(search_limit(job)), touches_(std::move(known)), touched_(std::move(touched))
 {
 }
 
@@ -41,6 +46,7 @@ Eigen::Matrix3Xd GantryProbe::operator()(const sampling::TouchPlan& plan)
     for (const Eigen::Index i : sampling::short_probing_path(plan.xy(Eigen::all, new_points))) {
         const Eigen::Vector2d xy = plan.xy.col(new_points[i]);
         touches_.emplace_back(xy.x(), xy.y(), gantry_.probe(xy, lowest_));
+        if (touched_) touched_(touches_.back());
     }
     Eigen::Matrix3Xd touches(3, plan.size());
     for (Eigen::Index i = 0; i < plan.size(); ++i) touches.col(i) = *find_touch(plan.xy.col(i));
@@ -52,7 +58,8 @@ Eigen::Matrix3Xd GantryProbe::operator()(const sampling::TouchPlan& plan)
 
 const Eigen::Vector3d* GantryProbe::find_touch(const Eigen::Vector2d& xy) const
 {
-    const auto at = std::ranges::find_if(touches_, [&](const auto& touch) { return touch.head(2) == xy; });
+    const auto at =
+        std::ranges::find_if(touches_, [&](const auto& touch) { return (touch.head(2) - xy).norm() <= kSamePlace; });
     return at == touches_.end() ? nullptr : &*at;
 }
 

@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -20,8 +21,11 @@ namespace fettle::gantry {
 class GantryProbe {
   public:
     /// Searches for the surface down to as far below the lowest boundary point as the safe height is above it.
+    /// @param known    touches of an earlier probe: lowest points of the tip; they are not made again
+    /// @param touched  called after each touch with such a point; may be empty
     /// @throws InputError if no boundary point has a z
-    GantryProbe(Gantry& gantry, const job::Job& job);
+    GantryProbe(Gantry& gantry, const job::Job& job, std::vector<Eigen::Vector3d> known = {},
+                std::function<void(const Eigen::Vector3d&)> touched = {});
 
     /// Result as that of probe() (sampling/probe.h) on a scan. New points are probed in the order of a short path.
     /// @throws GantryFault
@@ -34,6 +38,7 @@ class GantryProbe {
     const job::Job& job_;
     double lowest_;                        ///< z, mm
     std::vector<Eigen::Vector3d> touches_; ///< lowest points of the tip; z is NaN where it met nothing
+    std::function<void(const Eigen::Vector3d&)> touched_;
 };
 
 /// The part to be probed: a scan, or the part on a machine.

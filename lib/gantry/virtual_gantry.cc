@@ -54,6 +54,11 @@ double VirtualGantry::probe(const Eigen::Vector2d& xy, double lowest)
     return touched ? round_to_resolution(height) : std::numeric_limits<double>::quiet_NaN();
 }
 
+void VirtualGantry::turn_to(double theta)
+{
+    if (theta != stock_.theta) throw GantryFault("the head stands at " + core::to_text(stock_.theta) + " rad");
+}
+
 double VirtualGantry::round_to_resolution(double length) const
 {
     return std::round(length / options_.touch_resolution) * options_.touch_resolution;

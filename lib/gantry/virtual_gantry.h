@@ -55,6 +55,8 @@ class VirtualGantry : public Gantry {
     double touch_off() override;
     void change_wheel() override;
     double probe(const Eigen::Vector2d& xy, double lowest) override;
+    /// The cells of the stock lie along the wheel's axis. @throws GantryFault for another θ
+    void turn_to(double theta) override;
     GantryStatus status() const override { return status_; }
 
     virtual protocol::Limits limits() const = 0;
@@ -72,7 +74,12 @@ class VirtualGantry : public Gantry {
                   const removal::RimForce& rim);
 
     virtual void go_to_safe_height() = 0;
-    void begin_move() { status_.peak_force = status_.force; }
+    /// @throws Interrupted
+    void begin_move()
+    {
+        check_interrupt();
+        status_.peak_force = status_.force;
+    }
     /// Wears the wheel by the grinding ratio. @throws InputError if nothing is left of it
     void wear(double removed_volume);
     void advance_time(double duration, TimeBucket bucket);

@@ -25,6 +25,7 @@ enum class Event {
     wheel_change = 11, ///< a new wheel (run.h)
     fault = 12,        ///< the machine stopped (run.h)
     in_progress = 13,  ///< the action was started, its result is not known (trace_file.h)
+    stopped = 14,      ///< the operator stopped the machine; the wheel was lifted (run.h)
 };
 
 /// A point of the staircase: index of the pass, and of the point in it.

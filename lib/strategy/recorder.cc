@@ -52,6 +52,13 @@ const gantry::GantryStatus& Recorder::lift(const Mark& mark, double commanded_z)
     return act(mark, target, 0, [&] { set_status(gantry_.lift(commanded_z)); });
 }
 
+void Recorder::retract(const Mark& mark, double safe_height)
+{
+    set_status(gantry::retract(gantry_, safe_height));
+    record(mark, 0);
+    lift(mark, safe_height);
+}
+
 double Recorder::touch_off(const Mark& mark)
 {
     act(mark, status_.commanded, 0, [&] {

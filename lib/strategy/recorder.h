@@ -49,6 +49,8 @@ class Recorder {
     const gantry::GantryStatus& press(const Mark& mark, const Eigen::Vector3d& tool_point, double feed, double force);
     const gantry::GantryStatus& lift(const Mark& mark, double commanded_z);
     double touch_off(const Mark& mark);
+    /// After an interruption: lifts the wheel off the part, then to the safe height; a row for each.
+    void retract(const Mark& mark, double safe_height);
     void change_wheel(const Mark& mark);
     /// Records a decision that moves nothing.
     void decide(const Mark& mark);

@@ -38,9 +38,11 @@ class Runner {
             machine_.decide(mark(action, action.event));
             result_.failure = strategy_.failure();
             result_.finished = action.kind == Action::Kind::finish;
+        } catch (const gantry::Interrupted& stop) {
+            result_.failure = stop.what();
+            retract(action);
         } catch (const gantry::GantryFault& fault) {
-            machine_.record_fault(mark(action, Event::fault));
-            result_.failure = fault.what();
+            fail(action, fault);
         }
         result_.counts = strategy_.counts();
         result_.trace = machine_.trace();
@@ -57,12 +59,29 @@ class Runner {
 
     static Recorder::Mark mark(const Action& action, Event event) { return {action.layer, action.to.pass + 1, event}; }
 
+    void fail(const Action& action, const gantry::GantryFault& fault)
+    {
+        machine_.record_fault(mark(action, Event::fault));
+        result_.failure = fault.what();
+    }
+
+    void retract(const Action& action)
+    {
+        try {
+            machine_.retract(mark(action, Event::stopped), plan_.job.safe_height);
+            result_.stopped = true;
+        } catch (const gantry::GantryFault& fault) {
+            fail(action, fault);
+        }
+    }
+
     /// @param action  the last one when the strategy is done, or the machine has stopped
     void grind_until_done(Action& action, const core::Progress& progress)
     {
         while (action.kind != Action::Kind::finish && action.kind != Action::Kind::fail) {
             measure_wheel_if_due(action);
             perform(action);
+            if (options_.watch) options_.watch(machine_.trace().back());
             if (strategy_.counts().steps % kStepsPerProgress == 0)
                 core::report_progress(progress, double(action.to.pass) / double(path_.passes().size()));
             const gantry::GantryStatus& status = machine_.status();

@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -47,12 +48,14 @@ struct RunOptions {
     /// The stock as far as it is known, at the end of `previous_trace`: a head that does not feel it ends the run
     /// (contact_watch.h). nullptr for a simulated machine, whose head feels what it meets.
     const removal::HeightField* known_stock = nullptr;
+    std::function<void(const TraceRow&)> watch; ///< called after each action with its row; may be empty
 };
 
 /// Result of a run.
 struct GrindRun {
     bool finished = false;
-    std::string failure; ///< the limit that was reached, and the state; or the machine's fault
+    bool stopped = false; ///< by the operator (gantry::Interrupted): the wheel is at the safe height
+    std::string failure;  ///< the limit that was reached, and the state; or the machine's fault
     StrategyCounts counts;
     double peak_force = 0;   ///< N
     double wheel_radius = 0; ///< last measured, mm

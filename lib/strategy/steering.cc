@@ -12,50 +12,115 @@
 #include <cstring>
 #include <fcntl.h>
 #include <limits>
+#include <poll.h>
 #include <sys/stat.h>
+#include <utility>
 
 namespace fettle::strategy {
 namespace {
 
 constexpr std::size_t kMaxLineLength = 4096;
 
+bool is_joystick(const core::FileDescriptor& file)
+{
+    struct stat status = {};
+    char axes = 0;
+    return ::fstat(file.get(), &status) == 0 && S_ISCHR(status.st_mode) && ::ioctl(file.get(), JSIOCGAXES, &axes) == 0;
+}
+
+/// The button that a line of steering names; none for other words.
+Button parse_button(std::string_view word)
+{
+    const auto at = std::ranges::find(kButtonWords, word);
+    return at == kButtonWords.end() ? Button::none : Button(at - kButtonWords.begin() + 1);
+}
+
 } // namespace
 
-Steering::Steering(const std::string& path)
+Steering::Steering(const std::string& path, const std::string& joystick)
     : path_(core::display_name(path)),
       file_(path == "-" ? ::dup(STDIN_FILENO) : ::open(path.c_str(), O_RDONLY | O_CLOEXEC))
 {
     if (!file_.is_open()) throw core::InputError(path_, std::string("cannot open: ") + std::strerror(errno));
-    struct stat status = {};
-    char axes = 0;
-    live_ =
-        ::fstat(file_.get(), &status) == 0 && S_ISCHR(status.st_mode) && ::ioctl(file_.get(), JSIOCGAXES, &axes) == 0;
-    if (live_)
-        ::fcntl(file_.get(), F_SETFL, O_NONBLOCK);
+    if (is_joystick(file_))
+        joystick_ = std::move(file_);
     else if (::isatty(file_.get()) != 0)
         keys_ = std::make_unique<Keys>(file_.get());
     else
         read_next();
-    live_ = live_ || keys_;
+    if (!joystick.empty()) {
+        if (!keys_) throw core::InputError(joystick, "a joystick beside the keys of a terminal, not beside " + path_);
+        joystick_ = core::FileDescriptor(::open(joystick.c_str(), O_RDONLY | O_CLOEXEC));
+        if (!joystick_.is_open()) throw core::InputError(joystick, std::string("cannot open: ") + std::strerror(errno));
+        if (!is_joystick(joystick_)) throw core::InputError(joystick, "is no joystick");
+    }
+    if (joystick_.is_open()) ::fcntl(joystick_.get(), F_SETFL, O_NONBLOCK);
+    live_ = joystick_.is_open() || keys_;
 }
 
 Steering::~Steering() = default;
 
 const Stick& Steering::at(double time)
 {
-    const bool pushed = now_.button != Button::none;
     now_.button = Button::none;
-    if (keys_)
-        keys_->update(time, now_);
-    else if (live_)
-        read_device();
-    else if (pushed)
-        read_next(); // only now: the writer of a pipe may wait for the effect of the push
-    while (!live_ && time >= next_time_ && !now_.end && now_.button == Button::none) {
+    if (live_)
+        update_live(time);
+    else if (is_applied_ && !now_.end)
+        read_next(); // only now: the writer of a pipe may wait for the effect of a push
+    while (!live_ && !is_applied_ && time >= next_time_) {
         now_ = next_;
+        is_applied_ = true;
         if (!now_.end && now_.button == Button::none) read_next();
     }
     return now_;
+}
+
+/// The joystick, where it is deflected or pushed, and the keys else.
+void Steering::update_live(double time)
+{
+    if (keys_) keys_->update(time, now_);
+    if (!joystick_.is_open()) return;
+    read_device();
+    now_.end = now_.end || device_.end;
+    if (!keys_ || device_.direction.norm() > 0) now_.direction = device_.direction;
+    if (!keys_) now_.on_part = device_.on_part;
+    const auto stop = std::ranges::find(pushed_, Button::stop);
+    if (stop != pushed_.end()) pushed_.erase(pushed_.begin(), stop);
+    if (now_.button != Button::none || pushed_.empty()) return;
+    now_.button = pushed_.front();
+    pushed_.pop_front();
+}
+
+bool Steering::stop_due(double time)
+{
+    if (!live_) return line_is_stop(time);
+    if (joystick_.is_open()) read_device();
+    return device_.end || std::ranges::find(pushed_, Button::stop) != pushed_.end() || (keys_ && keys_->has_stop());
+}
+
+/// A line that moves the stick is passed over, and no line is waited for.
+bool Steering::line_is_stop(double time)
+{
+    if (is_applied_ && !now_.end && has_line()) read_next();
+    while (!is_applied_ && time >= next_time_ && next_.button == Button::none && !next_.end) {
+        now_ = next_;
+        is_applied_ = true;
+        if (has_line()) read_next();
+    }
+    return !is_applied_ && next_.button == Button::stop && time >= next_time_;
+}
+
+bool Steering::has_line() const
+{
+    pollfd readable{file_.get(), POLLIN, 0};
+    return pending_.find('\n') != std::string::npos || ::poll(&readable, 1, 0) > 0;
+}
+
+void Steering::discard()
+{
+    if (joystick_.is_open()) read_device();
+    pushed_.clear();
+    if (keys_) keys_->discard();
 }
 
 bool Steering::next_line(std::string& line)
@@ -82,6 +147,7 @@ bool Steering::next_line(std::string& line)
 void Steering::read_next()
 {
     std::string line;
+    is_applied_ = false;
     if (!next_line(line)) {
         next_ = {};
         next_.end = true;
@@ -93,7 +159,8 @@ void Steering::read_next()
         if (!value || !(*value > -std::numeric_limits<double>::infinity() && *value < 1e9))
             throw core::InputError(
                 path_, "line " + std::to_string(lines_) + ": " + core::in_quotes(line) +
-                           " is none of \"TIME X Y\", \"TIME X Y up\", \"TIME record\", \"TIME next\", \"TIME end\"");
+                           " is none of \"TIME X Y\", \"TIME X Y up\", \"TIME end\", \"TIME BUTTON\" with " +
+                           core::join({kButtonWords.begin(), kButtonWords.end()}, ", "));
         return *value;
     };
     const double time = number(0);
@@ -104,7 +171,7 @@ void Steering::read_next()
     next_ = {};
     if (parts.size() == 2) {
         next_.end = parts[1] == "end";
-        next_.button = parts[1] == "record" ? Button::record : parts[1] == "next" ? Button::next : Button::none;
+        next_.button = parse_button(parts[1]);
         if (next_.end || next_.button != Button::none) return;
     }
     // Both are read first: number() may throw, and an assignment must not be left half done.
@@ -117,9 +184,12 @@ void Steering::read_next()
 void Steering::read_device()
 {
     js_event event = {};
-    while (now_.button == Button::none && ::read(file_.get(), &event, sizeof event) == sizeof event)
-        apply_event(event, now_);
-    if (now_.button == Button::none && errno != EAGAIN) now_.end = true; // it was unplugged
+    while (::read(joystick_.get(), &event, sizeof event) == sizeof event) {
+        apply_event(event, device_);
+        if (const Button button = std::exchange(device_.button, Button::none); button != Button::none)
+            pushed_.push_back(button);
+    }
+    if (errno != EAGAIN) device_.end = true; // it was unplugged
 }
 
 } // namespace fettle::strategy

@@ -8,51 +8,76 @@
 #include <vector>
 
 namespace fettle::strategy {
-namespace {
 
-/// Between two readings of the stick: a machine that answers within some ms can follow.
-constexpr double kPeriod = 0.02; // s
+double SteeringClock::advance(double period)
+{
+    const auto change = steering.next_change();
+    const bool ends = change && *change - time <= period; // a step ends when the stick is moved
+    const double duration = ends ? *change - time : period;
+    time = ends ? *change : time + period;
+    return duration;
+}
 
-} // namespace
+void SteeringClock::rest(double period)
+{
+    if (const auto next = steering.next_change())
+        time = std::max(time, *next);
+    else
+        std::this_thread::sleep_for(std::chrono::duration<double>(period));
+}
 
-TaughtBoundaries teach_boundaries(const job::Job& job, gantry::Gantry& gantry, const gantry::protocol::Limits& limits,
-                                  Steering& steering, double lowest, const PointCallback& recorded)
+Teacher::Teacher(const job::Job& job, gantry::Gantry& gantry, const gantry::protocol::Limits& limits, double lowest)
+    : job_(job), gantry_(gantry), limits_(limits), lowest_(lowest)
 {
     if (gantry.status().commanded.z() < job.safe_height) gantry.lift(job.safe_height);
-    Eigen::Vector3d position = gantry.status().commanded;
-    std::vector<Eigen::Vector3d> points;
-    Eigen::Index anomaly_count = -1; // -1: the anomaly's boundary is not complete yet
-    double clock = 0;                // steering time, s
-    for (Stick stick = steering.at(clock); !stick.end; stick = steering.at(clock)) {
-        if (stick.button == Button::record) {
-            points.emplace_back(position.x(), position.y(), gantry.probe(position.head<2>(), lowest));
-            recorded(anomaly_count < 0 ? "anomaly" : "sampling",
-                     Eigen::Index(points.size()) - std::max<Eigen::Index>(anomaly_count, 0), points.back());
-        } else if (stick.button == Button::next) {
-            if (anomaly_count >= 0) break;
-            anomaly_count = Eigen::Index(points.size());
-        } else if (stick.direction.norm() > 0) {
-            const auto change = steering.next_change();
-            const bool last = change && *change - clock <= kPeriod; // a step ends when the stick is moved
-            position.head<2>() += stick.direction.normalized() * job.feed.rate * (last ? *change - clock : kPeriod);
-            position = position.cwiseMax(limits.min).cwiseMin(limits.max);
-            gantry.grind(position, job.feed.rate);
-            clock = last ? *change : clock + kPeriod;
-        } else if (const auto next = steering.next_change()) {
-            clock = std::max(clock, *next);
-        } else {
-            std::this_thread::sleep_for(std::chrono::duration<double>(kPeriod));
-        }
-    }
-    const Eigen::Index count = points.size();
-    Eigen::Matrix3Xd touches(3, count);
-    for (Eigen::Index i = 0; i < count; ++i) touches.col(i) = points[i];
+    position_ = gantry.status().commanded;
+}
+
+void Teacher::move(const Eigen::Vector2d& direction, double duration)
+{
+    position_.head<2>() += direction.normalized() * job_.feed.rate * duration;
+    position_ = position_.cwiseMax(limits_.min).cwiseMin(limits_.max);
+    gantry_.grind(position_, job_.feed.rate);
+}
+
+Eigen::Vector3d Teacher::touch() { return {position_.x(), position_.y(), gantry_.probe(position_.head<2>(), lowest_)}; }
+
+TaughtBoundaries boundaries_of_touches(const job::Job& job, const std::vector<Eigen::Vector3d>& anomaly,
+                                       const std::vector<Eigen::Vector3d>& sampling)
+{
+    const Eigen::Index first = anomaly.size(), second = sampling.size();
+    Eigen::Matrix3Xd touches(3, first + second);
+    for (Eigen::Index i = 0; i < first; ++i) touches.col(i) = anomaly[i];
+    for (Eigen::Index i = 0; i < second; ++i) touches.col(first + i) = sampling[i];
     if (const double radius = job.probe.tip_radius; radius > 0) {
         touches.row(2).array() += radius;
         touches = sampling::contact_points(job, touches, radius);
     }
-    const Eigen::Index first = anomaly_count < 0 ? count : anomaly_count;
-    return {touches.leftCols(first), touches.rightCols(count - first)};
+    return {touches.leftCols(first), touches.rightCols(second)};
+}
+
+TaughtBoundaries teach_boundaries(const job::Job& job, gantry::Gantry& gantry, const gantry::protocol::Limits& limits,
+                                  Steering& steering, double lowest, const PointCallback& recorded)
+{
+    Teacher teacher(job, gantry, limits, lowest);
+    SteeringClock clock{steering};
+    std::vector<Eigen::Vector3d> anomaly, sampling;
+    bool is_anomaly_complete = false;
+    for (Stick stick = clock.stick(); !stick.end; stick = clock.stick()) {
+        if (stick.button == Button::record) {
+            std::vector<Eigen::Vector3d>& points = is_anomaly_complete ? sampling : anomaly;
+            points.push_back(teacher.touch());
+            recorded(is_anomaly_complete ? "sampling" : "anomaly", Eigen::Index(points.size()), points.back());
+        } else if (stick.button == Button::next) {
+            if (is_anomaly_complete) break;
+            is_anomaly_complete = true;
+        } else if (stick.direction.norm() > 0) {
+            teacher.move(stick.direction, clock.advance(kTeachingPeriod));
+        } else {
+            clock.rest(kTeachingPeriod);
+        }
+    }
+    return boundaries_of_touches(job, anomaly, sampling);
 }
 
 } // namespace fettle::strategy

@@ -48,7 +48,7 @@ std::vector<TraceRow> trace_from_cloud(const cloud::Cloud& cloud, const std::str
         const Eigen::VectorXd time = cloud::field(cloud, kTime);
         std::vector<TraceRow> trace;
         for (Eigen::Index i = 0; i < cloud.size(); ++i) {
-            if (event[i] < 0 || event[i] > int(Event::in_progress))
+            if (event[i] < 0 || event[i] > int(Event::stopped))
                 throw core::InputError("event " + std::to_string(event[i]) + " of point " + std::to_string(i + 1) +
                                        " is not an event of a trace");
             trace.push_back({.time = time[i],

@@ -237,9 +237,8 @@ WholeRows whole_rows(std::string_view bytes, const std::string& source)
     return whole;
 }
 
-RecordedTrace read_recorded_trace(const std::string& path, const units::Units& units)
+static RecordedTrace parse_recorded_trace(std::string_view bytes, const std::string& source, const units::Units& units)
 {
-    const std::string bytes = core::read_file(path), source = core::display_name(path);
     const WholeRows whole = whole_rows(bytes, source);
     const cloud::PcdHeader header = cloud::parse_pcd_header(whole.pcd, source);
     RecordedTrace trace{trace_from_cloud(cloud::parse_cloud(whole.pcd, source, units).cloud, source),
@@ -253,9 +252,31 @@ RecordedTrace read_recorded_trace(const std::string& path, const units::Units& u
         trace.identity.parts.erase(rows);
     }
     const auto stops = [](Event e) {
-        return e == Event::limit_reached || e == Event::fault || e == Event::in_progress;
+        return e == Event::limit_reached || e == Event::fault || e == Event::in_progress || e == Event::stopped;
     };
     while (!trace.rows.empty() && stops(trace.rows.back().event)) trace.rows.pop_back();
+    return trace;
+}
+
+RecordedTrace read_recorded_trace(const std::string& path, const units::Units& units)
+{
+    return parse_recorded_trace(core::read_file(path), core::display_name(path), units);
+}
+
+RecordedTrace read_recorded_trace(const std::string& path, const units::Units& units,
+                                  const TraceFile::Completed& completed)
+{
+    const std::string bytes = core::read_file(path), source = core::display_name(path);
+    const cloud::PcdHeader header = cloud::parse_pcd_header(bytes, source);
+    std::string head = bytes.substr(0, header.body);
+    if (head.find(' ' + kRows + ':') == std::string::npos || completed.digest.size() != core::kDigestDigits)
+        throw core::InputError(source, "does not say which run wrote it");
+    set_digest(head, completed.digest);
+    set_count(head, "WIDTH", completed.rows);
+    set_count(head, "POINTS", completed.rows);
+    const std::size_t row = header.data == cloud::PcdHeader::Data::binary ? header.stride() : kLineLength;
+    RecordedTrace trace = parse_recorded_trace(head + bytes.substr(header.body, completed.rows * row), source, units);
+    if (trace.cut.empty()) trace.cut = "its last rows are lost: " + std::to_string(completed.rows) + " are kept";
     return trace;
 }
 

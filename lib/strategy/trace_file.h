@@ -30,6 +30,12 @@ class TraceFile {
     void begin_row(const TraceRow& row);
     /// Replaces that row by the action's result; without begin_row, appends it. @throws as above
     void complete_row(const TraceRow& row);
+    /// The rows that have their results, and their digest as the header has it.
+    struct Completed {
+        std::size_t rows = 0;
+        std::string digest;
+    };
+    Completed completed() const { return {count_ - (in_progress_ ? 1 : 0), digest_.text()}; }
     /// True if the last row could not be written. The rows that the file counts are whole nevertheless.
     bool has_failed() const { return failed_; }
 
@@ -80,6 +86,10 @@ struct RecordedTrace {
 /// @param units  required of the file
 /// @throws InputError if it is not a trace, or if its rows are not those that the run has written
 RecordedTrace read_recorded_trace(const std::string& path, const units::Units& units);
+/// Reads the beginning of a journal whose end is lost: as many rows as are known to be complete.
+/// @throws InputError also if they are not those that the run has written
+RecordedTrace read_recorded_trace(const std::string& path, const units::Units& units,
+                                  const TraceFile::Completed& completed);
 /// The rows alone.
 std::vector<TraceRow> read_trace(const std::string& path, const units::Units& units);
 

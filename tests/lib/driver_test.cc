@@ -3,11 +3,14 @@
 #include "core/descriptor.h"
 #include "core/error.h"
 #include "gantry/driver.h"
+#include "gantry/serve.h"
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <functional>
 #include <sys/socket.h>
+#include <thread>
 
 namespace fettle {
 namespace {
@@ -168,6 +171,102 @@ TEST(Driver, IsNotBelievedAboutLimitsWheelsAndTime)
     EXPECT_EQ(says(reply_after("6 0 0 21 0 0 0", lower), "stops 1 mm early after 'lift 20', but felt at most 0 N"), "");
     EXPECT_EQ(says(reply_after("6 0 0 21 1 35 60", lower), "quit"), "");
     EXPECT_EQ(says(reply_after("20 9 0 0 506 0 0 0", touch), "stands at 0 0 506, out of its range"), "");
+}
+
+/// A machine that takes its time: a millisecond for each millimetre.
+class SlowGantry final : public gantry::Gantry {
+  public:
+    gantry::GantryStatus travel(const Vector3d& to) override { return move(to); }
+    gantry::GantryStatus grind(const Vector3d& to, double /*feed*/) override { return move(to); }
+    gantry::GantryStatus lift(double z) override { return move({status_.commanded.x(), status_.commanded.y(), z}); }
+    double touch_off() override { return 25; }
+    void change_wheel() override {}
+    double probe(const Eigen::Vector2d& /*xy*/, double /*lowest*/) override { return 0; }
+    gantry::GantryStatus status() const override { return status_; }
+
+  private:
+    gantry::GantryStatus move(const Vector3d& to)
+    {
+        while (status_.commanded != to) {
+            check_interrupt();
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+            const Vector3d rest = to - status_.commanded;
+            status_.commanded = rest.norm() <= 1 ? to : status_.commanded + rest.normalized();
+            status_.time += 0.01;
+        }
+        return status_;
+    }
+    gantry::GantryStatus status_{.time = 1, .commanded = {0, 0, 30}};
+};
+
+struct Sockets {
+    core::FileDescriptor ours, theirs;
+    Sockets()
+    {
+        int ends[2];
+        if (::socketpair(AF_UNIX, SOCK_STREAM, 0, ends) != 0) throw std::runtime_error("no sockets");
+        ours = core::FileDescriptor(ends[0]);
+        theirs = core::FileDescriptor(ends[1]);
+    }
+};
+
+// A move of 400 ms is stopped after 50: the machine stands where it is, is lifted off, and can be moved again.
+TEST(Driver, IsStoppedInTheMiddleOfAMove)
+{
+    Sockets sockets;
+    SlowGantry slow;
+    const job::Job of = job();
+    const gantry::protocol::Limits limits{Vector3d::Constant(-500), Vector3d::Constant(500), 100, 60};
+    std::thread driver([&] { gantry::serve(slow, limits, of, sockets.theirs, sockets.theirs); });
+    {
+        gantry::DriverGantry gantry("driver", std::move(sockets.ours), of, 1);
+        const auto begun = std::chrono::steady_clock::now();
+        gantry.set_interrupt([&](const gantry::GantryStatus& /*now*/) {
+            return std::chrono::steady_clock::now() - begun > std::chrono::milliseconds(50);
+        });
+        EXPECT_THROW(gantry.travel({400, 0, 30}), gantry::Interrupted);
+        EXPECT_LT(std::chrono::steady_clock::now() - begun, std::chrono::milliseconds(250));
+        EXPECT_LT(gantry.status().commanded.x(), 200);
+        EXPECT_EQ(gantry.status().commanded.z(), 32); // off the part
+        const double x = gantry.status().commanded.x();
+        EXPECT_EQ(gantry::retract(gantry, 33).commanded, Vector3d(x, 0, 33)); // no higher than the safe height
+        EXPECT_EQ(gantry.grind({x + 1, 0, 33}, 20).commanded.x(), x + 1);
+    }
+    driver.join();
+}
+
+// A driver that does not know `halt` ends its move first, and is asked where it stands.
+TEST(Driver, MayNotKnowHowToHalt)
+{
+    Sockets sockets;
+    std::thread driver([&] {
+        std::string sent;
+        char buffer[1000];
+        const auto until = [&](const std::string& line) {
+            while (sent.find(line) == std::string::npos) {
+                const ssize_t n = ::read(sockets.theirs.get(), buffer, sizeof buffer);
+                if (n <= 0) return;
+                sent.append(buffer, std::size_t(n));
+            }
+        };
+        const auto answer = [&](const std::string& line) { EXPECT_TRUE(core::write_all(sockets.theirs, line + "\n")); };
+        until("1 connect"), answer("1 ok " + kLimits);
+        until("2 limit"), answer("2 ok 60");
+        until("3 home"), answer("3 ok " + kHome);
+        until("4 move"), until("5 halt"), answer("4 ok 2 5 0 30 0 0 0");
+        answer("5 error no such command: halt");
+        until("6 status"), answer("6 ok 2.5 5 0 30 0 0 0");
+        until("7 quit"), answer("7 ok 3 5 0 30 0 0 0");
+    });
+    {
+        gantry::DriverGantry gantry("driver", std::move(sockets.ours), job(), 1);
+        int asked = 0;
+        gantry.set_interrupt([&](const gantry::GantryStatus& /*now*/) { return ++asked > 3; });
+        EXPECT_THROW(gantry.grind({5, 0, 30}, 20), gantry::Interrupted);
+        EXPECT_EQ(gantry.status().time, 2.5);
+        EXPECT_EQ(asked, 4); // not again before it is armed again
+    }
+    driver.join();
 }
 
 } // namespace

@@ -381,6 +381,37 @@ TEST(Dynamic, TheWayDownIsGuarded)
     EXPECT_GT(status.commanded.z(), kTop - 5);
 }
 
+// At any moment of a cut, of the way down and of the way across: the wheel is off the part 0.25 s later, and what
+// follows is as it ever is.
+TEST(Dynamic, IsStoppedAtAnyMoment)
+{
+    for (int n = 0; n < 60; ++n) {
+        gantry::DynamicGantry gantry(flat(), small_job(), machine());
+        gantry.travel({0, -20, kTop});
+        const double begun = gantry.status().time, moment = 0.03 * n;
+        double asked = 0;
+        gantry.set_interrupt([&](const gantry::GantryStatus& now) {
+            asked = now.time;
+            return now.time >= begun + moment;
+        });
+        bool interrupted = false;
+        try {
+            for (double y = -19.5; y < 20; y += 0.5) gantry.grind({0, y, kTop - 0.8}, 25.4);
+            gantry.travel({3, 0, kTop - 0.8});
+        } catch (const gantry::Interrupted&) {
+            interrupted = true;
+        }
+        ASSERT_TRUE(interrupted) << n;
+        EXPECT_NEAR(asked, begun + moment, 0.0011) << n;
+        const gantry::GantryStatus free = gantry::retract(gantry, small_job().safe_height);
+        EXPECT_EQ(free.force, 0) << n;
+        EXPECT_LE(free.time - asked, 0.25) << n;
+        EXPECT_LT(free.peak_force, 60) << n;
+        EXPECT_NEAR(gantry.lift(30).commanded.z(), 30, 3 * drive().encoder) << n; // a move ends within three counts
+        EXPECT_NEAR(gantry.travel({1, 2, kTop + 1}).commanded.x(), 1, 0.01) << n;
+    }
+}
+
 TEST(Dynamic, SensorsHaveTheirResolution)
 {
     gantry::Machine coarse = machine();

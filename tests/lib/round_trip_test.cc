@@ -563,7 +563,7 @@ TEST(RoundTrip, Trace)
                    .tool = {some(), some(), some()},
                    .layer = random.integer(1, 99),
                    .pass = random.integer(1, 999),
-                   .event = strategy::Event(random.integer(0, int(strategy::Event::in_progress))),
+                   .event = strategy::Event(random.integer(0, int(strategy::Event::stopped))),
                    .force = some(),
                    .feed = some(),
                    .peak_force = some(),

@@ -5,6 +5,7 @@
 #include "strategy/joystick.h"
 #include "strategy/layer_switching.h"
 #include "strategy/run.h"
+#include "strategy/steering.h"
 #include "strategy/trace_file.h"
 
 #include <gtest/gtest.h>
@@ -560,6 +561,63 @@ TEST(Run, GoesOnWhereverItWasCutOff)
     EXPECT_GT(interruptions, 3);
 }
 
+// As FailingGantry, but it is the operator who stops it.
+class InterruptedGantry final : public gantry::Gantry {
+  public:
+    InterruptedGantry(gantry::Gantry& gantry, int commands) : gantry_(gantry), left_(commands) {}
+
+    gantry::GantryStatus travel(const Eigen::Vector3d& p) override { return obey().travel(p); }
+    gantry::GantryStatus grind(const Eigen::Vector3d& p, double feed) override { return obey().grind(p, feed); }
+    gantry::GantryStatus lift(double z) override { return obey().lift(z); }
+    double touch_off() override { return obey().touch_off(); }
+    void change_wheel() override { obey().change_wheel(); }
+    double probe(const Eigen::Vector2d& xy, double lowest) override { return gantry_.probe(xy, lowest); }
+    gantry::GantryStatus status() const override { return gantry_.status(); }
+
+  private:
+    gantry::Gantry& obey()
+    {
+        if (left_-- == 0) throw gantry::Interrupted();
+        return gantry_;
+    }
+    gantry::Gantry& gantry_;
+    int left_;
+};
+
+// Stopped at every 500th command: the wheel is lifted off and then to the safe height, with a row for each. Each time
+// the work goes on, and in the end all is done.
+TEST(Run, IsStoppedByTheOperatorAndGoesOn)
+{
+    const auto hill = [](double x, double y) { return dome(x, y, 20, 20, 9, 2); };
+    const plan::Plan plan = square_plan();
+    ColumnGantry machine(hill, plan.job.force.stiffness);
+    strategy::RunOptions options;
+    std::size_t seen = 0;
+    options.watch = [&](const strategy::TraceRow& /*row*/) { ++seen; };
+    int stops = 0;
+    for (int commands = 500;; ++stops) {
+        InterruptedGantry gantry(machine, commands);
+        seen = 0;
+        const strategy::GrindRun part = strategy::run(plan, gantry, options);
+        EXPECT_FALSE(part.finished && part.stopped);
+        if (part.finished) break;
+        ASSERT_LT(stops, 100);
+        ASSERT_TRUE(part.stopped) << part.failure;
+        EXPECT_EQ(part.failure, "stopped by the operator");
+        EXPECT_GT(seen, 0u);
+        const strategy::TraceRow &free = part.trace.end()[-2], &safe = part.trace.back();
+        EXPECT_EQ(free.event, strategy::Event::stopped);
+        EXPECT_EQ(free.force, 0);
+        EXPECT_EQ(free.feed, 0);
+        EXPECT_EQ(safe.event, strategy::Event::stopped);
+        EXPECT_FLOAT_EQ(float(safe.tool.z()), float(plan.job.safe_height)); // the trace holds floats
+        options.previous_trace = part.trace;
+        options.previous_trace.resize(part.trace.size() - 2);
+    }
+    EXPECT_GT(stops, 3);
+    EXPECT_LE(machine.highest(flat), plan.job.tolerance);
+}
+
 // Between the measurement of a worn wheel and the first move: measured, changed, measured.
 TEST(Run, GoesOnInTheMiddleOfAChangeOfTheWheel)
 {
@@ -594,6 +652,7 @@ TEST(Run, RefusesToGoOnWithAnotherRun)
 // 0.
 TEST(Joystick, MovesTheStick)
 {
+    using strategy::Button;
     strategy::Stick stick;
     const auto event = [&](int type, int number, int value) {
         js_event e = {};
@@ -623,8 +682,38 @@ TEST(Joystick, MovesTheStick)
     EXPECT_EQ(stick.button, strategy::Button::record);
     event(JS_EVENT_BUTTON, 3, 1);
     EXPECT_EQ(stick.button, strategy::Button::next);
+    const Button rest[] = {Button::stop, Button::start,     Button::automatic, Button::manual,
+                           Button::back, Button::turn_left, Button::turn_right};
+    for (int button = 4; button <= 10; ++button) {
+        event(JS_EVENT_BUTTON, button, 1);
+        EXPECT_EQ(stick.button, rest[button - 4]);
+    }
+    event(JS_EVENT_BUTTON, 11, 1); // there is no such button
+    EXPECT_EQ(stick.button, Button::turn_right);
     event(JS_EVENT_BUTTON, 1, 1);
     EXPECT_TRUE(stick.end);
+}
+
+TEST(Steering, SeesAStopWhileTheMachineWorks)
+{
+    const OwnFolder own;
+    std::ofstream("steer.txt") << "0 start\n5 1 0\n6 record\n7 stop\n7 automatic\n8 end\n";
+    strategy::Steering steering("steer.txt");
+    EXPECT_EQ(steering.at(0).button, strategy::Button::start);
+    EXPECT_FALSE(steering.stop_due(0));
+    EXPECT_FALSE(steering.stop_due(5.5)); // the stick was moved
+    EXPECT_FALSE(steering.stop_due(7.5)); // a button before it waits to be reported
+    EXPECT_EQ(steering.at(7.5).button, strategy::Button::record);
+    EXPECT_FALSE(steering.stop_due(6.9));
+    EXPECT_TRUE(steering.stop_due(7));
+    EXPECT_TRUE(steering.stop_due(8));
+    EXPECT_EQ(steering.at(8).button, strategy::Button::stop);
+    EXPECT_FALSE(steering.stop_due(8));
+    EXPECT_EQ(steering.at(8).button, strategy::Button::automatic);
+    EXPECT_FALSE(steering.stop_due(9)); // the end of the text is no stop
+    EXPECT_TRUE(steering.at(9).end);
+    EXPECT_TRUE(steering.at(9).end);
+    EXPECT_THROW(strategy::Steering("steer.txt", "/dev/null"), core::InputError);
 }
 
 TEST(Trace, RefusesEventsThatThereAreNot)
