@@ -4,6 +4,7 @@ $(B)/bin/fettle-fit:     LDLIBS = $(CERES)
 $(B)/bin/fettle-sample:  LDLIBS = $(CERES)
 $(B)/bin/fettle-render:  LDLIBS = $(OPENCV) $(PNG)
 $(B)/bin/fettle-report:  LDLIBS = $(OPENCV) $(PNG) $(MD)
+$(B)/bin/fettle-station: LDLIBS = $(CERES) $(OPENCV) $(PNG) $(MD)
 $(B)/bin/fettle-grind $(B)/bin/fettle-manual $(B)/bin/fettle-teach: LDLIBS = $(MD)
 $(B)/bin/fettle-contact: LDLIBS = -lopencv_core
 $(B)/bin/fettle-belt:    LDLIBS = -lopencv_core $(MD)

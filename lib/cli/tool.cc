@@ -280,9 +280,11 @@ void Tool::note(const std::string& message) const
     if (state_->verbose) std::cerr << state_->name << ": " << one_line(message) << '\n';
 }
 
+bool Tool::shows_progress() const { return !state_->quiet && isatty(STDERR_FILENO) != 0; }
+
 core::Progress Tool::progress(const std::string& label) const
 {
-    if (state_->quiet || isatty(STDERR_FILENO) == 0) return {};
+    if (!shows_progress()) return {};
     return progress_bar(label);
 }
 

@@ -112,6 +112,8 @@ class Tool {
     void warn(const std::string& message) const;
     /// Prints a line on stderr if -v is given.
     void note(const std::string& message) const;
+    /// True if stderr is a terminal, and -q is not given.
+    bool shows_progress() const;
     /// Progress bar on stderr, if that is a terminal and the computation takes longer than a second.
     core::Progress progress(const std::string& label) const;
 

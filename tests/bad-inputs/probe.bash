@@ -128,6 +128,7 @@ stocks() { # R|S|G FILE
     try "$1" "$2" fettle-manual job.json --stock "$2" --cell 2 --machine machine.json --steer -
     try "$1" "$2" fettle-stock-linuxcnc plan.json --stock "$2" --cell 2
     [ "$1" != R ] || try R "$2" fettle-teach job.json --gantry virtual --stock "$2" --steer - # without points there is no job
+    try "$1" "$2" fettle-station job.json --session "session-$tried" --gantry virtual --stock "$2" --cell 2 --steer -
 }
 
 # Every tool that reads meshes, with FILE in each place where it does.

@@ -7,7 +7,8 @@
 inputs
 goes_ahead() { [[ "$name $1" == 'belt --watch' || "$name $1" == 'grind --trace' || "$name $1" == 'manual --trace' ]]; }
 full() { # LIMIT OPTION PLACE: LIMIT is a command to run it by
-    local option=$2 target=$3/-x-$2 status old
+    local option=$2 target=$3/-x-$2 status old says=-x-$2
+    [ "$name" != station ] || says=': ' # what it keeps in the session's folder cannot be written either
     local older=('what was there')
     [ "$option" != -o ] || older+=('') # once will do
     [ "$option" != --journal ] || older=('') # what is there is read
@@ -17,7 +18,7 @@ full() { # LIMIT OPTION PLACE: LIMIT is a command to run it by
         status=0
         "$1" "fettle-$name" "${command[@]}" "${named[@]}" -q 2>&1 >/dev/null <<<"$lines" | cat >err || status=${PIPESTATUS[0]}
         tried=$((tried + 1))
-        is_refusal $status "${target##*/}" || say "status $status: $(head -c 200 err)" "$1 $option $name"
+        is_refusal $status "$says" || say "status $status: $(head -c 200 err)" "$1 $option $name"
         goes_ahead "$option" || [ "$(ls -A "$3")" = "${old:+-x-$option}" ] || say "left: $(ls -A "$3" | tr '\n' ' ')" "$1 $option $name"
         goes_ahead "$option" || [ -z "$old" ] || [ "$(cat "$target")" = "$old" ] || say 'the older file is not as it was' "$1 $option $name"
         rm -f "$target"

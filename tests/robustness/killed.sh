@@ -1,6 +1,6 @@
 # Killed at any moment, by KILL, TERM or INT, a tool leaves its outputs as they were or all of them whole: never a part of a file, and no
 # other file, but after KILL perhaps a hidden temporary file, which is harmless. Exceptions are what is written ahead, line by line: traces of
-# machines, --watch; and the journal, which is there to go on from (tests/fettle-belt/journal.sh, tests/fettle-grind/resume.sh).
+# machines, --watch; and the journal, which is there to go on from (tests/fettle-belt/journal.sh, tests/fettle-grind/resume.sh); so is the folder of a session (tests/fettle-station/killed.sh).
 # shellcheck source=tests/robustness/tools.bash
 . "$HERE/tools.bash"
 inputs
@@ -16,7 +16,7 @@ for name in $names; do
     for moment in '3 KILL' '6 TERM' '8 INT' '9 KILL'; do
         read -r tenths signal <<<"$moment"
         rm -rf place/* place/.[!.]*
-        for option in "${bulk[@]}" --report "${writes[@]}"; do [ "$option" = --journal ] || echo 'what was there' >"place/$option"; done
+        for option in "${bulk[@]}" --report "${writes[@]}"; do [[ "$option" == --journal || "$option" == --session ]] || echo 'what was there' >"place/$option"; done
         status=0
         after=$(awk -v t=$((took * tenths / 10)) 'BEGIN { printf "%.6f", t / 1e6 }')
         { timeout -s $signal "$after" "fettle-$name" "${command[@]}" "${named[@]}" -q >out 2>err <<<"$lines"; } 2>said || status=$?
@@ -24,7 +24,7 @@ for name in $names; do
         [ $status = 0 ] || killed=$((killed + 1))
         [ ! -s err ] || say "said $(cat err)" "$name $moment"
         for option in "${bulk[@]}" --report "${writes[@]}"; do
-            case "$name $option" in 'belt --watch' | 'belt --journal' | 'grind --trace' | 'manual --trace') continue ;; esac
+            case "$name $option" in 'belt --watch' | 'belt --journal' | 'grind --trace' | 'manual --trace' | 'station --session') continue ;; esac
             cmp -s "place/$option" "once/$option" || grep -qx 'what was there' "place/$option" || say "$option is half-written" "$name $moment"
         done
         hidden=$(find place -name '.*' ! -name place)

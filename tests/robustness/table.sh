@@ -18,4 +18,4 @@ for name in $names; do
     done
     tried=$((tried + 1))
 done
-all_tried 29
+all_tried 30

@@ -5,14 +5,14 @@
 #   for name in $names; do command_of NAME; …
 #                    command   its words, without outputs; the last is the input that may come from stdin, if it has one
 #                    bulk      -o; nothing if stdout is a conversation
-#                    writes    options that name an output each, besides -o and --report
+#                    writes    options that name an output each, besides -o and --report; --session names a folder
 #                    lines     lines on its stdin
 # shellcheck source=tests/bad-inputs/probe.bash
 . "$HERE/../bad-inputs/probe.bash"
 
 # fettle-gantry-linuxcnc is for a machine that runs: tests/linuxcnc.
 names='align arm assess belt collide compare contact diff estimate feed finish fit form gantry-virtual grind manual margin mesh mill part path
-    plan render report sample stock-linuxcnc surfel teach verify'
+    plan render report sample station stock-linuxcnc surfel teach verify'
 
 inputs() { # STEP
     good "$@"
@@ -22,6 +22,7 @@ inputs() { # STEP
     awk 'BEGIN { for (i = 0; i < 9; i++) print 10 + 2 * i, 10, 5 }' | rows | pcd "$kFields" >rows.pcd
     cp "$SAMPLES/paths/keel.pcd" tips.pcd
     printf '0 0 1 up\n0.1 0 -1\n0.4 end\n' >steer.txt
+    printf '0 next\n0 next\n0 start\n0 manual\n0 start\n100 1 0\n100.2 end\n' >operator.txt
     printf '10,10,5\n20,10,5\n20,20,5\n10,20,5\n' >picked.txt
 }
 
@@ -55,6 +56,7 @@ command_of() { # NAME
     render) command=(good.pcd) ;;
     report) command=(--job job.json --samples samples.pcd --errors good.pcd) ;;
     sample) command=(--on good.pcd job.json) ;;
+    station) command=(--gantry virtual:dynamic --machine machine.json --stock good.pcd --cell 0.5 --lowest 0 --steer operator.txt --resume job.json) bulk=() writes=(--session) ;;
     stock-linuxcnc) command=(--stock good.pcd --cell 0.5 plan.json) ;;
     surfel) command=(--stock plate.stl --spacing 4 plate.stl) ;;
     teach) command=(--anomaly picked.txt job.json) ;;
@@ -76,7 +78,9 @@ elsewhere() { # OPTION PLACE: into `named`
     local option
     named=()
     for option in "${bulk[@]}" --report "${writes[@]}"; do
-        if [ "$option" = "$1" ]; then named+=("$option" "$2"); elif [ "$option" != --journal ]; then named+=("$option" /dev/null); fi
+        if [ "$option" = "$1" ]; then named+=("$option" "$2")
+        elif [ "$option" = --session ]; then named+=("$option" "$(mktemp -d -p .)")
+        elif [ "$option" != --journal ]; then named+=("$option" /dev/null); fi
     done
 }
 
