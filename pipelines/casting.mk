@@ -4,11 +4,17 @@
 #   make -f pipelines/casting.mk figures    the chain's figures beside what they must reach; exit 1 if one is missed
 #   make -f pipelines/casting.mk hills      the hills and the moon of Wang 2007, figure 5-8
 #   make -f pipelines/casting.mk seeds      how the figures of Wang's parts spread over 20 draws of the touch noise
+#   make -f pipelines/casting.mk ways       Wang's published figures, his way here, the default and adaptive touches: a table
+#
+# METHOD=wang goes Wang's way (2007) from end to end: his touches with the measured sampling boundary, estimated points, modified
+# griddata (planes: least squares; swept: his section curve), the shift of his regressions (planes: the probe's accuracy), his layers.
+# METHOD=adaptive chooses the touches one after the other. Both take a folder of their own.
 #
 # The case and the seed are part of the path, so make is the cache and -j the scheduler.
 
 B       ?= build
-CHAIN   := $(B)/chain
+METHOD  ?= default
+CHAIN   := $(B)/chain$(if $(filter-out default,$(METHOD)),-$(METHOD))
 export PATH := $(abspath $(B)/bin):$(PATH)
 # Further options of fettle-sample; with them, a CHAIN of its own (probing.mk).
 SAMPLING ?=
@@ -35,7 +41,18 @@ LIMIT_panel := 1
 .DELETE_ON_ERROR:
 .SECONDARY:
 .SECONDEXPANSION:
-.PHONY: demo figures hills seeds
+.PHONY: demo figures hills seeds draws ways
+ifeq ($(filter default wang adaptive,$(METHOD)),)
+$(error METHOD is default, wang or adaptive, not $(METHOD))
+endif
+
+# The options of METHOD. Wang's follow from the job's kind of surface, its first prerequisite.
+by_surface          = $$(jq -r '{$1}[.surface.type] // empty' $<)
+sampling_of_wang     = $(call by_surface,freeform: "--sampling-boundary")
+sampling_of_adaptive = --strategy adaptive
+fit_of_wang          = --method $(call by_surface,plane: "plane"$(comma) swept: "swept"$(comma) freeform: "griddata")
+margin_of_wang       = --method wang --plane-shift accuracy
+comma               := ,
 
 # A path is $(CHAIN)/SEED/CASE/STAGE; % is SEED/CASE.
 case   = $(notdir $1)
@@ -62,13 +79,13 @@ $(CHAIN)/parts/%-truth.stl $(CHAIN)/parts/%-truth.pcd: samples/parts/%.json $(B)
 
 $(CHAIN)/%/samples.pcd: $$(call job,$$*) $$(call part,$$*) $(B)/bin/fettle-sample
 	@mkdir -p $(@D)
-	fettle-sample $< --on $(call part,$*) $(SAMPLING) --noise $(call noise,$*) --seed $(call seed,$*) --report $(@D)/sample.json -o $@
+	fettle-sample $< --on $(call part,$*) $(sampling_of_$(METHOD)) $(SAMPLING) --noise $(call noise,$*) --seed $(call seed,$*) --report $(@D)/sample.json -o $@
 
 $(CHAIN)/%/fit.json: $$(call job,$$*) $(CHAIN)/%/samples.pcd $(B)/bin/fettle-fit $(B)/bin/fettle-estimate
-	fettle-estimate $< $(@D)/samples.pcd | fettle-fit $< -o $@
+	fettle-estimate $< $(@D)/samples.pcd | fettle-fit $< $(fit_of_$(METHOD)) -o $@
 
 $(CHAIN)/%/desired.json: $$(call job,$$*) $(CHAIN)/%/fit.json $(B)/bin/fettle-margin
-	fettle-margin $< $(@D)/fit.json -o $@
+	fettle-margin $< $(@D)/fit.json $(margin_of_$(METHOD)) -o $@
 
 $(CHAIN)/%/plan.json: $$(call job,$$*) $(CHAIN)/%/desired.json $(B)/bin/fettle-plan
 	fettle-plan $< $(@D)/desired.json -o $@
@@ -132,6 +149,14 @@ figures: $(call results,1,$(WANG)) $W/wang1/flatness.json $W/wang2/cylindricity.
 SEEDS ?= 20
 seeds: $(foreach s,$(shell seq $(SEEDS)),$(call results,$s,$(WANG)))
 	@pipelines/seeds-table $(CHAIN) $(SEEDS) $(WANG)
+
+# Wang's way, the default and adaptive touches beside what he published, over the same draws.
+draws: $(foreach s,$(shell seq $(SEEDS)),$(call results,$s,$(WANG)) $(CHAIN)/$s/wang1/flatness.json $(CHAIN)/$s/wang2/cylindricity.json)
+
+WAYS := wang default adaptive
+ways:
+	@for way in $(WAYS); do $(MAKE) --no-print-directory -s -f pipelines/casting.mk B=$(B) METHOD=$$way SEEDS=$(SEEDS) draws || exit; done
+	@pipelines/ways-table $(B) $(SEEDS)
 
 demo: $(call results,1,$(SHOWN)) $(call pictures,1,$(SHOWN))
 	@pipelines/chain-table $(CHAIN)/1 $(SHOWN)

@@ -1,4 +1,5 @@
 #include "cli/tool.h"
+#include "core/error.h"
 #include "core/file.h"
 #include "job/job.h"
 #include "job/plausible.h"
@@ -17,6 +18,10 @@ int main(int argc, char** argv)
             const double& confidence = t.number("--confidence", 0.99, "SHARE",
                                                 "Posterior: that all of the anomaly stays above the true surface",
                                                 core::Range::strictly_between(0, 1));
+            const margin::PlaneShift& plane_shift = t.choice<margin::PlaneShift>(
+                "--plane-shift",
+                {{"worst-case", margin::PlaneShift::worst_case}, {"accuracy", margin::PlaneShift::accuracy}},
+                "Wang's method, planes: the worst case of all touches, or the probe's accuracy as he published");
             const std::string& job_file = t.positional_file("JOB", "Job, JSON");
             const std::string& surface_file = t.main_input("SURFACE", "Fitted surface, JSON");
             t.example("fettle-sample jobs/hammer.json --on scans/hammer.stl | fettle-fit jobs/hammer.json | "
@@ -25,12 +30,14 @@ int main(int argc, char** argv)
             t.reference("Wang 2007, eq. 4-1 (error band), eq. 4-6 (shift distance) and 4.5 (regressions)");
             t.parse();
 
+            if (method != "wang" && plane_shift != margin::PlaneShift::worst_case)
+                throw core::InputError("--plane-shift is for --method wang");
             const job::Job job = job::read_job(job_file);
             const std::string name = core::display_name(surface_file);
             surface::Surface surface = surface::read_surface(surface_file);
             job::check_touch_places({surface.touches, surface.roles}, job, name);
             surface.prediction = method == "wang"
-                                     ? margin::predict_by_regression(surface, job, name)
+                                     ? margin::predict_by_regression(surface, job, name, plane_shift)
                                      : margin::predict_by_posterior(surface, job, confidence, t.seed(), name);
             margin::check_determined(*surface.prediction, job, name);
             surface.shift = surface.prediction->shift;

@@ -33,6 +33,9 @@ struct Options {
     const int& lines =
         t.count("--lines", 0, "Free-form jobs: number of lines in each direction; 0: after Wang's eq. 4-5", 0,
                 sampling::kMaxProbingLines);
+    const bool& sampling_boundary =
+        t.flag("--sampling-boundary", "Wang: touch the points of the sampling boundary, too: griddata then is defined "
+                                      "over all of the anomaly");
     const gantry::TouchStrategy& strategy = t.choice<gantry::TouchStrategy>(
         "--strategy",
         {{"wang", gantry::TouchStrategy::wang},
@@ -73,7 +76,7 @@ gantry::TouchRequest request(const Options& o, double mm)
 {
     margin::TouchSearch search = {o.touches, o.candidate_spacing * mm, o.fit, o.mutations, {}, o.t.seed()};
     if (o.sharpness) search.sharpness = *o.sharpness / mm;
-    return {o.strategy, o.lines, o.max_touches, search, o.plan_only};
+    return {o.strategy, o.lines, o.sampling_boundary, o.max_touches, search, o.plan_only};
 }
 
 } // namespace
@@ -94,6 +97,7 @@ int main(int argc, char** argv)
         const bool wang = o.strategy == gantry::TouchStrategy::wang;
         if (wang && (o.touches > 0 || o.candidate_spacing > 0 || o.sharpness))
             throw core::InputError("--touches, --candidates, --sharpness: only for --strategy hillclimb");
+        if (!wang && o.sampling_boundary) throw core::InputError("--sampling-boundary is for --strategy wang");
 
         std::optional<gantry::TouchedPart> part;
         if (!o.on.empty() && (!o.plan_only || !wang))

@@ -60,6 +60,7 @@ void choose(JobTouches& result, const job::Job& job, const TouchedPart* part, co
     } else {
         result.plan = sampling::plan_touches(job);
     }
+    if (request.sampling_boundary) sampling::append_sampling_boundary(result.plan, job);
 }
 
 Eigen::Matrix3Xd planned_points(const sampling::TouchPlan& plan)

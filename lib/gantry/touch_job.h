@@ -22,10 +22,11 @@ enum class TouchStrategy {
 
 struct TouchRequest {
     TouchStrategy strategy = TouchStrategy::wang;
-    int lines = 0;              ///< wang, free-form jobs: number of lines in each direction; 0: after eq. 4-5
-    int max_touches = 60;       ///< adaptive: maximum number of touches
-    margin::TouchSearch search; ///< hillclimb
-    bool plan_only = false;     ///< nothing is touched; not for adaptive
+    int lines = 0;                  ///< wang, free-form jobs: number of lines in each direction; 0: after eq. 4-5
+    bool sampling_boundary = false; ///< wang: touch the points of the sampling boundary, too
+    int max_touches = 60;           ///< adaptive: maximum number of touches
+    margin::TouchSearch search;     ///< hillclimb
+    bool plan_only = false;         ///< nothing is touched; not for adaptive
 };
 
 /// Touches of a job.

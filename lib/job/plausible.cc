@@ -30,14 +30,23 @@ std::string describe(const std::string& part, const Eigen::Vector3d& size, const
            units::to_string(units.length);
 }
 
-/// The touches on good metal that were probed for this fit: neither corners of B, which the job itself gives, nor
+/// Is the touch the job's own measurement of a point of S, which griddata takes (fit/griddata.h)? It may have been
+/// written to a file in the job's unit and read again.
+bool is_taught(const Eigen::Vector3d& touch, const Job& job)
+{
+    constexpr double kRelativeRounding = 1e-9;
+    return ((job.sampling.colwise() - touch).colwise().norm().array() <= kRelativeRounding * (1 + touch.norm())).any();
+}
+
+/// The touches on good metal that were probed for this fit: neither corners of B and S, which the job itself gives, nor
 /// estimated points.
-Eigen::Matrix3Xd probed(const PlacedTouches& touches)
+Eigen::Matrix3Xd probed(const PlacedTouches& touches, const Job& job)
 {
     constexpr int kCorner = 0, kEstimated = 3;
     std::vector<Eigen::Index> kept;
     for (Eigen::Index i = 0; i < touches.xyz.cols(); ++i)
-        if (touches.roles[i] != kCorner && touches.roles[i] != kEstimated && touches.xyz.col(i).allFinite())
+        if (touches.roles[i] != kCorner && touches.roles[i] != kEstimated && touches.xyz.col(i).allFinite() &&
+            !is_taught(touches.xyz.col(i), job))
             kept.push_back(i);
     return touches.xyz(Eigen::all, kept);
 }
@@ -100,7 +109,7 @@ std::string check_touch_places(const PlacedTouches& touches, const Job& job, con
 {
     if (job.sampling.cols() == 0) return {};
     const Polygon sampling = working_boundaries(job).sampling;
-    const Eigen::Matrix3Xd xyz = probed(touches);
+    const Eigen::Matrix3Xd xyz = probed(touches, job);
     const Eigen::Matrix2d R_working_machine = rotation_working_machine(job.theta);
     // A ball touches a slope up to its radius beside its middle.
     const double allowed = job.probe.accuracy + job.probe.tip_radius;
@@ -129,7 +138,7 @@ std::string check_touch_places(const PlacedTouches& touches, const Job& job, con
 std::string boundary_height_warning(const PlacedTouches& touches, const Job& job)
 {
     constexpr double kMaxSlope = 1; // 45°: a part's surface is mostly flatter, and half of the points may be steeper
-    const Eigen::Matrix3Xd xyz = probed(touches);
+    const Eigen::Matrix3Xd xyz = probed(touches, job);
     if (xyz.cols() == 0) return {};
     Eigen::Matrix3Xd boundary(3, job.anomaly.cols() + job.sampling.cols());
     boundary << job.anomaly, job.sampling;

@@ -49,14 +49,15 @@ struct PlacedTouches {
 };
 
 /// Checks the touches' places against the sampling boundary S, by more than the probe's accuracy and its tip's radius.
-/// Corners of B (role 0), estimated points (3) and points without a height are not looked at, nor is anything without
-/// an S.
+/// Corners of B (role 0), the job's own points of S, estimated points (3) and points without a height are not looked
+/// at, nor is anything without an S.
 /// @param source  the touches' name in messages
 /// @return a sentence for a warning if some lie outside S, else empty
 /// @throws InputError if half of them or more do: such touches are another job's, or the part has moved
 std::string check_touch_places(const PlacedTouches& touches, const Job& job, const std::string& source);
 
-/// Checks the heights of the job's boundary points against the touch next to each (not of role 0 or 3).
+/// Checks the heights of the job's boundary points against the touch next to each (of those that
+/// check_touch_places() looks at).
 /// @return a sentence for a warning if more than half of those with a z are farther above or below it than a slope of
 ///         45° and the tolerance explain, else empty
 std::string boundary_height_warning(const PlacedTouches& touches, const Job& job);

@@ -135,9 +135,12 @@ Eigen::VectorXd regression_values(RegressionKind kind, const Eigen::Matrix3Xd& t
 }
 
 surface::Prediction predict_by_regression(const surface::Surface& surface, const job::Job& job,
-                                          const std::string& source)
+                                          const std::string& source, PlaneShift plane_shift)
 {
-    if (job.surface == job::SurfaceType::plane) return worst_case_of_plane(surface, job);
+    const double accuracy = job.probe.accuracy;
+    if (job.surface == job::SurfaceType::plane)
+        return plane_shift == PlaneShift::accuracy ? surface::Prediction{"wang", 0, accuracy, accuracy, false}
+                                                   : worst_case_of_plane(surface, job);
     const Eigen::Matrix3Xd touches = real_touches(surface);
     if (touches.cols() < kMinRoundPoints)
         throw core::InputError(source, "Wang's regressions need " + std::to_string(kMinRoundPoints) +
@@ -146,7 +149,6 @@ surface::Prediction predict_by_regression(const surface::Surface& surface, const
     const Eigen::VectorXd values = regression_values(kind, touches, job);
     const double band = kMmPerInch * published_regression(kind).band.dot(values);
     const double shift = kMmPerInch * published_regression(kind).shift.dot(values);
-    const double accuracy = job.probe.accuracy;
     return {"wang", 0, std::max(band, accuracy), std::max(shift, accuracy), std::min(band, shift) < accuracy};
 }
 

@@ -26,12 +26,18 @@ surface::Prediction predict_by_posterior(const surface::Surface& surface, const 
 ///         beside B, do not determine the surface
 void check_determined(const surface::Prediction& prediction, const job::Job& job, const std::string& source);
 
+/// The shift of a plane, which Wang's experiment does not cover.
+enum class PlaneShift {
+    worst_case, ///< of touches that are all wrong by the probe's accuracy, each in its worst direction
+    accuracy,   ///< the probe's accuracy (Wang 2007, 4.5): the worst case of touches that are all wrong by the same
+};
+
 /// Predicts both by Wang's regressions over his factorial experiment (2007, 4.5), from the touches' equivalent
 /// curvature and variance, the area of B, and the farthest touch's distance from B. Where a regression falls below the
-/// probe's accuracy, the accuracy is taken instead (`clamped`). For planes it is the worst case of touches that are all
-/// wrong by the probe's accuracy.
+/// probe's accuracy, the accuracy is taken instead (`clamped`). There is none for planes: see PlaneShift.
 /// @throws InputError if the touches do not determine the curvature
 surface::Prediction predict_by_regression(const surface::Surface& surface, const job::Job& job,
-                                          const std::string& source = "surface");
+                                          const std::string& source = "surface",
+                                          PlaneShift plane_shift = PlaneShift::worst_case);
 
 } // namespace fettle::margin

@@ -15,7 +15,7 @@ namespace {
 // Number of test points per smaller dimension of the wheel, and their largest number along a side of B.
 constexpr double kPointsPerWheel = 4;
 constexpr int kMaxPointsPerSide = 64;
-// Step of the finite differences for curvatures, relative to the wheel's dimension.
+// Step of the finite differences for the curvature at a point, relative to the wheel's dimension.
 constexpr double kRelativeStep = 0.03125;
 // Relative rounding: a fitted surface with exactly the wheel's radius must pass.
 constexpr double kRelativeRounding = 1e-9;
@@ -62,7 +62,10 @@ void check_wheel_fits(const job::Job& job, const surface::Surface& surface)
                           surface::heights(surface, xy.colwise() + step), h);
     };
     const Eigen::ArrayXd in_plane = curvatures_along(1, kRelativeStep * radius);
-    const Eigen::ArrayXd along_axis = curvatures_along(0, kRelativeStep * width);
+    // The mean curvature over the wheel's width: the edge spans waves that are shorter than it is. Beyond the border of
+    // the surface, where it is not defined, the curvature at the point.
+    const Eigen::ArrayXd over_width = curvatures_along(0, width / 2);
+    const Eigen::ArrayXd along_axis = over_width.isNaN().select(curvatures_along(0, kRelativeStep * width), over_width);
     const auto in_units = [&](double length) { return core::to_short_text(length / job.units.mm()); };
     for (Eigen::Index i = 0; i < z.size(); ++i) {
         if (in_plane[i] * radius > 1 + kRelativeRounding)

@@ -79,7 +79,7 @@ Eigen::Matrix3Xd estimated_points(const job::Job& job, const Eigen::Matrix3Xd& t
     for (Eigen::Index i = 0; i < touches.cols(); ++i) {
         const bool near_boundary = role[i] == static_cast<int>(Role::near_anomaly) ||
                                    role[i] == static_cast<int>(Role::near_sampling_boundary);
-        if (!near_boundary || !touches.col(i).allFinite()) continue;
+        if (!near_boundary || curve[i] == kNoLine || !touches.col(i).allFinite()) continue;
         curves[curve[i]].push_back(i);
         used.push_back(i);
     }

@@ -12,7 +12,7 @@ namespace fettle::sampling {
 /// a ball are slightly off their line and are moved onto it along a trend through all touches.
 /// @param touches  3xN, M, mm
 /// @param curve    N, line of each touch
-/// @param role     N; only roles near_anomaly and near_sampling_boundary are used
+/// @param role     N; only roles near_anomaly and near_sampling_boundary are used, and of those the touches on a line
 /// @return 3xK, M, mm; ordered by the lines along Y_w, then along each line
 /// @throws InputError if a line does not have four touches at four different places
 Eigen::Matrix3Xd estimated_points(const job::Job& job, const Eigen::Matrix3Xd& touches, const Eigen::VectorXi& curve,

@@ -1,9 +1,12 @@
 #include "sampling/touch_plan.h"
 
 #include "core/constants.h"
+#include "core/error.h"
 #include "sampling/freeform.h"
 #include "sampling/planar.h"
 #include "sampling/swept.h"
+
+#include <algorithm>
 
 namespace fettle::sampling {
 
@@ -32,6 +35,31 @@ TouchPlan plan_touches(const job::Job& job)
         break;
     }
     return plan_freeform(job);
+}
+
+std::vector<Eigen::Index> untouched_sampling_points(const job::Job& job, const Eigen::Matrix2Xd& touched)
+{
+    const Eigen::Matrix2Xd points = job.sampling.topRows<2>();
+    std::vector<Eigen::Index> untouched;
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+        const auto is_apart = [&](const Eigen::Vector2d& other) {
+            return (other - points.col(i)).norm() > job.probe.accuracy;
+        };
+        if (std::ranges::all_of(touched.colwise(), is_apart) &&
+            std::ranges::all_of(untouched, [&](Eigen::Index k) { return is_apart(points.col(k)); }))
+            untouched.push_back(i);
+    }
+    return untouched;
+}
+
+void append_sampling_boundary(TouchPlan& plan, const job::Job& job)
+{
+    if (job.sampling.cols() == 0) throw core::InputError(job.source, "sampling: there are no points to touch");
+    const std::vector<Eigen::Index> added = untouched_sampling_points(job, plan.xy);
+    const auto count = static_cast<Eigen::Index>(added.size());
+    append_line(plan, job::rotation_working_machine(job.theta) * job.sampling(Eigen::all, added).topRows<2>(),
+                job.theta, kNoLine, std::vector<Role>(added.size(), Role::near_sampling_boundary));
+    plan.z.tail(count) = job.sampling.row(2)(added).transpose();
 }
 
 std::optional<Crossings> crossings_around(const job::Boundaries& boundaries, const Eigen::Vector2d& origin,

@@ -42,6 +42,17 @@ void append_line(TouchPlan& plan, const Eigen::Matrix2Xd& points, double theta, 
 /// @throws InputError if the boundaries leave no room for them; the message asks for other boundary points
 TouchPlan plan_touches(const job::Job& job);
 
+/// Points of the sampling boundary S that no touch is at: farther than the probe's accuracy from each, and from each
+/// other, since the difference of two touches closer than that does not determine a slope.
+/// @param touched  2xN, M, mm
+/// @return columns of job.sampling
+std::vector<Eigen::Index> untouched_sampling_points(const job::Job& job, const Eigen::Matrix2Xd& touched);
+
+/// Appends the points of the sampling boundary {s_i} (Wang 2007, 3.3 and 4.4.4) that no touch is at, with the heights
+/// that the operator has measured, as touches near the sampling boundary, on no line.
+/// @throws InputError if the job has no sampling boundary
+void append_sampling_boundary(TouchPlan& plan, const job::Job& job);
+
 /// Crossings of a line with S and B on either side of the anomaly, as parameters t in the order S, B, B, S.
 using Crossings = Eigen::Vector4d;
 

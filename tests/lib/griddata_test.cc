@@ -264,6 +264,67 @@ TEST(GriddataFit, covariance_is_that_of_the_touches)
     EXPECT_NEAR(surface::sigma(surface, xy), std::sqrt(variance) * surface.touch_sigma, 1e-6);
 }
 
+/// The same with the sampling boundary, the square of the outer touches; z of its corners, NaN: not measured.
+fit::FitInput input_with_corners(const std::function<double(const Eigen::Vector2d&)>& z, bool measured)
+{
+    fit::FitInput input = lines_input(z);
+    input.job.sampling = 2.5 * input.job.anomaly;
+    for (Eigen::Index i = 0; i < 4; ++i)
+        input.job.sampling(2, i) = measured ? z(input.job.sampling.col(i).head<2>()) : std::nan("");
+    return input;
+}
+
+// Corners of the anomaly lie outside the hull of the touches on the lines. With the measured corners of the sampling
+// boundary the surface is defined there; on a plane it is the plane.
+TEST(GriddataFit, takes_the_measured_sampling_boundary)
+{
+    const auto plane = [](const Eigen::Vector2d& p) { return 3 + 0.2 * p.x() - 0.1 * p.y(); };
+    for (const double x : {-10.0, 10.0})
+        for (const double y : {-10.0, 10.0}) {
+            const Eigen::Vector2d corner(2.4 * x, 2.4 * y), of_anomaly(x, y);
+            const surface::Surface with = fit::fit_griddata(input_with_corners(plane, true)).surface;
+            EXPECT_EQ(with.touches.cols(), 24);
+            EXPECT_NEAR(surface::height(with, of_anomaly), plane(of_anomaly), 1e-9);
+            EXPECT_NEAR(surface::height(with, corner), plane(corner), 1e-9);
+            const surface::Surface without = fit::fit_griddata(input_with_corners(plane, false)).surface;
+            EXPECT_EQ(without.touches.cols(), 20);
+            EXPECT_TRUE(std::isnan(surface::height(without, corner)));
+        }
+}
+
+// The corners' heights have the touches' noise, estimated points depend on the lines alone.
+TEST(GriddataFit, covariance_holds_the_sampling_boundary)
+{
+    const auto flat = [](const Eigen::Vector2d&) { return 0.0; };
+    const Eigen::Vector2d xy(18, 17);
+    double variance = 0;
+    for (int touch = 0; touch < 20; ++touch) {
+        int next = 0;
+        const auto one = [&](const Eigen::Vector2d&) { return next++ == touch ? 1.0 : 0.0; };
+        const double moved = surface::height(fit::fit_griddata(input_with_corners(one, true)).surface, xy);
+        variance += moved * moved;
+    }
+    const surface::Surface surface = fit::fit_griddata(input_with_corners(flat, true)).surface;
+    EXPECT_NEAR(surface::sigma(surface, xy), std::sqrt(variance) * surface.touch_sigma, 1e-6);
+}
+
+// Where a touch is at a corner, the touch is taken, not the job's height.
+TEST(GriddataFit, prefers_touches_to_the_job)
+{
+    fit::FitInput input = input_with_corners([](const Eigen::Vector2d&) { return 1.0; }, true);
+    input.job.sampling.row(2).setConstant(50);
+    const Eigen::Index before = input.xyz.cols();
+    input.xyz.conservativeResize(3, before + 4);
+    input.xyz.rightCols(4) << input.job.sampling.topRows<2>(), Eigen::RowVector4d::Ones();
+    input.roles.conservativeResize(before + 4);
+    input.roles.tail(4).setConstant(2);
+    input.curves.conservativeResize(before + 4);
+    input.curves.tail(4).setConstant(-1);
+    const surface::Surface surface = fit::fit_griddata(input).surface;
+    EXPECT_EQ(surface.touches.cols(), 24);
+    EXPECT_NEAR(surface::height(surface, {20, 20}), 1, 1e-9);
+}
+
 TEST(GriddataFit, names_the_source)
 {
     fit::FitInput input = lines_input([](const Eigen::Vector2d&) { return 1.0; });

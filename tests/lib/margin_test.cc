@@ -172,6 +172,20 @@ TEST(Regression, of_a_plane_is_the_worst_case)
     EXPECT_NEAR(prediction.band, 2 * job.probe.accuracy, 1e-12);
 }
 
+// As Wang published it (2007, 4.5): the probe's accuracy.
+TEST(Regression, of_a_plane_may_be_the_accuracy)
+{
+    const job::Job job = square_job(job::SurfaceType::plane);
+    surface::Surface surface;
+    surface.shape = surface::Plane{{0, 0}, 0, {0, 0}};
+    surface.touches = job.anomaly;
+    surface.roles.setZero(4);
+    const surface::Prediction prediction =
+        margin::predict_by_regression(surface, job, "surface", margin::PlaneShift::accuracy);
+    EXPECT_EQ(prediction.shift, job.probe.accuracy);
+    EXPECT_EQ(prediction.band, job.probe.accuracy);
+}
+
 // A level surface whose only unknown is its height: quantiles of the normal distribution, one- and two-sided.
 TEST(Posterior, of_one_number_has_normal_quantiles)
 {

@@ -97,6 +97,41 @@ TEST(Plane, ThreePointsAreTooFew)
         "job.json: anomaly: 3 boundary points, a plane needs at least 4: touch 1 more around the anomaly");
 }
 
+// --- points of the sampling boundary ---
+
+TEST(SamplingBoundary, IsAppendedAsTouchesOnNoLine)
+{
+    job::Job job = job_of(job::SurfaceType::freeform, rectangle(1, 1, 2, 2), rectangle(0, 0, 3, 3));
+    job.sampling(2, 1) = 7;
+    sampling::TouchPlan plan = sampling::plan_touches(job);
+    const Eigen::Index on_lines = plan.size();
+    sampling::append_sampling_boundary(plan, job);
+    ASSERT_EQ(plan.size(), on_lines + 4);
+    EXPECT_LT((plan.xy.rightCols(4) - job.sampling.topRows<2>()).norm(), 1e-12);
+    EXPECT_TRUE((plan.role.tail(4).array() == 2).all());
+    EXPECT_TRUE((plan.curve.tail(4).array() == sampling::kNoLine).all());
+    EXPECT_EQ(plan.z[on_lines + 1], 7);
+    EXPECT_TRUE(std::isnan(plan.z[on_lines]));
+}
+
+// A list that is closed by its first point, and a touch at a corner already.
+TEST(SamplingBoundary, IsTouchedOnceAtEachPlace)
+{
+    job::Job job = job_of(job::SurfaceType::freeform, rectangle(1, 1, 2, 2),
+                          corners({{0, 0}, {3, 0}, {3, 3}, {0, 3}, {0, 0}}, kInch));
+    const Eigen::Vector2d beside(3 * kInch + 0.9 * job.probe.accuracy, 3 * kInch);
+    EXPECT_EQ(sampling::untouched_sampling_points(job, beside), (std::vector<Eigen::Index>{0, 1, 3}));
+    EXPECT_EQ(sampling::untouched_sampling_points(job, Eigen::Matrix2Xd(2, 0)),
+              (std::vector<Eigen::Index>{0, 1, 2, 3}));
+}
+
+TEST(SamplingBoundary, IsNeeded)
+{
+    const job::Job job = job_of(job::SurfaceType::plane, rectangle(1, 1, 2, 2), Eigen::Matrix3Xd(3, 0));
+    sampling::TouchPlan plan = sampling::plan_touches(job);
+    EXPECT_THROW(sampling::append_sampling_boundary(plan, job), core::InputError);
+}
+
 // --- free-form ---
 
 TEST(LineCount, FollowsEquation45)
