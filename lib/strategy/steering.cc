@@ -49,7 +49,7 @@ Steering::Steering(const std::string& path, const std::string& joystick)
     else
         read_next();
     if (!joystick.empty()) {
-        if (!keys_) throw core::InputError(joystick, "a joystick beside the keys of a terminal, not beside " + path_);
+        if (!keys_) throw core::InputError("--joystick", "goes with the keys of a terminal, not with " + path_);
         joystick_ = core::FileDescriptor(::open(joystick.c_str(), O_RDONLY | O_CLOEXEC));
         if (!joystick_.is_open()) throw core::InputError(joystick, std::string("cannot open: ") + std::strerror(errno));
         if (!is_joystick(joystick_)) throw core::InputError(joystick, "is no joystick");

@@ -31,6 +31,12 @@ company_of() { # NAME OPTION: changes `command`
     'mill --tolerance') without --step ;;
     'mill --feed') command=(--stock box:0,0,0,9,9,9 --cutter ball:6 --step 0.5 path.xyz) ;;
     'path --wheel') command+=(--held part) ;;
+    'station '*)
+        rm -rf session
+        command+=(--session session)
+        ;;&
+    'station --direction') command+=(--surface swept) ;;
+    'station --patience') command=(--gantry 'exec:fettle-gantry-virtual job.json --stock good.pcd --cell 0.5' --lowest 0 --steer operator.txt --resume --session session job.json) ;;
     'sample --max-touches') command+=(--strategy adaptive) ;;
     'sample --touches' | 'sample --candidates' | 'sample --mutations' | 'sample --sharpness') command+=(--strategy hillclimb --mutations 20 --candidates 3) ;;
     esac
@@ -75,7 +81,8 @@ within_bounds() { # COMMAND…: sets `status`; complains of anything but an answ
 for name in $names; do
     tool=fettle-$name
     while IFS='= ' read -r option placeholder default; do
-        case $placeholder in FILE | PART | SURFELS | SURFACE* | MESH | JOB | POINTS | PATH | TRACE | EVENTS | TEXT | NAME | LIST | AXES | RULE | exec:*) continue ;; esac
+        case $placeholder in FILE | FOLDER | DEVICE | PART | SURFELS | SURFACE* | MESH | JOB | POINTS | PATH | TRACE | EVENTS | TEXT | NAME | LIST | AXES | RULE | exec:*) continue ;; esac
+        [ "$name $option" != 'station --pace' ] || continue # it makes a simulated machine wait
         case $option:$placeholder in --threads:* | --seed:*) continue ;; *:uniform:A*) ;; *\|*) continue ;; esac # command-line.sh has them
         command_of "$name"
         elsewhere none nowhere

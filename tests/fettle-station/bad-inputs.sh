@@ -13,7 +13,7 @@ refuses '--stock: goes with a virtual gantry' --session s --gantry virtual --ste
 refuses '--machine: goes with' --session s --gantry virtual:dynamic --stock stock.stl --steer fine
 refuses 'ended with status 3' --session s1 --gantry 'exec:exit 3' --steer fine
 refuses 'none: cannot open' --session s --gantry virtual --stock stock.stl --steer none
-refuses 'a joystick beside the keys of a terminal' --session s --gantry virtual --stock stock.stl --steer fine --joystick fine
+refuses '--joystick: goes with the keys of a terminal' --session s --gantry virtual --stock stock.stl --steer fine --joystick fine
 refuses '--direction: goes with a swept surface alone' --session s --gantry virtual --stock stock.stl --steer fine --direction 3
 refuses "line 1: '0 jump' is none of" --session s --gantry virtual --stock stock.stl --steer <(echo '0 jump')
 on 'missing/s: no folder for a session' --session missing/s
