@@ -26,7 +26,7 @@ for name in $names; do
         for option in "${bulk[@]}" --report "${writes[@]}"; do
             case "$name $option" in 'belt --watch' | 'belt --journal' | 'grind --trace' | 'manual --trace' | 'station --session') continue ;; esac
             # Asked to end, a session stops its machine and reports how far it came.
-            [ "$name $option" != 'station --report' ] || { jq -e .state "place/$option" >/dev/null 2>&1 && continue; }
+            [ "$name $option" != 'station --report' ] || { jq -e '.kind == "station" and .stage != null' "place/$option" >/dev/null 2>&1 && continue; }
             cmp -s "place/$option" "once/$option" || grep -qx 'what was there' "place/$option" || say "$option is half-written" "$name $moment"
         done
         hidden=$(find place -name '.*' ! -name place)
