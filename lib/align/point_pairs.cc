@@ -132,19 +132,19 @@ Pose best_pose(const PairTable& table, const OrientedPoints& model, const Orient
         }
     }
     Eigen::Index best = 0, best_bin = 0;
-    double most = -1;
+    double max_sum = -1;
     for (Eigen::Index m = 0; m < votes.cols(); ++m)
         for (Eigen::Index b = 0; b < kTurnBins; ++b) { // with its neighbours: a turn may lie between two bins
             const double sum =
                 votes(b, m) + (votes((b + 1) % kTurnBins, m) + votes((b + kTurnBins - 1) % kTurnBins, m)) / 2;
-            if (sum <= most) continue;
-            most = sum;
+            if (sum <= max_sum) continue;
+            max_sum = sum;
             best = m;
             best_bin = b;
         }
     const double turn = 2 * std::numbers::pi * (best_bin + 0.5) / kTurnBins;
     const Eigen::Isometry3d to_model = to_origin(model.xyz.col(best), model.normals.col(best));
-    return {frame.inverse() * Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitX()) * to_model, most};
+    return {frame.inverse() * Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitX()) * to_model, max_sum};
 }
 
 /// Adds the votes of poses near each other. @return  the best of each cluster, most votes first
