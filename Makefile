@@ -15,9 +15,10 @@
 VERSION  := $(shell sed -n 's/^## \([0-9.]*\).*/\1/p' CHANGELOG.md | head -n 1)
 B        ?= build
 PREFIX   ?= /usr/local
-# -g1: lines in backtraces; all of -g makes objects ten times as large and takes a third longer. -DNDEBUG: Eigen's
-# checks of sizes and indices take a fifth of the compile time; coverage, sanitizers and fuzzing keep them.
-CXXFLAGS ?= -O2 -g1 -DNDEBUG
+# No -g: -g1 takes a twentieth longer, all of -g a third, and makes objects ten times as large. Who debugs says
+# CXXFLAGS="-Og -g". -DNDEBUG: Eigen's checks of sizes and indices take a fifth of the compile time; coverage, sanitizers and
+# fuzzing keep them.
+CXXFLAGS ?= -O2 -DNDEBUG
 JOBS     ?= $(shell nproc)
 
 # What needs LinuxCNC's headers (linuxcnc-uspace-dev) is built where they are.
@@ -85,8 +86,10 @@ $(B)/lib/mesh/mesh_index.o: private override CXXFLAGS += -ffp-contract=fast
 # Those with flags of their own are compiled alone, and so are LinuxCNC's.
 ALONE := lib/mesh/mesh_index.cc lib/robot/workpiece.cc $(wildcard lib/gantry/linuxcnc*.cc)
 
-# What tests and tools do themselves is little: they are sooner compiled and run so than with -O2.
-$(B)/tests/lib/% $(B)/tools/%: private override CXXFLAGS += -O1
+# What these do themselves is little, and what they do is bound by files and people: they are sooner compiled and run so
+# than with -O2.
+$(B)/tests/lib/% $(B)/tools/% $(B)/pipelines/programs/%: private override CXXFLAGS += -O1
+$(foreach module,cli diff draw job json part report station units,$(B)/lib/$(module)/%): private override CXXFLAGS += -O1
 
 include tools/libraries.mk
 
@@ -232,7 +235,8 @@ bless: build
 include tests/fuzz/fuzz.mk
 
 # --- the rest ---------------------------------------------------------------------------------------------------------
-demo: deps
+demo:
+	@.ci/install-packages packages.txt --without-tests
 	@$(MAKE) --no-print-directory -j$(JOBS) $(call tools_named_in,pipelines/casting.mk)
 	@$(MAKE) --no-print-directory -j$(JOBS) -f pipelines/casting.mk B=$(B) demo
 
