@@ -3,7 +3,8 @@
 #   make            build                     make demo      the whole chain on the samples, with pictures
 #   make fettle-fit one tool and the modules it needs
 #   make test       build and run the tests   make figures   the chain's figures beside their targets
-#   make test TOOL=fettle-fit                 make bench     benchmarks
+#   make test-all   with all statistical draws      make bench     benchmarks
+#   make test TOOL=fettle-fit
 #   make bless TOOL=fettle-fit                make docs      pages of docs/tools from --help, modules.svg
 #   make test-linuxcnc  on LinuxCNC, simulated      make fuzz     build the fuzzing targets
 #   make lint       format and scripts        make includes   every file by its own includes
@@ -58,7 +59,7 @@ BUNDLE ?= 8
 
 .DELETE_ON_ERROR:
 .SECONDARY:
-.PHONY: fettle $(TOOLS) all build deps coverage test test-linuxcnc tests-built run-cases demo figures bench bless docs lint includes install clean
+.PHONY: fettle $(TOOLS) all build deps coverage test test-all test-linuxcnc tests-built run-cases demo figures bench bless docs lint includes install clean
 
 all: deps
 	@$(MAKE) --no-print-directory -j$(JOBS) build
@@ -198,7 +199,9 @@ LINUXCNC_RUNS := $(patsubst %.sh,%.case,$(sort $(wildcard tests/linuxcnc/*.sh)))
 .PHONY: $(CASE_RUNS) $(TEST_RUNS) $(LINUXCNC_RUNS)
 
 # More at once than there are processors: some wait most of their time.
-# Of one tool: what its cases name.
+# Of one tool: what its cases name. Statistical tests take a quarter of their draws, with test-all all of them.
+test: export FETTLE_DRAWS ?= $(if $(filter test-all,$(MAKECMDGOALS)),all,few)
+test-all: test
 test: deps
 	@rm -rf $(B)/results && mkdir -p $(B)/results
 	@$(MAKE) --no-print-directory -j$(JOBS) $(if $(TOOL),$(call tools_named_in,$(CASES)),build tests-built)
@@ -226,7 +229,7 @@ $(TEST_RUNS): %.run: %
 
 # Of lib/, by the tests, in a build of its own. Four cases fail in it: its programs write profiles, and complain where they cannot.
 coverage: deps
-	@-$(MAKE) --no-print-directory test B=$(B)/coverage CXXFLAGS="-O1 -g1 --coverage" LDFLAGS=--coverage
+	@-$(MAKE) --no-print-directory test-all B=$(B)/coverage CXXFLAGS="-O1 -g1 --coverage" LDFLAGS=--coverage
 	@tests/coverage $(B)/coverage > $(B)/coverage/report; sed '/:/,$$d' $(B)/coverage/report
 
 bless: build

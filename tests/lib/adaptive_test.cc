@@ -1,6 +1,7 @@
 #include "margin/adaptive.h"
 
 #include "core/error.h"
+#include "draws.h"
 #include "fit/fit.h"
 #include "job/boundary.h"
 #include "margin/anomaly_grid.h"
@@ -97,11 +98,12 @@ TEST(Adaptive, StopsWhenTheBandIsReachedAndItIs)
     const job::Job job = square_job();
     margin::AdaptiveLimits limits;
     limits.max_touches = 60;
-    const auto covered = [&](Truth truth, std::uint64_t runs, double band) {
+    const auto covered = [&](Truth truth, int runs, double band) {
         limits.max_band = band;
         int count = 0;
-        for (std::uint64_t seed = 1; seed <= runs; ++seed) {
-            const margin::AdaptiveTouches found = margin::touch_adaptively(job, limits, touching(truth, job, seed));
+        for (int seed = 1; seed <= runs; ++seed) {
+            const margin::AdaptiveTouches found =
+                margin::touch_adaptively(job, limits, touching(truth, job, static_cast<std::uint64_t>(seed)));
             const double predicted = found.band[found.band.size() - 1];
             EXPECT_TRUE(found.band_reached);
             EXPECT_LE(predicted, limits.max_band);
@@ -109,8 +111,9 @@ TEST(Adaptive, StopsWhenTheBandIsReachedAndItIs)
         }
         return count;
     };
-    // 95 %, less three standard errors of 60 runs; stopping prefers lucky draws a little.
-    EXPECT_GE(covered(dome, 60, 0.15), 51);
+    // 95 %, less three standard errors of so many runs; stopping prefers lucky draws a little.
+    const int runs = draws(60);
+    EXPECT_GE(covered(dome, runs, 0.15), std::floor(0.95 * runs - 3 * std::sqrt(0.95 * 0.05 * runs)));
     EXPECT_EQ(covered(ripples, 1, 0.4), 1); // no family fits: a Gaussian process, which takes longer
 }
 
