@@ -95,8 +95,8 @@ for name in $names; do
         turn=$((turn + 1))
         ends=("${values[@]}")
         [ "${FETTLE_DRAWS:-all}" = all ] || ends=("${values[turn % 9]}" "${values[(turn + 4) % 9]}" "${values[(turn + 7) % 9]}")
-        for value in "${ordinary[@]}" "${ends[@]}"; do
-            [ -z "$taken" ] || [[ " ${values[*]} " == *" $value "* ]] || continue # ordinary ones, until one is taken
+        for value in "${ordinary[@]}" "${values[@]}"; do
+            [ -z "$taken" ] || [[ " ${ends[*]} " == *" $value "* ]] || continue # all others, until one is taken
             [ "$value" != "$default" ] || [ -z "$value" ] || continue # what all other cases use
             word_of "$placeholder" "$value"
             within_bounds "$tool" -q --threads 2 "${named[@]:0:2*${#bulk[@]}}" "${command[@]}" "$option=$word"
