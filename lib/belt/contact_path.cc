@@ -1,9 +1,7 @@
 #include "belt/contact_path.h"
 
-#include "belt/local_fit.h"
+#include "belt/patch_surface.h"
 #include "core/error.h"
-#include "geometry/bounding_box.h"
-#include "geometry/point_index.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,10 +12,6 @@
 namespace fettle::belt {
 namespace {
 
-// Number of surfels at which the speed of the parameters (mm per unit of u or v) is sampled, and number of equal
-// intervals of each parameter for which its maximum is taken.
-constexpr Eigen::Index kSpeedSamples = 10000;
-constexpr int kIntervals = 64;
 // Fraction of a step by which the width may exceed a whole number of steps: the fits at the border are off by less.
 constexpr double kWidthToleranceSteps = 1e-3;
 // Rounding of single-precision coordinates of a decimetre, relative to a step of a tenth of a millimetre.
@@ -29,110 +23,6 @@ void check_point_count(double count)
 {
     if (!(count <= kMaxPathPoints)) throw core::InputError("the spacing is too fine: more than 5 million points");
 }
-
-/// One patch as a surface over the lengths along u and v.
-class PatchSurface {
-  public:
-    PatchSurface(const Surfels& surfels, const ContactPathOptions& options) : patch_(options.patch)
-    {
-        std::vector<Eigen::Index> own;
-        for (Eigen::Index i = 0; i < surfels.size(); ++i)
-            if (surfels.patch[i] == patch_ && (!options.on_stock || !std::isnan(surfels.displacement[i])))
-                own.push_back(i);
-        if (own.empty()) throw core::InputError("no surfels on patch " + std::to_string(patch_));
-        surfels_.position = surfels.position(Eigen::all, own);
-        surfels_.normal = surfels.normal(Eigen::all, own);
-        surfels_.radius = surfels.radius(own);
-        surfels_.uv = surfels.uv(Eigen::all, own);
-        surfels_.patch = surfels.patch(own);
-        surfels_.displacement = surfels.displacement(own);
-        if (!options.on_stock) surfels_.displacement.setZero();
-        max_radius_ = surfels_.radius.maxCoeff();
-        measure_lengths();
-        Eigen::Matrix2Xd lengths(2, surfels_.size());
-        for (Eigen::Index i = 0; i < surfels_.size(); ++i)
-            lengths.col(i) << length(0, surfels_.uv(0, i)), length(1, surfels_.uv(1, i));
-        neighbours_.emplace(lengths);
-    }
-
-    /// Width of the patch along u (axis 0) or v (axis 1), mm: an upper bound of the iso-curves' lengths.
-    double width(int axis) const { return lengths_[axis][kIntervals]; }
-    /// Local fit, or nothing outside the patch.
-    /// @param lengths  along u and v from their minima, mm
-    std::optional<LocalFit> fit_at(const Eigen::Vector2d& lengths) const
-    {
-        const std::vector<Eigen::Index> near = neighbours_->nearest(lengths, kFitCandidates);
-        const Eigen::Vector2d uv(parameter(0, lengths.x()), parameter(1, lengths.y()));
-        const std::optional<LocalFit> fit = local_fit(surfels_, patch_, uv, near);
-        if (!fit) return std::nullopt;
-        const bool is_on_patch = std::any_of(near.begin(), near.end(), [&](Eigen::Index i) {
-            return (surfels_.position.col(i) - fit->P).norm() <= max_radius_ * (1 + kRadiusTolerance);
-        });
-        return is_on_patch ? fit : std::nullopt;
-    }
-
-  private:
-    // A disc just reaches the corners of its lattice cell.
-    static constexpr double kRadiusTolerance = 0.01;
-
-    double parameter(int axis, double length) const
-    {
-        const Eigen::VectorXd& lengths = lengths_[axis];
-        int i = 0;
-        while (i + 1 < kIntervals && lengths[i + 1] < length) ++i;
-        const double fraction = (length - lengths[i]) / (lengths[i + 1] - lengths[i]);
-        return uv_box_.min()[axis] + uv_box_.sizes()[axis] * (i + std::clamp(fraction, 0.0, 1.0)) / kIntervals;
-    }
-
-    double length(int axis, double parameter) const
-    {
-        const double t = (parameter - uv_box_.min()[axis]) / uv_box_.sizes()[axis] * kIntervals;
-        const int i = std::clamp(static_cast<int>(t), 0, kIntervals - 1);
-        return lengths_[axis][i] + (t - i) * (lengths_[axis][i + 1] - lengths_[axis][i]);
-    }
-
-    /// Tabulates lengths over the parameters from the maximum speeds in their intervals.
-    void measure_lengths()
-    {
-        uv_box_ = geometry::bounding_box(surfels_.uv);
-        const geometry::PointIndex<3> neighbours(surfels_.position);
-        const Eigen::Index step = std::max<Eigen::Index>(1, surfels_.size() / kSpeedSamples);
-        Eigen::Matrix2Xd speeds = Eigen::Matrix2Xd::Zero(2, kIntervals);
-        for (Eigen::Index i = 0; i < surfels_.size(); i += step) {
-            const auto fit = local_fit(surfels_, patch_, surfels_.uv.col(i),
-                                       neighbours.nearest(surfels_.position.col(i), kFitCandidates));
-            if (!fit) continue;
-            const Eigen::Vector2d speed(fit->P_u.norm(), fit->P_v.norm());
-            const Eigen::Vector2d fraction = (surfels_.uv.col(i) - uv_box_.min()).cwiseQuotient(uv_box_.sizes());
-            for (int axis = 0; axis < 2; ++axis) {
-                double& max_speed =
-                    speeds(axis, std::clamp(static_cast<int>(fraction[axis] * kIntervals), 0, kIntervals - 1));
-                max_speed = std::max(max_speed, speed[axis]);
-            }
-        }
-        const Eigen::Vector2d max_speeds = speeds.rowwise().maxCoeff();
-        if (!(max_speeds.minCoeff() > 0))
-            throw core::InputError("too few surfels on patch " + std::to_string(patch_) + " for a path");
-        for (int axis = 0; axis < 2; ++axis) {
-            lengths_[axis] = Eigen::VectorXd::Zero(kIntervals + 1);
-            for (int k = 0; k < kIntervals; ++k) {
-                // Between samples the maximum may be that of a neighbouring interval. Without samples in these the
-                // overall maximum is used.
-                const int from = std::max(k - 1, 0), to = std::min(k + 1, kIntervals - 1);
-                const double found = speeds.row(axis).segment(from, to - from + 1).maxCoeff();
-                const double speed = found > 0 ? found : max_speeds[axis];
-                lengths_[axis][k + 1] = lengths_[axis][k] + speed * uv_box_.sizes()[axis] / kIntervals;
-            }
-        }
-    }
-
-    int patch_;
-    Surfels surfels_;
-    double max_radius_ = 0;
-    Eigen::AlignedBox2d uv_box_;
-    Eigen::VectorXd lengths_[2];                        ///< along u and v at the ends of their intervals, mm
-    std::optional<geometry::PointIndex<2>> neighbours_; ///< in the plane of the lengths
-};
 
 /// Appends poses along lines of constant u or v. Its coordinates are lengths along and across the rows, mm.
 class PathBuilder {
@@ -259,7 +149,7 @@ void add_spiral(PathBuilder& builder, double step)
 
 ContactPath contact_path(const Surfels& surfels, const ContactPathOptions& options)
 {
-    const PatchSurface surface(surfels, options);
+    const PatchSurface surface(surfels, options.patch, options.on_stock);
     PathBuilder builder(surface, options);
     if (options.pattern == PathPattern::rows)
         add_rows(builder, options);
