@@ -3,6 +3,7 @@
 #include "core/decompositions.h"
 #include "core/error.h"
 #include "fit/bspline.h"
+#include "geometry/local_quadratic.h"
 #include "geometry/quantiles.h"
 #include "surface/spline_energy.h"
 
@@ -76,7 +77,7 @@ Eigen::Matrix<double, 6, 1> remove_trend(std::vector<CellPoint>& points, const s
         const CellPoint& p = points[i];
         const double u = ((p.cell % cells_u + 0.5 + p.u) * grid.cell.x() - frame.middle.x()) / frame.half_side;
         const double v = ((p.cell / cells_u + 0.5 + p.v) * grid.cell.y() - frame.middle.y()) / frame.half_side;
-        A.row(i) << 1, u, v, u * u, u * v, v * v;
+        A.row(i) = geometry::quadratic_terms(u, v).transpose();
         z[i] = p.z;
     }
     // The columns are of the order of 1; single-precision coordinates leave less than this of a dependent one.

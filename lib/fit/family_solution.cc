@@ -2,7 +2,7 @@
 
 #include "core/decompositions.h"
 #include "fit/quadric_family.h"
-#include "fit/round_family.h"
+#include "fit/round_start.h"
 #include "geometry/bounding_box.h"
 #include "surface/shapes.h"
 
@@ -20,9 +20,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-// Applies to design matrices with columns of unit length; single-precision files round touches by 6e-8 of their size.
-constexpr double kSolutionRankThreshold = 1e-5;
-
 // --- families whose height is linear in θ ----------------------------------------------------------------------------
 
 std::optional<VectorXd> linear_fit(const MatrixXd& gradients, const VectorXd& z, const TouchIndices& kept)
@@ -80,76 +77,6 @@ std::optional<FamilySolution> plane(const TouchSet& touches, const TouchIndices&
 
 // --- round families --------------------------------------------------------------------------------------------------
 
-/// Initial estimate of round surfaces from the quadratic of least squares.
-struct RoundStart {
-    RoundProblem problem;      ///< the frame's first axis is the direction of min_curvature
-    double min_curvature = 0;  ///< principal curvatures by absolute value, > 0 convex, 1/mm; with a given direction
-    double max_curvature = 0;  ///< the curvatures along and across it
-    bool is_determined = true; ///< the touches determine the quadratic, and so the directions
-};
-
-RoundStart round_start(const TouchSet& touches, const TouchIndices& kept)
-{
-    const Eigen::Matrix3Xd xyz = touches.xyz(Eigen::all, kept);
-    const surface::Polynomial frame = centred_polynomial(xyz, 2);
-    const MatrixXd A = surface::height_gradients(frame, xyz.topRows(2)).transpose();
-    const auto [c, rank] = core::min_norm_least_squares(A, xyz.row(2).transpose(), kSolutionRankThreshold);
-
-    RoundStart start;
-    start.is_determined = rank == A.cols();
-    const Eigen::Vector2d slope = c.segment<2>(1) / frame.scale;
-    const Eigen::Vector3d n = Eigen::Vector3d(-slope.x(), -slope.y(), 1).normalized();
-    Eigen::Matrix3d& axes = start.problem.frame.axes;
-    axes.col(2) = n;
-    const auto tangent = [&](const Eigen::Vector2d& along) {
-        return Eigen::Vector3d(along.x(), along.y(), slope.dot(along)).normalized();
-    };
-    axes.col(0) = tangent({std::cos(touches.direction), std::sin(touches.direction)});
-    // The second axis is horizontal, so that tilting the frame along its first axis keeps that axis in its vertical
-    // plane.
-    if (touches.given_direction) axes.col(2) = (Eigen::Vector3d::UnitZ() - axes(2, 0) * axes.col(0)).normalized();
-    axes.col(1) = axes.col(2).cross(axes.col(0));
-    start.problem.frame.point << frame.origin, c[0];
-    start.problem.given_direction = touches.given_direction;
-    start.problem.touches = xyz;
-
-    // Weingarten map of the quadratic: its Hessian in x-y, transformed to the tangents.
-    Eigen::Matrix2d hessian;
-    hessian << 2 * c[3], c[4], c[4], 2 * c[5];
-    hessian *= -n.z() / (frame.scale * frame.scale);
-    const Eigen::Matrix2d tangents_xy = axes.topLeftCorner<2, 2>();
-    const Eigen::Matrix2d shape = tangents_xy.transpose() * hessian * tangents_xy;
-    if (touches.given_direction) {
-        start.min_curvature = shape(0, 0);
-        start.max_curvature = shape(1, 1);
-    } else {
-        const core::SymmetricEigen<2> eigen = core::symmetric_eigen(shape);
-        const int smaller = std::abs(eigen.values[0]) < std::abs(eigen.values[1]) ? 0 : 1;
-        start.min_curvature = eigen.values[smaller];
-        start.max_curvature = eigen.values[1 - smaller];
-        axes.col(0) = (axes.leftCols<2>() * eigen.vectors.col(smaller)).normalized().eval();
-        axes.col(1) = n.cross(axes.col(0));
-    }
-    // To first order, the orthogonal distance over n_z is the vertical error.
-    start.problem.weight.resize(xyz.cols());
-    surface::Polynomial quadratic = frame;
-    quadratic.coefficients = c;
-    for (Index i = 0; i < xyz.cols(); ++i) {
-        const double steepness = fettle::surface::slope(quadratic, xyz.col(i).head<2>()).squaredNorm();
-        start.problem.weight[i] = std::sqrt(1 + steepness) / touches.sigma;
-    }
-    return start;
-}
-
-/// The frame rotated about its normal.
-RoundFrame rotated(const RoundFrame& frame, double angle)
-{
-    RoundFrame result = frame;
-    result.axes.col(0) = std::cos(angle) * frame.axes.col(0) + std::sin(angle) * frame.axes.col(1);
-    result.axes.col(1) = frame.axes.col(2).cross(result.axes.col(0));
-    return result;
-}
-
 struct Attempt {
     RoundProblem problem;
     RoundSolution solution;
@@ -203,7 +130,7 @@ template <RoundFamily kFamily>
 std::optional<Attempt> best_attempt(const TouchSet& touches, const TouchIndices& kept)
 {
     constexpr double kQuarterTurn = std::numbers::pi / 2;
-    const RoundStart start = round_start(touches, kept);
+    const RoundStart start = round_start(touches, kept, centred_polynomial(touches.xyz(Eigen::all, kept), 2));
     const int num_free = parameter_count(kFamily, touches.given_direction);
     if (static_cast<int>(kept.size()) < num_free) return std::nullopt;
     std::optional<Attempt> best;

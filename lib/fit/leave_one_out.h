@@ -20,8 +20,8 @@ struct LeaveOneOut {
 /// @return  -1 if there is none
 Eigen::Index most_probable_outlier(const LeaveOneOut& predictions, double log_outlier);
 
-/// Of the true touches of Franke's surfaces (1979), whose peaks are as narrow as the distance of the touches, the
-/// farthest is 6 standard deviations off in 36 draws; outliers of 5 mm on smooth castings are 13 and more.
+/// In 36 draws on Franke's surfaces (1979), whose peaks are as narrow as the spacing of the touches, no true touch is
+/// more than 6 standard deviations off. Outliers of 5 mm on smooth castings are 13 and more off.
 inline constexpr double kMinOutlierDeviations = 8;
 
 } // namespace fettle::fit
