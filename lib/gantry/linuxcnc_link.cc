@@ -15,6 +15,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <functional>
 #include <limits>
 #include <pthread.h>
@@ -32,8 +33,6 @@ constexpr std::chrono::microseconds kPollPeriod{500};
 constexpr std::chrono::milliseconds kBeatPeriod{5};
 /// Timeouts for the start of LinuxCNC and commands without motion, and for commands with motion, s.
 constexpr double kCommandTimeout = 10, kMotionTimeout = 60;
-
-const char* const kNmlName = "xemc"; // name of any client in the NML file
 
 bool wait_for(double seconds, const std::function<bool()>& condition)
 {
@@ -96,11 +95,6 @@ std::string message_in(NML& errors, NMLTYPE type)
     return "";
 }
 
-std::string resolve_path(const std::string& ini, const std::string& file)
-{
-    return file.starts_with('/') ? file : ini.substr(0, ini.rfind('/') + 1) + file;
-}
-
 } // namespace
 
 struct LinuxcncLink::Wires {
@@ -123,6 +117,7 @@ struct LinuxcncLink::Wires {
 
     void connect(const std::string& nml)
     {
+        const char* const kNmlName = "xemc";          // of any client in the NML file
         set_rcs_print_destination(RCS_PRINT_TO_NULL); // its default is stdout
         const bool up = wait_for(kCommandTimeout, [&] {
             const char* file = nml.c_str();
@@ -162,24 +157,13 @@ struct LinuxcncLink::Wires {
                 throw GantryFault("LinuxCNC reports: " + text.substr(0, text.find('\n')));
     }
 
-    void discard_errors()
+    /// Executes a command whose only parameter is `member`.
+    template <class Message, class Value>
+    void set(Value Message::*member, Value value, const char* what)
     {
-        while (errors->read() > 0) {
-        }
-    }
-
-    void set_state(EMC_TASK_STATE_ENUM state)
-    {
-        EMC_TASK_SET_STATE message;
-        message.state = state;
-        execute(message, "machine on");
-    }
-
-    void set_mode(EMC_TASK_MODE_ENUM mode)
-    {
-        EMC_TASK_SET_MODE message;
-        message.mode = mode;
-        execute(message, "mode");
+        Message message;
+        message.*member = value;
+        execute(message, what);
     }
 
     bool homed()
@@ -208,14 +192,13 @@ LinuxcncLink::LinuxcncLink(const std::string& ini) : wires_(std::make_unique<Wir
     if (!wires_->ini.Open(ini.c_str())) throw core::InputError(ini, "cannot be read");
     const char* const nml = wires_->ini.Find("NML_FILE", "EMC");
     if (nml == nullptr) throw core::InputError(ini, "[EMC]NML_FILE is missing");
-    wires_->connect(resolve_path(ini, nml));
+    wires_->connect(std::filesystem::path(ini).parent_path() / nml); // nml may be absolute
 }
 
 LinuxcncLink::~LinuxcncLink()
 {
-    wires_->head->press.set(false);
-    wires_->head->watch.set(false);
-    wires_->head->hold.set(false);
+    Head& head = *wires_->head;
+    for (Flag* flag : {&head.press, &head.watch, &head.hold}) flag->set(false);
     wires_->ended = true;
     if (wires_->heartbeat.joinable()) wires_->heartbeat.join();
 }
@@ -231,26 +214,23 @@ double LinuxcncLink::setting(const std::string& section, const std::string& key)
 void LinuxcncLink::enable()
 {
     Head& head = *wires_->head;
-    head.press.set(false); // may be set by an earlier client
-    head.watch.set(false);
-    head.hold.set(false);
-    head.touch.set(false);
-    head.tip.set(false);
+    // An earlier client may have left them set.
+    for (Flag* flag : {&head.press, &head.watch, &head.hold, &head.touch, &head.tip}) flag->set(false);
     wires_->heartbeat = std::thread([this] { wires_->beat(); });
     if (!wait_for(kCommandTimeout, [&] { return !head.lost && !head.off; }))
         throw GantryFault("the guard does not release the machine");
-    wires_->discard_errors();
-    wires_->set_state(EMC_TASK_STATE_ESTOP_RESET);
-    wires_->set_state(EMC_TASK_STATE_ON);
+    while (wires_->errors->read() > 0) continue; // errors of earlier clients
+    wires_->set(&EMC_TASK_SET_STATE::state, EMC_TASK_STATE_ESTOP_RESET, "machine on");
+    wires_->set(&EMC_TASK_SET_STATE::state, EMC_TASK_STATE_ON, "machine on");
     if (!wires_->homed()) {
-        wires_->set_mode(EMC_TASK_MODE_MANUAL);
+        wires_->set(&EMC_TASK_SET_MODE::mode, EMC_TASK_MODE_MANUAL, "mode");
         EMC_JOINT_HOME all;
         all.joint = -1;
         wires_->send(all, "home");
         if (!wait_for(kMotionTimeout, [&] { return wires_->homed(); }))
             throw GantryFault("LinuxCNC does not end homing");
     }
-    wires_->set_mode(EMC_TASK_MODE_MDI);
+    wires_->set(&EMC_TASK_SET_MODE::mode, EMC_TASK_MODE_MDI, "mode");
     head.watch.set(true);
 }
 
