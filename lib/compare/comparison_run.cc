@@ -49,7 +49,7 @@ void warn_of_repair(ComparisonRun& run, const std::string& name, const Reference
     if (repair.opposite_facets > 0)
         warn(run, name,
              std::to_string(repair.opposite_facets) +
-                 " facets repeat another wound the other way and are left out: the first tells the outer side");
+                 " facets repeat another wound the other way and are left out: the first defines the outer side");
     if (repair.flipped_facets > 0 && winding == Winding::repair)
         warn(run, name, std::to_string(repair.flipped_facets) + " facets are turned over (--winding)");
 }

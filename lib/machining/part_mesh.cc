@@ -37,7 +37,7 @@ PartMesh read_part_mesh(const std::string& path, const std::optional<units::Unit
     mesh::MeshRepair repair;
     PartMesh part;
     part.mesh = mesh::read_mesh(path, unit.value_or(units::Units::Length::mm), &repair);
-    const std::string warning = dropped_facets_warning(repair, part.mesh.triangles.cols(), core::display_name(path));
+    const std::string warning = repair_warning(repair, part.mesh.triangles.cols(), core::display_name(path));
     if (!warning.empty()) part.warnings.push_back(warning);
     part.mesh = rotated(std::move(part.mesh), rotation_tilted_machine);
     return part;
@@ -59,14 +59,14 @@ PartMesh read_design(const std::string& path, const std::optional<units::Units::
     return part;
 }
 
-std::string dropped_facets_warning(const mesh::MeshRepair& repair, Eigen::Index kept, const std::string& source)
+std::string repair_warning(const mesh::MeshRepair& repair, Eigen::Index kept, const std::string& source)
 {
-    if (repair.dropped_triangles == 0) return {};
-    const std::string text = std::to_string(repair.dropped_triangles) + " of " +
-                             std::to_string(kept + repair.dropped_triangles) +
-                             " facets have corners that are not finite";
-    if (repair.dropped_triangles >= kept) throw core::InputError(source, text);
-    return source + ": " + text + ": they are left out";
+    const Eigen::Index dropped = repair.dropped_triangles;
+    if (dropped > 0 && dropped >= kept)
+        throw core::InputError(source, std::to_string(dropped) + " of " + std::to_string(kept + dropped) +
+                                           " facets have NaN or infinite corners");
+    const std::string warning = mesh::repair_warning(repair);
+    return warning.empty() ? "" : source + ": " + warning;
 }
 
 std::string cutter_size_warning(const std::string& part, const Eigen::Vector3d& size, const Cutter& cutter)

@@ -19,7 +19,7 @@ struct PartMesh {
     bool closed = false;               ///< of a design: no border
 };
 
-/// Reads a mesh into the tilted frame (tilt.h). Facets with corners that are not finite are left out, with a warning.
+/// Reads a mesh into the tilted frame (tilt.h). What is left out of it is a warning.
 /// @param unit  of the file; nothing: mm
 /// @throws InputError as read_mesh(), and if half of the facets or more would be left out
 PartMesh read_part_mesh(const std::string& path, const std::optional<units::Units::Length>& unit,
@@ -31,9 +31,9 @@ PartMesh read_part_mesh(const std::string& path, const std::optional<units::Unit
 PartMesh read_design(const std::string& path, const std::optional<units::Units::Length>& unit,
                      const Eigen::Matrix3d& rotation_tilted_machine);
 
-/// A warning about facets that a reader left out, empty if there are none. @param kept  number of the other facets
-/// @throws InputError if half of the facets or more are left out
-std::string dropped_facets_warning(const mesh::MeshRepair& repair, Eigen::Index kept, const std::string& source);
+/// mesh::repair_warning() with the file's name. @param kept  number of facets that were not left out
+/// @throws InputError if half of the facets or more are left out: simulation and verdict would be about holes
+std::string repair_warning(const mesh::MeshRepair& repair, Eigen::Index kept, const std::string& source);
 
 /// A warning if a part is much smaller or larger than what the cutter is for, else empty: a wrong unit.
 /// @param part  "the design"   @param size  along x, y, z, mm

@@ -264,7 +264,7 @@ Workpiece read_workpiece(const std::string& stock, const std::optional<units::Un
     mesh::ShapeFile file = mesh::read_shape(stock, units::Units{unit.value_or(units::Units::Length::mm)});
     std::string warning;
     if (const auto* mesh = std::get_if<mesh::Mesh>(&file.shape))
-        warning = dropped_facets_warning(file.repair, mesh->triangles.cols(), core::display_name(stock));
+        warning = repair_warning(file.repair, mesh->triangles.cols(), core::display_name(stock));
     const auto rasterized = [&](auto& shape) {
         return scanned_workpiece(sampling::Scan(rotated(std::move(shape), rotation_tilted_machine)), cell);
     };

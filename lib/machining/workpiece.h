@@ -37,7 +37,7 @@ Workpiece scanned_workpiece(sampling::Scan scan, double cell);
 
 /// Stock from the value of --stock: "box:" and the corners of a box, or the file of a mesh or a cloud.
 /// @param unit  of the file; nothing: mm
-/// @throws InputError as box_workpiece(), read_shape() and dropped_facets_warning()
+/// @throws InputError as box_workpiece(), read_shape() and repair_warning()
 Workpiece read_workpiece(const std::string& stock, const std::optional<units::Units::Length>& unit, double cell,
                          const Eigen::Matrix3d& rotation_tilted_machine);
 

@@ -51,9 +51,11 @@ std::vector<std::uint32_t> sharing_corners(const Eigen::Matrix3Xi& triangles)
 std::string repair_warning(const MeshRepair& repair)
 {
     std::vector<std::string> dropped;
-    if (repair.dropped_triangles > 0)
-        dropped.push_back(std::to_string(repair.dropped_triangles) + " facets with NaN or infinite corners");
-    if (repair.unused_vertices > 0) dropped.push_back(std::to_string(repair.unused_vertices) + " vertices of no facet");
+    const auto add = [&](Eigen::Index count, const char* one, const char* several, const char* which) {
+        if (count > 0) dropped.push_back(std::to_string(count) + (count == 1 ? one : several) + which);
+    };
+    add(repair.dropped_triangles, " facet", " facets", " with NaN or infinite corners");
+    add(repair.unused_vertices, " vertex", " vertices", " of no facet");
     return dropped.empty() ? "" : core::join(dropped, " and ") + " left out";
 }
 

@@ -5,5 +5,5 @@ for unit in mm in; do
     fettle-form flatness points.xyz --file-units $unit >points.json
     fettle-form flatness mesh.obj --file-units $unit >mesh.json 2>err
     fettle-diff points.json mesh.json
-    [ "$(cat err)" = 'fettle-form: warning: mesh.obj: 1 vertices of no facet left out' ]
+    [ "$(cat err)" = 'fettle-form: warning: mesh.obj: 1 vertex of no facet left out' ]
 done

@@ -58,7 +58,7 @@ refused "--stock: a corner's coordinate must be in" path.xyz box:0,0,0,1e300,9,9
 refused '--rapid' path.xyz $box ball:6 --rapid 1e-320
 refused '--feed' path.xyz $box ball:6 --feed 1e-320
 printf 'OFF\n6 2 0\n0 0 9\n9 0 9\n9 9 9\n0 9 nan\n0 0 nan\n9 0 nan\n3 0 1 2\n3 3 4 5\n' > half.off
-refused 'half.off: 1 of 2 facets have corners that are not finite' path.xyz half.off
+refused 'half.off: 1 of 2 facets have NaN or infinite corners' path.xyz half.off
 "$HERE/../refuses" 'half.off: 1 of 2 facets have' fettle-mill path.xyz --stock $box --cutter ball:6 --tolerance 0.1 --design half.off
 "$HERE/../refuses" 'give either --step or --tolerance' fettle-mill path.xyz --stock $box --cutter ball:6
 refused 'give either --step or --tolerance' path.xyz $box ball:6 --tolerance 0.1

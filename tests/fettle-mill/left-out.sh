@@ -4,10 +4,10 @@ printf 'OFF\n5 4 0\n0 0 9\n30 0 9\n30 20 9\n0 20 9\n15 10 nan\n3 0 1 2\n3 0 2 3\
 printf 'OFF\n4 2 0\n0 0 9\n30 0 9\n30 20 9\n0 20 9\n3 0 1 2\n3 0 2 3\n' > whole.off
 printf '5 5 6\n25 15 6\n' > path.xyz
 fettle-mill path.xyz --stock gaps.off --cutter ball:6 --step 0.5 2> message > gaps.stl
-grep -qF 'warning: gaps.off: 1 of 4 facets have corners that are not finite: they are left out' message
+grep -qF 'warning: gaps.off: 1 facet with NaN or infinite corners left out' message
 fettle-mill path.xyz --stock whole.off --cutter ball:6 --step 0.5 | cmp - gaps.stl
 fettle-mill path.xyz --stock whole.off --design gaps.off --cutter ball:6 --tolerance 0.1 2> message > design.stl
-grep -qF 'warning: gaps.off: 1 of 4 facets' message
+grep -qF 'warning: gaps.off: 1 facet with NaN or infinite corners left out' message
 awk 'NF == 3 && NR > 2 { print $1 / 1000, $2 / 1000, $3 / 1000; next } { print }' whole.off > metres.off
 fettle-mill path.xyz --stock metres.off --cutter ball:6 --step 0.005 2> message > small.stl
 grep -qF 'metres.off: the stock, 0.03 x 0.02 x 0 mm, is less than 0.2 times as long as the cutter' message

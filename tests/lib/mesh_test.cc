@@ -457,6 +457,8 @@ TEST(Mesh, VerticesOfNoTriangleAreDroppedAndCounted)
     EXPECT_EQ(repair.dropped_triangles, 0);
     EXPECT_EQ(mesh::repair_warning(repair), "3 vertices of no facet left out");
     EXPECT_EQ(mesh::repair_warning({2, 5, 0}), "2 facets with NaN or infinite corners left out");
+    EXPECT_EQ(mesh::repair_warning({1, 0, 1}),
+              "1 facet with NaN or infinite corners and 1 vertex of no facet left out");
     EXPECT_EQ(mesh::repair_warning({}), "");
 }
 
