@@ -150,25 +150,14 @@ FETTLE_INLINE RemovedHeight cut_under(const removal::HeightField& field, Cell* z
     return cut_shape(field, z, sweep, Straight<Side, false>{sweep, side}, first, end, floor);
 }
 
-FETTLE_CLONES RemovedHeight under_ball(const removal::HeightField& field, double* z, const Sweep& sweep,
-                                       Eigen::Index first, Eigen::Index end, double floor)
-{
-    return cut_under<BallSide>(field, z, sweep, first, end, floor);
-}
-FETTLE_CLONES RemovedHeight under_flat(const removal::HeightField& field, double* z, const Sweep& sweep,
-                                       Eigen::Index first, Eigen::Index end, double floor)
-{
-    return cut_under<FlatSide>(field, z, sweep, first, end, floor);
-}
-FETTLE_CLONES RemovedHeight under_bull(const removal::HeightField& field, double* z, const Sweep& sweep,
-                                       Eigen::Index first, Eigen::Index end, double floor)
-{
-    return cut_under<BullSide>(field, z, sweep, first, end, floor);
-}
-FETTLE_CLONES RemovedHeight under_taper(const removal::HeightField& field, double* z, const Sweep& sweep,
+FETTLE_CLONES RemovedHeight lower_under(const removal::HeightField& field, double* z, const Sweep& sweep,
                                         Eigen::Index first, Eigen::Index end, double floor)
 {
-    return cut_under<TaperSide>(field, z, sweep, first, end, floor);
+    const Cutter& c = sweep.cutter;
+    if (c.cone_from < c.radius) return cut_under<TaperSide>(field, z, sweep, first, end, floor);
+    if (c.corner == 0) return cut_under<FlatSide>(field, z, sweep, first, end, floor);
+    if (c.flat == 0) return cut_under<BallSide>(field, z, sweep, first, end, floor);
+    return cut_under<BullSide>(field, z, sweep, first, end, floor);
 }
 FETTLE_CLONES RemovedHeight above_flat(const removal::HeightField& field, const Sweep& sweep, Eigen::Index first,
                                        Eigen::Index end)
@@ -181,12 +170,7 @@ FETTLE_CLONES RemovedHeight above_flat(const removal::HeightField& field, const 
 RemovedHeight cut_rows(removal::HeightField& field, const Sweep& sweep, Eigen::Index first, Eigen::Index end,
                        double floor)
 {
-    const Cutter& c = sweep.cutter;
-    double* z = field.z.data();
-    if (c.cone_from < c.radius) return under_taper(field, z, sweep, first, end, floor);
-    if (c.corner == 0) return under_flat(field, z, sweep, first, end, floor);
-    if (c.flat == 0) return under_ball(field, z, sweep, first, end, floor);
-    return under_bull(field, z, sweep, first, end, floor);
+    return lower_under(field, field.z.data(), sweep, first, end, floor);
 }
 
 RemovedHeight height_above_disc(const removal::HeightField& field, const Sweep& sweep, Eigen::Index first,
