@@ -15,7 +15,7 @@ fettle-part m-part.json > m-stock.stl
 fettle-grind plan.json --stock stock.stl --cell 0.2 --report mm.json --trace mm-trace.pcd --ascii > mm.pcd
 fettle-grind in-plan.json --stock stock.stl --stock-units mm --cell "$(jq -n '0.2 / 25.4')" --report in.json --trace in-trace.pcd --ascii > in.pcd
 fettle-grind plan.json --stock m-stock.stl --stock-units m --cell 0.2 --report m.json --ascii > m.pcd
-same_fields 1e-6 mm.pcd in.pcd
-same_fields 1e-5 mm-trace.pcd in-trace.pcd
-same_keys 1e-6 mm.json in.json
+"$HERE/../scales" in,lbf "$dimensions" mm.pcd in.pcd 1e-6
+"$HERE/../scales" in,lbf "$dimensions" mm-trace.pcd in-trace.pcd 1e-5
+"$HERE/../scales" in,lbf "$dimensions" mm.json in.json 1e-6
 fettle-diff --tol 1e-5 mm.pcd m.pcd
