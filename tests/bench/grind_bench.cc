@@ -1,5 +1,7 @@
 // How fast the virtual gantries simulate: passes over a 3 x 3 in part, wheel of 1 in radius and 1/4 in width.
 
+#include "../lib/gantry_stock.h"
+
 #include "gantry/dynamic.h"
 #include "gantry/quasi_static.h"
 
@@ -35,23 +37,11 @@ job::Job job()
     return inch;
 }
 
-/// A drive of 80 kg that moves at up to 100 mm/s; loops of 1 kHz.
+/// Loops of 1 kHz.
 gantry::Machine machine()
 {
     gantry::Machine machine;
-    const gantry::Drive drive{.mass = 0.08,
-                              .damping = 1.5,
-                              .gain = 12,
-                              .load = 0,
-                              .voltage = 60,
-                              .current = 40,
-                              .emf = 0.05,
-                              .encoder = 0.0005,
-                              .speed = 100,
-                              .acceleration = 1000,
-                              .min_position = -500,
-                              .max_position = 500,
-                              .following_error = 5};
+    const gantry::Drive drive = drive_of_80_kg(5);
     machine.axes = {drive, drive, drive};
     machine.c = drive;
     machine.head = {.damping = 0.9, .travel = 25, .lvdt = 0.001, .noise = 0.002, .stiffness = 900};

@@ -35,24 +35,23 @@ press() { # KEY TIMES: an arrow each 0.1 s of the machine
         sleep 0.08
     done
 }
+keep() { # COUNT: a corner around the anomaly; then there are so many
+    tmux send-keys -t station r
+    sees "points: $1 around the anomaly"
+}
 sees 'show the anomaly'
 press Left 4
 press Down 4
-tmux send-keys -t station r
-sees 'points: 1 around the anomaly'
+keep 1
 press Right 8
-tmux send-keys -t station r
-sees 'points: 2 around the anomaly'
-tmux send-keys -t station r
-sees 'points: 3 around the anomaly'
+keep 2
+keep 3
 tmux send-keys -t station b
 sees 'points: 2 around the anomaly'
 press Up 8
-tmux send-keys -t station r
-sees 'points: 3 around the anomaly'
+keep 3
 press Left 8
-tmux send-keys -t station r
-sees 'points: 4 around the anomaly'
+keep 4
 screen > shown.txt
 for corner in 1 2 3 4; do grep -q $corner shown.txt; done
 tmux send-keys -t station n

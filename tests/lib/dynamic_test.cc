@@ -18,22 +18,7 @@ using namespace fettle;
 
 namespace {
 
-gantry::Drive drive()
-{
-    return {.mass = 0.08,
-            .damping = 1.5,
-            .gain = 12,
-            .load = 0,
-            .voltage = 60,
-            .current = 40,
-            .emf = 0.05,
-            .encoder = 0.0005,
-            .speed = 100,
-            .acceleration = 1000,
-            .min_position = -500,
-            .max_position = 500,
-            .following_error = 1};
-}
+gantry::Drive drive() { return drive_of_80_kg(1); }
 
 gantry::Machine machine()
 {

@@ -1,6 +1,7 @@
-// Stocks and a job for tests of the gantries.
+// Stocks, a job and a drive for tests and benchmarks of the gantries.
 #pragma once
 
+#include "gantry/machine.h"
 #include "job/job.h"
 #include "removal/height_field.h"
 
@@ -19,6 +20,24 @@ inline job::Job small_job()
     job.removal_coefficient = 7.4;
     job.safe_height = 30;
     return job;
+}
+
+/// A drive of 80 kg that moves at up to 100 mm/s. @param following_error  at which it stops, mm
+inline gantry::Drive drive_of_80_kg(double following_error)
+{
+    return {.mass = 0.08,
+            .damping = 1.5,
+            .gain = 12,
+            .load = 0,
+            .voltage = 60,
+            .current = 40,
+            .emf = 0.05,
+            .encoder = 0.0005,
+            .speed = 100,
+            .acceleration = 1000,
+            .min_position = -500,
+            .max_position = 500,
+            .following_error = following_error};
 }
 
 /// 16 mm along X_w, 140 mm along Y_w. @param height  over W
