@@ -8,7 +8,7 @@ using namespace fettle;
 namespace {
 
 constexpr double kMaxLength = 1e6; ///< mm, in or m: larger than any part
-/// Of forces and feeds, N, mm/s, in/s or m/s: their inverses and squares neither overflow nor vanish.
+/// Range of forces and feeds, N, mm/s, in/s or m/s. Their inverses and squares neither overflow nor vanish.
 constexpr core::Range kLimitRange{1e-9, 1e9};
 
 } // namespace

@@ -41,8 +41,8 @@ int main(int argc, char** argv)
                               core::Range::positive());
         const auto& spacing =
             t.optional_number("--sections", "LENGTH",
-                              "Straightness of sections so far apart, in vertical planes; without it, of all "
-                              "points as one line",
+                              "Straightness of vertical sections at this spacing; without it, of all points as "
+                              "one line",
                               core::Range::positive());
         const auto& width = t.optional_number(
             "--section-width", "LENGTH", "Points within half of it belong to a section; as --sections, if not given",

@@ -14,7 +14,7 @@ namespace {
 const std::string kDescription =
     "Contact paths over a patch of surfels, and paths made denser.\n"
     "From surfels: rows or a spiral; points with position and quaternion (+z the outward normal, +x along the feed) "
-    "and pass. From a path: points inserted between those farther apart than --spacing, positions by lerp, "
+    "and pass. From a path: points inserted where the distance of two exceeds --spacing, positions by lerp, "
     "orientations by slerp along the shorter arc. Lengths in mm. Exit 1 if the path has no point.";
 
 constexpr double kMinSpacing = 1e-3; // mm: below what any machine resolves; keeps the number of points bounded

@@ -25,7 +25,7 @@ int main(int argc, char** argv)
         const auto& stock_unit = t.length_unit("--stock-units", "Unit of the stock, if it is not mm");
         belt::SurfelSampling options;
         const double& spacing = t.number("--spacing", options.spacing, "MM",
-                                         "Neighbours are no farther apart: no more than a cell of the contact grid",
+                                         "Maximum distance between neighbours; no more than a cell of the contact grid",
                                          core::Range::positive());
         const auto& precision =
             t.optional_number("--precision", "MM", "Discs bend off the surface by no more: closer where it is curved",
@@ -36,11 +36,11 @@ int main(int argc, char** argv)
         const double& sharp = t.number("--sharp", 30, "DEG", "Between two normals, more is an edge",
                                        core::Range::strictly_between(0, 90));
         const double& reach =
-            t.number("--reach", 5, "MM", "The stock is looked for so far either way", core::Range::positive());
+            t.number("--reach", 5, "MM", "Length of the rays, to either side of the design", core::Range::positive());
         const bool& ascii = t.flag("--ascii", "Text instead of binary");
         t.example("fettle-surfel parts/patch_saddle.json --stock <(fettle-part parts/patch_saddle_1x1.json) "
                   "--stock-units in --spacing 1 > work.pcd",
-                  "a saddle with a stub on it, as surfels 1 mm apart");
+                  "a saddle with a stub on it, as surfels with a spacing of 1 mm");
         t.reference("Ren et al. 2006, Surfel-based modelling of free-form surfaces (boundary re-sampling: fig. 3)");
         t.parse();
 
@@ -55,13 +55,13 @@ int main(int argc, char** argv)
         cloud::write_pcd(t.output(), belt::to_cloud(design.surfels), units::Units{}, cloud::pcd_encoding(ascii));
         t.report() = belt::to_json(design, rays);
 
-        const std::string of_all = " of " + std::to_string(design.surfels.size()) + " surfels within --reach: ";
+        const std::string of_all = " of " + std::to_string(design.surfels.size()) + " surfels ";
         if (rays.missed > 0)
-            t.warn(core::display_name(stock_path) + ": none of it is met by " + std::to_string(rays.missed) + of_all +
-                   "they have no displacement");
+            t.warn(core::display_name(stock_path) + ": the rays of " + std::to_string(rays.missed) + of_all +
+                   "miss it: these have no displacement");
         if (rays.multiple > 0)
-            t.warn(core::display_name(stock_path) + ": met more than once by " + std::to_string(rays.multiple) +
-                   of_all + "the nearest place counts");
+            t.warn(core::display_name(stock_path) + ": the rays of " + std::to_string(rays.multiple) + of_all +
+                   "hit it more than once: the nearest hit counts");
         return rays.missed < design.surfels.size() ? cli::Verdict::yes : cli::Verdict::no;
     });
 }

@@ -133,7 +133,7 @@ void teach_on_gantry(cli::Tool& t, const Options& o, const cli::OperatorPrompt& 
     job.anomaly = std::move(taught.anomaly);
     job.sampling = std::move(taught.sampling);
     if (missed > 0)
-        t.warn(std::to_string(missed) + (missed == 1 ? " point" : " points") + " met no surface: recorded without z");
+        t.warn(std::to_string(missed) + (missed == 1 ? " point" : " points") + " found no surface: recorded without z");
     t.report().set("touches_without_surface", missed).set("machine_time", machine->status().time);
 }
 

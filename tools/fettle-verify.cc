@@ -49,7 +49,7 @@ struct Options {
                                      core::Range::between(0, 1));
     const std::string& method = t.choice("--method", "patch", {"patch", "closest"},
                                          "closest: judge by the distance of the patch's centre from the closest point "
-                                         "of the design; the report says how far the two are apart");
+                                         "of the design; the report gives the distance of the two");
     const std::optional<double>& step = t.optional_number(
         "--step", "MM", "Sample the machined surface from above on a grid, too: its step", machining::kLengthRange);
     const std::string& csv = t.optional_output("--csv", "Data sheet: triangle, centre, d, mu, class");

@@ -17,7 +17,7 @@ namespace {
 // Number of scan points by which ICP ranks all poses found by the search, compares the best of them, and refines the
 // final one: more points would lower the figures of the fit no further than the scan's own errors.
 constexpr Eigen::Index kRankingPoints = 400, kComparisonPoints = 2000, kFinalPoints = 20000;
-// A few iterations tell which poses are worth many: those of the search are nearly converged where they fit.
+// A few iterations show which poses deserve many: at poses where the scan fits, the search has nearly converged.
 // One that has not converged after the last number is not the best, which the final refinement continues.
 constexpr int kScreeningIterations = 4, kRankingIterations = 30, kComparisonIterations = 60;
 constexpr std::size_t kMaxScreened = 16;

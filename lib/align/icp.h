@@ -28,8 +28,8 @@ struct IcpFit {
 };
 
 /// Point-to-plane ICP (Chen & Medioni 1992), trimmed (Chetverikov et al. 2005) and robust: Tukey's biweight reduces the
-/// weight of overlapping points whose distance exceeds the noise. pcl::IterativeClosestPoint takes a cloud, not a mesh,
-/// as target and does not tell which motions the points determine.
+/// weight of overlapping points whose distance exceeds the noise. pcl::IterativeClosestPoint registers to a cloud only,
+/// holds no axes fixed, and inverts the normal matrix even where the points leave a motion undetermined.
 /// @param start  T_reference_scan   @param scan  3xN, mm   @param scan_frame  twist_frame() of the scan
 IcpFit icp(const Eigen::Isometry3d& start, const Eigen::Matrix3Xd& scan, const TwistFrame& scan_frame,
            const AlignReference& reference, const IcpOptions& options);

@@ -87,7 +87,7 @@ class PairTable {
         }
     }
 
-    /// Distance of the points farthest apart, mm.
+    /// Largest distance between two points, mm.
     double reach() const { return reach_; }
 
     /// Pairs of the model equal to one of `points`, no farther apart than reach().

@@ -30,8 +30,9 @@ constexpr int kStepsAtFinalWidth = 4;
 // Width of the robust kernel, in scan radii: it starts wide enough for all nearby points and ends at the cell size of
 // the lookup grid.
 constexpr double kInitialWidthRadii = 0.5, kFinalWidthRadii = 0.06;
-// Poses of match_point_pairs() are nearly right: a wide kernel would pull them towards what lies beside.
-constexpr double kMatchWidthRadii = 0.15;
+// The poses that match_point_pairs() finds are nearly right: a wider kernel would draw them towards neighbouring
+// objects.
+constexpr double kMatchInitialWidthRadii = 0.15;
 // Weight of the residual along the tangent plane of a foot, relative to the residual along its normal: 1 in the first
 // step, falling linearly at this rate to the minimum, which it reaches after two thirds of the steps.
 constexpr double kTangentialDecay = 1.5, kMinTangentialWeight = 0.02;
@@ -105,7 +106,7 @@ class NearestPointGrid {
     std::vector<std::int32_t> nearest_;
 };
 
-// Mean of the given share of the values, the smallest of them.
+// Mean of the smallest values. @param share  of the values
 double trimmed_mean(std::vector<double> values, double share)
 {
     const auto count = std::clamp<std::size_t>(std::ceil(share * values.size()), 1, values.size());
@@ -126,7 +127,7 @@ PoseCandidate refine_pose(Eigen::Isometry3d T, const Eigen::Matrix3Xd& scan, con
     for (int step = 0; step <= kDescentSteps; ++step) {
         const double progress = std::min(1.0, step / double(kDescentSteps - kStepsAtFinalWidth));
         const double width = initial_width * std::pow(final_width / initial_width, progress);
-        const double tangential = std::max(kMinTangentialWeight, 1 - kTangentialDecay * progress);
+        const double tangential_weight = std::max(kMinTangentialWeight, 1 - kTangentialDecay * progress);
         const Eigen::Matrix3Xd moved_scan = T * scan;
         const TwistFrame frame{T * scan_frame.centre, radius};
         TwistMatrix A = TwistMatrix::Zero();
@@ -135,15 +136,15 @@ PoseCandidate refine_pose(Eigen::Isometry3d T, const Eigen::Matrix3Xd& scan, con
             const Eigen::Vector3d p = moved_scan.col(i);
             const Eigen::Index foot = grid.nearest(p);
             const Eigen::Vector3d residual = grid.offset_from_disc(foot, p), normal = grid.normal(foot);
-            const double relative = residual.squaredNorm() / (width * width);
-            costs[i] = relative / (1 + relative);
-            const double weight = 1 / ((1 + relative) * (1 + relative));
-            const Eigen::Matrix3d M =
-                weight * (tangential * Eigen::Matrix3d::Identity() + (1 - tangential) * normal * normal.transpose());
+            const double squared_ratio = residual.squaredNorm() / (width * width);
+            costs[i] = squared_ratio / (1 + squared_ratio);
+            const double weight = 1 / ((1 + squared_ratio) * (1 + squared_ratio));
+            const Eigen::Matrix3d M = weight * (tangential_weight * Eigen::Matrix3d::Identity() +
+                                                (1 - tangential_weight) * normal * normal.transpose());
             Eigen::Matrix<double, 3, 6> J;
-            const Eigen::Vector3d arm = (p - frame.centre) / radius;
+            const Eigen::Vector3d lever = (p - frame.centre) / radius;
             J << Eigen::Matrix3d::Identity(), //
-                Eigen::Matrix3d{{0, arm[2], -arm[1]}, {-arm[2], 0, arm[0]}, {arm[1], -arm[0], 0}};
+                Eigen::Matrix3d{{0, lever[2], -lever[1]}, {-lever[2], 0, lever[0]}, {lever[1], -lever[0], 0}};
             A.noalias() += J.transpose() * M * J;
             b.noalias() += J.transpose() * (M * residual);
         }
@@ -283,8 +284,8 @@ std::vector<PoseCandidate> search_poses(const OrientedPoints& all_scan, const Tw
         return distinct_poses(std::move(candidates), &PoseCandidate::cost, frame, kDuplicateCandidateRadii, kMaxPoses);
     };
     std::vector<PoseCandidate> best = refined(starts, kInitialWidthRadii);
-    // The descents of the others have seen more of the surroundings: their costs do not push these out.
-    for (const PoseCandidate& match : refined(matches, kMatchWidthRadii)) best.push_back(match);
+    // The two kinds are not compared by cost, which depends on the initial width of the kernel.
+    for (const PoseCandidate& match : refined(matches, kMatchInitialWidthRadii)) best.push_back(match);
     return best;
 }
 

@@ -18,11 +18,11 @@ struct PoseCandidate {
 /// Global registration: searches the pose of the scan on the reference without a start pose. Robust descents begin at
 /// rotations that cover SO(3), laid out from the principal axes of both with every permutation and sign of the axes
 /// among them, and, where the scan is smaller, at positions all over the reference; and at the poses that
-/// match_point_pairs() finds, if no axis is held. The pose in which the scan is given changes the result by rounding
-/// alone.
+/// match_point_pairs() finds, if no axis is held. Up to rounding the result does not depend on the pose in which the
+/// scan is given.
 /// @param frame    twist_frame() of the scan
-/// @param options  with one free rotation axis, only rotations about it are tried; held shifts are not searched; of the
-/// overlap and the maximum distance the costs of the poses take account
+/// @param options  with one free rotation axis, only rotations about it are tried; held shifts are not searched; the
+/// costs take the overlap and the maximum distance into account
 /// @return  the best poses of either kind, each kind distinct, best first
 std::vector<PoseCandidate> search_poses(const OrientedPoints& scan, const TwistFrame& frame,
                                         const OrientedPoints& reference, const IcpOptions& options);

@@ -17,7 +17,7 @@ struct BeltCheckpoint {
     Eigen::VectorXd displacement; ///< of the surfels, mm
 };
 
-/// SHA-256 of everything that a run depends on: a journal of another run is told by it.
+/// SHA-256 of everything that a run depends on: it identifies a journal of another run.
 std::string run_digest(const Surfels& surfels, const ContactWheel& wheel, const std::vector<BeltPoint>& path,
                        const BeltOptions& options);
 

@@ -1,6 +1,14 @@
 #include "belt/belt_options.h"
 
 namespace fettle::belt {
+namespace {
+
+// Bounds of --tolerance. Below the lower one rounding of the pressures' convolution decides, and the solver would not
+// converge; above the upper one the pressure is visibly wrong at the edge of the contact.
+constexpr double kMinContactTolerance = 1e-9;
+constexpr double kMaxContactTolerance = 1e-2;
+
+} // namespace
 
 ContactOptions::ContactOptions(cli::Tool& tool, int default_cells, double default_tolerance)
     : gridding(tool.choice<Gridding>("--gridding", {{"kriging", Gridding::kriging}, {"shepard", Gridding::shepard}},
@@ -8,7 +16,7 @@ ContactOptions::ContactOptions(cli::Tool& tool, int default_cells, double defaul
       cells(tool.count("--cells", default_cells, "Number of cells along each side of the grid", 8, 512)),
       tolerance(tool.number("--tolerance", default_tolerance, "SHARE",
                             "Maximum of pressure times gap, as a share of peak pressure times indentation",
-                            {1e-9, 1e-2}))
+                            core::Range::between(kMinContactTolerance, kMaxContactTolerance)))
 {
 }
 

@@ -24,7 +24,7 @@ constexpr int kNeighbours = 24;
 constexpr double kMaxGapAngle = 150 * std::numbers::pi / 180;
 constexpr double kMaxNearestToFarthest = 0.6;
 // In mode direction the height axis is the direction itself, unless the surface normal is more than 60° from it: a
-// surface that is quadratic along the direction is then met exactly.
+// surface that is quadratic along the direction is then reproduced exactly.
 constexpr double kMinNormalAlongDirection = 0.5;
 constexpr int kRobustPasses = 3;
 // The search for the foot starts at the nearest point and converges in two or three steps.

@@ -10,8 +10,8 @@
 namespace fettle::compare {
 
 /// Surface through a point cloud: around each foot, a quadratic height over the plane of the nearest points, fitted by
-/// robust least squares (Tukey's biweight). pcl::MovingLeastSquares neither detects gaps nor gives a standard
-/// deviation. Thread-safe.
+/// robust least squares (Tukey's biweight). pcl::MovingLeastSquares weights by distance alone, so that outliers
+/// pull the surface; it fills gaps, and gives no standard deviation. Thread-safe.
 class CloudReference {
   public:
     explicit CloudReference(const cloud::Cloud& cloud);

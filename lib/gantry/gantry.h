@@ -32,7 +32,7 @@ struct GantryStatus {
     double peak_force = 0; ///< the largest during the move
 };
 
-/// Tells a machine that moves whether it has to stop. @param now  the last known state
+/// Asked during a move whether the machine has to stop. @param now  the last known state
 using Interrupt = std::function<bool(const GantryStatus& now)>;
 
 /// A machine that carries the wheel. The tool point is the lowest point of the wheel, at the middle of its width.
@@ -62,7 +62,7 @@ class Gantry {
     /// Touches the part with the probe, whose tip is at the tool point: up to the safe height, across, down in search
     /// of the surface, fast and then slowly, and back up to the safe height. Takes time.
     /// @param lowest  lower bound of the tip's z
-    /// @return  z of the tip's lowest point at the touch; NaN if it met nothing
+    /// @return  z of the tip's lowest point at the touch; NaN if it found no surface
     virtual double probe(const Eigen::Vector2d& xy, double lowest) = 0;
     /// Turns the head at the safe height, so that the wheel's axis is at θ, rad. A machine that cannot throws
     /// GantryFault.

@@ -60,7 +60,7 @@ struct Stock {
 /// Reads the part as a height field.
 /// @throws InputError as read_scan() and stock_from_scan(), or for cells wider than the wheel
 Stock read_stock(const StockOptions& options, const job::Job& job, removal::Extent extent);
-/// The same of a part that has been read. @param part  of options.file
+/// As read_stock(), of a part that has been read already. @param part  the contents of options.file
 Stock stock_of_part(const sampling::Scan& part, const StockOptions& options, const job::Job& job,
                     removal::Extent extent);
 

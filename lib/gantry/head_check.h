@@ -18,7 +18,7 @@ struct HeadCheck {
 };
 
 /// @param head  of the machine; nothing: its transducer and its travel are not known. Then the deflection has to be as
-/// good as the job needs it: within the tolerance of the ground surface, and to tell F_min from no contact.
+/// good as the job needs it: within the tolerance of the ground surface, and to distinguish F_min from no contact.
 HeadCheck head_check(const job::Job& job, const std::optional<Head>& head);
 
 /// Force and deflection are two readings of one spring: force = preload + stiffness · deflection. Without deflection

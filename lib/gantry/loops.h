@@ -23,7 +23,7 @@ std::vector<ControlLoop> tune_loops(const Machine& machine, const job::Job& job)
 
 /// {"loop": …, "bandwidth": …, "gain_margin": …, "phase_margin_deg": …}.
 json::Value to_json(const ControlLoop& loop);
-/// The same as text, "loop x: bandwidth …".
+/// One line of text, "loop x: bandwidth …".
 std::string to_string(const ControlLoop& loop);
 
 } // namespace fettle::gantry

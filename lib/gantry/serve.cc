@@ -85,7 +85,8 @@ class Server {
         }
     }
     bool ended() const { return ended_; }
-    /// Raises the head when the client is gone. A wheel that is worn away on the way up is no reason to fail then.
+    /// Raises the head after the client has disconnected. Nobody is left to report a fault to, such as a wheel worn
+    /// away.
     void retract_ignoring_faults()
     {
         try {
@@ -196,7 +197,7 @@ class Server {
 void serve(Gantry& gantry, const protocol::Limits& limits, const job::Job& job, const core::FileDescriptor& in,
            const core::FileDescriptor& out)
 {
-    // The client may be gone before the answer; the head has to be raised nevertheless.
+    // The client may close the pipe before the answer; the head has to be raised nevertheless.
     std::signal(SIGPIPE, SIG_IGN);
     Lines lines(in);
     Server server(gantry, limits, job, lines);

@@ -37,7 +37,7 @@ class GantryProbe {
     Gantry& gantry_;
     const job::Job& job_;
     double lowest_;                        ///< z, mm
-    std::vector<Eigen::Vector3d> touches_; ///< lowest points of the tip; z is NaN where it met nothing
+    std::vector<Eigen::Vector3d> touches_; ///< lowest points of the tip; z is NaN where it found no surface
     std::function<void(const Eigen::Vector3d&)> touched_;
 };
 

@@ -13,8 +13,7 @@
 namespace fettle::machining {
 namespace {
 
-/// A cone or a point with a smaller angle, or as near to 90 degrees, is a cylinder or a plane as far as numbers can
-/// tell.
+/// A cone or a point with a smaller angle is numerically a cylinder, one as near to 90 degrees a plane.
 constexpr double kMinHalfAngleDegrees = 0.001;
 
 /// Height of the torus above the tip.

@@ -99,7 +99,7 @@ class Interpreter {
             if (known.empty()) known = now;
             if (known != now)
                 throw core::InputError("a move with " + what + " " + now + " after moves with " + known +
-                                       ": how far they are apart is in the control's tables, not in the program");
+                                       ": the distance between them is in the control's tables, not in the program");
         };
         require_same(known_offsets_.system, offsets_.system, "the coordinate system");
         if (block['Z'] || std::isfinite(at_.z()))

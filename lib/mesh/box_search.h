@@ -65,7 +65,7 @@ FETTLE_INLINE Float8 squared_distance(const Point8& a, const Point8& ab, Float8 
 
 /// Bounds of the squared distances from a point to eight triangles.
 struct Bounds8 {
-    Float8 lower; ///< negative for triangles whose distance only double can tell
+    Float8 lower; ///< negative for triangles whose distance float cannot bound
     Float8 upper;
 };
 FETTLE_INLINE Bounds8 squared_distances(const Triangles8& triangles, const float (&point)[3])

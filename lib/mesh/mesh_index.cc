@@ -17,7 +17,7 @@ namespace fettle::mesh {
 
 namespace {
 
-/// Stands for "no triangle yet". It is larger than any index, so that every triangle wins a tie against it.
+/// Means "no triangle yet". It is larger than any index, so that every triangle wins a tie against it.
 constexpr Eigen::Index kNoTriangle = std::numeric_limits<Eigen::Index>::max();
 
 /// A triangle that may be the closest.
@@ -29,10 +29,11 @@ struct Candidate {
 /// A closest point query: the point, the closest triangle so far, and the candidates not yet measured in double.
 struct ClosestQuery {
     /// @param centred_point  the query point relative to the tree's centre
-    /// @param distance_error  bound on the error that rounding to float causes in a distance to the point, mm
+    /// @param radius  triangles farther away are not searched for, mm
+    /// @param float_error  bound on the error that rounding to float causes in a distance to the point, mm
     ClosestQuery(const Eigen::Vector3d& query_point, const Eigen::Vector3d& centred_point, double radius,
-                 double distance_error)
-        : point(query_point), error(distance_error)
+                 double float_error)
+        : point(query_point), distance_error(float_error)
     {
         Eigen::Vector3f::Map(centred) = centred_point.cast<float>();
         closest.squared_distance = radius * radius;
@@ -41,7 +42,7 @@ struct ClosestQuery {
 
     const Eigen::Vector3d& point;
     float centred[3];
-    double error;
+    double distance_error;
     TrianglePoint closest;
     Eigen::Index triangle = kNoTriangle;
     std::uint32_t leaf = 0;
@@ -52,7 +53,7 @@ struct ClosestQuery {
     /// Lowers the bound beyond which boxes and triangles are excluded to `distance`, mm, plus rounding errors.
     void tighten_bound(double distance)
     {
-        const double bound = (distance + error) * (1 + kMaxRoundings * kFloatRoundoff);
+        const double bound = (distance + distance_error) * (1 + kMaxRoundings * kFloatRoundoff);
         if (bound * bound < squared_bound) squared_bound = static_cast<float>(bound * bound);
     }
 
@@ -84,16 +85,16 @@ void refine_candidates(ClosestQuery& query, const BoxTree& tree, const Mesh& mes
 /// Measures the eight triangles of a leaf in float and adds those within the bound to the candidates.
 FETTLE_INLINE void scan_leaf(std::uint32_t leaf, ClosestQuery& query, const BoxTree& tree, const Mesh& mesh)
 {
-    const Bounds8 distances = squared_distances(tree.leaves[leaf], query.centred);
-    if (lane_bits(distances.upper < query.squared_bound) != 0)
-        query.tighten_bound(std::sqrt(static_cast<double>(min_lane(distances.upper))) + query.error);
-    for (LaneIterator lanes{lane_bits(distances.lower <= query.squared_bound)}; lanes.any(); lanes.next()) {
+    const Bounds8 squared = squared_distances(tree.leaves[leaf], query.centred);
+    if (lane_bits(squared.upper < query.squared_bound) != 0)
+        query.tighten_bound(std::sqrt(static_cast<double>(min_lane(squared.upper))) + query.distance_error);
+    for (LaneIterator lanes{lane_bits(squared.lower <= query.squared_bound)}; lanes.any(); lanes.next()) {
         if (query.pending == query.candidates.size()) refine_candidates(query, tree, mesh);
-        query.candidates[query.pending++] = {distances.lower[lanes.first()], leaf, lanes.first()};
+        query.candidates[query.pending++] = {squared.lower[lanes.first()], leaf, lanes.first()};
     }
 }
 
-/// Visits the nodes on the stack and their descendants, depth first, as far as the bound does not exclude them.
+/// Visits the nodes on the stack and their descendants, depth first, except those that the bound excludes.
 FETTLE_INLINE void traverse(NodeStack& stack, ClosestQuery& query, const BoxTree& tree, const Mesh& mesh)
 {
     while (stack.any()) {
@@ -103,8 +104,8 @@ FETTLE_INLINE void traverse(NodeStack& stack, ClosestQuery& query, const BoxTree
             scan_leaf(node.index, query, tree, mesh);
             continue;
         }
-        const Float8 children = squared_distance(tree.levels[node.level], node.index, query.centred);
-        stack.push(lane_bits(children <= query.squared_bound), children, node.level - 1, node.index);
+        const Float8 squared = squared_distance(tree.levels[node.level], node.index, query.centred);
+        stack.push(lane_bits(squared <= query.squared_bound), squared, node.level - 1, node.index);
     }
 }
 
@@ -117,9 +118,9 @@ FETTLE_CLONES void find_closest(ClosestQuery& query, std::uint32_t leaf, const B
     std::uint32_t child = leaf;
     for (std::size_t level = 0; level < tree.levels.size(); ++level) {
         const std::uint32_t parent = child / 8;
-        const Float8 children = squared_distance(tree.levels[level], parent, query.centred);
-        const unsigned siblings = lane_bits(children <= query.squared_bound) & ~(1u << child % 8);
-        stack.push(siblings, children, static_cast<std::int32_t>(level) - 1, parent);
+        const Float8 squared = squared_distance(tree.levels[level], parent, query.centred);
+        const unsigned siblings = lane_bits(squared <= query.squared_bound) & ~(1u << child % 8);
+        stack.push(siblings, squared, static_cast<std::int32_t>(level) - 1, parent);
         traverse(stack, query, tree, mesh);
         child = parent;
     }
@@ -165,8 +166,8 @@ FETTLE_INLINE Float8 entry_distances(const Boxes8& boxes, const RayQuery& query)
 
 FETTLE_CLONES void find_first_hit(RayQuery& query, const BoxTree& tree, const Mesh& mesh)
 {
-    const auto hit_lanes = [](const Float8& entry) {
-        return lane_bits(entry < std::numeric_limits<float>::infinity());
+    const auto hit_lanes = [](const Float8& distances) {
+        return lane_bits(distances < std::numeric_limits<float>::infinity());
     };
     NodeStack stack;
     stack.push({0, static_cast<std::int32_t>(tree.levels.size()) - 1, 0});
@@ -174,12 +175,12 @@ FETTLE_CLONES void find_first_hit(RayQuery& query, const BoxTree& tree, const Me
         const StackEntry node = stack.pop();
         if (node.distance > query.bound) continue;
         if (node.level >= 0) {
-            const Float8 children = entry_distances(tree.levels[node.level].boxes[node.index], query);
-            stack.push(hit_lanes(children), children, node.level - 1, node.index);
+            const Float8 entries = entry_distances(tree.levels[node.level].boxes[node.index], query);
+            stack.push(hit_lanes(entries), entries, node.level - 1, node.index);
             continue;
         }
-        const Float8 triangles = entry_distances(boxes_of(tree.leaves[node.index]), query);
-        for (LaneIterator lanes{hit_lanes(triangles)}; lanes.any(); lanes.next()) {
+        const Float8 entries = entry_distances(boxes_of(tree.leaves[node.index]), query);
+        for (LaneIterator lanes{hit_lanes(entries)}; lanes.any(); lanes.next()) {
             const Eigen::Index t = tree.triangle(node.index, lanes.first());
             query.update(triangle_of(mesh, t), t);
         }
@@ -259,9 +260,9 @@ std::optional<MeshIndex::Closest> MeshIndex::closest(const Eigen::Vector3d& poin
     const BoxTree& tree = state_->tree;
     if (tree.levels.empty() || !point.allFinite() || !(radius >= 0)) return std::nullopt;
     const Eigen::Vector3d centred = point - tree.centre;
-    constexpr double kThreeAxes = 2; // > sqrt(3): errors of all coordinates add up to that of a distance
-    const double error = kThreeAxes * (tree.rounding + kFloatRoundoff * centred.cwiseAbs().maxCoeff());
-    ClosestQuery query(point, centred, radius, error);
+    constexpr double kMaxNormPerComponent = 2; // > √3, the norm of a vector over its largest component
+    const double float_error = kMaxNormPerComponent * (tree.rounding + kFloatRoundoff * centred.cwiseAbs().maxCoeff());
+    ClosestQuery query(point, centred, radius, float_error);
     const auto last_leaf = static_cast<std::uint32_t>(tree.leaves.size()) - 1;
     find_closest(query, std::min(leaf, last_leaf), tree, state_->mesh);
     if (query.triangle == kNoTriangle) return std::nullopt;

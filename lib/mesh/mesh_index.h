@@ -26,7 +26,7 @@ class MeshIndex {
         Eigen::Index triangle = 0;
         Eigen::Vector3d point;
     };
-    /// First hit of a ray, which never slips through an edge or a vertex (see WatertightRay).
+    /// First hit of a ray, which never passes between two triangles at their common edge or vertex (see WatertightRay).
     std::optional<Hit> cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& unit_direction) const;
     /// Highest point of the mesh over (x, y).
     std::optional<Hit> highest(double x, double y) const;

@@ -141,7 +141,8 @@ mesh::Mesh add_anomalies(mesh::Mesh mesh, const PartSpec& spec)
     return mesh;
 }
 
-/// Points `step` apart on an anomaly over a cloud: the heights that touches of the cloud would find, lifted.
+/// Points on an anomaly over a cloud, on a grid of spacing `step`: the heights that touches of the cloud would find,
+/// lifted by the anomaly.
 Eigen::Matrix3Xd anomaly_points(const Anomaly& anomaly, const PartSpec& spec, const sampling::Scan& bare)
 {
     std::vector<Eigen::Vector3d> points;

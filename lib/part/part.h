@@ -40,7 +40,8 @@ PartSpec read_part(const std::string& path);
 
 /// The upper surface of the part with its anomalies: a mesh, or a cloud if the scan is one. Without anomalies and noise
 /// the result is the reference for a part that was ground; outside the anomalies both are the same surface. On a scan
-/// with an underside only the upper side is lifted. On a cloud the anomaly gets additional points, `step` apart.
+/// with an underside only the upper side is lifted. On a cloud the anomaly gets additional points with a spacing of
+/// `step`.
 /// @throws InputError if the surface is not defined everywhere in its region, an anomaly is outside the part, or the
 ///         step is too fine
 /// @param warnings  receives what was left out of a scanned surface, and doubts about its unit, unless null

@@ -18,9 +18,9 @@ struct RefineOptions {
 };
 
 /// Splits triangles in the x-y plane, so that the mesh represents the anomalies once its vertices are lifted. Sharp
-/// edges of the profile become mesh edges; other edges are halved until the chord error is met. New vertices are on the
-/// old triangles: the surface itself does not change. The mesh stays conforming; triangles far from every footprint
-/// stay.
+/// edges of the profile become mesh edges; other edges are halved until the chord error is within its bound. New
+/// vertices are on the old triangles: the surface itself does not change. The mesh stays conforming; triangles far from
+/// every footprint stay.
 /// @throws InputError as check_triangle_count()
 mesh::Mesh refine(const mesh::Mesh& mesh, const std::vector<Anomaly>& anomalies, const RefineOptions& options);
 

@@ -180,7 +180,8 @@ class Section {
     std::vector<CollidingChanges> colliding_; ///< by pose: the changes known to collide
 };
 
-// The sections of the path around collisions, as (first pose, end), so far apart that their tilts do not meet.
+// The sections of the path around collisions, as (first pose, end), with so much distance between them that their tilts
+// do not interact.
 std::vector<std::pair<std::size_t, std::size_t>> find_sections(const std::vector<double>& depth)
 {
     std::vector<std::pair<std::size_t, std::size_t>> sections;

@@ -117,7 +117,7 @@ CellJoints ChangeChecker::find_clear_joints(Eigen::Index i, const PoseChange& ch
         const CellPair& pair = cell_.pairs()[k];
         const double depth = -state.clearances[k].clearance - options_.tolerance;
         if (!(depth > 0)) continue;
-        // A workpiece model changes its geometry with the tool's pose: one tilt tells nothing about others.
+        // A workpiece model changes its geometry with the tool's pose: a result at one tilt does not hold at another.
         if (options_.model == nullptr || pair.b < robot_.bodies.size())
             blocked.add(change, depth, levers_[on_tool(robot_, pair.a) ? pair.a : pair.b]);
         return CellJoints::Constant(core::kNaN);

@@ -24,7 +24,7 @@ ClearanceTracker::ClearanceTracker(const Cell& cell)
 {
 }
 
-// Measures a pair. At the current state the result renews the pair's lower bound.
+// Measures the clearance of a pair. In the current state the result also renews the pair's lower bound since the reset.
 void ClearanceTracker::measure(State& state, std::size_t pair, double max_clearance)
 {
     CellClearance& found = state.cell_state.clearances[pair];
@@ -95,7 +95,7 @@ CellClearance ClearanceTracker::swept_clearance()
     return result.minimum;
 }
 
-// Bound of the sum of what the pair's bodies move between two states, mm.
+// Upper bound of the sum of the distances that the two bodies of a pair move between two states, mm.
 double ClearanceTracker::body_motion_bound(const State& from, State& to, std::size_t pair) const
 {
     const auto of_body = [&](std::size_t body) {
@@ -110,7 +110,7 @@ double ClearanceTracker::body_motion_bound(const State& from, State& to, std::si
     return of_body(a) + of_body(b);
 }
 
-// Raises the pair's lower bound to a rough one, if it is not measured.
+// Raises the lower bound of a pair that has not been measured by a rough estimate.
 void ClearanceTracker::raise_bound(State& state, std::size_t pair) const
 {
     double& bound = state.bounds[pair].clearance;
@@ -118,8 +118,9 @@ void ClearanceTracker::raise_bound(State& state, std::size_t pair) const
         bound = std::max(bound, cell_.rough_clearance(state.cell_state, pair));
 }
 
-// Takes the clearance of a pair on the motion between two states into the result, if it decides about a collision.
-// @return  false if it does not: the motion is to be divided
+// Adds a pair's swept clearance between two states to the result, if the clearances at both ends decide whether the
+// pair collides on the way.
+// @return  false if they do not: the motion is to be bisected
 bool ClearanceTracker::sweep_pair(State& from, State& to, std::size_t pair, std::size_t bisections, Sweep& result)
 {
     const CollisionOptions& options = cell_.options();
@@ -136,7 +137,7 @@ bool ClearanceTracker::sweep_pair(State& from, State& to, std::size_t pair, std:
             std::min(motion, cell_.relative_motion_bound(pair, from.joints, from.cell_state, to.joints, to.cell_state));
         for (State* end : {&from, &to}) raise_bound(*end, pair);
         if (lower_bound() >= result.upper_bound) return true;
-        // A clearance as large as the motion decides, whatever the other one is. Of a workpiece the rough bound serves.
+        // A clearance as large as the motion at one end excludes a collision. For a workpiece the rough bound suffices.
         if (!cell_.is_of_workpiece(pair)) reach = std::max(reach, motion);
     }
     for (State* end : {&from, &to})
@@ -159,7 +160,7 @@ bool ClearanceTracker::sweep_pair(State& from, State& to, std::size_t pair, std:
     return true;
 }
 
-// Its clearances are measured when they are needed.
+// Places the bodies half-way between two states. Clearances there are measured when they are needed.
 void ClearanceTracker::place_midpoint(const State& from, const State& to, State& middle)
 {
     middle.joints = (from.joints + to.joints) / 2;

@@ -40,7 +40,7 @@ class Workpiece {
     Nearest nearest(const PlacedSolid& body, double max_distance = std::numeric_limits<double>::infinity(),
                     std::uint32_t start_leaf = 0) const;
 
-    /// The same of the surface alone: of a body that is known not to lie wholly inside.
+    /// nearest() without the test whether the body lies wholly inside, for bodies that are known not to.
     Nearest nearest_of_surface(const PlacedSolid& body, double max_distance, std::uint32_t start_leaf) const;
 
     /// The minimum signed distance of a subset of the triangles. As a subset bounds no volume, `inside` stays false.

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kMaxManualRuns = 1000000; // more than a life of work
 
-/// Rows [x, y, z], or [x, y] where nothing was met.
+/// Rows [x, y, z], or [x, y] where the probe found no surface.
 json::Value to_rows(const std::vector<Eigen::Vector3d>& points, double mm)
 {
     std::vector<json::Value> rows;

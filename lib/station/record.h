@@ -30,7 +30,7 @@ inline const std::vector<std::string> kModeWords = {"automatic", "manual"};
 
 /// A stop by the operator, times of the machine in the trace, s.
 struct Stop {
-    double asked = 0;  ///< last reading before the machine was told
+    double asked = 0;  ///< last reading before the machine got the command
     double free = 0;   ///< the wheel was off the part
     double lifted = 0; ///< it was at the safe height
 };

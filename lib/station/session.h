@@ -24,7 +24,7 @@ enum class Command {
 };
 
 /// The state machine of an operator's session (Wang 2007, 3 and 6.1.1): what he does comes in, commands for the machine
-/// come out, and what came of them is told. It knows neither machine nor terminal.
+/// come out, and their results are fed back in. It knows neither machine nor terminal.
 ///
 ///   anomaly ⇄ sampling ⇄ touch → review → grind → done
 ///                                    ↘        ⇅      ⇅

@@ -22,7 +22,7 @@ ContactWatch::ContactWatch(const removal::HeightField& stock, const job::Job& jo
       radius_(job.wheel.radius), width_(job.wheel.width), tolerance_(job.tolerance), removal_(job.removal_coefficient),
       preload_(job.force.preload), min_force_(kMinReadingShare * job.force.stiffness * job.tolerance),
       // Up to this distance the rim is within the tolerance of its lowest line: an edge may be that far off its place.
-      max_unfelt_(std::sqrt(2 * job.wheel.radius * job.tolerance))
+      max_length_without_force_(std::sqrt(2 * job.wheel.radius * job.tolerance))
 {
 }
 
@@ -35,7 +35,7 @@ void ContactWatch::follow(const gantry::GantryStatus& status, double feed)
     time_ = status.time;
     last_force_ = status.force;
     has_tip_ = true;
-    if (!had_tip || !(feed > 0)) return void(unfelt_ = 0);
+    if (!had_tip || !(feed > 0)) return void(length_without_force_ = 0);
 
     const double length = (to - from).norm();
     const int steps = std::max(1, int(std::ceil(length / (kStepCells * stock_.cell))));
@@ -43,9 +43,9 @@ void ContactWatch::follow(const gantry::GantryStatus& status, double feed)
     for (int n = 1; n <= steps; ++n) removed += remove_to(from + (to - from) * (double(n) / steps));
     // The force that removes this volume, if the clock of the machine is not too coarse for the step.
     const double needed = removed / (removal_ * std::max(duration, length / feed));
-    if (!(needed > kMaxSoftness * (std::max(force, preload_) + min_force_))) return void(unfelt_ = 0);
-    unfelt_ += length;
-    if (unfelt_ < max_unfelt_) return;
+    if (!(needed > kMaxSoftness * (std::max(force, preload_) + min_force_))) return void(length_without_force_ = 0);
+    length_without_force_ += length;
+    if (length_without_force_ < max_length_without_force_) return;
     throw gantry::GantryFault("no contact is felt at x " + core::to_short_text(to.x()) + ", y " +
                               core::to_short_text(to.y()) + " mm: what stands there of the stock takes " +
                               core::to_short_text(needed) + " N, at most " + core::to_short_text(force) +

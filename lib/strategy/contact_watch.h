@@ -9,19 +9,19 @@
 
 namespace fettle::strategy {
 
-/// Watches that a wheel which grinds into the stock, as far as that is known, also feels it. A transducer that is dead
-/// would let the strategy find everything within tolerance.
+/// Checks that the head reports a force while the wheel removes known stock. With a dead force transducer the strategy
+/// would take the whole part for finished.
 ///
-/// By Preston's law the stock over the wheel takes a force. It may be several times smaller than the job's removal
-/// coefficient says, and the stock may be a little off its place; but it is there.
+/// The force is predicted by Preston's law from the volume that the wheel removes. It may really be several times
+/// smaller, since the removal coefficient is uncertain, and the stock may be slightly out of place; but it is not zero.
 class ContactWatch {
   public:
     ContactWatch(const removal::HeightField& stock, const job::Job& job);
     ContactWatch(const ContactWatch&) = delete;
     ContactWatch& operator=(const ContactWatch&) = delete;
 
-    /// Follows a move of the machine. @param feed  mm/s; 0: it did not grind
-    /// @throws GantryFault if the head has not felt the stock that the wheel has gone through
+    /// Takes in the state after a move. @param feed  of the move, mm/s; 0: it did not grind
+    /// @throws GantryFault if the head has reported too small a force over max_length_without_force_ of stock
     void follow(const gantry::GantryStatus& status, double feed);
 
   private:
@@ -30,16 +30,16 @@ class ContactWatch {
     removal::HeightField stock_;
     removal::WheelInStock wheel_;
     Eigen::Matrix2d R_working_machine_;
-    double radius_, width_; ///< of the wheel, mm
-    double tolerance_;      ///< of the ground surface, mm
-    double removal_;        ///< c, mm³/(N s)
-    double preload_;        ///< N: smaller forces may not be felt
-    double min_force_;      ///< N: that every working transducer shows
-    double max_unfelt_;     ///< length without a force, mm
-    Eigen::Vector3d tip_;   ///< of the wheel, after the last move
-    double time_ = 0;       ///< then, s
-    double last_force_ = 0; ///< then, N
-    double unfelt_ = 0;     ///< length that the wheel has gone through the stock since it felt something, mm
+    double radius_, width_;           ///< of the wheel, mm
+    double tolerance_;                ///< of the ground surface, mm
+    double removal_;                  ///< c, mm³/(N s)
+    double preload_;                  ///< of the head's spring, N: it may report smaller forces as none
+    double min_force_;                ///< that any working transducer reports, N
+    double max_length_without_force_; ///< mm
+    Eigen::Vector3d tip_;             ///< of the wheel, after the last move
+    double time_ = 0;                 ///< of the machine, after the last move, s
+    double last_force_ = 0;           ///< after the last move, N
+    double length_without_force_ = 0; ///< length of stock ground since the last sufficient force, mm
     bool has_tip_ = false;
 };
 

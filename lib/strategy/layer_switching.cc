@@ -39,7 +39,7 @@ Action LayerSwitching::next(const Measurement& measurement)
 Action LayerSwitching::fail(const std::string& limit)
 {
     const Level& level = levels_.back();
-    failure_ = "bound reached: " + limit + "; in layer " + std::to_string(layer()) + ", pass " +
+    failure_ = "limit reached: " + limit + "; in layer " + std::to_string(layer()) + ", pass " +
                std::to_string(level.at.pass + 1) + ", covering " + std::to_string(counts_.coverings + 1) + ", re-cut " +
                std::to_string(level.re_cuts);
     return act(Action::Kind::fail, Event::limit_reached);

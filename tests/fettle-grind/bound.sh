@@ -15,6 +15,6 @@ make_stock 30
 status=0
 fettle-grind plan.json --stock stock.stl > ground.pcd 2> message || status=$?
 cat message >&2
-[ $status = 1 ] && grep -q 'bound reached: layers 31: the next one is above the safe height; in layer 31,' message
+[ $status = 1 ] && grep -q 'limit reached: layers 31: the next one is above the safe height; in layer 31,' message
 jq '.bounds.layers = 30' plan.json | fettle-grind --stock stock.stl > ground.pcd 2> message || status=$?
-grep -q 'bound reached: layers 30; in layer 30,' message
+grep -q 'limit reached: layers 30; in layer 30,' message

@@ -33,5 +33,5 @@ jq '.safe_height = 0.5' "$job" > low.json
 # Beside the part the probe meets nothing: the point has no z, and that is said.
 printf '0 record\n0 1 0\n0.5 record\n0.5 0 1\n3.5 record\n' > events
 fettle-teach "$job" --gantry virtual --stock part.stl --steer events < /dev/null > beside.json 2> said
-grep -q '1 point met no surface' said
+grep -q '1 point found no surface' said
 jq -e '[.anomaly[] | length] == [3, 3, 2]' beside.json > ok
