@@ -238,9 +238,9 @@ bool check_claims(std::ostream& out, const Study& study)
     for (const auto& [surface, cells] : study.surfaces) {
         all.insert(all.end(), cells.begin(), cells.end());
         for (const Cell& cell : cells)
-            if (cell.error("auto", covered) != 1 || std::isnan(cell.error(kinds().at(surface).method, band))) ++without;
+            if (cell.error("auto", covered) != 1 || cell.error(kinds().at(surface).method, covered) != 1) ++without;
     }
-    bars.at_most("cells without a surface by Wang's method, or by auto over all of the anomaly", without, 0);
+    bars.at_most("cells without a surface over all of the anomaly, by Wang's method or by auto", without, 0);
     const auto to_limit = to(all, "auto", [](const Cell& cell) { return cell.limit; });
     bars.at_most("auto, band / limit, all cells: median", median(to_limit), 1.05);
     bars.at_most("auto, band / limit, all cells: 90 %", quantile(to_limit, 0.9), 1.9);

@@ -40,6 +40,8 @@ constexpr double kAccuracy = 0.005 * kInch;
 // The errors are evaluated on a grid of that many points over the longer side of the anomaly, and along its edge:
 // cubic pieces between touches bend over a fifth of the side or more.
 constexpr int kAcross = 40;
+// Seeds of the corners' noise begin beyond those of the cells' touches.
+constexpr std::uint64_t kCornerSeeds = std::uint64_t{1} << 32;
 // Of the touch noise, for the limit: the median of so many bands scatters by 4 % of itself.
 constexpr int kLimitDraws = 199;
 
@@ -158,6 +160,16 @@ Eigen::MatrixXd family_gradients(const Cell& cell, const Eigen::Matrix2Xd& xy)
                                      xy)(all_but_turn, Eigen::all);
 }
 
+/// The operator has touched the corners of the sampling boundary, too (Wang 2007, 4.4.4, step 1 of the free-form
+/// surfaces). Griddata alone uses them.
+void touch_sampling_boundary(const Cell& cell, std::uint64_t seed, job::Job& job)
+{
+    const Eigen::Index count = job.sampling.cols();
+    job.sampling.row(2) = (true_heights(cell, job.sampling.topRows<2>()) +
+                           sampling::draw_noise({sampling::TouchNoise::Kind::normal, kAccuracy}, count, seed))
+                              .transpose();
+}
+
 /// What statistics allow: the median error band of the least squares fit of the true family (Cramér and Rao), mm.
 double limit(const Cell& cell, const Eigen::Matrix2Xd& touched, const Eigen::Matrix2Xd& grid, std::uint64_t seed)
 {
@@ -176,7 +188,7 @@ double limit(const Cell& cell, const Eigen::Matrix2Xd& touched, const Eigen::Mat
 }
 
 /// Band and shift by one method over the part of the anomaly where it has a surface, in, and the share of that part;
-/// nothing where it has none at all. (Interpolators have none beyond the convex hull of the touches.)
+/// nothing where it has none at all.
 std::optional<Eigen::Vector3d> errors_of(const fit::FitInput& input, const std::string& method,
                                          const Eigen::Matrix2Xd& grid, const Eigen::VectorXd& truth)
 {
@@ -203,6 +215,7 @@ json::Value run(const Cell& cell, const std::vector<std::string>& methods, std::
     const Eigen::Matrix2Xd grid = margin::anomaly_grid(input.job, kAcross);
     const Eigen::VectorXd truth = true_heights(cell, grid);
     add_estimated(input);
+    touch_sampling_boundary(cell, seed + kCornerSeeds, input.job);
     json::Value errors;
     for (const std::string& method : methods)
         if (const auto found = errors_of(input, method, grid, truth)) errors.set(method, Eigen::VectorXd(*found));
@@ -250,6 +263,11 @@ int main(int argc, char** argv)
             const std::string& surface = t.positional_choice("SURFACE", names_of_kinds(), "Kind of surface");
             const std::string& radius = t.positional_choice("RADIUS", radii(), "Its radius of curvature, in");
             const int& every = t.count("--every", 1, "Take every Nth cell only, from the batch's first", 1, kBatch);
+            std::vector<std::string> methods = {"auto"};
+            methods.insert(methods.end(), fit::fit_methods().begin(), fit::fit_methods().end());
+            std::vector<std::string> choices = methods;
+            choices.insert(choices.begin(), "all");
+            const std::string& method = t.choice("--method", "all", choices, "Of fit");
             t.example("factorial saddle 125 --every 25", "five cells of the saddles of 125 in");
             t.reference("Wang 2007, 4.5; eq. 4-1 (band), 4-6 (shift)");
             t.parse();
@@ -257,8 +275,7 @@ int main(int argc, char** argv)
             const auto& names = kinds();
             const auto kind =
                 std::find_if(names.begin(), names.end(), [&](const Kind& k) { return k.name == surface; });
-            std::vector<std::string> methods = {"auto"};
-            methods.insert(methods.end(), fit::fit_methods().begin(), fit::fit_methods().end());
+            if (method != "all") methods = {method};
             const std::uint64_t first_seed = t.seed() * kBatch * kRadiusCount * names.size();
             std::vector<json::Value> cells;
             for (int place = 0; place < kBatch; place += every) {

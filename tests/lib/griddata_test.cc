@@ -325,6 +325,62 @@ TEST(GriddataFit, prefers_touches_to_the_job)
     EXPECT_NEAR(surface::height(surface, {20, 20}), 1, 1e-9);
 }
 
+/// The same with touches of the anomaly's boundary beside those of the lines, 0.5 mm away.
+fit::FitInput input_with_boundary(const std::function<double(const Eigen::Vector2d&)>& z)
+{
+    fit::FitInput input = input_with_corners(z, true);
+    input.use_boundary = true;
+    const Eigen::Index before = input.xyz.cols(), added = 8;
+    input.xyz.conservativeResize(3, before + added);
+    input.roles.conservativeResize(before + added);
+    input.curves.conservativeResize(before + added);
+    for (Eigen::Index i = 0; i < added; ++i) {
+        // the inner touches of the lines are 1 and 2, 5 and 6, …
+        Eigen::Vector2d xy = input.xyz.col(4 * (i / 2) + 1 + i % 2).head<2>();
+        xy[i < 4 ? 0 : 1] += 0.5;
+        input.xyz.col(before + i) << xy, z(xy);
+    }
+    input.roles.tail(added).setZero();
+    input.curves.tail(added).setConstant(-1);
+    return input;
+}
+
+// Touches of the boundary beside others are averaged with them: no wave of a few tenths of a millimetre remains. The
+// surface covers all that it covered, a plane stays the plane, and each touch keeps its weight in the covariance.
+TEST(GriddataFit, averages_boundary_touches_beside_others)
+{
+    int next = 0;
+    const auto noise = [&](const Eigen::Vector2d&) { return next++ % 2 == 0 ? 0.1 : -0.1; };
+    fit::FitInput input = input_with_boundary(noise);
+    const surface::Surface surface = fit::fit_griddata(input).surface;
+    EXPECT_EQ(surface.touches.cols(), 32);
+    const auto points = [](const surface::Surface& fitted) {
+        return std::get<surface::Griddata>(fitted.shape).points;
+    };
+    EXPECT_EQ(points(surface).cols(), 24);
+    Eigen::Matrix3Xd pair(3, 2);
+    pair << input.xyz.col(1), input.xyz.rightCols(8).col(0);
+    const Eigen::Matrix3Xd nodes = points(surface);
+    EXPECT_LT((nodes.colwise() - pair.rowwise().mean()).colwise().norm().minCoeff(), 1e-12);
+    input.spacing = 0.4; // closer than the touches: they are resolved
+    EXPECT_EQ(points(fit::fit_griddata(input).surface).cols(), 32);
+
+    const auto plane = [](const Eigen::Vector2d& p) { return 3 + 0.2 * p.x() - 0.1 * p.y(); };
+    const surface::Surface level = fit::fit_griddata(input_with_boundary(plane)).surface;
+    for (const Eigen::Vector2d& xy : {Eigen::Vector2d(24, -24), {10, 10}, {-3, -9}, {2, 1}})
+        EXPECT_NEAR(surface::height(level, xy), plane(xy), 1e-9);
+
+    double variance = 0;
+    const Eigen::Vector2d beside(-3, -9);
+    for (int touch = 0; touch < 28; ++touch) {
+        next = 0;
+        const auto one = [&](const Eigen::Vector2d&) { return next++ == touch ? 1.0 : 0.0; };
+        const double moved = surface::height(fit::fit_griddata(input_with_boundary(one)).surface, beside);
+        variance += moved * moved;
+    }
+    EXPECT_NEAR(surface::sigma(level, beside), std::sqrt(variance) * level.touch_sigma, 1e-6);
+}
+
 TEST(GriddataFit, names_the_source)
 {
     fit::FitInput input = lines_input([](const Eigen::Vector2d&) { return 1.0; });

@@ -8,6 +8,11 @@ jq -e '.cells | length == 4 * 3 * 11' all/factorial.json
 test "$(wc -l <all/factorial.csv)" -eq $((4 * 3 * 11 + 1))
 test "$(head -c 4 all/figure-4-14-saddle.png | tail -c 3)" = PNG
 
+# With the touched corners of the sampling boundary griddata covers all of each anomaly.
+jq -e 'all(.cells[]; .surface == "cylinder" or .errors.griddata[2] == 1)' all/factorial.json
+factorial sphere-concave 25 --every 24 --method griddata | jq -e --slurpfile all all/sphere-concave/25.json '
+    all(.cells[]; . as $cell | (.errors | keys == ["griddata"]) and any($all[0].cells[]; .cell == $cell.cell and .errors.griddata == $cell.errors.griddata))'
+
 # A cell is the same in every batch. Reference: itself, every 24th.
 factorial saddle 125 --every 24 >fewer.json
 jq -e --slurpfile all all/saddle/125.json '
