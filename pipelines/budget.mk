@@ -44,6 +44,8 @@ scanner_options      := --noise $(shell jq -n '$(call of,scanner.noise) * pow(2;
 registration_options := --shift $(call of,registration.shift) --turn $(call of,registration.turn_deg)
 lvdt_options         := --lvdt --lvdt-offset $(call of,lvdt.offset)
 touches_options      := --noise $(call of,touches)
+# Griddata takes the operator's points of the sampling boundary, too, which he has touched on this part.
+boundary_option       = $(if $(filter griddata,$(call of,methods.$(call part,$1).wang)),--sampling-boundary)
 disturb              := $(B)/study/disturb
 # Every draw of every source has its own seed.
 seed                  = --seed $(shell echo $$(($(call draw,$1) * 10 + $2)))
@@ -65,7 +67,7 @@ $(BUDGET)/%/job.json: samples/jobs/$$(call part,$$*).json $(CONSTANT) pipelines/
 	$(call step,jq --slurpfile all $(CONSTANT) --arg tool "$(call on,$*,tool,tool)" -f pipelines/jq/budget_job.jq $< > $@.part)
 
 $(BUDGET)/%/plan.json: $(BUDGET)/%/job.json $(BUDGET)/%/stock.stl $(addprefix $(B)/bin/fettle-,sample estimate fit plan)
-	$(call step,$(B)/bin/fettle-sample $< --on $(@D)/stock.stl $(call on,$*,touches,$(touches_options)) $(call seed,$*,7) | $(B)/bin/fettle-estimate $< \
+	$(call step,$(B)/bin/fettle-sample $< --on $(@D)/stock.stl $(call on,$*,touches,$(touches_options)) $(call on,$*,approximation,$(call boundary_option,$*)) $(call seed,$*,7) | $(B)/bin/fettle-estimate $< \
 	    | $(B)/bin/fettle-fit $< --method $(call of,methods.$(call part,$*).$(or $(call on,$*,approximation,wang),exact)) | $(B)/bin/fettle-plan $< > $@.part)
 
 # The table reports a run that does not finish.

@@ -10,6 +10,13 @@
 #include <utility>
 
 namespace fettle::gantry {
+namespace {
+
+// How often a machine that works in one place looks whether it has to stop, s: an operator's stop has 0.25 s, most of
+// which the drives take.
+constexpr double kStopPeriod = 0.05;
+
+} // namespace
 
 void check_positive(double value, const char* name)
 {
@@ -37,7 +44,7 @@ double VirtualGantry::touch_off()
 {
     begin_move();
     go_to_safe_height();
-    advance_time(options_.touch_off_time, TimeBucket::service);
+    serve(options_.touch_off_time);
     ++totals_.touch_offs;
     measured_radius_ = round_to_resolution(radius_);
     return measured_radius_;
@@ -50,7 +57,7 @@ double VirtualGantry::probe(const Eigen::Vector2d& xy, double lowest)
     const bool touched = height >= lowest;
     const sampling::ProbingMachine& speeds = options_.probing;
     const double depth = safe_height_ - (touched ? height : lowest);
-    advance_time(depth / speeds.approach_speed + depth / speeds.travel_speed + speeds.dwell, TimeBucket::service);
+    serve(depth / speeds.approach_speed + depth / speeds.travel_speed + speeds.dwell);
     return touched ? round_to_resolution(height) : std::numeric_limits<double>::quiet_NaN();
 }
 
@@ -68,7 +75,7 @@ void VirtualGantry::change_wheel()
 {
     begin_move();
     go_to_safe_height();
-    advance_time(options_.wheel_change_time, TimeBucket::service);
+    serve(options_.wheel_change_time);
     ++totals_.wheel_changes;
     radius_ = measured_radius_ = new_radius_;
 }
@@ -90,6 +97,21 @@ void VirtualGantry::advance_time(double duration, TimeBucket bucket)
                                                    : totals_.service_time;
     total += duration;
     status_.time += duration;
+}
+
+void VirtualGantry::serve(double duration)
+{
+    const double begin = status_.time;
+    // The times asked at are counted from the beginning, so that what is not stopped takes the same time to the last bit.
+    for (int period = 1; period * kStopPeriod < duration; ++period) {
+        status_.time = begin + period * kStopPeriod;
+        const bool stopped = is_interrupted();
+        status_.time = begin;
+        if (!stopped) continue;
+        advance_time(period * kStopPeriod, TimeBucket::service);
+        throw Interrupted();
+    }
+    advance_time(duration, TimeBucket::service);
 }
 
 void add_report(json::Value& report, const GrindTotals& totals)

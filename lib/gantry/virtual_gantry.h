@@ -83,6 +83,8 @@ class VirtualGantry : public Gantry {
     /// Wears the wheel by the grinding ratio. @throws InputError if nothing is left of it
     void wear(double removed_volume);
     void advance_time(double duration, TimeBucket bucket);
+    /// Work that takes time in one place: a touch, a change of the wheel. @throws Interrupted within kStopPeriod
+    void serve(double duration);
     double round_to_resolution(double length) const;                 ///< of a touch
     double wheel_wear() const { return measured_radius_ - radius_; } ///< since the last touch-off, mm
 

@@ -281,6 +281,39 @@ TEST(QuasiStatic, TimeIsTheSumOfItsParts)
     EXPECT_THROW(gantry::QuasiStaticGantry(flat(), small_job(), options), core::InputError);
 }
 
+// A touch-off takes ten seconds in one place, and a stop does not wait for its end; what was not measured is not taken
+// for measured. Not stopped, it takes the same time to the last bit whether it is looked at or not.
+TEST(QuasiStatic, IsStoppedInATouchOffAtOnce)
+{
+    gantry::QuasiStaticOptions options = no_wear();
+    options.wheel_change_time = 120;
+    gantry::QuasiStaticGantry gantry(flat(), small_job(), options), undisturbed(flat(), small_job(), options);
+    undisturbed.touch_off();
+    const double whole = undisturbed.status().time;
+    for (const double asked : {0.0, 3.02, 9.9}) {
+        const double begin = gantry.status().time;
+        gantry.set_interrupt([&](const gantry::GantryStatus& now) { return now.time >= begin + asked; });
+        EXPECT_THROW(gantry.touch_off(), gantry::Interrupted);
+        EXPECT_NEAR(gantry.status().time - begin, asked, 0.06);
+    }
+    EXPECT_EQ(gantry.totals().touch_offs, 0);
+    double begin = gantry.status().time;
+    gantry.set_interrupt([&](const gantry::GantryStatus& now) { return now.time > begin + 1; });
+    EXPECT_THROW(gantry.change_wheel(), gantry::Interrupted);
+    begin = gantry.status().time;
+    gantry.set_interrupt([&](const gantry::GantryStatus& now) { return now.time > begin + 1; });
+    EXPECT_THROW(gantry.probe({0, 0}, -100), gantry::Interrupted);
+    EXPECT_LT(gantry.status().time - begin, 1.06);
+    EXPECT_DOUBLE_EQ(gantry.status().commanded.z(), small_job().safe_height);
+
+    gantry::QuasiStaticGantry watched(flat(), small_job(), options);
+    int asked = 0;
+    watched.set_interrupt([&](const gantry::GantryStatus& /*now*/) { return ++asked < 0; });
+    watched.touch_off();
+    EXPECT_EQ(watched.status().time, whole);
+    EXPECT_GT(asked, 100);
+}
+
 TEST(QuasiStatic, TheWayDownIsGuarded)
 {
     // 5 mm into the stock would take 175 N; the drives stop at F_max = 60 N, a sub-step late at most.
