@@ -93,7 +93,8 @@ Eigen::MatrixXd node_weights(const surface::Surface& surface, double min_distanc
         const Eigen::Vector3d touch = surface.touches.col(i);
         const bool is_on_hull =
             std::ranges::any_of(hull.colwise(), [&](const auto& corner) { return corner == touch.head<2>(); });
-        nodes.push_back({touch, {i}, is_on_hull, surface.roles[i] == static_cast<int>(sampling::Role::anomaly_boundary)});
+        nodes.push_back(
+            {touch, {i}, is_on_hull, surface.roles[i] == static_cast<int>(sampling::Role::anomaly_boundary)});
     }
     merge_close(nodes, min_distance);
     Eigen::MatrixXd weights = Eigen::MatrixXd::Zero(std::ssize(nodes), surface.touches.cols());

@@ -102,7 +102,8 @@ void VirtualGantry::advance_time(double duration, TimeBucket bucket)
 void VirtualGantry::serve(double duration)
 {
     const double begin = status_.time;
-    // The times asked at are counted from the beginning, so that what is not stopped takes the same time to the last bit.
+    // The times asked at are counted from the beginning, so that what is not stopped takes the same time to the last
+    // bit.
     for (int period = 1; period * kStopPeriod < duration; ++period) {
         status_.time = begin + period * kStopPeriod;
         const bool stopped = is_interrupted();

@@ -39,6 +39,7 @@ struct Cell {
     bool spline = false;
     double spacing = 0;       ///< of griddata's uniform sampling, mm
     double between = 0;       ///< candidates, mm; 0: the default of candidate_touches()
+    double inset = 0;         ///< errors inside the sampling boundary less this, mm; 0: inside the anomaly
     sampling::TouchPlan plan; ///< Wang's layout, from which the estimated points come
 };
 
@@ -46,7 +47,13 @@ margin::KnownSurface known_surface(const Cell& cell, std::uint64_t seed)
 {
     margin::KnownSurface known;
     known.angle = cell.job.theta;
-    known.anomaly_places = margin::anomaly_grid(cell.job, kPlacesAcross);
+    job::Job region = cell.job;
+    if (cell.inset > 0) {
+        const Eigen::Matrix2Xd outer = cell.job.sampling.topRows<2>();
+        region.anomaly =
+            rectangle(outer.rowwise().minCoeff().array() + cell.inset, outer.rowwise().maxCoeff().array() - cell.inset);
+    }
+    known.anomaly_places = margin::anomaly_grid(region, kPlacesAcross);
     known.true_heights = heights(cell.truth, known.anomaly_places);
     known.candidates = touch(cell.truth, sampling::candidate_touches(cell.job, cell.between), seed);
     known.fixed_touches.resize(3, 0);
@@ -92,12 +99,16 @@ int main(int argc, char** argv)
         const double& between =
             t.number("--candidates", 0, "LENGTH", "Spacing of the candidates, in; 0: about a thousand",
                      core::Range::at_least(0));
+        const double& inset =
+            t.number("--inset", 0, "LENGTH", "Errors inside the sampling boundary less this, in; 0: inside the anomaly",
+                     core::Range::at_least(0));
         const double& shift = t.number("--shift", 0, "LENGTH", "Of the anomaly along x, in");
         const int& first = t.count("--first", 1, "Number of the first run", 1, 1000000);
         const int& runs = t.count("--runs", 1, "How many", 1, 1000000);
         t.parse();
 
-        Cell cell{job::read_job(job), patch_height(patch), !bare, spline, spacing * kInch, between * kInch, {}};
+        Cell cell{job::read_job(job), patch_height(patch), !bare,         spline,
+                  spacing * kInch,    between * kInch,     inset * kInch, {}};
         cell.job.anomaly.row(0).array() += shift * kInch;
         cell.plan = sampling::plan_freeform(cell.job, sampling::LineCount{lines, lines});
         sampling::HillClimbOptions settings;

@@ -3,14 +3,12 @@
 
 #include "cli/tool.h"
 #include "core/error.h"
-#include "fit/griddata.h"
 #include "job/boundary.h"
-#include "margin/anomaly_grid.h"
-#include "margin/error_band.h"
 #include "sampling/estimate.h"
 #include "sampling/freeform.h"
-#include "tables.h"
+#include "tables-griddata.h"
 
+#include <Eigen/QR>
 #include <unsupported/Eigen/Splines>
 
 #include <algorithm>
@@ -27,28 +25,21 @@ using namespace fettle::study;
 
 namespace {
 
-/// Error band inside B of the modified griddata through touches and estimated points, in. Where their hull does not
-/// hold B, it is that of the part inside, since the paper's Matlab leaves NaN out of max and min.
-double griddata_band_of(const job::Job& job, const Height& truth, const Eigen::Matrix3Xd& touches,
-                        const Eigen::Matrix3Xd& estimated)
+double griddata_size(const Variant& variant, const job::Job& job, const Height& truth, const Eigen::Matrix3Xd& touches,
+                     const Eigen::Matrix3Xd& estimated, std::uint64_t seed)
 {
-    fit::FitInput input;
-    input.job = job;
-    input.xyz.resize(3, touches.cols() + estimated.cols());
-    input.xyz << touches, estimated;
-    input.roles = Eigen::VectorXi::Ones(input.xyz.cols());
-    const surface::Surface surface = fit::fit_griddata(input).surface;
-    const Eigen::Matrix2Xd inside = margin::anomaly_grid(job, kPlacesAcross);
-    const Eigen::VectorXd errors = fettle::surface::heights(surface, inside) - study::heights(truth, inside);
-    return margin::error_band(errors.unaryExpr([](double error) { return std::isnan(error) ? 0 : error; })) / kInch;
+    return size_of(variant, griddata_errors(variant, job, truth, touches, estimated, seed));
 }
 
 /// The simple strategy with this number of lines in each direction.
-double simple_band(const job::Job& job, const Height& truth, const sampling::LineCount& lines, std::uint64_t seed)
+/// @param bare  without the estimated points
+double simple_band(const Variant& variant, const job::Job& job, const Height& truth, const sampling::LineCount& lines,
+                   std::uint64_t seed, bool bare = false)
 {
     const sampling::TouchPlan plan = sampling::plan_freeform(job, lines);
-    const Eigen::Matrix3Xd touches = touch(truth, plan.xy, seed);
-    return griddata_band_of(job, truth, touches, sampling::estimated_points(job, touches, plan.curve, plan.role));
+    const Eigen::Matrix3Xd touches = touch(variant, truth, plan.xy, seed);
+    const Eigen::Matrix3Xd estimated = sampling::estimated_points(job, touches, plan.curve, plan.role);
+    return griddata_size(variant, job, truth, touches, bare ? Eigen::Matrix3Xd(3, 0) : estimated, seed);
 }
 
 // --- Table 4-3: any number of points on each curve, drawn on either side of the anomaly ---
@@ -66,8 +57,23 @@ double spline_at(const Curve& curve, double t)
     return Eigen::SplineFitting<Spline>::Interpolate(curve.z.transpose(), 3, parameters)((t - first) / length)[0];
 }
 
+/// The cubic of least squares, at t.
+double cubic_at(const Curve& curve, double t)
+{
+    constexpr int kCoefficients = 4;
+    const double middle = curve.along.mean(), half = (curve.along.maxCoeff() - curve.along.minCoeff()) / 2;
+    const auto powers = [&](double x) {
+        const double u = (x - middle) / half;
+        return Eigen::RowVector4d(1, u, u * u, u * u * u);
+    };
+    Eigen::MatrixXd model(curve.along.size(), kCoefficients);
+    for (Eigen::Index i = 0; i < model.rows(); ++i) model.row(i) = powers(curve.along[i]);
+    return powers(t).dot(model.colPivHouseholderQr().solve(curve.z));
+}
+
 /// @param across  number of curves in each set   @param points  on each curve
-double drawn_band(const job::Job& job, const Height& truth, int across, int points, std::uint64_t seed)
+double drawn_band(const Variant& variant, const job::Job& job, const Height& truth, int across, int points,
+                  std::uint64_t seed)
 {
     Random random(seed);
     const job::Boundaries both = job::working_boundaries(job);
@@ -85,11 +91,13 @@ double drawn_band(const job::Job& job, const Height& truth, int across, int poin
             const int half = points / 2;
             for (int k = 0; k < points; ++k) {
                 const double from = k < half ? t[0] : t[2], to = k < half ? t[1] : t[3];
-                curve.along[k] = from + (to - from) * (k % half + random.uniform(0, 1)) / half;
+                const double share = random.uniform(0, 1);
+                curve.along[k] = from + (to - from) * (variant.anywhere ? share : (k % half + share) / half);
             }
+            std::ranges::sort(curve.along);
             Eigen::Matrix2Xd xy = origin.replicate(1, points);
             xy.row(axis) = curve.along.transpose();
-            const Eigen::Matrix3Xd touched = touch(truth, xy, seed_of(seed, touches.size() + 1));
+            const Eigen::Matrix3Xd touched = touch(variant, truth, xy, seed_of(seed, touches.size() + 1));
             curve.z = touched.row(2);
             for (const Eigen::Vector3d& point : touched.colwise()) touches.push_back(point);
             sets[static_cast<std::size_t>(axis)].push_back(std::move(curve));
@@ -100,12 +108,12 @@ double drawn_band(const job::Job& job, const Height& truth, int across, int poin
     for (int i = 0; i < across; ++i)
         for (int k = 0; k < across; ++k) {
             const double x = offset(0, i), y = offset(1, k);
-            const double z = (spline_at(sets[1][static_cast<std::size_t>(i)], y) +
-                              spline_at(sets[0][static_cast<std::size_t>(k)], x)) /
-                             2;
+            const auto at = variant.one_cubic ? cubic_at : spline_at;
+            const double z =
+                (at(sets[1][static_cast<std::size_t>(i)], y) + at(sets[0][static_cast<std::size_t>(k)], x)) / 2;
             estimated.col(next++) << x, y, z;
         }
-    return griddata_band_of(job, truth, all, estimated);
+    return griddata_size(variant, job, truth, all, estimated, seed);
 }
 
 // --- figure 4-8: the minimum number of estimated points within the tolerance ---
@@ -144,7 +152,7 @@ std::optional<int> min_point_count(double a, double b, double distance, const He
         if (number == tried) continue;
         if (lines.across_a + lines.across_b > kMaxCurves) continue;
         tried = number;
-        if (simple_band(job, surface, lines, seed) <= kTolerance) return number;
+        if (simple_band({}, job, surface, lines, seed) <= kTolerance) return number;
     }
     return {};
 }
@@ -170,17 +178,19 @@ void figure_4_8(std::ostream& out, double radius, std::uint64_t seed)
 int main(int argc, char** argv)
 {
     return cli::tool_main(argc, argv, "What the estimated points bring.", [](cli::Tool& t) {
-        const std::string& what = t.positional_choice("WHAT", {"4-3", "4-5", "4-8"}, "Table or figure");
+        const std::string& what = t.positional_choice("WHAT", {"4-3", "4-5", "4-8", "gain"}, "Table or figure");
         const std::string& job_file = t.text("--job", "", "JOB", "Job, JSON");
         const std::string& patch = t.text("--patch", "", "PATCH", "The surface, JSON");
         const std::string& name = t.text("--name", "", "NAME", "Before each value of Table 4-5");
         const int& lines = t.count("--lines", 2, "Each way, Table 4-5", 1, sampling::kMaxProbingLines);
         const int& trials = t.count("--trials", 100, "Draws of touches and noise", 1, 1000000);
+        const VariantOptions options(t);
         const double& radius =
             t.number("--radius", 25, "LENGTH", "Figure 4-8: of the saddles' curvature, in", core::Range::positive());
         t.parse();
 
         std::ostream& out = t.output();
+        const Variant variant = options.variant();
         if (what == "4-8") {
             figure_4_8(out, radius, t.seed());
             return cli::Verdict::yes;
@@ -190,13 +200,19 @@ int main(int argc, char** argv)
         for (int trial = 1; trial <= trials; ++trial) {
             const std::uint64_t seed = seed_of(t.seed(), static_cast<std::uint64_t>(trial));
             if (what == "4-5") {
-                write(out, name, simple_band(job, truth, {lines, lines}, seed));
+                write(out, name, simple_band(variant, job, truth, {lines, lines}, seed));
+                continue;
+            }
+            if (what == "gain") {
+                write(out, "gain",
+                      simple_band(variant, job, truth, {lines, lines}, seed, true) /
+                          simple_band(variant, job, truth, {lines, lines}, seed));
                 continue;
             }
             for (const int across : {3, 2})
                 for (const int points : {6, 4})
                     write(out, "4-3/" + std::to_string(across) + "x" + std::to_string(points),
-                          drawn_band(job, truth, across, points, seed));
+                          drawn_band(variant, job, truth, across, points, seed));
         }
         return cli::Verdict::yes;
     });

@@ -19,6 +19,8 @@ using namespace fettle::study;
 namespace {
 
 constexpr int kPoints = 30; // scattered over S
+// Touches side by side, as an operator makes them who repeats one.
+constexpr double kPairDistance = 0.05 * kInch;
 
 /// Places inside S, a square grid, row by row.
 struct Sheet {
@@ -86,6 +88,8 @@ int main(int argc, char** argv)
         const int& trials = t.count("--trials", 50, "Scatterings of the points", 1, 100000);
         const double& wavelength = t.number(
             "--wavelength", 1, "LENGTH", "The shortest that is kept: twice the spacing, in", core::Range::positive());
+        const bool& pairs = t.flag("--pairs", "The points come in pairs, 0.05 in apart");
+        const std::string& name = t.text("--name", "4-4", "NAME", "Before each value");
         const std::string& before_file = t.text("--before", "", "FILE", "The first surface as it was, PCD");
         const std::string& after_file = t.text("--after", "", "FILE", "The first surface sampled again, PCD");
         t.parse();
@@ -102,17 +106,21 @@ int main(int argc, char** argv)
             const Eigen::Vector2d min = both.sampling.rowwise().minCoeff(), max = both.sampling.rowwise().maxCoeff();
             Eigen::Matrix2Xd xy(2, kPoints);
             for (int i = 0; i < kPoints;) {
-                xy.col(i) = random.in_box(min, max);
-                if (!job::contains(both.anomaly, xy.col(i))) ++i;
+                xy.col(i) = pairs && i % 2 == 1 ? Eigen::Vector2d(xy.col(i - 1) + Eigen::Vector2d(kPairDistance, 0))
+                                                : random.in_box(min, max);
+                if (!job::contains(both.anomaly, xy.col(i)))
+                    ++i;
+                else
+                    i -= pairs ? i % 2 : 0;
             }
             const Eigen::Matrix3Xd touches = touch(truth, xy, seed_of(seed, 1));
             const Eigen::VectorXd once = surface::griddata_heights(touches, 0, job.theta, sheet.xy);
             const Eigen::VectorXd twice = surface::griddata_heights(touches, spacing, job.theta, sheet.xy);
             const double before = waviness(sheet, once - true_z, both.anomaly, cut_off);
             const double after = waviness(sheet, twice - true_z, both.anomaly, cut_off);
-            write(t.output(), "4-4/before", before / kInch);
-            write(t.output(), "4-4/after", after / kInch);
-            write(t.output(), "4-4/ratio", after / before);
+            write(t.output(), name + "/before", before / kInch);
+            write(t.output(), name + "/after", after / kInch);
+            write(t.output(), name + "/ratio", after / before);
             if (trial > 1) continue;
             if (!before_file.empty()) draw_surface(t.output_file(before_file), sheet, once, job.units);
             if (!after_file.empty()) draw_surface(t.output_file(after_file), sheet, twice, job.units);

@@ -354,9 +354,7 @@ TEST(GriddataFit, averages_boundary_touches_beside_others)
     fit::FitInput input = input_with_boundary(noise);
     const surface::Surface surface = fit::fit_griddata(input).surface;
     EXPECT_EQ(surface.touches.cols(), 32);
-    const auto points = [](const surface::Surface& fitted) {
-        return std::get<surface::Griddata>(fitted.shape).points;
-    };
+    const auto points = [](const surface::Surface& fitted) { return std::get<surface::Griddata>(fitted.shape).points; };
     EXPECT_EQ(points(surface).cols(), 24);
     Eigen::Matrix3Xd pair(3, 2);
     pair << input.xyz.col(1), input.xyz.rightCols(8).col(0);

@@ -2,7 +2,7 @@
 root=$HERE/../..
 build=$(dirname "$(dirname "$(command -v tables-table)")")
 unset MAKEFLAGS MFLAGS MAKELEVEL
-study() { make --no-print-directory -C "$root" -f pipelines/tables.mk B="$build" RUNS=1 MUTATIONS=3 TRIALS=4 BETWEEN=0.4 TABLES="$PWD/$1" "${@:2}"; }
+study() { make --no-print-directory -C "$root" -f pipelines/tables.mk B="$build" RUNS=1 MUTATIONS=3 OVER_MUTATIONS=1 OVER_BETWEEN=0.4 TRIALS=4 EVERY=20 BETWEEN=0.4 TABLES="$PWD/$1" "${@:2}"; }
 study all -s "$PWD/all/values.txt" "$PWD/all/figures.png" "$PWD/all/figure-4-4-after.png"
 for picture in figures figure-4-4-after; do test "$(head -c 4 all/$picture.png | tail -c 3)" = PNG; done
 # the same seed, the same values
