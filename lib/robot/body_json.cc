@@ -2,6 +2,7 @@
 
 #include "core/text.h"
 #include "mesh/mesh_file.h"
+#include "robot/hull_points.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -64,7 +65,7 @@ solid::Hull read_hull(Reader& reader, const std::string& path, double mm)
     const mesh::Mesh mesh = mesh::read_mesh(mesh_path.string(), units::parse_length_unit(unit));
     const auto at = reader.optional_object("at");
     const Eigen::Isometry3d T_body_file = at ? read_placement(*at, mm) : Eigen::Isometry3d::Identity();
-    return {T_body_file * mesh.vertices};
+    return {T_body_file * hull_points(mesh.vertices)};
 }
 
 Solid read_solid(Reader& reader, const std::string& path, double mm)

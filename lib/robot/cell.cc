@@ -82,9 +82,17 @@ Cell::Cell(const Robot& robot, const Workpiece* workpiece, const CollisionOption
     if (workpiece != nullptr) {
         const Eigen::AlignedBox3d box = geometry::finite_bounding_box(workpiece->mesh().vertices);
         bounding_balls_.push_back(bounding_ball(box));
+        workpiece_bounds_ = box;
         workpiece_box_ = solid::Box{Isometry3d(Eigen::Translation3d(box.center())), box.sizes() / 2};
     }
-    for (std::size_t body = 0; body < body_count(); ++body) axis_distances_.push_back(axis_distances(body));
+    for (std::size_t body = 0; body < body_count(); ++body) {
+        axis_distances_.push_back(axis_distances(body));
+        const double extent = bounding_balls_[body].extent;
+        if (link_of(body) == link::kTable)
+            max_table_extent_ = std::max(max_table_extent_, extent);
+        else
+            max_arm_extent_ = std::max(max_arm_extent_, extent);
+    }
 }
 
 int Cell::link_of(std::size_t body) const
@@ -157,6 +165,17 @@ double Cell::measure_clearance(CellState& state, std::size_t index, double max_c
     return c.distance - pair.margin;
 }
 
+double Cell::bound_clearance(CellState& state, std::size_t index, double max_clearance) const
+{
+    if (!is_of_workpiece(index) || options_.model != nullptr) return measure_clearance(state, index, max_clearance);
+    const CellPair& pair = pairs_[index];
+    const Isometry3d T_part_a = state.T_cell_body.back().inverse() * state.T_cell_body[pair.a];
+    const Workpiece::LowerBound found = workpiece_->lower_bound(PlacedSolid(robot_.bodies[pair.a].solid, T_part_a),
+                                                                max_clearance + pair.margin, state.start_leaf[index]);
+    state.start_leaf[index] = found.leaf;
+    return found.distance - pair.margin;
+}
+
 // The displacement of the ball's centre, and the chord of the rotation at the ball's radius: the spectral norm of
 // R1 - R0 is its Frobenius norm over root 2.
 double Cell::displacement_bound(const BoundingBall& ball, const Isometry3d& T0, const Isometry3d& T1)
@@ -172,23 +191,47 @@ double Cell::displacement_bound(std::size_t body, const CellState& s0, const Cel
 }
 
 // With turns the sum of the joints' turns and R the distance from their axes it is turns² R / 2.
-double Cell::arc_excess(std::size_t body, const CellJoints& change) const
+double Cell::arm_arc_excess(const CellJoints& change, double extent) const
 {
-    const int on = body == robot_.bodies.size() ? link::kTable : robot_.bodies[body].link;
-    const double extent = bounding_balls_[body].extent;
-    if (on == link::kTable && robot_.table) return change[7] * change[7] * (extent + robot_.table->point.norm()) / 2;
-    if (on <= link::kBase || on > link::kTool) return 0;
     double turns = change.head<6>().cwiseAbs().sum(); // with a parallelogram joint 3 turns by at most both, 2 and 3
     if (robot_.coupling == Coupling::parallelogram) turns += std::abs(change[1]);
     return turns * turns * (extent + reach_) / 2;
 }
 
-double Cell::rough_clearance(const CellState& state, std::size_t index) const
+double Cell::table_arc_excess(const CellJoints& change, double extent) const
+{
+    return robot_.table ? change[7] * change[7] * (extent + robot_.table->point.norm()) / 2 : 0;
+}
+
+double Cell::arc_excess(std::size_t body, const CellJoints& change) const
+{
+    const int on = link_of(body);
+    const double extent = bounding_balls_[body].extent;
+    if (on == link::kTable) return table_arc_excess(change, extent);
+    return on <= link::kBase ? 0 : arm_arc_excess(change, extent);
+}
+
+double Cell::max_arc_excess(const CellJoints& change) const
+{
+    return std::max(arm_arc_excess(change, max_arm_extent_), table_arc_excess(change, max_table_extent_));
+}
+
+// Of the workpiece the distance of the body's ball from the box around it.
+double Cell::ball_clearance(const CellState& state, std::size_t index) const
 {
     const CellPair& pair = pairs_[index];
     const BoundingBall &a = bounding_balls_[pair.a], &b = bounding_balls_[pair.b];
-    const Vector3d between = state.T_cell_body[pair.a] * a.centre - state.T_cell_body[pair.b] * b.centre;
-    const double of_balls = between.norm() - a.size - b.size - pair.margin;
+    const Vector3d centre = state.T_cell_body[pair.a] * a.centre;
+    const Isometry3d& T_b = state.T_cell_body[pair.b];
+    if (!is_of_workpiece(index)) return (centre - T_b * b.centre).norm() - a.size - b.size - pair.margin;
+    const Vector3d in_part = T_b.linear().transpose() * (centre - T_b.translation());
+    return workpiece_bounds_.exteriorDistance(in_part) - a.size - pair.margin;
+}
+
+double Cell::rough_clearance(const CellState& state, std::size_t index) const
+{
+    const CellPair& pair = pairs_[index];
+    const double of_balls = ball_clearance(state, index);
     if (!is_of_workpiece(index)) return of_balls;
     const PlacedSolid body(robot_.bodies[pair.a].solid, state.T_cell_body[pair.a]);
     const Clearance to_box = clearance(body, PlacedSolid(workpiece_box_, state.T_cell_body.back()));

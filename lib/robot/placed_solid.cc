@@ -123,9 +123,7 @@ Vector3d PlacedSolid::support(const Vector3d& direction) const
             [&](const Box& box) { return farthest_corner(box.corners, direction); },
             [&](const mesh::Triangle& triangle) { return farthest_corner(triangle, direction); },
             [&](const Hull& hull) -> Vector3d {
-                Eigen::Index best = 0;
-                (hull.points->transpose() * (hull.T.linear().transpose() * direction)).maxCoeff(&best);
-                return hull.T * hull.points->col(best);
+                return hull.T * farthest_corner(*hull.points, hull.T.linear().transpose() * direction);
             },
             [&](const Frustum& f) -> Vector3d {
                 Vector3d across = direction - direction.dot(f.axis) * f.axis;

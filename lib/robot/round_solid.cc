@@ -1,5 +1,7 @@
 #include "robot/round_solid.h"
 
+#include "core/constants.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -100,6 +102,95 @@ Slice corner_slice(const RoundSolid& solid, const Vector3d& corner, const Vector
     return {profile.value, slope, profile, corner};
 }
 
+/// The points of a segment and of a triangle that are nearest to each other, among those that were offered.
+class SegmentSearch {
+  public:
+    SegmentSearch(const Vector3d& from, const Vector3d& to, const mesh::Triangle& triangle)
+        : from_(from), along_(to - from), triangle_(triangle), e1_(triangle.col(1) - triangle.col(0)),
+          e2_(triangle.col(2) - triangle.col(0)), normal_(e1_.cross(e2_))
+    {
+    }
+
+    /// A lower bound of the distance from the triangle's plane; 0 if the segment crosses it.
+    double plane_distance() const
+    {
+        const double a = height(from_), b = height(from_ + along_), length = normal_.norm();
+        return a * b > 0 && length > 0 ? std::min(std::abs(a), std::abs(b)) / length : 0;
+    }
+
+    /// The nearest points are an end of the segment and its foot on the face, the point where the segment pierces the
+    /// face, or lie on an edge.
+    void search()
+    {
+        const double a = height(from_), b = height(from_ + along_);
+        offer_face(0);
+        offer_face(1);
+        if (a * b < 0) offer_face(a / (a - b));
+        for (int k = 0; k < 3; ++k) offer_edge(triangle_.col(k), triangle_.col((k + 1) % 3));
+    }
+
+    double squared_distance() const { return min_; }
+    const Vector3d& on_segment() const { return on_segment_; }
+    const Vector3d& on_triangle() const { return on_triangle_; }
+
+  private:
+    double height(const Vector3d& p) const { return (p - triangle_.col(0)).dot(normal_); } // times the normal's length
+
+    void offer(double t, const Vector3d& on_triangle)
+    {
+        const Vector3d on_segment = from_ + t * along_;
+        const double squared = (on_triangle - on_segment).squaredNorm();
+        if (!(squared < min_)) return;
+        min_ = squared;
+        on_segment_ = on_segment;
+        on_triangle_ = on_triangle;
+    }
+
+    // The foot of a point of the segment, if it lies on the face. It is composed of the corners, so that it is a point
+    // of the triangle even where the normal of a needle is rounding alone.
+    void offer_face(double t)
+    {
+        const Vector3d w = from_ + t * along_ - triangle_.col(0);
+        const double squared = normal_.squaredNorm();
+        const double u = w.cross(e2_).dot(normal_) / squared, v = e1_.cross(w).dot(normal_) / squared;
+        if (u >= 0 && v >= 0 && u + v <= 1) offer(t, triangle_.col(0) + u * e1_ + v * e2_);
+    }
+
+    // Nearest points of two segments (Ericson 2005, 5.1.9). Of parallel ones any pair that faces each other will do.
+    void offer_edge(const Vector3d& p, const Vector3d& q)
+    {
+        const Vector3d edge = q - p, r = from_ - p;
+        const double aa = along_.squaredNorm(), ee = edge.squaredNorm(), ae = along_.dot(edge);
+        const double ar = along_.dot(r), er = edge.dot(r), denominator = aa * ee - ae * ae;
+        const auto along_share = [&](double s) { return aa > 0 ? std::clamp((s * ae - ar) / aa, 0.0, 1.0) : 0.0; };
+        double t = denominator > 0 ? std::clamp((ae * er - ar * ee) / denominator, 0.0, 1.0) : 0.0;
+        const double s = ee > 0 ? std::clamp((er + t * ae) / ee, 0.0, 1.0) : 0.0;
+        t = along_share(s);
+        offer(t, p + s * edge);
+    }
+
+    const Vector3d from_, along_;
+    const mesh::Triangle& triangle_;
+    const Vector3d e1_, e2_, normal_; ///< two sides, and their cross product
+    double min_ = core::kInfinity;    ///< squared distance, mm²
+    Vector3d on_segment_, on_triangle_;
+};
+
+// Of a capsule the nearest point is in closed form, and most triangles are ruled out by their planes.
+std::optional<TriangleFoot> nearest_to_capsule(const RoundSolid& capsule, const mesh::Triangle& triangle,
+                                               double upper_bound)
+{
+    const Vector3d axis = capsule.T.linear().col(2), from = capsule.T.translation();
+    SegmentSearch nearest(from, from + capsule.length * axis, triangle);
+    if (nearest.plane_distance() - capsule.rounding >= upper_bound) return std::nullopt;
+    nearest.search();
+    const double length = std::sqrt(nearest.squared_distance()), distance = length - capsule.rounding;
+    if (!(distance < upper_bound - kFootAccuracy)) return std::nullopt;
+    const Vector3d gradient = length > 0 ? Vector3d((nearest.on_triangle() - nearest.on_segment()) / length)
+                                         : Vector3d(capsule.T.linear().col(0));
+    return TriangleFoot{distance, gradient, nearest.on_triangle()};
+}
+
 } // namespace
 
 ProfileDistance profile_distance(const RoundSolid& solid, double r, double z)
@@ -135,6 +226,9 @@ ProfileDistance profile_distance(const RoundSolid& solid, double r, double z)
 std::optional<TriangleFoot> nearest_point_of_triangle(const RoundSolid& solid, const mesh::Triangle& triangle,
                                                       double upper_bound)
 {
+    // A sphere takes the search by slices: it checks what mesh::closest_on_triangle() finds on needles.
+    if (solid.radius_from == 0 && solid.radius_to == 0 && solid.length > 0)
+        return nearest_to_capsule(solid, triangle, upper_bound);
     const mesh::Triangle local = solid.T.linear().transpose() * (triangle.colwise() - Vector3d(solid.T.translation()));
     int low = 0, high = 0;
     for (int k = 1; k < 3; ++k) {

@@ -37,7 +37,7 @@ inline constexpr double kFootAccuracy = 1e-7;
 
 /// The minimum signed distance of a triangle's points, to kFootAccuracy. At each height the point nearest to the axis
 /// is the best one, in closed form; the distance of these points is convex along the height, and its tangents bound it
-/// from below.
+/// from below. Of a capsule all is in closed form.
 /// @return  nothing if no point is nearer than `upper_bound`, mm, by more than kFootAccuracy
 std::optional<TriangleFoot> nearest_point_of_triangle(const RoundSolid& solid, const mesh::Triangle& triangle,
                                                       double upper_bound);

@@ -7,7 +7,7 @@
 #include <array>
 
 // The simplex of the GJK and EPA algorithms: points of the Minkowski difference b - a of two cores, and the point of
-// their hull that is nearest to the origin. Used by clearance.cc and depth.cc only.
+// their hull that is nearest to the origin. Used by clearance.cc, depth.cc and hull_points.cc only.
 namespace fettle::robot {
 
 /// A point of the Minkowski difference b - a, with the points of a and b that it comes from.

@@ -36,6 +36,30 @@ void ClearanceTracker::measure(State& state, std::size_t pair, double max_cleara
     clearance_bound_at_reset_[pair] = bound + distance_travelled_[a] + distance_travelled_[b];
 }
 
+void ClearanceTracker::set_current_bound(std::size_t pair, double lower_bound)
+{
+    const auto& [a, b, margin] = cell_.pairs()[pair];
+    current_.bounds[pair].clearance = lower_bound;
+    clearance_bound_at_reset_[pair] = lower_bound + distance_travelled_[a] + distance_travelled_[b];
+}
+
+// Renews the lower bound of a pair at the current state without measuring it.
+// @return  is the bound at least `sufficient`?
+bool ClearanceTracker::bound_current(std::size_t pair, double sufficient, double look_ahead)
+{
+    if (cell_.options().model != nullptr) return false;
+    double bound = cell_.ball_clearance(current_.cell_state, pair);
+    const bool is_far = bound > 0 && bound >= look_ahead;
+    if (!is_far) {
+        // The tree's bounds say nothing of a body that may lie wholly inside.
+        if (!cell_.is_of_workpiece(pair) || !(clearance_lower_bound(pair) > 0)) return false;
+        bound = cell_.bound_clearance(current_.cell_state, pair, look_ahead);
+        if (!(bound > 0 && bound >= sufficient)) return false;
+    }
+    set_current_bound(pair, bound);
+    return true;
+}
+
 double ClearanceTracker::clearance_lower_bound(std::size_t pair) const
 {
     const auto& [a, b, margin] = cell_.pairs()[pair];
@@ -71,16 +95,17 @@ CellClearance ClearanceTracker::advance(const CellJoints& joints)
         if (pair == nearest_pair_) continue;
         const auto& [a, b, margin] = cell_.pairs()[pair];
         const double relative_motion = displacement[a] + displacement[b], lower_bound = clearance_lower_bound(pair);
-        CellClearance& found = current_.cell_state.clearances[pair];
+        const double sufficient = std::min(minimum.clearance + relative_motion, max_clearance);
         // While the bound is positive a body cannot have moved into the workpiece without touching its surface.
-        if (lower_bound > 0 && lower_bound >= std::min(minimum.clearance + relative_motion, max_clearance)) {
-            found.clearance = std::min(lower_bound, max_clearance);
-            found.pair = pair;
+        if (lower_bound > 0 && lower_bound >= sufficient) {
             current_.bounds[pair].clearance = lower_bound;
             continue;
         }
-        const double look_ahead = std::max(minimum.clearance, 0.0) + kLookAheadSteps * relative_motion;
-        measure(current_, pair, step_count_ == 1 ? max_clearance : std::min(look_ahead, max_clearance));
+        double look_ahead = std::max(minimum.clearance, 0.0) + kLookAheadSteps * relative_motion;
+        look_ahead = step_count_ == 1 ? max_clearance : std::min(look_ahead, max_clearance);
+        if (bound_current(pair, sufficient, look_ahead)) continue;
+        measure(current_, pair, look_ahead);
+        const CellClearance& found = current_.cell_state.clearances[pair];
         if (found.clearance < minimum.clearance) minimum = found;
     }
     nearest_pair_ = minimum.pair;
@@ -179,16 +204,24 @@ void ClearanceTracker::sweep(State& from, State& to, std::span<const std::size_t
     if (pairs.empty()) return;
     to.motion_bounds.assign(cell_.body_count(), core::kNaN);
     // The pair that probably has the minimum comes first: its clearance spares measuring others exactly.
+    const bool is_step = &from == &previous_ && &to == &current_;
     const std::size_t nearest =
-        *std::ranges::min_element(pairs, {}, [&](std::size_t i) { return to.bounds[i].clearance; });
+        is_step ? nearest_pair_
+                : *std::ranges::min_element(pairs, {}, [&](std::size_t i) { return to.bounds[i].clearance; });
+    // No body moves farther between two steps: it spares the motion bounds of most pairs.
+    const double max_motion = is_step
+                                  ? std::ranges::max(step_displacement_) + cell_.max_arc_excess(to.joints - from.joints)
+                                  : core::kInfinity;
     State& middle = midpoints_[bisections];
     middle.pairs.clear();
     const auto decide = [&](std::size_t pair) {
         if (!sweep_pair(from, to, pair, bisections, result)) middle.pairs.push_back(pair);
     };
     decide(nearest);
-    for (const std::size_t pair : pairs)
-        if (pair != nearest) decide(pair);
+    for (const std::size_t pair : pairs) {
+        const double nearer_end = std::min(from.bounds[pair].clearance, to.bounds[pair].clearance);
+        if (pair != nearest && nearer_end - max_motion < result.upper_bound) decide(pair);
+    }
     if (middle.pairs.empty()) return;
     place_midpoint(from, to, middle);
     sweep(from, middle, middle.pairs, bisections + 1, result);

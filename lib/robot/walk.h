@@ -51,6 +51,8 @@ class ClearanceTracker {
         double upper_bound = core::kInfinity; ///< of the result: the smallest clearance measured on the motion, mm
     };
     void measure(State& state, std::size_t pair, double max_clearance);
+    bool bound_current(std::size_t pair, double sufficient, double look_ahead);
+    void set_current_bound(std::size_t pair, double lower_bound);
     double clearance_lower_bound(std::size_t pair) const;
     double body_motion_bound(const State& from, State& to, std::size_t pair) const;
     void raise_bound(State& state, std::size_t pair) const;

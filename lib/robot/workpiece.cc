@@ -84,8 +84,9 @@ struct Candidate {
 template <typename Outline, typename Wide>
 struct TreeSearch {
     TreeSearch(const Outline& shape, const PlacedSolid& placed, const mesh::Mesh& of, const mesh::BoxTree& in,
-               const std::function<bool(Eigen::Index)>* selection, Workpiece::Nearest& found)
-        : outline(shape), body(placed), mesh(of), tree(in), is_selected(selection), best(found)
+               const std::function<bool(Eigen::Index)>* selection, Workpiece::Nearest& found, bool only_bounds)
+        : outline(shape), body(placed), mesh(of), tree(in), is_selected(selection), bounds_only(only_bounds),
+          best(found)
     {
     }
 
@@ -94,6 +95,7 @@ struct TreeSearch {
     const mesh::Mesh& mesh;
     const mesh::BoxTree& tree;
     const std::function<bool(Eigen::Index)>* is_selected; ///< nullptr: all triangles count
+    const bool bounds_only; ///< the result is the smallest lower bound, no triangle is measured
     Workpiece::Nearest& best;
     const Wide wide = Wide(outline, tree.centre);
     /// Error bound of distances in float, mm.
@@ -126,6 +128,15 @@ struct TreeSearch {
     FETTLE_INLINE void scan_leaf(std::uint32_t leaf)
     {
         const MinDistance8 distances = min_distances(wide, tree.leaves[leaf]);
+        if (bounds_only) {
+            for (mesh::LaneIterator lanes{mesh::lane_bits(distances.lower < upper_bound)}; lanes.any(); lanes.next()) {
+                const float lower = distances.lower[lanes.first()];
+                if (!(lower < upper_bound)) continue;
+                upper_bound = lower;
+                best.leaf = leaf;
+            }
+            return;
+        }
         if (wide.exact && is_selected == nullptr && mesh::lane_bits(distances.upper < upper_bound) != 0)
             set_upper_bound(mesh::min_lane(distances.upper));
         for (mesh::LaneIterator lanes{mesh::lane_bits(distances.lower <= upper_bound)}; lanes.any(); lanes.next()) {
@@ -215,20 +226,24 @@ bool Workpiece::is_inside(const Nearest& nearest, const Vector3d& point) const
     return false;
 }
 
-void Workpiece::search(const PlacedSolid& body, const std::function<bool(Eigen::Index)>* is_selected,
-                       Nearest& best) const
+void Workpiece::search(const PlacedSolid& body, const std::function<bool(Eigen::Index)>* is_selected, Nearest& best,
+                       bool bounds_only) const
 {
     const mesh::BoxTree& tree = index_.tree();
     if (tree.leaves.empty()) return;
     best.leaf = std::min<std::uint32_t>(best.leaf, static_cast<std::uint32_t>(tree.leaves.size()) - 1);
     const auto outline = body.primitive_shape();
-    const auto run = [&](auto&& search) { run_from(search, best.leaf); };
+    const auto run = [&](auto&& search) {
+        run_from(search, best.leaf);
+        if (bounds_only)
+            best.clearance.distance = std::min(best.clearance.distance, search.upper_bound - search.rounding);
+    };
     if (const auto* box = std::get_if<BoxSolid>(&outline))
-        run(BoxSearch(*box, body, mesh(), tree, is_selected, best));
+        run(BoxSearch(*box, body, mesh(), tree, is_selected, best, bounds_only));
     else if (body.is_sphere())
-        run(SphereSearch(std::get<RoundSolid>(outline), body, mesh(), tree, is_selected, best));
+        run(SphereSearch(std::get<RoundSolid>(outline), body, mesh(), tree, is_selected, best, bounds_only));
     else
-        run(RoundSearch(std::get<RoundSolid>(outline), body, mesh(), tree, is_selected, best));
+        run(RoundSearch(std::get<RoundSolid>(outline), body, mesh(), tree, is_selected, best, bounds_only));
 }
 
 bool Workpiece::contains(const Vector3d& point) const
@@ -253,6 +268,16 @@ Workpiece::Nearest Workpiece::nearest_of_surface(const PlacedSolid& body, double
     best.leaf = start_leaf;
     search(body, nullptr, best);
     return best;
+}
+
+Workpiece::LowerBound Workpiece::lower_bound(const PlacedSolid& body, double max_distance,
+                                             std::uint32_t start_leaf) const
+{
+    Nearest best;
+    best.clearance.distance = max_distance;
+    best.leaf = start_leaf;
+    search(body, nullptr, best, true);
+    return {best.clearance.distance, best.leaf};
 }
 
 Workpiece::Nearest Workpiece::nearest(const PlacedSolid& body, double max_distance, std::uint32_t start_leaf) const

@@ -43,6 +43,14 @@ class Workpiece {
     /// nearest() without the test whether the body lies wholly inside, for bodies that are known not to.
     Nearest nearest_of_surface(const PlacedSolid& body, double max_distance, std::uint32_t start_leaf) const;
 
+    /// A lower bound of what nearest_of_surface() finds, no larger than `max_distance`: the bounds in float alone,
+    /// which differ from the distance about as much as the body's surface curves over a triangle.
+    struct LowerBound {
+        double distance = 0;
+        std::uint32_t leaf = 0; ///< as Nearest::leaf
+    };
+    LowerBound lower_bound(const PlacedSolid& body, double max_distance, std::uint32_t start_leaf) const;
+
     /// The minimum signed distance of a subset of the triangles. As a subset bounds no volume, `inside` stays false.
     Nearest nearest_of(const PlacedSolid& body, double max_distance,
                        const std::function<bool(Eigen::Index)>& is_selected) const;
@@ -54,7 +62,8 @@ class Workpiece {
     const mesh::Mesh& mesh() const { return index_.mesh(); }
 
   private:
-    void search(const PlacedSolid& body, const std::function<bool(Eigen::Index)>* is_selected, Nearest& best) const;
+    void search(const PlacedSolid& body, const std::function<bool(Eigen::Index)>* is_selected, Nearest& best,
+                bool bounds_only = false) const;
     bool is_inside(const Nearest& nearest, const Eigen::Vector3d& point) const;
 
     bool closed_;

@@ -1,9 +1,13 @@
-// Pairs of solids, one core. Tools against a workpiece: tool_hull_bench.
+// Pairs of solids, one core; motions between poses far apart. Tools against a workpiece: tool_hull_bench.
 
+#include "mesh/mesh_file.h"
 #include "robot/clearance.h"
+#include "robot/collision.h"
+#include "robot/hull_points.h"
 
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <random>
 #include <vector>
 
@@ -41,5 +45,40 @@ BENCHMARK_CAPTURE(pairs, capsules, kCapsule, kCapsule)->Arg(100)->Arg(10)->Unit(
 BENCHMARK_CAPTURE(pairs, boxes, kBox, kBox)->Arg(100)->Arg(10)->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(pairs, cylinders, kCylinder, kCylinder)->Arg(100)->Arg(10)->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(pairs, cylinder and box, kCylinder, kBox)->Arg(100)->Arg(10)->Unit(benchmark::kMicrosecond);
+
+/// Motions between random joints, far apart, and how many are decided in a second: FCL's piano, as its hull, on an arm
+/// in FCL's flat.
+void ways_of_a_piano(benchmark::State& state)
+{
+    constexpr double kScale = 2.5; // of an IRB 1400: its reach is then the flat's
+    const mesh::Mesh flat = mesh::read_mesh("tests/data/fcl_env.obj", units::Units::Length::mm);
+    const mesh::Mesh piano = mesh::read_mesh("tests/data/fcl_rob.obj", units::Units::Length::mm);
+    robot::Robot arm = robot::read_robot("samples/robots/irb1400.json");
+    for (robot::DhRow& row : arm.dh) {
+        row.a *= kScale;
+        row.d *= kScale;
+    }
+    arm.track.reset();
+    arm.allowed.clear();
+    arm.bodies = {{"piano", robot::link::kTool, robot::solid::Hull{robot::hull_points(piano.vertices)}}};
+    const robot::Workpiece workpiece(flat);
+    std::mt19937 random(1);
+    robot::CellJointsPath joints = robot::CellJointsPath::Zero(8, 500);
+    for (Eigen::Index i = 0; i < joints.cols(); ++i)
+        for (Eigen::Index j = 0; j < 6; ++j) {
+            const robot::DhRow& row = arm.dh[static_cast<std::size_t>(j)];
+            joints(j, i) = std::uniform_real_distribution<double>(row.range.min, row.range.max)(random);
+        }
+    std::size_t colliding = 0;
+    for (auto _ : state) {
+        const robot::CheckedPath checked = robot::check_path(arm, &workpiece, joints, {});
+        colliding = static_cast<std::size_t>(std::ranges::count_if(
+            checked.between_poses, [](const robot::CellClearance& c) { return c.clearance < -0.01; }));
+    }
+    state.counters["colliding"] = static_cast<double>(colliding);
+    state.counters["ways/s"] = benchmark::Counter(
+        static_cast<double>(state.iterations()) * static_cast<double>(joints.cols() - 1), benchmark::Counter::kIsRate);
+}
+BENCHMARK(ways_of_a_piano)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
 
 } // namespace

@@ -207,6 +207,7 @@ TEST(Collision, RelativeMotionBoundHolds)
             all.measure_clearance(s0, pair);
             all.measure_clearance(s1, pair);
             EXPECT_LE(all.rough_clearance(s0, pair), s0.clearances[pair].clearance + robot::kClearanceAccuracy);
+            EXPECT_LE(all.ball_clearance(s0, pair), s0.clearances[pair].clearance + robot::kClearanceAccuracy);
         }
         for (int i = 1; i < 200; ++i) {
             robot::CellState at = all.place_bodies(from + (to - from) * (i / 200.0));

@@ -1,15 +1,20 @@
 // Random pairs of solids and of solids and triangles against FCL.
 
 #include "boat_hull.h"
+#include "mesh/mesh_file.h"
 #include "robot/clearance.h"
+#include "robot/hull_points.h"
 #include "robot/workpiece.h"
 
 #include <fcl/fcl.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <memory>
 #include <random>
+#include <string>
+#include <vector>
 
 namespace fettle {
 namespace {
@@ -109,6 +114,80 @@ TEST(Fcl, RandomSolidsAgainstAMesh)
     }
     EXPECT_GT(separate, 500);
     EXPECT_GT(overlapping, 500);
+}
+
+mesh::Mesh read(const std::string& name)
+{
+    const char* samples = std::getenv("SAMPLES");
+    return mesh::read_mesh((samples == nullptr ? "" : std::string(samples) + "/../") + "tests/data/" + name,
+                           units::Units::Length::mm);
+}
+
+std::shared_ptr<fcl::BVHModel<fcl::OBBRSSd>> model_of(const mesh::Mesh& mesh)
+{
+    auto model = std::make_shared<fcl::BVHModel<fcl::OBBRSSd>>();
+    model->beginModel();
+    for (const auto t : mesh.triangles.colwise())
+        model->addTriangle(mesh.vertices.col(t[0]), mesh.vertices.col(t[1]), mesh.vertices.col(t[2]));
+    model->endModel();
+    return model;
+}
+
+/// The faces of FCL's body are all triangles of its points that have the others on one side.
+std::shared_ptr<fcl::Convexd> convex_of(const Eigen::Matrix3Xd& points)
+{
+    constexpr double kFlatness = 1e-6; // mm
+    auto vertices = std::make_shared<std::vector<Vector3d>>();
+    for (const auto p : points.colwise()) vertices->push_back(p);
+    auto faces = std::make_shared<std::vector<int>>();
+    int count = 0;
+    const int n = static_cast<int>(points.cols());
+    for (int i = 0; i < n; ++i)
+        for (int j = i + 1; j < n; ++j)
+            for (int k = j + 1; k < n; ++k) {
+                const Vector3d normal =
+                    (points.col(j) - points.col(i)).cross(points.col(k) - points.col(i)).normalized();
+                const Eigen::RowVectorXd height = normal.transpose() * (points.colwise() - points.col(i));
+                if (!(normal.norm() > 0.5) || (height.maxCoeff() > kFlatness && height.minCoeff() < -kFlatness))
+                    continue;
+                const bool outwards = height.maxCoeff() <= kFlatness;
+                faces->insert(faces->end(), {3, i, outwards ? j : k, outwards ? k : j});
+                ++count;
+            }
+    return std::make_shared<fcl::Convexd>(vertices, count, faces);
+}
+
+// FCL's own piano in FCL's own flat: the hull of the piano at poses all over it.
+TEST(Fcl, APianoInAFlat)
+{
+    constexpr double kAccuracy = 1e-3;
+    Draw draw(23);
+    const mesh::Mesh flat = read("fcl_env.obj");
+    const Eigen::Matrix3Xd points = read("fcl_rob.obj").vertices, hull_points = robot::hull_points(points);
+    EXPECT_LT(hull_points.cols(), points.cols() / 4);
+    const robot::Workpiece workpiece(flat);
+    const robot::Solid all = robot::solid::Hull{points}, hull = robot::solid::Hull{hull_points};
+    fcl::CollisionObjectd their_flat(model_of(flat));
+    const auto their_hull = convex_of(hull_points);
+    int separate = 0, overlapping = 0, differences = 0;
+    for (unsigned k = 0; k < 1500; ++k) {
+        const Isometry3d T = Eigen::Translation3d(0, 0, 900) * draw.placement(2500);
+        const robot::PlacedSolid placed(hull, T);
+        const double ours = workpiece.nearest_of_surface(placed, 5000, 0).clearance.distance;
+        if (k % 10 == 0) {
+            EXPECT_NEAR(ours, workpiece.nearest_of_surface(robot::PlacedSolid(all, T), 5000, 0).clearance.distance,
+                        robot::kClearanceAccuracy);
+        }
+        if (std::abs(ours) < kAccuracy) continue;
+        fcl::CollisionObjectd at(their_hull, T);
+        fcl::CollisionResultd collision;
+        const bool overlap = fcl::collide(&their_flat, &at, fcl::CollisionRequestd(1, false), collision) > 0;
+        differences += overlap != (ours < 0);
+        ++(ours < 0 ? overlapping : separate);
+    }
+    EXPECT_EQ(differences, 0);
+    EXPECT_GT(separate, 300);
+    EXPECT_GT(overlapping, 300);
 }
 
 } // namespace

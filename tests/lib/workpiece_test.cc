@@ -72,6 +72,7 @@ TEST(Workpiece, NearestAsByBruteForce)
         return std::uniform_real_distribution<double>(min, max)(random);
     };
     int touching = 0;
+    double max_slack = 0; // of the lower bounds, mm
     for (int k = 0; k < 600; ++k) {
         const Vector3d at(number(-70, 70), number(-70, 70), number(-15, 30));
         const Vector3d to = at + Vector3d(number(-20, 20), number(-20, 20), number(1, 40));
@@ -94,10 +95,14 @@ TEST(Workpiece, NearestAsByBruteForce)
         const robot::Workpiece::Nearest near = workpiece.nearest(body, 3);
         EXPECT_NEAR(near.clearance.distance, std::min(min, 3.0), tolerance);
         EXPECT_EQ(near.triangle >= 0, min < 3);
+        const double lower = workpiece.lower_bound(body, 3, near.leaf).distance;
+        EXPECT_LE(lower, near.clearance.distance + 1e-9);
+        if (min > 0) max_slack = std::max(max_slack, near.clearance.distance - lower);
         if (min < 0) ++touching;
     }
     EXPECT_GT(touching, 100);
     EXPECT_LT(touching, 500);
+    EXPECT_LT(max_slack, 4); // mm, the side of a triangle: a cylinder's rim may bend as sharply
 }
 
 // A box by its corners. Reference: the box.
