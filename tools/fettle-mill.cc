@@ -106,6 +106,7 @@ std::size_t write_triangles(const Options& o, const machining::Workpiece& piece,
 void warn_of_path(const Options& o, const machining::MillingSummary& sum, const machining::ToolPath& path)
 {
     const std::string source = core::display_name(o.path_file) + ": ", place = path.points ? "point" : "line";
+    if (const std::string doubt = machining::unit_warning(path.program); !doubt.empty()) o.t.warn(source + doubt);
     if (path.program.tool_change > 0)
         o.t.warn(source + "line " + std::to_string(path.program.tool_change) +
                  " changes the tool: the moves after it are cut with the same --cutter");

@@ -95,6 +95,8 @@ machining::CorrectedPath correct_path(const Options& o, const mesh::Mesh& machin
 {
     const machining::Cutter cutter = machining::parse_cutter_option(o.cutter);
     const machining::ToolPath path = o.path.read(o.path_file, cutter);
+    if (const std::string doubt = machining::unit_warning(path.program); !doubt.empty())
+        o.t.warn(core::display_name(o.path_file) + ": " + doubt);
     machining::CorrectedPath corrected =
         machining::correct(path.program.moves, cutter, machined, design, verdict.patches, verdict.tolerances.outer);
     std::ostream& out = o.t.output_file(o.corrected);

@@ -76,6 +76,7 @@ class Interpreter {
             throw core::InputError("F on a line that changes the unit (G20, G21): controls differ on whether it is in "
                                    "the old or the new one; give F a line of its own");
         unit_ = unit;
+        is_unit_given_ = true;
     }
 
     void set_offsets(const NcBlock& block)
@@ -112,6 +113,7 @@ class Interpreter {
             throw core::InputError("coordinates without a motion mode: none of G0, G1, G2, G3 is active");
         if (motion_ <= 1 && block.has_any("IJKR")) throw core::InputError("I, J, K and R belong to G2 and G3");
         check_offsets(block);
+        if (!is_unit_given_ && program.assumed_unit == 0) program.assumed_unit = line_;
         if (start_) add({{.from = at_, .to = at_}}, 0);
         start_.reset();
         const Eigen::Vector3d to = target(block);
@@ -188,7 +190,7 @@ class Interpreter {
     Eigen::Vector3d at_ = Eigen::Vector3d::Constant(core::kNaN); ///< mm; NaN: not known
     double feed_ = 0, unit_ = 1;                                 ///< mm/s; mm
     int motion_ = -1, plane_ = 17;
-    bool incremental_ = false, has_fed_ = false, ended_ = false;
+    bool is_unit_given_ = false, incremental_ = false, has_fed_ = false, ended_ = false;
     Offsets offsets_;
     Offsets known_offsets_{"", ""}; ///< of the moves so far; empty: none yet
     std::string tool_ = "the tool in the spindle", next_tool_ = tool_;
@@ -210,6 +212,12 @@ bool sets_parameter(std::string_view text)
 }
 
 } // namespace
+
+std::string unit_warning(const NcProgram& program)
+{
+    if (program.assumed_unit == 0) return {};
+    return "line " + std::to_string(program.assumed_unit) + " moves before any G20 or G21: its lengths are taken as mm";
+}
 
 NcProgram parse_nc_program(std::string_view text, const std::string& source,
                            const std::optional<Eigen::Vector3d>& start)

@@ -26,8 +26,13 @@ struct NcProgram {
     };
     std::vector<UnplacedRapid> unplaced_rapids;
     std::size_t chorded_arcs = 0; ///< number of arcs replaced by chords
+    std::size_t assumed_unit = 0; ///< line of the first coordinates before any G20 or G21: read as mm; 0: none
     std::size_t tool_change = 0;  ///< line of the first change of the tool (M6) after a feed move; 0: none
 };
+
+/// A warning if the program has coordinates before it says their unit; else empty. A control takes them in a unit that
+/// its configuration sets.
+std::string unit_warning(const NcProgram& program);
 
 /// Reads G-code (ISO 6983; NIST RS274/NGC): G0 to G3 with a centre (I J K, relative to the start) or radius (R), G17 to
 /// G19, G20 and G21, G90 and G91, F in length per minute, comments, line numbers, %. Accepted without effect: M0 to M9,
