@@ -111,6 +111,7 @@ int main(int argc, char** argv)
         const plan::Plan plan = plan::read_plan(o.plan);
         const units::Units& units = plan.job.units;
         const auto [stock, doubts, dropped] = gantry::read_stock(o.stock, plan.job, removal::Extent::anomaly);
+        gantry::require_below_safe_height(stock, plan.job, core::display_name(o.stock.file));
         for (const std::string& doubt : doubts) t.warn(doubt);
         const std::string& trace_file = o.trace.empty() ? o.resume : o.trace;
         if (o.trace.empty() && !o.resume.empty()) t.reserve_output(o.resume);

@@ -1,5 +1,6 @@
 #include "cli/tool.h"
 #include "cloud/pcd.h"
+#include "core/file.h"
 #include "gantry/gantry_options.h"
 #include "job/job.h"
 #include "strategy/manual.h"
@@ -63,6 +64,7 @@ int main(int argc, char** argv)
         const job::Job job = job::read_job(o.job);
         const units::Units& units = job.units;
         const auto [stock, doubts, dropped] = gantry::read_stock(o.stock, job, removal::Extent::sampling);
+        gantry::require_below_safe_height(stock, job, core::display_name(o.stock.file));
         for (const std::string& doubt : doubts) t.warn(doubt);
         strategy::Steering steering(o.steering);
         const cloud::PcdEncoding encoding = cloud::pcd_encoding(o.ascii);

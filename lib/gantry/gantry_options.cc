@@ -78,6 +78,15 @@ Stock stock_of_part(const sampling::Scan& part, const StockOptions& options, con
     return {removal::stock_from_scan(part, job, cell, source, extent), warnings, dropped};
 }
 
+void require_below_safe_height(const removal::HeightField& stock, const job::Job& job, const std::string& source)
+{
+    const double mm = job.units.mm(), highest = stock.z.maxCoeff<Eigen::PropagateNumbers>();
+    if (highest >= job.safe_height)
+        throw core::InputError(source, "stands at z " + core::to_short_text(highest / mm) + ", not below safe_height " +
+                                           core::to_short_text(job.safe_height / mm) +
+                                           ": the wheel would travel through it");
+}
+
 OpenGantry open_gantry(const GantryOptions& options, const job::Job& job, const removal::HeightField& stock,
                        std::uint64_t seed, double removal_factor)
 {

@@ -60,6 +60,11 @@ struct Stock {
 /// Reads the part as a height field.
 /// @throws InputError as read_scan() and stock_from_scan(), or for cells wider than the wheel
 Stock read_stock(const StockOptions& options, const job::Job& job, removal::Extent extent);
+
+/// @param source  the stock's name for the message
+/// @throws InputError if the stock stands as high as the job's safe height: the wheel would travel through it
+void require_below_safe_height(const removal::HeightField& stock, const job::Job& job, const std::string& source);
+
 /// As read_stock(), of a part that has been read already. @param part  the contents of options.file
 Stock stock_of_part(const sampling::Scan& part, const StockOptions& options, const job::Job& job,
                     removal::Extent extent);
