@@ -13,13 +13,37 @@ namespace fettle::fit {
 
 namespace {
 
+/// Whether the surface was fitted to boundary points of the job, too: griddata and --use-boundary take them as touches.
+bool has_boundary_points(const Eigen::Matrix3Xd& touches, const job::Job& job)
+{
+    constexpr double kSamePoint = 1e-6; // mm: the points are copies, rounded at most by a change of units
+    const auto is_touch = [&](const Eigen::Vector3d& point) {
+        return (touches.colwise() - point).colwise().squaredNorm().minCoeff() < kSamePoint * kSamePoint;
+    };
+    for (const Eigen::Matrix3Xd* boundary : {&job.anomaly, &job.sampling})
+        for (const Eigen::Vector3d& point : boundary->colwise())
+            if (point.allFinite() && is_touch(point)) return true;
+    return false;
+}
+
+/// Checks the heights of the job's boundary points against the touches. Where they shaped the surface they are refused;
+/// else nothing depends on them, and a warning is added to the run's.
+void check_boundary_heights(FitRun& run, const job::Job& job, const std::string& name)
+{
+    const std::string doubt = job::boundary_height_warning({run.fit.surface.touches, run.fit.surface.roles}, job);
+    if (doubt.empty()) return;
+    if (has_boundary_points(run.fit.surface.touches, job))
+        throw core::InputError(name, doubt + " The fit takes them as touches");
+    run.warnings.push_back(name + ": " + doubt);
+}
+
 /// Checks the fit's touches against the job, and adds the warnings to the run's.
 void check_touches(FitRun& run, const job::Job& job, const std::string& name)
 {
     const job::PlacedTouches touches{run.fit.surface.touches, run.fit.surface.roles};
-    for (const std::string& warning :
-         {job::check_touch_places(touches, job, name), job::boundary_height_warning(touches, job)})
-        if (!warning.empty()) run.warnings.push_back(name + ": " + warning);
+    const std::string warning = job::check_touch_places(touches, job, name);
+    if (!warning.empty()) run.warnings.push_back(name + ": " + warning);
+    check_boundary_heights(run, job, name);
 }
 
 /// Checks the fit of a scan likewise. Its condensed touches are the middles of cells, which may lie a little outside S
@@ -28,8 +52,7 @@ void check_scan(FitRun& run, const job::Job& job, bool has_roles, const std::str
 {
     const job::PlacedTouches touches{run.fit.surface.touches, run.fit.surface.roles};
     if (has_roles) job::check_touch_places(touches, job, name); // without roles, points outside S are left out
-    const std::string warning = job::boundary_height_warning(touches, job);
-    if (!warning.empty()) run.warnings.push_back(name + ": " + warning);
+    check_boundary_heights(run, job, name);
 }
 
 FitRun run_dense_fit(const cloud::PointSource& points, const job::Job& job, bool use_boundary, const std::string& name)
