@@ -80,9 +80,10 @@ removal::HeightField replay_removal(const std::vector<TraceRow>& trace, const jo
         if (!(trace[i].feed > 0)) continue;
         const Eigen::Vector3d from = trace[i - 1].tool, motion = trace[i].tool - from;
         const int steps = std::max(1, int(std::ceil(motion.norm() / (kStepCells * stock.cell))));
+        const double radius = trace[i].radius > 0 ? trace[i].radius : job.wheel.radius;
         for (int n = 1; n <= steps; ++n) {
             const Eigen::Vector3d at = from + motion * (double(n) / steps);
-            wheel.place(R_working_machine * at.head<2>(), job.wheel.radius, at.z());
+            wheel.place(R_working_machine * at.head<2>(), radius, at.z());
             wheel.cut(at.z());
         }
     }

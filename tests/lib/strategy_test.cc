@@ -1,3 +1,4 @@
+#include "gantry_stock.h"
 #include "own_folder.h"
 
 #include "core/error.h"
@@ -6,6 +7,7 @@
 #include "strategy/layer_switching.h"
 #include "strategy/run.h"
 #include "strategy/steering.h"
+#include "strategy/trace.h"
 #include "strategy/trace_file.h"
 
 #include <gtest/gtest.h>
@@ -727,6 +729,23 @@ TEST(Trace, RefusesEventsThatThereAreNot)
         FAIL();
     } catch (const core::InputError& error) {
         EXPECT_STREQ(error.what(), "trace: event 99 of point 2 is not an event of a trace");
+    }
+}
+
+// A wheel that was measured smaller than the job's leaves a shorter mark. Reference: the chord of its circle.
+TEST(Trace, IsReplayedWithTheMeasuredRadius)
+{
+    constexpr double kDepth = 1, kCell = 0.1;
+    const job::Job job = small_job();
+    for (const double radius : {0.0, 12.0}) {
+        std::vector<strategy::TraceRow> rows(2);
+        rows[0].tool = {0, 0, kTop - kDepth};
+        rows[1] = {.time = 1, .tool = {0, 0.01, kTop - kDepth}, .feed = 1, .radius = radius};
+        const removal::HeightField before = fettle::flat(kCell), after = strategy::replay_removal(rows, job, before);
+        const double cut = static_cast<double>((before.z.array() - after.z.array() > 1e-9).count()) * kCell * kCell;
+        const double r = radius > 0 ? radius : job.wheel.radius;
+        const double chord = 2 * std::sqrt(kDepth * (2 * r - kDepth));
+        EXPECT_NEAR(cut / job.wheel.width, chord, 3 * kCell) << radius;
     }
 }
 
