@@ -57,7 +57,7 @@ int main(int argc, char** argv)
             throw core::InputError("--lower",
                                    core::to_text(*lower) + " is more than --upper, " + core::to_text(*upper));
         const belt::ToleranceRange range = {*lower, *upper};
-        cloud::Cloud cloud = cloud::read_cloud(path, units::Units{}).cloud;
+        cloud::Cloud cloud = cloud::read_cloud(path).cloud;
         if (!cloud::has_field(cloud, "displacement"))
             throw core::InputError(core::display_name(path), "no field displacement");
         const belt::Surfels surfels = belt::surfels_from_cloud(cloud, core::display_name(path));

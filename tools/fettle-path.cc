@@ -80,8 +80,7 @@ int main(int argc, char** argv)
         t.parse();
         if ((o.held == "part") != !o.wheel.empty()) throw core::InputError("--held part and --wheel go together");
 
-        cloud::Cloud path =
-            make_path(o, cloud::read_cloud(o.points, units::Units{}).cloud, core::display_name(o.points));
+        cloud::Cloud path = make_path(o, cloud::read_cloud(o.points).cloud, core::display_name(o.points));
         if (o.held == "part") {
             const Eigen::Isometry3d T_cell_wheel =
                 cli::with_error_prefix("--wheel", [&] { return cloud::parse_pose(o.wheel); });

@@ -21,3 +21,6 @@ refused '--pattern' fettle-path work.pcd --pattern circle
 # What would take all memory: by the count of the rows.
 refused 'work.pcd: the step-over is too fine: more than 100,000 rows' fettle-path work.pcd --step-over 1e-9
 refused 'work.pcd: the step-over is too fine' fettle-path work.pcd --step-over 1e-9 --pattern spiral
+box 0 0 0 6000 6000 6000 > large.off
+fettle-surfel large.off --stock large.off --spacing 150 -q > large.pcd
+refused 'large.pcd: the spacing is too fine: more than 5 million points' fettle-path large.pcd --step-over 100 --spacing 0.001

@@ -225,7 +225,7 @@ def belt(work):
     work.tool("contact", "work.pcd", *wheel, "--at", f"0,0,{10 * work.mm!r},1,0,0,0", out="contact.pcd")
     work.tool("belt", "work.pcd", "--path", "path.pcd", *wheel, "--trace", "trace.pcd", out="ground.pcd")
     work.add("trace", fields("trace.pcd"))
-    work.tool("assess", "mm.pcd", "--lower", "-0.1", "--upper", "0.1", out="assessed.pcd")
+    work.tool("assess", "work.pcd", "--lower", "-0.1", "--upper", "0.1", out="assessed.pcd")
 
 
 def robot(work):
