@@ -55,22 +55,32 @@ bool surrounded(const Points& points, const Vector2d& xy)
     return geometry::widest_gap(angles) < kMaxEmptySector;
 }
 
+// Weight of a point by its distance in radii of the fit: tricube, as of local regression (Cleveland 1979). With equal
+// weights the quadratic at the foot of a wall would dip below all points near it.
+double distance_weight(double distance)
+{
+    const double rest = std::max(1 - distance * distance * distance, 0.0);
+    return rest * rest * rest;
+}
+
 // z of the local quadratic at its origin xy. Iteratively reweighted least squares, towards least absolute deviations,
-// detects the outliers; the others then have equal weights. Normal equations suffice: within 3 spacings the terms have
-// about the same size, and all solutions but the last only give weights.
+// detects the outliers; the others then have the weights of their distance. Normal equations suffice: within 3 spacings
+// the terms have about the same size, and all solutions but the last only give weights.
 std::optional<double> robust_height(const Points& points, const Vector2d& xy, double spacing)
 {
     const Index n = points.size();
     Eigen::Matrix<double, kUnknowns, Eigen::Dynamic> terms(kUnknowns, n);
-    Eigen::ArrayXd z(n), residuals(n), weights = Eigen::ArrayXd::Ones(n);
+    Eigen::ArrayXd z(n), residuals(n), near(n);
     for (Index i = 0; i < n; ++i) {
         const Vector3d& point = points[i];
         const Vector2d uv = (point.head<2>() - xy) / (kFitRadiusSpacings * spacing);
         terms.col(i) = geometry::quadratic_terms(uv.x(), uv.y());
+        near[i] = distance_weight(uv.norm());
         z[i] = point.z();
     }
     const double middle = z.mean(); // subtracted, or digits are lost far from z = 0
     z -= middle;
+    Eigen::ArrayXd weights = near;
     geometry::QuadraticTerms coefficients;
     const auto solve = [&] {
         geometry::QuadraticEquations<1> equations;
@@ -87,12 +97,13 @@ std::optional<double> robust_height(const Points& points, const Vector2d& xy, do
         if (!solve()) return std::nullopt;
         if (residuals.maxCoeff() <= kRoundoffSpacings * spacing) break; // no outliers
         weights =
+            near *
             residuals.max(std::max(kRoundoffSpacings * spacing, kRoundoffSpacings * residuals.maxCoeff())).inverse();
     }
     const double limit = std::max(kOutlierSigmas * geometry::kMedianToSigma * geometry::median_absolute(residuals),
                                   kRoundoffSpacings * spacing);
-    weights = (residuals <= limit).cast<double>();
-    if (weights.sum() < kUnknowns || !solve()) return std::nullopt;
+    weights = near * (residuals <= limit).cast<double>();
+    if ((weights > 0).count() < kUnknowns || !solve()) return std::nullopt;
     return middle + coefficients[0];
 }
 
