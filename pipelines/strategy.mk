@@ -12,7 +12,8 @@ B        ?= build
 CONSTANT := samples/studies/strategy.json
 PARTS    ?= $(shell jq -r '.parts | join(" ")' $(CONSTANT))
 FACTORS  ?= $(shell jq -r '.removal_factors | join(" ")' $(CONSTANT))
-SHOWN    ?= $(shell jq -r '.shown | join(" ")' $(CONSTANT))
+# Drawn in the stock of the job, of the parts that are ground in it.
+SHOWN    ?= $(if $(filter 1,$(FACTORS)),$(filter $(PARTS),$(shell jq -r '.shown | join(" ")' $(CONSTANT))))
 HEIGHT   := $(shell jq .prism_height $(CONSTANT))
 STRATEGY ?= $(B)/strategy
 CASES    := case1 case2 case3
@@ -31,7 +32,7 @@ $(STRATEGY)/%/stock.stl: $(B)/bin/fettle-part samples/parts/%.json
 	$(call step,$< samples/parts/$*.json > $@.part)
 
 $(STRATEGY)/%/desired.json: $(STRATEGY)/%/stock.stl $(addprefix $(B)/bin/fettle-,sample fit)
-	$(call step,$(B)/bin/fettle-sample $(call JOB,$*) --on $< | $(B)/bin/fettle-fit $(call JOB,$*) > $@.part)
+	$(call step,$(B)/bin/fettle-sample $(call JOB,$*) --on $< --strategy wang | $(B)/bin/fettle-fit $(call JOB,$*) > $@.part)
 
 define plan_rule
 $(STRATEGY)/%/$(1).plan.json: $(STRATEGY)/%/desired.json $(CONSTANT) $(B)/bin/fettle-plan

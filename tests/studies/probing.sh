@@ -24,6 +24,8 @@ awk -v OFS=, 'BEGIN {
         print "plane", cell, all, "stopped", 12, cell == 7 ? 0.006 : 0.004, 0.005
     }
 }' >exact/plane.csv
+"$root/pipelines/probing-table" exact plane '' | tail -n 1 | grep -x 'too few cells: 20 of a kind, 100 decide'
+export MIN_CELLS=20
 "$root/pipelines/probing-table" exact plane '' >exact.txt
 grep -E '^together +11.00 +55.00 +8.25 +0.56 +< 0.20 +12.0 +95.0$' exact.txt
 grep -c reached exact.txt | grep -x 4
