@@ -35,7 +35,7 @@ $(BANDS)/%.stl: samples/parts/patch_%_2x2.json samples/parts/patch_%.json $(TOOL
 	$(call step,fettle-part $< --without-anomaly -o $@.part)
 
 $(BANDS)/%/points.pcd: $$(call job,$$*) $$(call truth,$$*)
-	$(call step,fettle-sample $< --on $(call truth,$*) --lines $(call lines,$*) --noise $(NOISE) --seed $(call seed,$*) | \
+	$(call step,fettle-sample $< --on $(call truth,$*) --strategy wang --lines $(call lines,$*) --noise $(NOISE) --seed $(call seed,$*) | \
 	    fettle-estimate $< -o $@.part)
 
 # $1: the method. fettle-compare exits 1 out of tolerance, which is a result like another here.

@@ -67,7 +67,7 @@ $(BUDGET)/%/job.json: samples/jobs/$$(call part,$$*).json $(CONSTANT) pipelines/
 	$(call step,jq --slurpfile all $(CONSTANT) --arg tool "$(call on,$*,tool,tool)" -f pipelines/jq/budget_job.jq $< > $@.part)
 
 $(BUDGET)/%/plan.json: $(BUDGET)/%/job.json $(BUDGET)/%/stock.stl $(addprefix $(B)/bin/fettle-,sample estimate fit plan)
-	$(call step,$(B)/bin/fettle-sample $< --on $(@D)/stock.stl $(call on,$*,touches,$(touches_options)) $(call on,$*,approximation,$(call boundary_option,$*)) $(call seed,$*,7) | $(B)/bin/fettle-estimate $< \
+	$(call step,$(B)/bin/fettle-sample $< --on $(@D)/stock.stl --strategy wang $(call on,$*,touches,$(touches_options)) $(call on,$*,approximation,$(call boundary_option,$*)) $(call seed,$*,7) | $(B)/bin/fettle-estimate $< \
 	    | $(B)/bin/fettle-fit $< --method $(call of,methods.$(call part,$*).$(or $(call on,$*,approximation,wang),exact)) | $(B)/bin/fettle-plan $< > $@.part)
 
 # The table reports a run that does not finish.

@@ -29,7 +29,7 @@ $(FORCES)/stock.stl: $(B)/bin/fettle-part samples/parts/$(PART).json
 	$(call step,$< samples/parts/$(PART).json > $@.part)
 
 $(FORCES)/desired.json: $(FORCES)/stock.stl $(addprefix $(B)/bin/fettle-,sample fit)
-	$(call step,$(B)/bin/fettle-sample $(JOB) --on $< | $(B)/bin/fettle-fit $(JOB) > $@.part)
+	$(call step,$(B)/bin/fettle-sample $(JOB) --on $< --strategy wang | $(B)/bin/fettle-fit $(JOB) > $@.part)
 
 $(FORCES)/%/machine.json: $(MACHINE) $(CONSTANT)
 	$(call step,jq --slurpfile all $(CONSTANT) -f pipelines/jq/forces_machine.jq --arg wheel $* $< > $@.part)

@@ -23,7 +23,7 @@ $(LAYER1)/%/stock.stl: $(B)/bin/fettle-part samples/parts/wang%.json
 	$(call step,$< samples/parts/wang$*.json > $@.part)
 
 $(LAYER1)/%/desired.json: $(LAYER1)/%/stock.stl $(addprefix $(B)/bin/fettle-,sample fit)
-	$(call step,$(B)/bin/fettle-sample $(call JOB,$*) --on $< | $(B)/bin/fettle-fit $(call JOB,$*) > $@.part)
+	$(call step,$(B)/bin/fettle-sample $(call JOB,$*) --on $< --strategy wang | $(B)/bin/fettle-fit $(call JOB,$*) > $@.part)
 
 $(LAYER1)/%/plan.json: $(LAYER1)/%/desired.json $(B)/bin/fettle-plan
 	$(call step,$(B)/bin/fettle-plan $(call JOB,$*) $< > $@.part)

@@ -38,13 +38,16 @@ struct Options {
                                       "over all of the anomaly");
     const gantry::TouchStrategy& strategy = t.choice<gantry::TouchStrategy>(
         "--strategy",
-        {{"wang", gantry::TouchStrategy::wang},
+        {{"extended", gantry::TouchStrategy::extended},
+         {"wang", gantry::TouchStrategy::wang},
          {"adaptive", gantry::TouchStrategy::adaptive},
          {"hillclimb", gantry::TouchStrategy::hillclimb}},
         "wang: by his rules; adaptive: one after the other, each where it lowers the predicted error band most, until "
-        "that meets the job's tolerance; hillclimb: by his Appendix A the best subset of many candidates, for a "
+        "that meets the job's tolerance; extended: by his rules, then adaptive while the band exceeds the tolerance; "
+        "without --on by his rules alone; hillclimb: by his Appendix A the best subset of many candidates, for a "
         "SURFACE that is known beneath the anomaly, too");
-    const int& max_touches = t.count("--max-touches", 60, "Adaptive: maximum number of touches", 6, kMaxTouches);
+    const int& max_touches =
+        t.count("--max-touches", 60, "Extended, adaptive: maximum number of touches", 6, kMaxTouches);
     const int& touches =
         t.count("--touches", 0, "Hillclimb: number of touches; 0: as many as wang takes", 0, kMaxTouches);
     const double& candidate_spacing =
@@ -95,12 +98,13 @@ int main(int argc, char** argv)
         if (o.lines > 0 && job.surface != job::SurfaceType::freeform)
             throw core::InputError(core::display_name(o.job), "--lines is for free-form jobs");
         const bool wang = o.strategy == gantry::TouchStrategy::wang;
-        if (wang && (o.touches > 0 || o.candidate_spacing > 0 || o.sharpness))
+        const bool by_layout = wang || o.strategy == gantry::TouchStrategy::extended; // needs no part to be planned
+        if (o.strategy != gantry::TouchStrategy::hillclimb && (o.touches > 0 || o.candidate_spacing > 0 || o.sharpness))
             throw core::InputError("--touches, --candidates, --sharpness: only for --strategy hillclimb");
-        if (!wang && o.sampling_boundary) throw core::InputError("--sampling-boundary is for --strategy wang");
+        if (!by_layout && o.sampling_boundary) throw core::InputError("--sampling-boundary is for --strategy wang");
 
         std::optional<gantry::TouchedPart> part;
-        if (!o.on.empty() && (!o.plan_only || !wang))
+        if (!o.on.empty() && (!o.plan_only || !by_layout))
             part = gantry::open_touched_part(o.on, job, {o.part_unit, o.noise, t.seed(), o.timeout});
         const gantry::JobTouches result = gantry::touch_job(job, part ? &*part : nullptr, request(o, mm));
         for (const std::string& warning : result.warnings) t.warn(warning);

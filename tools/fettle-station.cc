@@ -48,9 +48,12 @@ struct Options {
         t.optional_number("--direction", "DEG", "Direction of the rulings of a swept surface, from X_w");
     const std::optional<double>& theta = t.optional_number(
         "--theta", "DEG", "Direction of the wheel's axis at the beginning, counter-clockwise from X_m");
-    const gantry::TouchStrategy& touches = t.choice<gantry::TouchStrategy>(
-        "--strategy", {{"wang", gantry::TouchStrategy::wang}, {"adaptive", gantry::TouchStrategy::adaptive}},
-        "How the touches are chosen, as by fettle-sample");
+    const gantry::TouchStrategy& touches =
+        t.choice<gantry::TouchStrategy>("--strategy",
+                                        {{"extended", gantry::TouchStrategy::extended},
+                                         {"wang", gantry::TouchStrategy::wang},
+                                         {"adaptive", gantry::TouchStrategy::adaptive}},
+                                        "How the touches are chosen, as by fettle-sample");
     const double& confidence = t.number("--confidence", 0.99, "SHARE", "Of the margin, as of fettle-margin",
                                         core::Range::strictly_between(0, 1));
     const strategy::Layer1& layer_1 = t.choice<strategy::Layer1>("--layer-1",

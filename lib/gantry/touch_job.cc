@@ -8,19 +8,34 @@
 #include "sampling/order.h"
 #include "sampling/probe.h"
 
-#include <numeric>
+#include <utility>
 
 namespace fettle::gantry {
 namespace {
 
-void choose_adaptively(JobTouches& result, const job::Job& job, const TouchedPart& part, int max_touches)
+// After a layout touches are added in batches, each as large as a layout of two lines, while a batch lowers the band.
+constexpr int kPatience = 8;
+
+// As that of fettle-margin by default: the band that is to meet the tolerance is the one that the margin will be made of.
+constexpr double kMarginConfidence = 0.99;
+
+margin::AdaptiveLimits adaptive_limits(const job::Job& job, int max_touches)
 {
     margin::AdaptiveLimits limits;
     limits.max_touches = max_touches;
     limits.max_band = job.tolerance;
-    result.adaptive = margin::touch_adaptively(job, limits, part.touch);
+    return limits;
+}
+
+/// Takes over touches that were chosen one after the other.
+void set_adaptive(JobTouches& result, const job::Job& job, const TouchedPart& part, margin::AdaptiveTouches chosen)
+{
+    result.adaptive = std::move(chosen);
     const margin::AdaptiveTouches& found = *result.adaptive;
     result.plan = found.plan;
+    result.touches = found.touches; // made already, in their order
+    result.order = sampling::short_probing_path(result.touches.leftCols(found.layout).topRows<2>());
+    for (Eigen::Index i = found.layout; i < result.plan.size(); ++i) result.order.push_back(i);
     for (const Eigen::Vector2d& xy : found.unreachable)
         result.warnings.push_back(part.name + ": no surface at " + job::point_text(xy, job.units) +
                                   "; touched elsewhere");
@@ -29,6 +44,14 @@ void choose_adaptively(JobTouches& result, const job::Job& job, const TouchedPar
     result.warnings.push_back(std::to_string(found.plan.size()) + " touches leave a predicted error band of " +
                               core::to_short_text(found.band[found.band.size() - 1] / mm) +
                               ", more than the tolerance " + core::to_short_text(job.tolerance / mm));
+}
+
+void extend(JobTouches& result, const job::Job& job, const TouchedPart& part, int max_touches)
+{
+    margin::AdaptiveLimits limits = adaptive_limits(job, max_touches);
+    limits.patience = kPatience;
+    limits.confidence = kMarginConfidence;
+    set_adaptive(result, job, part, margin::extend_layout(job, result.plan, result.touches, limits, part.touch));
 }
 
 void choose_by_hill_climbing(JobTouches& result, const job::Job& job, const TouchedPart* part,
@@ -52,7 +75,8 @@ void choose(JobTouches& result, const job::Job& job, const TouchedPart* part, co
     if (request.strategy == TouchStrategy::adaptive) {
         if (part == nullptr || request.plan_only)
             throw core::InputError("--strategy adaptive needs a part to touch: --on SURFACE");
-        choose_adaptively(result, job, *part, request.max_touches);
+        set_adaptive(result, job, *part,
+                     margin::touch_adaptively(job, adaptive_limits(job, request.max_touches), part->touch));
     } else if (request.strategy == TouchStrategy::hillclimb) {
         choose_by_hill_climbing(result, job, part, request);
     } else if (const int lines = request.lines; lines > 0) {
@@ -72,12 +96,7 @@ Eigen::Matrix3Xd planned_points(const sampling::TouchPlan& plan)
 
 void touch(JobTouches& result, const job::Job& job, const TouchedPart* part, bool plan_only)
 {
-    if (result.adaptive) {
-        result.touches = result.adaptive->touches; // made already, in their order
-        result.order.resize(static_cast<std::size_t>(result.touches.cols()));
-        std::iota(result.order.begin(), result.order.end(), Eigen::Index{0});
-        return;
-    }
+    if (result.adaptive) return;
     if (part != nullptr && !plan_only) {
         result.touches = part->touch(result.plan);
         sampling::check_all_touched(result.touches, job, result.plan, part->name, part->warning);
@@ -109,6 +128,8 @@ JobTouches touch_job(const job::Job& job, const TouchedPart* part, const TouchRe
     JobTouches result;
     choose(result, job, part, request);
     touch(result, job, part, request.plan_only);
+    if (request.strategy == TouchStrategy::extended && part != nullptr && !request.plan_only)
+        extend(result, job, *part, request.max_touches);
     check_heights(result, job, request.plan_only ? nullptr : part);
     return result;
 }
@@ -118,8 +139,10 @@ json::Value to_json(const JobTouches& result, const job::Job& job)
     const double mm = job.units.mm();
     json::Value report;
     if (const auto& adaptive = result.adaptive)
-        report.set("predicted_band", adaptive->band[adaptive->band.size() - 1] / mm)
-            .set("within_tolerance", adaptive->band_reached);
+        report.set("layout_touches", adaptive->layout)
+            .set("predicted_band", adaptive->band[adaptive->band.size() - 1] / mm)
+            .set("within_tolerance", adaptive->band_reached)
+            .set("predicted_bands", Eigen::VectorXd(adaptive->band / mm));
     if (const auto& best = result.best)
         report.set("candidates", best->candidates)
             .set("evaluations", best->search_result.evaluations)

@@ -15,16 +15,17 @@ namespace fettle::gantry {
 
 /// How the touch points of a job are chosen.
 enum class TouchStrategy {
+    extended,  ///< wang, then adaptive while the predicted band exceeds the job's tolerance
     wang,      ///< by the rules of Wang 2007, 4.4.4
     adaptive,  ///< one after the other (margin/adaptive.h)
     hillclimb, ///< the best subset of many candidates on a known surface (margin/best_touches.h)
 };
 
 struct TouchRequest {
-    TouchStrategy strategy = TouchStrategy::wang;
-    int lines = 0;                  ///< wang, free-form jobs: number of lines in each direction; 0: after eq. 4-5
+    TouchStrategy strategy = TouchStrategy::extended;
+    int lines = 0;                  ///< wang and extended, free-form jobs: number of lines in each direction; 0: after eq. 4-5
     bool sampling_boundary = false; ///< wang: touch the points of the sampling boundary, too
-    int max_touches = 60;           ///< adaptive: maximum number of touches
+    int max_touches = 60;           ///< extended, adaptive: maximum number of touches
     margin::TouchSearch search;     ///< hillclimb
     bool plan_only = false;         ///< nothing is touched; not for adaptive
 };

@@ -32,6 +32,9 @@ constexpr int kInitialTouches = 8;
 // Further touches during which the band must stay as small as required. A wrong surface may fit few touches; each of
 // these tests it at the most informative place.
 constexpr int kConfirmations = 4;
+// On a rough surface the band stops falling well above the tolerance, and touches only show more of the roughness.
+// Touches are worth their time as long as the mean band of the last ones is below this share of that of as many before.
+constexpr double kWorthwhileShare = 0.95;
 // Candidates along the longer side of S; a finer grid changes a touch's gain by less than its error.
 constexpr int kCandidatesPerSide = 30;
 // Grid cells along the longer side of B: the surface bends between touches that are several cells apart.
@@ -138,47 +141,119 @@ surface::Surface fit_touches(const job::Job& job, const sampling::TouchPlan& pla
     return fit::fit_surface(input, "auto").surface;
 }
 
+/// The search for touches of one job: those made so far, and what their fit predicts.
+class AdaptiveSearch {
+  public:
+    AdaptiveSearch(const job::Job& job, const AdaptiveLimits& limits, const ProbeFunction& probe)
+        : job_(job), limits_(limits), probe_(probe), polygons_(job::working_boundaries(job)),
+          places_(candidate_places(job, polygons_)), grid_(anomaly_grid(job, kAnomalyCells))
+    {
+        constexpr double kDefaultSpacings = 50; // along the longer side
+        min_distance_ = limits.min_distance > 0
+                            ? limits.min_distance
+                            : geometry::bounding_box(as_columns(places_)).sizes().maxCoeff() / kDefaultSpacings;
+        result_.plan.xy.resize(2, 0);
+    }
+
+    /// Begins with touches that are made already, and what their fit predicts.
+    void begin(const sampling::TouchPlan& layout, const Eigen::Matrix3Xd& touches, const surface::Surface& surface,
+               double band)
+    {
+        result_.plan = layout;
+        result_.touches = touches;
+        result_.layout = layout.size();
+        bands_.assign(layout.size(), core::kNaN);
+        bands_.back() = band;
+        surface_ = surface;
+        for (const auto& xy : layout.xy.colwise()) exclude(xy, min_distance_);
+    }
+
+    AdaptiveTouches run()
+    {
+        while (!places_.empty() && result_.plan.size() < limits_.max_touches && !result_.band_reached && !stagnates())
+            touch_next();
+        if (result_.plan.size() < std::min(kInitialTouches, limits_.max_touches))
+            throw core::InputError(job_.source,
+                                   "only " + std::to_string(result_.plan.size()) + " places could be touched");
+        result_.band = Eigen::Map<VectorXd>(bands_.data(), bands_.size());
+        return std::move(result_);
+    }
+
+  private:
+    bool stagnates() const
+    {
+        const Index n = limits_.patience, count = static_cast<Index>(bands_.size());
+        if (n == 0 || count < 2 * n) return false;
+        const Eigen::Map<const VectorXd> bands(bands_.data(), count);
+        const double before = bands.segment(count - 2 * n, n).sum(); // NaN while there are too few to compare
+        return bands.tail(n).sum() > kWorthwhileShare * before;
+    }
+
+    void exclude(const Vector2d& place, double radius)
+    {
+        std::erase_if(places_, [&](const Vector2d& p) { return (p - place).norm() <= radius; });
+    }
+
+    void touch_next()
+    {
+        const Index n = result_.plan.size();
+        const Index chosen =
+            n < kInitialTouches ? farthest(places_, result_.plan.xy) : most_informative(surface_, grid_, places_);
+        const Vector2d place = places_[chosen];
+        sampling::TouchPlan longer = result_.plan;
+        append(longer, place, job_, polygons_);
+        Eigen::Matrix3Xd touches = probe_(longer);
+        const bool found = !std::isnan(touches(2, n));
+        if (!found) result_.unreachable.push_back(place);
+        exclude(place, found ? min_distance_ : 0);
+        if (!found) return;
+        result_.plan = std::move(longer);
+        result_.touches = std::move(touches);
+        bands_.push_back(core::kNaN);
+        if (result_.plan.size() < kInitialTouches) return;
+        surface_ = fit_touches(job_, result_.plan, result_.touches);
+        bands_.back() = predict_by_posterior(surface_, job_, limits_.confidence, 1).band;
+        confirmed_ = bands_.back() <= limits_.max_band ? confirmed_ + 1 : 0;
+        result_.band_reached = confirmed_ > kConfirmations;
+    }
+
+    const job::Job& job_;
+    const AdaptiveLimits& limits_;
+    const ProbeFunction& probe_;
+    job::Boundaries polygons_;
+    std::vector<Vector2d> places_; ///< candidates, M, mm
+    Matrix2Xd grid_;               ///< places inside B at which the band is predicted, M, mm
+    double min_distance_;          ///< between any two touches, mm
+    AdaptiveTouches result_;
+    std::vector<double> bands_;
+    surface::Surface surface_; ///< fit of the touches so far
+    int confirmed_ = 0;        ///< touches in a row with a band as small as required
+};
+
 } // namespace
 
 AdaptiveTouches touch_adaptively(const job::Job& job, const AdaptiveLimits& limits, const ProbeFunction& probe)
 {
-    const job::Boundaries polygons = job::working_boundaries(job);
-    std::vector<Vector2d> places = candidate_places(job, polygons);
-    const Matrix2Xd all = as_columns(places);
-    constexpr double kDefaultSpacings = 50; // along the longer side
-    const double distance = limits.min_distance > 0 ? limits.min_distance
-                                                    : geometry::bounding_box(all).sizes().maxCoeff() / kDefaultSpacings;
-    const Matrix2Xd grid = anomaly_grid(job, kAnomalyCells);
-    AdaptiveTouches result;
-    result.plan.xy.resize(2, 0);
-    std::vector<double> bands;
-    surface::Surface surface;
-    int confirmed = 0;
-    while (!places.empty() && result.plan.size() < limits.max_touches && !result.band_reached) {
-        const Index n = result.plan.size();
-        const Index chosen =
-            n < kInitialTouches ? farthest(places, result.plan.xy) : most_informative(surface, grid, places);
-        const Vector2d place = places[chosen];
-        sampling::TouchPlan longer = result.plan;
-        append(longer, place, job, polygons);
-        Eigen::Matrix3Xd touches = probe(longer);
-        const bool found = !std::isnan(touches(2, n));
-        if (!found) result.unreachable.push_back(place);
-        const double exclusion_radius = found ? distance : 0;
-        std::erase_if(places, [&](const Vector2d& p) { return (p - place).norm() <= exclusion_radius; });
-        if (!found) continue;
-        result.plan = std::move(longer);
-        result.touches = std::move(touches);
-        bands.push_back(core::kNaN);
-        if (result.plan.size() < kInitialTouches) continue;
-        surface = fit_touches(job, result.plan, result.touches);
-        bands.back() = predict_by_posterior(surface, job, limits.confidence, 1).band;
-        confirmed = bands.back() <= limits.max_band ? confirmed + 1 : 0;
-        result.band_reached = confirmed > kConfirmations;
+    return AdaptiveSearch(job, limits, probe).run();
+}
+
+AdaptiveTouches extend_layout(const job::Job& job, const sampling::TouchPlan& layout, const Eigen::Matrix3Xd& touches,
+                              const AdaptiveLimits& limits, const ProbeFunction& probe)
+{
+    const surface::Surface surface = fit_touches(job, layout, touches);
+    const double band = predict_by_posterior(surface, job, limits.confidence, 1).band;
+    if (band > limits.max_band && layout.size() < limits.max_touches && job.sampling.cols() > 0) {
+        AdaptiveSearch search(job, limits, probe);
+        search.begin(layout, touches, surface, band);
+        return search.run();
     }
-    if (result.plan.size() < std::min(kInitialTouches, limits.max_touches))
-        throw core::InputError(job.source, "only " + std::to_string(result.plan.size()) + " places could be touched");
-    result.band = Eigen::Map<VectorXd>(bands.data(), bands.size());
+    AdaptiveTouches result;
+    result.plan = layout;
+    result.touches = touches;
+    result.layout = layout.size();
+    result.band = VectorXd::Constant(layout.size(), core::kNaN);
+    result.band[layout.size() - 1] = band;
+    result.band_reached = band <= limits.max_band;
     return result;
 }
 

@@ -16,7 +16,8 @@ struct AdaptiveLimits {
     int max_touches = 60;     ///< maximum number of touches
     double max_band = 0;      ///< stops once the predicted error band stays at or below this, mm; 0: never
     double confidence = 0.95; ///< of the predicted band
-    double min_distance = 0;  ///< minimum between any two touches, mm; 0: a fiftieth of the sampling boundary's size
+    int patience = 0; ///< stops once the band of so many touches is hardly below that of as many before; 0: never
+    double min_distance = 0; ///< minimum between any two touches, mm; 0: a fiftieth of the sampling boundary's size
 };
 
 struct AdaptiveTouches {
@@ -25,6 +26,7 @@ struct AdaptiveTouches {
     Eigen::VectorXd band;                     ///< predicted after each touch, mm; NaN while there are too few to fit
     std::vector<Eigen::Vector2d> unreachable; ///< places where no surface was found
     bool band_reached = false;                ///< the band was reached
+    Eigen::Index layout = 0;                  ///< number of touches that were given, the first ones of the plan
 };
 
 /// Touches all places of a plan. @return  3xN, M, mm; z is NaN where no surface is found. Calls with a longer plan must
@@ -37,5 +39,11 @@ using ProbeFunction = std::function<Eigen::Matrix3Xd(const sampling::TouchPlan&)
 /// (simple kriging: Cressie 1993, 3.2). A place where no surface is found is not tried again.
 /// @throws InputError if the job has no sampling boundary or S \ B no room, or if too few places can be touched
 AdaptiveTouches touch_adaptively(const job::Job& job, const AdaptiveLimits& limits, const ProbeFunction& probe);
+
+/// Touches a layout, and goes on as touch_adaptively() if the band that its fit predicts is above the limit. Of a
+/// layout that meets it, or is as long as the limit of touches, nothing but its touches is returned.
+/// @param touches  of the layout, M, mm, all of them found
+AdaptiveTouches extend_layout(const job::Job& job, const sampling::TouchPlan& layout, const Eigen::Matrix3Xd& touches,
+                              const AdaptiveLimits& limits, const ProbeFunction& probe);
 
 } // namespace fettle::margin

@@ -25,7 +25,7 @@ inline constexpr const char* kTraceFile = "trace.pcd";
 inline constexpr const char* kGroundFile = "ground.pcd";
 
 struct PlanningOptions {
-    gantry::TouchStrategy touches = gantry::TouchStrategy::wang;
+    gantry::TouchStrategy touches = gantry::TouchStrategy::extended;
     double confidence = 0.99; ///< of the margin
     std::uint64_t seed = 1;   ///< of the margin's draws
     cloud::PcdEncoding encoding = cloud::PcdEncoding::binary;

@@ -3,7 +3,7 @@
 job=$SAMPLES/jobs/wang3.json
 fettle-part "$SAMPLES/parts/wang3.json" >part.stl
 fettle-part "$SAMPLES/parts/wang3.json" --without-anomaly >truth.stl
-fettle-sample "$job" --on part.stl --noise normal:0.005 | fettle-estimate "$job" >points.pcd
+fettle-sample "$job" --on part.stl --strategy wang --noise normal:0.005 | fettle-estimate "$job" >points.pcd
 fettle-fit "$job" points.pcd --method griddata --report fit.json >surface.json
 jq -e '.touches == 24 and .ignored == 0' fit.json
 fettle-margin "$job" surface.json --method wang | fettle-plan "$job" >plan.json
@@ -13,7 +13,7 @@ fettle-mesh surface.json --within "$job" --step 0.02 |
     fettle-compare - --to truth.stl --within "$job" --mode z --report band.json >band.pcd || [ $? -eq 1 ]
 jq -e '.regions.inside | .undefined == 0 and .band < 0.0497' band.json
 # The boundary's touches made anew take the place of the job's.
-fettle-sample "$job" --on part.stl --noise normal:0.005 --seed 2 --sampling-boundary | fettle-estimate "$job" >points.pcd
+fettle-sample "$job" --on part.stl --strategy wang --noise normal:0.005 --seed 2 --sampling-boundary | fettle-estimate "$job" >points.pcd
 fettle-fit "$job" points.pcd --method griddata --report fit.json >surface.json
 jq -e '.touches == 24 and .ignored == 0' fit.json
 fettle-plan "$job" surface.json >plan.json
@@ -33,5 +33,5 @@ done
 awk 'NR == FNR { with += $1; next } { without += $1 } END { exit !(with < 0.75 * without) }' bands--use-boundary bands
 # Without either it ends at the hull of the touches, and the plan names the place.
 jq '.sampling |= map(.[:2])' "$job" >unmeasured.json
-fettle-sample "$job" --on part.stl | fettle-estimate "$job" | fettle-fit unmeasured.json --method griddata >surface.json
+fettle-sample "$job" --on part.stl --strategy wang | fettle-estimate "$job" | fettle-fit unmeasured.json --method griddata >surface.json
 "$HERE/../refuses" 'the surface is not defined at (0.5, 0.7) in inside the anomaly' fettle-plan "$job" surface.json

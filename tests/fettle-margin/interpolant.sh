@@ -3,7 +3,7 @@
 part=patch_concave_2x2
 job=$SAMPLES/jobs/$part.json
 fettle-part "$SAMPLES/parts/$part.json" >part.stl
-fettle-sample "$job" --on part.stl | fettle-estimate "$job" >points.pcd
+fettle-sample "$job" --on part.stl --strategy wang | fettle-estimate "$job" >points.pcd
 for method in griddata bspline-wang; do
     fettle-fit "$job" points.pcd --method $method >$method.json
     "$HERE/../refuses" "the covariance of an interpolant ($method) holds the touches' noise" fettle-mesh $method.json --step 0.2 --sigma

@@ -5,9 +5,9 @@ fettle-part "$SAMPLES/parts/wang3.json" > part.stl
 jq '.surface = {type: "freeform"}' "$SAMPLES/jobs/wang3.json" > job.json
 driver="fettle-gantry-virtual $PWD/job.json --stock $PWD/part.stl"
 for tip in 0 0.05; do
-    fettle-sample job.json --tip $tip --on part.stl > scan.pcd
+    fettle-sample job.json --strategy wang --tip $tip --on part.stl > scan.pcd
     jq ".probe.tip_radius = $tip" job.json > tip.json
-    fettle-sample tip.json --on "gantry:exec:fettle-gantry-virtual $PWD/tip.json --stock $PWD/part.stl" > machine.pcd
+    fettle-sample tip.json --strategy wang --on "gantry:exec:fettle-gantry-virtual $PWD/tip.json --stock $PWD/part.stl" > machine.pcd
     fettle-diff --tol 0.00014 scan.pcd machine.pcd # in: 0.0035 mm
 done
 fettle-sample job.json --strategy adaptive --max-touches 8 --report report.json -q \
@@ -17,7 +17,7 @@ touches=$(jq .touches report.json)
 
 # The head turns to θ before the first touch.
 jq '.frame.theta_deg = 30' job.json > turned.json
-fettle-sample turned.json --on "gantry:exec:tee turned | fettle-gantry-virtual $PWD/turned.json --stock $PWD/part.stl" > turned.pcd
+fettle-sample turned.json --strategy wang --on "gantry:exec:tee turned | fettle-gantry-virtual $PWD/turned.json --stock $PWD/part.stl" > turned.pcd
 awk '$2 == "home" { homed = $3 > 0.5235 && $3 < 0.5237 } $2 == "probe" { n++; if (!homed) exit 1 } END { exit n < 10 }' turned
 
 # A place without material is no touch; a machine has no unit and no noise of the user's.

@@ -20,7 +20,7 @@ band() { # SAMPLES
     jq .regions.inside.band band.json
 }
 jq -e --argjson band "$(band best.pcd)" '.band - $band | fabs < 1e-3' report.json
-fettle-sample "$job" --on truth.stl >wang.pcd
+fettle-sample "$job" --on truth.stl --strategy wang >wang.pcd
 jq -e --argjson wang "$(band wang.pcd)" '.band < $wang / 2' report.json
 climb --fit bspline-wang --touches 20 --report spline.json >/dev/null
 jq -e '.touches == 20 and .band < .start_band' spline.json

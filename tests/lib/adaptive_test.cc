@@ -117,6 +117,34 @@ TEST(Adaptive, StopsWhenTheBandIsReachedAndItIs)
     EXPECT_EQ(covered(ripples, 1, 0.4), 1); // no family fits: a Gaussian process, which takes longer
 }
 
+// Beside a layout it goes on only where the layout's fit is not good enough, and leaves the layout as it is.
+TEST(Adaptive, ExtendsALayoutWhereItIsNotGoodEnough)
+{
+    const job::Job job = square_job();
+    const sampling::TouchPlan layout = sampling::plan_freeform(job);
+    const auto extend = [&](Truth truth, double band, int patience) {
+        margin::AdaptiveLimits limits;
+        limits.max_band = band;
+        limits.patience = patience;
+        const margin::ProbeFunction touch = touching(truth, job, 1);
+        return margin::extend_layout(job, layout, touch(layout), limits, touch);
+    };
+    const margin::AdaptiveTouches enough = extend(dome, 1, 8);
+    EXPECT_EQ(enough.plan.size(), layout.size());
+    EXPECT_TRUE(enough.band_reached);
+    const margin::AdaptiveTouches more = extend(dome, 0.8 * enough.band[layout.size() - 1], 8);
+    EXPECT_GT(more.plan.size(), layout.size());
+    EXPECT_TRUE(more.band_reached);
+    EXPECT_EQ(more.layout, layout.size());
+    EXPECT_EQ(more.plan.xy.leftCols(layout.size()), layout.xy);
+    EXPECT_LE(realised_band(job, more, dome), more.band[more.band.size() - 1]);
+    // 2 mm waves every 8 mm: nothing beneath the anomaly follows from what is beside it
+    const Truth rough = [](double x, double y) { return 2 * std::sin(0.8 * x) * std::sin(0.7 * y + 1); };
+    const margin::AdaptiveTouches hopeless = extend(rough, 0.1, 4);
+    EXPECT_FALSE(hopeless.band_reached);
+    EXPECT_LT(hopeless.plan.size(), 60);
+}
+
 // The same number of touches is worth more than Wang's layout.
 TEST(Adaptive, BeatsWangsLayout)
 {

@@ -5,8 +5,8 @@ fettle-part "$SAMPLES/parts/wang3.json" > part.stl
 jq '.safe_height = 1.2' "$SAMPLES/jobs/wang3.json" > job.json
 fettle-stock-linuxcnc job.json --stock part.stl --cell 0.004 > before
 start before
-fettle-sample job.json --lines 4 --on "gantry:exec:$(driver job.json)" --report report.json > machine.pcd
+fettle-sample job.json --strategy wang --lines 4 --on "gantry:exec:$(driver job.json)" --report report.json > machine.pcd
 stop
 jq -e '.touches >= 25' report.json
-fettle-sample job.json --lines 4 --on part.stl > scan.pcd
+fettle-sample job.json --strategy wang --lines 4 --on part.stl > scan.pcd
 fettle-diff --tol 0.0005 machine.pcd scan.pcd
