@@ -16,7 +16,8 @@ namespace {
 // After a layout touches are added in batches, each as large as a layout of two lines, while a batch lowers the band.
 constexpr int kPatience = 8;
 
-// As that of fettle-margin by default: the band that is to meet the tolerance is the one that the margin will be made of.
+// As that of fettle-margin by default: the band that is to meet the tolerance is the one that the margin will be made
+// of.
 constexpr double kMarginConfidence = 0.99;
 
 margin::AdaptiveLimits adaptive_limits(const job::Job& job, int max_touches)

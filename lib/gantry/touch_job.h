@@ -23,7 +23,7 @@ enum class TouchStrategy {
 
 struct TouchRequest {
     TouchStrategy strategy = TouchStrategy::extended;
-    int lines = 0;                  ///< wang and extended, free-form jobs: number of lines in each direction; 0: after eq. 4-5
+    int lines = 0; ///< wang and extended, free-form jobs: number of lines in each direction; 0: after eq. 4-5
     bool sampling_boundary = false; ///< wang: touch the points of the sampling boundary, too
     int max_touches = 60;           ///< extended, adaptive: maximum number of touches
     margin::TouchSearch search;     ///< hillclimb

@@ -225,8 +225,8 @@ TEST(CloudScan, OutliersDoNotMoveTheSurface)
     EXPECT_NEAR(*sampling::Scan(cloud).height(xy), kTilted(xy.x(), xy.y()), 1e-6);
 }
 
-// At the foot of a wall at 45 degrees a quadratic dips below the floor: by 0.071 spacings with the weights of a local regression, with equal
-// ones by 0.092.
+// At the foot of a wall at 45 degrees a quadratic dips below the floor: by 0.071 spacings with the weights of a local
+// regression, with equal ones by 0.092.
 TEST(CloudScan, DipsLittleAtTheFootOfAWall)
 {
     const auto foot = [](double x, double) { return std::max(x - 10, 0.0); };
