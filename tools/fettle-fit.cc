@@ -23,20 +23,21 @@ int main(int argc, char** argv)
     return cli::tool_main(argc, argv, "Fit the desired surface beneath the anomaly to the touches.", [](cli::Tool& t) {
         const std::string& job_file = t.positional_file("JOB", "Job, JSON");
         const std::string& points = t.main_input(
-            "POINTS", "Touches (x y z, role) or, without roles, a scan, PCD; more than 300 are streamed if binary");
+            "POINTS",
+            "Touches (x y z, role) or, without roles, a scan (x y z, normals), PCD; binary ones are streamed");
         const std::string& method =
             t.choice("-m,--method", "auto", methods(),
                      "Kind of surface; auto: what explains the touches best, weighed against the others. Plane jobs: a "
                      "plane; swept ones: straight along their direction");
         const fit::PointKind& kind =
             t.choice<fit::PointKind>("--as",
-                                     {{"by-number", fit::PointKind::by_number},
+                                     {{"by-roles", fit::PointKind::by_roles},
                                       {"touches", fit::PointKind::touches},
                                       {"scan", fit::PointKind::scan}},
                                      "What the points are. Touches: all on good metal, as accurate as the job's probe. "
-                                     "A scan: without roles those inside the anomaly or outside the sampling boundary "
-                                     "are left out; bspline and free-form auto are streamed and estimate its noise. "
-                                     "By number: more than 300 are a scan");
+                                     "A scan: those inside the anomaly or outside the sampling boundary, and those "
+                                     "whose normals point down or sideways, are left out; its noise and waves are "
+                                     "estimated. By roles: touches have roles, a scan has none");
         const bool& use_boundary = t.flag(
             "--use-boundary", "Take the anomaly's boundary points as touches, too: those of role 0, else the job's "
                               "that have a z; planes always do");

@@ -49,6 +49,12 @@ void decode(const char* bytes, std::size_t stride, std::size_t count, const Fiel
     });
 }
 
+/// z of the normals made unit; NaN for a normal without length.
+Eigen::VectorXd unit_z(const Eigen::Matrix3Xd& normals)
+{
+    return normals.row(2).transpose().cwiseQuotient(normals.colwise().norm().transpose());
+}
+
 PointSource make_binary_source(const PcdHeader& header, std::shared_ptr<const core::InputFile> file, std::size_t body,
                                double mm)
 {
@@ -60,12 +66,21 @@ PointSource make_binary_source(const PcdHeader& header, std::shared_ptr<const co
                                              *find_layout(header, "z")};
     const std::optional<FieldLayout> role = find_layout(header, "role");
     source.has_roles = role.has_value();
-    source.read = [=](std::size_t first, std::size_t count, PointBlock& into) {
+    const std::array<std::optional<FieldLayout>, 3> normal = {
+        find_layout(header, "normal_x"), find_layout(header, "normal_y"), find_layout(header, "normal_z")};
+    source.has_normals = normal[0] && normal[1] && normal[2];
+    source.read = [=, has_normals = source.has_normals](std::size_t first, std::size_t count, PointBlock& into) {
         const auto bytes = std::make_unique_for_overwrite<char[]>(count * stride);
         file->read(body + first * stride, bytes.get(), count * stride);
         into.xyz.resize(3, count);
         for (std::size_t axis = 0; axis < axes.size(); ++axis)
             decode(bytes.get(), stride, count, axes[axis], mm, into.xyz.data() + axis, axes.size());
+        if (has_normals) {
+            Eigen::Matrix3Xd normals(3, count);
+            for (std::size_t axis = 0; axis < normal.size(); ++axis)
+                decode(bytes.get(), stride, count, *normal[axis], 1, normals.data() + axis, normal.size());
+            into.normal_z = unit_z(normals);
+        }
         if (!role) return;
         into.roles.resize(count);
         decode(bytes.get(), stride, count, *role, 1, into.roles.data(), 1);
@@ -94,9 +109,13 @@ PointSource make_point_source(std::shared_ptr<const Cloud> cloud)
     source.has_roles = has_field(*cloud, "role");
     const auto roles = std::make_shared<Eigen::VectorXd>();
     if (source.has_roles) *roles = field(*cloud, "role");
-    source.read = [cloud = std::move(cloud), roles](std::size_t first, std::size_t count, PointBlock& into) {
+    source.has_normals = has_normals(*cloud);
+    const auto normal_z = std::make_shared<Eigen::VectorXd>();
+    if (source.has_normals) *normal_z = unit_z(normals(*cloud));
+    source.read = [cloud = std::move(cloud), roles, normal_z](std::size_t first, std::size_t count, PointBlock& into) {
         into.xyz = cloud->xyz.middleCols(first, count);
         if (roles->size() > 0) into.roles = roles->segment(first, count);
+        if (normal_z->size() > 0) into.normal_z = normal_z->segment(first, count);
     };
     return source;
 }

@@ -16,7 +16,8 @@ namespace fettle::cloud {
 /// Consecutive points of a source, mm.
 struct PointBlock {
     Eigen::Matrix3Xd xyz;
-    Eigen::VectorXd roles; ///< field `role`, unchecked; empty if the source has none
+    Eigen::VectorXd roles;    ///< field `role`, unchecked; empty if the source has none
+    Eigen::VectorXd normal_z; ///< z of the unit normals; NaN: none; empty if the source has none
 };
 
 /// Points that are read in blocks, repeatedly if needed, by several threads at once.
@@ -24,6 +25,7 @@ struct PointSource {
     std::size_t points = 0;
     std::size_t block_size = 1; ///< points of a block: a fixed partition, so that sums do not depend on the threads
     bool has_roles = false;
+    bool has_normals = false;
     /// Reads `count` points from point `first` on.
     std::function<void(std::size_t first, std::size_t count, PointBlock& into)> read;
 

@@ -219,8 +219,8 @@ double estimate_field_amplitude(const FitInput& input, double sigma)
 
 Fit fit_bspline(const FitInput& input)
 {
-    if (!input.is_exact && input.xyz.cols() > static_cast<Index>(kMaxExactTouches))
-        return fit_dense(cloud::make_point_source(to_cloud(input)), input.job, input.use_boundary, input.source).fit;
+    if (input.xyz.cols() > static_cast<Index>(kMaxExactTouches))
+        return fit_dense(cloud::make_point_source(to_cloud(input)), input.job, {input.use_boundary}, input.source).fit;
     surface::Surface surface = begin_surface(input, "bspline", kSampleRoles, kMinTouches);
     surface::Bspline spline = spline_grid(input, surface.touches);
     const Model m = build_model(spline, surface);

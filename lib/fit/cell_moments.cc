@@ -122,6 +122,16 @@ MatrixXd CellMoments::weights() const
                                                  Stride(kSumsPerCell * cells_u_, kSumsPerCell));
 }
 
+MatrixXd CellMoments::mean_residuals() const
+{
+    MatrixXd means(cells_u_, cells_v_);
+    for (Index k = 0; k < means.size(); ++k) {
+        const double* cell = sums_.data() + kSumsPerCell * k;
+        means.data()[k] = cell[0] > 0 ? cell[kRhsOffset] / cell[0] : 0;
+    }
+    return means;
+}
+
 surface::BandMatrix CellMoments::normal_matrix(const surface::Bspline& grid, const MatrixXd& s) const
 {
     using Moments = Eigen::Matrix<double, kPowers, kPowers>; // (power of u, power of v)

@@ -36,6 +36,8 @@ class CellMoments {
 
     /// Sum of weights Σ w of each cell, cells_u x cells_v.
     Eigen::MatrixXd weights() const;
+    /// Mean residual Σ w r / Σ w of each cell, mm; 0 without points.
+    Eigen::MatrixXd mean_residuals() const;
 
     /// Σ s w g gᵀ with g the basis functions at a point and s a factor for each cell.
     surface::BandMatrix normal_matrix(const surface::Bspline& grid, const Eigen::MatrixXd& s) const;

@@ -1,20 +1,15 @@
 #include "fit/dense.h"
 
 #include "fit/bspline.h"
-#include "fit/dense_start.h"
-#include "fit/smoothing.h"
+#include "fit/robust_spline.h"
 #include "geometry/bounding_box.h"
-#include "geometry/quantiles.h"
 #include "surface/precision.h"
-#include "surface/spline_energy.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <numbers>
-#include <optional>
 
 namespace fettle::fit {
 
@@ -24,105 +19,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::Vector2d;
 using Eigen::VectorXd;
-
-// E[w x²] / E[w] of normal errors x of variance 1, with the weights w of Tukey's biweight (Holland and Welsch 1977).
-constexpr double kBiweightVariance = 0.8280730;
-
-constexpr int kMinPasses = 3;
-constexpr int kMaxPasses = 10;
-constexpr double kChangeToleranceSigmas = 0.1; // rms change of the surface in a pass: far below a point's noise
-
-/// What one pass over all points gives.
-struct Pass {
-    NormalEquations equations;
-    MatrixXd weights; ///< Σ s w of each cell
-    std::size_t outliers = 0;
-};
-
-/// Partial sums and buffers of one lane of blocks.
-struct Lane {
-    std::optional<CellMoments> moments; ///< allocated with the first points, by the thread that fills it
-    std::size_t outliers = 0;
-    PointCounts counts;
-    std::vector<CellPoint> points;
-    std::vector<double> r, w;
-};
-
-void set_biweights(Lane& lane, double cutoff)
-{
-    for (std::size_t i = 0; i < lane.points.size(); ++i) {
-        const double t = lane.r[i] / cutoff;
-        const double root = std::max(1 - t * t, 0.0);
-        lane.w[i] = root * root;
-        lane.outliers += root == 0;
-    }
-}
-
-/// Reads all points and weighs their residuals. @param spline  includes the trend
-Pass read_points(const DensePoints& points, const surface::Bspline& spline, double sigma)
-{
-    const std::vector<double> polynomials = cell_polynomials(spline);
-    std::vector<Lane> lanes(kNumLanes);
-    parallel_for_blocks(points.source, [&](std::size_t k, std::size_t, const cloud::PointBlock& block) {
-        Lane& lane = lanes[k];
-        assign_cells(points, block, lane.points, lane.counts);
-        lane.r.resize(lane.points.size());
-        lane.w.resize(lane.points.size());
-        residuals(lane.points, polynomials, lane.r.data());
-        set_biweights(lane, geometry::kTukeyCutoff * sigma);
-        if (!lane.moments) lane.moments.emplace(points.grid);
-        lane.moments->add(lane.points, lane.r.data(), lane.w.data());
-    });
-    for (std::size_t k = 1; k < kNumLanes; ++k) {
-        if (lanes[k].moments) lanes[0].moments->add(*lanes[k].moments);
-        lanes[0].outliers += lanes[k].outliers;
-    }
-    const CellMoments sum = std::move(*lanes[0].moments);
-    const std::size_t outliers = lanes[0].outliers;
-    lanes.clear(); // frees their memory before the matrix is allocated
-    const MatrixXd s = density_factors(sum.weights());
-    const MatrixXd weights = s.cwiseProduct(sum.weights());
-    return {{sum.normal_matrix(points.grid, s), sum.right_side(s), sum.square_sum(s), weights.sum(),
-             rounding_variance(points) * weights.sum()},
-            weights,
-            outliers};
-}
-
-/// The iterate of the re-weighted fit.
-struct State {
-    surface::Bspline spline; ///< without the trend
-    VectorXd trend;          ///< control heights
-    double sigma = 0;        ///< standard deviation of a point, mm
-    double lambda = 0;
-    double change = 0; ///< rms change of the surface in the last pass, mm
-    int passes = 0;
-
-    bool converged() const { return change <= kChangeToleranceSigmas * sigma; }
-    surface::Bspline with_trend() const
-    {
-        surface::Bspline sum = spline;
-        sum.heights += trend.reshaped(sum.heights.rows(), sum.heights.cols());
-        return sum;
-    }
-};
-
-/// Iterates to convergence or kMaxPasses. @return  the last pass, whose λ maximises the likelihood
-Pass iterate(const DensePoints& points, const SplineEnergy& energy, State& state)
-{
-    for (;;) {
-        Pass pass = read_points(points, state.with_trend(), state.sigma);
-        ++state.passes;
-        const VectorXd heights = state.spline.heights.reshaped();
-        const SmoothedSpline fit = state.passes < kMinPasses
-                                       ? smooth_spline(pass.equations, heights, energy, state.lambda)
-                                       : smooth_spline_by_likelihood(pass.equations, heights, energy, state.lambda);
-        state.spline.heights = fit.heights.reshaped(state.spline.heights.rows(), state.spline.heights.cols());
-        state.lambda = fit.lambda;
-        state.sigma = std::sqrt(std::max(fit.variance / kBiweightVariance, rounding_variance(points)));
-        state.change = fit.change;
-        if ((state.passes >= kMinPasses && state.converged()) || state.passes == kMaxPasses) return pass;
-    }
-}
 
 /// Centres of cells with points, about `spacing` apart (M): in each square of that side, the cell nearest to its
 /// centre.
@@ -162,28 +58,27 @@ Eigen::Matrix2Xd condensed_places(const surface::Bspline& grid, const MatrixXd& 
 }
 
 /// Sets the condensed touches and the precision of the posterior.
-void set_posterior(surface::Surface& surface, const DensePoints& points, const Pass& pass, const SplineEnergy& energy,
-                   const State& state, const job::Job& job)
+void set_posterior(surface::Surface& surface, const RobustSpline& fit, const DensePoints& points, const job::Job& job)
 {
     const surface::Bspline& spline = std::get<surface::Bspline>(surface.shape);
-    const Eigen::Matrix2Xd xy = condensed_places(points.grid, pass.weights, job);
+    const Eigen::Matrix2Xd xy = condensed_places(points.grid, fit.last.weights, job);
     surface.touches.resize(3, xy.cols());
     surface.touches << xy, surface::heights(surface, xy).transpose();
     surface.roles = Eigen::VectorXi::Ones(xy.cols());
 
     // The variance is bounded from below by the λ at which rounding would swallow the energy that bridges gaps; for so
     // exact points the precision is smaller than theirs.
-    const double fine_amplitude = std::sqrt(kBiweightVariance) * state.sigma / std::sqrt(state.lambda);
-    surface::SplinePrecision precision{pass.weights / (state.sigma * state.sigma), fine_amplitude};
+    const double fine_amplitude = std::sqrt(kBiweightVariance) * fit.sigma / std::sqrt(fit.lambda);
+    surface::SplinePrecision precision{fit.last.weights / (fit.sigma * fit.sigma), fine_amplitude};
     FitInput condensed;
     condensed.xyz = surface.touches;
     condensed.roles = surface.roles;
     condensed.job = job;
     const double touch = std::sqrt(surface::sigmas(spline, precision, xy).squaredNorm() / xy.cols());
     precision.amplitude = std::max(fine_amplitude, estimate_field_amplitude(condensed, touch));
-    const double variance = std::max(state.sigma * state.sigma,
-                                     min_lambda(pass.equations, energy) * precision.amplitude * precision.amplitude);
-    precision.weights = pass.weights / variance;
+    const double variance = std::max(fit.sigma * fit.sigma, min_lambda(fit.last.equations, fit.energy) *
+                                                                precision.amplitude * precision.amplitude);
+    precision.weights = fit.last.weights / variance;
     for (std::size_t k = 0; k < points.cells.size(); ++k)
         if (points.cells[k] == DensePoints::edge_of_anomaly || points.cells[k] == DensePoints::edge_of_both)
             precision.weights.data()[k] = 0;
@@ -192,38 +87,31 @@ void set_posterior(surface::Surface& surface, const DensePoints& points, const P
 
 } // namespace
 
-bool can_fit_dense(const job::Job& job, const std::string& method)
+int ignored_count(const PointCounts& counts)
 {
-    return method == "bspline" || (method == "auto" && job.surface == job::SurfaceType::freeform);
+    return static_cast<int>(std::min<std::size_t>(counts.ignored(), std::numeric_limits<int>::max()));
 }
 
-DenseFit fit_dense(const cloud::PointSource& source, const job::Job& job, bool use_boundary, const std::string& name)
+DenseFit fit_dense(const cloud::PointSource& source, const job::Job& job, const PointFilter& filter,
+                   const std::string& name)
 {
-    const DensePoints points = dense_points(source, job, use_boundary, name);
-    State state;
+    const DensePoints points = dense_points(source, job, filter, name);
+    const RobustSpline spline = fit_robust_spline(points, name);
     DenseFit result;
-    {
-        DenseStart start = estimate_dense_start(points, name);
-        result.counts = start.counts;
-        state.trend = surface::quadratic_control_heights(points.grid).heights * start.trend;
-        state.spline = std::move(start.spline);
-        state.sigma = start.sigma;
-        state.lambda = start.lambda;
-    }
-    const SplineEnergy energy = spline_energy_matrix(points.grid);
-    const Pass pass = iterate(points, energy, state);
-    result.outliers = pass.outliers;
-    result.fit.converged = state.converged();
-    result.fit.iterations = state.passes;
+    result.counts = spline.counts;
+    result.outliers = spline.last.outliers;
+    result.point_sigma = spline.sigma;
+    result.fit.converged = spline.converged();
+    result.fit.iterations = spline.passes;
     surface::Surface& surface = result.fit.surface;
     surface.units = job.units;
     surface.method = "bspline";
-    surface.shape = state.with_trend();
-    surface.touch_sigma = state.sigma;
-    surface.rms = std::sqrt(pass.equations.square_sum / pass.equations.weight_sum);
+    surface.shape = spline.with_trend();
+    surface.touch_sigma = spline.sigma;
+    surface.rms = std::sqrt(spline.last.equations.square_sum / spline.last.equations.weight_sum);
     surface.goodness = std::numeric_limits<double>::quiet_NaN();
-    surface.ignored = static_cast<int>(std::min<std::size_t>(result.counts.ignored(), std::numeric_limits<int>::max()));
-    set_posterior(surface, points, pass, energy, state, job);
+    surface.ignored = ignored_count(result.counts);
+    set_posterior(surface, spline, points, job);
     return result;
 }
 

@@ -9,14 +9,13 @@ namespace fettle::fit {
 /// quarter of a second for 300, ten seconds for 1200.
 inline constexpr std::size_t kMaxExactTouches = 300;
 
-/// True if the method fits a B-spline to such a job, and fit_dense() can do it.
-bool can_fit_dense(const job::Job& job, const std::string& method);
-
 /// A fit to very many points.
 struct DenseFit {
-    Fit fit; ///< its touches are condensed: heights of the fit, not points; it has no residuals
+    Fit fit;                ///< its touches are condensed: heights of the fit, not points
+    double point_sigma = 0; ///< standard deviation of a point, mm
     PointCounts counts;
-    std::size_t outliers = 0; ///< used points of weight 0
+    std::size_t outliers = 0;       ///< used points of weight 0
+    std::size_t dropped_groups = 0; ///< Representatives::dropped
 };
 
 /// The fit of fit_bspline() for scans of any size. The points are read block by block, five times or a few times more,
@@ -28,12 +27,16 @@ struct DenseFit {
 /// least absolute deviations (dense_start.h), so that points far from the majority of their neighbours are ignored. The
 /// standard deviation of a point comes from the residuals, not from the job's probe.
 ///
-/// Without roles the points are a scan: those inside the anomaly B and those outside the sampling boundary S are left
-/// out, and the surface of least energy bridges B. Its uncertainty there is estimated from points that lie half of B
+/// Chosen by place, the points inside the anomaly B and those outside the sampling boundary S are left out, and the
+/// surface of least energy bridges B. Its uncertainty there is estimated from points that lie half of B
 /// apart: their amplitude τ (estimate_field_amplitude) goes into the precision, unless the finer points' own is larger.
 /// Cells that B's edge crosses count as empty in it.
 /// @param name  of the points in messages
 /// @throws InputError for fewer than 6 points, points on a line or a conic section in x and y, none outside B
-DenseFit fit_dense(const cloud::PointSource& source, const job::Job& job, bool use_boundary, const std::string& name);
+DenseFit fit_dense(const cloud::PointSource& source, const job::Job& job, const PointFilter& filter,
+                   const std::string& name);
+
+/// PointCounts::ignored() as the `ignored` of a surface.
+int ignored_count(const PointCounts& counts);
 
 } // namespace fettle::fit

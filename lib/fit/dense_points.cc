@@ -37,6 +37,7 @@ struct Extent {
     Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
     double max_abs_coordinate = 0;
     std::size_t count = 0;
+    std::size_t overhang = 0; ///< points whose normal points down or sideways
     std::size_t bad_role_point = std::numeric_limits<std::size_t>::max(); ///< index of the first such point
     double bad_role = 0;
 
@@ -47,6 +48,7 @@ struct Extent {
         squares += other.squares;
         max_abs_coordinate = std::max(max_abs_coordinate, other.max_abs_coordinate);
         count += other.count;
+        overhang += other.overhang;
         add_bad_role(other.bad_role_point, other.bad_role);
     }
     void add_bad_role(std::size_t point, double role)
@@ -54,6 +56,15 @@ struct Extent {
         if (point < bad_role_point) std::tie(bad_role_point, bad_role) = std::pair(point, role);
     }
 };
+
+// Least z of a point's unit normal: on a wall steeper than 84° a height is ten times as uncertain as the scan.
+constexpr double kMinNormalZ = 0.1;
+
+/// False for NaN: nothing is known of the point's side.
+bool is_overhang(const cloud::PointBlock& block, Index i)
+{
+    return block.normal_z.size() > 0 && block.normal_z[i] < kMinNormalZ;
+}
 
 bool finite(const Eigen::Vector3d& p) { return std::isfinite(p.x() + p.y() + p.z()); }
 
@@ -70,10 +81,14 @@ Extent measure_extent(const DensePoints& points, const Eigen::Matrix2d& rotation
             if (points.source.has_roles) {
                 const double role = block.roles[i];
                 if (!(role >= 0 && role <= kMaxRole && role == std::floor(role))) e.add_bad_role(first + i, role);
-                if (!is_used_role(role, kSampleRoles, points.use_boundary)) continue;
+                if (!is_used_role(role, kSampleRoles, points.filter.use_boundary)) continue;
             }
             const Eigen::Vector3d p = block.xyz.col(i);
             if (!finite(p)) continue;
+            if (is_overhang(block, i)) {
+                ++e.overhang;
+                continue;
+            }
             const Vector2d w = rotation * p.head<2>();
             if (!bounds.contains(w)) continue;
             e.box.extend(w);
@@ -93,10 +108,12 @@ void check_extent(const Extent& extent, const job::Job& job, const std::string& 
     if (extent.bad_role_point < all)
         throw core::InputError(name, "point " + std::to_string(extent.bad_role_point) + ": " +
                                          core::to_text(extent.bad_role) + " is not a role (0 to 5)");
+    const std::string overhang =
+        extent.overhang == 0 ? "" : "; " + std::to_string(extent.overhang) + " face down or sideways by their normals";
     if (extent.count < kMinPoints)
         throw core::InputError(name, "a bspline fit needs at least " + std::to_string(kMinPoints) + " touches, got " +
                                          std::to_string(extent.count) + " of " + std::to_string(all) +
-                                         " points that it may use");
+                                         " points that it may use" + overhang);
     const double n = extent.count;
     const Vector2d mean = extent.sum / n;
     const core::SymmetricEigen<2> spread = core::symmetric_eigen<2>(extent.squares / n - mean * mean.transpose());
@@ -180,6 +197,7 @@ PointCounts& PointCounts::operator+=(const PointCounts& other)
     other_role += other.other_role;
     anomaly += other.anomaly;
     outside += other.outside;
+    overhang += other.overhang;
     used += other.used;
     return *this;
 }
@@ -189,11 +207,11 @@ Vector2d machine_from_grid(const surface::Bspline& grid, const Vector2d& uv)
     return grid.origin + Eigen::Rotation2Dd(grid.angle) * uv.cwiseProduct(grid.cell);
 }
 
-DensePoints dense_points(const cloud::PointSource& source, const job::Job& job, bool use_boundary,
+DensePoints dense_points(const cloud::PointSource& source, const job::Job& job, const PointFilter& filter,
                          const std::string& name)
 {
-    DensePoints points{source, use_boundary, {}, {}, {}, {}, {}, 0};
-    if (!source.has_roles) points.region = job::working_boundaries(job);
+    DensePoints points{source, filter, {}, {}, {}, {}, {}, 0};
+    if (filter.by_place || !source.has_roles) points.region = job::working_boundaries(job);
     const Eigen::Matrix2d rotation = job::rotation_working_machine(job.theta);
     const Extent extent = measure_extent(points, rotation, rotation * job.anomaly.topRows<2>().rowwise().mean());
     check_extent(extent, job, name, source.points);
@@ -214,12 +232,16 @@ void assign_cells(const DensePoints& points, const cloud::PointBlock& block, std
     const double u_x = c / grid.cell.x(), u_y = s / grid.cell.x(), v_x = -s / grid.cell.y(), v_y = c / grid.cell.y();
     const double* p = block.xyz.data();
     for (Index i = 0; i < block.xyz.cols(); ++i, p += 3) {
-        if (points.source.has_roles && !is_used_role(block.roles[i], kSampleRoles, points.use_boundary)) {
+        if (points.source.has_roles && !is_used_role(block.roles[i], kSampleRoles, points.filter.use_boundary)) {
             ++counts.other_role;
             continue;
         }
         if (!std::isfinite(p[0] + p[1] + p[2])) {
             ++counts.undefined;
+            continue;
+        }
+        if (is_overhang(block, i)) {
+            ++counts.overhang;
             continue;
         }
         const double dx = p[0] - grid.origin.x(), dy = p[1] - grid.origin.y();

@@ -42,20 +42,28 @@ struct PointCounts {
     std::size_t other_role = 0; ///< estimated points, corners of B
     std::size_t anomaly = 0;    ///< inside B
     std::size_t outside = 0;    ///< outside S
+    std::size_t overhang = 0;   ///< its normal points down or sideways
     std::size_t used = 0;
 
     PointCounts& operator+=(const PointCounts& other);
-    std::size_t ignored() const { return undefined + other_role + anomaly + outside; }
+    std::size_t ignored() const { return undefined + other_role + anomaly + outside + overhang; }
 };
 
-/// The points of a source that the desired surface is fitted to, and the spline's grid. If the points have roles, these
-/// are all samples. If not, the source is a scan that includes the anomaly, and these are the points outside B and
-/// inside S.
+/// Which points of a source are fitted. Points whose normal points down or sideways never are: a height over x and y
+/// has no undersides, overhangs and walls.
+struct PointFilter {
+    bool use_boundary = false; ///< points of role 0, too
+    /// Only points outside B and inside S, as of a scan that covers the anomaly, too. Points without roles always are.
+    bool by_place = false;
+};
+
+/// The points of a source that the desired surface is fitted to, and the spline's grid: those of sample roles, if there
+/// are roles, and those in S outside B, if they are chosen by place.
 struct DensePoints {
     cloud::PointSource source;
-    bool use_boundary = false; ///< points of role 0 are used, too
-    job::Boundaries region;    ///< W; both empty with roles
-    surface::Bspline grid;     ///< aligned with W, around B and the points; its heights are 0
+    PointFilter filter;
+    job::Boundaries region; ///< W; both empty if points are not chosen by place
+    surface::Bspline grid;  ///< aligned with W, around B and the points; its heights are 0
 
     /// The class of all points of a cell or subcell, or which edges cross it so that its points differ.
     enum Cell : std::uint8_t { take, drop_anomaly, drop_outside, edge_of_anomaly, edge_of_sampling, edge_of_both };
@@ -68,7 +76,7 @@ struct DensePoints {
 
 /// Reads the points once to determine their extent.
 /// @throws InputError for fewer than 6 points that can be used, points on a line, or an unknown role
-DensePoints dense_points(const cloud::PointSource& source, const job::Job& job, bool use_boundary,
+DensePoints dense_points(const cloud::PointSource& source, const job::Job& job, const PointFilter& filter,
                          const std::string& name);
 
 /// Replaces `used` by those points of a block that are used, each with its cell; adds all points to the counts.

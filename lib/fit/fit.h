@@ -22,7 +22,6 @@ struct FitInput {
     bool estimate_noise = false; ///< estimate the noise by the residuals instead of job.probe (noise_estimate.h)
     /// Degrees of freedom of job.probe's accuracy, finite if it is such an estimate.
     double noise_freedom = std::numeric_limits<double>::infinity();
-    bool is_exact = false;          ///< no fit_dense() even for more than kMaxExactTouches (dense.h)
     std::optional<double> spacing;  ///< of griddata's uniform sampling, mm; nothing: from the points' density
     std::string source = "touches"; ///< name of the touches in messages
 };

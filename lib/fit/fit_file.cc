@@ -3,11 +3,10 @@
 #include "cloud/point_source.h"
 #include "core/error.h"
 #include "core/file.h"
-#include "fit/dense.h"
 #include "fit/input.h"
 #include "fit/report.h"
+#include "fit/scan_fit.h"
 #include "job/plausible.h"
-#include "job/region.h"
 
 namespace fettle::fit {
 
@@ -48,45 +47,42 @@ void check_touches(FitRun& run, const job::Job& job, const std::string& name)
 
 /// Checks the fit of a scan likewise. Its condensed touches are the middles of cells, which may lie a little outside S
 /// where no point does.
-void check_scan(FitRun& run, const job::Job& job, bool has_roles, const std::string& name)
+void check_scan(FitRun& run, const job::Job& job, bool is_scan, const std::string& name)
 {
     const job::PlacedTouches touches{run.fit.surface.touches, run.fit.surface.roles};
-    if (has_roles) job::check_touch_places(touches, job, name); // without roles, points outside S are left out
+    if (!is_scan) job::check_touch_places(touches, job, name); // of a scan, points outside S are left out
     check_boundary_heights(run, job, name);
 }
 
-FitRun run_dense_fit(const cloud::PointSource& points, const job::Job& job, bool use_boundary, const std::string& name)
+/// Points without roles as touches near the anomaly, so that none is left out by its place.
+cloud::PointSource with_sample_roles(cloud::PointSource points)
+{
+    points.has_roles = true;
+    points.read = [read = points.read](std::size_t first, std::size_t count, cloud::PointBlock& into) {
+        read(first, count, into);
+        into.roles.setOnes(static_cast<Eigen::Index>(count));
+    };
+    return points;
+}
+
+FitRun run_scan_fit(const cloud::PointSource& points, const job::Job& job, const FitRequest& request, bool is_scan,
+                    const std::string& name)
 {
     FitRun run;
-    run.report.set("as", "scan");
-    if (use_boundary && !points.has_roles)
+    run.report.set("as", is_scan ? "scan" : "touches");
+    if (request.use_boundary && !points.has_roles)
         run.warnings.emplace_back(
             "--use-boundary: a scan shows the metal at the boundary itself, the job's points are not added");
-    const DenseFit dense = fit_dense(points, job, use_boundary, name);
+    const bool needs_roles = !is_scan && !points.has_roles;
+    const DenseFit dense = fit_scan(needs_roles ? with_sample_roles(points) : points, job,
+                                    {request.use_boundary, is_scan}, request.method, name);
     report(run.report, dense);
     for (const std::string& warning : warnings(dense, job, name)) run.warnings.push_back(warning);
     run.fit = dense.fit;
-    check_scan(run, job, points.has_roles, name);
+    check_scan(run, job, is_scan, name);
     run.touches = dense.counts.used;
     run.ignored = dense.counts.ignored();
     return run;
-}
-
-bool is_scan(const cloud::PointSource& points, const FitRequest& request)
-{
-    return request.kind == PointKind::scan ||
-           (request.kind == PointKind::by_number && points.points > kMaxExactTouches);
-}
-
-/// A scan covers the anomaly, too: its points inside B and outside S are no touches.
-void leave_out_by_place(FitInput& input)
-{
-    constexpr int kLeftOut = -1; // no role
-    const std::vector<job::Region> regions = job::classify_regions(input.job, input.xyz);
-    const bool has_sampling = input.job.sampling.cols() > 0;
-    for (std::size_t i = 0; i < regions.size(); ++i)
-        if (regions[i] == job::Region::inside || (has_sampling && regions[i] == job::Region::outside))
-            input.roles[static_cast<Eigen::Index>(i)] = kLeftOut;
 }
 
 } // namespace
@@ -97,24 +93,18 @@ FitRun fit_file(const job::Job& job, const FitRequest& request)
     const cloud::CloudStream stream(request.points,
                                     units::Units{request.point_unit.value_or(job.units.length), job.units.force});
     const cloud::PointSource& points = stream.points();
-    const bool scan = is_scan(points, request), can_be_dense = can_fit_dense(job, request.method);
-    if (scan && can_be_dense) return run_dense_fit(points, job, request.use_boundary, name);
-    if (request.kind == PointKind::touches && can_be_dense && points.points > kMaxTouches)
-        throw core::InputError(name, "--as touches: " + std::to_string(points.points) + " are more than " +
-                                         std::to_string(kMaxTouches) + ", which take too long");
+    const bool is_scan = request.kind == PointKind::scan || (request.kind == PointKind::by_roles && !points.has_roles);
+    if (is_scan || points.points > kMaxExactTouches) return run_scan_fit(points, job, request, is_scan, name);
 
     FitInput input = fit_input(job, *stream.read_all(), name);
     input.estimate_noise = request.estimate_noise;
-    input.is_exact = request.kind == PointKind::touches;
-    const bool is_cropped = scan && !points.has_roles;
-    if (is_cropped) leave_out_by_place(input);
     if (request.use_boundary) add_boundary_touches(input);
     if (request.spacing) input.spacing = *request.spacing * job.units.mm();
     FitRun run;
     run.fit = fit_surface(input, request.method);
     run.touches = static_cast<std::size_t>(run.fit.surface.touches.cols());
     run.ignored = static_cast<std::size_t>(run.fit.surface.ignored);
-    run.report.set("as", is_cropped ? "scan" : "touches");
+    run.report.set("as", "touches");
     report(run.report, run.fit);
     run.warnings = warnings(run.fit, name);
     check_touches(run, job, name);

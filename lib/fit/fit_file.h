@@ -11,10 +11,9 @@
 namespace fettle::fit {
 
 /// What the points of a file are. Touches are probed one by one, on good metal, to the accuracy of the job's probe; a
-/// scan covers the anomaly, too: without roles its points inside B and outside S are left out. A B-spline fitted to a
-/// scan takes the noise from the residuals.
+/// scan covers the anomaly, too: its points inside B and outside S are left out, and its noise is estimated.
 enum class PointKind {
-    by_number, ///< a scan if they are more than kMaxExactTouches (dense.h), else touches
+    by_roles, ///< touches if the points have roles, else a scan
     touches,
     scan,
 };
@@ -24,14 +23,11 @@ struct FitRequest {
     std::string points;                             ///< path; "-": stdin
     std::optional<units::Units::Length> point_unit; ///< of the file; nothing: the job's
     std::string method = "auto";
-    PointKind kind = PointKind::by_number;
+    PointKind kind = PointKind::by_roles;
     bool use_boundary = false;     ///< take the anomaly's boundary points as touches, too
     bool estimate_noise = false;   ///< as FitInput::estimate_noise
     std::optional<double> spacing; ///< as FitInput::spacing, in the job's unit
 };
-
-/// The exact posterior takes a minute or so for this many.
-inline constexpr std::size_t kMaxTouches = 1000;
 
 struct FitRun {
     Fit fit;
@@ -40,9 +36,10 @@ struct FitRun {
     std::vector<std::string> warnings;
 };
 
-/// Fits a surface to the points of a file: a B-spline to a scan by fit_dense(), all else by fit_surface().
-/// @throws InputError as CloudStream, fit_input() and either fit; for a B-spline through more touches than kMaxTouches;
-///         if half of the touches or more lie outside the sampling boundary (job/plausible.h)
+/// Fits a surface to the points of a file: to a scan and to more than kMaxExactTouches (dense.h) touches by fit_scan(),
+/// to all else by fit_surface().
+/// @throws InputError as CloudStream, fit_input() and either fit; if half of the touches or more lie outside the
+///         sampling boundary (job/plausible.h)
 FitRun fit_file(const job::Job& job, const FitRequest& request);
 
 } // namespace fettle::fit

@@ -4,6 +4,7 @@
 #include "fit/leave_one_out.h"
 #include "fit/process_mixture.h"
 #include "fit/process_spectrum.h"
+#include "fit/process_weights.h"
 #include "surface/shapes.h"
 
 #include <algorithm>
@@ -50,24 +51,6 @@ Index worst_outlier(const std::vector<Spectrum>& all, double sigma)
     return most_probable_outlier(leave_one_out(all), log_outlier);
 }
 
-/// The longest cell side that represents a process. The rms error of the quasi-interpolant is 0.08 τ (h/ℓ)⁴ for the
-/// squared exponential, limited to a tenth of σ, and 0.38 τ (h/ℓ)^(5/2) for Matérn's kernel, limited to 0.4 σ: it is
-/// rougher within a cell than touches can resolve.
-double max_cell_side(const Correlation& correlation, double ratio)
-{
-    return correlation.length *
-           (correlation.kernel == Kernel::squared_exponential ? std::pow(ratio / 1.2, -0.25) : std::pow(ratio, -0.4));
-}
-
-/// A grid over the same rectangle with cells up to `max_side` mm, but no finer than before.
-surface::Bspline coarsen(const surface::Bspline& grid, double max_side)
-{
-    constexpr double kMinCells = 4;
-    const Eigen::Array2d before = cell_counts(grid);
-    const Eigen::Array2d side = before * grid.cell.array();
-    return with_cell_counts(grid, (side / max_side).ceil().max(kMinCells).min(before));
-}
-
 /// Removes outliers from `touches` one by one, up to `max_outliers`. `spectra` becomes that of the inliers.
 /// @return  indices of the outliers among the original touches
 TouchIndices reject_outliers(ProcessTouches& touches, std::vector<Spectrum>& spectra, std::size_t max_outliers)
@@ -84,35 +67,6 @@ TouchIndices reject_outliers(ProcessTouches& touches, std::vector<Spectrum>& spe
     }
     std::sort(outliers.begin(), outliers.end());
     return outliers;
-}
-
-/// Likelihoods of the correlations and amplitudes, relative to the largest one.
-struct Weights {
-    std::vector<std::array<double, kNumRatios>> relative; ///< for each correlation and amplitude; 0 where negligible
-    double sum = 0;
-    double cell = 0; ///< cell side that represents all correlations that matter, mm
-};
-
-Weights mixture_weights(const std::vector<Spectrum>& spectra)
-{
-    constexpr double kMinWeight = 0.01; // relative to the largest
-    constexpr double kMinShare = 0.01;  // of the sum, for a correlation to matter
-    const double best = min_score(spectra);
-    Weights weights{std::vector<std::array<double, kNumRatios>>(spectra.size()), 0,
-                    std::numeric_limits<double>::infinity()};
-    std::vector<double> sums(spectra.size(), 0);
-    for (std::size_t k = 0; k < spectra.size(); ++k)
-        for (int i = 0; i < kNumRatios; ++i) {
-            const double weight = std::exp((best - spectra[k].score[i]) / 2);
-            sums[k] += weight;
-            weights.relative[k][i] = weight < kMinWeight ? 0 : weight;
-        }
-    weights.sum = std::accumulate(sums.begin(), sums.end(), 0.0);
-    for (std::size_t k = 0; k < spectra.size(); ++k)
-        for (int i = 0; i < kNumRatios; ++i)
-            if (sums[k] >= kMinShare * weights.sum && weights.relative[k][i] > 0)
-                weights.cell = std::min(weights.cell, max_cell_side(spectra[k].correlation, amplitude_ratio(i)));
-    return weights;
 }
 
 } // namespace
@@ -132,7 +86,7 @@ std::optional<FitCandidate> fit_gaussian_process(const TouchSet& touches, const 
     candidate.method = "gp";
     std::vector<Spectrum> spectra;
     candidate.outliers = reject_outliers(inliers, spectra, std::min(n - p - kMinRedundancy, n / 4));
-    const Weights weights = mixture_weights(spectra);
+    const ProcessWeights weights = mixture_weights(spectra);
     candidate.score = min_score(spectra) - 2 * std::log(weights.sum / (spectra.size() * kNumRatios)) +
                       outlier_penalty(touches.sigma) * candidate.outliers.size();
     candidate.freedom = inliers.z.size() - p;

@@ -38,6 +38,16 @@ ProcessTouches subset_of(const ProcessTouches& all, const TouchIndices& kept)
 
 double amplitude_ratio(int i) { return kMinRatio * std::pow(kRatioStep, i); }
 
+void set_scores(Spectrum& s, double factor, Index trend)
+{
+    const double trend_penalty = trend * std::log(s.E.rows());
+    const Eigen::ArrayXd squares = (s.y / factor).array().square();
+    for (int i = 0; i < kNumRatios; ++i) {
+        const Eigen::ArrayXd d = precision(s, amplitude_ratio(i));
+        s.score[i] = trend_penalty - d.log().sum() + (squares * d).sum();
+    }
+}
+
 VectorXd precision(const Spectrum& s, double ratio) { return (1 + ratio * ratio * s.lambda.array()).inverse(); }
 
 std::vector<Spectrum> compute_spectra(const ProcessTouches& touches)
@@ -45,7 +55,6 @@ std::vector<Spectrum> compute_spectra(const ProcessTouches& touches)
     std::vector<Spectrum> all;
     const double radius = radius_of(touches.xy);
     const Index n = touches.F.rows(), p = touches.F.cols();
-    const double trend_penalty = p * std::log(n);
     const MatrixXd Q = core::householder_qr(touches.F, n).Q;
     const MatrixXd rest = Q.rightCols(n - p);
     for (const Kernel kernel : {Kernel::squared_exponential, Kernel::matern52})
@@ -58,10 +67,7 @@ std::vector<Spectrum> compute_spectra(const ProcessTouches& touches)
             s.E = rest * eigen.vectors;
             s.lambda = eigen.values.cwiseMax(0);
             s.y = s.E.transpose() * touches.z / touches.sigma;
-            for (int i = 0; i < kNumRatios; ++i) {
-                const Eigen::ArrayXd d = precision(s, amplitude_ratio(i));
-                s.score[i] = trend_penalty - d.log().sum() + (s.y.array().square() * d).sum();
-            }
+            set_scores(s, 1, p);
             all.push_back(std::move(s));
         }
     return all;

@@ -38,6 +38,10 @@ struct Spectrum {
 /// The spectra of all correlations. One decomposition serves all amplitudes of a correlation.
 std::vector<Spectrum> compute_spectra(const ProcessTouches& touches);
 
+/// Sets the scores for a noise of `factor` times that of the touches, which y and λ stay in units of. They lack
+/// 2 (n - p) ln factor. @param trend  number p of the trend's functions
+void set_scores(Spectrum& s, double factor, Eigen::Index trend);
+
 /// Inverse variances of the y.
 Eigen::VectorXd precision(const Spectrum& s, double ratio);
 

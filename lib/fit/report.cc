@@ -9,6 +9,22 @@
 
 namespace fettle::fit {
 
+namespace {
+
+void report_scores(json::Value& out, const surface::Surface& surface)
+{
+    if (surface.alternatives.empty()) return;
+    std::vector<json::Value> scores(1);
+    scores[0].set("method", surface.method).set("score", surface.score).set("weight", surface.weight);
+    for (const surface::Alternative& other : surface.alternatives) {
+        scores.emplace_back();
+        scores.back().set("method", other.method).set("score", other.score).set("weight", other.weight);
+    }
+    out.set("scores", scores);
+}
+
+} // namespace
+
 void report(json::Value& out, const Fit& fit)
 {
     const double mm = fit.surface.units.mm();
@@ -23,14 +39,7 @@ void report(json::Value& out, const Fit& fit)
         .set("touch_freedom", fit.surface.touch_sigma_dof)
         .set("weight", fit.surface.weight)
         .set("gross_errors", static_cast<int>(fit.surface.outliers.size()));
-    if (fit.surface.alternatives.empty()) return;
-    std::vector<json::Value> scores(1);
-    scores[0].set("method", fit.surface.method).set("score", fit.surface.score).set("weight", fit.surface.weight);
-    for (const surface::Alternative& other : fit.surface.alternatives) {
-        scores.emplace_back();
-        scores.back().set("method", other.method).set("score", other.score).set("weight", other.weight);
-    }
-    out.set("scores", scores);
+    report_scores(out, fit.surface);
 }
 
 void report(json::Value& out, const DenseFit& dense)
@@ -44,11 +53,15 @@ void report(json::Value& out, const DenseFit& dense)
         .set("other_role", dense.counts.other_role)
         .set("inside_anomaly", dense.counts.anomaly)
         .set("outside_sampling", dense.counts.outside)
+        .set("overhanging", dense.counts.overhang)
         .set("outliers", dense.outliers)
+        .set("dropped_groups", dense.dropped_groups)
         .set("iterations", dense.fit.iterations)
         .set("rms", surface.rms / mm)
         .set("touch_sigma", surface.touch_sigma / mm)
+        .set("point_sigma", dense.point_sigma / mm)
         .set("goodness", surface.goodness);
+    report_scores(out, surface);
 }
 
 namespace {
@@ -63,7 +76,7 @@ std::string with_unit(double length, const units::Units& units)
 std::vector<std::string> warnings(const DenseFit& dense, const job::Job& job, const std::string& source)
 {
     const surface::Surface& surface = dense.fit.surface;
-    const double scatter = std::max(surface.rms, surface.touch_sigma);
+    const double scatter = std::max(surface.method == "bspline" ? surface.rms : 0, dense.point_sigma);
     if (scatter <= job.probe.accuracy) return {};
     return {source + ": the scan's points scatter by " + with_unit(scatter, job.units) +
             " rms about the surface, more than the probe's accuracy, " + with_unit(job.probe.accuracy, job.units) +

@@ -17,22 +17,6 @@ namespace {
 // A surface with less than this share of the largest weight changes the mean by less than the probe's resolution.
 constexpr double kMinRelativeWeight = 1e-3;
 
-/// −2 ln of a family's relative prior probability. Castings are mostly planes, cylinders, spheres and nearly quadratic;
-/// cones, tori and surfaces (sections) of varying curvature count as four times rarer. With equal priors, sixteen
-/// touches of a common family are overfitted by a rare one in one case of twenty.
-double prior_penalty(const std::string& family)
-{
-    constexpr double kPriorRatio = 4;
-    return family == "cone" || family == "torus" || family == "cubic" || family == "swept" ? 2 * std::log(kPriorRatio)
-                                                                                           : 0;
-}
-
-std::vector<std::string> family_names_for(job::SurfaceType type)
-{
-    if (type == job::SurfaceType::swept) return {"plane", "cylinder", "swept"};
-    return {"plane", "sphere", "cylinder", "cone", "torus", "quadratic", "cubic"};
-}
-
 const FitCandidate* best_of(const std::vector<FitCandidate>& candidates)
 {
     const FitCandidate* best = nullptr;
@@ -92,37 +76,49 @@ void penalise_rare_families(std::vector<FitCandidate>& candidates, Eigen::Index 
     }
 }
 
-/// Makes the candidates the surface and its alternatives, weighted by their scores.
-void set_candidates(std::vector<FitCandidate>& candidates, surface::Surface& surface)
+} // namespace
+
+double prior_penalty(const std::string& family)
+{
+    constexpr double kPriorRatio = 4;
+    return family == "cone" || family == "torus" || family == "cubic" || family == "swept" ? 2 * std::log(kPriorRatio)
+                                                                                           : 0;
+}
+
+std::vector<std::string> candidate_families(job::SurfaceType type)
+{
+    if (type == job::SurfaceType::swept) return {"plane", "cylinder", "swept"};
+    return {"plane", "sphere", "cylinder", "cone", "torus", "quadratic", "cubic"};
+}
+
+void set_candidates(std::vector<WeightedCandidate> candidates, surface::Surface& surface)
 {
     std::stable_sort(candidates.begin(), candidates.end(),
-                     [](const FitCandidate& a, const FitCandidate& b) { return a.score < b.score; });
+                     [](const WeightedCandidate& a, const WeightedCandidate& b) { return a.weight > b.weight; });
+    const double max_weight = candidates.front().weight;
     double sum = 0;
-    std::vector<double> weights;
-    for (const FitCandidate& candidate : candidates) {
-        const double weight = std::exp((candidates.front().score - candidate.score) / 2);
-        weights.push_back(weight < kMinRelativeWeight ? 0 : weight);
-        sum += weights.back();
+    for (WeightedCandidate& candidate : candidates) {
+        if (candidate.weight < kMinRelativeWeight * max_weight) candidate.weight = 0;
+        sum += candidate.weight;
     }
     for (std::size_t i = 0; i < candidates.size(); ++i) {
-        FitCandidate& candidate = candidates[i];
+        FitCandidate& candidate = candidates[i].candidate;
+        const double weight = candidates[i].weight / sum;
         if (i == 0) {
             surface.method = candidate.method;
             surface.shape = std::move(candidate.shape);
             surface.covariance = std::move(candidate.covariance);
             surface.outliers = candidate.outliers;
             surface.score = candidate.score;
-            surface.weight = weights[0] / sum;
-        } else if (weights[i] > 0) {
-            surface.alternatives.push_back({candidate.method, candidate.score, weights[i] / sum,
-                                            std::move(candidate.shape), std::move(candidate.covariance)});
+            surface.weight = weight;
+        } else if (weight > 0) {
+            surface.alternatives.push_back({candidate.method, candidate.score, weight, std::move(candidate.shape),
+                                            std::move(candidate.covariance)});
         } else {
             surface.alternatives.push_back({candidate.method, candidate.score, 0, {}, {}});
         }
     }
 }
-
-} // namespace
 
 Fit fit_auto(const FitInput& input)
 {
@@ -131,7 +127,7 @@ Fit fit_auto(const FitInput& input)
     const int min_touches = input.job.surface == job::SurfaceType::swept ? 5 : 6;
     surface::Surface surface = begin_surface(input, job::to_string(input.job.surface), kSampleRoles, min_touches);
     const TouchSet touches = make_touch_set(surface, input.job);
-    const std::vector<std::string> names = family_names_for(input.job.surface);
+    const std::vector<std::string> names = candidate_families(input.job.surface);
     std::vector<FitCandidate> candidates;
     fit_families(touches, names, all_touches(touches), candidates);
     const Eigen::Index n = touches.xyz.cols();
@@ -144,10 +140,18 @@ Fit fit_auto(const FitInput& input)
         if (std::optional<FitCandidate> smooth = fit_gaussian_process(touches, spline_grid(input, surface.touches)))
             candidates.push_back(std::move(*smooth));
     if (candidates.empty()) refuse_undetermined(touches, surface.method + " surface", input.source);
-    set_candidates(candidates, surface);
-    const FitCandidate& chosen = candidates.front();
-    const double freedom_of_all = chosen.freedom + chosen.outliers.size();
-    return finish_fit(std::move(surface), freedom_of_all, true, chosen.iterations);
+    std::stable_sort(candidates.begin(), candidates.end(),
+                     [](const FitCandidate& a, const FitCandidate& b) { return a.score < b.score; });
+    const double freedom_of_all = candidates.front().freedom + candidates.front().outliers.size();
+    const int iterations = candidates.front().iterations;
+    std::vector<WeightedCandidate> weighted;
+    const double best_score = candidates.front().score;
+    for (FitCandidate& candidate : candidates) {
+        const double weight = std::exp((best_score - candidate.score) / 2);
+        weighted.push_back({std::move(candidate), weight});
+    }
+    set_candidates(std::move(weighted), surface);
+    return finish_fit(std::move(surface), freedom_of_all, true, iterations);
 }
 
 } // namespace fettle::fit

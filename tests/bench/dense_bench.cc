@@ -50,7 +50,7 @@ void dense_fit(benchmark::State& state)
     const std::string path = scan_file(static_cast<std::size_t>(state.range(0)));
     for (auto _ : state) {
         const cloud::CloudStream stream(path);
-        benchmark::DoNotOptimize(fit::fit_dense(stream.points(), job(), false, path).fit.surface.rms);
+        benchmark::DoNotOptimize(fit::fit_dense(stream.points(), job(), {}, path).fit.surface.rms);
     }
     std::filesystem::remove(path);
 }

@@ -3,7 +3,7 @@ source "$HERE/points.bash"
 refuses=$HERE/../refuses
 job freeform >job.json
 job plane >plane.json
-heights 1 20 1 | pcd x y z >good.pcd
+heights 1 20 1 | touches >good.pcd
 : >empty
 "$refuses" 'empty' fettle-fit job.json empty
 "$refuses" 'stdin' fettle-fit job.json </dev/null
@@ -23,25 +23,25 @@ done
 "$refuses" "did you mean 'sphere'?" fettle-fit job.json good.pcd --method spheer
 "$refuses" '/dev/full' fettle-fit job.json good.pcd -o /dev/full
 # too few
-heights 1 3 1 | pcd x y z >three.pcd
+heights 1 3 1 | touches >three.pcd
 "$refuses" 'three.pcd: a sphere fit needs at least 4 touches, got 3 of 3 points that it may use' \
     fettle-fit job.json three.pcd --method sphere
 "$refuses" 'three.pcd: a cylinder fit needs at least 5 touches' fettle-fit job.json three.pcd --method cylinder
 "$refuses" 'three.pcd: a freeform fit needs at least 6 touches' fettle-fit job.json three.pcd
-echo '1 2 3' | pcd x y z >one.pcd
+echo '1 2 3' | touches >one.pcd
 "$refuses" 'one.pcd: a plane fit needs at least 3 touches, got 1 of 1' fettle-fit plane.json one.pcd
-for i in 1 2 3 4 5 6 7 8; do echo "$i nan $i"; done | pcd x y z >nan.pcd
+for i in 1 2 3 4 5 6 7 8; do echo "$i nan $i"; done | touches >nan.pcd
 "$refuses" 'nan.pcd: a freeform fit needs at least 6 touches, got 0 of 8' fettle-fit job.json nan.pcd
 # on a line, all the same, on a circle
-for i in 1 2 3 4 5 6 7 8; do echo "$i $i $i"; done | pcd x y z >line.pcd
-for i in 1 2 3 4 5 6 7 8; do echo 1 2 3; done | pcd x y z >same.pcd
+for i in 1 2 3 4 5 6 7 8; do echo "$i $i $i"; done | touches >line.pcd
+for i in 1 2 3 4 5 6 7 8; do echo 1 2 3; done | touches >same.pcd
 for points in line same; do
     "$refuses" "$points.pcd: touches lie on a line: across it they spread by only" fettle-fit plane.json $points.pcd
     for method in bspline sphere cylinder swept auto; do
         "$refuses" "$points.pcd: touches lie on one line in x and y" fettle-fit job.json $points.pcd --method $method
     done
 done
-printf '1 0 0\n0 1 0\n-1 0 0\n0 -1 0\n0.6 0.8 0\n0.8 -0.6 0\n' | pcd x y z >circle.pcd
+printf '1 0 0\n0 1 0\n-1 0 0\n0 -1 0\n0.6 0.8 0\n0.8 -0.6 0\n' | touches >circle.pcd
 "$refuses" 'circle.pcd: touches do not determine a sphere' fettle-fit job.json circle.pcd --method sphere
 # roles that are none, units that disagree
 heights 1 20 1 | sed 's/$/ 7/' | pcd x y z role >role.pcd
@@ -49,7 +49,7 @@ heights 1 20 1 | sed 's/$/ 7/' | pcd x y z role >role.pcd
 sed '/^COUNT/s/1$/3/' role.pcd >roles.pcd
 "$refuses" "roles.pcd: field 'role': COUNT 3, expected 1" fettle-fit job.json roles.pcd
 # a curve's number beyond all integers is none
-for curve in nan 1e30; do heights 1 20 1 | sed "s/\$/ $curve/" | pcd x y z curve >$curve.pcd; done
+for curve in nan 1e30; do heights 1 20 1 | sed "s/\$/ 1 $curve/" | pcd x y z role curve >$curve.pcd; done
 fettle-diff <(fettle-fit job.json nan.pcd) <(fettle-fit job.json 1e30.pcd)
 sed 's,# units in,# units mm,' good.pcd >mm.pcd
 "$refuses" 'mm.pcd' fettle-fit job.json mm.pcd

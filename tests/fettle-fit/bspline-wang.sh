@@ -16,7 +16,7 @@ bad() { # CHANGE MESSAGE
 }
 bad '.shape.knots_u[4] = 2' 'knots_u: must ascend, the first and the last 4 the same'
 bad '.shape.knots_v += [9, 9]' 'knots_v: there are 11 for 5 control heights'
-heights 1 3 1 | pcd x y z >three.pcd
+heights 1 3 1 | touches >three.pcd
 "$HERE/../refuses" 'three.pcd: a bspline-wang fit needs at least 4 touches, got 3' fettle-fit job.json three.pcd --method bspline-wang
-for i in 1 2 3 4 5; do echo "$i $i $i"; done | pcd x y z >line.pcd
+for i in 1 2 3 4 5; do echo "$i $i $i"; done | touches >line.pcd
 "$HERE/../refuses" 'line.pcd: touches lie on one line in x and y' fettle-fit job.json line.pcd --method bspline-wang

@@ -18,7 +18,7 @@ awk 'BEGIN { srand(3); for (i = 0; i < 5000; ++i) {
     if (i % 50 == 7) z = "nan"
     printf "%.9f %.9f %s\n", x, y, z } }' >rows
 pcd x y z <rows | sed 1d >scan.pcd
-fettle-fit job.json scan.pcd --report report.json -o surface.json
+fettle-fit --method bspline job.json scan.pcd --report report.json -o surface.json
 inside=$(awk '$3 != "nan" && $1 ^ 2 <= 306.25 && $2 ^ 2 <= 306.25' rows | wc -l)
 outside=$(awk '$3 != "nan" && ($1 ^ 2 > 2500 || $2 ^ 2 > 2500)' rows | wc -l)
 jq -e --argjson inside "$inside" --argjson outside "$outside" '.method == "bspline" and .undefined == 100 and
@@ -33,23 +33,23 @@ jq -e '.shift > 0.01 and .shift < 0.3' margin.json
 jq -e '.precision.weights | length > 12' desired.json
 # with roles nothing is left out by place: the anomaly is taken for the surface
 sed 's/$/ 1/' rows | pcd x y z role | sed 1d >roles.pcd
-fettle-fit job.json roles.pcd --report report.json >/dev/null
+fettle-fit --method bspline job.json roles.pcd --report report.json >/dev/null
 jq -e '.touches == 4900 and .undefined == 100 and .inside_anomaly == 0' report.json
 
 # A binary file is streamed, a pipe copied; both give the same bytes for any number of threads. F4: 4e-6 mm at 55 mm.
 fettle-mesh sphere.json --step 0.3 >big.pcd
-fettle-fit job.json big.pcd --threads 1 --report report.json >one.json
+fettle-fit --method bspline job.json big.pcd --threads 1 --report report.json >one.json
 points=$(grep -a -m 1 '^POINTS' big.pcd | cut -d ' ' -f 2)
 jq -e --argjson points "$points" '.touches + .ignored == $points and $points > 100000' report.json
-fettle-fit job.json big.pcd --threads 2 | cmp one.json
+fettle-fit --method bspline job.json big.pcd --threads 2 | cmp one.json
 # shellcheck disable=SC2002
-cat big.pcd | fettle-fit job.json | cmp one.json
+cat big.pcd | fettle-fit --method bspline job.json | cmp one.json
 fettle-mesh one.json --at truth.pcd | fettle-diff --tol 5e-5 truth.pcd -
 # refused as ever
 refuses=$HERE/../refuses
 head -c 1500000 big.pcd >short.pcd
-"$refuses" 'short.pcd: POINTS' fettle-fit job.json short.pcd
+"$refuses" 'short.pcd: POINTS' fettle-fit --method bspline job.json short.pcd
 { cat big.pcd big.pcd; } >twice.pcd
-"$refuses" 'another PCD follows' fettle-fit job.json twice.pcd
+"$refuses" 'another PCD follows' fettle-fit --method bspline job.json twice.pcd
 sed '0,/# units mm/s//# units in/' big.pcd >inch.pcd
 "$refuses" 'units: the file says in, expected mm' fettle-fit job.json inch.pcd

@@ -10,7 +10,7 @@ for mirror in 0 1 2 3; do
         u = mirror % 2 ? 1 - $1 : $1; v = mirror > 1 ? 1 - $2 : $2; p = 9 * u; q = 9 * v
         f = .75 * exp(-((p - 2) ^ 2 + (q - 2) ^ 2) / 4) + .75 * exp(-(p + 1) ^ 2 / 49 - (q + 1) / 10)
         f += .5 * exp(-((p - 7) ^ 2 + (q - 3) ^ 2) / 4) - .2 * exp(-(p - 4) ^ 2 - (q - 7) ^ 2)
-        printf "%g %g %.6f\n", 100 * $1, 100 * $2, 100 * f }' | pcd x y z | sed 1d >touches.pcd
+        printf "%g %g %.6f\n", 100 * $1, 100 * $2, 100 * f }' | touches | sed 1d >touches.pcd
     for accuracy in 0.01 0.127 1; do
         jq ".probe.accuracy = $accuracy" <<<"$job" >job.json
         for method in auto bspline; do

@@ -5,7 +5,7 @@ job freeform | sed 's/1e-4/0.02576/' >coarse.json
 job freeform | sed 's/1e-4/0.0002576/' >fine.json
 heights '7 + sqrt(16 - x ^ 2 - y ^ 2)' 16 1 |
     awk 'BEGIN { srand(5) } { for (n = i = 0; i < 12; ++i) n += rand(); printf "%s %s %.9f\n", $1, $2, $3 + 0.001 * (n - 6) }' |
-    pcd x y z >touches.pcd
+    touches >touches.pcd
 for job in coarse fine; do
     fettle-fit --noise estimate --method sphere $job.json touches.pcd --report $job-report.json -o $job-surface.json
     jq -e '.touch_freedom == 12 and .goodness == null and .touch_sigma > 0.0005 and .touch_sigma < 0.0017' $job-report.json

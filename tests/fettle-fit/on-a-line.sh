@@ -6,7 +6,7 @@ job swept ', "direction_deg": 30' | jq '.probe.accuracy = 0.005' >swept.json
 for job in freeform.json swept.json; do
     awk 'BEGIN { srand(2); for (i = 0; i < 20; ++i) { t = 3 * rand() - 1.5
         printf "%.7f %.7f %.7f\n", t * cos(0.5235988) - 0.002 * rand(), t * sin(0.5235988), 0.1 * t * t + 0.001 * rand() } }' |
-        pcd x y z >line.pcd
+        touches >line.pcd
     for method in auto cylinder swept quadratic griddata bspline bspline-wang; do
         "$HERE/../refuses" 'line.pcd: touches lie on one line in x and y' fettle-fit $job line.pcd --method $method
     done

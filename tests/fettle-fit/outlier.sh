@@ -5,7 +5,7 @@ source "$HERE/points.bash"
 job freeform | sed 's/1e-4/0.005/' >job.json
 for line in -0.3 0.3; do
     for along in -1.5 -0.7 0.7 1.5; do printf '%s %s\n%s %s\n' $line $along $along $line; done
-done | awk '{ print $1, $2, 0.1 * $1 ^ 2 - 0.05 * $2 ^ 2 + (NR == 6 ? 0.04 : 0) }' | pcd x y z >touches.pcd
+done | awk '{ print $1, $2, 0.1 * $1 ^ 2 - 0.05 * $2 ^ 2 + (NR == 6 ? 0.04 : 0) }' | touches >touches.pcd
 heights '0.1 * x ^ 2 - 0.05 * y ^ 2' 60 2 | awk '$1 ^ 2 < 0.49 && $2 ^ 2 < 0.49' | pcd x y z >truth.pcd
 fettle-fit job.json touches.pcd --report report.json -o surface.json
 jq -e '.goodness < 1e-6' report.json

@@ -6,7 +6,7 @@ for count in 16 30 60; do
     for seed in 1 2 3 4 5 6 7 8; do
         awk -v seed=$seed -v n=$count 'BEGIN { srand(seed); for (i = 0; i < n; ++i) {
             x = 100 * rand() - 50; y = 100 * rand() - 50; printf "%.6f %.6f %.6f\n", x, y, -(x * x + y * y) / 200 } }' |
-            pcd x y z | sed 1d >touches.pcd
+            touches | sed 1d >touches.pcd
         fettle-fit job.json touches.pcd --method plane --report report.json >surface.json 2>message
         [ "$(wc -l <message)" -eq 1 ]
         grep -F 'touches.pcd: the touches lie' message

@@ -23,3 +23,8 @@ heights() {
     awk -v n="$2" -v seed="$3" "BEGIN { srand(seed); for (i = 0; i < n; ++i) {
         x = 3 * rand() - 1.5; y = 3 * rand() - 1.5; printf \"%.9f %.9f %.9f\\n\", x, y, $1 } }"
 }
+
+# touches: the lines of stdin, x y z, as touches near the anomaly, in inches
+touches() {
+    sed 's/$/ 1/' | pcd x y z role
+}

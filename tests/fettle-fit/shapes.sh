@@ -3,7 +3,7 @@
 # which shape it is.
 source "$HERE/points.bash"
 check() { # METHOD GOT JOB FORMULA
-    heights "$4" 24 1 | pcd x y z >touches.pcd
+    heights "$4" 24 1 | touches >touches.pcd
     fettle-fit --method "$1" "$3" touches.pcd --report report.json -o surface.json
     jq -e --arg got "$2" '.method == $got and .touches == 24 and .ignored == 0 and .rms < 2e-6' report.json
     heights "$4" 60 2 | pcd x y z >truth.pcd

@@ -4,8 +4,8 @@ source "$HERE/points.bash"
 job freeform | sed 's/1e-4/0.005/' >in.json
 jq '.units.length = "mm" | .probe.accuracy *= 25.4 | (.anomaly, .sampling) |= map(map(. * 25.4))' in.json >mm.json
 formula='0.2 * sin(3 * x) + 0.3 * y ^ 2'
-heights "$formula" 20 1 | pcd x y z >in.pcd
-heights "$formula" 20 1 | awk '{ printf "%.9f %.9f %.9f\n", 25.4 * $1, 25.4 * $2, 25.4 * $3 }' | pcd x y z | sed 1d >mm.pcd
+heights "$formula" 20 1 | touches >in.pcd
+heights "$formula" 20 1 | awk '{ printf "%.9f %.9f %.9f\n", 25.4 * $1, 25.4 * $2, 25.4 * $3 }' | touches | sed 1d >mm.pcd
 fettle-fit in.json in.pcd >in.surface
 fettle-fit mm.json mm.pcd >mm.surface
 fettle-fit in.json mm.pcd --file-units mm >read.surface

@@ -72,7 +72,7 @@ void lay_anomaly(cloud::Cloud& cloud)
 
 fit::DenseFit fit(const cloud::Cloud& cloud, const job::Job& job = square_job())
 {
-    return fit::fit_dense(cloud::make_point_source(std::make_shared<cloud::Cloud>(cloud)), job, false, "points");
+    return fit::fit_dense(cloud::make_point_source(std::make_shared<cloud::Cloud>(cloud)), job, {}, "points");
 }
 
 struct Errors {
