@@ -111,7 +111,7 @@ void check_extent(const Extent& extent, const job::Job& job, const std::string& 
     const std::string overhang =
         extent.overhang == 0 ? "" : "; " + std::to_string(extent.overhang) + " face down or sideways by their normals";
     if (extent.count < kMinPoints)
-        throw core::InputError(name, "a bspline fit needs at least " + std::to_string(kMinPoints) + " touches, got " +
+        throw core::InputError(name, "a fit needs at least " + std::to_string(kMinPoints) + " touches, got " +
                                          std::to_string(extent.count) + " of " + std::to_string(all) +
                                          " points that it may use" + overhang);
     const double n = extent.count;

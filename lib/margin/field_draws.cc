@@ -1,6 +1,7 @@
 #include "margin/field_draws.h"
 
 #include "core/decompositions.h"
+#include "core/error.h"
 #include "surface/precision.h"
 
 #include <cmath>
@@ -83,6 +84,9 @@ Eigen::MatrixXd draw_fields(const surface::Surface& surface, const Eigen::Matrix
         all.push_back({member.weight, offset, field_root(gradients, member.covariance)});
         sum += member.weight;
     }
+    if (!(sum > 0) || !std::isfinite(sum)) // heights whose squares no number holds
+        throw core::InputError("touches", "the surface fitted to them has no finite covariance, so its error cannot be "
+                                          "predicted");
     std::mt19937_64 random(seed);
     std::normal_distribution<double> normal;
     Eigen::MatrixXd fields = Eigen::MatrixXd::Zero(xy.cols(), draws);

@@ -12,6 +12,7 @@ namespace fettle::margin {
 /// to their common mean. Antithetic draws, of opposite sign about a member's mean, follow each other.
 /// @param xy  2xN, M, mm   @param draws  even
 /// @return  N x draws, mm; members that are not defined at all of xy are left out
+/// @throws core::InputError if no member has a finite covariance
 Eigen::MatrixXd draw_fields(const surface::Surface& surface, const Eigen::Matrix2Xd& xy, int draws, std::uint64_t seed);
 
 } // namespace fettle::margin

@@ -48,5 +48,5 @@ for method in auto bspline; do
     jq -e '.overhanging == 4400' report.json
 done
 awk 'NF == 6 && $1 ~ /^[-0-9]/ { $6 = -1 } { print }' closed.pcd >inward.pcd
-"$HERE/../refuses" 'inward.pcd: a bspline fit needs at least 6 touches, got 0 of 8400 points that it may use; 8400 face down or sideways' \
+"$HERE/../refuses" 'inward.pcd: a fit needs at least 6 touches, got 0 of 8400 points that it may use; 8400 face down or sideways' \
     fettle-fit job.json inward.pcd

@@ -408,7 +408,7 @@ TEST(Dense, RefusesPointsThatDetermineNothing)
     cloud::Cloud cloud = scan(1000, wavy, 0);
     cloud::Cloud nan = cloud;
     nan.xyz.row(2).setConstant(std::numeric_limits<double>::quiet_NaN());
-    EXPECT_EQ(refusal(nan), "points: a bspline fit needs at least 6 touches, got 0 of 1000 points that it may use");
+    EXPECT_EQ(refusal(nan), "points: a fit needs at least 6 touches, got 0 of 1000 points that it may use");
     cloud::Cloud line = cloud;
     line.xyz.row(1) = 0.3 * line.xyz.row(0);
     EXPECT_EQ(refusal(line), "points: touches lie on one line in x and y");

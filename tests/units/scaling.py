@@ -19,6 +19,7 @@ NEWTON = {"N": 1.0, "lbf": 4.4482216152605}
 # What a key measures, where it has a dimension: exponents of length and force. A key is "TOOL PATH", the path of a member of a report or a
 # document, or the name of a field; rows of nested arrays have their columns as the last part. The first pattern that matches counts.
 DIMENSIONS = [
+    ((1, 0), """assess u, assess v"""),  # passed through: a plane's are lengths in the file's unit, a patch's have none
     ((0, 0), """surfel *, path *, assess *, finish *, mill *, verify *"""),  # these write mm, whatever the unit of what they read
     ((0, 0), """* looked_at, * joints.*_at, align degrees_of_freedom.shift"""),
     ((0, 1), """*force, *force.min, *force.max, *force.down"""),
@@ -33,7 +34,7 @@ DIMENSIONS = [
     ((1, 0), """* mean, * mean_abs, * rms, * sd, * min, * max, * band, * p??, * median, * misfit, * max_distance, * worst"""),
     ((1, 0), """*regions.*.mean, *regions.*.mean_abs, *regions.*.rms, *regions.*.sd, *regions.*.min, *regions.*.max"""),
     ((1, 0), """*regions.*.band, *regions.*.p??, *_at, *histogram.limit, *weld_tolerance, *reference_sigma"""),
-    ((1, 0), """*touches.[012], *touch_sigma, *fit.rms, fit max_abs, * predicted_band, *.predicted_band, *shift, *shape.point"""),
+    ((1, 0), """*touches.[012], *touch_sigma, *fit.rms, fit max_abs, * predicted_band*, *.predicted_band*, *shift, *shape.point"""),
     ((1, 0), """*shape.scale, *shape.coefficients, *path_length, *layer_thickness, *layer_distance, *layers.thickness"""),
     ((1, 0), """*layers.distance, *step_over, *covering_length, * start, * step, *passes.from, *passes.to, *wheel_radius"""),
     ((1, 0), """*job.anomaly.*, *job.sampling.*, *probe.accuracy, *job.tolerance, *safe_height, *wheel.*, *feed.rate"""),
