@@ -70,8 +70,9 @@ struct Options {
 
 void add_usage(cli::Tool& t)
 {
-    t.example("fettle-sample jobs/hammer.json --on scans/hammer.stl --noise normal:0.1 --seed 7 > samples.pcd",
-              "touch a scanned hammer where Wang's rules say, 99 % of the touches within 0.1 mm");
+    t.example(
+        "fettle-sample jobs/hammer.json --on scans/hammer.stl --noise normal:0.1 --seed 7 > samples.pcd",
+        "touch a scanned hammer until the predicted error meets the tolerance, 99 % of the touches within 0.1 mm");
     t.reference("Wang 2007, 4.4.4 (touch points), eq. 4-5 (number of lines), Appendix A (hill climbing)");
 }
 

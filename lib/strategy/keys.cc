@@ -62,7 +62,7 @@ Keys::~Keys() { ::tcsetattr(terminal_, TCSANOW, &saved_settings_); }
 void Keys::update(double time, Stick& stick)
 {
     read_terminal();
-    if (is_gone_) stick.end = true;
+    if (is_closed_) stick.end = true;
     if (time >= release_time_ - kTimeRounding) stick.direction.setZero();
     while (!input_.empty() && stick.button == Button::none && !stick.end) {
         const char key = input_[0];
@@ -85,7 +85,7 @@ void Keys::update(double time, Stick& stick)
 bool Keys::has_stop()
 {
     read_terminal();
-    return is_gone_ || input_.find_first_of(kStopOrEnd) != std::string::npos;
+    return is_closed_ || input_.find_first_of(kStopOrEnd) != std::string::npos;
 }
 
 void Keys::discard()
@@ -100,7 +100,7 @@ void Keys::read_terminal()
     char buffer[64];
     ssize_t n = 0;
     while ((n = ::read(terminal_, buffer, sizeof buffer)) > 0) input_.append(buffer, n);
-    is_gone_ = is_gone_ || n < 0;
+    is_closed_ = is_closed_ || n < 0;
 }
 
 } // namespace fettle::strategy

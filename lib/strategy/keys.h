@@ -22,7 +22,7 @@ class Keys {
 
     /// Applies what has been typed up to now. @param time  of the steering, s
     void update(double time, Stick& stick);
-    /// True if the space bar or q was typed and has not been applied yet, or if the terminal is gone.
+    /// True if the space bar or q was typed and has not been applied yet, or if the terminal is closed.
     bool has_stop();
     /// Forgets what has been typed, but for q.
     void discard();
@@ -33,7 +33,7 @@ class Keys {
     int terminal_;
     termios saved_settings_ = {};
     std::string input_;       ///< typed, not yet applied
-    bool is_gone_ = false;    ///< the terminal
+    bool is_closed_ = false;  ///< the terminal
     double release_time_ = 0; ///< of the arrow key, steering time, s
 };
 
