@@ -75,6 +75,9 @@ OPENCV := -lopencv_imgproc -lopencv_core
 PNG    := -lpng
 MD     := -lmd
 FCL    := -lfcl -lccd
+PCL    := -lpcl_kdtree -lpcl_common
+# Segmentation needs more of PCL.
+PLACE  := $(PCL) -lpcl_segmentation -lpcl_sample_consensus -lpcl_search
 LDLIBS_ALL := -llzf -ltbb
 
 # The files that see OpenCV. Private: what a file needs before it, the precompiled header, is compiled as ever.
@@ -155,6 +158,8 @@ $(B)/study/%: $(B)/pipelines/programs/%.o $$(call archives,pipelines/programs/$$
 
 $(B)/tests/%: LDLIBS = $(CERES) $(OPENCV) $(PNG) $(MD) -lgtest_main -lgtest
 $(B)/tests/cloud_test: LDLIBS += -lpcl_io -lpcl_common
+$(B)/tests/clean_test: LDLIBS += $(PCL) -lpcl_filters -lpcl_search
+$(B)/tests/place_test: LDLIBS += $(PLACE)
 $(B)/tests/fcl_test: LDLIBS += $(FCL)
 $(B)/tests/%: $(B)/tests/lib/%.o $$(call archives,tests/lib/$$*)
 	@mkdir -p $(@D)
@@ -162,7 +167,7 @@ $(B)/tests/%: $(B)/tests/lib/%.o $$(call archives,tests/lib/$$*)
 
 $(B)/bench/%: LDLIBS = $(CERES) $(EMBREE) $(OPENCV) $(PNG) $(MD) -lbenchmark_main -lbenchmark
 $(B)/bench/tool_hull_bench: LDLIBS += $(FCL)
-$(B)/bench/libraries_bench: LDLIBS += -lpcl_kdtree -lpcl_common -lflann_cpp -llz4
+$(B)/bench/libraries_bench: LDLIBS += $(PCL) -lflann_cpp -llz4
 $(B)/bench/%: $(B)/tests/bench/%.o $$(call archives,tests/bench/$$*)
 	@mkdir -p $(@D)
 	$(CXX) $(LDFLAGS) -o $@ $^ $(LDLIBS) $(LDLIBS_ALL)
@@ -239,7 +244,7 @@ include tests/fuzz/fuzz.mk
 
 # --- the rest ---------------------------------------------------------------------------------------------------------
 demo:
-	@.ci/install-packages packages.txt --without-tests
+	@.ci/install-packages packages.txt --for-demo
 	@$(MAKE) --no-print-directory -j$(JOBS) $(call tools_named_in,pipelines/casting.mk)
 	@$(MAKE) --no-print-directory -j$(JOBS) -f pipelines/casting.mk B=$(B) demo
 

@@ -1,7 +1,6 @@
 #include "align/align_run.h"
 #include "cli/option.h"
 #include "cli/tool.h"
-#include "cloud/pcd.h"
 
 #include <algorithm>
 
@@ -22,6 +21,18 @@ align::HeldAxes held_axes(const std::string& text)
     return held;
 }
 
+/// A mesh is written as such where the suffix asks for STL or PLY; else, as ever, its vertices.
+void write_aligned(cli::Tool& t, const align::AlignRun& run, bool ascii)
+{
+    const std::string& name = t.output_name();
+    mesh::CloudMesh aligned = run.aligned;
+    if (!mesh::has_mesh_suffix(name)) aligned.triangles.resize(3, 0);
+    mesh::PartFormat format = mesh::part_format(name, "", aligned.is_mesh());
+    if (ascii && format != mesh::PartFormat::pcd) throw core::InputError("--ascii", "goes with PCD");
+    if (ascii) format = mesh::PartFormat::pcd_ascii;
+    mesh::write_cloud_mesh(t.output(), aligned, format, run.units);
+}
+
 } // namespace
 
 int main(int argc, char** argv)
@@ -32,7 +43,9 @@ int main(int argc, char** argv)
         "rotations, those that lay principal axes on each other among them, and the poses for which pairs of points "
         "vote; then iterative closest points, point to plane, trimmed and robust, minimises the distances. Without "
         "--overlap or --max-distance at least a third of the scan must lie on the reference. Out: the points of the "
-        "scan (vertices, if it is a mesh) moved by the matrix that is reported, bit for bit, with all their fields. "
+        "scan moved by the matrix that is reported, bit for bit, with all their fields; a mesh where the suffix of -o "
+        "is "
+        "stl or ply, else its vertices. "
         "Exit 1 if the steps did not converge on the reference.";
     return cli::tool_main(argc, argv, description, [](cli::Tool& t) {
         const std::string& scan_path = t.main_input("SCAN", "What is moved");
@@ -73,7 +86,7 @@ int main(int argc, char** argv)
         const align::AlignRun run = align::align_files(request);
 
         if (!out.empty()) align::write_transform(t.output_file(out), run.transform);
-        cloud::write_pcd(t.output(), run.aligned, run.units, cloud::pcd_encoding(ascii));
+        write_aligned(t, run, ascii);
         t.report() = run.report;
         for (const std::string& warning : run.warnings) t.warn(warning);
         return run.converged && (run.sure || !sure) ? cli::Verdict::yes : cli::Verdict::no;

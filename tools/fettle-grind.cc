@@ -141,6 +141,8 @@ int main(int argc, char** argv)
                      computing = std::chrono::duration<double>(Clock::now() - begun).count();
         t.note("machine time " + std::to_string(time) + " s, computing time " + std::to_string(computing) +
                " s, ratio " + std::to_string(time / computing));
+        if (const std::string doubt = strategy::peak_warning(run.force, plan.job); !doubt.empty())
+            t.warn(core::display_name(o.plan) + ": " + doubt);
         if (!run.finished) t.warn(core::display_name(o.plan) + ": " + run.failure);
         return run.finished ? cli::Verdict::yes : cli::Verdict::no;
     });

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <utility>
 
 namespace fettle::align {
 
@@ -28,30 +29,21 @@ Eigen::Matrix4d to_matrix(const Eigen::Isometry3d& motion, double mm)
     return matrix;
 }
 
-cloud::Cloud cloud_of(const mesh::MeshOrCloud& shape)
-{
-    cloud::Cloud vertices;
-    if (const auto* cloud = std::get_if<cloud::Cloud>(&shape))
-        return cloud::slice(*cloud, 0, static_cast<std::size_t>(cloud->size()));
-    vertices.xyz = std::get<mesh::Mesh>(shape).vertices;
-    return vertices;
-}
-
 /// What reading the two files left out, and sizes that are hardly meant.
-std::vector<std::string> file_warnings(const AlignRequest& request, const mesh::ShapeFile& scan,
+std::vector<std::string> file_warnings(const AlignRequest& request, const mesh::CloudMeshFile& scan,
                                        const mesh::ShapeFile& reference)
 {
     // A scan in mm seems a thousand times as long as its reference in m, and over ten times as long as one in inches.
     constexpr double kMaxScanToReference = 10, kMinScanToReference = 1.0 / 500;
     const std::string scan_name = core::display_name(request.scan);
-    const auto length = [](const mesh::ShapeFile& file) {
-        return geometry::finite_bounding_box(mesh::coordinates_of(file.shape)).sizes().norm();
+    const auto length = [](const Eigen::Matrix3Xd& points) {
+        return geometry::finite_bounding_box(points).sizes().norm();
     };
-    std::vector<std::string> list = job::shape_warnings(scan, scan_name, scan.units);
+    std::vector<std::string> list = job::shape_warnings(scan, scan_name);
     const std::string reference_name = core::display_name(request.reference);
     const auto more = job::shape_warnings(reference, reference_name, reference.units);
     list.insert(list.end(), more.begin(), more.end());
-    const double ratio = length(scan) / length(reference);
+    const double ratio = length(scan.part.points.xyz) / length(mesh::coordinates_of(reference.shape));
     if (ratio > kMaxScanToReference || ratio < kMinScanToReference)
         list.push_back(scan_name + ": is " + core::to_short_text(ratio) + " times as long as " + reference_name +
                        ": are the units of both right?");
@@ -63,7 +55,7 @@ std::vector<std::string> file_warnings(const AlignRequest& request, const mesh::
 AlignRun align_files(const AlignRequest& request)
 {
     const std::string scan_name = core::display_name(request.scan);
-    const mesh::ShapeFile scan = mesh::read_shape(request.scan, mesh::resolve_file_units(request.scan_unit));
+    mesh::CloudMeshFile scan = mesh::read_cloud_mesh(request.scan, mesh::resolve_file_units(request.scan_unit));
     const mesh::ShapeFile target =
         mesh::read_shape(request.reference, mesh::resolve_file_units(request.reference_unit));
     const double mm = scan.units.mm();
@@ -78,7 +70,9 @@ AlignRun align_files(const AlignRequest& request)
     const auto reference = core::with_error_prefix(core::display_name(request.reference), [&] {
         return std::visit([](const auto& shape) { return std::make_unique<AlignReference>(shape); }, target.shape);
     });
-    const OrientedPoints points = std::visit([](const auto& shape) { return oriented_points(shape); }, scan.shape);
+    const OrientedPoints points = scan.part.is_mesh()
+                                      ? oriented_points(mesh::Mesh{scan.part.points.xyz, scan.part.triangles})
+                                      : oriented_points(scan.part.points);
     const Alignment alignment = core::with_error_prefix(scan_name, [&] { return align(points, *reference, options); });
     if (!applies_start) run.transform = to_matrix(alignment.fit.T_reference_scan, mm);
     run.converged = alignment.fit.converged || applies_start;
@@ -86,10 +80,9 @@ AlignRun align_files(const AlignRequest& request)
     cloud::Cloud sample; // the points that were aligned
     sample.xyz = points.xyz;
     run.report = to_json(alignment, run.transform, transformed(sample, run.transform, mm).xyz, *reference, run.units);
-    if (const auto* cloud = std::get_if<cloud::Cloud>(&scan.shape))
-        run.report.set("dropped", cloud->size() - points.xyz.cols());
-    run.aligned = transformed(cloud_of(scan.shape), run.transform, mm);
+    if (!scan.part.is_mesh()) run.report.set("dropped", scan.part.points.size() - points.xyz.cols());
     run.warnings = file_warnings(request, scan, target);
+    run.aligned = {transformed(std::move(scan.part.points), run.transform, mm), std::move(scan.part.triangles)};
     const std::vector<std::string> doubtful = doubts(alignment, options.icp);
     for (const std::string& doubt : doubtful) run.warnings.push_back(scan_name + ": " + doubt);
     run.sure = doubtful.empty();

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "align/align.h"
-#include "cloud/cloud.h"
+#include "mesh/cloud_mesh.h"
 #include "units/units.h"
 #include "json/document.h"
 
@@ -25,7 +25,7 @@ struct AlignRequest {
 
 struct AlignRun {
     Eigen::Matrix4d transform; ///< p_reference = transform · p_scan
-    cloud::Cloud aligned;      ///< the scan's points, or vertices, with all their fields
+    mesh::CloudMesh aligned;   ///< the scan, with all its fields and triangles
     units::Units units;        ///< of the scan
     json::Value report;
     std::vector<std::string> warnings;

@@ -95,6 +95,8 @@ void Tool::parse()
 
 std::uint64_t Tool::seed() const { return static_cast<std::uint64_t>(state_->seed); }
 
+const std::string& Tool::output_name() const { return state_->output; }
+
 std::ostream& Tool::output() { return state_->outputs.main(); }
 
 void Tool::reserve_output(const std::string& path) { state_->outputs.reserve(path); }

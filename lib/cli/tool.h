@@ -95,6 +95,8 @@ class Tool {
 
     std::uint64_t seed() const;
 
+    /// Name of the main output, "-" for stdout: its suffix may say in which format to write.
+    const std::string& output_name() const;
     /// The main output: -o FILE, or stdout. It is written atomically when the tool has ended without an exception.
     std::ostream& output();
     /// Another output, also written atomically.

@@ -8,6 +8,7 @@
 #include <opencv2/core/version.hpp>
 #include <tbb/version.h>
 
+#include <string>
 #include <string_view>
 
 #define FETTLE_TEXT_OF(number) #number
@@ -18,15 +19,34 @@ namespace fettle::cli {
 
 namespace {
 
-/// Whether this program is linked with a shared library. @param name  its file's, up to the first dot
-bool is_linked(std::string_view name)
+/// File of a shared library that this program is linked with, "libtbb.so.12"; empty if it is not.
+/// @param name  of the file, up to the first dot
+std::string linked_file(std::string_view name)
 {
-    const auto matches = [](dl_phdr_info* library, std::size_t, void* wanted) {
+    struct Search {
+        std::string_view name;
+        std::string found;
+    } search{name, {}};
+    const auto matches = [](dl_phdr_info* library, std::size_t, void* data) {
+        Search& wanted = *static_cast<Search*>(data);
         const std::string_view path = library->dlpi_name;
         const std::string_view file = path.substr(path.rfind('/') + 1);
-        return file.substr(0, file.find('.')) == *static_cast<std::string_view*>(wanted) ? 1 : 0;
+        if (file.substr(0, file.find('.')) != wanted.name) return 0;
+        wanted.found = file;
+        return 1;
     };
-    return dl_iterate_phdr(matches, &name) != 0;
+    dl_iterate_phdr(matches, &search);
+    return search.found;
+}
+
+bool is_linked(std::string_view name) { return !linked_file(name).empty(); }
+
+/// The version in the name of a shared library's file: "1.13" of "libpcl_kdtree.so.1.13".
+std::string version_of(const std::string& file)
+{
+    constexpr std::string_view kBefore = ".so.";
+    const std::size_t at = file.find(kBefore);
+    return at == std::string::npos ? "" : file.substr(at + kBefore.size());
 }
 
 } // namespace
@@ -44,6 +64,8 @@ std::string describe_build()
                                                          NLOHMANN_JSON_VERSION_PATCH);
     if (is_linked("libceres")) text += ", Ceres " CERES_VERSION_STRING;
     if (is_linked("libopencv_core")) text += ", OpenCV " CV_VERSION;
+    // Its headers are not at hand where only the demonstration is built.
+    if (const std::string file = linked_file("libpcl_kdtree"); !file.empty()) text += ", PCL " + version_of(file);
     if (is_linked("libtbb")) text += ", oneTBB " TBB_VERSION_STRING;
     return text;
 }

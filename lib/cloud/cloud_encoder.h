@@ -20,7 +20,11 @@ struct CloudWriter::Encoder {
     bool begun = false;
 };
 
-std::unique_ptr<CloudWriter::Encoder> ply_encoder(std::ostream& out, const units::Units& units, std::size_t points);
+/// @param faces  that the header announces; write_ply_faces() writes them after the points
+std::unique_ptr<CloudWriter::Encoder> ply_encoder(std::ostream& out, const units::Units& units, std::size_t points,
+                                                  std::size_t faces = 0);
+/// @param triangles  3xT, indices of points
+void write_ply_faces(std::ostream& out, const Eigen::Matrix3Xi& triangles);
 std::unique_ptr<CloudWriter::Encoder> vtk_encoder(std::ostream& out, const units::Units& units, std::size_t points);
 
 /// True for a field of colours packed as in PCL, 0x00RRGGBB.

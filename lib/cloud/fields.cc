@@ -69,6 +69,16 @@ void scale_field(Field& field, double times, double over)
     });
 }
 
+void to_base_units(Cloud& cloud, const units::Units& units)
+{
+    if (units == units::Units{}) return;
+    cloud.xyz *= units.mm();
+    cloud.view_origin *= units.mm();
+    for (Field& field : cloud.fields)
+        if (const double factor = units::base_unit_factor(units, field_dimension(field.name)); factor != 1)
+            scale_field(field, factor);
+}
+
 std::vector<Field> to_file_units(std::vector<Field> fields, const units::Units& units)
 {
     for (Field& field : fields)

@@ -24,6 +24,8 @@ void append_element(std::string& text, const Field& field, char type, std::size_
 
 /// Scales all elements of a field to value * times / over. An integer field becomes F8: 1 in is not an integer in mm.
 void scale_field(Field& field, double times, double over = 1);
+/// Converts a cloud with its fields, in place, to base units. @param units  of its numbers
+void to_base_units(Cloud& cloud, const units::Units& units);
 /// Converts fields from base units.
 /// @return  the fields in `units`
 std::vector<Field> to_file_units(std::vector<Field> fields, const units::Units& units);

@@ -133,16 +133,6 @@ Cloud read_ascii(const PcdHeader& header, std::string_view body, const std::stri
     return gather(header, buffer.get());
 }
 
-void convert_to_base(Cloud& cloud, const units::Units& units)
-{
-    if (units == units::Units{}) return;
-    cloud.xyz *= units.mm();
-    cloud.view_origin *= units.mm();
-    for (Field& field : cloud.fields)
-        if (const double factor = units::base_unit_factor(units, field_dimension(field.name)); factor != 1)
-            scale_field(field, factor);
-}
-
 void set_width_and_viewpoint(Cloud& cloud, const PcdHeader& header)
 {
     cloud.width = header.height > 1 ? header.width : 0;
@@ -172,7 +162,7 @@ Cloud parse_pcd_records(const PcdHeader& header, std::string_view records, const
     part_header.points = records.size() / header.stride();
     Cloud cloud = gather(part_header, records.data());
     set_width_and_viewpoint(cloud, header);
-    convert_to_base(cloud, units);
+    to_base_units(cloud, units);
     return cloud;
 }
 
@@ -191,7 +181,7 @@ CloudFile parse_cloud(std::string_view bytes, const std::string& source, std::op
         if (!looks_like_pcd(bytes)) core::refuse_other_content(bytes, source, "points");
         file = parse_pcd(bytes, source, units);
     }
-    convert_to_base(file.cloud, file.units);
+    to_base_units(file.cloud, file.units);
     check_coordinate_range(file.cloud.xyz, source);
     return file;
 }

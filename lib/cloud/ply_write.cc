@@ -65,8 +65,8 @@ WrittenProperty channel(const std::string& name, int shift)
 
 class PlyEncoder : public CloudWriter::Encoder {
   public:
-    PlyEncoder(std::ostream& out, const units::Units& units, std::size_t points)
-        : out_(out), units_(units), points_(points)
+    PlyEncoder(std::ostream& out, const units::Units& units, std::size_t points, std::size_t faces)
+        : out_(out), units_(units), points_(points), faces_(faces)
     {
     }
 
@@ -87,6 +87,7 @@ class PlyEncoder : public CloudWriter::Encoder {
                 stride_ += property.size;
             }
         }
+        if (faces_ > 0) out_ << "element face " << faces_ << "\nproperty list uchar int vertex_indices\n";
         out_ << "end_header\n";
     }
 
@@ -123,16 +124,29 @@ class PlyEncoder : public CloudWriter::Encoder {
 
     std::ostream& out_;
     units::Units units_;
-    std::size_t points_;
+    std::size_t points_, faces_;
     std::size_t stride_ = sizeof(float) * 3;
     std::vector<std::vector<WrittenProperty>> properties_; ///< properties of each field
 };
 
 } // namespace
 
-std::unique_ptr<CloudWriter::Encoder> ply_encoder(std::ostream& out, const units::Units& units, std::size_t points)
+std::unique_ptr<CloudWriter::Encoder> ply_encoder(std::ostream& out, const units::Units& units, std::size_t points,
+                                                  std::size_t faces)
 {
-    return std::make_unique<PlyEncoder>(out, units, points);
+    return std::make_unique<PlyEncoder>(out, units, points, faces);
+}
+
+void write_ply_faces(std::ostream& out, const Eigen::Matrix3Xi& triangles)
+{
+    constexpr std::size_t kCornerBytes = 3 * sizeof(std::int32_t), kFaceBytes = 1 + kCornerBytes;
+    std::vector<char> bytes(kFaceBytes * static_cast<std::size_t>(triangles.cols()));
+    char* to = bytes.data();
+    for (Eigen::Index t = 0; t < triangles.cols(); ++t, to += kFaceBytes) {
+        *to = 3;
+        std::memcpy(to + 1, triangles.col(t).data(), kCornerBytes);
+    }
+    out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
 }
 
 } // namespace fettle::cloud

@@ -13,7 +13,7 @@ namespace fettle::fit {
 // with a family f, linear in θ near the fit, a Gaussian process g and noise e. The correlation and amplitude of g are
 // integrated out as in process.h, and so is what the noise exceeds its estimate by.
 //
-// Nothing tells the part's waves from the scanner's. Those shorter than half of B cannot be foretold beneath it either
+// Nothing tells the part's waves from the scanner's. Those shorter than half of B cannot be predicted beneath it either
 // way; they are taken for the part's and for the scanner's with the same probability, so that beside B the surface
 // follows them half, and its standard deviation is that half.
 

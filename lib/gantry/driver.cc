@@ -11,11 +11,6 @@
 namespace fettle::gantry {
 namespace {
 
-/// A move may end this far from its target, where a machine rounds the corner to the next one.
-constexpr double kPositionTolerance = 5; // mm
-/// Tolerances for the speed and the clock of a machine, which are reported with a few digits.
-constexpr double kSpeedFactor = 1.01;
-constexpr double kTimeTolerance = 0.01; // s
 /// Longest duration of a move relative to its length and speed.
 constexpr double kMaxDurationFactor = 3;
 // Limits in s: for the start of the driver; for homing and a touch-off; for a wheel change by hand; for a stop.
@@ -23,19 +18,8 @@ constexpr double kStartTime = 10, kServiceTime = 30, kWheelTime = 3600, kStopTim
 /// The clock of a machine that simulates is not ours: what is not a step at a known feed may take as long as the
 /// longest command does.
 constexpr double kMaxSimulatedTime = kMaxDurationFactor * kWheelTime; // s
-/// A machine's clock counts from its start: it has been on for less than a year. The seconds since 1970 are more.
-constexpr double kMaxStartClock = 3e7; // s
 /// F_max comes back as it was sent, but for the digits of its text.
 constexpr double kEchoTolerance = 1e-6; // relative
-/// New wheels are cut to a few percent of their size; one that measures more is another wheel, or no measurement.
-constexpr double kMaxRadiusFactor = 1.1; // relative to the job's
-/// A guarded descent stops for F_max; drives that brake early stop for half of it.
-constexpr double kMinGuardShare = 0.25; // of F_max
-
-std::string words(const Eigen::Vector3d& p)
-{
-    return core::to_text(p.x()) + " " + core::to_text(p.y()) + " " + core::to_text(p.z());
-}
 
 } // namespace
 
@@ -92,22 +76,43 @@ DriverGantry::~DriverGantry()
 GantryStatus DriverGantry::travel(const Eigen::Vector3d& tool_point)
 {
     const double distance = (tool_point - status_.commanded).norm() + 2 * (limits_.max.z() - tool_point.z());
-    return move("travel " + words(tool_point), tool_point, distance / limits_.speed, true);
+    return move("travel " + protocol::to_words(tool_point), tool_point, distance / limits_.speed, true);
+}
+
+/// A driver that answers its first `travel_low` by an error does not know the command.
+GantryStatus DriverGantry::travel_low(const Eigen::Vector3d& tool_point, double over, double free)
+{
+    if (travels_low_ == Known::no) return travel(tool_point);
+    check_range(tool_point);
+    check_range({tool_point.x(), tool_point.y(), over});
+    const std::string command =
+        "travel_low " + protocol::to_words(tool_point) + " " + core::to_text(over) + " " + core::to_text(free);
+    const double up = std::max(over, status_.commanded.z());
+    const double distance =
+        (tool_point - status_.commanded).head<2>().norm() + 2 * up - status_.commanded.z() - tool_point.z();
+    const Answer answer = exchange(command, distance / limits_.speed);
+    if (answer.is_error && travels_low_ == Known::not_yet) {
+        travels_low_ = Known::no;
+        return travel(tool_point);
+    }
+    travels_low_ = Known::yes;
+    return end_move(answer, command, tool_point, true);
 }
 
 GantryStatus DriverGantry::grind(const Eigen::Vector3d& tool_point, double feed)
 {
     check_feed(feed);
     const double distance = (tool_point - status_.commanded).norm();
-    return move("move " + words(tool_point) + " " + core::to_text(feed), tool_point, distance / feed, false);
+    return move("move " + protocol::to_words(tool_point) + " " + core::to_text(feed), tool_point, distance / feed,
+                false);
 }
 
 GantryStatus DriverGantry::press(const Eigen::Vector3d& tool_point, double feed, double force)
 {
     check_feed(feed);
     const double distance = (tool_point - status_.commanded).head<2>().norm();
-    return move("press " + words(tool_point) + " " + core::to_text(feed) + " " + core::to_text(force), tool_point,
-                distance / feed, true);
+    return move("press " + protocol::to_words(tool_point) + " " + core::to_text(feed) + " " + core::to_text(force),
+                tool_point, distance / feed, true);
 }
 
 GantryStatus DriverGantry::lift(double commanded_z)
@@ -126,26 +131,14 @@ double DriverGantry::touch_off()
     return radius;
 }
 
-/// A wheel does not grow, and it is not larger than the job's.
-void DriverGantry::check_radius(double radius)
-{
-    const std::string measured = "measures a wheel of " + core::to_short_text(radius) + " mm";
-    if (!(radius > 0)) fail(measured);
-    if (radius > kMaxRadiusFactor * new_radius_)
-        fail(measured + "; a new one has " + core::to_short_text(new_radius_) + " mm");
-    if (last_radius_ > 0 && radius > last_radius_ + height_tolerance_)
-        fail(measured + ", which had " + core::to_short_text(last_radius_) + " mm before");
-    last_radius_ = radius;
-}
-
 double DriverGantry::probe(const Eigen::Vector2d& xy, double lowest)
 {
     const Eigen::Vector3d end(xy.x(), xy.y(), lowest);
     check_range(end);
-    const std::string command = "probe " + words(end);
+    const std::string command = "probe " + protocol::to_words(end);
     const double z = measure(command, kServiceTime + (end - status_.commanded).norm() / limits_.speed);
     check_position(end, command);
-    if (z < lowest - kPositionTolerance || z > status_.commanded.z() + kPositionTolerance)
+    if (z < lowest - protocol::kPositionTolerance || z > status_.commanded.z() + protocol::kPositionTolerance)
         fail("touches at z " + core::to_text(z) + " after '" + command + "'");
     return z;
 }
@@ -158,8 +151,20 @@ void DriverGantry::change_wheel()
     last_radius_ = 0;
 }
 
-/// Sends a command and waits for its answer. @return  the answer without number and "ok"
+/// @return  the answer of a driver that has done it
 std::string DriverGantry::request(const std::string& command, double duration)
+{
+    return text_of(exchange(command, duration));
+}
+
+std::string DriverGantry::text_of(const Answer& answer)
+{
+    if (answer.is_error) fail("reports: " + answer.text);
+    return answer.text;
+}
+
+/// Sends a command and waits for its answer.
+DriverGantry::Answer DriverGantry::exchange(const std::string& command, double duration)
 {
     check_interrupt();
     const std::string number = std::to_string(++last_number_);
@@ -180,10 +185,10 @@ std::string DriverGantry::request(const std::string& command, double duration)
     }
     std::string_view rest = line;
     const std::string_view answered = protocol::next_word(rest), verdict = protocol::next_word(rest);
-    if (verdict == "error" && answered == number) fail("reports: " + std::string(rest));
+    if (verdict == "error" && answered == number) return {true, std::string(rest)};
     if (verdict != "ok") fail("makes no sense: '" + line.substr(0, 60) + "'");
     if (answered != number) fail("answers number " + std::string(answered) + " instead of " + number);
-    return std::string(rest);
+    return {false, std::string(rest)};
 }
 
 /// Executes a command whose answer is a number, or "none" (NaN), and a status.
@@ -222,70 +227,23 @@ const GantryStatus& DriverGantry::move(const std::string& command, const Eigen::
                                        bool guarded)
 {
     check_range(target);
-    execute(command, duration);
+    return end_move(exchange(command, duration), command, target, guarded);
+}
+
+/// Takes in the answer to a move.
+const GantryStatus& DriverGantry::end_move(const Answer& answer, const std::string& command,
+                                           const Eigen::Vector3d& target, bool guarded)
+{
+    const std::string status = text_of(answer);
+    parse_or_fail([&] { accept(protocol::parse_status(status)); });
     if (status_.force >= head_.max_force) return status_; // the guard has stopped the move early
     const Eigen::Vector3d off = status_.commanded - target;
     const bool held = guarded && off.z() > 0; // the descent ended early
-    if (off.head<2>().norm() > kPositionTolerance || (!held && std::abs(off.z()) > kPositionTolerance))
-        fail("stands at " + words(status_.commanded) + " after '" + command + "'");
+    if (off.head<2>().norm() > protocol::kPositionTolerance ||
+        (!held && std::abs(off.z()) > protocol::kPositionTolerance))
+        fail("stands at " + protocol::to_words(status_.commanded) + " after '" + command + "'");
     if (held && !command.starts_with("press ")) check_contact(target, command);
     return status_;
-}
-
-/// A guarded descent ends early on metal, and the head must have felt it: or the strategy would take air for metal.
-void DriverGantry::check_contact(const Eigen::Vector3d& target, const std::string& command)
-{
-    const double above = status_.commanded.z() - target.z();
-    if (above > height_tolerance_ && status_.peak_force < kMinGuardShare * head_.max_force)
-        fail("stops " + core::to_short_text(above) + " mm early after '" + command + "', but felt at most " +
-             core::to_short_text(status_.peak_force) + " N");
-}
-
-void DriverGantry::accept(const GantryStatus& status)
-{
-    check_head(head_, status);
-    check_time(status.time);
-    const double time = status.time - status_.time;
-    const double distance = (status.commanded - status_.commanded).norm();
-    if (has_status_ && distance > kSpeedFactor * limits_.speed * (time + kTimeTolerance))
-        throw GantryFault("jumps by " + core::to_short_text(distance) + " mm in " + core::to_short_text(time) + " s");
-    if (((status.commanded - limits_.min).array() < -kPositionTolerance).any() ||
-        ((status.commanded - limits_.max).array() > kPositionTolerance).any())
-        throw GantryFault("stands at " + words(status.commanded) + ", out of its range");
-    status_ = status;
-    status_clock_ = std::chrono::steady_clock::now();
-    has_status_ = true;
-}
-
-/// Between two answers the clock advances by the time of the command, and by that in which the client was idle.
-void DriverGantry::check_time(double time) const
-{
-    const std::chrono::duration<double> waited = std::chrono::steady_clock::now() - status_clock_;
-    if (!has_status_ && !(std::abs(time) <= kMaxStartClock))
-        throw GantryFault("begins at " + core::to_short_text(time) + " s, which is no time since the machine's start");
-    if (!has_status_) return;
-    if (time < status_.time) throw GantryFault("goes back in time, to " + core::to_text(time) + " s");
-    if (time - status_.time > max_duration_ + waited.count())
-        throw GantryFault("jumps ahead in time by " + core::to_short_text(time - status_.time) + " s");
-}
-
-/// The machine has to be above the expected position, at any height.
-void DriverGantry::check_position(const Eigen::Vector3d& expected, const std::string& command)
-{
-    if ((status_.commanded - expected).head<2>().norm() > kPositionTolerance)
-        fail("stands at " + words(status_.commanded) + " after '" + command + "'");
-}
-
-void DriverGantry::check_range(const Eigen::Vector3d& target) const
-{
-    if ((target.array() >= limits_.min.array()).all() && (target.array() <= limits_.max.array()).all()) return;
-    throw core::InputError(command_, "the machine does not reach " + words(target) + " mm");
-}
-
-void DriverGantry::check_feed(double feed) const
-{
-    if (!(feed > 0 && feed <= limits_.speed))
-        throw core::InputError("gantry", "a feed of " + core::to_text(feed) + " mm/s is not in the machine's range");
 }
 
 /// Asks the driver to stop the machine; the destructor of child_ terminates the driver.

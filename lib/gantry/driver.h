@@ -36,6 +36,7 @@ class DriverGantry final : public Gantry {
     DriverGantry& operator=(const DriverGantry&) = delete;
 
     GantryStatus travel(const Eigen::Vector3d& tool_point) override;
+    GantryStatus travel_low(const Eigen::Vector3d& tool_point, double over, double free) override;
     GantryStatus grind(const Eigen::Vector3d& tool_point, double feed) override;
     GantryStatus press(const Eigen::Vector3d& tool_point, double feed, double force) override;
     GantryStatus lift(double commanded_z) override;
@@ -44,17 +45,26 @@ class DriverGantry final : public Gantry {
     double probe(const Eigen::Vector2d& xy, double lowest) override;
     void turn_to(double theta) override;
     GantryStatus status() const override { return status_; }
+    double max_feed() const override { return limits_.speed; }
     const protocol::Limits& limits() const { return limits_; }
 
   private:
     void connect(const job::Job& job);
     void set_limit(double force);
+    struct Answer {
+        bool is_error;
+        std::string text; ///< without number and verdict
+    };
+    Answer exchange(const std::string& command, double duration);
+    std::string text_of(const Answer& answer);
     std::string request(const std::string& command, double duration);
     ChildProcess::Received receive(double timeout, std::string& line);
     [[noreturn]] void halt(double timeout);
     bool receive_answer_of_halt(const std::string& number, double timeout);
     double measure(const std::string& command, double duration);
     void execute(const std::string& command, double duration);
+    const GantryStatus& end_move(const Answer& answer, const std::string& command, const Eigen::Vector3d& target,
+                                 bool guarded);
     const GantryStatus& move(const std::string& command, const Eigen::Vector3d& target, double duration, bool guarded);
     template <class Parse>
     void parse_or_fail(const Parse& parse);
@@ -81,6 +91,8 @@ class DriverGantry final : public Gantry {
     std::chrono::steady_clock::time_point status_clock_; ///< when that status came
     double max_duration_ = 0;                            ///< of the command under way, on the machine's clock, s
     bool failed_ = false;
+    enum class Known { not_yet, yes, no };
+    Known travels_low_ = Known::not_yet; ///< whether the driver knows the command
 };
 
 } // namespace fettle::gantry

@@ -95,6 +95,19 @@ GantryStatus DynamicGantry::travel(const Eigen::Vector3d& tool_point)
     return lift(tool_point.z());
 }
 
+GantryStatus DynamicGantry::travel_low(const Eigen::Vector3d& tool_point, double over, double free)
+{
+    check_range(tool_point);
+    check_range({tool_point.x(), tool_point.y(), over});
+    begin_move();
+    raise_from_part(over);
+    const double across = std::min(machine_.axes[0].speed, machine_.axes[1].speed);
+    move_to({tool_point.x(), tool_point.y(), reference_.p.z()}, across, false);
+    const double down = std::max(free, tool_point.z());
+    if (down < reference_.p.z()) move_to({tool_point.x(), tool_point.y(), down}, machine_.axes[2].speed, false);
+    return lift(tool_point.z());
+}
+
 GantryStatus DynamicGantry::lift(double commanded_z)
 {
     check_range({reference_.p.x(), reference_.p.y(), commanded_z});
@@ -248,11 +261,13 @@ void DynamicGantry::lower_to(double z)
             true);
 }
 
-void DynamicGantry::go_to_safe_height()
+void DynamicGantry::go_to_safe_height() { raise_from_part(safe_height_); }
+
+void DynamicGantry::raise_from_part(double z)
 {
     time_bucket_ = TimeBucket::travel;
     stop();
-    const Eigen::Vector3d up(reference_.p.x(), reference_.p.y(), std::max(safe_height_, reference_.p.z()));
+    const Eigen::Vector3d up(reference_.p.x(), reference_.p.y(), std::max(z, reference_.p.z()));
     move_to(up, machine_.axes[2].speed, false);
     line_end_ = reference_.p;
 }

@@ -38,6 +38,7 @@ class DynamicGantry final : public VirtualGantry {
 
     /// All four: @throws GantryFault, InputError for a target outside the machine's range
     GantryStatus travel(const Eigen::Vector3d& tool_point) override;
+    GantryStatus travel_low(const Eigen::Vector3d& tool_point, double over, double free) override;
     GantryStatus grind(const Eigen::Vector3d& tool_point, double feed) override;
     GantryStatus press(const Eigen::Vector3d& tool_point, double feed, double force) override;
     GantryStatus lift(double commanded_z) override;
@@ -57,6 +58,7 @@ class DynamicGantry final : public VirtualGantry {
     double max_contact_speed(double force) const;
     void lower_to(double z);
     void go_to_safe_height() override;
+    void raise_from_part(double z);
     void move_reference(const Eigen::Vector3d& velocity);
     void simulate_period();
     void check_following_error() const;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <exception>
 #include <functional>
+#include <limits>
 #include <utility>
 
 namespace fettle::gantry {
@@ -45,6 +46,9 @@ class Gantry {
     /// Travels without grinding: up to the safe height, across, down to `tool_point`. The descent is guarded: the
     /// drives stop early (see `commanded`) where the force reaches the head's F_max.
     virtual GantryStatus travel(const Eigen::Vector3d& tool_point) = 0;
+    /// Travels where the stock is known: up to z = `over` if it stands lower, across, down to z = `free`, and then
+    /// guarded as travel() does. A machine that only knows travel() goes over the safe height.
+    virtual GantryStatus travel_low(const Eigen::Vector3d& tool_point, double over, double free);
     /// Grinds in a straight line to `tool_point` at `feed`, mm/s. One step of the strategy: a few tenths of a mm to
     /// some mm.
     virtual GantryStatus grind(const Eigen::Vector3d& tool_point, double feed) = 0;
@@ -68,6 +72,8 @@ class Gantry {
     /// GantryFault.
     virtual void turn_to(double theta);
     virtual GantryStatus status() const = 0;
+    /// Largest feed that grind() takes, mm/s.
+    virtual double max_feed() const { return std::numeric_limits<double>::infinity(); }
 
     /// Lets the operator stop the machine: `interrupt` is asked before each move, and during it as often as the machine
     /// can. Where it returns true the move ends at once with Interrupted, and nothing is asked until this is called
@@ -99,6 +105,11 @@ inline GantryStatus retract(Gantry& gantry, double safe_height)
     const GantryStatus now = gantry.status();
     const double free = now.commanded.z() + now.deflection + kClearance;
     return gantry.lift(std::max(std::min(free, safe_height), now.commanded.z()));
+}
+
+inline GantryStatus Gantry::travel_low(const Eigen::Vector3d& tool_point, double /*over*/, double /*free*/)
+{
+    return travel(tool_point);
 }
 
 inline GantryStatus Gantry::press(const Eigen::Vector3d& /*tool_point*/, double /*feed*/, double /*force*/)

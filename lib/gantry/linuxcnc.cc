@@ -56,7 +56,17 @@ protocol::Limits LinuxcncGantry::limits() const
 GantryStatus LinuxcncGantry::travel(const Eigen::Vector3d& tool_point)
 {
     finish_motion();
-    travel_over(tool_point.head<2>());
+    travel_over(tool_point.head<2>(), job_.safe_height);
+    lower_to(tool_point.z());
+    return status_;
+}
+
+GantryStatus LinuxcncGantry::travel_low(const Eigen::Vector3d& tool_point, double over, double free)
+{
+    finish_motion();
+    travel_over(tool_point.head<2>(), over);
+    const double down = std::max(free, tool_point.z());
+    if (down < status_.commanded.z()) run("G0" + word("Z", down - wheel_wear()));
     lower_to(tool_point.z());
     return status_;
 }
@@ -146,9 +156,9 @@ void LinuxcncGantry::change_wheel()
     raise_to(job_.safe_height);
 }
 
-void LinuxcncGantry::travel_over(const Eigen::Vector2d& xy)
+void LinuxcncGantry::travel_over(const Eigen::Vector2d& xy, double height)
 {
-    raise_to(std::max(job_.safe_height, status_.commanded.z()));
+    raise_to(std::max(height, status_.commanded.z()));
     run("G0" + word("X", xy.x()) + word("Y", xy.y()));
 }
 

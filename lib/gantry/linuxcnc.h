@@ -23,6 +23,7 @@ class LinuxcncGantry final : public Gantry {
 
     protocol::Limits limits() const;
     GantryStatus travel(const Eigen::Vector3d& tool_point) override;
+    GantryStatus travel_low(const Eigen::Vector3d& tool_point, double over, double free) override;
     GantryStatus grind(const Eigen::Vector3d& tool_point, double feed) override;
     /// Starts from the safe height, and returns to it before any other motion.
     GantryStatus press(const Eigen::Vector3d& tool_point, double feed, double force) override;
@@ -44,7 +45,7 @@ class LinuxcncGantry final : public Gantry {
     void step_to(const Eigen::Vector3d& end, const std::string& words, double feed);
     void lower_to(double z);
     void raise_to(double z);
-    void travel_over(const Eigen::Vector2d& xy);
+    void travel_over(const Eigen::Vector2d& xy, double height);
     double touch_down(double lowest);
     Eigen::Vector3d path_position() const;
     double remaining_path_length();

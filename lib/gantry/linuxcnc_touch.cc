@@ -20,19 +20,19 @@ double LinuxcncGantry::touch_off()
     finish_motion();
     update_status();
     const Eigen::Vector2d xy = status_.commanded.head<2>();
-    travel_over(plate_.head<2>());
+    travel_over(plate_.head<2>(), job_.safe_height);
     run("G0" + word("Z", plate_.z() + kPlateClearance));
     const double z = touch_down(plate_.z() - new_radius_);
     if (std::isnan(z)) throw GantryFault("the calibration plate was not found at its position");
     measured_radius_ = z + new_radius_ - plate_.z();
-    travel_over(xy);
+    travel_over(xy, job_.safe_height);
     return measured_radius_;
 }
 
 double LinuxcncGantry::probe(const Eigen::Vector2d& xy, double lowest)
 {
     finish_motion();
-    travel_over(xy);
+    travel_over(xy, job_.safe_height);
     link_.set_tip(true);
     const auto end = [&] {
         raise_to(job_.safe_height);

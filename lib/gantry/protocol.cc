@@ -49,6 +49,8 @@ std::string_view next_word(std::string_view& line)
     return word;
 }
 
+std::string to_words(const Eigen::Vector3d& p) { return join({p.x(), p.y(), p.z()}); }
+
 std::string to_line(const Limits& l)
 {
     return join({l.min.x(), l.max.x(), l.min.y(), l.max.y(), l.min.z(), l.max.z(), l.speed, l.force});

@@ -21,6 +21,10 @@ struct Limits {
     double force = 0;         ///< largest F_max that it accepts, N
 };
 
+/// A move may end this far from its target, where a machine rounds the corner to the next one.
+inline constexpr double kPositionTolerance = 5; // mm
+
+std::string to_words(const Eigen::Vector3d& point);
 std::string to_line(const Limits& limits);
 std::string to_line(const GantryStatus& status);
 

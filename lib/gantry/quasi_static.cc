@@ -9,6 +9,8 @@ namespace {
 
 /// A length that exceeds a whole number of steps by less gets no additional step.
 constexpr double kStepCountTolerance = 1e-6;
+/// A guarded descent slows down towards F_max, to this share of a step.
+constexpr double kMinGuardedShare = 0.1;
 
 /// Fractions of a move, ascending, the last one 1.
 std::vector<double> equal_steps(double length, double step)
@@ -40,8 +42,14 @@ QuasiStaticGantry::QuasiStaticGantry(removal::HeightField stock, const job::Job&
 
 GantryStatus QuasiStaticGantry::travel(const Eigen::Vector3d& tool_point)
 {
+    return travel_low(tool_point, safe_height_, safe_height_);
+}
+
+/// The drives lower the wheel at one speed, free or guarded.
+GantryStatus QuasiStaticGantry::travel_low(const Eigen::Vector3d& tool_point, double over, double /*free*/)
+{
     begin_move();
-    go_to_safe_height();
+    if (over > status_.commanded.z()) raise_to(over);
     const double across = (tool_point - status_.commanded).head<2>().norm();
     advance_time(across / rapid_, TimeBucket::travel);
     status_.commanded.head<2>() = tool_point.head<2>();
@@ -106,7 +114,7 @@ void QuasiStaticGantry::go_to_safe_height()
 /// The spring relaxes on the way up; what the wheel grinds in these milliseconds counts.
 void QuasiStaticGantry::raise_to(double z)
 {
-    while (status_.force > 0 && status_.commanded.z() < z) sub_step_towards(z);
+    while (status_.force > 0 && status_.commanded.z() < z) sub_step_towards(z, options_.substep * stock_.cell);
     advance_time((z - status_.commanded.z()) / lift_speed_, TimeBucket::travel);
     status_.commanded.z() = z;
 }
@@ -119,12 +127,15 @@ void QuasiStaticGantry::lower_to(double z)
     const double free = std::clamp(wheel_.touch() - wheel_wear(), z, std::max(z, status_.commanded.z()));
     advance_time((status_.commanded.z() - free) / lift_speed_, TimeBucket::travel);
     status_.commanded.z() = free;
-    while (status_.commanded.z() > z && status_.force < max_force_) sub_step_towards(z);
+    while (status_.commanded.z() > z && status_.force < max_force_) {
+        const double room = (max_force_ - status_.force) / spring_.stiffness, step = options_.substep * stock_.cell;
+        sub_step_towards(z, std::clamp(room, kMinGuardedShare * step, step));
+    }
 }
 
-void QuasiStaticGantry::sub_step_towards(double z)
+void QuasiStaticGantry::sub_step_towards(double z, double step)
 {
-    const double step = options_.substep * stock_.cell, from = status_.commanded.z();
+    const double from = status_.commanded.z();
     Eigen::Vector3d next = status_.commanded;
     next.z() = std::clamp(z, from - step, from + step);
     const double duration = std::abs(next.z() - from) / lift_speed_;

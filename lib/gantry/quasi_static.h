@@ -22,6 +22,7 @@ class QuasiStaticGantry final : public VirtualGantry {
     QuasiStaticGantry(removal::HeightField stock, const job::Job& job, const QuasiStaticOptions& options = {});
 
     GantryStatus travel(const Eigen::Vector3d& tool_point) override;
+    GantryStatus travel_low(const Eigen::Vector3d& tool_point, double over, double free) override;
     /// @throws InputError for a feed that is not positive, or if the wheel is worn away
     GantryStatus grind(const Eigen::Vector3d& tool_point, double feed) override;
     GantryStatus lift(double commanded_z) override;
@@ -32,7 +33,7 @@ class QuasiStaticGantry final : public VirtualGantry {
     std::vector<double> sub_steps(const Eigen::Vector3d& start, const Eigen::Vector3d& end) const;
     void raise_to(double z);
     void lower_to(double z);
-    void sub_step_towards(double z);
+    void sub_step_towards(double z, double step);
     void go_to_safe_height() override;
     void press_for(const Eigen::Vector3d& commanded, double duration);
 

@@ -127,6 +127,12 @@ class Server {
         if (command == "home") return home(number());
         if (command == "status") return protocol::to_line(gantry_.status());
         if (command == "travel") return protocol::to_line(gantry_.travel(point()));
+        if (command == "travel_low") {
+            const Eigen::Vector3d to = point();
+            const double over = number(), free = number();
+            within_reach({to.x(), to.y(), over});
+            return protocol::to_line(gantry_.travel_low(to, over, free));
+        }
         if (command == "lift") return protocol::to_line(gantry_.lift(height(number())));
         if (command == "move") {
             const Eigen::Vector3d to = point();

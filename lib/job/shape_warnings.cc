@@ -5,14 +5,28 @@
 
 namespace fettle::job {
 
-std::vector<std::string> shape_warnings(const mesh::ShapeFile& file, const std::string& name, const units::Units& units)
+namespace {
+
+std::vector<std::string> warnings_of(const mesh::MeshRepair& repair, const Eigen::Matrix3Xd& points,
+                                     const std::string& name, const units::Units& units)
 {
-    const Eigen::Matrix3Xd& points = mesh::coordinates_of(file.shape);
     std::vector<std::string> warnings;
     for (const std::string& warning :
-         {mesh::repair_warning(file.repair), size_warning(geometry::finite_bounding_box(points), points.cols(), units)})
+         {mesh::repair_warning(repair), size_warning(geometry::finite_bounding_box(points), points.cols(), units)})
         if (!warning.empty()) warnings.push_back(name + ": " + warning);
     return warnings;
+}
+
+} // namespace
+
+std::vector<std::string> shape_warnings(const mesh::ShapeFile& file, const std::string& name, const units::Units& units)
+{
+    return warnings_of(file.repair, mesh::coordinates_of(file.shape), name, units);
+}
+
+std::vector<std::string> shape_warnings(const mesh::CloudMeshFile& file, const std::string& name)
+{
+    return warnings_of(file.repair, file.part.points.xyz, name, file.units);
 }
 
 } // namespace fettle::job

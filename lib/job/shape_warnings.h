@@ -1,5 +1,6 @@
 #pragma once
 
+#include "mesh/cloud_mesh.h"
 #include "mesh/shape_file.h"
 #include "units/units.h"
 
@@ -13,5 +14,7 @@ namespace fettle::job {
 /// @param units  in which the size is stated
 std::vector<std::string> shape_warnings(const mesh::ShapeFile& file, const std::string& name,
                                         const units::Units& units);
+/// Likewise, in the units of the file.
+std::vector<std::string> shape_warnings(const mesh::CloudMeshFile& file, const std::string& name);
 
 } // namespace fettle::job

@@ -8,6 +8,7 @@
 #include "core/file.h"
 #include "core/lines.h"
 #include "core/wrong_kind.h"
+#include "mesh/mesh_checks.h"
 #include "mesh/obj_off.h"
 #include "mesh/polygons.h"
 #include "mesh/stl.h"
@@ -19,14 +20,9 @@ namespace {
 Mesh parse_ply_mesh(std::string_view bytes, const std::string& source)
 {
     cloud::Ply ply = cloud::parse_ply(bytes, source);
-    std::size_t begin = 0;
-    for (std::size_t f = 0; f < ply.ends.size(); begin = ply.ends[f++])
-        if (const std::size_t corners = ply.ends[f] - begin; corners > kMaxPolygonCorners)
-            throw core::InputError(source, "face " + std::to_string(f) + ": " + std::to_string(corners) +
-                                               " corners, at most " + std::to_string(kMaxPolygonCorners));
     Mesh mesh;
+    mesh.triangles = triangulate_faces(ply, source);
     mesh.vertices = std::move(ply.vertices.xyz);
-    mesh.triangles = triangulate_polygons(mesh.vertices, ply.corners, ply.ends);
     return mesh;
 }
 
@@ -54,7 +50,27 @@ Mesh checked_and_scaled(Mesh mesh, MeshRepair repaired, const std::string& sourc
     const Eigen::Index nonfinite = drop_nonfinite(mesh);
     if (nonfinite > 0) drop_unused_vertices(mesh); // the finite corners of those triangles
     repaired.dropped_triangles += nonfinite;
-    const Eigen::Index dropped = repaired.dropped_triangles, left = mesh.triangles.cols();
+    check_triangles_left(mesh.triangles.cols(), repaired.dropped_triangles, source);
+    if (unit != units::Units::Length::mm) mesh.vertices *= units::mm_per(unit);
+    cloud::check_coordinate_range(mesh.vertices, source);
+    if (repair != nullptr) *repair = repaired;
+    return mesh;
+}
+
+} // namespace
+
+Eigen::Matrix3Xi triangulate_faces(const cloud::Ply& ply, const std::string& source)
+{
+    std::size_t begin = 0;
+    for (std::size_t f = 0; f < ply.ends.size(); begin = ply.ends[f++])
+        if (const std::size_t corners = ply.ends[f] - begin; corners > kMaxPolygonCorners)
+            throw core::InputError(source, "face " + std::to_string(f) + ": " + std::to_string(corners) +
+                                               " corners, at most " + std::to_string(kMaxPolygonCorners));
+    return triangulate_polygons(ply.vertices.xyz, ply.corners, ply.ends);
+}
+
+void check_triangles_left(Eigen::Index left, Eigen::Index dropped, const std::string& source)
+{
     if (left == 0)
         throw core::InputError(source, dropped == 0 ? "no triangles"
                                                     : "no triangles but " + std::to_string(dropped) +
@@ -63,13 +79,7 @@ Mesh checked_and_scaled(Mesh mesh, MeshRepair repaired, const std::string& sourc
     if (dropped > kMaxDroppedToLeft * left)
         throw core::InputError(source, std::to_string(dropped) + " of " + std::to_string(dropped + left) +
                                            " triangles have NaN or infinite corners");
-    if (unit != units::Units::Length::mm) mesh.vertices *= units::mm_per(unit);
-    cloud::check_coordinate_range(mesh.vertices, source);
-    if (repair != nullptr) *repair = repaired;
-    return mesh;
 }
-
-} // namespace
 
 Mesh read_mesh(const std::string& path, units::Units::Length unit, MeshRepair* repair)
 {
@@ -99,7 +109,7 @@ bool looks_like_cloud(std::string_view bytes)
     if (is_binary_stl(bytes)) return false;
     if (bytes.starts_with("\xef\xbb\xbf")) bytes.remove_prefix(3);
     if (cloud::looks_like_ply(bytes)) return !cloud::ply_has_faces(bytes);
-    return cloud::looks_like_pcd(bytes) || cloud::looks_like_xyz(bytes);
+    return cloud::looks_like_pcd(bytes) || (cloud::looks_like_xyz(bytes) && !looks_like_obj(bytes));
 }
 
 } // namespace fettle::mesh

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace fettle::mesh {
@@ -18,14 +19,24 @@ constexpr std::string_view kStatements[] = {
 
 bool is_statement(std::string_view word) { return std::ranges::find(kStatements, word) != std::end(kStatements); }
 
+/// True for two integers: some writers begin with the numbers of vertices and faces (the test files of FCL do).
+bool is_counts_line(std::string_view line)
+{
+    const std::vector<std::string_view> words = core::words(line);
+    return words.size() == 2 && core::parse_integer<std::int64_t>(words[0]) &&
+           core::parse_integer<std::int64_t>(words[1]);
+}
+
 class ObjParser : core::FileLines {
   public:
     using core::FileLines::FileLines;
 
     Mesh parse()
     {
+        bool is_first = true;
         while (next()) {
             if (core::is_blank_or_comment(line())) continue;
+            if (std::exchange(is_first, false) && is_counts_line(line())) continue;
             std::string_view rest = line();
             const std::string_view statement = core::next_word(rest);
             if (!is_statement(statement)) refuse("unknown statement " + core::in_quotes(statement));
@@ -106,9 +117,11 @@ Mesh parse_obj(std::string_view text, const std::string& source) { return ObjPar
 bool looks_like_obj(std::string_view text)
 {
     core::Lines lines(text);
+    bool is_first = true;
     while (lines.next()) {
         std::string_view line = lines.line();
-        if (!core::is_blank_or_comment(line)) return is_statement(core::next_word(line));
+        if (core::is_blank_or_comment(line)) continue;
+        if (!std::exchange(is_first, false) || !is_counts_line(line)) return is_statement(core::next_word(line));
     }
     return false;
 }

@@ -7,11 +7,11 @@
 
 namespace fettle::mesh {
 
-/// Parses Wavefront OBJ: the statements `v` and `f`, also with relative indices; other statements are skipped. The mesh
-/// is in the units of the file and keeps NaN vertices.
+/// Parses Wavefront OBJ: the statements `v` and `f`, also with relative indices; other statements, and
+/// a first line of two counts, are skipped. The mesh is in the units of the file and keeps NaN vertices.
 /// @throws InputError with the line
 Mesh parse_obj(std::string_view text, const std::string& source);
-/// True if the first statement is one of OBJ.
+/// True if the first line, or the one after a line of two counts, is a statement of OBJ.
 bool looks_like_obj(std::string_view text);
 
 /// Parses OFF and COFF in text form. The mesh is in the units of the file and keeps NaN vertices.

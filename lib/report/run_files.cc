@@ -113,6 +113,10 @@ GrindReport read_grinding(json::Reader& reader)
     report.numbers = read_numbers(reader, {"removed_volume", "machine_time", "grinding_time", "travel_time",
                                            "service_time", "layers", "coverings", "re_cuts", "raises", "passes",
                                            "steps", "peak_force", "touch_offs", "wheel_changes", "wheel_radius"});
+    if (!reader.has("peak_at")) return report; // by an older fettle-grind
+    report.peak_at = reader.vector("peak_at", 3);
+    for (const char* key : {"peak_layer", "strokes", "contact_time", "in_range"})
+        report.numbers[key] = reader.number(key, core::Range::at_least(0));
     return report;
 }
 

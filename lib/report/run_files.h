@@ -37,6 +37,7 @@ struct ComparisonReport {
 struct GrindReport {
     bool finished = false;
     NamedNumbers numbers;
+    Eigen::VectorXd peak_at; ///< place of the peak force, in the run's units; empty: not known
 };
 
 /// Report of fettle-align.

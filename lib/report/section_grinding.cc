@@ -105,10 +105,21 @@ draw::Html totals(const RunFiles& run)
     if (run.job)
         peak += " (" + draw::fixed_text(100 * n.at("peak_force") * run.units.newton() / run.job->force.max, 0) +
                 " % of " + draw::symbol_with_subscript("F_max") + ")";
-    const draw::Html left = property_table({{"Removed", number("removed_volume") + " " + length + "\u00B3"},
-                                            {"Peak force", peak},
-                                            {"Highest layer", count("layers")},
-                                            {"Coverings of layer 1", count("coverings")}});
+    Properties first = {{"Removed", number("removed_volume") + " " + length + "\u00B3"},
+                        {"Peak force", peak},
+                        {"Highest layer", count("layers")},
+                        {"Coverings of layer 1", count("coverings")}};
+    if (const Eigen::VectorXd& at = run.grinding->peak_at; at.size() > 0) {
+        first.insert(first.begin() + 2,
+                     {"Its place", "layer " + count("peak_layer") + ", x " + draw::short_text(at.x()) + ", y " +
+                                       draw::short_text(at.y()) + ", z " + draw::short_text(at.z())});
+        first.emplace_back("Strokes back over a pass of layer 1", count("strokes"));
+        if (n.at("contact_time") > 0)
+            first.emplace_back("Force in range above layer 1", draw::fixed_text(100 * n.at("in_range"), 0) + " % of " +
+                                                                   draw::duration_text(n.at("contact_time")) +
+                                                                   " in contact");
+    }
+    const draw::Html left = property_table(first);
     const draw::Html right =
         property_table({{"Passes started", count("passes")},
                         {"Force readings", count("steps")},

@@ -95,11 +95,12 @@ struct Sign {
     const char* style;
     double y; ///< of its row, pixels
 };
-constexpr std::array<Sign, 5> kSigns = {
+constexpr std::array<Sign, 6> kSigns = {
     {{strategy::Event::touch_off, "wheel measured", "M-4 -4H4L0 4Z", "sign-blue", 8},
      {strategy::Event::wheel_change, "new wheel", "M-4 -4H4V4H-4Z", "sign-purple", 8},
      {strategy::Event::re_cut, "re-cut", "M0 -5L4 0L0 5L-4 0Z", "sign-orange", 21},
      {strategy::Event::covering_done, "covering done", "M-4 4H4L0 -4Z", "sign-green", 21},
+     {strategy::Event::roughed, "layer 1 roughed", "M-4 -4H4L0 4Z", "sign-green", 21},
      {strategy::Event::limit_reached, "limit reached", "M-4 -4L4 4M4 -4L-4 4", "sign-cross", 21}}};
 
 draw::Html sign(const Sign& s, const Vector2d& at)

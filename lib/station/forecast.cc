@@ -23,7 +23,8 @@ Forecast::Forecast(const plan::Plan& plan)
 void Forecast::follow(const strategy::TraceRow& row)
 {
     now_ = row.time;
-    if (row.event == strategy::Event::start || row.event == strategy::Event::covering_done) {
+    if (row.event == strategy::Event::start || row.event == strategy::Event::covering_done ||
+        row.event == strategy::Event::roughed) {
         begin_ = row.time;
         farthest_pass_ = 1;
     }

@@ -63,6 +63,7 @@ strategy::GrindRun MachineWork::run_plan(const Save& save, std::vector<strategy:
     strategy::GrindRun run = strategy::run(*plan_, gantry(), options);
     checkpoint.reset();
     if (!journal->has_failed()) save_trace(kTraceFile, run.trace, identity);
+    if (const std::string doubt = strategy::peak_warning(run.force, plan_->job); !doubt.empty()) add_warnings({doubt});
     return run;
 }
 

@@ -162,7 +162,7 @@ void Session::begin(Stage work)
 void Session::ground(const strategy::GrindRun& run)
 {
     record_.stage = run.finished ? Stage::done : Stage::stopped;
-    record_.peak_force = std::max(record_.peak_force, run.peak_force);
+    record_.peak_force = std::max(record_.peak_force, run.force.peak);
     message_ = run.finished ? "all is within tolerance" : run.failure;
 }
 

@@ -43,7 +43,9 @@ class Station {
         }
         work_.leave();
         save();
-        return {is_complete(), work_.failure(), work_.warnings(), report()};
+        std::vector<std::string> warnings = work_.warnings();
+        warnings.insert(warnings.end(), refusals_.begin(), refusals_.end());
+        return {is_complete(), work_.failure(), warnings, report()};
     }
 
   private:
@@ -78,6 +80,7 @@ class Station {
             session_.refuse(fault.what());
         } catch (const core::InputError& error) {
             session_.refuse(error.what());
+            refusals_.push_back(error.what());
         }
     }
 
@@ -144,6 +147,7 @@ class Station {
     strategy::SteeringClock clock_;
     Workplace place_;
     MachineWork work_;
+    std::vector<std::string> refusals_; ///< what the screen has said, for a session that has none
 };
 
 } // namespace

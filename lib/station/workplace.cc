@@ -1,6 +1,7 @@
 #include "station/workplace.h"
 
 #include "core/error.h"
+#include "core/file.h"
 #include "gantry/make_virtual.h"
 #include "sampling/scan.h"
 #include "strategy/trace.h"
@@ -73,6 +74,7 @@ const removal::HeightField& Workplace::stock(const job::Job& job)
     if (stock_) return *stock_;
     if (options_.stock.file.empty()) return stock_.emplace();
     gantry::Stock stock = gantry::stock_of_part(part(job), options_.stock, job, removal::Extent::anomaly);
+    gantry::require_below_safe_height(stock.field, job, core::display_name(options_.stock.file));
     warnings = std::move(stock.warnings);
     return stock_.emplace(std::move(stock.field));
 }

@@ -9,7 +9,7 @@ namespace fettle::strategy {
 namespace {
 
 /// Distance of two positions of the wheel, as in replay_removal().
-constexpr double kStepCells = 2;
+constexpr double kWatchStepCells = 2;
 /// The stock may be that many times softer than the job's removal coefficient says.
 constexpr double kMaxSoftness = 10;
 /// A transducer that is good enough for the job's tolerance shows this share of the force over it.
@@ -38,7 +38,7 @@ void ContactWatch::follow(const gantry::GantryStatus& status, double feed)
     if (!had_tip || !(feed > 0)) return void(length_without_force_ = 0);
 
     const double length = (to - from).norm();
-    const int steps = std::max(1, int(std::ceil(length / (kStepCells * stock_.cell))));
+    const int steps = std::max(1, int(std::ceil(length / (kWatchStepCells * stock_.cell))));
     double removed = -tolerance_ * width_ * length; // what lies no higher than the tolerance may not be there
     for (int n = 1; n <= steps; ++n) removed += remove_to(from + (to - from) * (double(n) / steps));
     // The force that removes this volume, if the clock of the machine is not too coarse for the step.

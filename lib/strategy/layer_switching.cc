@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace fettle::strategy {
 namespace {
@@ -13,13 +14,18 @@ constexpr double kRelativeLineTolerance = 1e-6;
 
 } // namespace
 
-LayerSwitching::LayerSwitching(const std::vector<plan::ToolPass>& passes, const Settings& settings)
-    : passes_(passes), settings_(settings)
+LayerSwitching::LayerSwitching(const std::vector<plan::ToolPass>& passes, const Settings& settings,
+                               ForcePrediction prediction)
+    : passes_(passes), settings_(settings), prediction_(std::move(prediction))
 {
     levels_.push_back({});
 }
 
-Action LayerSwitching::first() { return start_covering(Event::start); }
+Action LayerSwitching::first()
+{
+    roughing_ = has_close_lines();
+    return start_covering(Event::start);
+}
 
 Action LayerSwitching::next(const Measurement& measurement)
 {
@@ -61,7 +67,8 @@ Action LayerSwitching::raise_layer()
 Action LayerSwitching::advance_in_layer_1(double remaining)
 {
     Level& level = levels_.back();
-    if (!settings_.finish_passes)
+    const bool finishing = settings_.finish_passes && !roughing_;
+    if (!finishing)
         max_remaining_ = std::max(max_remaining_, remaining);
     else if (turn_back(remaining) && strokes_ > settings_.bounds.re_cuts)
         return fail("strokes of a pass " + std::to_string(settings_.bounds.re_cuts));
@@ -71,11 +78,19 @@ Action LayerSwitching::advance_in_layer_1(double remaining)
         level.at.point = point;
         return act(gap ? Action::Kind::travel : Action::Kind::grind, Event::none);
     }
-    if (level.at.pass + 1 < int(passes_.size())) {
-        const int next = level.at.pass + 1;
-        const Action action = step_over_to(next, level.direction > 0 ? last_point(next) : 0, true);
-        begin_pass();
-        return action;
+    const int next = roughing_ ? farthest_pass(level.at.pass) : level.at.pass + 1;
+    if (next >= int(passes_.size())) return end_covering();
+    const Action action = step_over_to(next, level.direction > 0 ? last_point(next) : 0, true);
+    begin_pass();
+    return action;
+}
+
+/// Layer 1 is ground: done, or once more.
+Action LayerSwitching::end_covering()
+{
+    if (roughing_) {
+        roughing_ = false;
+        return start_covering(Event::roughed);
     }
     const bool within = max_remaining_ <= settings_.max_remaining;
     if (!within && counts_.coverings + 1 >= settings_.bounds.coverings)
@@ -89,6 +104,7 @@ Action LayerSwitching::advance_in_layer_1(double remaining)
 Action LayerSwitching::advance_above_layer_1(double force)
 {
     Level& level = levels_.back();
+    level.cut.push_back(level.at);
     const bool in_range = force >= settings_.force_min;
     const bool pass_ended =
         !in_range && (level.met_metal || std::abs(along(level.at) - level.pass_start) >= settings_.step_over);
@@ -101,7 +117,7 @@ Action LayerSwitching::advance_above_layer_1(double force)
         level.at.point = point;
         return act(Action::Kind::grind, Event::none);
     }
-    const int next = next_pass();
+    const int next = farthest_pass(level.at.pass);
     if (level.met_metal && next < int(passes_.size()))
         return step_over_to(next, nearest_point(next, along(level.at)), false);
     cut_ended_ = true;
@@ -150,7 +166,7 @@ Action LayerSwitching::end_cut()
 {
     cut_ended_ = false;
     Level& level = levels_.back();
-    if (level.max_force > settings_.force_down) {
+    if (needs_re_cut(level)) {
         if (level.re_cuts >= settings_.bounds.re_cuts)
             return fail("re-cuts " + std::to_string(settings_.bounds.re_cuts));
         ++counts_.re_cuts;
@@ -158,8 +174,15 @@ Action LayerSwitching::end_cut()
         level = level_from(level.entered, level.entry_direction, false, level.re_cuts + 1);
         return act(Action::Kind::travel, Event::re_cut);
     }
+    if (level.max_force > settings_.force_down) ++counts_.skipped_re_cuts;
     levels_.pop_back();
     return act(Action::Kind::travel, Event::down);
+}
+
+bool LayerSwitching::needs_re_cut(const Level& level) const
+{
+    return level.max_force > settings_.force_down &&
+           !(prediction_ && prediction_(level.cut, layer()) <= settings_.force_down);
 }
 
 Action LayerSwitching::start_covering(Event event)
@@ -182,10 +205,16 @@ Action LayerSwitching::step_over_to(int pass, int point, bool met_metal)
     return act(Action::Kind::grind, Event::step_over);
 }
 
-/// The farthest line within the step-over, but at least the next one.
-int LayerSwitching::next_pass() const
+bool LayerSwitching::has_close_lines() const
 {
-    const int here = levels_.back().at.pass;
+    for (int pass = 0; pass < int(passes_.size()); ++pass)
+        if (farthest_pass(pass) > pass + 1) return true;
+    return false;
+}
+
+/// The farthest line within the step-over, but at least the next one.
+int LayerSwitching::farthest_pass(int here) const
+{
     const double reach = passes_[here].line + settings_.step_over * (1 + kRelativeLineTolerance);
     int next = here + 1;
     while (next + 1 < int(passes_.size()) && passes_[next + 1].line <= reach) ++next;

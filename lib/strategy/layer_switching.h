@@ -4,6 +4,7 @@
 #include "plan/plan.h"
 #include "plan/tool_path.h"
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,7 @@ enum class Event {
     fault = 12,        ///< the machine stopped (run.h)
     in_progress = 13,  ///< the action was started, its result is not known (trace_file.h)
     stopped = 14,      ///< the operator stopped the machine; the wheel was lifted (run.h)
+    roughed = 15,      ///< layer 1 is ground on lines a step-over apart: travel to the start of the first covering
 };
 
 /// A point of the staircase: index of the pass, and of the point in it.
@@ -58,13 +60,17 @@ struct Action {
     int layer = 1;
 };
 
+/// Predicts the largest force, N, of grinding once more in `layer` at these points, one after the other.
+using ForcePrediction = std::function<double(const std::vector<PathIndex>& points, int layer)>;
+
 struct StrategyCounts {
     int highest_layer = 1;
     int coverings = 0; ///< complete coverings of layer 1
     int re_cuts = 0;
-    int raises = 0;  ///< changes to the next higher layer
-    int passes = 0;  ///< started, in any layer
-    int strokes = 0; ///< repeated strokes over a pass of layer 1
+    int skipped_re_cuts = 0; ///< predicted not to exceed F_down
+    int raises = 0;          ///< changes to the next higher layer
+    int passes = 0;          ///< started, in any layer
+    int strokes = 0;         ///< repeated strokes over a pass of layer 1
     int steps = 0;
 };
 
@@ -73,15 +79,17 @@ struct StrategyCounts {
 ///
 /// 1. F > F_max: up one layer in place, again until the force is in range. The position where the lower layer was left
 ///    is kept on a stack.
-/// 2. Layer 1 covers all of B. At its end, within tolerance: done; else once more from the start. Or, with
-///    `finish_passes`, each pass goes to and fro over the stretch where more is left, until none is, before the next.
+/// 2. Layer 1 covers all of B: first, where its lines are closer than the step-over, on those that are not. At its end,
+///    within tolerance: done; else once more from the start. Or, with `finish_passes`, each pass goes to and fro over
+///    the stretch where more is left, until none is, before the next.
 /// 3. Above layer 1, F < F_min ends a pass: step over, reverse. F < F_min at the beginning of a pass ends the cut. Its
 ///    largest force F_a > F_down: cut again from where this layer was entered; else down one layer, to the position
-///    where that was left, and on in its direction.
+///    where that was left, and on in its direction. Where the forces of the cut predict that the next one would not
+///    exceed F_down, it is left out.
 ///
 /// The beginning of a pass is its first stretch, as long as the step-over: an edge of the anomaly that recedes by up to
-/// 45° from pass to pass is still followed. Above layer 1 the lines of the staircase that are closer than the step-over
-/// are skipped; they serve the finish of layer 1.
+/// 45° from pass to pass is still followed. The lines of the staircase that are closer than the step-over serve the
+/// finish of layer 1: they are skipped above it, and until the wheel has been all over B.
 class LayerSwitching {
   public:
     struct Settings {
@@ -94,10 +102,15 @@ class LayerSwitching {
     };
 
     /// @param passes  must outlive the strategy; only their lines, positions and intervals are used
-    LayerSwitching(const std::vector<plan::ToolPass>& passes, const Settings& settings);
+    /// @param prediction  may be empty
+    LayerSwitching(const std::vector<plan::ToolPass>& passes, const Settings& settings,
+                   ForcePrediction prediction = {});
 
     Action first();
     Action next(const Measurement& measurement);
+
+    /// Grinding layer 1 on lines a step-over apart.
+    bool is_roughing() const { return roughing_ && layer() == 1; }
 
     int layer() const { return int(levels_.size()); }
     int direction() const { return levels_.back().direction; } ///< +1: towards larger `along`
@@ -116,6 +129,7 @@ class LayerSwitching {
         double pass_start; ///< `along` where the pass began
         double max_force;  ///< F_a of the cut
         int re_cuts;
+        std::vector<PathIndex> cut = {}; ///< the points of the cut so far
     };
     Level level_from(const PathIndex& at, int direction, bool met_metal, int re_cuts) const
     {
@@ -132,18 +146,23 @@ class LayerSwitching {
     int last_point(int pass) const { return int(passes_[pass].along.size()) - 1; }
     Action advance_above_layer_1(double force);
     Action end_cut();
+    bool needs_re_cut(const Level& level) const;
     Action start_covering(Event event);
+    Action end_covering();
+    bool has_close_lines() const;
     Action step_over_to(int pass, int point, bool met_metal);
 
-    int next_pass() const;
+    int farthest_pass(int pass) const;
     int nearest_point(int pass, double along) const;
     int interval_of(int pass, int point) const;
     double along(const PathIndex& at) const { return passes_[at.pass].along[at.point]; }
 
     const std::vector<plan::ToolPass>& passes_;
     Settings settings_;
+    ForcePrediction prediction_;
     std::vector<Level> levels_; ///< stack of layers 1, 2, …; the last is the current one
     bool cut_ended_ = false;
+    bool roughing_ = false;
     double max_remaining_ = 0; ///< measured in this covering, mm
     /// Layer 1 with finish_passes: first and last point of the current stroke where too much is left, its end point,
     /// and the number of repeated strokes of this pass.

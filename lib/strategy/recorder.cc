@@ -35,6 +35,12 @@ const gantry::GantryStatus& Recorder::travel(const Mark& mark, const Eigen::Vect
     return act(mark, tool_point, 0, [&] { set_status(gantry_.travel(tool_point)); });
 }
 
+const gantry::GantryStatus& Recorder::travel_low(const Mark& mark, const Eigen::Vector3d& tool_point, double over,
+                                                 double free)
+{
+    return act(mark, tool_point, 0, [&] { set_status(gantry_.travel_low(tool_point, over, free)); });
+}
+
 const gantry::GantryStatus& Recorder::grind(const Mark& mark, const Eigen::Vector3d& tool_point, double feed)
 {
     return act(mark, tool_point, feed, [&] { set_status(gantry_.grind(tool_point, feed)); });

@@ -45,6 +45,8 @@ class Recorder {
     /// @throws InputError if the history has another action here; GantryFault, also if the journal cannot be written:
     /// what the machine does has to be known
     const gantry::GantryStatus& travel(const Mark& mark, const Eigen::Vector3d& tool_point);
+    const gantry::GantryStatus& travel_low(const Mark& mark, const Eigen::Vector3d& tool_point, double over,
+                                           double free);
     const gantry::GantryStatus& grind(const Mark& mark, const Eigen::Vector3d& tool_point, double feed);
     const gantry::GantryStatus& press(const Mark& mark, const Eigen::Vector3d& tool_point, double feed, double force);
     const gantry::GantryStatus& lift(const Mark& mark, double commanded_z);
@@ -56,6 +58,8 @@ class Recorder {
     void decide(const Mark& mark);
     /// Records that the machine has stopped for good: in the trace, and in the journal if that can be written.
     void record_fault(const Mark& mark);
+
+    double max_feed() const { return gantry_.max_feed(); } ///< of the machine, mm/s
 
     const gantry::GantryStatus& status() const { return status_; } ///< the last one, as the trace holds it
     const std::vector<TraceRow>& trace() const { return trace_; }

@@ -4,6 +4,7 @@
 #include "gantry/gantry.h"
 #include "plan/plan.h"
 #include "removal/height_field.h"
+#include "strategy/force_record.h"
 #include "strategy/layer_switching.h"
 
 #include <Eigen/Core>
@@ -57,7 +58,7 @@ struct GrindRun {
     bool stopped = false; ///< by the operator (gantry::Interrupted): the wheel is at the safe height
     std::string failure;  ///< the limit that was reached, and the state; or the machine's fault
     StrategyCounts counts;
-    double peak_force = 0;   ///< N
+    ForceRecord force;
     double wheel_radius = 0; ///< last measured, mm
     int touch_offs = 0;
     int wheel_changes = 0;

@@ -14,7 +14,7 @@ namespace {
 
 /// Distance of two positions of the wheel. Its rim leaves a ridge of step² / 8R between them: 0.0002 mm for 0.2 mm and
 /// R = 25.4 mm.
-constexpr double kStepCells = 2;
+constexpr double kReplayStepCells = 2;
 
 constexpr const char* kTime = "t";
 constexpr std::array<const char*, 7> kFields = {"layer", "pass", "event", "force", "feed", "peak_force", "deflection"};
@@ -48,7 +48,7 @@ std::vector<TraceRow> trace_from_cloud(const cloud::Cloud& cloud, const std::str
         const Eigen::VectorXd time = cloud::field(cloud, kTime);
         std::vector<TraceRow> trace;
         for (Eigen::Index i = 0; i < cloud.size(); ++i) {
-            if (event[i] < 0 || event[i] > int(Event::stopped))
+            if (event[i] < 0 || event[i] > int(Event::roughed))
                 throw core::InputError("event " + std::to_string(event[i]) + " of point " + std::to_string(i + 1) +
                                        " is not an event of a trace");
             trace.push_back({.time = time[i],
@@ -79,7 +79,7 @@ removal::HeightField replay_removal(const std::vector<TraceRow>& trace, const jo
     for (std::size_t i = 1; i < trace.size(); ++i) {
         if (!(trace[i].feed > 0)) continue;
         const Eigen::Vector3d from = trace[i - 1].tool, motion = trace[i].tool - from;
-        const int steps = std::max(1, int(std::ceil(motion.norm() / (kStepCells * stock.cell))));
+        const int steps = std::max(1, int(std::ceil(motion.norm() / (kReplayStepCells * stock.cell))));
         const double radius = trace[i].radius > 0 ? trace[i].radius : job.wheel.radius;
         for (int n = 1; n <= steps; ++n) {
             const Eigen::Vector3d at = from + motion * (double(n) / steps);

@@ -40,7 +40,9 @@ void WheelWear::start_new_wheel()
     impulse_ = 0;
 }
 
-double WheelWear::loss() const { return total_loss_ > 0 ? kLossShare * total_loss_ / total_impulse_ * impulse_ : 0; }
+double WheelWear::loss() const { return kLossShare * expected_loss(); }
+
+double WheelWear::expected_loss() const { return total_loss_ > 0 ? total_loss_ / total_impulse_ * impulse_ : 0; }
 
 bool WheelWear::measurement_due() const
 {

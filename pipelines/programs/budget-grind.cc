@@ -39,6 +39,10 @@ class Transducer final : public gantry::Gantry {
     {
         return read(machine_.travel(tool_point));
     }
+    gantry::GantryStatus travel_low(const Eigen::Vector3d& tool_point, double over, double free) override
+    {
+        return read(machine_.travel_low(tool_point, over, free));
+    }
     gantry::GantryStatus grind(const Eigen::Vector3d& tool_point, double feed) override
     {
         return read(machine_.grind(tool_point, feed));
@@ -127,7 +131,7 @@ int main(int argc, char** argv)
             .set("finished", run.finished)
             .set("machine_time", simulated->status().time)
             .set("coverings", run.counts.coverings)
-            .set("peak_force", run.peak_force / units.newton());
+            .set("peak_force", run.force.peak / units.newton());
         if (!run.finished) t.warn(plan_file + ": " + run.failure);
         return run.finished ? cli::Verdict::yes : cli::Verdict::no;
     });

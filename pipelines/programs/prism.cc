@@ -114,7 +114,7 @@ int main(int argc, char** argv)
                 if (!run.finished) throw core::InputError(plan_file, run.failure);
                 for (strategy::TraceRow& row : run.trace) row.layer = layer;
                 trace.insert(trace.end(), run.trace.begin(), run.trace.end());
-                peak = std::max(peak, run.peak_force);
+                peak = std::max(peak, run.force.peak);
                 coverings = run.counts.coverings;
             }
             if (!trace_file.empty())

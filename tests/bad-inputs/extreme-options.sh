@@ -28,6 +28,7 @@ company_of() { # NAME OPTION: changes `command`
     'verify --feed' | 'verify --cutter' | 'verify --axis') command+=(--corrected corrected.nc) ;;
     'verify '*) command=(--design plate.stl --step 4 plate.stl) ;;
     'teach --direction') command+=(--surface swept) ;;
+    'place --threshold') command=(--up plane good.pcd) ;;
     'form '*) command=(straightness --sections 5 good.pcd) ;;
     'mesh --step') command=(surface.json --within job.json) ;;
     'mill --tolerance') without --step ;;
@@ -56,6 +57,9 @@ word_of() { # PLACEHOLDER VALUE: into `word`
     case $1 in
     CUTTER) word=ball:$2 ;;
     STOCK) [ "$2" = 5 ] && word=box:0,0,0,9,9,9 || word=box:0,0,0,$2,$2,$2 ;;
+    AXIS,DEG,…) word=x,$2 ;;
+    REGION) word=sphere:15,15,5,$2 ;;
+    FILTER) word=radius:$2,1 ;;
     uniform:A\|normal:A) word=normal:$2 ;;
     X,Y,Z,QW*) [ "$2" = 5 ] && word=15,15,5,1,0,0,0 || word=$2,$2,$2,$2,$2,$2,$2 ;;
     DEG,…) word=$2,$2,$2,$2,$2,$2 ;;

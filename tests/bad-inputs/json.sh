@@ -14,6 +14,7 @@ fettle-grind plan.json --stock good.pcd --cell 0.5 --report grinding.json -q -o 
 places() { # KIND R|S|G FILE: of a model
     case $1 in
     job)
+        try "$2" "$3" fettle-clean good.pcd --crop "$3"
         try "$2" "$3" fettle-sample "$3" --on good.pcd
         try "$2" "$3" fettle-estimate "$3" samples.pcd
         try "$2" "$3" fettle-fit "$3" samples.pcd

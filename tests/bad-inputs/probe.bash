@@ -91,6 +91,7 @@ points() { # R|S FILE
     try "$1" "$2" fettle-assess "$2" --lower -1 --upper 1
     try "$1" "$2" fettle-belt "$2" --path good.pcd --wheel wheel.json --force 5
     try "$1" "$2" fettle-belt good.pcd --path "$2" --wheel wheel.json --force 5
+    try "$1" "$2" fettle-clean "$2" --outliers statistical:2,3 --thin 1
     try "$1" "$2" fettle-collide robot.json "$2"
     try "$1" "$2" fettle-compare "$2" --to plate.stl
     try "$1" "$2" fettle-compare good.pcd --to "$2"
@@ -111,6 +112,7 @@ points() { # R|S FILE
     try "$1" "$2" fettle-mill "$2" --stock box:0,0,0,9,9,9 --cutter ball:6 --step 0.5
     try "$1" "$2" fettle-mill path.nc --stock "$2" --cutter ball:6 --step 0.5
     try "$1" "$2" fettle-path "$2"
+    try "$1" "$2" fettle-place "$2" --turn x,30
     try "$1" "$2" fettle-render "$2"
     try "$1" "$2" fettle-report --errors "$2"
     try "${1/R/T}" "$2" fettle-report --trace "$2" # a trace may be one of a killed run
@@ -134,6 +136,7 @@ stocks() { # R|S|G FILE
 # Every tool that reads meshes, with FILE in each place where it does.
 meshes() { # R|S|G FILE
     try "$1" "$2" fettle-align good.pcd --to "$2" --near
+    try "$1" "$2" fettle-clean "$2" --facing 0,0,1
     try "$1" "$2" fettle-collide robot.json good.pcd --workpiece "$2"
     try "$1" "$2" fettle-compare good.pcd --to "$2"
     try "$1" "$2" fettle-compare "$2" --to plate.stl
@@ -143,6 +146,7 @@ meshes() { # R|S|G FILE
     try "$1" "$2" fettle-grind plan.json --stock "$2" --cell 2
     try "$1" "$2" fettle-mill path.nc --stock "$2" --cutter ball:6 --step 0.5
     stocks "$@"
+    try "$1" "$2" fettle-place "$2" --up plane
     try "$1" "$2" fettle-render "$2"
     try "$1" "$2" fettle-report --job job.json --before "$2"
     try "$1" "$2" fettle-sample job.json --on "$2"

@@ -3,6 +3,9 @@ printf 'v 0 0 0\nv 10 0 0\nv 10 10 0\nv 0 10 0\nf 1 2 3 4\n' >plate.obj
 printf 'x y z layer\n1 1 0.5 7\n5 5 -0.25 8\n9 2 0 9\n12 8 0.25 10\n' >test.xyz
 compare() { fettle-compare test.xyz --to plate.obj --tolerance 0.5 "$@"; }
 compare --format csv
+# A first line with the numbers of vertices and faces, as in FCL's test files, changes nothing.
+{ echo '4 1'; cat plate.obj; } >counted.obj
+fettle-compare test.xyz --to counted.obj --tolerance 0.5 --format csv | cmp - <(compare --format csv)
 # PLY: fettle reads back the contents of the PCD; the header has the names that CloudCompare expects.
 compare -o errors.pcd
 compare --format ply -o errors.ply

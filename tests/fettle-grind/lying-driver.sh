@@ -22,7 +22,7 @@ check 1 far 'reports a deflection of 1e+30 mm; the head travels 1000 mm'
 check 1 strong 'reports a force of 1e+30 N; the head.s spring has at most 10000 N'
 check 1 ahead 'jumps ahead in time by 1e+12 s'
 check 1 wheel 'measures a wheel of 1e+06 mm; a new one has 10 mm'
-check 1 early 'stops 0.8 mm early after .travel .*, but felt at most 0 N'
+check 1 early 'stops 0.8 mm early after .travel_low .*, but felt at most 0 N'
 check 2 limit 'guards its moves at 1000 N instead of 15'
 
 # The machine file says how well the head measures: there 0.05 mm of deflection without force are too much.

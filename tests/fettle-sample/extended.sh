@@ -23,7 +23,7 @@ jq -e '.touches == 9 and .within_tolerance == false' few.json
 jq '.tolerance = 0.05' "$job" >rough.json
 fettle-sample rough.json --on part.stl --noise normal:0.005 --ascii --report rough-report.json | rows /dev/stdin | cmp <(rows wang.pcd) -
 jq -e '.touches == 7 and .within_tolerance' rough-report.json
-# A sinusoidal roughness that no touch foretells: more touches than a few batches of eight do not help, and are not made.
+# A sinusoidal roughness that no touch predicts: more touches than a few batches of eight do not help, and are not made.
 awk 'BEGIN { for (x = -40; x <= 40; x += 0.5) for (y = -40; y <= 40; y += 0.5) print x, y, 0.3 * sin(2 * x) * sin(2.3 * y + 1) }' >wavy.xyz
 jq '.units.length = "mm" | .anomaly = [[-15, -15, 0], [15, -15, 0], [15, 15, 0], [-15, 15, 0]] | .sampling = [[-32, -32, 0], [32, -32, 0], [32, 32, 0], [-32, 32, 0]] |
     .surface = {type: "freeform"} | .tolerance = 0.05 | .probe.accuracy = 0.05 | .safe_height = 20' "$job" >wavy.json

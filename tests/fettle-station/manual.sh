@@ -7,17 +7,17 @@ make_job 0
 make_stock 4
 { show; cat << 'END'
 3 start
-40 stop
-40 manual
-40 start
-40 -1 -1 up
-41 0 1
-42 stop
-42 start
-43 0 -1
-43.5 next
-43.5 automatic
-43.5 start
+45 stop
+45 manual
+45 start
+45 -1 -1 up
+46 0 1
+47 stop
+47 start
+48 0 -1
+48.5 next
+48.5 automatic
+48.5 start
 END
 } > steer.txt
 station session steer.txt --gantry virtual:dynamic --machine "$machine" --force 8 --report report.json

@@ -269,5 +269,28 @@ TEST(Driver, MayNotKnowHowToHalt)
     driver.join();
 }
 
+// One that knows `travel_low` is asked for it; one that does not gets `travel`, and is not asked again.
+TEST(Driver, MayNotKnowHowToTravelLow)
+{
+    const std::string sent = reply_to({kLimits, "60", kHome, "2 5 6 7 0 0 0"}, [](gantry::DriverGantry& gantry) {
+        EXPECT_EQ(gantry.travel_low({5, 6, 7}, 12, 8).commanded, Vector3d(5, 6, 7));
+    });
+    EXPECT_NE(sent.find("\n4 travel_low 5 6 7 12 8\n"), std::string::npos) << sent;
+
+    Sockets sockets;
+    EXPECT_TRUE(core::write_all(sockets.theirs, "1 ok " + kLimits + "\n2 ok 60\n3 ok " + kHome +
+                                                    "\n4 error no such command: travel_low\n5 ok 2 5 6 7 0 0 0\n"
+                                                    "6 ok 3 6 6 7 0 0 0\n"));
+    {
+        gantry::DriverGantry gantry("driver", std::move(sockets.ours), job(), 1);
+        EXPECT_EQ(gantry.travel_low({5, 6, 7}, 12, 8).commanded, Vector3d(5, 6, 7));
+        EXPECT_EQ(gantry.travel_low({6, 6, 7}, 12, 8).commanded, Vector3d(6, 6, 7));
+        ::shutdown(sockets.theirs.get(), SHUT_WR);
+    }
+    std::string read(1000, '\0');
+    read.resize(std::size_t(std::max<ssize_t>(::read(sockets.theirs.get(), read.data(), read.size()), 0)));
+    EXPECT_NE(read.find("4 travel_low 5 6 7 12 8\n5 travel 5 6 7\n6 travel 6 6 7\n"), std::string::npos) << read;
+}
+
 } // namespace
 } // namespace fettle

@@ -366,6 +366,18 @@ TEST(Dynamic, TheWayDownIsGuarded)
     EXPECT_GT(status.commanded.z(), kTop - 5);
 }
 
+TEST(Dynamic, TravelsLowOnTheSameWayDown)
+{
+    gantry::DynamicGantry high(flat(), small_job(), machine()), low(flat(), small_job(), machine());
+    for (gantry::DynamicGantry* gantry : {&high, &low}) gantry->travel({0, -20, kTop + 1});
+    const double begun = low.status().time;
+    const gantry::GantryStatus a = high.travel({0, 20, kTop - 5}),
+                               b = low.travel_low({0, 20, kTop - 5}, kTop + 2, kTop + 1);
+    EXPECT_LT(b.time - begun, 0.6 * (a.time - begun));
+    EXPECT_LT(b.peak_force, 62);
+    EXPECT_NEAR(b.force, a.force, 2);
+}
+
 // At any moment of a cut, of the way down and of the way across: the wheel is off the part 0.25 s later, and what
 // follows is as it ever is.
 TEST(Dynamic, IsStoppedAtAnyMoment)

@@ -314,6 +314,18 @@ TEST(QuasiStatic, IsStoppedInATouchOffAtOnce)
     EXPECT_GT(asked, 100);
 }
 
+TEST(QuasiStatic, TravelsNoHigherThanItIsTold)
+{
+    gantry::QuasiStaticGantry gantry(flat(), small_job());
+    const double begun = gantry.travel({3, -4, 20}).time;
+    EXPECT_NEAR(gantry.travel_low({3, 6, 19}, 22, 20).time - begun, 2 / 50. + 10 / 100. + 3 / 50., 1e-12);
+    EXPECT_NEAR(gantry.travel_low({3, -4, 21}, 18, 18).time - begun, 5 / 50. + 10 / 100. + 2 / 50. + 10 / 100., 1e-12);
+    EXPECT_EQ(gantry.status().commanded, Eigen::Vector3d(3, -4, 21));
+    const double force = gantry.travel_low({0, 0, kTop - 5}, 22, 20).force; // guarded as ever
+    EXPECT_GE(force, 60);
+    EXPECT_LE(force, 61);
+}
+
 TEST(QuasiStatic, TheWayDownIsGuarded)
 {
     // 5 mm into the stock would take 175 N; the drives stop at F_max = 60 N, a sub-step late at most.

@@ -413,6 +413,9 @@ plan::Plan square_plan()
     plan.job.force = {5, 10, 15, 10, 0};
     plan.job.feed = {'y', 25, 1};
     plan.job.tolerance = 0.1;
+    plan.job.surface = job::SurfaceType::plane;
+    plan.job.anomaly.resize(3, 4);
+    plan.job.anomaly << 0, 40, 40, 0, 0, 0, 40, 40, 0, 0, 0, 0;
     plan.surface.shape = surface::Plane{{0, 0}, 0, {0, 0}};
     plan.layers = plan::compute_layers(plan.job.force); // thickness 1, distance 0.5
     plan.start = Eigen::Vector3d::Zero();

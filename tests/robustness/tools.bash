@@ -11,7 +11,7 @@
 . "$HERE/../bad-inputs/probe.bash"
 
 # fettle-gantry-linuxcnc is for a machine that runs: tests/linuxcnc.
-names='align arm assess belt collide compare contact diff estimate feed finish fit form gantry-virtual grind manual margin mesh mill part path
+names='align arm assess belt clean collide compare contact diff estimate feed finish fit form gantry-virtual grind manual margin mesh mill part path place
     plan render report sample station stock-linuxcnc surfel teach verify'
 
 inputs() { # STEP
@@ -35,6 +35,7 @@ command_of() { # NAME
     arm) command=(robot.json --inverse --feed 50 tips.pcd) writes=(--rapid) ;;
     assess) command=(--lower -1 --upper 1 good.pcd) ;;
     belt) command=(--path rows.pcd --wheel wheel.json --force 5 --lower -1 --upper 1 work.pcd) writes=(--trace --watch --journal) ;;
+    clean) command=(--outliers statistical:4,3 --thin 1 good.pcd) ;;
     collide) command=(robot.json --workpiece plate.stl tips.pcd) writes=(--picture --chart) ;;
     compare) command=(--to plate.stl good.pcd) writes=(--reverse --csv --histogram) ;;
     contact) command=(--wheel wheel.json --at 15,15,5,1,0,0,0 --force 5 work.pcd) ;;
@@ -52,6 +53,7 @@ command_of() { # NAME
     mill) command=(--stock box:0,0,0,9,9,9 --cutter ball:6 --step 0.5 path.nc) writes=(--trace) ;;
     part) command=(part.json) ;;
     path) command=(work.pcd) ;;
+    place) command=(--up plane --centre good.pcd) writes=(--transform-out --inverse) ;;
     plan) command=(job.json surface.json) ;;
     render) command=(good.pcd) ;;
     report) command=(--job job.json --samples samples.pcd --errors good.pcd) ;;

@@ -1,0 +1,231 @@
+// The moves of a run: along the passes, across, and over what stands between.
+
+#include "strategy/runner.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace fettle::strategy {
+namespace {
+
+/// Feeds relative to the job's: near F_max, and where there is little to grind.
+constexpr double kMinFeedShare = 0.5, kMaxFeedShare = 2;
+/// The side face meets no wall that takes more than this share of F_max.
+constexpr double kMaxCrossingShare = 0.95;
+/// What just exceeds a limit, relative to it.
+constexpr double kJustAbove = 1e-6;
+/// Share of F_max above which the wheel goes slower, and of F_min below which it goes faster.
+constexpr double kSlowForceShare = 0.9, kFastForceShare = 1.2;
+/// Slope of the rim where it meets the edge of a wall half as high as its radius: it climbs no steeper.
+constexpr double kMaxClimb = 1.75;
+/// A wheel that climbs a wall may come to these shares of F_max before the drives stand: it goes slower, and is lifted.
+constexpr double kSlowClimbShare = 1.05, kMaxClimbShare = 1.1;
+constexpr double kSteeper = 1.5; ///< the next climb relative to the last ones, where the wheel slows down
+constexpr int kPiecesOnWall = 2; ///< of a step there: the force is read in the middle, too
+/// What is left of the steepest climb after a step: walls go on behind an edge.
+constexpr double kClimbMemory = 0.85;
+/// Of drives that stop, mm/s²: a laboratory gantry with ball screws. A machine behind a driver does not say its own.
+constexpr double kAcceleration = 1000;
+/// Slope that metal ahead may have where the wheel was set down on it.
+constexpr double kUnknownSlope = 0.7;
+/// A flatter slope is no wall.
+constexpr double kWallSlope = 0.2;
+
+} // namespace
+
+/// Commanded tool point in this layer.
+Eigen::Vector3d Runner::tool_point(int layer) const
+{
+    const double offset = plan::reference_offset(plan_.layers, layer) - wheel_wear_ - force_offset_;
+    return reference_point_ + offset * Eigen::Vector3d::UnitZ();
+}
+
+/// Travels to a tool point of reference_point_, no higher over what is known of the stock than it needs.
+void Runner::travel(const Action& action, const Eigen::Vector3d& reference)
+{
+    force_offset_ = 0;
+    reference_point_ = reference;
+    resume_from_trace(action);
+    const Eigen::Vector3d from = machine_.status().commanded, to = tool_point(action.layer);
+    record_move(machine_.travel_low(mark(action, event_), to, bound_.free_height(from, to, radius()),
+                                    bound_.free_height(to, to, radius())),
+                action.layer, 0);
+}
+
+void Runner::grind(const Action& action, const Eigen::Vector3d& reference)
+{
+    if (by_feed(action.layer)) return grind_controlled(action, reference);
+    const double feed = feed_to(action, reference);
+    const Eigen::Vector3d from = reference_point_;
+    const int pieces = is_wall_ahead(feed_share_ * plan_.job.feed.rate) ? kPiecesOnWall : 1;
+    for (int n = 1; n <= pieces && (n == 1 || decisive_force() <= plan_.job.force.max); ++n) {
+        reference_point_ = from + (reference - from) * (double(n) / pieces);
+        grind_at(action, feed);
+    }
+}
+
+/// Above layer 1 the force of the last step sets the feed of the next: faster where there is little to grind, if even a
+/// wall that the rim begins to climb does not take F_max within the step; slower near F_max.
+double Runner::feed_to(const Action& action, const Eigen::Vector3d& reference)
+{
+    const job::ForceRange& limits = plan_.job.force;
+    const double rate = plan_.job.feed.rate, force = machine_.status().force;
+    const double climb = limits.stiffness * kMaxClimb * (reference - reference_point_).norm();
+    if (action.layer == 1 || action.event != Event::none)
+        feed_share_ = 1;
+    else if (force > kSlowForceShare * limits.max)
+        feed_share_ = kMinFeedShare;
+    else if (force + climb > limits.max)
+        feed_share_ = 1;
+    else if (force < kFastForceShare * limits.min)
+        feed_share_ = kMaxFeedShare;
+    const double feed = std::min(feed_share_ * rate, std::max(rate, machine_.max_feed()));
+    return is_wall_ahead(feed) ? std::min(feed, kMinFeedShare * rate) : feed;
+}
+
+/// Whether the next step could climb above F_max on a wall somewhat steeper than what was met lately.
+bool Runner::is_wall_ahead(double feed) const
+{
+    return climb_ > kWallSlope && force_after_step(feed, kSteeper * climb_) > kSlowClimbShare * plan_.job.force.max;
+}
+
+/// The force when the drives stand after another step, if the wheel climbs at this slope, N.
+double Runner::force_after_step(double feed, double slope) const
+{
+    const double way = plan_.step + feed * feed / (2 * kAcceleration);
+    return machine_.status().force + plan_.job.force.stiffness * slope * way;
+}
+
+/// The force by which the strategy decides, N: after a guarded descent that of the target; on a wall that the next step
+/// would climb too far, what is just too much.
+double Runner::decisive_force() const
+{
+    const job::ForceRange& limits = plan_.job.force;
+    const double force = machine_.status().force + limits.stiffness * height_error_;
+    const bool climbs = is_climbing_ && climb_ > kWallSlope &&
+                        force_after_step(kMinFeedShare * plan_.job.feed.rate, climb_) > kMaxClimbShare * limits.max;
+    return climbs ? std::max(force, limits.max * (1 + kJustAbove)) : force;
+}
+
+/// Grinds to the tool point of reference_point_.
+void Runner::grind_at(const Action& action, double feed)
+{
+    resume_from_trace(action);
+    record_move(machine_.grind(mark(action, event_), tool_point(action.layer), feed), action.layer, feed);
+    event_ = Event::none;
+}
+
+/// Grinds in layer 1 with the feed-rate control, period by period.
+void Runner::grind_controlled(const Action& action, const Eigen::Vector3d& reference)
+{
+    const Eigen::Vector3d from = reference_point_, motion = reference - from;
+    const double length = motion.norm();
+    for (double travelled = 0; travelled < length && (travelled == 0 || decisive_force() <= plan_.job.force.max);) {
+        const double feed = is_wall_ahead(feed_control_.feed())
+                                ? std::min(feed_control_.feed(), kMinFeedShare * plan_.job.feed.rate)
+                                : feed_control_.feed();
+        travelled = std::min(travelled + feed * feed_control_.period(), length);
+        reference_point_ = from + motion * (travelled / length);
+        const gantry::GantryStatus before = machine_.status();
+        grind_at(action, feed);
+        const gantry::GantryStatus& after = machine_.status();
+        if (feed == feed_control_.feed()) // on a wall it is not the control's
+            feed_control_.update(before.deflection, after.deflection, after.time - before.time);
+    }
+}
+
+/// Crosses to the next pass in pieces of a step, along the surface between the two. Ends early if the wheel climbs
+/// on something that is too high: the strategy goes up a layer at this position, and then on. Where the wheel's side
+/// face could meet a wall that takes more than F_max, it is lifted over, and lowered, guarded, beside it.
+void Runner::cross(const Action& action)
+{
+    force_offset_ = 0;
+    force_control_.begin_pass(path_.passes()[action.to.pass].along);
+    const std::vector<Eigen::Vector3d> way = way_across(action.to);
+    if (max_force(way, action.layer, plan_.job.feed.rate) > kMaxCrossingShare * plan_.job.force.max) {
+        return travel(action, way.back());
+    }
+    for (std::size_t i = 1; i < way.size() && (i == 1 || machine_.status().force <= plan_.job.force.max); ++i)
+        grind(action, way[i]);
+}
+
+/// Reference points from here to the next pass.
+std::vector<Eigen::Vector3d> Runner::way_across(const PathIndex& to) const
+{
+    const Eigen::Vector3d a = reference_point_, b = reference(to);
+    const int pieces = std::max(1, int(std::ceil((b - a).head<2>().norm() / plan_.step)));
+    // The path is a parabola through the tool point half-way: a straight line would cut into a convex surface.
+    double crown = 0;
+    if (pieces > 1) {
+        const Eigen::Vector3d middle = path_.tool_point(path_.across_along((a + b) / 2));
+        if (std::isfinite(middle.z())) crown = middle.z() - (a.z() + b.z()) / 2;
+    }
+    std::vector<Eigen::Vector3d> way = {a};
+    for (int i = 1; i <= pieces; ++i) {
+        const double s = double(i) / pieces;
+        way.emplace_back(a + s * (b - a) + 4 * s * (1 - s) * crown * Eigen::Vector3d::UnitZ());
+    }
+    return way;
+}
+
+/// The largest force that the stock could put on the wheel on a way of reference points, N.
+double Runner::max_force(std::vector<Eigen::Vector3d> way, int layer, double feed) const
+{
+    const double up = tool_point(layer).z() - reference_point_.z();
+    for (Eigen::Vector3d& at : way) at.z() += up;
+    return bound_.max_force(way, radius(), feed);
+}
+
+/// The wheel goes along the passes, and is lifted over to the next.
+double Runner::force_of_re_cut(const std::vector<PathIndex>& points, int layer) const
+{
+    double force = 0;
+    for (std::size_t first = 0, end; first < points.size(); first = end) {
+        std::vector<Eigen::Vector3d> way;
+        for (end = first; end < points.size() && points[end].pass == points[first].pass; ++end)
+            way.push_back(reference(points[end]));
+        force = std::max(force, max_force(std::move(way), layer, plan_.job.feed.rate));
+    }
+    return force;
+}
+
+/// Records the end of a move. A guarded descent may have stopped above the reference surface; a grinding step has
+/// not, though a machine with look-ahead may not have reached its end yet.
+void Runner::record_move(const gantry::GantryStatus& status, int layer, double feed)
+{
+    height_error_ = feed > 0 ? 0 : std::max(0.0, status.commanded.z() - tool_point(layer).z());
+    const double duration = feed > 0 ? status.time - last_time_ : 0; // of grinding
+    result_.force.add(status, layer, duration, plan_.job.force);
+    impulse_ = (last_force_ + status.force) / 2 * duration;
+    grinding_time_ += duration;
+    wear_model_.add_force(status.force, duration);
+    if (single_covering()) wheel_wear_ = wear_model_.loss();
+    last_time_ = status.time;
+    lower_bound(status, feed);
+    last_force_ = status.force;
+    if (contact_watch_ && machine_.is_live()) contact_watch_->follow(status, feed);
+}
+
+/// The stock ends at the wheel's rim, where the wheel has been. Between two readings it may have been higher, by what
+/// the peak force says; and the wheel has worn.
+void Runner::lower_bound(const gantry::GantryStatus& status, double feed)
+{
+    const Eigen::Vector3d from = tip_;
+    tip_ = status.commanded + (status.deflection + wear_model_.expected_loss()) * Eigen::Vector3d::UnitZ();
+    const double along = (tip_ - from).head<2>().norm(), slope = along > 0 ? (tip_.z() - from.z()) / along : 0;
+    is_climbing_ = feed > 0 && slope > kWallSlope;
+    if (feed > 0)
+        climb_ = std::max(slope, kClimbMemory * climb_);
+    else if (status.force > plan_.job.force.min) // set down on metal, which may rise ahead
+        climb_ = std::max(climb_, kUnknownSlope);
+    if (!(feed > 0)) return bound_.lower(tip_, radius());
+    const double reading = std::max(status.force, last_force_), above = std::max(status.peak_force - reading, 0.0);
+    const Eigen::Vector3d up = above / plan_.job.force.stiffness * Eigen::Vector3d::UnitZ();
+    bound_.lower(from + up, tip_ + up, radius());
+}
+
+/// Of the wheel as it was measured last, mm.
+double Runner::radius() const { return result_.wheel_radius > 0 ? result_.wheel_radius : plan_.job.wheel.radius; }
+
+} // namespace fettle::strategy
