@@ -60,7 +60,8 @@ Eigen::Vector3d parse_direction(const std::string& text)
 struct Options {
     cli::Tool& t;
     const std::string& path = t.main_input("IN", "A cloud (PCD, PLY, XYZ) or a mesh (STL, PLY, OBJ, OFF)");
-    const std::optional<units::Units::Length>& unit = t.length_unit("--file-units", "Unit of IN, if it states none");
+    const std::optional<units::Units::Length>& unit =
+        t.length_unit("--file-units", "Unit of IN, if it states none; default: mm, or the unit of the job of --crop");
     const std::string& crop =
         t.text("--crop", "", "REGION",
                "Leave out what lies outside of box:X0,Y0,Z0,X1,Y1,Z1, sphere:X,Y,Z,RADIUS, "
@@ -83,6 +84,11 @@ struct Options {
     const bool& ascii = t.flag("--ascii", "Write PCD as text");
 };
 
+clean::StatedRegion parse_crop(const std::string& text)
+{
+    return cli::with_error_prefix("--crop", [&] { return clean::parse_region(text); });
+}
+
 /// The filters, in the unit of the file. What can be checked before a large file is read is.
 clean::CleanRequest parse_request(const Options& o, double mm)
 {
@@ -91,8 +97,8 @@ clean::CleanRequest parse_request(const Options& o, double mm)
         return cli::with_error_prefix(name, [&] { return parser(text); });
     };
     if (!o.crop.empty()) {
-        const clean::StatedRegion stated = parse("--crop", o.crop, clean::parse_region);
-        request.crop = clean::scaled(stated.region, stated.is_in_mm ? 1 : mm);
+        const clean::StatedRegion stated = parse_crop(o.crop);
+        request.crop = clean::scaled(stated.region, stated.job_units ? 1 : mm);
     }
     if (!o.facing.empty()) request.facing = parse("--facing", o.facing, parse_direction);
     if (!o.outliers.empty())
@@ -121,8 +127,9 @@ int main(int argc, char** argv)
             "Rusu et al. 2008 (statistical outliers); PCL's StatisticalOutlierRemoval and RadiusOutlierRemoval");
         t.parse();
         parse_request(o, 1);
+        const std::optional<units::Units> job_units = o.crop.empty() ? std::nullopt : parse_crop(o.crop).job_units;
 
-        mesh::CloudMeshFile file = mesh::read_cloud_mesh(o.path, mesh::resolve_file_units(o.unit));
+        mesh::CloudMeshFile file = mesh::read_cloud_mesh(o.path, mesh::resolve_file_units(o.unit, job_units));
         const std::string name = core::display_name(o.path);
         mesh::PartFormat format = mesh::part_format(t.output_name(), o.format, file.part.is_mesh());
         if (o.ascii && format != mesh::PartFormat::pcd) throw core::InputError("--ascii", "goes with PCD");

@@ -2,6 +2,7 @@
 #include "cloud/fields.h"
 #include "cloud/pcd.h"
 #include "core/file.h"
+#include "job/frame.h"
 #include "job/plausible.h"
 #include "sampling/estimate.h"
 
@@ -23,14 +24,15 @@ int main(int argc, char** argv)
 
             const job::Job job = job::read_job(job_file);
             const units::Units units{file_unit.value_or(job.units.length), job.units.force};
-            const cloud::Cloud samples = cloud::read_cloud(input, units).cloud;
+            cloud::Cloud samples = cloud::read_cloud(input, units).cloud;
+            job::move_to_job_frame(samples, job);
             if (cloud::has_field(samples, "role"))
                 job::check_touch_places({samples.xyz, cloud::integer_field(samples, "role")}, job,
                                         core::display_name(input));
             const cloud::Cloud points = cli::with_error_prefix(
                 core::display_name(input), [&] { return sampling::with_estimated_points(job, samples); });
             t.report().set("touches", samples.size()).set("estimated", points.size() - samples.size());
-            cloud::write_pcd(t.output(), points, job.units, cloud::pcd_encoding(ascii));
+            cloud::write_pcd(t.output(), job::in_job_frame(points, job), job.units, cloud::pcd_encoding(ascii));
             return cli::Verdict::yes;
         });
 }

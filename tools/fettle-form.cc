@@ -3,6 +3,7 @@
 #include "compare/form_run.h"
 #include "core/file.h"
 #include "core/text.h"
+#include "job/frame.h"
 #include "job/shape_warnings.h"
 #include "mesh/shape_file.h"
 
@@ -66,7 +67,8 @@ int main(int argc, char** argv)
         request.outlier_limit = outliers;
         if (!job_path.empty()) request.job = job::read_job(job_path);
         const std::optional<units::Units> job_units = request.job ? std::optional(request.job->units) : std::nullopt;
-        const mesh::ShapeFile file = mesh::read_shape(path, mesh::resolve_file_units(unit, job_units));
+        mesh::ShapeFile file = mesh::read_shape(path, mesh::resolve_file_units(unit, job_units));
+        if (request.job) job::move_to_job_frame(file.shape, *request.job);
         const units::Units units = job_units.value_or(file.units);
         cloud::Cloud points;
         points.xyz = mesh::coordinates_of(file.shape);

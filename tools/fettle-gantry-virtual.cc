@@ -4,6 +4,7 @@
 #include "gantry/gantry_options.h"
 #include "gantry/make_virtual.h"
 #include "gantry/serve.h"
+#include "job/frame.h"
 #include "plan/plan.h"
 
 #include <ostream>
@@ -45,7 +46,8 @@ int main(int argc, char** argv)
         gantry::serve(*gantry, gantry->limits(), job, core::FileDescriptor(::dup(STDIN_FILENO)),
                       core::FileDescriptor(::dup(STDOUT_FILENO)));
         if (out != nullptr)
-            cloud::write_pcd(*out, removal::to_cloud(stock, gantry->stock()), job.units, cloud::PcdEncoding::binary);
+            cloud::write_pcd(*out, job::in_job_frame(removal::to_cloud(stock, gantry->stock()), job), job.units,
+                             cloud::PcdEncoding::binary);
         return cli::Verdict::yes;
     });
 }

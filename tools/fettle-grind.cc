@@ -3,6 +3,7 @@
 #include "core/file.h"
 #include "gantry/gantry_options.h"
 #include "gantry/loops.h"
+#include "job/frame.h"
 #include "plan/plan.h"
 #include "strategy/run.h"
 #include "strategy/run_identity.h"
@@ -130,7 +131,7 @@ int main(int argc, char** argv)
         const removal::HeightField ground =
             simulated ? simulated->stock() : strategy::replay_removal(run.trace, plan.job, stock);
 
-        cloud::write_pcd(t.output(), removal::to_cloud(stock, ground), units, encoding);
+        cloud::write_pcd(t.output(), job::in_job_frame(removal::to_cloud(stock, ground), plan.job), units, encoding);
         save_trace(o, run.trace, journal.get(), units, identity);
         t.report() = strategy::to_json(run, removal::volume_between(stock, ground), units);
         t.report().set("dropped_facets", dropped);

@@ -2,6 +2,7 @@
 #include "cloud/pcd.h"
 #include "core/file.h"
 #include "gantry/gantry_options.h"
+#include "job/frame.h"
 #include "job/job.h"
 #include "strategy/manual.h"
 #include "strategy/run_json.h"
@@ -68,7 +69,7 @@ int main(int argc, char** argv)
         for (const std::string& doubt : doubts) t.warn(doubt);
         strategy::Steering steering(o.steering);
         const cloud::PcdEncoding encoding = cloud::pcd_encoding(o.ascii);
-        const auto journal = strategy::open_journal(o.trace, units, encoding);
+        const auto journal = strategy::open_journal(o.trace, units, encoding, {}, {{}, job.frame()});
 
         auto [machine, limits, simulated] = gantry::open_gantry(o.gantry, job, stock, t.seed());
         strategy::ManualOptions options;
@@ -80,9 +81,9 @@ int main(int argc, char** argv)
         const removal::HeightField ground =
             simulated ? simulated->stock() : strategy::replay_removal(run.trace, job, stock);
 
-        cloud::write_pcd(t.output(), removal::to_cloud(stock, ground), units, encoding);
+        cloud::write_pcd(t.output(), job::in_job_frame(removal::to_cloud(stock, ground), job), units, encoding);
         if (!o.trace.empty() && !(journal && journal->has_failed()))
-            strategy::write_trace(t.output_file(o.trace), run.trace, units, encoding, {});
+            strategy::write_trace(t.output_file(o.trace), run.trace, units, encoding, {{}, job.frame()});
         t.report() = strategy::to_json(run, removal::volume_between(stock, ground), units);
         t.report().set("dropped_facets", dropped);
         if (!run.failure.empty()) t.warn(run.failure);

@@ -25,6 +25,7 @@ cloud::Cloud evaluate(const surface::Surface& surface, const Eigen::Matrix2Xd& x
 struct GridInUnits {
     surface::SurfaceGrid grid;
     units::Units units;
+    cloud::Frame frame;
 };
 
 GridInUnits make_grid(const surface::Surface& surface, const std::string& source, const std::string& job_file,
@@ -32,18 +33,20 @@ GridInUnits make_grid(const surface::Surface& surface, const std::string& source
 {
     units::Units units = surface.units;
     job::Polygon outline;
+    cloud::Frame frame = cloud::Frame::part;
     double angle = 0;
     if (job_file.empty()) {
         outline = surface::touch_bounding_box(surface, source);
     } else {
         const job::Job job = job::read_job(job_file);
         units = job.units;
+        frame = job.frame();
         angle = job.theta;
         outline = job::working_boundaries(job).anomaly;
     }
     return {
         cli::with_error_prefix("--step", [&] { return surface::make_surface_grid(outline, angle, step * units.mm()); }),
-        units};
+        units, frame};
 }
 
 } // namespace
@@ -85,16 +88,23 @@ int main(int argc, char** argv)
 
         if (!at.empty()) {
             const units::Units point_units{at_units.value_or(surface.units.length), surface.units.force};
-            const Eigen::Matrix2Xd xy = cloud::read_cloud(at, point_units).cloud.xyz.topRows(2);
-            cloud::write_pcd(t.output(), evaluate(surface, xy, with_sigma), surface.units);
+            const cloud::Cloud given = cloud::read_cloud(at, point_units).cloud;
+            cloud::Cloud points = evaluate(surface, given.xyz.topRows(2), with_sigma);
+            points.frame = given.frame;
+            cloud::write_pcd(t.output(), points, surface.units);
             return cli::Verdict::yes;
         }
-        const auto [grid, units] = make_grid(surface, core::display_name(surface_file), within, *step);
+        const auto [grid, units, frame] = make_grid(surface, core::display_name(surface_file), within, *step);
         t.report().set("points", static_cast<int>(grid.xy.cols()));
-        if (stl)
-            mesh::write_stl(t.output(), surface::mesh_of(surface, grid), units.length);
-        else
-            cloud::write_pcd(t.output(), evaluate(surface, grid.xy, with_sigma), units);
+        if (stl) {
+            mesh::Mesh triangles = surface::mesh_of(surface, grid);
+            triangles.frame = frame;
+            mesh::write_stl(t.output(), triangles, units.length);
+        } else {
+            cloud::Cloud points = evaluate(surface, grid.xy, with_sigma);
+            points.frame = frame;
+            cloud::write_pcd(t.output(), points, units);
+        }
         return cli::Verdict::yes;
     });
 }

@@ -27,7 +27,8 @@ std::vector<place::Turn> parse_turns(const std::string& text)
 struct Options {
     cli::Tool& t;
     const std::string& path = t.main_input("IN", "A cloud (PCD, PLY, XYZ) or a mesh (STL, PLY, OBJ, OFF)");
-    const std::optional<units::Units::Length>& unit = t.length_unit("--file-units", "Unit of IN, if it states none");
+    const std::optional<units::Units::Length>& unit =
+        t.length_unit("--file-units", "Unit of IN, if it states none; default: mm, or the unit of the job of --into");
     const std::optional<units::Units::Length>& units =
         t.length_unit("--units", "Unit of the output; default: that of IN");
     const std::string& matrix = t.optional_file(
@@ -42,6 +43,8 @@ struct Options {
         "--threshold", "LENGTH",
         "Points no farther from the plane or cylinder belong to it; default: 1/500 of the part's diagonal",
         core::Range::positive());
+    const std::string& into = t.optional_file(
+        "--into", "JOB", "Move into the frame of this job, in which its anomaly faces up; not with the others");
     const bool& centre =
         t.flag("--centre", "Put the centre of what faces up, or of the part's bounding box, to the origin");
     const std::string& transform_out =
@@ -62,6 +65,11 @@ place::PlaceRequest parse_request(const Options& o)
     if (!o.up.empty() && !request.up) request.picked = job::read_picked_points(o.up);
     if (o.threshold && !request.up) throw core::InputError("--threshold", "goes with --up plane or --up cylinder");
     request.is_centred = o.centre;
+    if (!o.into.empty()) {
+        if (request.matrix || !request.turns.empty() || !o.up.empty() || o.centre)
+            throw core::InputError("--into", "goes without --matrix, --turn, --up and --centre");
+        request.into = job::read_job(o.into);
+    }
     return request;
 }
 
@@ -80,11 +88,14 @@ int main(int argc, char** argv)
         const Options o{t};
         t.example("fettle-place scans/hammer.stl --up plane --centre --inverse back.txt -o lying.stl",
                   "the hammer with its largest flat face up, and the matrix that moves it back");
+        t.example("fettle-place part.stl --into jobs/1.json --inverse back.txt -o turned.stl",
+                  "the part as the job sees it; `--matrix back.txt` moves what was ground back");
         t.reference("Fischler & Bolles 1981 (RANSAC); PCL's SACSegmentationFromNormals");
         t.parse();
         place::PlaceRequest request = parse_request(o);
 
-        mesh::CloudMeshFile file = mesh::read_cloud_mesh(o.path, mesh::resolve_file_units(o.unit));
+        mesh::CloudMeshFile file = mesh::read_cloud_mesh(
+            o.path, mesh::resolve_file_units(o.unit, request.into ? std::optional(request.into->units) : std::nullopt));
         const std::string name = core::display_name(o.path);
         const mesh::PartFormat format = mesh::part_format(t.output_name(), o.format, file.part.is_mesh());
         const double mm = file.units.mm();

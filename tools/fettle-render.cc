@@ -2,6 +2,7 @@
 #include "core/direction.h"
 #include "core/file.h"
 #include "draw/picture.h"
+#include "job/frame.h"
 #include "job/shape_warnings.h"
 #include "mesh/shape_file.h"
 
@@ -44,7 +45,8 @@ int main(int argc, char** argv)
             if (!within.empty()) options.job = job::read_job(within);
             const std::optional<units::Units> units =
                 mesh::resolve_file_units(stated, options.job ? std::optional(options.job->units) : std::nullopt);
-            const mesh::ShapeFile file = mesh::parse_shape(core::read_file(path), core::display_name(path), units);
+            mesh::ShapeFile file = mesh::parse_shape(core::read_file(path), core::display_name(path), units);
+            if (options.job) job::move_to_job_frame(file.shape, *options.job);
             options.units = file.units;
             const cloud::Cloud* cloud = std::get_if<cloud::Cloud>(&file.shape);
             if (cloud != nullptr && cloud::has_field(*cloud, "error")) options.field = "error";

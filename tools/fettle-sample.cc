@@ -3,6 +3,7 @@
 #include "core/file.h"
 #include "gantry/gantry_options.h"
 #include "gantry/touch_job.h"
+#include "job/frame.h"
 #include "sampling/freeform.h"
 #include "sampling/probe.h"
 
@@ -113,8 +114,9 @@ int main(int argc, char** argv)
         t.report() = gantry::to_json(result, job);
         t.note(std::to_string(result.plan.size()) + " touches" +
                (result.adaptive ? "" : " on " + std::to_string(result.plan.curve.maxCoeff() + 1) + " lines"));
-        cloud::write_pcd(t.output(), sampling::sample_cloud(result.touches, result.plan, result.order), job.units,
-                         cloud::pcd_encoding(o.ascii));
+        cloud::write_pcd(t.output(),
+                         job::in_job_frame(sampling::sample_cloud(result.touches, result.plan, result.order), job),
+                         job.units, cloud::pcd_encoding(o.ascii));
         return cli::Verdict::yes;
     });
 }

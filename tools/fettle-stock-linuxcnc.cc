@@ -3,6 +3,7 @@
 #include "core/file.h"
 #include "gantry/gantry_options.h"
 #include "gantry/simulated_head.h"
+#include "job/frame.h"
 #include "plan/plan.h"
 
 #include <ostream>
@@ -35,7 +36,8 @@ int main(int argc, char** argv)
             if (ground.columns() != stock.columns() || ground.rows() != stock.rows() || ground.origin != stock.origin ||
                 ground.cell != stock.cell)
                 throw core::InputError(core::display_name(after), "is not the stock of this part, plan and cell");
-            cloud::write_pcd(t.output(), removal::to_cloud(stock, ground), job.units, cloud::pcd_encoding(ascii));
+            cloud::write_pcd(t.output(), job::in_job_frame(removal::to_cloud(stock, ground), job), job.units,
+                             cloud::pcd_encoding(ascii));
             return cli::Verdict::yes;
         });
 }

@@ -5,6 +5,7 @@
 #include "gantry/gantry_options.h"
 #include "gantry/make_virtual.h"
 #include "job/boundary.h"
+#include "job/frame.h"
 #include "job/job.h"
 #include "job/picked.h"
 #include "sampling/scan.h"
@@ -96,9 +97,15 @@ void apply_settings(job::Job& job, const Options& o, cli::OperatorPrompt* answer
 void set_picked_points(job::Job& job, const Options& o, bool was_plane)
 {
     const double mm = units::mm_per(o.file_units.value_or(job.units.length));
-    job.anomaly = job::read_picked_points(o.anomaly) * mm;
+    const auto picked = [&](const std::string& path) { // in the part's frame
+        cloud::Cloud points;
+        points.xyz = job::read_picked_points(path) * mm;
+        job::move_to_job_frame(points, job);
+        return points.xyz;
+    };
+    job.anomaly = picked(o.anomaly);
     if (!o.sampling.empty())
-        job.sampling = job::read_picked_points(o.sampling) * mm;
+        job.sampling = picked(o.sampling);
     else if (was_plane && job.surface == job::SurfaceType::plane)
         job.sampling.resize(3, 0); // it is optional for a plane, and the old one is about another place
 }
@@ -109,7 +116,7 @@ void teach_on_gantry(cli::Tool& t, const Options& o, const cli::OperatorPrompt& 
     strategy::Steering steering(o.steering);
     removal::HeightField stock;
     if (!o.stock.empty())
-        stock = removal::stock_over_scan(sampling::read_scan(o.stock, job.units, o.stock_units), job.theta,
+        stock = removal::stock_over_scan(sampling::read_scan(o.stock, job, o.stock_units), job.theta,
                                          gantry::stock_cell_size(job, 0));
     const auto [machine, limits, simulated] = gantry::open_gantry(o.gantry, job, stock, t.seed());
     const double mm = job.units.mm();

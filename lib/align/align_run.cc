@@ -79,10 +79,12 @@ AlignRun align_files(const AlignRequest& request)
 
     cloud::Cloud sample; // the points that were aligned
     sample.xyz = points.xyz;
-    run.report = to_json(alignment, run.transform, transformed(sample, run.transform, mm).xyz, *reference, run.units);
+    run.report =
+        to_json(alignment, run.transform, cloud::transformed(sample, run.transform, mm).xyz, *reference, run.units);
     if (!scan.part.is_mesh()) run.report.set("dropped", scan.part.points.size() - points.xyz.cols());
     run.warnings = file_warnings(request, scan, target);
-    run.aligned = {transformed(std::move(scan.part.points), run.transform, mm), std::move(scan.part.triangles)};
+    scan.part.points.frame = mesh::frame_of(target.shape);
+    run.aligned = {cloud::transformed(std::move(scan.part.points), run.transform, mm), std::move(scan.part.triangles)};
     const std::vector<std::string> doubtful = doubts(alignment, options.icp);
     for (const std::string& doubt : doubtful) run.warnings.push_back(scan_name + ": " + doubt);
     run.sure = doubtful.empty();

@@ -73,23 +73,6 @@ void write_transform(std::ostream& out, const Eigen::Matrix4d& matrix)
         }
 }
 
-cloud::Cloud transformed(cloud::Cloud cloud, const Eigen::Matrix4d& matrix, double mm)
-{
-    const auto apply = [&](const Eigen::Vector3d& p) {
-        Eigen::Vector3d q;
-        for (int k = 0; k < 3; ++k)
-            q[k] = ((matrix(k, 0) * p[0] + matrix(k, 1) * p[1]) + matrix(k, 2) * p[2]) + matrix(k, 3);
-        return q;
-    };
-    for (Eigen::Index i = 0; i < cloud.size(); ++i) cloud.xyz.col(i) = mm * apply(cloud.xyz.col(i) / mm);
-    const Eigen::Matrix3d R = matrix.topLeftCorner<3, 3>();
-    if (cloud::has_normals(cloud)) cloud::set_normals(cloud, R * cloud::normals(cloud));
-    cloud.view_origin = mm * apply(cloud.view_origin / mm);
-    const Eigen::Quaterniond q = (Eigen::Quaterniond(R) * cloud.view_orientation).normalized();
-    cloud.view_orientation = q.w() < 0 ? Eigen::Quaterniond(-q.coeffs()) : q; // q and -q are the same rotation
-    return cloud;
-}
-
 Twist TwistFrame::gradient(const Eigen::Vector3d& point, const Eigen::Vector3d& direction) const
 {
     Twist g;

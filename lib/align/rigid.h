@@ -18,12 +18,6 @@ Eigen::Matrix4d read_transform(const std::string& path);
 /// Writes four lines of four numbers with 17 digits, so that they read back as the same bits.
 void write_transform(std::ostream& out, const Eigen::Matrix4d& matrix);
 
-/// Transforms points, normals and viewpoint of a cloud. Row by row x' = ((m00 x + m01 y) + m02 z) + m03 in double, so
-/// that any program that applies the matrix gets the same bits; the order of the sums in
-/// pcl::transformPointCloudWithNormals depends on the vector instructions that it is compiled for.
-/// @param matrix  in units of `mm` millimetres
-cloud::Cloud transformed(cloud::Cloud cloud, const Eigen::Matrix4d& matrix, double mm);
-
 /// Components of a motion that are held fixed: shifts along x, y, z of M, rotations about them.
 using HeldAxes = std::array<bool, 6>;
 

@@ -108,8 +108,11 @@ CleanResult clean_part(CloudMesh part, const CleanRequest& request)
     Cleaner cleaner(std::move(part));
     const Eigen::Matrix3Xd& xyz = cleaner.part().points.xyz;
     remove_unmeasured(cleaner);
-    if (request.crop)
-        cleaner.filter_points("cropped", [&](Eigen::Index i) { return !contains(*request.crop, xyz.col(i)); });
+    if (request.crop) {
+        const bool is_moved = cleaner.part().points.frame == cloud::Frame::job;
+        const Region region = is_moved ? in_job_frame(*request.crop) : *request.crop;
+        cleaner.filter_points("cropped", [&](Eigen::Index i) { return !contains(region, xyz.col(i)); });
+    }
     if (request.facing) remove_facing_away(cleaner, *request.facing);
     if (request.outliers) {
         const std::vector<char> is_outlier =

@@ -57,11 +57,13 @@ Region parse_prism(const std::vector<double>& n)
                  n[1]};
 }
 
-Region region_of_job(const std::string& file)
+StatedRegion region_of_job(const std::string& file)
 {
     const job::Job job = job::read_job(file);
     const auto& boundary = job.sampling.cols() > 0 ? job.sampling : job.anomaly;
-    return Prism{boundary.topRows<2>(), -core::kInfinity, core::kInfinity};
+    return {Prism{boundary.topRows<2>(), -core::kInfinity, core::kInfinity,
+                  job.T_part_job.value_or(Eigen::Isometry3d::Identity()).inverse()},
+            job.units};
 }
 
 } // namespace
@@ -71,10 +73,10 @@ StatedRegion parse_region(const std::string& text)
     const auto after = [&](std::string_view prefix) {
         return parse_numbers(std::string_view(text).substr(prefix.size()));
     };
-    if (text.starts_with("box:")) return {parse_box(after("box:"))};
-    if (text.starts_with("sphere:")) return {parse_sphere(after("sphere:"))};
-    if (text.starts_with("polygon:")) return {parse_prism(after("polygon:"))};
-    return {region_of_job(text), true};
+    if (text.starts_with("box:")) return {parse_box(after("box:")), {}};
+    if (text.starts_with("sphere:")) return {parse_sphere(after("sphere:")), {}};
+    if (text.starts_with("polygon:")) return {parse_prism(after("polygon:")), {}};
+    return region_of_job(text);
 }
 
 Region scaled(Region region, double factor)
@@ -83,7 +85,13 @@ Region scaled(Region region, double factor)
         return Eigen::AlignedBox3d(factor * box->min(), factor * box->max());
     if (auto* sphere = std::get_if<Sphere>(&region)) return Sphere{factor * sphere->centre, factor * sphere->radius};
     const auto& prism = std::get<Prism>(region);
-    return Prism{factor * prism.polygon, factor * prism.min_z, factor * prism.max_z};
+    return Prism{factor * prism.polygon, factor * prism.min_z, factor * prism.max_z, prism.T_prism_part};
+}
+
+Region in_job_frame(Region region)
+{
+    if (auto* prism = std::get_if<Prism>(&region)) prism->T_prism_part.setIdentity();
+    return region;
 }
 
 bool contains(const Region& region, const Eigen::Vector3d& point)
@@ -91,7 +99,8 @@ bool contains(const Region& region, const Eigen::Vector3d& point)
     if (const auto* box = std::get_if<Eigen::AlignedBox3d>(&region)) return box->contains(point);
     if (const auto* sphere = std::get_if<Sphere>(&region)) return (point - sphere->centre).norm() <= sphere->radius;
     const auto& prism = std::get<Prism>(region);
-    return point.z() >= prism.min_z && point.z() <= prism.max_z && job::contains(prism.polygon, point.head<2>());
+    const Eigen::Vector3d p = prism.T_prism_part * point;
+    return p.z() >= prism.min_z && p.z() <= prism.max_z && job::contains(prism.polygon, p.head<2>());
 }
 
 } // namespace fettle::clean

@@ -1,10 +1,12 @@
 #pragma once
 
 #include "job/boundary.h"
+#include "units/units.h"
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include <optional>
 #include <string>
 #include <variant>
 
@@ -16,10 +18,12 @@ struct Sphere {
     double radius;
 };
 
-/// What stands over, or lies under, a polygon in the plane x y, from one height to another.
+/// What stands over, or lies under, a polygon in the plane x y, from one height to another; of a job in the job's
+/// frame.
 struct Prism {
     job::Polygon polygon;
     double min_z, max_z;
+    Eigen::Isometry3d T_prism_part = Eigen::Isometry3d::Identity();
 };
 
 /// A region of space, in the unit that it was stated in.
@@ -27,7 +31,7 @@ using Region = std::variant<Eigen::AlignedBox3d, Sphere, Prism>;
 
 struct StatedRegion {
     Region region;
-    bool is_in_mm = false; ///< it comes from a job; else in the unit of whoever states it
+    std::optional<units::Units> job_units; ///< of the job that it comes from, in mm then; else in the stater's unit
 };
 
 /// Parses "box:X0,Y0,Z0,X1,Y1,Z1", "sphere:X,Y,Z,RADIUS" or "polygon:Z0,Z1,X1,Y1,X2,Y2,X3,Y3,…"; anything else names
@@ -38,7 +42,10 @@ StatedRegion parse_region(const std::string& text);
 /// The region with all lengths multiplied.
 Region scaled(Region region, double factor);
 
-/// True if a point lies in the region or on its border.
+/// The region for points that are in the job's frame already.
+Region in_job_frame(Region region);
+
+/// True if a point lies in the region or on its border. @param point  in the part's frame
 bool contains(const Region& region, const Eigen::Vector3d& point);
 
 } // namespace fettle::clean

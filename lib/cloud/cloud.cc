@@ -23,13 +23,14 @@ Field& prepare_field(Cloud& cloud, const std::string& name, Eigen::Index points,
     return *field;
 }
 
-/// A cloud without points that has the viewpoint and comment of another.
+/// A cloud without points that has the viewpoint, comment and frame of another.
 Cloud empty_like(const Cloud& cloud)
 {
     Cloud empty;
     empty.view_origin = cloud.view_origin;
     empty.view_orientation = cloud.view_orientation;
     empty.comment = cloud.comment;
+    empty.frame = cloud.frame;
     return empty;
 }
 
@@ -91,6 +92,23 @@ void set_colours(Cloud& cloud, const Eigen::Matrix<std::uint8_t, 3, Eigen::Dynam
                                      static_cast<std::uint32_t>(rgb(1, i)) << 8 | static_cast<std::uint32_t>(rgb(2, i));
         store(target.bytes.data() + 4 * i, packed);
     }
+}
+
+Cloud transformed(Cloud cloud, const Eigen::Matrix4d& matrix, double mm)
+{
+    const auto apply = [&](const Eigen::Vector3d& p) {
+        Eigen::Vector3d q;
+        for (int k = 0; k < 3; ++k)
+            q[k] = ((matrix(k, 0) * p[0] + matrix(k, 1) * p[1]) + matrix(k, 2) * p[2]) + matrix(k, 3);
+        return q;
+    };
+    for (Eigen::Index i = 0; i < cloud.size(); ++i) cloud.xyz.col(i) = mm * apply(cloud.xyz.col(i) / mm);
+    const Eigen::Matrix3d R = matrix.topLeftCorner<3, 3>();
+    if (has_normals(cloud)) set_normals(cloud, R * normals(cloud));
+    cloud.view_origin = mm * apply(cloud.view_origin / mm);
+    const Eigen::Quaterniond q = (Eigen::Quaterniond(R) * cloud.view_orientation).normalized();
+    cloud.view_orientation = q.w() < 0 ? Eigen::Quaterniond(-q.coeffs()) : q; // q and -q are the same rotation
+    return cloud;
 }
 
 Cloud slice(const Cloud& cloud, Eigen::Index first, Eigen::Index count)

@@ -20,6 +20,10 @@ struct Field {
     std::size_t stride() const { return static_cast<std::size_t>(size) * count; } ///< bytes of one point
 };
 
+/// Frame of the coordinates in a file: the part's own, or that of a job, which a header comment `# frame job` states.
+/// They differ if the job has a pose (job/job.h).
+enum class Frame { part, job };
+
 /// Points with named fields, frame M, in mm; fields with a dimension are in base units (fields.h).
 struct Cloud {
     Eigen::Matrix3Xd xyz;                                  ///< 3xN; NaN: no point
@@ -27,7 +31,8 @@ struct Cloud {
     Eigen::Vector3d view_origin = Eigen::Vector3d::Zero(); ///< VIEWPOINT, mm
     Eigen::Quaterniond view_orientation = Eigen::Quaterniond::Identity();
     std::size_t width = 0; ///< of an organised cloud; 0: not organised
-    std::string comment;   ///< a comment line for the header, "frame: part"; readers ignore it
+    Frame frame = Frame::part;
+    std::string comment; ///< a comment line for the header, "frame: part"; readers ignore it
 
     Eigen::Index size() const { return xyz.cols(); }
 };
@@ -48,6 +53,12 @@ void set_normals(Cloud& cloud, const Eigen::Matrix3Xd& unit_normals);
 
 /// Sets the field rgb, packed as in PCL, so that pcl_viewer and CloudCompare show it. @param rgb  3xN, 0 to 255
 void set_colours(Cloud& cloud, const Eigen::Matrix<std::uint8_t, 3, Eigen::Dynamic>& rgb);
+
+/// Moves points, normals and viewpoint of a cloud. Row by row x' = ((m00 x + m01 y) + m02 z) + m03 in double, so that
+/// any program that applies the matrix gets the same bits; the order of the sums in
+/// pcl::transformPointCloudWithNormals depends on the vector instructions that it is compiled for.
+/// @param matrix  rigid, in units of `mm` millimetres
+Cloud transformed(Cloud cloud, const Eigen::Matrix4d& matrix, double mm);
 
 /// Copies consecutive points with all their fields, and the width of the whole cloud.
 Cloud slice(const Cloud& cloud, Eigen::Index first, Eigen::Index count);

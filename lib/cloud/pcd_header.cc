@@ -89,6 +89,7 @@ class PcdHeaderParser : core::FileLines {
 
     void read_comment(std::string_view text)
     {
+        if (is_job_frame_comment(text)) header_.frame = Frame::job;
         std::optional<DeclaredUnits> units;
         try {
             units = parse_units_comment(text);

@@ -35,6 +35,7 @@ struct PcdHeader {
     Eigen::Vector3d view_origin = Eigen::Vector3d::Zero(); ///< in the units of the file
     Eigen::Quaterniond view_orientation = Eigen::Quaterniond::Identity();
     std::optional<DeclaredUnits> units; ///< of the `# units` comment
+    Frame frame = Frame::part;          ///< of the `# frame` comment
     Data data = Data::ascii;
     std::size_t body = 0;  ///< offset of the first byte after the header
     std::size_t lines = 0; ///< number of header lines, for line numbers in messages

@@ -44,6 +44,7 @@ std::string header_text(const Cloud& cloud, std::size_t points, const std::vecto
     const std::size_t width = organised ? cloud.width : points;
     std::string text = "# .PCD v0.7 - Point Cloud Data file format\n# units " + units::to_string(units.length) +
                        (has_force(cloud) ? ' ' + units::to_string(units.force) : "") + '\n';
+    if (cloud.frame == Frame::job) text += "# frame job\n";
     if (!cloud.comment.empty()) text += "# " + cloud.comment + '\n';
     text += "VERSION 0.7\n" + names + '\n' + sizes + '\n' + types + '\n' + counts + "\nWIDTH " + std::to_string(width) +
             "\nHEIGHT " + std::to_string(organised ? points / width : 1) + "\nVIEWPOINT";

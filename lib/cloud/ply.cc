@@ -162,9 +162,12 @@ Ply parse_ply(std::string_view bytes, const std::string& source)
     if (std::ranges::find(header.elements, "vertex", &Element::name) == header.elements.end())
         throw core::InputError(source, "PLY without element vertex");
     const std::string_view body = bytes.substr(header.body);
-    if (header.encoding == PlyHeader::Encoding::ascii)
-        return read_body(AsciiPlyBody(body, header.lines, source), header, source);
-    return read_body(BinaryPlyBody(body, header.encoding == PlyHeader::Encoding::big_endian, source), header, source);
+    Ply ply = header.encoding == PlyHeader::Encoding::ascii
+                  ? read_body(AsciiPlyBody(body, header.lines, source), header, source)
+                  : read_body(BinaryPlyBody(body, header.encoding == PlyHeader::Encoding::big_endian, source), header,
+                              source);
+    ply.vertices.frame = header.frame;
+    return ply;
 }
 
 bool looks_like_ply(std::string_view bytes) { return bytes.starts_with("ply\n") || bytes.starts_with("ply\r\n"); }

@@ -37,6 +37,8 @@ class PlyHeaderParser : core::FileLines {
         bool encoded = false;
         while (!ended && next_line()) {
             const Words words = fettle::core::words(line());
+            if (words.size() == 3 && words[0] == "comment" && words[1] == "frame" && words[2] == "job")
+                header_.frame = Frame::job;
             if (words.empty() || words[0] == "comment" || words[0] == "obj_info") continue;
             if (number() == 1 && words.size() == 1 && words[0] == "ply") continue;
             if (words[0] == "format")

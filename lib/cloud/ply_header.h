@@ -1,5 +1,7 @@
 #pragma once
 
+#include "cloud/cloud.h"
+
 #include <cstddef>
 #include <string>
 #include <string_view>
@@ -27,8 +29,9 @@ struct PlyHeader {
 
     Encoding encoding = Encoding::ascii;
     std::vector<Element> elements;
-    std::size_t body = 0;  ///< offset of the first byte after the header
-    std::size_t lines = 0; ///< number of header lines
+    Frame frame = Frame::part; ///< of the comment `frame job`
+    std::size_t body = 0;      ///< offset of the first byte after the header
+    std::size_t lines = 0;     ///< number of header lines
 };
 
 /// @throws InputError with the line

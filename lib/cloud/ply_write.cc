@@ -73,7 +73,8 @@ class PlyEncoder : public CloudWriter::Encoder {
     void begin(const Cloud& first) override
     {
         out_ << "ply\nformat binary_little_endian 1.0\ncomment units " << units::to_string(units_.length)
-             << "\nelement vertex " << points_ << "\nproperty float x\nproperty float y\nproperty float z\n";
+             << (first.frame == Frame::job ? "\ncomment frame job" : "") << "\nelement vertex " << points_
+             << "\nproperty float x\nproperty float y\nproperty float z\n";
         for (const Field& field : to_file_units(slice(first, 0, 0).fields, units_)) {
             std::vector<WrittenProperty>& properties = properties_.emplace_back();
             if (is_colour(field)) {

@@ -141,6 +141,7 @@ CloudStream::CloudStream(std::shared_ptr<const core::InputFile> file, const std:
         CloudFile read = read_all();
         const auto cloud = std::make_shared<const Cloud>(std::move(read.cloud));
         units_ = read.units;
+        frame_ = cloud->frame;
         load_ = [cloud] { return cloud; };
         part_ = [cloud](std::size_t first, std::size_t count) { return cloud::slice(*cloud, first, count); };
         points_ = make_point_source(cloud);
@@ -153,6 +154,7 @@ CloudStream::CloudStream(std::shared_ptr<const core::InputFile> file, const std:
     file->read(body + needed, next.data(), next.size());
     check_binary_size(*header, available, next, name);
     units_ = resolve_units(header->units, units, name);
+    frame_ = header->frame;
     load_ = [read_all] { return std::make_shared<const Cloud>(read_all().cloud); };
     part_ = [file, body, h = *header, in = units_](std::size_t first, std::size_t count) {
         std::string records(count * h.stride(), '\0');

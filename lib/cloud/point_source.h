@@ -54,6 +54,7 @@ class CloudStream {
     Cloud slice(std::size_t first, std::size_t count) const { return part_(first, count); }
     /// Units of the file.
     const units::Units& units() const { return units_; }
+    Frame frame() const { return frame_; }
     /// Reads all points with all their fields.
     std::shared_ptr<const Cloud> read_all() const;
 
@@ -62,6 +63,7 @@ class CloudStream {
     std::function<Cloud(std::size_t first, std::size_t count)> part_;
     PointSource points_;
     units::Units units_;
+    Frame frame_ = Frame::part;
 };
 
 } // namespace fettle::cloud

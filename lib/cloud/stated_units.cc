@@ -17,6 +17,12 @@ std::optional<DeclaredUnits> parse_units_comment(std::string_view comment)
     return units;
 }
 
+bool is_job_frame_comment(std::string_view comment)
+{
+    const std::vector<std::string_view> parts = core::words(comment);
+    return parts.size() == 2 && parts[0] == "frame" && parts[1] == "job";
+}
+
 units::Units resolve_units(const std::optional<DeclaredUnits>& declared, const std::optional<units::Units>& requested,
                            const std::string& source)
 {

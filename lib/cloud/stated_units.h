@@ -18,6 +18,9 @@ struct DeclaredUnits {
 /// @throws InputError for unknown units; the message has no file name
 std::optional<DeclaredUnits> parse_units_comment(std::string_view comment);
 
+/// True for the comment of a file in a job's frame, `# frame job`. @param comment  text of a line after its '#'
+bool is_job_frame_comment(std::string_view comment);
+
 /// Units of a file: those declared in it, else those requested, else mm and N.
 /// @throws InputError if declared and requested units differ
 units::Units resolve_units(const std::optional<DeclaredUnits>& declared, const std::optional<units::Units>& requested,

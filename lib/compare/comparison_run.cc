@@ -2,8 +2,10 @@
 
 #include "compare/comparison_report.h"
 #include "compare/judgement.h"
+#include "core/error.h"
 #include "core/file.h"
 #include "geometry/bounding_box.h"
+#include "job/frame.h"
 #include "job/plausible.h"
 #include "mesh/shape_file.h"
 
@@ -42,6 +44,17 @@ void check_reference(ComparisonRun& run, const std::string& name, const mesh::Sh
     const Eigen::AlignedBox3d box = geometry::finite_bounding_box(points);
     warn(run, name, mesh::repair_warning(file.repair));
     warn(run, name, job ? job::part_box_warning(box, *job) : job::size_warning(box, points.cols(), run.units));
+}
+
+/// @throws InputError if one of two files is in the frame of a job and the other is not
+void require_same_frame(cloud::Frame test, cloud::Frame reference, const std::string& test_name,
+                        const std::string& reference_name)
+{
+    if (test == reference) return;
+    const bool is_test = test == cloud::Frame::job;
+    throw core::InputError(is_test ? test_name : reference_name,
+                           "is in the frame of its job, " + (is_test ? reference_name : test_name) +
+                               " in the part's: --within JOB says where that frame is");
 }
 
 void warn_of_repair(ComparisonRun& run, const std::string& name, const ReferenceRepair& repair, Winding winding)
@@ -95,8 +108,9 @@ ComparisonRun compare_files(const ComparisonRequest& request, std::ostream& out,
     };
     std::optional<mesh::ShapeFile> whole_test; // the reference of the reverse comparison
     if (reverse_out) whole_test = mesh::read_shape(request.test, units_of(request.test_unit));
+    if (whole_test && job) job::move_to_job_frame(whole_test->shape, *job);
     const TestPoints test = whole_test ? test_points(whole_test->shape, whole_test->units)
-                                       : open_test_points(request.test, units_of(request.test_unit));
+                                       : open_test_points(request.test, units_of(request.test_unit), job);
     ComparisonRun run;
     run.units = job ? job->units : test.units;
     ComparisonOptions options = options_in_mm(request, run.units);
@@ -104,6 +118,8 @@ ComparisonRun compare_files(const ComparisonRequest& request, std::ostream& out,
     Survey survey = start_survey(test, options); // while the reference is read
     mesh::ShapeFile file = mesh::read_shape(request.reference, units_of(request.reference_unit));
     const std::string reference_name = core::display_name(request.reference);
+    if (job) job::move_to_job_frame(file.shape, *job);
+    require_same_frame(test.frame, mesh::frame_of(file.shape), core::display_name(request.test), reference_name);
     check_reference(run, reference_name, file, job);
     std::optional<TestPoints> reverse_test;
     if (reverse_out) reverse_test = test_points(file.shape, file.units);

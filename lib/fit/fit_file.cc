@@ -6,6 +6,7 @@
 #include "fit/input.h"
 #include "fit/report.h"
 #include "fit/scan_fit.h"
+#include "job/frame.h"
 #include "job/plausible.h"
 
 namespace fettle::fit {
@@ -85,6 +86,14 @@ FitRun run_scan_fit(const cloud::PointSource& points, const job::Job& job, const
     return run;
 }
 
+/// All points, in the job's frame: normals are turned whole, of which a stream has z alone.
+std::shared_ptr<const cloud::Cloud> moved_to_job_frame(const cloud::CloudStream& stream, const job::Job& job)
+{
+    cloud::Cloud cloud = *stream.read_all();
+    job::move_to_job_frame(cloud, job);
+    return std::make_shared<const cloud::Cloud>(std::move(cloud));
+}
+
 } // namespace
 
 FitRun fit_file(const job::Job& job, const FitRequest& request)
@@ -92,11 +101,13 @@ FitRun fit_file(const job::Job& job, const FitRequest& request)
     const std::string name = core::display_name(request.points);
     const cloud::CloudStream stream(request.points,
                                     units::Units{request.point_unit.value_or(job.units.length), job.units.force});
-    const cloud::PointSource& points = stream.points();
+    const std::shared_ptr<const cloud::Cloud> moved =
+        job::must_be_moved(stream.frame(), job) ? moved_to_job_frame(stream, job) : nullptr;
+    const cloud::PointSource points = moved ? cloud::make_point_source(moved) : stream.points();
     const bool is_scan = request.kind == PointKind::scan || (request.kind == PointKind::by_roles && !points.has_roles);
     if (is_scan || points.points > kMaxExactTouches) return run_scan_fit(points, job, request, is_scan, name);
 
-    FitInput input = fit_input(job, *stream.read_all(), name);
+    FitInput input = fit_input(job, moved ? *moved : *stream.read_all(), name);
     input.estimate_noise = request.estimate_noise;
     if (request.use_boundary) add_boundary_touches(input);
     if (request.spacing) input.spacing = *request.spacing * job.units.mm();

@@ -57,7 +57,7 @@ StockOptions::StockOptions(cli::Tool& tool, bool is_required)
 
 Stock read_stock(const StockOptions& options, const job::Job& job, removal::Extent extent)
 {
-    return stock_of_part(sampling::read_scan(options.file, job.units, options.unit), options, job, extent);
+    return stock_of_part(sampling::read_scan(options.file, job, options.unit), options, job, extent);
 }
 
 Stock stock_of_part(const sampling::Scan& part, const StockOptions& options, const job::Job& job,

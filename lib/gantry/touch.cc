@@ -74,7 +74,7 @@ TouchedPart open_touched_part(const std::string& on, const job::Job& job, const 
         part.touch = GantryProbe(*part.machine, job);
         return part;
     }
-    part.scan = std::make_shared<const sampling::Scan>(sampling::read_scan(on, job.units, options.unit));
+    part.scan = std::make_shared<const sampling::Scan>(sampling::read_scan(on, job, options.unit));
     part.warning = job::part_box_warning(part.scan->bounds(), job);
     const sampling::TouchNoise noise = sampling::parse_noise(options.noise, job.units.mm());
     part.touch = [scan = part.scan, &job, noise, seed = options.seed](const sampling::TouchPlan& plan) {

@@ -53,6 +53,28 @@ Eigen::Matrix3Xd boundary_points(Reader& reader, const std::string& key, double 
     return points;
 }
 
+/// Either of position and quaternion may be missing: a shift, or a turn about the part's origin.
+void parse_frame(Reader reader, double mm, Job& job)
+{
+    constexpr double kUnitTolerance = 1e-3; // a quaternion written with three digits
+    Eigen::Isometry3d T_part_job = Eigen::Isometry3d::Identity();
+    if (reader.has("position")) {
+        T_part_job.translation() = mm * reader.vector("position", 3);
+        if (!(T_part_job.translation().cwiseAbs().maxCoeff() <= kMaxCoordinate))
+            reader.refuse("position", "no casting reaches that far");
+    }
+    if (reader.has("quaternion")) {
+        const Eigen::Vector4d q = reader.vector("quaternion", 4); // w first
+        if (!(std::abs(q.norm() - 1) <= kUnitTolerance))
+            reader.refuse("quaternion",
+                          "expected a unit quaternion, got one of length " + core::to_short_text(q.norm()));
+        T_part_job.linear() = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix();
+    }
+    if (reader.has("position") || reader.has("quaternion")) job.T_part_job = T_part_job;
+    job.theta = reader.number_or("theta_deg", 0) * core::kRadPerDegree;
+    reader.reject_unknown_keys();
+}
+
 units::Units parse_units(Reader reader, bool forces_matter)
 {
     units::Units units;
@@ -157,6 +179,19 @@ Value points_to_json(const Eigen::Matrix3Xd& points, double unit)
     return rows;
 }
 
+Value frame_to_json(const Job& job)
+{
+    Value frame;
+    if (job.T_part_job) {
+        const Eigen::Vector3d position = job.T_part_job->translation() / job.units.mm();
+        const Eigen::Quaterniond q(job.T_part_job->linear());
+        const Eigen::Vector4d numbers = (q.w() < 0 ? -1 : 1) * Eigen::Vector4d(q.w(), q.x(), q.y(), q.z());
+        frame.set("position", Eigen::VectorXd(position.unaryExpr(&rounded)))
+            .set("quaternion", Eigen::VectorXd(numbers.unaryExpr(&rounded)));
+    }
+    return frame.set("theta_deg", rounded(job.theta / core::kRadPerDegree));
+}
+
 } // namespace
 
 std::string to_string(SurfaceType type)
@@ -190,10 +225,7 @@ Job parse_job(Reader reader)
     job.units = parse_units(reader.object("units"), reader.has("force") || reader.has("removal"));
     const double mm = job.units.mm();
 
-    if (auto frame = reader.optional_object("frame")) {
-        job.theta = frame->number_or("theta_deg", 0) * core::kRadPerDegree;
-        frame->reject_unknown_keys();
-    }
+    if (auto frame = reader.optional_object("frame")) parse_frame(*frame, mm, job);
     parse_surface(reader.object("surface"), job);
     job.anomaly = boundary_points(reader, "anomaly", mm);
     if (reader.has("sampling") || job.surface != SurfaceType::plane)
@@ -231,7 +263,7 @@ Value to_json(const Job& job)
     Value value;
     value.set("kind", "job")
         .set("units", json::to_json(job.units))
-        .set("frame", Value().set("theta_deg", in(job.theta, core::kRadPerDegree)))
+        .set("frame", frame_to_json(job))
         .set("surface", surface)
         .set("anomaly", points_to_json(job.anomaly, mm));
     if (job.sampling.cols() > 0) value.set("sampling", points_to_json(job.sampling, mm));

@@ -1,10 +1,13 @@
 #pragma once
 
+#include "cloud/cloud.h"
 #include "units/units.h"
 #include "json/document.h"
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -52,6 +55,8 @@ inline constexpr double kTravelClearance = 50.8;
 struct Job {
     std::string source = "job"; ///< name of the file, for messages
     units::Units units;
+    /// Pose of the job's frame M in the part's, p_part = T_part_job · p_job, mm; nothing: the part's frame is M.
+    std::optional<Eigen::Isometry3d> T_part_job;
     double theta = 0; ///< rad, counter-clockwise about +Z from X_m to X_w (the wheel's axis)
     SurfaceType surface = SurfaceType::freeform;
     bool is_safe_height_known = true; ///< false: neither it nor a boundary's z was given; it then is a guess above 0
@@ -65,6 +70,9 @@ struct Job {
     ForceRange force;
     Feed feed;
     double removal_coefficient = 7.368; ///< removal coefficient: volume per force and time, mm³/(N s)
+
+    /// Frame that files with coordinates in M are labelled with.
+    cloud::Frame frame() const { return T_part_job ? cloud::Frame::job : cloud::Frame::part; }
 };
 
 /// Reads a job file ("-": stdin). Its polygons have passed boundaries() (job/boundary.h).

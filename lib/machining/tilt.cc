@@ -1,7 +1,5 @@
 #include "machining/tilt.h"
 
-#include "align/rigid.h"
-
 #include <Eigen/Geometry>
 
 #include <utility>
@@ -30,7 +28,7 @@ cloud::Cloud rotated(cloud::Cloud cloud, const Eigen::Matrix3d& rotation)
     if (rotation.isIdentity(0)) return cloud;
     Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
     matrix.topLeftCorner<3, 3>() = rotation;
-    return align::transformed(std::move(cloud), matrix, 1);
+    return cloud::transformed(std::move(cloud), matrix, 1);
 }
 
 } // namespace fettle::machining

@@ -113,6 +113,7 @@ CloudMeshFile read_cloud_mesh(const std::string& path, const std::optional<units
     if (Mesh* mesh = std::get_if<Mesh>(&shape.shape)) {
         result.part.points.xyz = std::move(mesh->vertices);
         result.part.triangles = std::move(mesh->triangles);
+        result.part.points.frame = mesh->frame;
     } else {
         result.part.points = std::move(std::get<cloud::Cloud>(shape.shape));
     }
@@ -142,7 +143,7 @@ PartFormat part_format(const std::string& path, const std::string& stated, bool 
 void write_cloud_mesh(std::ostream& out, const CloudMesh& part, PartFormat format, const units::Units& units)
 {
     if (format == PartFormat::stl) {
-        write_stl(out, {part.points.xyz, part.triangles}, units.length);
+        write_stl(out, {part.points.xyz, part.triangles, part.points.frame}, units.length);
     } else if (part.is_mesh()) {
         const auto encoder = cloud::ply_encoder(out, units, static_cast<std::size_t>(part.points.size()),
                                                 static_cast<std::size_t>(part.triangles.cols()));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "cloud/cloud.h"
 #include "mesh/triangle.h"
 
 #include <Eigen/Core>
@@ -14,6 +15,7 @@ namespace fettle::mesh {
 struct Mesh {
     Eigen::Matrix3Xd vertices;  ///< 3xV
     Eigen::Matrix3Xi triangles; ///< 3xT, indices of columns of `vertices`
+    cloud::Frame frame = cloud::Frame::part;
 };
 
 /// The corners of a triangle of a mesh.

@@ -23,6 +23,7 @@ Mesh parse_ply_mesh(std::string_view bytes, const std::string& source)
     Mesh mesh;
     mesh.triangles = triangulate_faces(ply, source);
     mesh.vertices = std::move(ply.vertices.xyz);
+    mesh.frame = ply.vertices.frame;
     return mesh;
 }
 

@@ -68,6 +68,11 @@ std::optional<units::Units> resolve_file_units(const std::optional<units::Units:
     return units::Units{*stated, fallback.value_or(units::Units{}).force};
 }
 
+cloud::Frame frame_of(const MeshOrCloud& shape)
+{
+    return std::visit([](const auto& either) { return either.frame; }, shape);
+}
+
 const Eigen::Matrix3Xd& coordinates_of(const MeshOrCloud& shape)
 {
     if (const Mesh* mesh = std::get_if<Mesh>(&shape)) return mesh->vertices;

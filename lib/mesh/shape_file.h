@@ -39,6 +39,8 @@ ShapeFile parse_shape(std::string_view bytes, const std::string& source, const s
 std::optional<units::Units> resolve_file_units(const std::optional<units::Units::Length>& stated,
                                                const std::optional<units::Units>& fallback = std::nullopt);
 
+cloud::Frame frame_of(const MeshOrCloud& shape);
+
 /// Coordinates of the points or the vertices, 3xN, mm.
 const Eigen::Matrix3Xd& coordinates_of(const MeshOrCloud& shape);
 

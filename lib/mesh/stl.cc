@@ -22,9 +22,10 @@ namespace fettle::mesh {
 
 namespace {
 
-constexpr std::size_t kTextBytes = 80;        // free text at the beginning of a binary file
-constexpr std::size_t kCornersOffset = 12;    // offset of the corners in a facet, after its normal
-constexpr std::size_t kMaxCorners = 1u << 30; // corners of all facets, see weld_facets()
+constexpr std::size_t kTextBytes = 80;                // free text at the beginning of a binary file
+constexpr std::string_view kJobFrame = ", frame job"; // in that text, of a mesh in a job's frame
+constexpr std::size_t kCornersOffset = 12;            // offset of the corners in a facet, after its normal
+constexpr std::size_t kMaxCorners = 1u << 30;         // corners of all facets, see weld_facets()
 
 std::uint32_t declared_triangles(std::string_view bytes)
 {
@@ -217,12 +218,15 @@ Mesh read_binary_stl(std::string_view head, const ByteReader& read, const std::s
         for (std::size_t f = 0; f < count; ++f)
             std::memcpy(to + 3 * f, bytes.data() + kStlTriangleBytes * f + kCornersOffset, 3 * sizeof(Corner<float>));
     };
-    return weld_facets<float>(facets, copy, repair);
+    Mesh mesh = weld_facets<float>(facets, copy, repair);
+    if (head.substr(0, kTextBytes).find(kJobFrame) != std::string_view::npos) mesh.frame = cloud::Frame::job;
+    return mesh;
 }
 
-std::string make_stl_header(std::size_t triangles, units::Units::Length unit)
+std::string make_stl_header(std::size_t triangles, units::Units::Length unit, cloud::Frame frame)
 {
-    std::string header = "binary STL, units " + units::to_string(unit);
+    std::string header =
+        "binary STL, units " + units::to_string(unit) + (frame == cloud::Frame::job ? std::string(kJobFrame) : "");
     header.resize(kStlHeaderBytes);
     const auto count = static_cast<std::uint32_t>(triangles);
     std::memcpy(header.data() + kTextBytes, &count, sizeof count);
@@ -247,7 +251,7 @@ void write_stl(std::ostream& out, const Mesh& mesh, units::Units::Length unit)
     const auto count = static_cast<std::size_t>(mesh.triangles.cols());
     const auto buffer = std::make_unique_for_overwrite<char[]>(kStlTriangleBytes * count);
     encode_stl_triangles(mesh, unit, buffer.get());
-    out << make_stl_header(count, unit);
+    out << make_stl_header(count, unit, mesh.frame);
     out.write(buffer.get(), static_cast<std::streamsize>(kStlTriangleBytes * count));
 }
 

@@ -45,9 +45,9 @@ Mesh parse_stl(std::string_view bytes, const std::string& source, MeshRepair& re
 using ByteReader = std::function<void(std::size_t offset, char* to, std::size_t count)>;
 Mesh read_binary_stl(std::string_view head, const ByteReader& read, const std::string& source, MeshRepair& repair);
 
-/// The kStlHeaderBytes bytes before the triangles of a binary STL; their text names the unit. With
+/// The kStlHeaderBytes bytes before the triangles of a binary STL; their text names the unit, and the job's frame. With
 /// encode_stl_triangles() it writes meshes that do not fit into memory.
-std::string make_stl_header(std::size_t triangles, units::Units::Length unit);
+std::string make_stl_header(std::size_t triangles, units::Units::Length unit, cloud::Frame frame = cloud::Frame::part);
 /// Encodes triangles as binary STL. @param to  memory for kStlTriangleBytes bytes per triangle
 void encode_stl_triangles(const Mesh& part, units::Units::Length unit, char* to);
 

@@ -4,6 +4,7 @@
 #include "core/decompositions.h"
 #include "core/error.h"
 #include "geometry/bounding_box.h"
+#include "job/frame.h"
 
 #include <utility>
 
@@ -59,6 +60,8 @@ Eigen::Isometry3d to_mm(const Eigen::Matrix4d& matrix, double mm)
 PlacedPart place_part(mesh::CloudMesh part, const PlaceRequest& request, double mm)
 {
     Eigen::Isometry3d motion = request.matrix ? to_mm(*request.matrix, mm) : Eigen::Isometry3d::Identity();
+    if (request.into && job::must_be_moved(part.points.frame, *request.into))
+        motion = request.into->T_part_job->inverse();
     for (const Turn& turn : request.turns)
         motion = Eigen::AngleAxisd(turn.angle, Eigen::Vector3d::Unit(turn.axis)) * motion;
     const Eigen::AlignedBox3d box = geometry::finite_bounding_box(part.points.xyz);
@@ -82,7 +85,11 @@ PlacedPart place_part(mesh::CloudMesh part, const PlaceRequest& request, double 
     placed.transform = motion.matrix();
     placed.transform.topRightCorner<3, 1>() /= mm;
     placed.part.triangles = std::move(part.triangles);
-    placed.part.points = align::transformed(std::move(part.points), placed.transform, mm);
+    placed.part.points = cloud::transformed(std::move(part.points), placed.transform, mm);
+    if (request.into)
+        placed.part.points.frame = request.into->frame();
+    else if (!motion.matrix().isIdentity(0))
+        placed.part.points.frame = cloud::Frame::part;
     return placed;
 }
 

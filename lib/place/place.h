@@ -1,5 +1,6 @@
 #pragma once
 
+#include "job/job.h"
 #include "mesh/cloud_mesh.h"
 #include "place/region.h"
 
@@ -26,6 +27,7 @@ struct PlaceRequest {
     std::optional<RegionShape> up;          ///< the largest region of this shape faces up
     std::optional<Eigen::Matrix3Xd> picked; ///< 3xN, mm: the plane through these points faces up
     std::optional<double> threshold;        ///< of find_region(), mm; without it a share of the part's diagonal
+    std::optional<job::Job> into;           ///< into the frame of this job, in which the part may be already; alone
     bool is_centred = false; ///< the centre of what is up, else of the part's bounding box, comes to the origin
 };
 

@@ -8,6 +8,7 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "diff/diff.h"
+#include "job/frame.h"
 #include "strategy/trace_file.h"
 #include "json/document.h"
 
@@ -205,12 +206,16 @@ RunFiles read_run(const RunFileNames& names)
         cloud::CloudFile file = cloud::parse_cloud(content.bytes, content.source, units);
         agree(file.units, path);
         require(file.cloud, fields, content.source);
+        if (run.job) job::move_to_job_frame(file.cloud, *run.job);
         return std::move(file.cloud);
     };
     const auto part = [&](const std::string& role, const std::string& path,
                           const std::optional<units::Units::Length>& stated) -> mesh::MeshOrCloud {
         const Files::Content content = files.read(role, path);
-        return mesh::parse_shape(content.bytes, content.source, mesh::resolve_file_units(stated, units)).shape;
+        mesh::MeshOrCloud shape =
+            mesh::parse_shape(content.bytes, content.source, mesh::resolve_file_units(stated, units)).shape;
+        if (run.job) job::move_to_job_frame(shape, *run.job);
+        return shape;
     };
     const auto report = [&](const std::string& role, const std::string& kind, const std::string& path,
                             const auto& content) {

@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "geometry/bounding_box.h"
+#include "job/frame.h"
 #include "mesh/shape_file.h"
 #include "sampling/point_surface.h"
 #include "sampling/triangle_grid.h"
@@ -70,10 +71,11 @@ Eigen::Index Scan::dropped_triangles() const { return state_->dropped_triangles;
 
 Eigen::AlignedBox3d Scan::bounds() const { return state_->bounds; }
 
-Scan read_scan(const std::string& path, const units::Units& units, std::optional<units::Units::Length> stated)
+Scan read_scan(const std::string& path, const job::Job& job, std::optional<units::Units::Length> stated)
 {
     mesh::ShapeFile file = mesh::parse_shape(core::read_file(path), core::display_name(path),
-                                             units::Units{stated.value_or(units.length), units.force});
+                                             units::Units{stated.value_or(job.units.length), job.units.force});
+    job::move_to_job_frame(file.shape, job);
     if (mesh::Mesh* mesh = std::get_if<mesh::Mesh>(&file.shape)) return Scan(std::move(*mesh), file.repair);
     if (!geometry::finite_bounding_box(mesh::coordinates_of(file.shape)).min().allFinite())
         throw core::InputError(core::display_name(path), "no points");

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "cloud/cloud.h"
+#include "job/job.h"
 #include "mesh/mesh.h"
 #include "units/units.h"
 
@@ -42,10 +43,9 @@ class Scan {
     std::unique_ptr<State> state_;
 };
 
-/// Reads a mesh or a cloud; the content decides which.
-/// @param units   units of the job
+/// Reads a mesh or a cloud, in the job's frame; the content decides which.
 /// @param stated  length unit of the file; nothing: that of the job
 /// @throws InputError as read_shape() (mesh/shape_file.h), or if no point of a cloud is finite
-Scan read_scan(const std::string& path, const units::Units& units, std::optional<units::Units::Length> stated);
+Scan read_scan(const std::string& path, const job::Job& job, std::optional<units::Units::Length> stated);
 
 } // namespace fettle::sampling

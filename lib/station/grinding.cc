@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "job/frame.h"
 #include "station/checkpoint.h"
 #include "station/machine_work.h"
 #include "strategy/run_identity.h"
@@ -144,7 +145,7 @@ void MachineWork::save_ground()
     if (stock.z.size() == 0) return;
     const removal::HeightField ground = place_.ground(job, traces());
     folder_.save(kGroundFile, [&](std::ostream& out) {
-        cloud::write_pcd(out, removal::to_cloud(stock, ground), job.units, options_.encoding);
+        cloud::write_pcd(out, job::in_job_frame(removal::to_cloud(stock, ground), job), job.units, options_.encoding);
     });
 }
 

@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "fit/fit_file.h"
 #include "gantry/touch.h"
+#include "job/frame.h"
 #include "job/plausible.h"
 #include "margin/shift.h"
 #include "report/page.h"
@@ -59,8 +60,8 @@ std::vector<std::string> touch_surface(const Record& record, gantry::Gantry& mac
     request.strategy = options.touches;
     const gantry::JobTouches result = gantry::touch_job(job, &part, request);
     folder.save(kSamplesFile, [&](std::ostream& out) {
-        cloud::write_pcd(out, sampling::sample_cloud(result.touches, result.plan, result.order), job.units,
-                         options.encoding);
+        cloud::write_pcd(out, job::in_job_frame(sampling::sample_cloud(result.touches, result.plan, result.order), job),
+                         job.units, options.encoding);
     });
     return result.warnings;
 }

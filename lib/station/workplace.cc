@@ -57,8 +57,7 @@ gantry::OpenGantry& Workplace::open(const job::Job& job, const removal::HeightFi
 const sampling::Scan& Workplace::part(const job::Job& job)
 {
     const gantry::StockOptions& options = options_.stock;
-    if (!part_)
-        part_ = std::make_shared<const sampling::Scan>(sampling::read_scan(options.file, job.units, options.unit));
+    if (!part_) part_ = std::make_shared<const sampling::Scan>(sampling::read_scan(options.file, job, options.unit));
     return *part_;
 }
 

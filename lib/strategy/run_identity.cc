@@ -57,8 +57,11 @@ RunIdentity identity_of(const plan::Plan& plan, const removal::HeightField& stoc
     const job::Job& job = plan.job;
     const auto& [radius, width, min_radius] = job.wheel;
     const job::ForceRange& force = job.force;
+    std::string frame = core::to_text(job.theta) + ' ';
+    if (job.T_part_job)
+        for (const double number : job.T_part_job->matrix().reshaped()) frame += core::to_text(number) + ' ';
     return {{{"job.units", digest(units::to_string(job.units.length) + ' ' + units::to_string(job.units.force))},
-             {"job.frame", digest({job.theta})},
+             {"job.frame", digest(frame)},
              {"job.anomaly", digest(job.anomaly)},
              {"job.tolerance", digest({job.tolerance})},
              {"job.safe_height", digest({job.safe_height})},
@@ -71,7 +74,8 @@ RunIdentity identity_of(const plan::Plan& plan, const removal::HeightField& stoc
              {"step", digest({plan.step})},
              {"passes", digest(plan.passes)},
              {"--stock", digest(stock)},
-             {"--layer-1", digest({double(layer_1)})}}};
+             {"--layer-1", digest({double(layer_1)})}},
+            job.frame()};
 }
 
 std::string to_text(const RunIdentity& identity)

@@ -18,6 +18,7 @@ struct RunIdentity {
         bool operator==(const Part&) const = default;
     };
     std::vector<Part> parts;
+    cloud::Frame frame = cloud::Frame::part; ///< that the trace is labelled with
 };
 
 RunIdentity identity_of(const plan::Plan& plan, const removal::HeightField& stock, Layer1 layer_1);

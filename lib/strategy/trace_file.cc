@@ -84,6 +84,7 @@ std::string digest_of_rows(std::string_view rows, bool binary)
 cloud::Cloud with_comment(cloud::Cloud cloud, const RunIdentity& identity, const std::string& digest)
 {
     cloud.comment = run_comment(identity, digest);
+    cloud.frame = identity.frame;
     return cloud;
 }
 

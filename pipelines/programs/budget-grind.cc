@@ -120,7 +120,7 @@ int main(int argc, char** argv)
         const plan::Plan plan = plan::read_plan(plan_file);
         const units::Units& units = plan.job.units;
         const removal::HeightField stock =
-            removal::stock_from_scan(sampling::read_scan(stock_file, units, {}), plan.job, kCell, stock_file);
+            removal::stock_from_scan(sampling::read_scan(stock_file, plan.job, {}), plan.job, kCell, stock_file);
         const gantry::Machine machine = gantry::read_machine(machine_file);
         const auto simulated = simulated_gantry(stock, plan.job, machine, following, wear);
         Transducer transducer(*simulated, machine.head, offset, plan.job.force, t.seed());

@@ -96,7 +96,7 @@ int main(int argc, char** argv)
             const plan::Plan given = plan::read_plan(plan_file), plan = without_force(given);
             const units::Units& units = plan.job.units;
             const removal::HeightField stock =
-                removal::stock_from_scan(sampling::read_scan(stock_file, units, {}), plan.job,
+                removal::stock_from_scan(sampling::read_scan(stock_file, plan.job, {}), plan.job,
                                          plan.job.wheel.width / kCellsPerWidth, stock_file);
             const double distance = layer_distance(given.job, planned);
             const double height = tall ? *tall * units.mm() : highest_metal(stock, plan);

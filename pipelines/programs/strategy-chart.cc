@@ -135,7 +135,7 @@ int main(int argc, char** argv)
         t.parse();
 
         const plan::Plan plan = plan::read_plan(plan_file);
-        const removal::HeightField stock = removal::stock_from_scan(sampling::read_scan(stock_file, plan.job.units, {}),
+        const removal::HeightField stock = removal::stock_from_scan(sampling::read_scan(stock_file, plan.job, {}),
                                                                     plan.job, plan.job.wheel.width / 32, stock_file);
         const std::vector<strategy::TraceRow> rows = strategy::read_trace(trace_file, plan.job.units);
         const Eigen::Matrix2d R_working_machine = job::rotation_working_machine(plan.job.theta);
