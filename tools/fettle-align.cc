@@ -53,7 +53,7 @@ int main(int argc, char** argv)
         const auto& scan_unit = t.length_unit("--file-units", "Unit of SCAN, and of transforms and lengths here");
         const auto& reference_unit = t.length_unit("--to-units", "Unit of the reference");
         const std::string& in =
-            t.optional_file("--transform-in", "FILE", "Begin with this 4 x 4 matrix, do not search");
+            t.optional_file("--start,--transform-in", "FILE", "Begin with this 4 x 4 matrix, do not search");
         const std::string& out = t.optional_output("--transform-out", "Write the 4 x 4 matrix, 17 digits");
         const bool& near = t.flag("--near", "The scan lies nearly right as it is: do not search");
         const std::string& hold =

@@ -90,6 +90,9 @@ json::Value next_json(const Alignment& alignment, double mm)
     const IcpFit &best = alignment.fit, &next = *alignment.second_best;
     const Eigen::Isometry3d between = next.T_reference_scan * best.T_reference_scan.inverse();
     json::Value value;
+    Eigen::Matrix4d transform = next.T_reference_scan.matrix();
+    transform.topRightCorner<3, 1>() /= mm;
+    value.set("transform", Eigen::MatrixXd(transform)); // --start of an alignment that shall end there
     value.set("turn_deg", Eigen::AngleAxisd(between.linear()).angle() * kDegreesPerRadian);
     value.set("shift", (between * alignment.frame.centre - alignment.frame.centre).norm() / mm);
     value.set("overlap", next.overlap).set("misfit", std::sqrt(next.misfit) / mm);

@@ -88,13 +88,22 @@ ComparisonReport read_comparison(json::Reader& reader)
     return report;
 }
 
+Eigen::Matrix4d read_matrix(json::Reader& reader)
+{
+    const Eigen::MatrixXd rows = reader.matrix("transform", 4);
+    if (rows.rows() != 4) reader.refuse("transform", "expected 4 rows");
+    return rows;
+}
+
 AlignmentReport read_alignment(json::Reader& reader)
 {
     const NamedNumbers numbers =
         read_numbers(reader, {"count", "overlap", "max_distance", "median", "p95", "rms", "determined"});
-    const Eigen::MatrixXd rows = reader.matrix("transform", 4);
-    if (rows.rows() != 4) reader.refuse("transform", "expected 4 rows");
-    return {numbers, rows, reader.text_or("doubt", "")};
+    AlignmentReport report{numbers, read_matrix(reader), reader.text_or("doubt", ""), {}};
+    if (std::optional<json::Reader> next = reader.optional_object("next"); next && next->has("transform"))
+        if (next->flag_or("nearly_as_good", false))
+            report.other_place = {read_numbers(*next, {"turn_deg", "shift", "misfit"}), read_matrix(*next)};
+    return report;
 }
 
 FormReport read_form(json::Reader& reader)

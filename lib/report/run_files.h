@@ -40,11 +40,18 @@ struct GrindReport {
     Eigen::VectorXd peak_at; ///< place of the peak force, in the run's units; empty: not known
 };
 
+/// Where else a scan nearly fits its reference.
+struct OtherPlace {
+    NamedNumbers numbers; ///< turn_deg, shift from the place that was taken, misfit
+    Eigen::Matrix4d transform;
+};
+
 /// Report of fettle-align.
 struct AlignmentReport {
     NamedNumbers numbers; ///< lengths in the run's units
     Eigen::Matrix4d transform;
     std::string doubt; ///< why the result may be wrong; empty: no known reason
+    std::optional<OtherPlace> other_place; ///< only if it fits nearly as well
 };
 
 /// Report of fettle-form.

@@ -3,6 +3,35 @@
 
 namespace fettle::report {
 
+namespace {
+
+draw::Html matrix_table(const std::string& key, const Eigen::Matrix4d& matrix, const std::string& caption)
+{
+    std::vector<std::vector<draw::Html>> rows(4);
+    for (Eigen::Index i = 0; i < 4; ++i)
+        for (Eigen::Index j = 0; j < 4; ++j)
+            rows[std::size_t(i)].push_back(draw::number_element(key + "." + std::to_string(i) + "." + std::to_string(j),
+                                                                matrix(i, j), draw::fixed_text(matrix(i, j), 5)));
+    return table(caption, {}, rows, 0);
+}
+
+/// What the operator compares with the place that was taken. @param unit  after a blank
+draw::Html other_place(const OtherPlace& place, const std::string& unit)
+{
+    const auto number = [&](const std::string& key) {
+        return number_figure("alignment.next." + key, place.numbers.at(key));
+    };
+    const draw::Html numbers =
+        property_table({{"Another place fits nearly as well: turned by", number("turn_deg") + "\u00B0"},
+                        {"Shifted by", number("shift") + unit},
+                        {"Misfit", number("misfit") + unit}});
+    const draw::Html matrix =
+        matrix_table("alignment.next.transform", place.transform, "Its transform; fettle-align --start begins there");
+    return draw::element("div", {{"class", "columns"}}, numbers + matrix);
+}
+
+} // namespace
+
 draw::Html registration_section(const RunFiles& run)
 {
     if (!run.alignment) return {};
@@ -19,18 +48,11 @@ draw::Html registration_section(const RunFiles& run)
         {"Degrees of freedom determined", number("determined") + " of 6"}};
     if (!run.alignment->doubt.empty()) properties.push_back({"Doubtful", run.alignment->doubt});
     const draw::Html numbers = property_table(properties);
-    std::vector<std::vector<draw::Html>> rows;
-    for (Eigen::Index i = 0; i < 4; ++i) {
-        std::vector<draw::Html> row;
-        for (Eigen::Index j = 0; j < 4; ++j) {
-            const std::string key = "alignment.transform." + std::to_string(i) + "." + std::to_string(j);
-            row.push_back(draw::number_element(key, run.alignment->transform(i, j),
-                                               draw::fixed_text(run.alignment->transform(i, j), 5)));
-        }
-        rows.push_back(row);
-    }
-    const draw::Html matrix = table("Transform: reference = matrix \u00B7 scan, lengths in" + unit, {}, rows, 0);
-    return section("registration", "Registration", draw::element("div", {{"class", "columns"}}, numbers + matrix));
+    const draw::Html matrix = matrix_table("alignment.transform", run.alignment->transform,
+                                           "Transform: reference = matrix \u00B7 scan, lengths in" + unit);
+    return section("registration", "Registration",
+                   draw::element("div", {{"class", "columns"}}, numbers + matrix) +
+                       (run.alignment->other_place ? other_place(*run.alignment->other_place, unit) : draw::Html()));
 }
 
 draw::Html form_section(const RunFiles& run)

@@ -13,7 +13,7 @@ for unit in mm in m; do
     cd $unit
     fettle-align turned.xyz --to waves.xyz --file-units $unit --to-units $unit --report all.json --ascii -q -o back.pcd
     # the matrix has turns and shifts
-    jq '. + {turns: (.transform | map(.[:3])), shifts: (.transform | map(.[3])[:3])} | del(.transform)' all.json >report.json
+    jq '. + {turns: (.transform | map(.[:3])), shifts: (.transform | map(.[3])[:3])} | del(.transform, .next.transform)' all.json >report.json
     cd ..
 done
 for unit in in m; do

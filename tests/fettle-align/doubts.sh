@@ -24,6 +24,11 @@ jq -e '(.converged | not) and (.doubt | startswith("the steps did not converge")
 # a report page says it, too
 fettle-align square.xyz --to square.xyz --report r.json -q -o out.pcd
 fettle-report --alignment r.json -o page.html -q && grep -q 'another place fits nearly as well' page.html
+# and shows that place; from its matrix the next alignment goes there, and the turns between the two are those of a square
+grep -q 'Another place fits nearly as well: turned by' page.html
+jq -r '.next.transform[] | map(tostring) | join(" ")' r.json > next.txt
+aligned 0 square.xyz --to square.xyz --start next.txt
+awk 'NR == FNR { for (k = 1; k <= 4; ++k) m[NR, k] = $k; next } { for (k = 1; k <= 4; ++k) if (($k - m[FNR, k])^2 > 1e-6) exit 1 }' next.txt <(jq -r '.transform[] | map(tostring) | join(" ")' r.json)
 # one of the two in metres
 awk '{ print $1 / 1000, $2 / 1000, $3 / 1000 }' waves.xyz >metres.xyz
 aligned 0 metres.xyz --to waves.xyz --near --iterations 0

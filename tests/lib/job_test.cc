@@ -100,6 +100,18 @@ TEST(Job, ComesBackFromJsonUnchanged)
     EXPECT_EQ(job::to_json(parse(text)).text(), text);
 }
 
+TEST(Job, HasAFrameOfItsOwn)
+{
+    const job::Job job = parse(inches(R"(, "frame": {"position": [1, -2, 0.5], "quaternion": [0.5, 0.5, 0.5, 0.5]})"));
+    ASSERT_TRUE(job.T_part_job);
+    const Eigen::Vector3d p = *job.T_part_job * Eigen::Vector3d(25.4, 50.8, 76.2); // x to y to z to x
+    EXPECT_LT((p - 25.4 * Eigen::Vector3d(1 + 3, -2 + 1, 0.5 + 2)).norm(), 1e-12);
+    EXPECT_EQ(job::to_json(parse(job::to_json(job).text())).text(), job::to_json(job).text());
+    EXPECT_FALSE(parse(inches(R"(, "frame": {"theta_deg": 5})")).T_part_job);
+    EXPECT_EQ(job::to_json(parse(inches(R"(, "frame": {"theta_deg": 5})"))).text().find("quaternion"),
+              std::string::npos);
+}
+
 TEST(Job, RefusesWithTheKey)
 {
     const auto expect = [](const std::string& members, const std::string& message) {

@@ -44,7 +44,7 @@ DIMENSIONS = [
     ((1, 0), """align centre, align next.*, align sd.[xyz], align degrees_of_freedom.sd"""),
 ]
 # Numbers without one dimension: products of a surface's parameters; the last column of a rigid motion, which ends in 1.
-MIXED = ["covariance", "surface.covariance", "alternatives.covariance", "surface.alternatives.covariance", "transform.3"]
+MIXED = ["covariance", "surface.covariance", "alternatives.covariance", "surface.alternatives.covariance", "transform.3", "next.transform.3"]
 MIXED += ["joints.min", "joints.max"]  # degrees, and the track's lengths
 MIXED += ["least.pose", "least.point", "least_between.pose", "least_between.point", "joints.max_acceleration_at"]  # which one it is of several that are equal
 
