@@ -34,7 +34,7 @@ fettle-diff --tol 1e-3 lying.report.json.numbers turned.report.json.numbers
 fettle-diff --tol 2e-4 lying.mesh.stl turned.mesh.stl
 for kind in samples points trace ground errors; do
     grep -a -q '^# frame job$' turned.$kind.pcd
-    ! grep -a -q '^# frame' lying.$kind.pcd
+    if grep -a -q '^# frame' lying.$kind.pcd; then exit 1; fi
 done
 head -c 80 turned.mesh.stl | grep -a -q 'frame job'
 
@@ -44,7 +44,7 @@ fettle-diff --tol 2e-4 there.stl lying.stl
 fettle-place there.stl --into turned.json | fettle-diff --tol 1e-6 - there.stl
 fettle-place there.stl --matrix back.txt | fettle-diff --tol 2e-4 - turned.stl
 fettle-place turned.ground.pcd --matrix back.txt -o back.pcd
-! grep -a -q '^# frame' back.pcd
+if grep -a -q '^# frame' back.pcd; then exit 1; fi
 fettle-compare back.pcd --to turned-desired.stl --within turned.json --tolerance 0.05 --report back.json > back.errors.pcd || [ $? = 1 ]
 numbers back.json
 fettle-diff --tol 1e-3 turned.report.json.numbers back.json.numbers
