@@ -50,7 +50,7 @@ struct OtherPlace {
 struct AlignmentReport {
     NamedNumbers numbers; ///< lengths in the run's units
     Eigen::Matrix4d transform;
-    std::string doubt; ///< why the result may be wrong; empty: no known reason
+    std::string doubt;                     ///< why the result may be wrong; empty: no known reason
     std::optional<OtherPlace> other_place; ///< only if it fits nearly as well
 };
 
