@@ -13,8 +13,29 @@ constexpr double kMinNoiseShare = 0.5; // of the noise: a ring quieter than that
 // Logarithms of ratios grow without end where a ring is perfect; beyond this they say no more.
 constexpr double kMaxLogRatio = 4.5;
 
-constexpr std::array<double, kFeatures> kWeights{-10.8, -0.21, 2.29, 2.96, 0.40, 0.33, -0.04, -2.30, 0.16,
-                                                 -0.31, 3.20,  -0.26, 0.41, -0.10, 0, 0};
+// Weights of the features, made by pipelines/programs/find-train.cc (docs/methods/find.md says from what).
+constexpr std::array<double, kFeatures> kWeights{
+    -10.722, // constant
+    0.111,   // height over the ring's scatter
+    0.484,   // height over the disagreement of whole and inner ring
+    4.399,   // enclosure
+    0.750,   // inliers
+    -1.682,  // drop
+    -18.792, // rise
+    -0.451,  // the ring's scatter over the noise
+    0.000,   // height over the sheet's texture
+    0.000,   // degree of the surface
+    1.400,   // sharpness
+    -1.528,  // pits
+    0.000,   // number of cells
+    -0.539,  // cells over thickness²
+    -5.340,  // unseen
+    0.795,   // significance
+    0.299,   // height over instability
+    0.115,   // height over sag
+    -0.219,  // height over thickness
+    0.051,   // height over the noise
+};
 
 double log_ratio(double a, double b) { return std::min(std::log(std::clamp(a / b, 1e-3, 1e4)), kMaxLogRatio); }
 
@@ -33,7 +54,9 @@ Features features_of(const Evidence& e)
         e.inliers, e.drop, e.rise, std::log(std::clamp(e.ring_sd / e.noise, 1.0, 1e4)),
         log_ratio(e.height, std::max(e.texture, 0.3 * e.noise)), e.degree / 4, e.sharpness, e.pits,
         std::log(e.cells) / 5, std::min(e.cells / (e.thickness * e.thickness), 6.0) / 3, e.unseen,
-        std::min(std::log(e.significance()), kMaxLogRatio);
+        std::min(std::log(e.significance()), kMaxLogRatio),
+        log_ratio(e.height, std::max(e.instability, 0.1 * e.ring_sd)), log_ratio(e.height, std::max(e.sag, 0.1 * e.ring_sd)),
+        log_ratio(e.height, e.thickness * e.cell), log_ratio(e.height, e.noise);
     return f;
 }
 

@@ -12,6 +12,8 @@ struct Evidence {
     double ring_sd = 0;       ///< of the metal around, about that surface
     double prediction_sd = 0; ///< of the surface itself beneath the candidate, median
     double disagreement = 0;  ///< between surfaces from the whole ring and from its inner half, 0.75 quantile
+    double instability = 0;   ///< root mean square change of the surface as each quadrant of the ring is left out, 0.75 quantile
+    double sag = 0;           ///< of the surface beneath the candidate: standard deviation from its own plane
     double noise = 0;         ///< of the map
     double texture = 0;       ///< of the sheet's residual at the candidate's scale
     double enclosure = 0;     ///< share of a shell around it that lies on the surface
@@ -22,6 +24,7 @@ struct Evidence {
     double sharpness = 0;     ///< share of the height within two cells inside and outside of the boundary
     double cells = 0;         ///< number
     double thickness = 0;     ///< largest inscribed circle's diameter, cells
+    double cell = 1;          ///< mm
     double degree = 1;        ///< of the surface
 
     /// Standard deviation of the surface beneath: of the mean of the metal around it, and of the surface itself.
@@ -29,7 +32,7 @@ struct Evidence {
     double significance() const { return height / surface_sd(); }
 };
 
-inline constexpr int kFeatures = 16;
+inline constexpr int kFeatures = 20;
 using Features = Eigen::Matrix<double, kFeatures, 1>;
 
 /// Features of the logistic model; the first is 1.

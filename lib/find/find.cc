@@ -20,10 +20,6 @@ using Eigen::Index;
 constexpr double kMaxOverlap = 0.1;
 constexpr double kMinProbability = 0.5;
 
-// Candidates larger than this share of the largest anomaly, or of a lower rank, do not keep cells out of others' rings.
-constexpr double kMaxOtherArea = 0.3;
-constexpr double kMinOtherRank = 3;
-
 // A point belongs to the map's surface if it lies no farther off it than this.
 constexpr double kSurfaceSigmas = 8, kSurfaceCells = 2;
 
@@ -33,23 +29,6 @@ struct ViewFinds {
     HeightMap map;
     std::vector<Verified> finds;
 };
-
-std::vector<Verified> verify_all(const HeightMap& map, const std::vector<Candidate>& candidates,
-                                 const SearchBounds& bounds)
-{
-    Mask others(map.z.size(), 0);
-    const double max_cells = kMaxOtherArea * bounds.max_area / (map.cell * map.cell);
-    for (const Candidate& candidate : candidates)
-        if (candidate.rank > kMinOtherRank && cv::countNonZero(candidate.mask) < max_cells)
-            others(candidate.box) |= candidate.mask;
-    std::vector<std::optional<Verified>> results(candidates.size());
-    tbb::parallel_for(std::size_t{0}, candidates.size(),
-                      [&](std::size_t i) { results[i] = verify(map, candidates[i], others, bounds); });
-    std::vector<Verified> verified;
-    for (auto& result : results)
-        if (result && result->probability >= kMinProbability) verified.push_back(std::move(*result));
-    return verified;
-}
 
 /// Points of the part that lie on the map's surface, by cell.
 struct CellPoints {
@@ -177,6 +156,7 @@ FindResult find_anomalies(const mesh::CloudMesh& part, const SearchBounds& bound
         ViewFinds finds{view, height_map(part, view), {}};
         clean(finds.map);
         finds.finds = verify_all(finds.map, find_candidates(finds.map, bounds), bounds);
+        std::erase_if(finds.finds, [](const Verified& find) { return find.probability < kMinProbability; });
         views.push_back(std::move(finds));
     }
     FindResult result;

@@ -2,7 +2,9 @@
 
 #include "find/ring_fit.h"
 
+#include <Eigen/Cholesky>
 #include <opencv2/imgproc.hpp>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -188,6 +190,7 @@ class Refinement {
     }
 
     void measure_shell(Evidence& evidence) const;
+    void measure_stability(Evidence& evidence) const;
     int growth() const;
 
     SearchBounds bounds_;
@@ -232,6 +235,39 @@ void Refinement::measure_shell(Evidence& evidence) const
     evidence.unseen = double(unseen) / all;
 }
 
+/// Refits the surface with each quadrant of the ring left out, and measures how much it moves beneath the region.
+void Refinement::measure_stability(Evidence& evidence) const
+{
+    const cv::Rect box = cv::boundingRect(region_);
+    const double x0 = box.x + box.width / 2.0, y0 = box.y + box.height / 2.0;
+    std::vector<cv::Point> places;
+    cv::findNonZero(region_, places);
+    std::vector<double> squares(places.size(), 0);
+    int fits = 0;
+    for (int quadrant = 0; quadrant < 4; ++quadrant) {
+        Mask partial = beneath_.ring.clone();
+        for (int y = 0; y < partial.rows; ++y)
+            for (int x = 0; x < partial.cols; ++x)
+                if (((x - x0 > y - y0) ? 1 : 0) + ((x - x0 > -(y - y0)) ? 2 : 0) == quadrant) partial(y, x) = 0;
+        const auto other = fit(partial, beneath_.distance, beneath_.width, 3);
+        if (!other) continue;
+        ++fits;
+        for (std::size_t k = 0; k < places.size(); ++k) {
+            const double d = other->z_at(places[k].x, places[k].y) - beneath_.fit.z_at(places[k].x, places[k].y);
+            squares[k] += d * d;
+        }
+    }
+    evidence.instability = fits == 0 ? evidence.height : std::sqrt(quantile_of(squares, 0.75) / fits);
+    Eigen::MatrixXd A(Eigen::Index(places.size()), 3);
+    Eigen::VectorXd z(A.rows());
+    for (std::size_t k = 0; k < places.size(); ++k) {
+        A.row(Eigen::Index(k)) << 1, places[k].x - x0, places[k].y - y0;
+        z[Eigen::Index(k)] = beneath_.fit.z_at(places[k].x, places[k].y);
+    }
+    const Eigen::Vector3d plane = (A.transpose() * A).ldlt().solve(A.transpose() * z);
+    evidence.sag = std::sqrt((z - A * plane).squaredNorm() / double(places.size()));
+}
+
 constexpr int kMaxGrowth = 6;
 constexpr double kCorrelatedShellCells = 6; // that stand for an independent one
 
@@ -263,6 +299,7 @@ Verified Refinement::result(double texture) const
     e.noise = sigma_;
     e.texture = texture;
     e.inliers = beneath_.fit.inliers;
+    e.cell = cell_;
     e.degree = beneath_.fit.degree;
     e.cells = cv::countNonZero(region_);
     e.thickness = thickness_of(region_);
@@ -274,6 +311,7 @@ Verified Refinement::result(double texture) const
                 if (region_(y, x)) differences.push_back(std::abs(inner->z_at(x, y) - beneath_.fit.z_at(x, y)));
         e.disagreement = quantile_of(differences, 0.75);
     }
+    measure_stability(e);
     measure_shell(e);
     const Image depth = depth_of(region_);
     const std::vector<double> within = values_in(beneath_.residual, (depth > 1) & (depth <= 3) & seen_);
@@ -296,6 +334,31 @@ std::optional<Verified> verify(const HeightMap& map, const Candidate& candidate,
     if (!refinement.run()) return std::nullopt;
     Verified verified = refinement.result(candidate.texture);
     if (!is_plausible(verified.evidence, bounds.max_height)) return std::nullopt;
+    return verified;
+}
+
+namespace {
+
+// Candidates larger than this share of the largest anomaly, or of a lower rank, do not keep cells out of others' rings.
+constexpr double kMaxOtherArea = 0.3;
+constexpr double kMinOtherRank = 3;
+
+} // namespace
+
+std::vector<Verified> verify_all(const HeightMap& map, const std::vector<Candidate>& candidates,
+                                 const SearchBounds& bounds)
+{
+    Mask others(map.z.size(), 0);
+    const double max_cells = kMaxOtherArea * bounds.max_area / (map.cell * map.cell);
+    for (const Candidate& candidate : candidates)
+        if (candidate.rank > kMinOtherRank && cv::countNonZero(candidate.mask) < max_cells)
+            others(candidate.box) |= candidate.mask;
+    std::vector<std::optional<Verified>> results(candidates.size());
+    tbb::parallel_for(std::size_t{0}, candidates.size(),
+                      [&](std::size_t i) { results[i] = verify(map, candidates[i], others, bounds); });
+    std::vector<Verified> verified;
+    for (auto& result : results)
+        if (result) verified.push_back(std::move(*result));
     return verified;
 }
 

@@ -25,4 +25,8 @@ struct Verified {
 std::optional<Verified> verify(const HeightMap& map, const Candidate& candidate, const Mask& others,
                                const SearchBounds& bounds);
 
+/// Verifies all candidates, in parallel. @return  those that remain, in the candidates' order
+std::vector<Verified> verify_all(const HeightMap& map, const std::vector<Candidate>& candidates,
+                                 const SearchBounds& bounds);
+
 } // namespace fettle::find
