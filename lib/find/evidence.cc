@@ -37,6 +37,9 @@ constexpr std::array<double, kFeatures> kWeights{
     0.051,   // height over the noise
 };
 
+// Against a reference: standard deviations at which chance and anomaly are as probable, and over which that changes.
+constexpr double kEvenStanding = 6, kStandingScale = 1;
+
 double log_ratio(double a, double b) { return std::min(std::log(std::clamp(a / b, 1e-3, 1e4)), kMaxLogRatio); }
 
 } // namespace
@@ -63,6 +66,12 @@ Features features_of(const Evidence& e)
 double probability_of(const Evidence& evidence)
 {
     return 1 / (1 + std::exp(-features_of(evidence).dot(Eigen::Map<const Features>(kWeights.data()))));
+}
+
+double probability_against(const Evidence& e)
+{
+    const double standing = std::min(e.significance(), e.height / e.noise);
+    return 1 / (1 + std::exp((kEvenStanding - standing) / kStandingScale));
 }
 
 bool is_plausible(const Evidence& e, double max_height)

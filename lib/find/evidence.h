@@ -22,6 +22,7 @@ struct Evidence {
     double inliers = 0;       ///< share of the ring on the surface
     double pits = 0;          ///< share of the ring far beneath
     double sharpness = 0;     ///< share of the height within two cells inside and outside of the boundary
+    double ring_width = 0;    ///< cells, as far as metal was there
     double cells = 0;         ///< number
     double thickness = 0;     ///< largest inscribed circle's diameter, cells
     double cell = 1;          ///< mm
@@ -41,6 +42,10 @@ Features features_of(const Evidence& evidence);
 /// Probability that the candidate is an anomaly: logistic regression on features_of(), whose weights and their origin
 /// docs/methods/find.md describes.
 double probability_of(const Evidence& evidence);
+
+/// The same of departures from a reference, where the part's own features are gone: by their significance, and by their
+/// height over the noise.
+double probability_against(const Evidence& evidence);
 
 /// Whether the evidence is worth a probability at all: bounds far outside of what anomalies of the evaluation set show.
 bool is_plausible(const Evidence& evidence, double max_height);

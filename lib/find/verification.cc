@@ -300,6 +300,9 @@ Verified Refinement::result(double texture) const
     e.texture = texture;
     e.inliers = beneath_.fit.inliers;
     e.cell = cell_;
+    double reach = 0;
+    cv::minMaxLoc(beneath_.distance, nullptr, &reach, nullptr, nullptr, beneath_.ring);
+    e.ring_width = reach - kRingGap;
     e.degree = beneath_.fit.degree;
     e.cells = cv::countNonZero(region_);
     e.thickness = thickness_of(region_);
