@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace fettle::find {
 namespace {
@@ -10,31 +11,23 @@ namespace {
 constexpr double kMeanVariance = 0.35;
 constexpr double kMinNoiseShare = 0.5; // of the noise: a ring quieter than that is chance
 
+constexpr double kMinSeen = 0.05; // share of the shell that is seen, in ratios to it
+
 // Logarithms of ratios grow without end where a ring is perfect; beyond this they say no more.
 constexpr double kMaxLogRatio = 4.5;
 
-// Weights of the features, made by pipelines/programs/find-train.cc (docs/methods/find.md says from what).
-constexpr std::array<double, kFeatures> kWeights{
-    -10.722, // constant
-    0.111,   // height over the ring's scatter
-    0.484,   // height over the disagreement of whole and inner ring
-    4.399,   // enclosure
-    0.750,   // inliers
-    -1.682,  // drop
-    -18.792, // rise
-    -0.451,  // the ring's scatter over the noise
-    0.000,   // height over the sheet's texture
-    0.000,   // degree of the surface
-    1.400,   // sharpness
-    -1.528,  // pits
-    0.000,   // number of cells
-    -0.539,  // cells over thickness²
-    -5.340,  // unseen
-    0.795,   // significance
-    0.299,   // height over instability
-    0.115,   // height over sag
-    -0.219,  // height over thickness
-    0.051,   // height over the noise
+/// weight · min(feature, knot).
+struct Term {
+    int feature;
+    double knot;
+    double weight;
+};
+
+constexpr double kNoKnot = std::numeric_limits<double>::infinity();
+
+// The model, made by pipelines/programs/find-train.cc; docs/methods/find.md says from what.
+constexpr Term kTerms[] = {
+#include "find/weights.inc"
 };
 
 // Against a reference: standard deviations at which chance and anomaly are as probable, and over which that changes.
@@ -52,9 +45,10 @@ double Evidence::surface_sd() const
 
 Features features_of(const Evidence& e)
 {
+    const double seen = std::max(1 - e.unseen, kMinSeen);
     Features f;
-    f << 1, log_ratio(e.height, e.ring_sd), log_ratio(e.height, std::max(e.disagreement, 0.3 * e.ring_sd)), e.enclosure,
-        e.inliers, e.drop, e.rise, std::log(std::clamp(e.ring_sd / e.noise, 1.0, 1e4)),
+    f << 1, log_ratio(e.height, e.ring_sd), log_ratio(e.height, std::max(e.disagreement, 0.3 * e.ring_sd)), e.enclosure / seen,
+        e.inliers, e.drop / seen, e.rise / seen, std::log(std::clamp(e.ring_sd / e.noise, 1.0, 1e4)),
         log_ratio(e.height, std::max(e.texture, 0.3 * e.noise)), e.degree / 4, e.sharpness, e.pits,
         std::log(e.cells) / 5, std::min(e.cells / (e.thickness * e.thickness), 6.0) / 3, e.unseen,
         std::min(std::log(e.significance()), kMaxLogRatio),
@@ -65,7 +59,10 @@ Features features_of(const Evidence& e)
 
 double probability_of(const Evidence& evidence)
 {
-    return 1 / (1 + std::exp(-features_of(evidence).dot(Eigen::Map<const Features>(kWeights.data()))));
+    const Features features = features_of(evidence);
+    double score = 0;
+    for (const Term& term : kTerms) score += term.weight * std::min(features[term.feature], term.knot);
+    return 1 / (1 + std::exp(-score));
 }
 
 double probability_against(const Evidence& e)

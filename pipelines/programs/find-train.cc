@@ -2,13 +2,16 @@
 //
 //     find-train EVIDENCE.csv...      files named PART_NUMBER.csv; capitals and digits after a part's name are views of it
 //
-// Candidates that cover an anomaly by more than 0.4 (intersection over union) are examples of anomalies, those that
+// The model is additive: each feature enters by itself and by min(feature, knot) at three quartiles of the anomalies'
+// values, so that its effect may level off. Candidates that cover an anomaly by more than 0.4 (intersection over union) are examples of anomalies, those that
 // cover none by 0.25 of what they are not. The weights minimize the logistic loss with a ridge, each with the sign that
 // its meaning demands. They are then scaled so that probabilities are right for parts that were not learnt from: each
 // part's candidates are scored by weights from all others, those that remain without overlaps judged, and slope and
 // offset fitted to these judgements (Platt 1999). Prints the weights, and how good the left-out parts' scores were.
+#include "core/constants.h"
 #include "core/error.h"
 #include "find/evidence.h"
+#include "geometry/quantiles.h"
 
 #include <Eigen/Cholesky>
 
@@ -40,9 +43,10 @@ struct Row {
 
 // Signs of the weights, in the order of features_of(); 0: either.
 constexpr int kSigns[kFeatures] = {0, 1, 1, 1, 1, -1, -1, -1, 1, -1, 1, -1, 1, 0, -1, 1, 1, 1, 0, 1};
-constexpr double kRidge = 10;        // of weights of features of unit variance
+constexpr int kKnotted[] = {1, 2, 3, 4, 7, 10, 14, 15, 16, 17, 19}; // features with knots
+constexpr double kRidge = 30;        // of weights of terms of unit variance
 constexpr double kMaxExamples = 60;  // a part's weight on either side, so that none rules
-constexpr int kSweeps = 300;
+constexpr int kSweeps = 60;
 
 std::vector<Row> read_rows(const std::string& path)
 {
@@ -74,37 +78,69 @@ std::vector<double> balance(const std::vector<const Row*>& rows)
     return weights;
 }
 
-/// Logistic regression with ridge and signs by cyclic coordinate descent.
-Features fit(const std::vector<const Row*>& rows)
+/// A term of the model: weight times min(feature, knot).
+struct Term {
+    int feature;
+    double knot;
+    double weight = 0;
+
+    double of(const Features& features) const { return std::min(features[feature], knot); }
+};
+using Model = std::vector<Term>;
+
+Model empty_model(const std::vector<const Row*>& rows)
 {
-    Features mean = Features::Zero(), square = Features::Zero();
-    for (const Row* row : rows) mean += row->features / double(rows.size());
-    for (const Row* row : rows) square += (row->features - mean).cwiseAbs2() / double(rows.size());
-    Features sd = (square.array() + 1e-12).sqrt();
-    mean[0] = 0, sd[0] = 1;
+    Model model;
+    for (int k = 0; k < kFeatures; ++k) model.push_back({k, core::kInfinity});
+    for (const int k : kKnotted) {
+        std::vector<double> values;
+        for (const Row* row : rows)
+            if (row->is_anomaly()) values.push_back(row->features[k]);
+        for (const double share : {0.25, 0.5, 0.75}) model.push_back({k, geometry::quantile(values, share)});
+    }
+    return model;
+}
+
+double score_of(const Model& model, const Features& features)
+{
+    double score = 0;
+    for (const Term& term : model) score += term.weight * term.of(features);
+    return score;
+}
+
+/// Logistic regression with ridge and signs by cyclic coordinate descent.
+Model fit(const std::vector<const Row*>& rows)
+{
+    Model model = empty_model(rows);
+    const auto count = Eigen::Index(rows.size()), terms = Eigen::Index(model.size());
     const std::vector<double> weights = balance(rows);
-    Eigen::Matrix<double, kFeatures, Eigen::Dynamic> Z(kFeatures, Eigen::Index(rows.size()));
-    for (std::size_t i = 0; i < rows.size(); ++i)
-        Z.col(Eigen::Index(i)) = (rows[i]->features - mean).cwiseQuotient(sd);
-    Features w = Features::Zero();
-    Eigen::VectorXd scores = Eigen::VectorXd::Zero(Z.cols());
+    Eigen::MatrixXd Z(count, terms);
+    for (Eigen::Index i = 0; i < count; ++i)
+        for (Eigen::Index k = 0; k < terms; ++k) Z(i, k) = model[std::size_t(k)].of(rows[std::size_t(i)]->features);
+    Eigen::VectorXd mean = Z.colwise().mean(), sd = Eigen::VectorXd::Ones(terms);
+    mean[0] = 0;
+    Z.rowwise() -= mean.transpose();
+    for (Eigen::Index k = 1; k < terms; ++k) sd[k] = std::sqrt(Z.col(k).squaredNorm() / double(count)) + 1e-6;
+    Z = Z * sd.cwiseInverse().asDiagonal();
+    Eigen::VectorXd w = Eigen::VectorXd::Zero(terms), scores = Eigen::VectorXd::Zero(count);
     for (int sweep = 0; sweep < kSweeps; ++sweep)
-        for (int k = 0; k < kFeatures; ++k) {
+        for (Eigen::Index k = 0; k < terms; ++k) {
             double gradient = k == 0 ? 0 : kRidge * w[k], curvature = k == 0 ? 1e-9 : kRidge;
-            for (Eigen::Index i = 0; i < Z.cols(); ++i) {
-                const double p = 1 / (1 + std::exp(-scores[i]));
-                gradient += weights[std::size_t(i)] * (p - rows[std::size_t(i)]->is_anomaly()) * Z(k, i);
-                curvature += weights[std::size_t(i)] * std::max(p * (1 - p), 0.02) * Z(k, i) * Z(k, i);
+            for (Eigen::Index i = 0; i < count; ++i) {
+                const double p = 1 / (1 + std::exp(-scores[i])), weight = weights[std::size_t(i)];
+                gradient += weight * (p - rows[std::size_t(i)]->is_anomaly()) * Z(i, k);
+                curvature += weight * std::max(p * (1 - p), 0.02) * Z(i, k) * Z(i, k);
             }
             double next = w[k] - gradient / curvature;
-            if (kSigns[k] > 0) next = std::max(next, 0.0);
-            if (kSigns[k] < 0) next = std::min(next, 0.0);
-            scores += (next - w[k]) * Z.row(k).transpose();
+            const int sign = kSigns[model[std::size_t(k)].feature];
+            if (sign > 0) next = std::max(next, 0.0);
+            if (sign < 0) next = std::min(next, 0.0);
+            scores += (next - w[k]) * Z.col(k);
             w[k] = next;
         }
-    Features result = w.cwiseQuotient(sd);
-    result[0] = w[0] - result.tail<kFeatures - 1>().dot(mean.tail<kFeatures - 1>());
-    return result;
+    for (Eigen::Index k = 0; k < terms; ++k) model[std::size_t(k)].weight = w[k] / sd[k];
+    model[0].weight -= (w.array() * mean.array() / sd.array()).sum();
+    return model;
 }
 
 std::vector<const Row*> examples(const std::vector<Row>& rows, const std::string& without = "")
@@ -191,9 +227,9 @@ int main(int argc, char** argv)
             rows.push_back(std::move(row));
         }
     for (const std::string& part : parts) {
-        const Features w = fit(examples(rows, part));
+        const Model model = fit(examples(rows, part));
         for (Row& row : rows)
-            if (row.part == part) row.score = w.dot(row.features);
+            if (row.part == part) row.score = score_of(model, row.features);
     }
     const std::vector<const Row*> kept = survivors(rows);
     const auto [a, b] = calibrate(kept);
@@ -204,8 +240,12 @@ int main(int argc, char** argv)
             if (row->part == part && a * row->score + b > 0) ++(row->is_right() ? right : wrong);
         std::printf("%s: %d right, %d wrong\n", part.c_str(), right, wrong);
     }
-    Features w = a * fit(examples(rows));
-    w[0] += b;
-    for (const double weight : w) std::printf("%.3f, ", weight);
-    std::printf("\n");
+    for (const Term& term : fit(examples(rows))) {
+        const double weight = a * term.weight + (term.feature == 0 ? b : 0);
+        if (std::abs(weight) < 1e-4) continue;
+        if (std::isfinite(term.knot))
+            std::printf("{%d, %.4g, %.4g},\n", term.feature, term.knot, weight);
+        else
+            std::printf("{%d, kNoKnot, %.4g},\n", term.feature, weight);
+    }
 }
