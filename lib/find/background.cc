@@ -1,0 +1,218 @@
+#include "find/background.h"
+
+#include <Eigen/Cholesky>
+#include <opencv2/imgproc.hpp>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace fettle::find {
+namespace {
+
+constexpr int kTerms = 6;                                     // of a quadratic
+constexpr std::array<int, kTerms> kPowerX{0, 1, 0, 2, 1, 0};  // 1, x, y, x², x y, y²
+constexpr std::array<int, kTerms> kPowerY{0, 0, 1, 0, 1, 2};
+constexpr int kMaxPower = 4; // of the normal equations
+
+constexpr double kWindowPerWidth = 0.75; // standard deviation of the window over the width that it passes beneath
+constexpr double kWindowReach = 2.6;     // standard deviations: 3 % of the weight lie beyond
+constexpr double kCellsPerWidth = 5;     // of the coarse grid: its window then still has 3.75 cells of deviation
+constexpr float kUntrustedWeight = 0.01F;
+// Tukey's cutoff in standard deviations, falling from one iteration to the next, so that the first surface, which
+// anomalies pull up, excludes none of the good metal.
+constexpr std::array<double, 6> kCutoffs{8, 6, 5, 4.5, 4, 4};
+// What lies deep is cut off later and keeps a weight: the material's own form is rather low than high there.
+constexpr double kDeepCutoffs = 1.5;
+constexpr double kMinDeepWeight = 0.02;
+// Ridge on all but the constant term, as a share of the weight in the window: it flattens quadratics that too few
+// cells determine.
+constexpr double kRidge = 1e-3;
+
+struct Window {
+    std::array<cv::Mat1f, kMaxPower + 1> kernel; ///< window times x^k
+};
+
+Window make_window(double deviation)
+{
+    const int radius = static_cast<int>(std::ceil(kWindowReach * deviation));
+    Window window;
+    for (int k = 0; k <= kMaxPower; ++k) window.kernel[std::size_t(k)].create(1, 2 * radius + 1);
+    for (int i = -radius; i <= radius; ++i) {
+        const double t = i / deviation;
+        for (int k = 0; k <= kMaxPower; ++k)
+            window.kernel[std::size_t(k)](0, i + radius) = static_cast<float>(std::exp(-t * t / 2) * std::pow(t, k));
+    }
+    return window;
+}
+
+/// Moments of the images w and w z under the window, by the powers of x and y.
+struct Moments {
+    std::array<std::array<Image, kMaxPower + 1>, kMaxPower + 1> of_weight;
+    std::array<Image, kTerms> of_height;
+};
+
+Moments moments(const Image& weight, const Image& z, const Window& window)
+{
+    const auto filter = [&](const Image& image, int px, int py) {
+        Image result;
+        cv::sepFilter2D(image, result, CV_32F, window.kernel[std::size_t(px)], window.kernel[std::size_t(py)], {-1, -1},
+                        0, cv::BORDER_CONSTANT);
+        return result;
+    };
+    Moments result;
+    for (int px = 0; px <= kMaxPower; ++px)
+        for (int py = 0; px + py <= kMaxPower; ++py)
+            result.of_weight[std::size_t(px)][std::size_t(py)] = filter(weight, px, py);
+    const Image product = weight.mul(z);
+    for (std::size_t k = 0; k < kTerms; ++k) result.of_height[k] = filter(product, kPowerX[k], kPowerY[k]);
+    return result;
+}
+
+/// The constant term of the quadratic at a cell.
+float solve(const Moments& moments, int y, int x)
+{
+    Eigen::Matrix<double, kTerms, kTerms> A;
+    Eigen::Matrix<double, kTerms, 1> b;
+    for (std::size_t i = 0; i < kTerms; ++i) {
+        for (std::size_t j = 0; j <= i; ++j)
+            A(Eigen::Index(i), Eigen::Index(j)) = moments.of_weight[std::size_t(kPowerX[i] + kPowerX[j])]
+                                                                   [std::size_t(kPowerY[i] + kPowerY[j])](y, x);
+        b[Eigen::Index(i)] = moments.of_height[i](y, x);
+    }
+    const double ridge = kRidge * A(0, 0) + 1e-9; // an empty window yields 0
+    A.diagonal().array() += ridge;
+    A(0, 0) -= (1 - kRidge) * ridge;
+    return static_cast<float>(A.ldlt().solve(b)[0]); // positive definite by the ridge
+}
+
+Image solve(const Moments& moments, cv::Size size)
+{
+    Image surface(size);
+    tbb::parallel_for(tbb::blocked_range<int>(0, size.height), [&](const tbb::blocked_range<int>& rows) {
+        for (int y = rows.begin(); y < rows.end(); ++y)
+            for (int x = 0; x < size.width; ++x) surface(y, x) = solve(moments, y, x);
+    });
+    return surface;
+}
+
+/// Tukey's weight, 1 at 0, 0 beyond the cutoff.
+double biweight(double ratio)
+{
+    const double rest = 1 - ratio * ratio;
+    return std::abs(ratio) < 1 ? rest * rest : 0;
+}
+
+/// Standard deviation of the residuals of cells with a weight.
+double residual_sigma(const Image& z, const Image& surface, const Image& weight, const Mask& seen)
+{
+    return robust_sd(values_in(z - surface, seen & (weight > 0.1F)));
+}
+
+} // namespace
+
+Image regression_filter(const Image& z, const Mask& trusted, double sigma, double width)
+{
+    const int factor = std::max(1, static_cast<int>(std::lround(width / kCellsPerWidth)));
+    Image coarse = coarsened(z, factor);
+    const Mask seen = finite(coarse);
+    const cv::Scalar mean = cv::mean(coarse, seen);
+    coarse -= mean;
+    coarse.setTo(0, ~seen);
+    Image trust(z.size(), kUntrustedWeight);
+    trust.setTo(1, trusted);
+    Image full = coarsened(trust, factor);
+    full.setTo(0, ~seen);
+    const Window window = make_window(kWindowPerWidth * width / factor);
+    Image weight = full.clone(), surface;
+    for (const double cutoff : kCutoffs) {
+        surface = solve(moments(weight, coarse, window), coarse.size());
+        const double limit = cutoff * std::max(sigma / std::sqrt(factor), residual_sigma(coarse, surface, weight, seen));
+        for (int y = 0; y < coarse.rows; ++y)
+            for (int x = 0; x < coarse.cols; ++x) {
+                const double residual = coarse(y, x) - surface(y, x);
+                weight(y, x) = full(y, x) * static_cast<float>(
+                    residual > 0 ? biweight(residual / limit)
+                                 : std::max(kMinDeepWeight, biweight(residual / (kDeepCutoffs * limit))));
+            }
+    }
+    surface += mean;
+    return refined(surface, factor, z.size());
+}
+
+namespace {
+
+constexpr double kBallCellsPerWidth = 16;
+constexpr double kCapPerWidth = 0.75; // radius of the ball's cap over the width
+constexpr double kBallRadii = 4;      // the ball's radius over the cap's: a flat ball, which form of a part lets in
+
+/// A ball's cap: offsets of cells, and how far the ball's surface lies below its top there.
+struct Cap {
+    std::vector<cv::Point> offsets;
+    std::vector<float> drop; // mm
+};
+
+Cap make_cap(int radius, double cell)
+{
+    Cap cap;
+    const double ball = kBallRadii * radius;
+    for (int v = -radius; v <= radius; ++v)
+        for (int u = -radius; u <= radius; ++u)
+            if (const double square = u * u + v * v; square <= radius * radius) {
+                cap.offsets.emplace_back(u, v);
+                cap.drop.push_back(static_cast<float>((ball - std::sqrt(ball * ball - square)) * cell));
+            }
+    return cap;
+}
+
+/// Erosion: the highest place of the ball's top beneath the surface, at each cell. Gaps are no obstacle.
+Image eroded_by(const Image& z, const Cap& cap)
+{
+    Image result(z.size());
+    tbb::parallel_for(0, z.rows, [&](int y) {
+        for (int x = 0; x < z.cols; ++x) {
+            float min = std::numeric_limits<float>::infinity();
+            for (std::size_t k = 0; k < cap.offsets.size(); ++k) {
+                const int u = x + cap.offsets[k].x, v = y + cap.offsets[k].y;
+                if (u < 0 || v < 0 || u >= z.cols || v >= z.rows || !(z(v, u) == z(v, u))) continue;
+                min = std::min(min, z(v, u) + cap.drop[k]);
+            }
+            result(y, x) = min;
+        }
+    });
+    return result;
+}
+
+/// Dilation: the upper side of all balls whose tops are given.
+Image dilated_by(const Image& tops, const Cap& cap)
+{
+    Image result(tops.size());
+    tbb::parallel_for(0, tops.rows, [&](int y) {
+        for (int x = 0; x < tops.cols; ++x) {
+            float max = -std::numeric_limits<float>::infinity();
+            for (std::size_t k = 0; k < cap.offsets.size(); ++k) {
+                const int u = x + cap.offsets[k].x, v = y + cap.offsets[k].y;
+                if (u < 0 || v < 0 || u >= tops.cols || v >= tops.rows || std::isinf(tops(v, u))) continue;
+                max = std::max(max, tops(v, u) - cap.drop[k]);
+            }
+            result(y, x) = max;
+        }
+    });
+    return result;
+}
+
+} // namespace
+
+Image ball_opening(const Image& z, double cell, double width)
+{
+    const int factor = std::max(1, static_cast<int>(std::lround(width / kBallCellsPerWidth)));
+    const Image coarse = coarsened(smoothed(z, finite(z), 1), factor);
+    const Cap cap = make_cap(static_cast<int>(std::ceil(kCapPerWidth * width / factor)), factor * cell);
+    Image opened = dilated_by(eroded_by(coarse, cap), cap);
+    opened.setTo(std::numeric_limits<float>::quiet_NaN(), ~finite(coarse));
+    return refined(filled(opened), factor, z.size());
+}
+
+} // namespace fettle::find

@@ -1,0 +1,163 @@
+#include "find/candidates.h"
+
+#include "find/background.h"
+#include "find/sheets.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+
+namespace fettle::find {
+namespace {
+
+constexpr std::array<double, 8> kThresholdSigmas{1.5, 3, 6, 12, 24, 48, 96, 192};
+constexpr double kResidualSmoothing = 0.8; // cells
+
+constexpr int kMinCells = 10;
+// A region that fills so much of the one around it at the next lower threshold is the same one.
+constexpr double kSameShare = 0.85;
+
+// A candidate stands over the median of a shell around it, from 2 to 4 cells off, by this many sigmas; this share of
+// the shell lies within 0.3 of its height about that median.
+constexpr int kShellInner = 1, kShellOuter = 4;
+constexpr double kMinContrast = 4, kMaxContrast = 30; // beyond, contrast says no more
+constexpr double kLevelShare = 0.3;
+constexpr double kMinEnclosure = 0.3;
+
+constexpr double kFirstWidth = 10, kWidthRatio = 1.9; // of the filters, cells
+constexpr std::size_t kMaxCandidates = 200;
+
+// Two candidates are the same if they share this much of what both cover.
+constexpr double kDuplicateOverlap = 0.85;
+
+std::vector<double> filter_widths(const HeightMap& map, double max_width)
+{
+    std::vector<double> widths;
+    const double limit = std::min(max_width / map.cell, double(std::min(map.z.rows, map.z.cols)));
+    for (double width = kFirstWidth; width < limit; width *= kWidthRatio) widths.push_back(width);
+    if (widths.empty()) widths.push_back(std::max(4.0, std::min(kFirstWidth, limit)));
+    return widths;
+}
+
+/// Contrast and enclosure of a region of a residual, as rank; 0: no candidate.
+double rank_of(const Image& residual, const Mask& domain, const Mask& mask, double sigma)
+{
+    Mask padded;
+    cv::copyMakeBorder(mask, padded, kShellOuter, kShellOuter, kShellOuter, kShellOuter, cv::BORDER_CONSTANT, 0);
+    const int all = cv::countNonZero(dilated(padded, kShellOuter)) - cv::countNonZero(dilated(padded, kShellInner));
+    const Mask shell = dilated(mask, kShellOuter) & ~dilated(mask, kShellInner) & domain;
+    const std::vector<double> around = values_in(residual, shell);
+    const double base = quantile_of(around, 0.5), top = quantile_of(values_in(residual, mask), 0.9);
+    const double contrast = (top - base) / sigma;
+    if (contrast <= kMinContrast || all == 0) return 0;
+    const auto level = std::ranges::count_if(
+        around, [&](double value) { return std::abs(value - base) < kLevelShare * (top - base); });
+    const double enclosure = double(level) / all;
+    return enclosure > kMinEnclosure ? std::min(contrast, kMaxContrast) * enclosure * enclosure : 0;
+}
+
+/// Candidates of one residual: components over rising thresholds.
+std::vector<Candidate> cut_out(const Image& residual, const Mask& domain, const HeightMap& map,
+                               const SearchBounds& bounds)
+{
+    const double max_cells = 1.5 * bounds.max_area / (map.cell * map.cell), max_extent = 2 * bounds.max_width / map.cell;
+    std::vector<Candidate> candidates;
+    Components below;
+    for (const double threshold : kThresholdSigmas) {
+        Components parts = components(residual > threshold * map.sigma);
+        if (parts.count == 0) break;
+        for (int k = 1; k <= parts.count; ++k) {
+            const cv::Rect box = parts.box(k);
+            if (parts.area(k) < kMinCells || parts.area(k) > max_cells || std::max(box.width, box.height) > max_extent)
+                continue;
+            const cv::Rect around = grown_box(box, kShellOuter, residual.size());
+            const Mask mask = parts.labels(around) == k;
+            if (below.count > 0) {
+                const int x = box.x + int(std::ranges::find(parts.labels.ptr<int>(box.y) + box.x,
+                                                            parts.labels.ptr<int>(box.y) + box.x + box.width, k) -
+                                          (parts.labels.ptr<int>(box.y) + box.x));
+                if (parts.area(k) > kSameShare * below.area(below.labels(box.y, x))) continue;
+            }
+            if (const double rank = rank_of(residual(around), domain(around), mask, map.sigma); rank > 0)
+                candidates.push_back({around, mask, rank * std::pow(parts.area(k), 0.25), 0});
+        }
+        below = std::move(parts);
+    }
+    return candidates;
+}
+
+cv::Rect box_of(const Mask& mask)
+{
+    const Components all = components(mask != 0, 8);
+    cv::Rect box;
+    for (int k = 1; k <= all.count; ++k) box |= all.box(k);
+    return box;
+}
+
+/// Candidates of one sheet at one width of the filter.
+std::vector<Candidate> candidates_of(const HeightMap& map, const Sheet& sheet, double width, const SearchBounds& bounds)
+{
+    const cv::Rect box = box_of(sheet.domain);
+    HeightMap part{map.z(box).clone(), map.cell, map.origin, sheet.domain(box).clone(), map.sigma};
+    part.z.setTo(std::numeric_limits<float>::quiet_NaN(), ~part.seen);
+    const Mask smooth = sheet.smooth(box);
+    const Image rest = part.z - regression_filter(part.z, smooth, map.sigma, width);
+    Image residual = smoothed(rest, part.seen, kResidualSmoothing);
+    const double texture = robust_sd(values_in(residual, smooth));
+    residual.setTo(-1e9, ~part.seen);
+    std::vector<Candidate> candidates = cut_out(residual, part.seen, part, bounds);
+    for (Candidate& candidate : candidates) {
+        candidate.box += box.tl();
+        candidate.texture = texture;
+    }
+    return candidates;
+}
+
+std::vector<Candidate> candidates_of_opening(const HeightMap& map, double width, const SearchBounds& bounds)
+{
+    const Image rest = map.z - ball_opening(map.z, map.cell, width);
+    Image residual = smoothed(rest, map.seen, kResidualSmoothing);
+    const double texture = robust_sd(values_in(residual, map.seen));
+    residual.setTo(-1e9, ~map.seen);
+    std::vector<Candidate> candidates = cut_out(residual, map.seen, map, bounds);
+    for (Candidate& candidate : candidates) candidate.texture = texture;
+    return candidates;
+}
+
+/// True if two regions cover nearly the same cells.
+bool are_duplicates(const Candidate& a, const Candidate& b)
+{
+    const cv::Rect common = a.box & b.box;
+    if (common.empty()) return false;
+    const int both = cv::countNonZero(a.mask(common - a.box.tl()) & b.mask(common - b.box.tl()));
+    return both > kDuplicateOverlap * (cv::countNonZero(a.mask) + cv::countNonZero(b.mask) - both);
+}
+
+} // namespace
+
+std::vector<Candidate> find_candidates(const HeightMap& map, const SearchBounds& bounds)
+{
+    const std::vector<double> widths = filter_widths(map, bounds.max_width);
+    const std::vector<Sheet> sheets = find_sheets(map, bounds.max_width / map.cell / 2);
+    const std::size_t filters = sheets.size() * widths.size(), openings = std::min<std::size_t>(2, widths.size());
+    std::vector<std::vector<Candidate>> found(filters + openings);
+    tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t i) {
+        found[i] = i < filters
+                       ? candidates_of(map, sheets[i / widths.size()], widths[i % widths.size()], bounds)
+                       : candidates_of_opening(map, widths[widths.size() - 1 - (i - filters)], bounds);
+    });
+    std::vector<Candidate> all, unique;
+    for (std::vector<Candidate>& some : found) std::ranges::move(some, std::back_inserter(all));
+    std::ranges::stable_sort(all, std::greater{}, &Candidate::rank);
+    for (Candidate& candidate : all) {
+        if (unique.size() == kMaxCandidates) break;
+        if (std::ranges::none_of(unique, [&](const Candidate& other) { return are_duplicates(candidate, other); }))
+            unique.push_back(std::move(candidate));
+    }
+    return unique;
+}
+
+} // namespace fettle::find

@@ -1,0 +1,177 @@
+#include "find/description.h"
+
+#include "core/text.h"
+#include "find/outline.h"
+
+#include <Eigen/Cholesky>
+#include <opencv2/imgproc.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace fettle::find {
+namespace {
+
+using Eigen::Index;
+
+// A point belongs to the map's surface if it lies no farther off it than this.
+constexpr double kSurfaceSigmas = 8, kSurfaceCells = 2;
+
+// Doubts. Below this probability a person looks at a find.
+constexpr double kSureProbability = 0.85;
+// What is thicker than this multiple of the ring that could be fitted rests on extrapolation.
+constexpr double kMaxThicknessPerRing = 2.5;
+// Share of the surroundings that is not the surface: an edge of the part, of the scan, or another feature.
+constexpr double kMinOpenShare = 0.6;
+// A boss by design has a flat top, and an outline that is a rectangle or an ellipse: shares of height and area.
+constexpr double kFlatTop = 0.05, kRegularOutline = 0.06;
+constexpr double kTopDepth = 3; // cells inside of the region's outline
+
+/// Heights of the surface beneath, in the view.
+Image beneath(const SeenSide& side, const Verified& find)
+{
+    if (side.is_along_normal) return side.surface.z(find.window);
+    return side.surface.z(find.window) - find.height;
+}
+
+/// Upward normal of the surface beneath a region in the view, from its mean slope.
+Eigen::Vector3d normal_beneath(const SeenSide& side, const Verified& find)
+{
+    double dx = 0, dy = 0, count_x = 0, count_y = 0;
+    const Image z = beneath(side, find);
+    for (int y = 0; y < z.rows; ++y)
+        for (int x = 0; x < z.cols; ++x) {
+            if (!find.mask(y, x)) continue;
+            if (x > 0 && std::isfinite(z(y, x) - z(y, x - 1))) dx += z(y, x) - z(y, x - 1), ++count_x;
+            if (y > 0 && std::isfinite(z(y, x) - z(y - 1, x))) dy += z(y, x) - z(y - 1, x), ++count_y;
+        }
+    return Eigen::Vector3d(-dx / std::max(1.0, count_x), -dy / std::max(1.0, count_y), side.surface.cell).normalized();
+}
+
+/// The middle of the surface beneath a region, in the view, mm.
+Eigen::Vector3d middle_beneath(const SeenSide& side, const Verified& find)
+{
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    double count = 0;
+    const Image z = beneath(side, find);
+    for (int y = 0; y < z.rows; ++y)
+        for (int x = 0; x < z.cols; ++x)
+            if (find.mask(y, x) && std::isfinite(z(y, x))) {
+                const Eigen::Vector2d place = side.surface.point_at(x + find.window.x, y + find.window.y);
+                sum += Eigen::Vector3d(place.x(), place.y(), z(y, x));
+                ++count;
+            }
+    return sum / std::max(1.0, count);
+}
+
+/// True for a region with a flat top and the outline of a rectangle or an ellipse.
+bool looks_designed(const Verified& find)
+{
+    const Mask top = (depth_of(find.mask) > float(kTopDepth)) & finite(find.height);
+    std::vector<cv::Point> places, all;
+    cv::findNonZero(top, places);
+    cv::findNonZero(find.mask, all);
+    if (places.size() < 12) return false;
+    Eigen::MatrixXd A(Index(places.size()), 3);
+    Eigen::VectorXd z(A.rows());
+    for (std::size_t k = 0; k < places.size(); ++k) {
+        A.row(Index(k)) << 1, places[k].x - places[0].x, places[k].y - places[0].y;
+        z[Index(k)] = find.height(places[k]);
+    }
+    const Eigen::Vector3d plane = (A.transpose() * A).ldlt().solve(A.transpose() * z); // definite: cells of an area
+    if ((z - A * plane).norm() > kFlatTop * find.evidence.height * std::sqrt(double(places.size()))) return false;
+    const cv::RotatedRect rectangle = cv::minAreaRect(all);
+    const double width = rectangle.size.width + 1.0, height = rectangle.size.height + 1.0;
+    const double filled = double(all.size()) / (width * height);
+    return filled > 1 - kRegularOutline || std::abs(filled - CV_PI / 4) < kRegularOutline * CV_PI / 4;
+}
+
+std::string doubts_of(const Verified& find)
+{
+    const Evidence& e = find.evidence;
+    std::vector<std::string> doubts;
+    if (find.probability < kSureProbability) doubts.push_back("it may be a feature of the part");
+    if (e.enclosure < kMinOpenShare) doubts.push_back("it stands at an edge, or beside another feature");
+    if (e.thickness > kMaxThicknessPerRing * e.ring_width) doubts.push_back("it is wider than the good metal around it");
+    if (looks_designed(find)) doubts.push_back("with its flat top and regular outline it may be a boss by design");
+    return core::join(doubts, "; ");
+}
+
+} // namespace
+
+CellPoints points_by_cell(const mesh::CloudMesh& part, const SeenSide& side)
+{
+    const HeightMap& map = side.surface;
+    const Index count = part.points.size();
+    CellPoints cells{cv::Mat1i(map.z.size(), -1), std::vector<Index>(std::size_t(count), -1)};
+    const cv::Rect all({0, 0}, map.z.size());
+    for (Index i = count; i-- > 0;) {
+        if (!part.points.xyz.col(i).allFinite()) continue;
+        const Eigen::Vector3d p = side.view * Eigen::Vector3d(part.points.xyz.col(i));
+        const cv::Point cell = map.cell_of(p.head<2>());
+        if (!all.contains(cell)) continue;
+        if (!(std::abs(p.z() - map.z(cell)) <= kSurfaceSigmas * map.sigma + kSurfaceCells * map.cell)) continue;
+        cells.next[std::size_t(i)] = cells.first(cell);
+        cells.first(cell) = int(i);
+    }
+    return cells;
+}
+
+FoundAnomaly describe(const SeenSide& side, const CellPoints& cells, const Verified& find)
+{
+    const Eigen::Vector3d up = normal_beneath(side, find);
+    const double along_normal = side.is_along_normal ? 1 : up.z();
+    const double cell_area = side.surface.cell * side.surface.cell / up.z();
+    FoundAnomaly found;
+    found.probability = find.probability;
+    found.significance = find.evidence.significance();
+    found.doubt = doubts_of(find);
+    found.cell = side.surface.cell;
+    found.T_anomaly_part = Eigen::Quaterniond::FromTwoVectors(side.view.linear().transpose() * up, Eigen::Vector3d::UnitZ());
+    found.T_anomaly_part.pretranslate(-(found.T_anomaly_part * (side.view.inverse() * middle_beneath(side, find))));
+    std::vector<std::pair<Index, double>> points;
+    double sum = 0;
+    for (int y = 0; y < find.mask.rows; ++y)
+        for (int x = 0; x < find.mask.cols; ++x) {
+            if (!find.mask(y, x)) continue;
+            const double height = std::isfinite(find.height(y, x)) ? along_normal * find.height(y, x) : 0;
+            sum += height;
+            found.height = std::max(found.height, height);
+            for (Index i = cells.first(y + find.window.y, x + find.window.x); i >= 0; i = cells.next[std::size_t(i)])
+                points.emplace_back(i, height);
+        }
+    found.area = find.evidence.cells * cell_area;
+    found.volume = sum * cell_area;
+    std::ranges::sort(points);
+    found.heights.resize(Index(points.size()));
+    for (const auto& [index, height] : points) {
+        found.heights[Index(found.points.size())] = height;
+        found.points.push_back(index);
+    }
+    return found;
+}
+
+void set_outlines(FoundAnomaly& anomaly, const SeenSide& side, const Verified& find, const Mask& others)
+{
+    const HeightMap& map = side.surface;
+    Mask region(map.z.size(), 0);
+    find.mask.copyTo(region(find.window));
+    const Outlines outlines = outlines_of(map, region, others & ~region, find.growth);
+    const Eigen::Isometry3d T_anomaly_view = anomaly.T_anomaly_part * side.view.inverse();
+    // The plane through the anomaly's origin, whose normal is the surface's: n · (p - p0) = 0.
+    const Eigen::Vector3d n = T_anomaly_view.linear().row(2), p0 = T_anomaly_view.inverse().translation();
+    const auto to_frame = [&](const Eigen::Matrix2Xd& cells) {
+        Eigen::Matrix2Xd polygon(2, cells.cols());
+        for (Index k = 0; k < cells.cols(); ++k) {
+            Eigen::Vector3d p;
+            p.head<2>() = map.point_at(cells(0, k), cells(1, k));
+            p.z() = p0.z() - n.head<2>().dot(p.head<2>() - p0.head<2>()) / n.z();
+            polygon.col(k) = (T_anomaly_view * p).head<2>();
+        }
+        return polygon;
+    };
+    anomaly.boundary = to_frame(outlines.boundary);
+    anomaly.sampling = to_frame(outlines.sampling);
+}
+
+} // namespace fettle::find

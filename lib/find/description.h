@@ -1,0 +1,33 @@
+#pragma once
+
+#include "find/find.h"
+#include "find/verification.h"
+#include "find/view.h"
+
+#include <vector>
+
+namespace fettle::find {
+
+/// A part seen from one side, and what was found there.
+struct SeenSide {
+    View view;
+    HeightMap surface;           ///< heights of what is seen
+    HeightMap searched;          ///< the same, or signed distances from a reference along its normals
+    bool is_along_normal = false; ///< the latter
+    std::vector<Verified> finds; ///< in `searched`
+};
+
+/// Points of a part by the cell in which a side shows them.
+struct CellPoints {
+    cv::Mat1i first;                 ///< point of a cell, -1: none
+    std::vector<Eigen::Index> next;  ///< point of the same cell after each, -1: none
+};
+CellPoints points_by_cell(const mesh::CloudMesh& part, const SeenSide& side);
+
+/// Measures a find, without its outlines and number.
+FoundAnomaly describe(const SeenSide& side, const CellPoints& cells, const Verified& find);
+
+/// Sets boundary and sampling boundary. @param others  cells of the other anomalies, of the map's size
+void set_outlines(FoundAnomaly& anomaly, const SeenSide& side, const Verified& find, const Mask& others);
+
+} // namespace fettle::find

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <array>
+
+namespace fettle::find {
+
+/// What tells an anomaly from a feature of the part, measured on one candidate. Lengths mm unless they say otherwise.
+struct Evidence {
+    double height = 0;        ///< 0.9 quantile over the surface beneath
+    double ring_sd = 0;       ///< of the metal around, about that surface
+    double prediction_sd = 0; ///< of the surface itself beneath the candidate, median
+    double disagreement = 0;  ///< between surfaces from the whole ring and from its inner half, 0.75 quantile
+    double instability = 0;   ///< root mean square change of the surface as each quadrant of the ring is left out, 0.75 quantile
+    double sag = 0;           ///< of the surface beneath the candidate: standard deviation from its own plane
+    double noise = 0;         ///< of the map
+    double texture = 0;       ///< of the sheet's residual at the candidate's scale
+    double enclosure = 0;     ///< share of a shell around it that lies on the surface
+    double drop = 0, rise = 0; ///< share of that shell far beneath, and above it
+    double unseen = 0;        ///< share of that shell where nothing is seen
+    double inliers = 0;       ///< share of the ring on the surface
+    double pits = 0;          ///< share of the ring far beneath
+    double sharpness = 0;     ///< share of the height within two cells inside and outside of the boundary
+    double ring_width = 0;    ///< cells, as far as metal was there
+    double cells = 0;         ///< number
+    double thickness = 0;     ///< largest inscribed circle's diameter, cells
+    double cell = 1;          ///< mm
+    double degree = 1;        ///< of the surface
+
+    /// Standard deviation of the surface beneath: of the mean of the metal around it, and of the surface itself.
+    double surface_sd() const;
+    double significance() const { return height / surface_sd(); }
+};
+
+inline constexpr int kFeatures = 20;
+using Features = Eigen::Matrix<double, kFeatures, 1>;
+
+/// Features of the logistic model; the first is 1.
+Features features_of(const Evidence& evidence);
+
+/// Probability that the candidate is an anomaly: logistic regression on features_of(), whose weights and their origin
+/// docs/methods/find.md describes.
+double probability_of(const Evidence& evidence);
+
+/// The same of departures from a reference, where the part's own features are gone: by their significance, and by their
+/// height over the noise.
+double probability_against(const Evidence& evidence);
+
+/// Whether the evidence is worth a probability at all: bounds far outside of what anomalies of the evaluation set show.
+bool is_plausible(const Evidence& evidence, double max_height);
+
+} // namespace fettle::find

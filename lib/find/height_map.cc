@@ -1,0 +1,84 @@
+#include "find/height_map.h"
+
+#include <opencv2/imgproc.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace fettle::find {
+namespace {
+
+// A cell is an outlier if it differs from the median around by more than noise and slope explain, and no more than
+// four such cells hang together: flying points are single, anomalies are not.
+constexpr double kOutlierSigmas = 8;
+constexpr double kOutlierSlopes = 2.5; // of the median's change from cell to cell
+constexpr int kMaxOutlierCells = 4;
+
+constexpr int kFillRounds = 2;
+constexpr int kMinFillNeighbours = 5; // of nine: most of those around
+constexpr int kMinSpeckCells = 30;    // what is smaller has no ring to fit a surface to
+
+// Below this noise, in cells, are only the roundings of files.
+constexpr double kMinSigmaCells = 1e-4;
+
+/// The larger of the changes of an image along x and y, per cell; 0 beside gaps.
+Image slope_of(const Image& z)
+{
+    Image slope(z.size(), 0.F);
+    for (int y = 0; y < z.rows; ++y)
+        for (int x = 0; x < z.cols; ++x) {
+            const auto change = [&](int dx, int dy) {
+                const int x0 = std::max(0, x - dx), x1 = std::min(z.cols - 1, x + dx);
+                const int y0 = std::max(0, y - dy), y1 = std::min(z.rows - 1, y + dy);
+                const float steps = static_cast<float>(std::max(1, x1 - x0 + y1 - y0));
+                return (z(y1, x1) - z(y0, x0)) / steps;
+            };
+            const float size = std::hypot(change(1, 0), change(0, 1));
+            if (std::isfinite(size)) slope(y, x) = size;
+        }
+    return slope;
+}
+
+void remove_outliers(Image& z, double sigma)
+{
+    const Image median = nan_median(z, 2), slope = slope_of(median);
+    Mask differs(z.size(), 0);
+    for (int y = 0; y < z.rows; ++y)
+        for (int x = 0; x < z.cols; ++x)
+            if (std::abs(z(y, x) - median(y, x)) > kOutlierSigmas * sigma + kOutlierSlopes * slope(y, x))
+                differs(y, x) = 255;
+    const Components groups = components(differs, 8);
+    for (int y = 0; y < z.rows; ++y)
+        for (int x = 0; x < z.cols; ++x)
+            if (const int k = groups.labels(y, x); k > 0 && groups.area(k) <= kMaxOutlierCells)
+                z(y, x) = std::numeric_limits<float>::quiet_NaN();
+}
+
+void fill_small_holes(Image& z)
+{
+    for (int round = 0; round < kFillRounds; ++round) {
+        Image count(z.size(), 0.F);
+        count.setTo(1, finite(z));
+        cv::boxFilter(count, count, CV_32F, {3, 3}, {-1, -1}, false, cv::BORDER_REFLECT);
+        const Mask fills = (z != z) & (count >= float(kMinFillNeighbours));
+        if (cv::countNonZero(fills) > 0) nan_median(z, 1).copyTo(z, fills);
+    }
+}
+
+} // namespace
+
+void clean(HeightMap& map)
+{
+    map.z = map.z.clone();
+    map.sigma = std::max(noise_sigma(map.z), kMinSigmaCells * map.cell);
+    remove_outliers(map.z, map.sigma);
+    fill_small_holes(map.z);
+    const Components pieces = components(finite(map.z));
+    for (int y = 0; y < map.z.rows; ++y)
+        for (int x = 0; x < map.z.cols; ++x)
+            if (const int k = pieces.labels(y, x); k > 0 && pieces.area(k) < kMinSpeckCells)
+                map.z(y, x) = std::numeric_limits<float>::quiet_NaN();
+    map.seen = finite(map.z);
+}
+
+} // namespace fettle::find

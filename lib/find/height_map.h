@@ -1,0 +1,32 @@
+#pragma once
+
+#include "find/image.h"
+
+#include <Eigen/Core>
+
+namespace fettle::find {
+
+/// Heights over a regular grid in the plane of a view.
+struct HeightMap {
+    Image z;                ///< mm
+    double cell = 1;        ///< edge of a cell, mm
+    Eigen::Vector2d origin; ///< centre of cell (0, 0), mm, in the view's plane
+
+    Mask seen;        ///< cells with a height
+    double sigma = 0; ///< of the noise, mm
+
+    /// The cell whose centre is nearest to a point of the view's plane. It may lie beside the map.
+    cv::Point cell_of(const Eigen::Vector2d& point) const
+    {
+        const Eigen::Vector2d place = (point - origin) / cell;
+        return {cvRound(place.x()), cvRound(place.y())};
+    }
+    /// A place in cells as a point of the view's plane, mm.
+    Eigen::Vector2d point_at(double x, double y) const { return origin + cell * Eigen::Vector2d(x, y); }
+};
+
+/// Takes single outliers (flying points) out, fills holes of single cells by the median around, leaves out specks, and
+/// sets `seen` and `sigma`.
+void clean(HeightMap& map);
+
+} // namespace fettle::find

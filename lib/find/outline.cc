@@ -1,0 +1,126 @@
+#include "find/outline.h"
+
+#include <opencv2/imgproc.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace fettle::find {
+namespace {
+
+constexpr int kClosing = 3;      // cells: dents of B that no wheel follows
+constexpr double kGrowth = 2.5;  // two cells beyond the region, and half of one to the edge of its last
+constexpr double kOthersGap = 1.5; // between B and another anomaly, cells
+
+constexpr double kSamplingPerThickness = 0.6;
+constexpr double kMinSampling = 5.5, kMaxSampling = 45; // width of S around B, cells
+constexpr double kEdgeGap = 1.5;                        // S keeps off edges, cells
+
+constexpr int kUpscale = 4;          // of masks before their outline is taken
+constexpr double kOutlineBlur = 0.7; // cells, takes the stairs out
+constexpr double kBoundaryTolerance = 0.6, kSamplingTolerance = 0.8; // of simplified outlines, cells
+
+/// The outline of the mask's largest component.
+Eigen::Matrix2Xd polygon_of(const Mask& mask, double tolerance)
+{
+    Mask large;
+    cv::resize(mask, large, {}, kUpscale, kUpscale, cv::INTER_NEAREST);
+    cv::copyMakeBorder(large, large, kUpscale, kUpscale, kUpscale, kUpscale, cv::BORDER_CONSTANT, 0);
+    cv::GaussianBlur(large, large, {}, kUpscale * kOutlineBlur);
+    std::vector<std::vector<cv::Point>> contours;
+    cv::findContours(large > 127, contours, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
+    if (contours.empty()) return {};
+    const auto largest = std::ranges::max_element(
+        contours, {}, [](const std::vector<cv::Point>& contour) { return cv::contourArea(contour); });
+    std::vector<cv::Point> corners;
+    cv::approxPolyDP(*largest, corners, tolerance * kUpscale, true);
+    Eigen::Matrix2Xd polygon(2, Eigen::Index(corners.size()));
+    for (std::size_t k = 0; k < corners.size(); ++k)
+        polygon.col(Eigen::Index(k)) << (corners[k].x - kUpscale + 0.5) / kUpscale - 0.5,
+            (corners[k].y - kUpscale + 0.5) / kUpscale - 0.5;
+    return polygon;
+}
+
+/// The cell of the mask nearest to each cell.
+cv::Mat2i nearest_cells(const Mask& mask)
+{
+    Image distance;
+    cv::Mat1i labels;
+    cv::distanceTransform(~mask, distance, labels, cv::DIST_L2, cv::DIST_MASK_5, cv::DIST_LABEL_PIXEL);
+    std::vector<cv::Vec2i> cell_of(mask.total() + 1);
+    for (int y = 0; y < mask.rows; ++y)
+        for (int x = 0; x < mask.cols; ++x)
+            if (mask(y, x)) cell_of[std::size_t(labels(y, x))] = {x, y};
+    cv::Mat2i nearest(mask.size());
+    for (int y = 0; y < mask.rows; ++y)
+        for (int x = 0; x < mask.cols; ++x) nearest(y, x) = cell_of[std::size_t(labels(y, x))];
+    return nearest;
+}
+
+/// Cells within `width` of B that are seen from their nearest cell of B over good metal alone.
+Mask ring_in_sight(const Mask& inside, const Mask& good, double width)
+{
+    const Image distance = distance_to(inside);
+    const cv::Mat2i nearest = nearest_cells(inside);
+    Mask ring(inside.size(), 0);
+    for (int y = 0; y < ring.rows; ++y)
+        for (int x = 0; x < ring.cols; ++x) {
+            if (distance(y, x) > width || inside(y, x)) continue;
+            const cv::Vec2i from = nearest(y, x);
+            const int steps = int(std::ceil(distance(y, x)));
+            bool is_open = true;
+            for (int k = 1; k <= steps && is_open; ++k) {
+                const int u = cvRound(from[0] + double(k) / steps * (x - from[0]));
+                const int v = cvRound(from[1] + double(k) / steps * (y - from[1]));
+                is_open = good(v, u) || inside(v, u);
+            }
+            if (is_open) ring(y, x) = 255;
+        }
+    return ring;
+}
+
+double max_depth(const Mask& mask)
+{
+    double max = 0;
+    cv::minMaxLoc(depth_of(mask), nullptr, &max);
+    return max;
+}
+
+Mask with_seed(const Mask& mask, const Mask& seed)
+{
+    const Components parts = components(mask);
+    for (int y = 0; y < mask.rows; ++y)
+        for (int x = 0; x < mask.cols; ++x)
+            if (seed(y, x) && parts.labels(y, x) > 0) return parts.labels == parts.labels(y, x);
+    return mask;
+}
+
+} // namespace
+
+Outlines outlines_of(const HeightMap& map, const Mask& region, const Mask& others, int growth)
+{
+    const int margin = int(kMaxSampling) + 15;
+    const cv::Rect box = grown_box(cv::boundingRect(region), margin, region.size());
+    const auto around = [&](const Mask& mask) { // cells beyond the map are not seen
+        Mask result;
+        cv::copyMakeBorder(mask(box), result, margin, margin, margin, margin, cv::BORDER_CONSTANT, 0);
+        return result;
+    };
+    const Mask own = with_holes_filled(closed(around(region), kClosing)), other = around(others), seen = around(map.seen);
+    const double thickness = 2 * max_depth(own);
+    const Image to_others = distance_to(other);
+    const Mask inside = with_seed(
+        (distance_to(own) <= growth + kGrowth) & ((to_others >= kOthersGap) | own), own);
+    const Mask good = seen & (to_others > growth + kGrowth + 1) & (depth_of(closed(seen, 1)) > kEdgeGap);
+    const double width = std::clamp(kSamplingPerThickness * thickness, kMinSampling, kMaxSampling);
+    const Mask sampling = with_holes_filled(with_seed(opened(ring_in_sight(inside, good, width + 1) | inside, 2), own));
+    Outlines result;
+    const Eigen::Vector2d shift(box.x - margin, box.y - margin);
+    result.boundary = polygon_of(inside, kBoundaryTolerance).colwise() + shift;
+    result.sampling = polygon_of(sampling | inside, kSamplingTolerance).colwise() + shift;
+    result.inside = Mask(region.size(), 0);
+    inside(cv::Rect(margin, margin, box.width, box.height)).copyTo(result.inside(box));
+    return result;
+}
+
+} // namespace fettle::find

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "align/align.h"
+#include "find/find.h"
+#include "mesh/shape_file.h"
+
+#include <optional>
+
+namespace fettle::find {
+
+/// A part registered to its reference.
+struct Registration {
+    Eigen::Isometry3d T_reference_part;
+    bool converged = true;            ///< or stated
+    std::vector<std::string> doubts;  ///< of align::doubts()
+};
+
+/// Registers a part to a reference as fettle-align does, without scaling. @param stated  taken as it is
+/// @throws InputError as align::align()
+Registration register_part(const mesh::CloudMesh& part, const mesh::MeshOrCloud& reference,
+                           const std::optional<Eigen::Isometry3d>& stated);
+
+/// Distances of the part's points along the reference's normals (compare::signed_distance).
+SignedDistances signed_distances(const mesh::MeshOrCloud& reference, const Eigen::Isometry3d& T_reference_part);
+
+} // namespace fettle::find

@@ -1,0 +1,167 @@
+#include "find/view.h"
+
+#include "core/error.h"
+#include "geometry/planar_grid.h"
+#include "geometry/quantiles.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace fettle::find {
+namespace {
+
+using Eigen::Index;
+
+constexpr double kMaxCells = 2e7; // of a map: four bytes each, and some ten such images
+
+// A cell holds the median of the points no more than this deep beneath its highest, in cells: what lies deeper is
+// another surface.
+constexpr double kLayerCells = 3;
+
+// The cell is the spacing of the points, or the first of its multiples at which this share of the cells between seen
+// ones is seen, too.
+constexpr double kCellRatio = 1.25;
+constexpr double kMinFill = 0.8;
+constexpr int kMaxSpacingQueries = 4000;
+constexpr double kPointsPerGridCell = 3;
+
+// Triangles seen from the side have no height; a mesh has at least so many cells along its diagonal.
+constexpr double kMinFacing = 0.17; // 80 degrees
+constexpr double kMinMeshCells = 300, kMaxMeshCells = 3000;
+
+/// Median distance of points of a plane to their nearest others.
+double median_spacing(const Eigen::Matrix2Xd& points)
+{
+    const geometry::PlanarGrid grid = geometry::planar_grid(points, kPointsPerGridCell);
+    std::vector<double> nearest;
+    const Index step = std::max<Index>(1, points.cols() / kMaxSpacingQueries);
+    for (Index i = 0; i < points.cols(); i += step) {
+        double square = std::numeric_limits<double>::infinity();
+        const Eigen::Array2d p = points.col(i).array();
+        geometry::visit_cells(grid, p - grid.side, p + grid.side, [&](Index k) {
+            const double other = (points.col(grid.order[std::size_t(k)]) - points.col(i)).squaredNorm();
+            if (other > 0) square = std::min(square, other);
+        });
+        if (std::isfinite(square)) nearest.push_back(std::sqrt(square));
+    }
+    if (nearest.empty()) throw core::InputError("no surface: the points lie far apart, or all at one place");
+    return geometry::median(nearest);
+}
+
+HeightMap empty_map(const Eigen::AlignedBox2d& box, double cell)
+{
+    const Eigen::Vector2d sizes = box.sizes() / cell;
+    if ((sizes.x() + 1) * (sizes.y() + 1) > kMaxCells)
+        throw core::InputError("the points lie too far apart for a map of " + std::to_string(int(kMaxCells / 1e6)) +
+                               " million cells: leave outliers out first (fettle-clean)");
+    const int columns = int(std::lround(sizes.x())) + 1, rows = int(std::lround(sizes.y())) + 1;
+    HeightMap map;
+    map.z = Image(rows, columns, std::numeric_limits<float>::quiet_NaN());
+    map.cell = cell;
+    map.origin = box.min();
+    return map;
+}
+
+/// Share of the seen cells among those that are seen or between seen ones.
+double fill_of(const Image& z)
+{
+    const Mask seen = finite(z);
+    return double(cv::countNonZero(seen)) / std::max(1, cv::countNonZero(closed(seen, 2)));
+}
+
+HeightMap map_of_points(const Eigen::Matrix3Xd& placed, const Eigen::AlignedBox2d& box, double cell)
+{
+    HeightMap map = empty_map(box, cell);
+    const auto cell_of = [&](Index i) {
+        const cv::Point c = map.cell_of(placed.col(i).head<2>());
+        return std::size_t(std::clamp(c.y, 0, map.z.rows - 1)) * std::size_t(map.z.cols) +
+               std::size_t(std::clamp(c.x, 0, map.z.cols - 1));
+    };
+    std::vector<std::uint32_t> begin(map.z.total() + 1, 0);
+    std::vector<std::uint32_t> cells(std::size_t(placed.cols()));
+    for (Index i = 0; i < placed.cols(); ++i) ++begin[(cells[std::size_t(i)] = std::uint32_t(cell_of(i))) + 1];
+    std::partial_sum(begin.begin(), begin.end(), begin.begin());
+    std::vector<float> heights(cells.size());
+    std::vector<std::uint32_t> next(begin.begin(), begin.end() - 1);
+    for (Index i = 0; i < placed.cols(); ++i) heights[next[cells[std::size_t(i)]]++] = float(placed(2, i));
+    tbb::parallel_for(0, map.z.rows, [&](int y) {
+        for (int x = 0; x < map.z.cols; ++x) {
+            const std::size_t c = std::size_t(y) * std::size_t(map.z.cols) + std::size_t(x);
+            const auto from = heights.begin() + begin[c], to = heights.begin() + begin[c + 1];
+            if (from == to) continue;
+            const float floor = *std::max_element(from, to) - float(kLayerCells * cell);
+            const auto layer = std::partition(from, to, [&](float z) { return z < floor; });
+            const auto middle = layer + (to - layer) / 2;
+            std::nth_element(layer, middle, to);
+            map.z(y, x) = *middle;
+        }
+    });
+    return map;
+}
+
+/// Raises the heights of the cells whose centres a triangle covers to the triangle's.
+void draw(HeightMap& map, const Eigen::Matrix3d& corners)
+{
+    const Eigen::Matrix2d edges =
+        (Eigen::Matrix2d() << (corners.col(1) - corners.col(0)).head<2>(), (corners.col(2) - corners.col(0)).head<2>())
+            .finished();
+    const double area = edges.determinant();
+    if (!(std::abs(area) > 1e-12 * map.cell * map.cell)) return;
+    const Eigen::Matrix2d inverse = edges.inverse();
+    const Eigen::Vector2d low = (corners.topRows<2>().rowwise().minCoeff() - map.origin) / map.cell;
+    const Eigen::Vector2d high = (corners.topRows<2>().rowwise().maxCoeff() - map.origin) / map.cell;
+    constexpr double kOnEdge = -1e-9; // cells on the common edge of two triangles belong to both
+    for (int y = std::max(0, int(std::ceil(low.y()))); y <= std::min(map.z.rows - 1, int(high.y())); ++y)
+        for (int x = std::max(0, int(std::ceil(low.x()))); x <= std::min(map.z.cols - 1, int(high.x())); ++x) {
+            const Eigen::Vector2d weights = inverse * (map.point_at(x, y) - corners.col(0).head<2>());
+            if (weights.minCoeff() < kOnEdge || weights.sum() > 1 - kOnEdge) continue;
+            const auto z = float(corners(2, 0) + weights.x() * (corners(2, 1) - corners(2, 0)) +
+                                 weights.y() * (corners(2, 2) - corners(2, 0)));
+            if (!(map.z(y, x) >= z)) map.z(y, x) = z;
+        }
+}
+
+HeightMap map_of_mesh(const mesh::CloudMesh& part, const Eigen::Matrix3Xd& placed, const Eigen::AlignedBox2d& box)
+{
+    std::vector<double> edges;
+    for (Index t = 0; t < part.triangles.cols(); ++t)
+        for (int k = 0; k < 3; ++k)
+            edges.push_back(
+                (placed.col(part.triangles(k, t)) - placed.col(part.triangles((k + 1) % 3, t))).head<2>().norm());
+    const double diagonal = box.diagonal().norm();
+    HeightMap map = empty_map(
+        box, std::clamp(geometry::median(edges), diagonal / kMaxMeshCells, diagonal / kMinMeshCells));
+    for (Index t = 0; t < part.triangles.cols(); ++t) {
+        Eigen::Matrix3d corners;
+        for (int k = 0; k < 3; ++k) corners.col(k) = placed.col(part.triangles(k, t));
+        const Eigen::Vector3d normal = (corners.col(1) - corners.col(0)).cross(corners.col(2) - corners.col(0));
+        if (normal.z() > kMinFacing * normal.norm()) draw(map, corners);
+    }
+    return map;
+}
+
+} // namespace
+
+HeightMap height_map(const mesh::CloudMesh& part, const View& view)
+{
+    Eigen::Matrix3Xd placed = view * part.points.xyz;
+    if (!part.is_mesh() && !placed.allFinite()) {
+        Index count = 0;
+        for (Index i = 0; i < placed.cols(); ++i)
+            if (placed.col(i).allFinite()) placed.col(count++) = placed.col(i).eval();
+        placed.conservativeResize(Eigen::NoChange, count);
+    }
+    if (placed.cols() == 0) throw core::InputError("no point is finite");
+    const Eigen::AlignedBox2d box(placed.topRows<2>().rowwise().minCoeff(), placed.topRows<2>().rowwise().maxCoeff());
+    if (part.is_mesh()) return map_of_mesh(part, placed, box);
+    HeightMap map;
+    for (double cell = median_spacing(placed.topRows<2>());; cell *= kCellRatio) {
+        map = map_of_points(placed, box, cell);
+        if (fill_of(map.z) >= kMinFill) return map;
+    }
+}
+
+} // namespace fettle::find
