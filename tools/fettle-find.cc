@@ -3,9 +3,13 @@
 #include "cli/tool.h"
 #include "core/file.h"
 #include "find/find.h"
+#include "find/jobs.h"
 #include "find/registration.h"
 #include "job/shape_warnings.h"
 #include "mesh/shape_file.h"
+
+#include <filesystem>
+#include <set>
 
 using namespace fettle;
 
@@ -28,26 +32,55 @@ struct Options {
     cli::Tool& t;
     const std::string& path = t.main_input("PART", "A cloud (PCD, PLY, XYZ) or a mesh (STL, PLY, OBJ, OFF)");
     const std::optional<units::Units::Length>& unit = t.length_unit("--file-units", "Unit of PART, if it states none");
-    const std::string& against = t.optional_file(
-        "--against", "REF", "A mesh or cloud of the part as it should be, or of a good part: departures from it are "
-                            "compared instead of the part with itself");
+    const std::string& against =
+        t.optional_file("--against", "REF",
+                        "A mesh or cloud of the part as it should be, or of a good part: departures from it are "
+                        "compared instead of the part with itself");
     const std::optional<units::Units::Length>& against_unit = t.length_unit("--against-units", "Unit of REF");
     const std::string& transform_in = t.optional_file(
         "--transform-in", "FILE", "4 x 4 matrix that puts PART onto REF, as fettle-align writes it: do not register");
     const std::string& transform_out =
         t.optional_output("--transform-out", "Write the 4 x 4 matrix that was applied, 17 digits");
-    const double& probability =
-        t.number("--probability", find::FindOptions().min_probability, "SHARE", "Leave out what is less probable",
-                 core::Range{0, 1, true, true});
-    const std::optional<double>& width =
-        t.optional_number("--max-width", "LENGTH", "Width of the widest anomaly; default: 45 mm", core::Range::positive());
+    const double& probability = t.number("--probability", find::FindOptions().min_probability, "SHARE",
+                                         "Leave out what is less probable", core::Range{0, 1, true, true});
+    const std::optional<double>& width = t.optional_number(
+        "--max-width", "LENGTH", "Width of the widest anomaly; default: 45 mm", core::Range::positive());
     const std::string& keep =
         t.text("--keep", "", "ROW,…", "These rows are anomalies: takes the doubt away that the run without it reports");
     const std::string& drop = t.text("--drop", "", "ROW,…", "These rows belong to the part: leaves them out");
+    const std::string& jobs = t.text(
+        "--jobs", "", "FOLDER", "Write a job for each anomaly without a doubt, FOLDER/ROW.json; goes with --template");
+    const std::string& settings =
+        t.optional_file("--template", "JOB",
+                        "Job with the machine's values for --jobs: probe, tolerance, wheel, forces, feed, removal; "
+                        "what stands no higher than its tolerance is left out");
     const std::string& format =
         t.choice("--format", "", {"pcd", "ply", "csv", "vtk", "stl"},
                  "Format of the output; default: by the suffix of -o, else PCD, or STL for a mesh");
 };
+
+/// Writes the jobs of all anomalies without a doubt. Whether each anomaly has one.
+bool write_jobs(const Options& o, find::FindResult& result, const mesh::CloudMesh& part, const job::Job& settings)
+{
+    std::filesystem::create_directories(o.jobs);
+    std::set<std::string> written;
+    for (find::FoundAnomaly& anomaly : result.anomalies) {
+        if (!anomaly.doubt.empty()) continue;
+        try {
+            const job::Job job = find::job_for(anomaly, part, result.noise, settings);
+            anomaly.job = o.jobs + "/" + std::to_string(anomaly.number) + ".json";
+            o.t.output_file(anomaly.job) << job::to_json(job);
+            written.insert(anomaly.job);
+        } catch (const core::InputError& error) {
+            anomaly.doubt = error.what();
+        }
+    }
+    for (const auto& entry : std::filesystem::directory_iterator(o.jobs))
+        if (const std::string file = o.jobs + "/" + entry.path().filename().string();
+            entry.path().extension() == ".json" && !written.contains(file))
+            o.t.warn(file + ": not of this run");
+    return written.size() == result.anomalies.size();
+}
 
 find::FindOptions find_options(const Options& o, double mm)
 {
@@ -78,8 +111,7 @@ find::FindResult find_against(const Options& o, const mesh::CloudMeshFile& part,
         matrix.topRightCorner<3, 1>() /= mm;
         align::write_transform(o.t.output_file(o.transform_out), matrix);
     }
-    const find::SignedDistances distances =
-        find::signed_distances(reference.shape, registration.T_reference_part);
+    const find::SignedDistances distances = find::signed_distances(reference.shape, registration.T_reference_part);
     return cli::with_error_prefix(
         name, [&] { return find::find_anomalies_against(part.part, distances, find_options(o, mm)); });
 }
@@ -90,7 +122,8 @@ const std::string kDescription =
     "height over the surface beneath. Without --against the part itself says what belongs to it: smooth metal around a "
     "region is continued beneath it, and the region judged by how far and how plainly it stands over that. The report "
     "has a row for each anomaly: probability, height, area, volume, significance (height in standard deviations of the "
-    "surface beneath), and a doubt where a person should look. Exit 1 if anomalies were found.";
+    "surface beneath), and a doubt where a person should look. Each job has a frame of its own in which its anomaly "
+    "faces up. Exit 1 if an anomaly has no job: without --jobs, or for a doubt that --keep or --drop decides.";
 
 } // namespace
 
@@ -105,6 +138,10 @@ int main(int argc, char** argv)
         t.parse();
         if (o.against.empty() && (!o.transform_in.empty() || !o.transform_out.empty() || o.against_unit))
             throw core::InputError("--against", "is needed by --transform-in, --transform-out and --against-units");
+        if (o.jobs.empty() != o.settings.empty())
+            throw core::InputError(o.jobs.empty() ? "--template" : "--jobs", "--jobs and --template go together");
+        std::optional<job::Job> settings;
+        if (!o.settings.empty()) settings = job::read_job(o.settings);
         const std::vector<int> keep = parse_rows("--keep", o.keep), drop = parse_rows("--drop", o.drop);
 
         mesh::CloudMeshFile file = mesh::read_cloud_mesh(o.path, mesh::resolve_file_units(o.unit));
@@ -113,15 +150,17 @@ int main(int argc, char** argv)
         for (const std::string& warning : job::shape_warnings(file, name)) t.warn(warning);
 
         find::FindResult result =
-            o.against.empty() ? cli::with_error_prefix(name, [&] {
-                return find::find_anomalies(file.part, find_options(o, file.units.mm()));
-            })
-                              : find_against(o, file, name);
+            o.against.empty()
+                ? cli::with_error_prefix(
+                      name, [&] { return find::find_anomalies(file.part, find_options(o, file.units.mm())); })
+                : find_against(o, file, name);
         find::judge(result, keep, drop);
+        if (settings) find::drop_lower_than(result, settings->tolerance);
+        const bool all_have_jobs = settings ? write_jobs(o, result, file.part, *settings) : result.anomalies.empty();
         find::set_report(t.report(), result, file.units);
         for (const find::FoundAnomaly& anomaly : result.anomalies)
             if (!anomaly.doubt.empty()) t.note(std::to_string(anomaly.number) + ": " + anomaly.doubt);
         mesh::write_cloud_mesh(t.output(), find::labelled(std::move(file.part), result), format, file.units);
-        return result.anomalies.empty() ? cli::Verdict::yes : cli::Verdict::no;
+        return all_have_jobs ? cli::Verdict::yes : cli::Verdict::no;
     });
 }

@@ -27,9 +27,13 @@ void judge(FindResult& result, const std::vector<int>& keep, const std::vector<i
             throw core::InputError("--drop", std::to_string(row) + " is in --keep, too");
     for (FoundAnomaly& anomaly : result.anomalies)
         if (std::ranges::find(keep, anomaly.number) != keep.end()) anomaly.doubt.clear();
-    std::erase_if(result.anomalies, [&](const FoundAnomaly& anomaly) {
-        return std::ranges::find(drop, anomaly.number) != drop.end();
-    });
+    std::erase_if(result.anomalies,
+                  [&](const FoundAnomaly& anomaly) { return std::ranges::find(drop, anomaly.number) != drop.end(); });
+}
+
+void drop_lower_than(FindResult& result, double height)
+{
+    std::erase_if(result.anomalies, [&](const FoundAnomaly& anomaly) { return anomaly.height <= height; });
 }
 
 mesh::CloudMesh labelled(mesh::CloudMesh part, const FindResult& result)
@@ -58,7 +62,8 @@ void set_report(json::Value& report, const FindResult& result, const units::Unit
                            .set("area", found.area / (mm * mm))
                            .set("volume", found.volume / (mm * mm * mm))
                            .set("significance", found.significance)
-                           .set("doubt", found.doubt));
+                           .set("doubt", found.doubt)
+                           .set("job", found.job));
     report.set("anomalies", rows);
 }
 

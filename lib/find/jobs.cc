@@ -1,0 +1,105 @@
+#include "find/jobs.h"
+
+#include "core/constants.h"
+#include "find/view.h"
+#include "job/boundary.h"
+
+#include <opencv2/imgproc.hpp>
+
+#include <cmath>
+#include <vector>
+
+namespace fettle::find {
+namespace {
+
+// Radius in cells of the square about a corner of a boundary whose median is the corner's height.
+constexpr int kCornerReach = 1;
+
+// A face is a plane if its cells scatter about the plane of least squares by no more than this many times the noise:
+// the plane's own uncertainty, and what a scan's errors have in common.
+constexpr double kPlaneNoises = 1.5;
+
+// Cells that are needed to tell whether a face is a plane: ten times as many as a quadric has coefficients.
+constexpr Eigen::Index kMinPlaneCells = 60;
+
+/// Corners with the height of the part at each; NaN where nothing is seen.
+Eigen::Matrix3Xd with_heights(const Eigen::Matrix2Xd& polygon, const HeightMap& map)
+{
+    Eigen::Matrix3Xd corners(3, polygon.cols());
+    const cv::Rect whole(0, 0, map.z.cols, map.z.rows);
+    for (Eigen::Index k = 0; k < polygon.cols(); ++k) {
+        const cv::Point cell = map.cell_of(polygon.col(k));
+        const cv::Rect about =
+            cv::Rect(cell.x - kCornerReach, cell.y - kCornerReach, 2 * kCornerReach + 1, 2 * kCornerReach + 1) & whole;
+        const std::vector<double> heights =
+            about.empty() ? std::vector<double>() : values_in(map.z(about), finite(map.z(about)));
+        corners.col(k) << polygon.col(k), heights.empty() ? core::kNaN : quantile_of(heights, 0.5);
+    }
+    return corners;
+}
+
+/// The places between B and S as the part's map has them, 3xN.
+Eigen::Matrix3Xd metal_around(const FoundAnomaly& anomaly, const HeightMap& map)
+{
+    std::vector<Eigen::Vector3d> places;
+    for (int y = 0; y < map.z.rows; ++y)
+        for (int x = 0; x < map.z.cols; ++x) {
+            const Eigen::Vector2d p = map.point_at(x, y);
+            if (!std::isnan(map.z(y, x)) && job::contains(anomaly.sampling, p) && !job::contains(anomaly.boundary, p))
+                places.emplace_back(p.x(), p.y(), double(map.z(y, x)));
+        }
+    return job::columns_to_matrix(places);
+}
+
+/// Whether the metal around an anomaly is a plane, as far as its noise tells.
+bool is_plane(const Eigen::Matrix3Xd& metal, double noise)
+{
+    if (metal.cols() < kMinPlaneCells) return false;
+    Eigen::MatrixX3d A(metal.cols(), 3);
+    A << Eigen::VectorXd::Ones(metal.cols()), metal.row(0).transpose(), metal.row(1).transpose();
+    const Eigen::VectorXd z = metal.row(2);
+    const Eigen::VectorXd residuals = A * A.colPivHouseholderQr().solve(z) - z;
+    return std::sqrt(residuals.squaredNorm() / double(metal.cols())) <= kPlaneNoises * noise;
+}
+
+/// What the wheel may meet on its way: the part within its radius about S.
+double highest_under_way(const FoundAnomaly& anomaly, const HeightMap& map, double radius)
+{
+    const cv::Point low = map.cell_of(anomaly.sampling.rowwise().minCoeff().array() - radius),
+                    high = map.cell_of(anomaly.sampling.rowwise().maxCoeff().array() + radius);
+    const Image way = map.z(cv::Rect(low, high + cv::Point(1, 1)) & cv::Rect(0, 0, map.z.cols, map.z.rows));
+    double highest = 0;
+    if (cv::countNonZero(finite(way)) > 0) cv::minMaxLoc(way, nullptr, &highest, nullptr, nullptr, finite(way));
+    return highest;
+}
+
+/// θ with which the feed's axis runs along the longer side of the smallest rectangle about B, rad.
+double theta_along(const Eigen::Matrix2Xd& boundary, char feed_axis)
+{
+    std::vector<cv::Point2f> corners;
+    for (const auto& corner : boundary.colwise())
+        corners.emplace_back(static_cast<float>(corner.x()), static_cast<float>(corner.y()));
+    const cv::RotatedRect box = cv::minAreaRect(corners);
+    const double quarter = core::kRadPerDegree * 90;
+    const double along = core::kRadPerDegree * double(box.angle) + (box.size.width >= box.size.height ? 0 : quarter);
+    const double theta = feed_axis == 'x' ? along : along - quarter;
+    return std::remainder(theta, 2 * quarter); // a pass runs both ways: half a turn is none
+}
+
+} // namespace
+
+job::Job job_for(const FoundAnomaly& anomaly, const mesh::CloudMesh& part, double noise, const job::Job& settings)
+{
+    job::Job job = settings;
+    job.T_part_job = anomaly.T_anomaly_part.inverse();
+    job.theta = theta_along(anomaly.boundary, settings.feed.axis);
+    const HeightMap map = height_map(part, anomaly.T_anomaly_part);
+    job.surface = is_plane(metal_around(anomaly, map), noise) ? job::SurfaceType::plane : job::SurfaceType::freeform;
+    job.anomaly = with_heights(anomaly.boundary, map);
+    job.sampling = with_heights(anomaly.sampling, map);
+    job.is_safe_height_known = true;
+    job.safe_height = highest_under_way(anomaly, map, settings.wheel.radius) + job::kTravelClearance;
+    return job::validated(job, "row " + std::to_string(anomaly.number));
+}
+
+} // namespace fettle::find
