@@ -78,7 +78,7 @@ FCL    := -lfcl -lccd
 PCL    := -lpcl_kdtree -lpcl_common
 # Segmentation needs more of PCL.
 PLACE  := $(PCL) -lpcl_segmentation -lpcl_sample_consensus -lpcl_search
-LDLIBS_ALL := -llzf -ltbb
+LDLIBS_ALL := -llzf -ltbb -lz
 
 # The files that see OpenCV. Private: what a file needs before it, the precompiled header, is compiled as ever.
 $(B)/lib/draw/canvas.o $(B)/lib/belt/convolution.o $(B)/lib/cli/version.o $(B)/lib/find/%.o $(B)/tests/lib/find_test.o $(B)/pipelines/programs/find-evidence.o $(B)/pipelines/programs/find-score.o: private override CPPFLAGS += $(addprefix -isystem ,$(wildcard /usr/include/opencv4))

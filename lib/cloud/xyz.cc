@@ -13,12 +13,28 @@ namespace {
 
 constexpr std::size_t kMaxColumns = 1000; // scanners write a dozen, and names are compared in quadratic time
 
+/// The words of a line: between commas, or between semicolons, if it has any, else between blanks and tabs. Numbers
+/// with decimal commas are then refused: between two of them is a blank.
+std::vector<std::string_view> fields_of(std::string_view line)
+{
+    const char separator = line.find(';') != std::string_view::npos ? ';' : ',';
+    if (line.find(separator) == std::string_view::npos) return core::words(line);
+    std::vector<std::string_view> fields;
+    for (;;) {
+        const std::size_t end = std::min(line.find(separator), line.size());
+        const std::vector<std::string_view> words = core::words(line.substr(0, end));
+        fields.push_back(words.size() == 1 ? words[0] : line.substr(0, end));
+        if (end == line.size()) return fields;
+        line.remove_prefix(end + 1);
+    }
+}
+
 /// Names in a header line such as "x y z intensity"; empty for another line.
 std::vector<std::string> column_names(std::string_view line)
 {
     if (line.starts_with("//")) line.remove_prefix(2);
     std::vector<std::string> names;
-    for (const std::string_view word : core::words(line)) names.emplace_back(word);
+    for (const std::string_view word : fields_of(line)) names.emplace_back(word);
     if (names.size() < 3) return {};
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const char letter = "xyz"[axis];
@@ -32,7 +48,7 @@ std::vector<std::string> column_names(std::string_view line)
 std::vector<double> parse_row(const core::FileLines& lines, std::size_t columns)
 {
     std::vector<double> row;
-    for (const std::string_view word : core::words(lines.line())) {
+    for (const std::string_view word : fields_of(lines.line())) {
         const std::optional<double> value = core::parse_number(word);
         if (!value) lines.refuse(core::in_quotes(word) + " is not a number");
         row.push_back(*value);
@@ -82,9 +98,9 @@ bool looks_like_xyz(std::string_view bytes)
 {
     core::Lines lines(bytes);
     while (lines.next()) {
-        std::string_view line = lines.line();
+        const std::string_view line = lines.line();
         if (core::is_blank_or_comment(line)) continue;
-        return core::parse_number(core::next_word(line)).has_value() || !column_names(lines.line()).empty();
+        return core::parse_number(fields_of(line).front()).has_value() || !column_names(line).empty();
     }
     return false;
 }

@@ -1,6 +1,7 @@
 #include "core/file.h"
 
 #include "core/error.h"
+#include "core/gzip.h"
 #include "core/lines.h"
 
 #include <algorithm>
@@ -72,7 +73,7 @@ void check_stream_size(std::size_t size, const std::string& path)
     if (const std::size_t max = max_stream_bytes(); size > max)
         throw InputError(display_name(path),
                          "longer than the " + std::to_string(max >> 20) +
-                             " MiB, a quarter of the memory, that are read from anything but a file");
+                             " MiB, a quarter of the memory, that are read of a stream, or decompressed");
 }
 
 /// @param size  of the file or of what was read of it so far
@@ -110,16 +111,16 @@ std::string read_file(const std::string& path, std::size_t max)
 {
     const FileDescriptor file = open_to_read(path);
     const std::size_t expected = remaining_bytes(file);
+    GzipReader reader(file, path);
     std::string bytes, chunk(kChunkBytes, '\0');
     for (;;) {
-        const ssize_t got = read_some(file, chunk.data(), chunk.size());
-        if (got < 0) fail_read(path, "cannot read");
+        const std::size_t got = reader.read(chunk.data(), chunk.size());
         if (got == 0) return bytes;
         const bool was_short = bytes.size() <= kMaxFirstLine;
         bytes.append(chunk, 0, got);
         if (was_short && bytes.size() > kMaxFirstLine) max = max_size_of(bytes, max, path);
         check_size(std::max(bytes.size(), expected), max, bytes, path);
-        if (expected == 0) check_stream_size(bytes.size(), path);
+        if (expected == 0 || reader.is_compressed()) check_stream_size(bytes.size(), path);
         reserve(bytes, expected, path);
     }
 }
@@ -134,6 +135,11 @@ InputFile::InputFile(const std::string& path) : path_(path), file_(open_to_read(
     start_ = static_cast<std::size_t>(lseek(file_.get(), 0, SEEK_CUR));
     std::string head(std::min(size_, kMaxFirstLine + 1), '\0');
     read(0, head.data(), head.size());
+    if (looks_like_gzip(head)) {
+        start_ = size_ = 0;
+        copy_stream();
+        return;
+    }
     if (head.size() > kMaxFirstLine) check_size(size_, max_size_of(head, std::string::npos, path), head, path);
 }
 
@@ -144,9 +150,9 @@ void InputFile::copy_stream()
     std::string chunk(kChunkBytes, '\0');
     std::string head;
     std::size_t max = std::string::npos;
+    GzipReader reader(file_, path_);
     for (;;) {
-        const ssize_t got = read_some(file_, chunk.data(), chunk.size());
-        if (got < 0) fail_read(path_, "cannot read");
+        const std::size_t got = reader.read(chunk.data(), chunk.size());
         if (got == 0) break;
         const bool was_short = size_ <= kMaxFirstLine;
         size_ += got;

@@ -12,15 +12,15 @@ namespace fettle::core {
 /// Largest JSON document, bytes: enough for a million control points of patches, and at most a few GB as a tree.
 inline constexpr std::size_t kMaxJsonBytes = std::size_t{1} << 26;
 
-/// Contents of a file, a FIFO or stdin ("-").
+/// Contents of a file, a FIFO or stdin ("-"); of what gzip compressed, decompressed.
 /// @param max  largest size, bytes; kMaxJsonBytes for files that must be JSON
 /// @throws InputError if it cannot be opened or read (with the reason), is a directory, or is stdin and a terminal.
 /// Files that are too long are rejected before they are read entirely: longer than `max`, JSON longer than
 /// kMaxJsonBytes, or other text whose first line is longer than 64 KiB
 std::string read_file(const std::string& path, std::size_t max = std::string::npos);
 
-/// A file, a FIFO or stdin ("-") with random access, for several threads at once. A stream is copied to memory if it is
-/// small, else to an unnamed file in $TMPDIR (else /tmp).
+/// A file, a FIFO or stdin ("-") with random access, for several threads at once. A stream, and what gzip compressed, is
+/// copied to memory if it is small, else to an unnamed file in $TMPDIR (else /tmp).
 class InputFile {
   public:
     /// @throws InputError as read_file()

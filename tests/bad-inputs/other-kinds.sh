@@ -6,7 +6,7 @@ good
 printf '\211PNG\r\n\032\n0123' >picture
 printf '%%PDF-1.4\n%%\342\343\317\323\n1 0 obj\n' >document
 cp "$(command -v fettle-diff)" program
-gzip -c good.pcd >packed
+gzip -c good.pcd | gzip >packed
 printf 'ISO-10303-21;\nHEADER;\n' >step
 printf '<!DOCTYPE html>\n<html>\n' >page
 head -c 3000 /dev/zero >zeros
