@@ -54,9 +54,9 @@ struct Options {
         t.optional_file("--template", "JOB",
                         "Job with the machine's values for --jobs: probe, tolerance, wheel, forces, feed, removal; "
                         "what stands no higher than its tolerance is left out");
-    const std::string& format =
-        t.choice("--format", "", {"pcd", "ply", "csv", "vtk", "stl"},
-                 "Format of the output; default: by the suffix of -o, else PCD, or STL for a mesh");
+    const std::string& format = t.choice("--format", "", {"pcd", "ply", "csv", "vtk"},
+                                         "Format of the output; default: by the suffix of -o, else PCD. PLY keeps the "
+                                         "triangles of a mesh, the others have its vertices");
 };
 
 /// Writes the jobs of all anomalies without a doubt. Whether each anomaly has one.
@@ -88,6 +88,14 @@ find::FindOptions find_options(const Options& o, double mm)
     options.min_probability = o.probability;
     if (o.width) options.bounds = find::bounds_for_width(*o.width * mm);
     return options;
+}
+
+/// STL has no fields: what was found would be lost.
+mesh::PartFormat output_format(const Options& o, const std::string& name)
+{
+    if (o.format.empty() && name.ends_with(".stl"))
+        throw core::InputError(name, "an STL has no fields: write PLY, or the points as PCD");
+    return mesh::part_format(name, o.format, false);
 }
 
 find::FindResult find_against(const Options& o, const mesh::CloudMeshFile& part, const std::string& name)
@@ -146,7 +154,7 @@ int main(int argc, char** argv)
 
         mesh::CloudMeshFile file = mesh::read_cloud_mesh(o.path, mesh::resolve_file_units(o.unit));
         const std::string name = core::display_name(o.path);
-        const mesh::PartFormat format = mesh::part_format(t.output_name(), o.format, file.part.is_mesh());
+        const mesh::PartFormat format = output_format(o, t.output_name());
         for (const std::string& warning : job::shape_warnings(file, name)) t.warn(warning);
 
         find::FindResult result =
@@ -160,7 +168,9 @@ int main(int argc, char** argv)
         find::set_report(t.report(), result, file.units);
         for (const find::FoundAnomaly& anomaly : result.anomalies)
             if (!anomaly.doubt.empty()) t.note(std::to_string(anomaly.number) + ": " + anomaly.doubt);
-        mesh::write_cloud_mesh(t.output(), find::labelled(std::move(file.part), result), format, file.units);
+        mesh::CloudMesh labelled = find::labelled(std::move(file.part), result);
+        if (format != mesh::PartFormat::ply) labelled.triangles.resize(3, 0);
+        mesh::write_cloud_mesh(t.output(), labelled, format, file.units);
         return all_have_jobs ? cli::Verdict::yes : cli::Verdict::no;
     });
 }
