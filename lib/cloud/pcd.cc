@@ -4,6 +4,7 @@
 #include "cloud/fields.h"
 #include "cloud/pcd_header.h"
 #include "cloud/ply.h"
+#include "cloud/ptx.h"
 #include "cloud/reach.h"
 #include "cloud/xyz.h"
 #include "core/content.h"
@@ -174,7 +175,10 @@ CloudFile parse_cloud(std::string_view bytes, const std::string& source, std::op
     CloudFile file;
     const bool is_ply = looks_like_ply(bytes);
     if (is_ply || looks_like_xyz(bytes)) {
-        file = {is_ply ? parse_ply(bytes, source).vertices : parse_xyz(bytes, source), units.value_or(units::Units{})};
+        file = {is_ply                  ? parse_ply(bytes, source).vertices
+                : looks_like_ptx(bytes) ? parse_ptx(bytes, source)
+                                        : parse_xyz(bytes, source),
+                units.value_or(units::Units{})};
         check_field_names(file.cloud.fields, source);
     } else {
         if (bytes.starts_with("solid ") || bytes.starts_with("OFF"))

@@ -1,6 +1,7 @@
-// Small texts: XYZ points, points that were picked in a viewer, transforms, and what the operator's stick did.
+// Small texts: XYZ points, PTX scans, points that were picked in a viewer, transforms, and what the operator's stick did.
 
 #include "align/rigid.h"
+#include "cloud/ptx.h"
 #include "cloud/xyz.h"
 #include "job/picked.h"
 #include "memory_file.h"
@@ -38,6 +39,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     static fuzz::MemoryFile memory;
     const std::string_view text = fuzz::text_of(data, size);
     fuzz::is_read([&] { cloud::parse_xyz(text, "file"); });
+    fuzz::is_read([&] { cloud::parse_ptx(text, "file"); });
     fuzz::is_read([&] { job::parse_picked_points(text, "file"); });
     const std::string& path = memory.with(text);
     check_transform(path);
