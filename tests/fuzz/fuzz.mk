@@ -44,6 +44,6 @@ $(B)/fuzz/library.a: $(FUZZ_LIBRARY)
 	$(AR) rcs $@ $^
 
 $(B)/fuzz/%: $(B)/fuzz/tests/fuzz/%.o $(B)/fuzz/library.a
-	$(FUZZ_CXX) $(FUZZ_FLAGS) -fsanitize=fuzzer -o $@ $^ $(MD) -llzf -ltbb
+	$(FUZZ_CXX) $(FUZZ_FLAGS) -fsanitize=fuzzer -o $@ $^ $(MD) $(LDLIBS_ALL)
 
 -include $(B)/fuzz/precompiled.h.d
