@@ -155,7 +155,7 @@ void set_outlines(FoundAnomaly& anomaly, const SeenSide& side, const Verified& f
 {
     const HeightMap& map = side.surface;
     Mask region(map.z.size(), 0);
-    find.mask.copyTo(region(find.window));
+    find.with_rim.copyTo(region(find.window));
     const Outlines outlines = outlines_of(map, region, others & ~region, find.growth);
     const Eigen::Isometry3d T_anomaly_view = anomaly.T_anomaly_part * side.view.inverse();
     // The plane through the anomaly's origin, whose normal is the surface's: n · (p - p0) = 0.

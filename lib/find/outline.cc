@@ -9,7 +9,7 @@ namespace fettle::find {
 namespace {
 
 constexpr int kClosing = 3;      // cells: dents of B that no wheel follows
-constexpr double kGrowth = 2.5;  // two cells beyond the region, and half of one to the edge of its last
+constexpr double kGrowth = 3.2;  // beyond the region: its foot, and what simplifying the outline takes off
 constexpr double kOthersGap = 1.5; // between B and another anomaly, cells
 
 constexpr double kSamplingPerThickness = 0.6;

@@ -31,6 +31,10 @@ constexpr double kRingVariance = 0.35; // share of the ring's variance in the sm
 constexpr double kMinSds = 0.25;       // of the noise
 constexpr double kHeightSmoothing = 0.8;
 
+// A cell of the region belongs to its rim if its own height is below noise and this share of the region's, and its
+// smoothed height below the other.
+constexpr double kTrimShare = 0.04, kTrimSmoothShare = 0.25;
+
 /// Thickness of a region: the diameter of its largest inscribed circle, cells.
 double thickness_of(const Mask& mask)
 {
@@ -65,6 +69,16 @@ class Refinement {
         region_ = Mask(z_.size(), 0);
         candidate.mask.copyTo(region_(candidate.box - window_.tl()));
         core_ = dilated(region_, 1);
+    }
+
+    /// The region without the rim that only smoothing has raised.
+    Mask trimmed() const
+    {
+        const double height = quantile_of(values_in(beneath_.smooth, region_ & seen_), 0.85);
+        const Mask high = (beneath_.residual >= float(kTrimShare * height + sigma_)) |
+                          (beneath_.smooth >= float(kTrimSmoothShare * height));
+        const Mask trimmed = closed(region_ & high, 1) & region_;
+        return cv::countNonZero(trimmed) >= kMinRegionCells ? largest(trimmed) : region_;
     }
 
     /// @return  false if no region remains
@@ -290,7 +304,7 @@ int Refinement::growth() const
 
 Verified Refinement::result(double texture) const
 {
-    Verified verified{window_, region_, beneath_.residual, {}, growth(), 0};
+    Verified verified{window_, trimmed(), region_, beneath_.residual, {}, growth(), 0};
     Evidence& e = verified.evidence;
     const Mask inside = region_ & seen_;
     e.height = quantile_of(values_in(beneath_.residual, inside), 0.9);

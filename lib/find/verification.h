@@ -12,6 +12,7 @@ namespace fettle::find {
 struct Verified {
     cv::Rect window;     ///< in the map: the candidate and the ring around it
     Mask mask;           ///< of the window's size
+    Mask with_rim;       ///< the same with cells around that only smoothing may have raised: B goes around them
     Image height;        ///< over the surface beneath, all over the window, mm; NaN: nothing seen
     Evidence evidence;
     int growth = 0;      ///< cells around the mask whose mean still stands over the surface
