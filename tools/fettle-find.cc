@@ -79,7 +79,7 @@ find::FindResult find_against(const Options& o, const mesh::CloudMeshFile& part,
         align::write_transform(o.t.output_file(o.transform_out), matrix);
     }
     const find::SignedDistances distances =
-        find::signed_distances(reference.shape, registration.T_reference_part);
+        find::signed_distances(part.part, reference.shape, registration.T_reference_part);
     return cli::with_error_prefix(
         name, [&] { return find::find_anomalies_against(part.part, distances, find_options(o, mm)); });
 }

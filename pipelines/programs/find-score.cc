@@ -63,7 +63,7 @@ int main(int argc, char** argv)
             against.empty() ? find::find_anomalies(file.part, options)
                             : find::find_anomalies_against(
                                   file.part,
-                                  find::signed_distances(mesh::read_shape(against, {}).shape,
+                                  find::signed_distances(file.part, mesh::read_shape(against, {}).shape,
                                                          Eigen::Isometry3d::Identity()),
                                   options);
         const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
