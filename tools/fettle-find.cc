@@ -41,6 +41,8 @@ struct Options {
                  core::Range{0, 1, true, true});
     const std::optional<double>& width =
         t.optional_number("--max-width", "LENGTH", "Width of the widest anomaly; default: 45 mm", core::Range::positive());
+    const std::optional<double>& height = t.optional_number(
+        "--min-height", "LENGTH", "Leave out what is lower; default: 0.2 mm", core::Range::at_least(0));
     const std::string& keep =
         t.text("--keep", "", "ROW,…", "These rows are anomalies: takes the doubt away that the run without it reports");
     const std::string& drop = t.text("--drop", "", "ROW,…", "These rows belong to the part: leaves them out");
@@ -54,6 +56,7 @@ find::FindOptions find_options(const Options& o, double mm)
     find::FindOptions options;
     options.min_probability = o.probability;
     if (o.width) options.bounds = find::bounds_for_width(*o.width * mm);
+    if (o.height) options.bounds.min_height = *o.height * mm;
     return options;
 }
 

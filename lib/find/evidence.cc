@@ -71,9 +71,9 @@ double probability_against(const Evidence& e)
     return 1 / (1 + std::exp((kEvenStanding - standing) / kStandingScale));
 }
 
-bool is_plausible(const Evidence& e, double max_height)
+bool is_plausible(const Evidence& e, const SearchBounds& bounds)
 {
-    return e.height < max_height && e.significance() > 4 && e.height > 2.5 * e.ring_sd &&
+    return e.height < bounds.max_height && e.height >= bounds.min_height && e.significance() > 4 && e.height > 2.5 * e.ring_sd &&
            e.height > 2 * e.disagreement && e.thickness >= 3 && e.drop < 0.6 && e.rise < 0.4 && e.inliers > 0.35 &&
            e.enclosure + e.unseen > 0.35 && e.enclosure > 0.2;
 }

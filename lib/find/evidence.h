@@ -1,5 +1,7 @@
 #pragma once
 
+#include "find/bounds.h"
+
 #include <Eigen/Core>
 
 #include <array>
@@ -48,6 +50,7 @@ double probability_of(const Evidence& evidence);
 double probability_against(const Evidence& evidence);
 
 /// Whether the evidence is worth a probability at all: bounds far outside of what anomalies of the evaluation set show.
-bool is_plausible(const Evidence& evidence, double max_height);
+/// @param bounds  of heights
+bool is_plausible(const Evidence& evidence, const SearchBounds& bounds);
 
 } // namespace fettle::find

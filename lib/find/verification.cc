@@ -350,7 +350,7 @@ std::optional<Verified> verify(const HeightMap& map, const Candidate& candidate,
     Refinement refinement(map, candidate, others, bounds);
     if (!refinement.run()) return std::nullopt;
     Verified verified = refinement.result(candidate.texture);
-    if (!is_plausible(verified.evidence, bounds.max_height)) return std::nullopt;
+    if (!is_plausible(verified.evidence, bounds)) return std::nullopt;
     return verified;
 }
 
