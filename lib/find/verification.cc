@@ -282,6 +282,7 @@ void Refinement::measure_stability(Evidence& evidence) const
     evidence.sag = std::sqrt((z - A * plane).squaredNorm() / double(places.size()));
 }
 
+constexpr double kMinSignificance = 4;
 constexpr int kMaxGrowth = 6;
 constexpr double kCorrelatedShellCells = 6; // that stand for an independent one
 
@@ -320,6 +321,7 @@ Verified Refinement::result(double texture) const
     e.degree = beneath_.fit.degree;
     e.cells = cv::countNonZero(region_);
     e.thickness = thickness_of(region_);
+    if (e.height < bounds_.min_height || e.significance() < kMinSignificance) return verified; // no evidence needed
     const Mask inner_ring = beneath_.ring & (beneath_.distance <= std::max(0.5 * beneath_.width, 4.0) + kRingGap);
     if (const auto inner = fit(inner_ring, beneath_.distance, 1e9, 3)) {
         std::vector<double> differences;
