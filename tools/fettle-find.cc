@@ -49,6 +49,7 @@ struct Options {
     const std::string& format =
         t.choice("--format", "", {"pcd", "ply", "csv", "vtk", "stl"},
                  "Format of the output; default: by the suffix of -o, else PCD, or STL for a mesh");
+    const bool& ascii = t.flag("--ascii", "Write PCD as text");
 };
 
 find::FindOptions find_options(const Options& o, double mm)
@@ -112,7 +113,9 @@ int main(int argc, char** argv)
 
         mesh::CloudMeshFile file = mesh::read_cloud_mesh(o.path, mesh::resolve_file_units(o.unit));
         const std::string name = core::display_name(o.path);
-        const mesh::PartFormat format = mesh::part_format(t.output_name(), o.format, file.part.is_mesh());
+        mesh::PartFormat format = mesh::part_format(t.output_name(), o.format, file.part.is_mesh());
+        if (o.ascii && format != mesh::PartFormat::pcd) throw core::InputError("--ascii", "goes with PCD");
+        if (o.ascii) format = mesh::PartFormat::pcd_ascii;
         for (const std::string& warning : job::shape_warnings(file, name)) t.warn(warning);
 
         find::FindResult result =

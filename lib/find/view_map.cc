@@ -152,10 +152,14 @@ HeightMap map_of_mesh(const mesh::CloudMesh& part, const Eigen::Matrix3Xd& place
 HeightMap height_map(const mesh::CloudMesh& part, const View& view)
 {
     Eigen::Matrix3Xd placed = view * part.points.xyz;
-    if (!part.is_mesh() && !placed.allFinite()) {
+    if (!part.is_mesh()) {
+        const Eigen::VectorXd facing =
+            cloud::has_normals(part.points)
+                ? Eigen::VectorXd((view.linear().row(2) * cloud::normals(part.points)).transpose())
+                : Eigen::VectorXd::Ones(placed.cols());
         Index count = 0;
         for (Index i = 0; i < placed.cols(); ++i)
-            if (placed.col(i).allFinite()) placed.col(count++) = placed.col(i).eval();
+            if (placed.col(i).allFinite() && facing[i] > kMinFacing) placed.col(count++) = placed.col(i).eval();
         placed.conservativeResize(Eigen::NoChange, count);
     }
     if (placed.cols() == 0) throw core::InputError("no point is finite");
