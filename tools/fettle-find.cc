@@ -28,19 +28,19 @@ struct Options {
     cli::Tool& t;
     const std::string& path = t.main_input("PART", "A cloud (PCD, PLY, XYZ) or a mesh (STL, PLY, OBJ, OFF)");
     const std::optional<units::Units::Length>& unit = t.length_unit("--file-units", "Unit of PART, if it states none");
-    const std::string& against = t.optional_file(
-        "--against", "REF", "A mesh or cloud of the part as it should be, or of a good part: departures from it are "
-                            "compared instead of the part with itself");
+    const std::string& against =
+        t.optional_file("--against", "REF",
+                        "A mesh or cloud of the part as it should be, or of a good part: departures from it are "
+                        "compared instead of the part with itself");
     const std::optional<units::Units::Length>& against_unit = t.length_unit("--against-units", "Unit of REF");
     const std::string& transform_in = t.optional_file(
         "--transform-in", "FILE", "4 x 4 matrix that puts PART onto REF, as fettle-align writes it: do not register");
     const std::string& transform_out =
         t.optional_output("--transform-out", "Write the 4 x 4 matrix that was applied, 17 digits");
-    const double& probability =
-        t.number("--probability", find::FindOptions().min_probability, "SHARE", "Leave out what is less probable",
-                 core::Range{0, 1, true, true});
-    const std::optional<double>& width =
-        t.optional_number("--max-width", "LENGTH", "Width of the widest anomaly; default: 45 mm", core::Range::positive());
+    const double& probability = t.number("--probability", find::FindOptions().min_probability, "SHARE",
+                                         "Leave out what is less probable", core::Range{0, 1, true, true});
+    const std::optional<double>& width = t.optional_number(
+        "--max-width", "LENGTH", "Width of the widest anomaly; default: 45 mm", core::Range::positive());
     const std::optional<double>& height = t.optional_number(
         "--min-height", "LENGTH", "Leave out what is lower; default: 0.2 mm", core::Range::at_least(0));
     const std::string& keep =
@@ -119,10 +119,10 @@ int main(int argc, char** argv)
         for (const std::string& warning : job::shape_warnings(file, name)) t.warn(warning);
 
         find::FindResult result =
-            o.against.empty() ? cli::with_error_prefix(name, [&] {
-                return find::find_anomalies(file.part, find_options(o, file.units.mm()));
-            })
-                              : find_against(o, file, name);
+            o.against.empty()
+                ? cli::with_error_prefix(
+                      name, [&] { return find::find_anomalies(file.part, find_options(o, file.units.mm())); })
+                : find_against(o, file, name);
         find::judge(result, keep, drop);
         find::set_report(t.report(), result, file.units);
         for (const find::FoundAnomaly& anomaly : result.anomalies)

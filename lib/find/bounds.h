@@ -4,9 +4,9 @@ namespace fettle::find {
 
 /// Bounds of what is looked for.
 struct SearchBounds {
-    double max_width = 45;  ///< of an anomaly, mm
-    double max_area = 2500; ///< mm²
-    double max_height = 15; ///< mm
+    double max_width = 45;   ///< of an anomaly, mm
+    double max_area = 2500;  ///< mm²
+    double max_height = 15;  ///< mm
     double min_height = 0.2; ///< mm: less is texture of castings, and no work for a wheel
 };
 

@@ -65,7 +65,8 @@ double rank_of(const Image& residual, const Mask& domain, const Mask& mask, doub
 std::vector<Candidate> cut_out(const Image& residual, const Mask& domain, const HeightMap& map,
                                const SearchBounds& bounds)
 {
-    const double max_cells = 1.5 * bounds.max_area / (map.cell * map.cell), max_extent = 2 * bounds.max_width / map.cell;
+    const double max_cells = 1.5 * bounds.max_area / (map.cell * map.cell),
+                 max_extent = 2 * bounds.max_width / map.cell;
     std::vector<Candidate> candidates;
     Components below;
     for (const double threshold : kThresholdSigmas) {
@@ -83,7 +84,8 @@ std::vector<Candidate> cut_out(const Image& residual, const Mask& domain, const 
                                           (parts.labels.ptr<int>(box.y) + box.x));
                 if (parts.area(k) > kSameShare * below.area(below.labels(box.y, x))) continue;
             }
-            if (const double rank = rank_of(residual(around), domain(around), mask, map.sigma, bounds.min_height); rank > 0)
+            if (const double rank = rank_of(residual(around), domain(around), mask, map.sigma, bounds.min_height);
+                rank > 0)
                 candidates.push_back({around, mask, rank * std::pow(parts.area(k), 0.25), 0});
         }
         below = std::move(parts);
@@ -147,9 +149,8 @@ std::vector<Candidate> find_candidates(const HeightMap& map, const SearchBounds&
     const std::size_t filters = sheets.size() * widths.size(), openings = std::min<std::size_t>(2, widths.size());
     std::vector<std::vector<Candidate>> found(filters + openings);
     tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t i) {
-        found[i] = i < filters
-                       ? candidates_of(map, sheets[i / widths.size()], widths[i % widths.size()], bounds)
-                       : candidates_of_opening(map, widths[widths.size() - 1 - (i - filters)], bounds);
+        found[i] = i < filters ? candidates_of(map, sheets[i / widths.size()], widths[i % widths.size()], bounds)
+                               : candidates_of_opening(map, widths[widths.size() - 1 - (i - filters)], bounds);
     });
     std::vector<Candidate> all, unique;
     for (std::vector<Candidate>& some : found) std::ranges::move(some, std::back_inserter(all));

@@ -24,12 +24,12 @@ struct FoundAnomaly {
     double significance = 0; ///< height in standard deviations of the surface beneath
     std::string doubt;       ///< why a person should look at it; empty: nothing speaks against it
 
-    Eigen::Isometry3d T_anomaly_part;  ///< its own frame: origin on the surface beneath, whose mean normal is +z
-    Eigen::Matrix2Xd boundary;         ///< 2xN, polygon B in that frame's x-y plane: around all of it
-    Eigen::Matrix2Xd sampling;         ///< 2xM, polygon S around B in the same plane: as far as the metal is good
-    double cell = 0;                   ///< of the height map: what the polygons resolve
-    std::vector<Eigen::Index> points;  ///< of the part, ascending
-    Eigen::VectorXd heights;           ///< of these over the surface beneath
+    Eigen::Isometry3d T_anomaly_part; ///< its own frame: origin on the surface beneath, whose mean normal is +z
+    Eigen::Matrix2Xd boundary;        ///< 2xN, polygon B in that frame's x-y plane: around all of it
+    Eigen::Matrix2Xd sampling;        ///< 2xM, polygon S around B in the same plane: as far as the metal is good
+    double cell = 0;                  ///< of the height map: what the polygons resolve
+    std::vector<Eigen::Index> points; ///< of the part, ascending
+    Eigen::VectorXd heights;          ///< of these over the surface beneath
 };
 
 struct FindResult {

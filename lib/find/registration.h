@@ -11,8 +11,8 @@ namespace fettle::find {
 /// A part registered to its reference.
 struct Registration {
     Eigen::Isometry3d T_reference_part;
-    bool converged = true;            ///< or stated
-    std::vector<std::string> doubts;  ///< of align::doubts()
+    bool converged = true;           ///< or stated
+    std::vector<std::string> doubts; ///< of align::doubts()
 };
 
 /// Registers a part to a reference as fettle-align does, without scaling. @param stated  taken as it is

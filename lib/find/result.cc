@@ -27,9 +27,8 @@ void judge(FindResult& result, const std::vector<int>& keep, const std::vector<i
             throw core::InputError("--drop", std::to_string(row) + " is in --keep, too");
     for (FoundAnomaly& anomaly : result.anomalies)
         if (std::ranges::find(keep, anomaly.number) != keep.end()) anomaly.doubt.clear();
-    std::erase_if(result.anomalies, [&](const FoundAnomaly& anomaly) {
-        return std::ranges::find(drop, anomaly.number) != drop.end();
-    });
+    std::erase_if(result.anomalies,
+                  [&](const FoundAnomaly& anomaly) { return std::ranges::find(drop, anomaly.number) != drop.end(); });
 }
 
 mesh::CloudMesh labelled(mesh::CloudMesh part, const FindResult& result)

@@ -10,7 +10,7 @@ namespace fettle::find {
 /// components is a polynomial of degree 5 in the coordinates. Frame: the reference's, mm.
 struct SlowField {
     Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-    double scale = 1;             ///< mm: half of the part's longest side
+    double scale = 1;              ///< mm: half of the part's longest side
     Eigen::Matrix3Xd coefficients; ///< a column for each monomial; none: no displacement
 
     Eigen::Vector3d at(const Eigen::Vector3d& point) const;

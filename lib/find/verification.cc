@@ -19,12 +19,12 @@ constexpr int kMinRing = 50; // cells
 
 // The ring is 0.8 times as wide as the region is thick, within bounds, and begins beyond its rounded foot.
 constexpr double kRingPerThickness = 0.8;
-constexpr double kRingPerExtent = 0.35; // of a thin region
+constexpr double kRingPerExtent = 0.35;                               // of a thin region
 constexpr double kMinRingWidth = 6, kMaxRingWidth = 45, kRingGap = 2; // cells
 constexpr int kMaxMargin = 60, kMarginBeyond = 8;                     // of the window, cells
 
-// Hysteresis of the region over the surface: seeds stand over it by so many of its standard deviations and by this share
-// of the height, the region is what hangs together with them down to the lower bounds.
+// Hysteresis of the region over the surface: seeds stand over it by so many of its standard deviations and by this
+// share of the height, the region is what hangs together with them down to the lower bounds.
 constexpr double kSeedSds = 4.5, kSeedShare = 0.2;
 constexpr double kRegionSds = 2.5, kRegionShare = 0.08;
 constexpr double kRingVariance = 0.35; // share of the ring's variance in the smoothed residual

@@ -29,8 +29,8 @@ constexpr int kMaxSpacingQueries = 4000;
 constexpr double kPointsPerGridCell = 3;
 
 // Triangles seen from the side have no height; a mesh has at least so many cells along its diagonal.
-// A mesh has been smoothed and interpolated: its second differences do not show the noise that is left in waves of a few
-// cells. This is its lower bound, in cells; scans have 0.03 to 0.1.
+// A mesh has been smoothed and interpolated: its second differences do not show the noise that is left in waves of a
+// few cells. This is its lower bound, in cells; scans have 0.03 to 0.1.
 constexpr double kMinMeshSigmaCells = 0.05;
 constexpr double kMinFacing = 0.17; // 80 degrees
 constexpr double kMinMeshCells = 300, kMaxMeshCells = 3000;
@@ -135,8 +135,8 @@ HeightMap map_of_mesh(const mesh::CloudMesh& part, const Eigen::Matrix3Xd& place
             edges.push_back(
                 (placed.col(part.triangles(k, t)) - placed.col(part.triangles((k + 1) % 3, t))).head<2>().norm());
     const double diagonal = box.diagonal().norm();
-    HeightMap map = empty_map(
-        box, std::clamp(geometry::median(edges), diagonal / kMaxMeshCells, diagonal / kMinMeshCells));
+    HeightMap map =
+        empty_map(box, std::clamp(geometry::median(edges), diagonal / kMaxMeshCells, diagonal / kMinMeshCells));
     map.sigma = kMinMeshSigmaCells * map.cell;
     for (Index t = 0; t < part.triangles.cols(); ++t) {
         Eigen::Matrix3d corners;

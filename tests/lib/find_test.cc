@@ -67,8 +67,10 @@ TEST(RingFit, ReproducesACubicBesideAnEdge)
     const auto surface = [](double x, double y) { return 0.1 * x - 0.002 * x * x + 1e-4 * y * y * x; };
     for (int y = -20; y <= 20; ++y)
         for (int x = -20; x <= 20; ++x)
-            if (const double r = std::hypot(x, y); r > 9 && r < 20) points.emplace_back(x, y, surface(x, y) - (x > 14 ? 5 : 0));
-    RingPoints ring{Eigen::Matrix2Xd(2, points.size()), Eigen::VectorXd(points.size()), Eigen::VectorXd::Ones(points.size())};
+            if (const double r = std::hypot(x, y); r > 9 && r < 20)
+                points.emplace_back(x, y, surface(x, y) - (x > 14 ? 5 : 0));
+    RingPoints ring{Eigen::Matrix2Xd(2, points.size()), Eigen::VectorXd(points.size()),
+                    Eigen::VectorXd::Ones(points.size())};
     for (std::size_t i = 0; i < points.size(); ++i) {
         ring.xy.col(Eigen::Index(i)) = points[i].head<2>();
         ring.z[Eigen::Index(i)] = points[i].z();
@@ -103,7 +105,8 @@ TEST(Find, PersonsWordsCount)
 {
     FindResult result;
     result.anomalies.resize(3);
-    for (int k = 0; k < 3; ++k) result.anomalies[std::size_t(k)].number = k + 1, result.anomalies[std::size_t(k)].doubt = "?";
+    for (int k = 0; k < 3; ++k)
+        result.anomalies[std::size_t(k)].number = k + 1, result.anomalies[std::size_t(k)].doubt = "?";
     EXPECT_THROW(judge(result, {4}, {}), core::InputError);
     EXPECT_THROW(judge(result, {1}, {1}), core::InputError);
     judge(result, {3}, {1});
