@@ -45,6 +45,9 @@ struct Options {
                                          "Leave out what is less probable", core::Range{0, 1, true, true});
     const std::optional<double>& width = t.optional_number(
         "--max-width", "LENGTH", "Width of the widest anomaly; default: 45 mm", core::Range::positive());
+    const std::optional<double>& height = t.optional_number(
+        "--min-height", "LENGTH", "Leave out what is lower; default: the tolerance of --template, else 0.2 mm",
+        core::Range::at_least(0));
     const std::string& keep =
         t.text("--keep", "", "ROW,…", "These rows are anomalies: takes the doubt away that the run without it reports");
     const std::string& drop = t.text("--drop", "", "ROW,…", "These rows belong to the part: leaves them out");
@@ -57,6 +60,7 @@ struct Options {
     const std::string& format = t.choice("--format", "", {"pcd", "ply", "csv", "vtk"},
                                          "Format of the output; default: by the suffix of -o, else PCD. PLY keeps the "
                                          "triangles of a mesh, the others have its vertices");
+    const bool& ascii = t.flag("--ascii", "Write PCD as text");
 };
 
 /// Writes the jobs of all anomalies without a doubt. Whether each anomaly has one.
@@ -82,11 +86,13 @@ bool write_jobs(const Options& o, find::FindResult& result, const mesh::CloudMes
     return written.size() == result.anomalies.size();
 }
 
-find::FindOptions find_options(const Options& o, double mm)
+find::FindOptions find_options(const Options& o, const std::optional<job::Job>& settings, double mm)
 {
     find::FindOptions options;
     options.min_probability = o.probability;
     if (o.width) options.bounds = find::bounds_for_width(*o.width * mm);
+    if (settings) options.bounds.min_height = settings->tolerance;
+    if (o.height) options.bounds.min_height = *o.height * mm;
     return options;
 }
 
@@ -95,10 +101,13 @@ mesh::PartFormat output_format(const Options& o, const std::string& name)
 {
     if (o.format.empty() && name.ends_with(".stl"))
         throw core::InputError(name, "an STL has no fields: write PLY, or the points as PCD");
-    return mesh::part_format(name, o.format, false);
+    const mesh::PartFormat format = mesh::part_format(name, o.format, false);
+    if (o.ascii && format != mesh::PartFormat::pcd) throw core::InputError("--ascii", "goes with PCD");
+    return o.ascii ? mesh::PartFormat::pcd_ascii : format;
 }
 
-find::FindResult find_against(const Options& o, const mesh::CloudMeshFile& part, const std::string& name)
+find::FindResult find_against(const Options& o, const find::FindOptions& options, const mesh::CloudMeshFile& part,
+                              const std::string& name)
 {
     const std::string reference_name = core::display_name(o.against);
     const mesh::ShapeFile reference = mesh::read_shape(o.against, mesh::resolve_file_units(o.against_unit));
@@ -119,9 +128,9 @@ find::FindResult find_against(const Options& o, const mesh::CloudMeshFile& part,
         matrix.topRightCorner<3, 1>() /= mm;
         align::write_transform(o.t.output_file(o.transform_out), matrix);
     }
-    const find::SignedDistances distances = find::signed_distances(reference.shape, registration.T_reference_part);
-    return cli::with_error_prefix(
-        name, [&] { return find::find_anomalies_against(part.part, distances, find_options(o, mm)); });
+    const find::SignedDistances distances =
+        find::signed_distances(part.part, reference.shape, registration.T_reference_part);
+    return cli::with_error_prefix(name, [&] { return find::find_anomalies_against(part.part, distances, options); });
 }
 
 const std::string kDescription =
@@ -157,13 +166,11 @@ int main(int argc, char** argv)
         const mesh::PartFormat format = output_format(o, t.output_name());
         for (const std::string& warning : job::shape_warnings(file, name)) t.warn(warning);
 
+        const find::FindOptions options = find_options(o, settings, file.units.mm());
         find::FindResult result =
-            o.against.empty()
-                ? cli::with_error_prefix(
-                      name, [&] { return find::find_anomalies(file.part, find_options(o, file.units.mm())); })
-                : find_against(o, file, name);
+            o.against.empty() ? cli::with_error_prefix(name, [&] { return find::find_anomalies(file.part, options); })
+                              : find_against(o, options, file, name);
         find::judge(result, keep, drop);
-        if (settings) find::drop_lower_than(result, settings->tolerance);
         const bool all_have_jobs = settings ? write_jobs(o, result, file.part, *settings) : result.anomalies.empty();
         find::set_report(t.report(), result, file.units);
         for (const find::FoundAnomaly& anomaly : result.anomalies)

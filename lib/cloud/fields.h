@@ -8,9 +8,9 @@
 namespace fettle::cloud {
 
 /// The dimension of a field by its name (docs/conventions.md): error, sigma, clearance, clearance_between, radius,
-/// displacement, removed, deflection, gap, indentation, depth, retreat, foot_x, foot_y, foot_z and joint7 (a robot's
-/// track) are lengths; area and removed_volume are powers of lengths; force, peak_force are forces; feed is length per
-/// second; pressure is force per area. Any other name is a plain number.
+/// displacement, removed, deflection, gap, indentation, depth, retreat, height, foot_x, foot_y, foot_z and joint7 (a
+/// robot's track) are lengths; area and removed_volume are powers of lengths; force, peak_force are forces; feed is
+/// length per second; pressure is force per area. Any other name is a plain number.
 units::Dimension field_dimension(const std::string& name);
 
 /// Values of a scalar field of integers from 0 (curve, role); -1 for other values (NaN).

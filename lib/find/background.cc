@@ -12,8 +12,8 @@
 namespace fettle::find {
 namespace {
 
-constexpr int kTerms = 6;                                     // of a quadratic
-constexpr std::array<int, kTerms> kPowerX{0, 1, 0, 2, 1, 0};  // 1, x, y, x², x y, y²
+constexpr int kTerms = 6;                                    // of a quadratic
+constexpr std::array<int, kTerms> kPowerX{0, 1, 0, 2, 1, 0}; // 1, x, y, x², x y, y²
 constexpr std::array<int, kTerms> kPowerY{0, 0, 1, 0, 1, 2};
 constexpr int kMaxPower = 4; // of the normal equations
 
@@ -78,8 +78,8 @@ float solve(const Moments& moments, int y, int x)
     Eigen::Matrix<double, kTerms, 1> b;
     for (std::size_t i = 0; i < kTerms; ++i) {
         for (std::size_t j = 0; j <= i; ++j)
-            A(Eigen::Index(i), Eigen::Index(j)) = moments.of_weight[std::size_t(kPowerX[i] + kPowerX[j])]
-                                                                   [std::size_t(kPowerY[i] + kPowerY[j])](y, x);
+            A(Eigen::Index(i), Eigen::Index(j)) =
+                moments.of_weight[std::size_t(kPowerX[i] + kPowerX[j])][std::size_t(kPowerY[i] + kPowerY[j])](y, x);
         b[Eigen::Index(i)] = moments.of_height[i](y, x);
     }
     const double ridge = kRidge * A(0, 0) + 1e-9; // an empty window yields 0
@@ -129,13 +129,15 @@ Image regression_filter(const Image& z, const Mask& trusted, double sigma, doubl
     Image weight = full.clone(), surface;
     for (const double cutoff : kCutoffs) {
         surface = solve(moments(weight, coarse, window), coarse.size());
-        const double limit = cutoff * std::max(sigma / std::sqrt(factor), residual_sigma(coarse, surface, weight, seen));
+        const double limit =
+            cutoff * std::max(sigma / std::sqrt(factor), residual_sigma(coarse, surface, weight, seen));
         for (int y = 0; y < coarse.rows; ++y)
             for (int x = 0; x < coarse.cols; ++x) {
                 const double residual = coarse(y, x) - surface(y, x);
-                weight(y, x) = full(y, x) * static_cast<float>(
-                    residual > 0 ? biweight(residual / limit)
-                                 : std::max(kMinDeepWeight, biweight(residual / (kDeepCutoffs * limit))));
+                weight(y, x) = full(y, x) *
+                               static_cast<float>(residual > 0 ? biweight(residual / limit)
+                                                               : std::max(kMinDeepWeight,
+                                                                          biweight(residual / (kDeepCutoffs * limit))));
             }
     }
     surface += mean;

@@ -4,9 +4,10 @@ namespace fettle::find {
 
 /// Bounds of what is looked for.
 struct SearchBounds {
-    double max_width = 45;  ///< of an anomaly, mm
-    double max_area = 2500; ///< mm²
-    double max_height = 15; ///< mm
+    double max_width = 45;   ///< of an anomaly, mm
+    double max_area = 2500;  ///< mm²
+    double max_height = 15;  ///< mm
+    double min_height = 0.2; ///< mm: less is texture of castings, and no work for a wheel
 };
 
 /// The same in proportion, for anomalies up to another width, mm.
@@ -14,7 +15,7 @@ inline SearchBounds bounds_for_width(double width)
 {
     SearchBounds bounds;
     const double ratio = width / bounds.max_width;
-    return {ratio * bounds.max_width, ratio * ratio * bounds.max_area, ratio * bounds.max_height};
+    return {ratio * bounds.max_width, ratio * ratio * bounds.max_area, ratio * bounds.max_height, bounds.min_height};
 }
 
 } // namespace fettle::find

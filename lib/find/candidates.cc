@@ -25,6 +25,8 @@ constexpr double kSameShare = 0.85;
 constexpr int kShellInner = 1, kShellOuter = 4;
 constexpr double kMinContrast = 4, kMaxContrast = 30; // beyond, contrast says no more
 constexpr double kLevelShare = 0.3;
+// A filter takes part of an anomaly for surface: a candidate may be lower than what is reported.
+constexpr double kMinHeightShare = 0.5;
 constexpr double kMinEnclosure = 0.3;
 
 constexpr double kFirstWidth = 10, kWidthRatio = 1.9; // of the filters, cells
@@ -43,7 +45,7 @@ std::vector<double> filter_widths(const HeightMap& map, double max_width)
 }
 
 /// Contrast and enclosure of a region of a residual, as rank; 0: no candidate.
-double rank_of(const Image& residual, const Mask& domain, const Mask& mask, double sigma)
+double rank_of(const Image& residual, const Mask& domain, const Mask& mask, double sigma, double min_height)
 {
     Mask padded;
     cv::copyMakeBorder(mask, padded, kShellOuter, kShellOuter, kShellOuter, kShellOuter, cv::BORDER_CONSTANT, 0);
@@ -52,7 +54,7 @@ double rank_of(const Image& residual, const Mask& domain, const Mask& mask, doub
     const std::vector<double> around = values_in(residual, shell);
     const double base = quantile_of(around, 0.5), top = quantile_of(values_in(residual, mask), 0.9);
     const double contrast = (top - base) / sigma;
-    if (contrast <= kMinContrast || all == 0) return 0;
+    if (contrast <= kMinContrast || top - base < kMinHeightShare * min_height || all == 0) return 0;
     const auto level = std::ranges::count_if(
         around, [&](double value) { return std::abs(value - base) < kLevelShare * (top - base); });
     const double enclosure = double(level) / all;
@@ -63,7 +65,8 @@ double rank_of(const Image& residual, const Mask& domain, const Mask& mask, doub
 std::vector<Candidate> cut_out(const Image& residual, const Mask& domain, const HeightMap& map,
                                const SearchBounds& bounds)
 {
-    const double max_cells = 1.5 * bounds.max_area / (map.cell * map.cell), max_extent = 2 * bounds.max_width / map.cell;
+    const double max_cells = 1.5 * bounds.max_area / (map.cell * map.cell),
+                 max_extent = 2 * bounds.max_width / map.cell;
     std::vector<Candidate> candidates;
     Components below;
     for (const double threshold : kThresholdSigmas) {
@@ -81,7 +84,8 @@ std::vector<Candidate> cut_out(const Image& residual, const Mask& domain, const 
                                           (parts.labels.ptr<int>(box.y) + box.x));
                 if (parts.area(k) > kSameShare * below.area(below.labels(box.y, x))) continue;
             }
-            if (const double rank = rank_of(residual(around), domain(around), mask, map.sigma); rank > 0)
+            if (const double rank = rank_of(residual(around), domain(around), mask, map.sigma, bounds.min_height);
+                rank > 0)
                 candidates.push_back({around, mask, rank * std::pow(parts.area(k), 0.25), 0});
         }
         below = std::move(parts);
@@ -145,9 +149,8 @@ std::vector<Candidate> find_candidates(const HeightMap& map, const SearchBounds&
     const std::size_t filters = sheets.size() * widths.size(), openings = std::min<std::size_t>(2, widths.size());
     std::vector<std::vector<Candidate>> found(filters + openings);
     tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t i) {
-        found[i] = i < filters
-                       ? candidates_of(map, sheets[i / widths.size()], widths[i % widths.size()], bounds)
-                       : candidates_of_opening(map, widths[widths.size() - 1 - (i - filters)], bounds);
+        found[i] = i < filters ? candidates_of(map, sheets[i / widths.size()], widths[i % widths.size()], bounds)
+                               : candidates_of_opening(map, widths[widths.size() - 1 - (i - filters)], bounds);
     });
     std::vector<Candidate> all, unique;
     for (std::vector<Candidate>& some : found) std::ranges::move(some, std::back_inserter(all));

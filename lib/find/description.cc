@@ -92,7 +92,8 @@ std::string doubts_of(const Verified& find)
     std::vector<std::string> doubts;
     if (find.probability < kSureProbability) doubts.push_back("it may be a feature of the part");
     if (e.enclosure < kMinOpenShare) doubts.push_back("it stands at an edge, or beside another feature");
-    if (e.thickness > kMaxThicknessPerRing * e.ring_width) doubts.push_back("it is wider than the good metal around it");
+    if (e.thickness > kMaxThicknessPerRing * e.ring_width)
+        doubts.push_back("it is wider than the good metal around it");
     if (looks_designed(find)) doubts.push_back("with its flat top and regular outline it may be a boss by design");
     return core::join(doubts, "; ");
 }
@@ -127,7 +128,8 @@ FoundAnomaly describe(const SeenSide& side, const CellPoints& cells, const Verif
     found.significance = find.evidence.significance();
     found.doubt = doubts_of(find);
     found.cell = side.surface.cell;
-    found.T_anomaly_part = Eigen::Quaterniond::FromTwoVectors(side.view.linear().transpose() * up, Eigen::Vector3d::UnitZ());
+    found.T_anomaly_part =
+        Eigen::Quaterniond::FromTwoVectors(side.view.linear().transpose() * up, Eigen::Vector3d::UnitZ());
     found.T_anomaly_part.pretranslate(-(found.T_anomaly_part * (side.view.inverse() * middle_beneath(side, find))));
     std::vector<std::pair<Index, double>> points;
     double sum = 0;
@@ -155,7 +157,7 @@ void set_outlines(FoundAnomaly& anomaly, const SeenSide& side, const Verified& f
 {
     const HeightMap& map = side.surface;
     Mask region(map.z.size(), 0);
-    find.mask.copyTo(region(find.window));
+    find.with_rim.copyTo(region(find.window));
     const Outlines outlines = outlines_of(map, region, others & ~region, find.growth);
     const Eigen::Isometry3d T_anomaly_view = anomaly.T_anomaly_part * side.view.inverse();
     // The plane through the anomaly's origin, whose normal is the surface's: n · (p - p0) = 0.

@@ -11,16 +11,16 @@ namespace fettle::find {
 /// A part seen from one side, and what was found there.
 struct SeenSide {
     View view;
-    HeightMap surface;           ///< heights of what is seen
-    HeightMap searched;          ///< the same, or signed distances from a reference along its normals
+    HeightMap surface;            ///< heights of what is seen
+    HeightMap searched;           ///< the same, or signed distances from a reference along its normals
     bool is_along_normal = false; ///< the latter
-    std::vector<Verified> finds; ///< in `searched`
+    std::vector<Verified> finds;  ///< in `searched`
 };
 
 /// Points of a part by the cell in which a side shows them.
 struct CellPoints {
-    cv::Mat1i first;                 ///< point of a cell, -1: none
-    std::vector<Eigen::Index> next;  ///< point of the same cell after each, -1: none
+    cv::Mat1i first;                ///< point of a cell, -1: none
+    std::vector<Eigen::Index> next; ///< point of the same cell after each, -1: none
 };
 CellPoints points_by_cell(const mesh::CloudMesh& part, const SeenSide& side);
 

@@ -47,13 +47,15 @@ Features features_of(const Evidence& e)
 {
     const double seen = std::max(1 - e.unseen, kMinSeen);
     Features f;
-    f << 1, log_ratio(e.height, e.ring_sd), log_ratio(e.height, std::max(e.disagreement, 0.3 * e.ring_sd)), e.enclosure / seen,
-        e.inliers, e.drop / seen, e.rise / seen, std::log(std::clamp(e.ring_sd / e.noise, 1.0, 1e4)),
-        log_ratio(e.height, std::max(e.texture, 0.3 * e.noise)), e.degree / 4, e.sharpness, e.pits,
-        std::log(e.cells) / 5, std::min(e.cells / (e.thickness * e.thickness), 6.0) / 3, e.unseen,
+    f << 1, log_ratio(e.height, e.ring_sd), log_ratio(e.height, std::max(e.disagreement, 0.3 * e.ring_sd)),
+        e.enclosure / seen, e.inliers, e.drop / seen, e.rise / seen,
+        std::log(std::clamp(e.ring_sd / e.noise, 1.0, 1e4)), log_ratio(e.height, std::max(e.texture, 0.3 * e.noise)),
+        e.degree / 4, e.sharpness, e.pits, std::log(e.cells) / 5,
+        std::min(e.cells / (e.thickness * e.thickness), 6.0) / 3, e.unseen,
         std::min(std::log(e.significance()), kMaxLogRatio),
-        log_ratio(e.height, std::max(e.instability, 0.1 * e.ring_sd)), log_ratio(e.height, std::max(e.sag, 0.1 * e.ring_sd)),
-        log_ratio(e.height, e.thickness * e.cell), log_ratio(e.height, e.noise);
+        log_ratio(e.height, std::max(e.instability, 0.1 * e.ring_sd)),
+        log_ratio(e.height, std::max(e.sag, 0.1 * e.ring_sd)), log_ratio(e.height, e.thickness * e.cell),
+        log_ratio(e.height, e.noise);
     return f;
 }
 
@@ -71,11 +73,11 @@ double probability_against(const Evidence& e)
     return 1 / (1 + std::exp((kEvenStanding - standing) / kStandingScale));
 }
 
-bool is_plausible(const Evidence& e, double max_height)
+bool is_plausible(const Evidence& e, const SearchBounds& bounds)
 {
-    return e.height < max_height && e.significance() > 4 && e.height > 2.5 * e.ring_sd &&
-           e.height > 2 * e.disagreement && e.thickness >= 3 && e.drop < 0.6 && e.rise < 0.4 && e.inliers > 0.35 &&
-           e.enclosure + e.unseen > 0.35 && e.enclosure > 0.2;
+    return e.height < bounds.max_height && e.height >= bounds.min_height && e.significance() > 4 &&
+           e.height > 2.5 * e.ring_sd && e.height > 2 * e.disagreement && e.thickness >= 3 && e.drop < 0.6 &&
+           e.rise < 0.4 && e.inliers > 0.35 && e.enclosure + e.unseen > 0.35 && e.enclosure > 0.2;
 }
 
 } // namespace fettle::find

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "find/bounds.h"
+
 #include <Eigen/Core>
 
 #include <array>
@@ -12,21 +14,22 @@ struct Evidence {
     double ring_sd = 0;       ///< of the metal around, about that surface
     double prediction_sd = 0; ///< of the surface itself beneath the candidate, median
     double disagreement = 0;  ///< between surfaces from the whole ring and from its inner half, 0.75 quantile
-    double instability = 0;   ///< root mean square change of the surface as each quadrant of the ring is left out, 0.75 quantile
-    double sag = 0;           ///< of the surface beneath the candidate: standard deviation from its own plane
-    double noise = 0;         ///< of the map
-    double texture = 0;       ///< of the sheet's residual at the candidate's scale
-    double enclosure = 0;     ///< share of a shell around it that lies on the surface
+    double instability =
+        0;          ///< root mean square change of the surface as each quadrant of the ring is left out, 0.75 quantile
+    double sag = 0; ///< of the surface beneath the candidate: standard deviation from its own plane
+    double noise = 0;          ///< of the map
+    double texture = 0;        ///< of the sheet's residual at the candidate's scale
+    double enclosure = 0;      ///< share of a shell around it that lies on the surface
     double drop = 0, rise = 0; ///< share of that shell far beneath, and above it
-    double unseen = 0;        ///< share of that shell where nothing is seen
-    double inliers = 0;       ///< share of the ring on the surface
-    double pits = 0;          ///< share of the ring far beneath
-    double sharpness = 0;     ///< share of the height within two cells inside and outside of the boundary
-    double ring_width = 0;    ///< cells, as far as metal was there
-    double cells = 0;         ///< number
-    double thickness = 0;     ///< largest inscribed circle's diameter, cells
-    double cell = 1;          ///< mm
-    double degree = 1;        ///< of the surface
+    double unseen = 0;         ///< share of that shell where nothing is seen
+    double inliers = 0;        ///< share of the ring on the surface
+    double pits = 0;           ///< share of the ring far beneath
+    double sharpness = 0;      ///< share of the height within two cells inside and outside of the boundary
+    double ring_width = 0;     ///< cells, as far as metal was there
+    double cells = 0;          ///< number
+    double thickness = 0;      ///< largest inscribed circle's diameter, cells
+    double cell = 1;           ///< mm
+    double degree = 1;         ///< of the surface
 
     /// Standard deviation of the surface beneath: of the mean of the metal around it, and of the surface itself.
     double surface_sd() const;
@@ -48,6 +51,7 @@ double probability_of(const Evidence& evidence);
 double probability_against(const Evidence& evidence);
 
 /// Whether the evidence is worth a probability at all: bounds far outside of what anomalies of the evaluation set show.
-bool is_plausible(const Evidence& evidence, double max_height);
+/// @param bounds  of heights
+bool is_plausible(const Evidence& evidence, const SearchBounds& bounds);
 
 } // namespace fettle::find

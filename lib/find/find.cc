@@ -50,7 +50,7 @@ void set_all_outlines(std::vector<Entry>& entries)
         for (const Entry& other : entries)
             if (other.side == entry.side && &other != &entry) {
                 Mask window = others(other.find->window);
-                window |= other.find->mask;
+                window |= other.find->with_rim;
             }
         set_outlines(entry.found, *entry.side, *entry.find, others);
     }

@@ -23,15 +23,14 @@ struct FoundAnomaly {
     double volume = 0;       ///< over that surface, mm³
     double significance = 0; ///< height in standard deviations of the surface beneath
     std::string doubt;       ///< why a person should look at it; empty: nothing speaks against it
-
     std::string job;         ///< file of its job; empty: it has none
 
-    Eigen::Isometry3d T_anomaly_part;  ///< its own frame: origin on the surface beneath, whose mean normal is +z
-    Eigen::Matrix2Xd boundary;         ///< 2xN, polygon B in that frame's x-y plane: around all of it
-    Eigen::Matrix2Xd sampling;         ///< 2xM, polygon S around B in the same plane: as far as the metal is good
-    double cell = 0;                   ///< of the height map: what the polygons resolve
-    std::vector<Eigen::Index> points;  ///< of the part, ascending
-    Eigen::VectorXd heights;           ///< of these over the surface beneath
+    Eigen::Isometry3d T_anomaly_part; ///< its own frame: origin on the surface beneath, whose mean normal is +z
+    Eigen::Matrix2Xd boundary;        ///< 2xN, polygon B in that frame's x-y plane: around all of it
+    Eigen::Matrix2Xd sampling;        ///< 2xM, polygon S around B in the same plane: as far as the metal is good
+    double cell = 0;                  ///< of the height map: what the polygons resolve
+    std::vector<Eigen::Index> points; ///< of the part, ascending
+    Eigen::VectorXd heights;          ///< of these over the surface beneath
 };
 
 struct FindResult {
@@ -60,9 +59,6 @@ FindResult find_anomalies_against(const mesh::CloudMesh& part, const SignedDista
 /// Takes a person's word: rows of `keep` are anomalies without doubt, rows of `drop` are none. Rows keep their numbers.
 /// @throws InputError for a number that is no row, or in both
 void judge(FindResult& result, const std::vector<int>& keep, const std::vector<int>& drop);
-
-/// Leaves out anomalies that stand no higher than `height`, mm: there is nothing to be ground.
-void drop_lower_than(FindResult& result, double height);
 
 /// The part with fields `anomaly` (0 none, else the row's number) and `height` (over the surface beneath, mm; 0 outside
 /// of anomalies).

@@ -70,7 +70,7 @@ void fill_small_holes(Image& z)
 void clean(HeightMap& map)
 {
     map.z = map.z.clone();
-    map.sigma = std::max(noise_sigma(map.z), kMinSigmaCells * map.cell);
+    map.sigma = std::max({noise_sigma(map.z), map.sigma, kMinSigmaCells * map.cell});
     remove_outliers(map.z, map.sigma);
     fill_small_holes(map.z);
     const Components pieces = components(finite(map.z));

@@ -13,7 +13,7 @@ struct HeightMap {
     Eigen::Vector2d origin; ///< centre of cell (0, 0), mm, in the view's plane
 
     Mask seen;        ///< cells with a height
-    double sigma = 0; ///< of the noise, mm
+    double sigma = 0; ///< of the noise, mm; before clean() a lower bound of it
 
     /// The cell whose centre is nearest to a point of the view's plane. It may lie beside the map.
     cv::Point cell_of(const Eigen::Vector2d& point) const

@@ -8,16 +8,16 @@
 namespace fettle::find {
 namespace {
 
-constexpr int kClosing = 3;      // cells: dents of B that no wheel follows
-constexpr double kGrowth = 2.5;  // two cells beyond the region, and half of one to the edge of its last
+constexpr int kClosing = 3;        // cells: dents of B that no wheel follows
+constexpr double kGrowth = 3.2;    // beyond the region: its foot, and what simplifying the outline takes off
 constexpr double kOthersGap = 1.5; // between B and another anomaly, cells
 
 constexpr double kSamplingPerThickness = 0.6;
 constexpr double kMinSampling = 5.5, kMaxSampling = 45; // width of S around B, cells
 constexpr double kEdgeGap = 1.5;                        // S keeps off edges, cells
 
-constexpr int kUpscale = 4;          // of masks before their outline is taken
-constexpr double kOutlineBlur = 0.7; // cells, takes the stairs out
+constexpr int kUpscale = 4;                                          // of masks before their outline is taken
+constexpr double kOutlineBlur = 0.7;                                 // cells, takes the stairs out
 constexpr double kBoundaryTolerance = 0.6, kSamplingTolerance = 0.8; // of simplified outlines, cells
 
 /// The outline of the mask's largest component.
@@ -106,11 +106,11 @@ Outlines outlines_of(const HeightMap& map, const Mask& region, const Mask& other
         cv::copyMakeBorder(mask(box), result, margin, margin, margin, margin, cv::BORDER_CONSTANT, 0);
         return result;
     };
-    const Mask own = with_holes_filled(closed(around(region), kClosing)), other = around(others), seen = around(map.seen);
+    const Mask own = with_holes_filled(closed(around(region), kClosing)), other = around(others),
+               seen = around(map.seen);
     const double thickness = 2 * max_depth(own);
     const Image to_others = distance_to(other);
-    const Mask inside = with_seed(
-        (distance_to(own) <= growth + kGrowth) & ((to_others >= kOthersGap) | own), own);
+    const Mask inside = with_seed((distance_to(own) <= growth + kGrowth) & ((to_others >= kOthersGap) | own), own);
     const Mask good = seen & (to_others > growth + kGrowth + 1) & (depth_of(closed(seen, 1)) > kEdgeGap);
     const double width = std::clamp(kSamplingPerThickness * thickness, kMinSampling, kMaxSampling);
     const Mask sampling = with_holes_filled(with_seed(opened(ring_in_sight(inside, good, width + 1) | inside, 2), own));

@@ -13,8 +13,8 @@ struct Outlines {
     Mask inside;               ///< cells of B, of the map's size
 };
 
-/// Boundaries of a region. S reaches 0.6 of the region's thickness from B, in straight lines from B, up to edges of what
-/// is seen, creases, and other regions.
+/// Boundaries of a region. S reaches 0.6 of the region's thickness from B, in straight lines from B, up to edges of
+/// what is seen, creases, and other regions.
 /// @param region   of the map's size   @param others  cells of other anomalies
 /// @param growth   cells that the region is grown by besides two
 Outlines outlines_of(const HeightMap& map, const Mask& region, const Mask& others, int growth);

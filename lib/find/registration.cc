@@ -1,10 +1,18 @@
 #include "find/registration.h"
 
 #include "compare/signed_distance.h"
+#include "find/slow_field.h"
+
+#include <tbb/parallel_for.h>
 
 #include <memory>
 
 namespace fettle::find {
+namespace {
+
+constexpr Eigen::Index kFieldPoints = 6000; // 168 coefficients follow from them
+
+} // namespace
 
 Registration register_part(const mesh::CloudMesh& part, const mesh::MeshOrCloud& reference,
                            const std::optional<Eigen::Isometry3d>& stated)
@@ -20,13 +28,24 @@ Registration register_part(const mesh::CloudMesh& part, const mesh::MeshOrCloud&
     return {alignment.fit.T_reference_scan, alignment.fit.converged, align::doubts(alignment, options.icp)};
 }
 
-SignedDistances signed_distances(const mesh::MeshOrCloud& reference, const Eigen::Isometry3d& T_reference_part)
+SignedDistances signed_distances(const mesh::CloudMesh& part, const mesh::MeshOrCloud& reference,
+                                 const Eigen::Isometry3d& T_reference_part)
 {
     const auto distances = std::visit(
         [](const auto& shape) { return std::make_shared<compare::Reference>(shape, compare::DistanceOptions{}); },
         reference);
-    return [distances, T_reference_part](const Eigen::Matrix3Xd& points) -> Eigen::VectorXd {
-        return (*distances)(T_reference_part * points).error;
+    const align::OrientedPoints samples =
+        part.is_mesh() ? align::oriented_points(mesh::Mesh{part.points.xyz, part.triangles}, kFieldPoints)
+                       : align::oriented_points(cloud::select_points(
+                             part.points, align::evenly_spaced_indices(part.points.size(), kFieldPoints)));
+    const SlowField field = fit_slow_field(T_reference_part * samples.xyz, *distances);
+    return [distances, field, T_reference_part](const Eigen::Matrix3Xd& points) -> Eigen::VectorXd {
+        Eigen::Matrix3Xd placed = T_reference_part * points;
+        tbb::parallel_for(Eigen::Index{0}, placed.cols(), [&](Eigen::Index i) {
+            const Eigen::Vector3d p = placed.col(i);
+            placed.col(i) = p - field.at(p);
+        });
+        return (*distances)(placed).error;
     };
 }
 

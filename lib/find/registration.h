@@ -11,8 +11,8 @@ namespace fettle::find {
 /// A part registered to its reference.
 struct Registration {
     Eigen::Isometry3d T_reference_part;
-    bool converged = true;            ///< or stated
-    std::vector<std::string> doubts;  ///< of align::doubts()
+    bool converged = true;           ///< or stated
+    std::vector<std::string> doubts; ///< of align::doubts()
 };
 
 /// Registers a part to a reference as fettle-align does, without scaling. @param stated  taken as it is
@@ -20,7 +20,9 @@ struct Registration {
 Registration register_part(const mesh::CloudMesh& part, const mesh::MeshOrCloud& reference,
                            const std::optional<Eigen::Isometry3d>& stated);
 
-/// Distances of the part's points along the reference's normals (compare::signed_distance).
-SignedDistances signed_distances(const mesh::MeshOrCloud& reference, const Eigen::Isometry3d& T_reference_part);
+/// Distances of the part's points along the reference's normals (compare::signed_distance), after the slow field
+/// between both (slow_field.h) has been taken off.
+SignedDistances signed_distances(const mesh::CloudMesh& part, const mesh::MeshOrCloud& reference,
+                                 const Eigen::Isometry3d& T_reference_part);
 
 } // namespace fettle::find

@@ -31,11 +31,6 @@ void judge(FindResult& result, const std::vector<int>& keep, const std::vector<i
                   [&](const FoundAnomaly& anomaly) { return std::ranges::find(drop, anomaly.number) != drop.end(); });
 }
 
-void drop_lower_than(FindResult& result, double height)
-{
-    std::erase_if(result.anomalies, [&](const FoundAnomaly& anomaly) { return anomaly.height <= height; });
-}
-
 mesh::CloudMesh labelled(mesh::CloudMesh part, const FindResult& result)
 {
     Eigen::VectorXd anomaly = Eigen::VectorXd::Zero(part.points.size()), height = anomaly;

@@ -29,9 +29,9 @@ constexpr int kStartIterations = 3, kRefineIterations = 6;
 
 constexpr double kStartCutoff = 5, kCutoff = 4.5, kInlierCutoff = 6; // Tukey's, in standard deviations
 constexpr double kMinWeight = 0.05;                                  // below it a point is an outlier
-constexpr double kMinSigmas = 0.5;    // a residual spread below half the noise is chance
-constexpr double kMinShare = 1e-3;    // of a polynomial in the average
-constexpr double kRingRidge = 1e-9;   // of the trace: fixes what few points leave open
+constexpr double kMinSigmas = 0.5;                                   // a residual spread below half the noise is chance
+constexpr double kMinShare = 1e-3;                                   // of a polynomial in the average
+constexpr double kRingRidge = 1e-9;                                  // of the trace: fixes what few points leave open
 
 Index terms_of(int degree) { return Index(degree + 1) * (degree + 2) / 2; }
 
@@ -106,8 +106,7 @@ Eigen::VectorXd start_weights(const Ring& ring)
     Eigen::VectorXd best;
     double best_quantile = std::numeric_limits<double>::infinity();
     for (int sector = -1; sector < kSectors; ++sector) {
-        const Eigen::VectorXd chosen =
-            sector < 0 ? Eigen::VectorXd::Ones(ring.z.size()) : outside_sector(ring, sector);
+        const Eigen::VectorXd chosen = sector < 0 ? Eigen::VectorXd::Ones(ring.z.size()) : outside_sector(ring, sector);
         if (chosen.sum() < 3.0 * double(A.cols())) continue;
         Eigen::VectorXd weights = chosen, residuals;
         for (int iteration = 0; iteration < kStartIterations; ++iteration) {
@@ -115,14 +114,15 @@ Eigen::VectorXd start_weights(const Ring& ring)
             std::vector<double> sizes;
             for (Index i = 0; i < residuals.size(); ++i)
                 if (chosen[i] > 0) sizes.push_back(std::abs(residuals[i]));
-            const double spread = std::max({geometry::kMedianToSigma * geometry::median(sizes),
-                                            kMinSigmas * ring.sigma, 1e-9});
+            const double spread =
+                std::max({geometry::kMedianToSigma * geometry::median(sizes), kMinSigmas * ring.sigma, 1e-9});
             weights.array() /= (residuals.array().abs() / spread).max(1); // Huber's
         }
         const double quantile = quantile_of_sizes(residuals, kStartQuantile);
         if (quantile >= best_quantile * (sector < 0 ? 1 : kPartialGain)) continue;
         best_quantile = quantile;
-        const double sd = std::max(geometry::kMedianToSigma * quantile_of_sizes(residuals, 0.5), kMinSigmas * ring.sigma);
+        const double sd =
+            std::max(geometry::kMedianToSigma * quantile_of_sizes(residuals, 0.5), kMinSigmas * ring.sigma);
         best = biweights(residuals, kStartCutoff * std::max(sd, quantile / kQuantilePerSigma));
     }
     return best;

@@ -32,9 +32,9 @@ struct RingFit {
     double height = 0; ///< of z = 0 of the polynomials, mm
     std::vector<RingPolynomial> polynomials;
     Eigen::VectorXd mean; ///< coefficients of their average
-    double sd = 0;      ///< of the points about the surface, mm
-    double inliers = 0; ///< share of points with a weight
-    int degree = 1;     ///< of the polynomial with the largest share
+    double sd = 0;        ///< of the points about the surface, mm
+    double inliers = 0;   ///< share of points with a weight
+    int degree = 1;       ///< of the polynomial with the largest share
 
     /// Height of the surface and its standard deviation at a place, mm.
     struct Value {

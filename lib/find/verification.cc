@@ -19,17 +19,21 @@ constexpr int kMinRing = 50; // cells
 
 // The ring is 0.8 times as wide as the region is thick, within bounds, and begins beyond its rounded foot.
 constexpr double kRingPerThickness = 0.8;
-constexpr double kRingPerExtent = 0.35; // of a thin region
+constexpr double kRingPerExtent = 0.35;                               // of a thin region
 constexpr double kMinRingWidth = 6, kMaxRingWidth = 45, kRingGap = 2; // cells
 constexpr int kMaxMargin = 60, kMarginBeyond = 8;                     // of the window, cells
 
-// Hysteresis of the region over the surface: seeds stand over it by so many of its standard deviations and by this share
-// of the height, the region is what hangs together with them down to the lower bounds.
+// Hysteresis of the region over the surface: seeds stand over it by so many of its standard deviations and by this
+// share of the height, the region is what hangs together with them down to the lower bounds.
 constexpr double kSeedSds = 4.5, kSeedShare = 0.2;
 constexpr double kRegionSds = 2.5, kRegionShare = 0.08;
 constexpr double kRingVariance = 0.35; // share of the ring's variance in the smoothed residual
 constexpr double kMinSds = 0.25;       // of the noise
 constexpr double kHeightSmoothing = 0.8;
+
+// A cell of the region belongs to its rim if its own height is below noise and this share of the region's, and its
+// smoothed height below the other.
+constexpr double kTrimShare = 0.04, kTrimSmoothShare = 0.25;
 
 /// Thickness of a region: the diameter of its largest inscribed circle, cells.
 double thickness_of(const Mask& mask)
@@ -65,6 +69,16 @@ class Refinement {
         region_ = Mask(z_.size(), 0);
         candidate.mask.copyTo(region_(candidate.box - window_.tl()));
         core_ = dilated(region_, 1);
+    }
+
+    /// The region without the rim that only smoothing has raised.
+    Mask trimmed() const
+    {
+        const double height = quantile_of(values_in(beneath_.smooth, region_ & seen_), 0.85);
+        const Mask high = (beneath_.residual >= float(kTrimShare * height + sigma_)) |
+                          (beneath_.smooth >= float(kTrimSmoothShare * height));
+        const Mask trimmed = closed(region_ & high, 1) & region_;
+        return cv::countNonZero(trimmed) >= kMinRegionCells ? largest(trimmed) : region_;
     }
 
     /// @return  false if no region remains
@@ -268,6 +282,7 @@ void Refinement::measure_stability(Evidence& evidence) const
     evidence.sag = std::sqrt((z - A * plane).squaredNorm() / double(places.size()));
 }
 
+constexpr double kMinSignificance = 4;
 constexpr int kMaxGrowth = 6;
 constexpr double kCorrelatedShellCells = 6; // that stand for an independent one
 
@@ -290,7 +305,7 @@ int Refinement::growth() const
 
 Verified Refinement::result(double texture) const
 {
-    Verified verified{window_, region_, beneath_.residual, {}, growth(), 0};
+    Verified verified{window_, trimmed(), region_, beneath_.residual, {}, growth(), 0};
     Evidence& e = verified.evidence;
     const Mask inside = region_ & seen_;
     e.height = quantile_of(values_in(beneath_.residual, inside), 0.9);
@@ -306,6 +321,7 @@ Verified Refinement::result(double texture) const
     e.degree = beneath_.fit.degree;
     e.cells = cv::countNonZero(region_);
     e.thickness = thickness_of(region_);
+    if (e.height < bounds_.min_height || e.significance() < kMinSignificance) return verified; // no evidence needed
     const Mask inner_ring = beneath_.ring & (beneath_.distance <= std::max(0.5 * beneath_.width, 4.0) + kRingGap);
     if (const auto inner = fit(inner_ring, beneath_.distance, 1e9, 3)) {
         std::vector<double> differences;
@@ -336,7 +352,7 @@ std::optional<Verified> verify(const HeightMap& map, const Candidate& candidate,
     Refinement refinement(map, candidate, others, bounds);
     if (!refinement.run()) return std::nullopt;
     Verified verified = refinement.result(candidate.texture);
-    if (!is_plausible(verified.evidence, bounds.max_height)) return std::nullopt;
+    if (!is_plausible(verified.evidence, bounds)) return std::nullopt;
     return verified;
 }
 

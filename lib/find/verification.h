@@ -10,11 +10,12 @@ namespace fettle::find {
 
 /// A candidate that stands over a surface fitted to the metal around it.
 struct Verified {
-    cv::Rect window;     ///< in the map: the candidate and the ring around it
-    Mask mask;           ///< of the window's size
-    Image height;        ///< over the surface beneath, all over the window, mm; NaN: nothing seen
+    cv::Rect window; ///< in the map: the candidate and the ring around it
+    Mask mask;       ///< of the window's size
+    Mask with_rim;   ///< the same with cells around that only smoothing may have raised: B goes around them
+    Image height;    ///< over the surface beneath, all over the window, mm; NaN: nothing seen
     Evidence evidence;
-    int growth = 0;      ///< cells around the mask whose mean still stands over the surface
+    int growth = 0; ///< cells around the mask whose mean still stands over the surface
     double probability = 0;
 };
 

@@ -33,8 +33,8 @@ Samples samples_of(const mesh::CloudMesh& part)
         samples.points = align::oriented_points({part.points.xyz, part.triangles}, kMaxViewPoints);
         samples.is_outward = true;
     } else {
-        const cloud::Cloud some = cloud::select_points(
-            part.points, align::evenly_spaced_indices(part.points.size(), kMaxViewPoints));
+        const cloud::Cloud some =
+            cloud::select_points(part.points, align::evenly_spaced_indices(part.points.size(), kMaxViewPoints));
         samples.points = align::oriented_points(some);
         samples.is_outward = cloud::has_normals(part.points);
     }

@@ -13,8 +13,8 @@ namespace fettle::find {
 using View = Eigen::Isometry3d; // T_view_part
 
 /// Directions from which nearly all of a part's surface is seen at no more than 60° from its normal: +z first, if
-/// something is seen from there, then the direction from which most of the rest is seen, and so on (a greedy set cover).
-/// A scan from one side has one view.
+/// something is seen from there, then the direction from which most of the rest is seen, and so on (a greedy set
+/// cover). A scan from one side has one view.
 /// @throws InputError if the part has no surface: fewer than three finite points, or all on a line
 std::vector<View> choose_views(const mesh::CloudMesh& part);
 

@@ -29,6 +29,9 @@ constexpr int kMaxSpacingQueries = 4000;
 constexpr double kPointsPerGridCell = 3;
 
 // Triangles seen from the side have no height; a mesh has at least so many cells along its diagonal.
+// A mesh has been smoothed and interpolated: its second differences do not show the noise that is left in waves of a
+// few cells. This is its lower bound, in cells; scans have 0.03 to 0.1.
+constexpr double kMinMeshSigmaCells = 0.05;
 constexpr double kMinFacing = 0.17; // 80 degrees
 constexpr double kMinMeshCells = 300, kMaxMeshCells = 3000;
 
@@ -132,8 +135,9 @@ HeightMap map_of_mesh(const mesh::CloudMesh& part, const Eigen::Matrix3Xd& place
             edges.push_back(
                 (placed.col(part.triangles(k, t)) - placed.col(part.triangles((k + 1) % 3, t))).head<2>().norm());
     const double diagonal = box.diagonal().norm();
-    HeightMap map = empty_map(
-        box, std::clamp(geometry::median(edges), diagonal / kMaxMeshCells, diagonal / kMinMeshCells));
+    HeightMap map =
+        empty_map(box, std::clamp(geometry::median(edges), diagonal / kMaxMeshCells, diagonal / kMinMeshCells));
+    map.sigma = kMinMeshSigmaCells * map.cell;
     for (Index t = 0; t < part.triangles.cols(); ++t) {
         Eigen::Matrix3d corners;
         for (int k = 0; k < 3; ++k) corners.col(k) = placed.col(part.triangles(k, t));
@@ -148,10 +152,14 @@ HeightMap map_of_mesh(const mesh::CloudMesh& part, const Eigen::Matrix3Xd& place
 HeightMap height_map(const mesh::CloudMesh& part, const View& view)
 {
     Eigen::Matrix3Xd placed = view * part.points.xyz;
-    if (!part.is_mesh() && !placed.allFinite()) {
+    if (!part.is_mesh()) {
+        const Eigen::VectorXd facing =
+            cloud::has_normals(part.points)
+                ? Eigen::VectorXd((view.linear().row(2) * cloud::normals(part.points)).transpose())
+                : Eigen::VectorXd::Ones(placed.cols());
         Index count = 0;
         for (Index i = 0; i < placed.cols(); ++i)
-            if (placed.col(i).allFinite()) placed.col(count++) = placed.col(i).eval();
+            if (placed.col(i).allFinite() && facing[i] > kMinFacing) placed.col(count++) = placed.col(i).eval();
         placed.conservativeResize(Eigen::NoChange, count);
     }
     if (placed.cols() == 0) throw core::InputError("no point is finite");

@@ -1,8 +1,8 @@
 // What fettle-find finds of what is known to be there:    find-score PART.pcd [--against REF]
 //
 // PART has fields `truth` (0, or the number of the anomaly that a point is on) and `truth_height` (over the surface
-// beneath). A line for each anomaly: "true", number, points, height in noise, intersection over union of the points with
-// the best find's, share of the points outside of that find's B, its probability; then one for each find: "find",
+// beneath). A line for each anomaly: "true", number, points, height in noise, intersection over union of the points
+// with the best find's, share of the points outside of that find's B, its probability; then one for each find: "find",
 // right (1: 0.3 of its points are on an anomaly), probability, height, area; then "run", noise, seconds.
 #include "cli/tool.h"
 #include "find/registration.h"
@@ -60,12 +60,12 @@ int main(int argc, char** argv)
         const auto start = std::chrono::steady_clock::now();
         const find::FindOptions options{{}, 0.2};
         const find::FindResult result =
-            against.empty() ? find::find_anomalies(file.part, options)
-                            : find::find_anomalies_against(
-                                  file.part,
-                                  find::signed_distances(mesh::read_shape(against, {}).shape,
-                                                         Eigen::Isometry3d::Identity()),
-                                  options);
+            against.empty()
+                ? find::find_anomalies(file.part, options)
+                : find::find_anomalies_against(file.part,
+                                               find::signed_distances(file.part, mesh::read_shape(against, {}).shape,
+                                                                      Eigen::Isometry3d::Identity()),
+                                               options);
         const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         std::map<int, Scored> scored = truths(points, truth);
         for (const find::FoundAnomaly& found : result.anomalies) {

@@ -1,13 +1,15 @@
 // Weights of the logistic model of fettle-find from evidence that find-evidence has written:
 //
-//     find-train EVIDENCE.csv...      files named PART_NUMBER.csv; capitals and digits after a part's name are views of it
+//     find-train EVIDENCE.csv...      files named PART_NUMBER.csv; capitals and digits after a part's name are views of
+//     it
 //
 // The model is additive: each feature enters by itself and by min(feature, knot) at three quartiles of the anomalies'
-// values, so that its effect may level off. Candidates that cover an anomaly by more than 0.4 (intersection over union) are examples of anomalies, those that
-// cover none by 0.25 of what they are not. The weights minimize the logistic loss with a ridge, each with the sign that
-// its meaning demands. They are then scaled so that probabilities are right for parts that were not learnt from: each
-// part's candidates are scored by weights from all others, those that remain without overlaps judged, and slope and
-// offset fitted to these judgements (Platt 1999). Prints the weights, and how good the left-out parts' scores were.
+// values, so that its effect may level off. Candidates that cover an anomaly by more than 0.4 (intersection over union)
+// are examples of anomalies, those that cover none by 0.25 of what they are not. The weights minimize the logistic loss
+// with a ridge, each with the sign that its meaning demands. They are then scaled so that probabilities are right for
+// parts that were not learnt from: each part's candidates are scored by weights from all others, those that remain
+// without overlaps judged, and slope and offset fitted to these judgements (Platt 1999). Prints the weights, and how
+// good the left-out parts' scores were.
 #include "core/constants.h"
 #include "core/error.h"
 #include "find/evidence.h"
@@ -44,8 +46,8 @@ struct Row {
 // Signs of the weights, in the order of features_of(); 0: either.
 constexpr int kSigns[kFeatures] = {0, 1, 1, 1, 1, -1, -1, -1, 1, -1, 1, -1, 1, 0, -1, 1, 1, 1, 0, 1};
 constexpr int kKnotted[] = {1, 2, 3, 4, 7, 10, 14, 15, 16, 17, 19}; // features with knots
-constexpr double kRidge = 30;        // of weights of terms of unit variance
-constexpr double kMaxExamples = 60;  // a part's weight on either side, so that none rules
+constexpr double kRidge = 30;                                       // of weights of terms of unit variance
+constexpr double kMaxExamples = 60; // a part's weight on either side, so that none rules
 constexpr int kSweeps = 60;
 
 std::vector<Row> read_rows(const std::string& path)

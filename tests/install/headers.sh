@@ -3,5 +3,5 @@
 cd "$HERE/../.."
 for order in cat tac; do
     ls lib/*/*.h | sed 's|^lib/\(.*\)|#include "\1"|' | $order |
-        ${CXX:-g++} -std=c++20 -Wall -Wextra -Ilib -isystem /usr/include/eigen3 -isystem "$(echo /usr/include/pcl-1.*)" -x c++ -fsyntax-only -
+        ${CXX:-g++} -std=c++20 -Wall -Wextra -Ilib -isystem /usr/include/eigen3 -isystem "$(echo /usr/include/pcl-1.*)" -isystem /usr/include/opencv4 -x c++ -fsyntax-only -
 done

@@ -11,11 +11,12 @@
 . "$HERE/../bad-inputs/probe.bash"
 
 # fettle-gantry-linuxcnc is for a machine that runs: tests/linuxcnc.
-names='align arm assess belt clean collide compare contact diff estimate feed finish fit form gantry-virtual grind manual margin mesh mill part path place
+names='align arm assess belt clean collide compare contact diff estimate feed find finish fit form gantry-virtual grind manual margin mesh mill part path place
     plan render report sample station stock-linuxcnc surfel teach verify'
 
 inputs() { # STEP
     good "$@"
+    printf '1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n' >identity.txt
     echo '{"kind": "part", "units": {"length": "mm"}, "surface": {"type": "plane", "point": [0, 0, 5]}, "region": {"x": [-20, 20], "y": [-20, 20]},
         "step": 1, "anomalies": [{"type": "hill", "centre": [0, 0], "semi_axes": [4, 3], "height": 1}]}' >part.json
     fettle-surfel plate.stl --stock plate.stl --spacing 4 -q -o work.pcd
@@ -36,6 +37,7 @@ command_of() { # NAME
     assess) command=(--lower -1 --upper 1 good.pcd) ;;
     belt) command=(--path rows.pcd --wheel wheel.json --force 5 --lower -1 --upper 1 work.pcd) writes=(--trace --watch --journal) ;;
     clean) command=(--outliers statistical:4,3 --thin 1 good.pcd) ;;
+    find) command=(--against plate.stl --transform-in identity.txt good.pcd) writes=(--transform-out) ;;
     collide) command=(robot.json --workpiece plate.stl tips.pcd) writes=(--picture --chart) ;;
     compare) command=(--to plate.stl good.pcd) writes=(--reverse --csv --histogram) ;;
     contact) command=(--wheel wheel.json --at 15,15,5,1,0,0,0 --force 5 work.pcd) ;;

@@ -1,0 +1,95 @@
+#include "find/slow_field.h"
+
+#include "geometry/bounding_box.h"
+#include "geometry/quantiles.h"
+
+#include <Eigen/Cholesky>
+
+#include <algorithm>
+#include <cmath>
+
+namespace fettle::find {
+namespace {
+
+using Eigen::Index;
+
+constexpr int kFieldDegree = 5;
+constexpr Index kMonomials = 56; // of three variables, up to that degree
+constexpr int kFieldIterations = 8;
+// Ridge as a share of the mean diagonal: motions along the surface, which no distance shows, stay small.
+constexpr double kFieldRidge = 1e-4;
+
+using Monomials = Eigen::Matrix<double, kMonomials, 1>;
+
+Monomials monomials_of(const Eigen::Vector3d& p)
+{
+    Monomials result;
+    Index k = 0;
+    for (int total = 0; total <= kFieldDegree; ++total)
+        for (int a = 0; a <= total; ++a)
+            for (int b = 0; a + b <= total; ++b)
+                result[k++] = std::pow(p.x(), a) * std::pow(p.y(), b) * std::pow(p.z(), total - a - b);
+    return result;
+}
+
+/// Tukey's weights of residuals; 0 where there is none.
+Eigen::VectorXd weights_of(const Eigen::VectorXd& residuals)
+{
+    std::vector<double> defined;
+    for (const double r : residuals)
+        if (std::isfinite(r)) defined.push_back(r);
+    if (defined.empty()) return Eigen::VectorXd::Zero(residuals.size());
+    const double middle = geometry::median(defined);
+    for (double& r : defined) r = std::abs(r - middle);
+    const double limit =
+        geometry::kTukeyCutoff * geometry::kMedianToSigma * geometry::median(defined) + std::abs(middle) + 1e-9;
+    Eigen::VectorXd weights(residuals.size());
+    for (Index i = 0; i < residuals.size(); ++i) {
+        const double rest = 1 - residuals[i] * residuals[i] / (limit * limit);
+        weights[i] = rest > 0 ? rest * rest : 0; // 0 for NaN, too
+    }
+    return weights;
+}
+
+} // namespace
+
+Eigen::Vector3d SlowField::at(const Eigen::Vector3d& point) const
+{
+    if (coefficients.cols() == 0) return Eigen::Vector3d::Zero();
+    return coefficients * monomials_of((point - centre) / scale);
+}
+
+SlowField fit_slow_field(const Eigen::Matrix3Xd& points, const compare::Reference& reference)
+{
+    SlowField field;
+    const Eigen::AlignedBox3d box = geometry::bounding_box(points);
+    field.centre = box.center();
+    field.scale = std::max(box.sizes().maxCoeff() / 2, 1e-9);
+    Eigen::Matrix<double, kMonomials, Eigen::Dynamic> basis(kMonomials, points.cols());
+    for (Index i = 0; i < points.cols(); ++i) basis.col(i) = monomials_of((points.col(i) - field.centre) / field.scale);
+    field.coefficients = Eigen::Matrix3Xd::Zero(3, kMonomials);
+    for (int iteration = 0; iteration < kFieldIterations; ++iteration) {
+        const Eigen::Matrix3Xd shifts = field.coefficients * basis;
+        const compare::ErrorMap map = reference(points - shifts);
+        const Eigen::VectorXd weights = weights_of(map.error);
+        Eigen::MatrixXd A(3 * kMonomials, points.cols()); // rows: x of all monomials, y, z; times the weights' roots
+        Eigen::VectorXd b(points.cols());
+        for (Index i = 0; i < points.cols(); ++i) {
+            const double root = std::sqrt(weights[i]);
+            const Eigen::Vector3d n = root > 0 ? Eigen::Vector3d(map.normal.col(i)) : Eigen::Vector3d::Zero();
+            for (int axis = 0; axis < 3; ++axis)
+                A.col(i).segment(axis * kMonomials, kMonomials) = root * n[axis] * basis.col(i);
+            b[i] = root > 0 ? root * (map.error[i] + n.dot(shifts.col(i))) : 0;
+        }
+        Eigen::MatrixXd N = Eigen::MatrixXd::Zero(A.rows(), A.rows());
+        N.selfadjointView<Eigen::Lower>().rankUpdate(A);
+        N.diagonal().array() += kFieldRidge * N.trace() / double(A.rows()) + 1e-12;
+        // LLT: the ridge makes the matrix definite.
+        const Eigen::VectorXd solution = N.selfadjointView<Eigen::Lower>().llt().solve(A * b);
+        for (int axis = 0; axis < 3; ++axis)
+            field.coefficients.row(axis) = solution.segment(axis * kMonomials, kMonomials).transpose();
+    }
+    return field;
+}
+
+} // namespace fettle::find

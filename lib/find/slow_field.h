@@ -1,0 +1,25 @@
+#pragma once
+
+#include "compare/signed_distance.h"
+
+#include <Eigen/Core>
+
+namespace fettle::find {
+
+/// Slow displacement of a part from its reference: warp, shrinkage, and what a registration leaves. Each of its three
+/// components is a polynomial of degree 5 in the coordinates. Frame: the reference's, mm.
+struct SlowField {
+    Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+    double scale = 1;              ///< mm: half of the part's longest side
+    Eigen::Matrix3Xd coefficients; ///< a column for each monomial; none: no displacement
+
+    Eigen::Vector3d at(const Eigen::Vector3d& point) const;
+};
+
+/// Fits the field so that points, taken back by it, lie on the reference: weighted least squares of the distances along
+/// the normals, iterated with Tukey's weights, so that anomalies do not bend it (a smooth non-rigid ICP; compare
+/// Amberg, Romdhani & Vetter 2007, who hold neighbours together where here the polynomial does).
+/// @param points  3xN, mm, registered; some thousands, evenly over the part
+SlowField fit_slow_field(const Eigen::Matrix3Xd& points, const compare::Reference& reference);
+
+} // namespace fettle::find

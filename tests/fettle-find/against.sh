@@ -1,0 +1,19 @@
+# Against a reference: the hammer with its bead, moved and bent by 0.8 mm over its length, is registered to its bare scan, and the bead is found
+# where it is; bent without the bead nothing is. Reference: the bead that fettle-part has made.
+bend() { # IN OUT: a shift of z by a half wave along x, and 30 mm along y
+    fettle-clean "$1" --format csv > points.csv
+    awk -F , 'NR == 1 { print "x y z"; next } { print $1, $2 + 30, $3 + 0.8 * sin($1 / 35) }' points.csv > "$2"
+}
+fettle-part "$SAMPLES/parts/hammer.json" -o worn.stl
+fettle-compare worn.stl --to "$SAMPLES/scans/hammer.stl" --tolerance 99 -o worn.pcd
+fettle-part "$SAMPLES/parts/hammer.json" --without-anomaly -o bare.stl
+fettle-compare bare.stl --to "$SAMPLES/scans/hammer.stl" --tolerance 99 -o bare.pcd
+bend worn.pcd worn.xyz
+bend bare.pcd bare.xyz
+fettle-find worn.xyz --against "$SAMPLES/scans/hammer.stl" --min-height 0.5 --transform-out T.txt --report found.json > found.pcd || [ $? = 1 ]
+jq -e '(.anomalies | length) == 1 and (.anomalies[0] | .height > 2.2 and .height < 3.3 and .volume > 300 and .volume < 560)' found.json > ok
+awk 'NR == 2 { exit !($4 < -28 && $4 > -32) }' T.txt
+fettle-find worn.xyz --against "$SAMPLES/scans/hammer.stl" --min-height 0.5 --transform-in T.txt --report again.json > again.pcd || [ $? = 1 ]
+jq -e --slurpfile a found.json '.anomalies[0].height - $a[0].anomalies[0].height | fabs < 0.01' again.json > ok
+fettle-find bare.xyz --against "$SAMPLES/scans/hammer.stl" --min-height 0.5 --report bare.json > none.pcd
+jq -e '.anomalies == []' bare.json > ok

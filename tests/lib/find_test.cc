@@ -1,0 +1,148 @@
+#include "find/background.h"
+#include "find/find.h"
+#include "find/outline.h"
+#include "find/ring_fit.h"
+#include "find/slow_field.h"
+
+#include "core/error.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace fettle::find {
+namespace {
+
+Image quadratic(int rows, int columns)
+{
+    Image z(rows, columns);
+    for (int y = 0; y < rows; ++y)
+        for (int x = 0; x < columns; ++x) z(y, x) = float(1 + 0.02 * x - 0.01 * y + 1e-3 * x * x - 5e-4 * x * y);
+    return z;
+}
+
+TEST(Image, NoiseOfASlopeIsZero)
+{
+    Image z(20, 20);
+    for (int y = 0; y < 20; ++y)
+        for (int x = 0; x < 20; ++x) z(y, x) = float(x) / 4 + float(y) / 8;
+    EXPECT_NEAR(noise_sigma(z), 0, 1e-6);
+}
+
+TEST(Image, DistancesAndHolesAreExact)
+{
+    Mask mask(9, 9, uchar(0));
+    for (int i = 2; i <= 6; ++i) mask(2, i) = mask(6, i) = mask(i, 2) = mask(i, 6) = 255;
+    EXPECT_EQ(cv::countNonZero(mask), 16);
+    EXPECT_EQ(cv::countNonZero(with_holes_filled(mask)), 25);
+    EXPECT_FLOAT_EQ(distance_to(mask)(0, 0), std::sqrt(8.F));
+    EXPECT_FLOAT_EQ(depth_of(with_holes_filled(mask))(4, 4), 3);
+    EXPECT_FLOAT_EQ(depth_of(Mask(5, 5, uchar(255)))(2, 2), 3); // beyond the image is nothing
+}
+
+// A filter of order 2 reproduces quadratics; 1e-3 of it is the ridge's share.
+TEST(Background, RegressionFilterReproducesQuadratics)
+{
+    const Image z = quadratic(60, 80);
+    const Image surface = regression_filter(z, Mask(z.size(), uchar(255)), 1e-3, 5);
+    for (int y = 10; y < 50; ++y)
+        for (int x = 10; x < 70; ++x) EXPECT_NEAR(surface(y, x), z(y, x), 5e-3);
+}
+
+// An opening passes beneath a narrow wall. The ball of radius 48 rises into its foot, which smoothing has made some 8
+// cells wide, by 4² / 96.
+TEST(Background, OpeningPassesBeneath)
+{
+    Image z(60, 60, 2.F);
+    for (int y = 0; y < 60; ++y) z(y, 30) = z(y, 31) = 5;
+    const Image opened = ball_opening(z, 1, 16);
+    EXPECT_NEAR(opened(30, 30), 2, 0.2);
+    EXPECT_NEAR(opened(30, 10), 2, 0.1);
+}
+
+// A cubic is among the polynomials; a third of the ring that falls off is left out.
+TEST(RingFit, ReproducesACubicBesideAnEdge)
+{
+    std::vector<Eigen::Vector3d> points;
+    const auto surface = [](double x, double y) { return 0.1 * x - 0.002 * x * x + 1e-4 * y * y * x; };
+    for (int y = -20; y <= 20; ++y)
+        for (int x = -20; x <= 20; ++x)
+            if (const double r = std::hypot(x, y); r > 9 && r < 20)
+                points.emplace_back(x, y, surface(x, y) - (x > 14 ? 5 : 0));
+    RingPoints ring{Eigen::Matrix2Xd(2, points.size()), Eigen::VectorXd(points.size()),
+                    Eigen::VectorXd::Ones(points.size())};
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        ring.xy.col(Eigen::Index(i)) = points[i].head<2>();
+        ring.z[Eigen::Index(i)] = points[i].z();
+    }
+    const auto fit = fit_ring(ring, 1e-3, 4);
+    ASSERT_TRUE(fit);
+    for (int x = -8; x <= 8; x += 4) EXPECT_NEAR(fit->z_at(x, 3), surface(x, 3), 2e-3);
+    EXPECT_NEAR(fit->at(2, 1).z, fit->z_at(2, 1), 1e-9);
+    EXPECT_FALSE(fit_ring({Eigen::Matrix2Xd(2, 0), Eigen::VectorXd(0), Eigen::VectorXd(0)}, 1, 4));
+}
+
+TEST(Outline, SurroundsTheRegionAndKeepsToTheMap)
+{
+    HeightMap map{Image(100, 100, 0.F), 1, {0, 0}, Mask(100, 100, uchar(255)), 0.1};
+    Mask region(100, 100, uchar(0));
+    region(cv::Rect(40, 40, 20, 12)) = 255;
+    const Outlines outlines = outlines_of(map, region, Mask(100, 100, uchar(0)), 0);
+    EXPECT_LT(outlines.boundary.row(0).minCoeff(), 38);
+    EXPECT_GT(outlines.boundary.row(0).maxCoeff(), 61);
+    EXPECT_LT(outlines.sampling.row(1).minCoeff(), outlines.boundary.row(1).minCoeff() - 3);
+    EXPECT_GE(outlines.sampling.minCoeff(), 0);
+}
+
+TEST(Find, PartsWithoutSurfaceAreRefused)
+{
+    mesh::CloudMesh part;
+    part.points.xyz = Eigen::Matrix3Xd::Constant(3, 10, std::nan(""));
+    EXPECT_THROW(find_anomalies(part), core::InputError);
+}
+
+TEST(Find, PersonsWordsCount)
+{
+    FindResult result;
+    result.anomalies.resize(3);
+    for (int k = 0; k < 3; ++k)
+        result.anomalies[std::size_t(k)].number = k + 1, result.anomalies[std::size_t(k)].doubt = "?";
+    EXPECT_THROW(judge(result, {4}, {}), core::InputError);
+    EXPECT_THROW(judge(result, {1}, {1}), core::InputError);
+    judge(result, {3}, {1});
+    ASSERT_EQ(result.anomalies.size(), 2);
+    EXPECT_EQ(result.anomalies[0].number, 2);
+    EXPECT_EQ(result.anomalies[0].doubt, "?");
+    EXPECT_EQ(result.anomalies[1].doubt, "");
+}
+
+// A polynomial displacement of a curved sheet along its normals is found again, so that the distances vanish.
+TEST(SlowField, TakesABendOff)
+{
+    mesh::Mesh sheet;
+    const int n = 41;
+    sheet.vertices.resize(3, n * n);
+    sheet.triangles.resize(3, 2 * (n - 1) * (n - 1));
+    for (int y = 0, t = 0; y < n; ++y)
+        for (int x = 0; x < n; ++x) {
+            sheet.vertices.col(y * n + x) << x, y, 0.01 * (x - 20) * (x - 20);
+            if (x + 1 == n || y + 1 == n) continue;
+            const int i = y * n + x;
+            sheet.triangles.col(t++) << i, i + 1, i + n;
+            sheet.triangles.col(t++) << i + 1, i + n + 1, i + n;
+        }
+    Eigen::Matrix3Xd bent(3, 30 * 30);
+    for (int y = 0; y < 30; ++y)
+        for (int x = 0; x < 30; ++x) {
+            const Eigen::Vector3d p = sheet.vertices.col((y + 5) * n + x + 5);
+            bent.col(y * 30 + x) = p + Eigen::Vector3d(0, 0, 1e-3 * p.x() * p.y());
+        }
+    const compare::Reference reference(sheet, {});
+    const SlowField field = fit_slow_field(bent, reference);
+    Eigen::Matrix3Xd back = bent;
+    for (Eigen::Index i = 0; i < back.cols(); ++i) back.col(i) -= field.at(bent.col(i));
+    EXPECT_LT(reference(back).error.cwiseAbs().maxCoeff(), 0.02);
+}
+
+} // namespace
+} // namespace fettle::find
