@@ -1,6 +1,7 @@
 # Which heavy libraries a tool links. A tool that is not listed links none of them.
 $(B)/bin/fettle-clean:   LDLIBS = $(PCL)
 $(B)/bin/fettle-place:   LDLIBS = $(PLACE)
+$(B)/bin/fettle-merge:   LDLIBS = $(CERES) $(PCL)
 $(B)/bin/fettle-collide: LDLIBS = $(OPENCV) $(PNG)
 $(B)/bin/fettle-fit:     LDLIBS = $(CERES)
 $(B)/bin/fettle-sample:  LDLIBS = $(CERES)

@@ -1,0 +1,150 @@
+#include "merge/growth.h"
+
+#include "align/pose_search.h"
+#include "core/text.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+
+namespace fettle::merge {
+namespace {
+
+// A pair with a higher score is joined unless it contradicts; one with a lower score must be confirmed by another scan.
+constexpr double kSureScore = 0.25, kMinScore = 0.08;
+// Pairs that refinement moves farther than this, in scan radii, from where the others say, do not confirm them.
+constexpr double kSamePoseRadii = 0.05;
+
+/// A scan outside of the group, on one of the group.
+struct Candidate {
+    std::size_t scan, on;
+    Hypothesis hypothesis;
+};
+
+class Grower {
+  public:
+    Grower(const Scans& scans, double length, const core::Progress& progress)
+        : scans_(scans), length_(length), progress_(progress)
+    {
+    }
+
+    /// Grows a group from a scan on among those that are `free`.
+    std::vector<std::optional<Place>> group_from(std::size_t seed, const std::vector<bool>& free)
+    {
+        places_.assign(scans_.size(), std::nullopt);
+        places_[seed] = Place{Eigen::Isometry3d::Identity(), 1};
+        candidates_.clear();
+        std::deque<std::size_t> unsearched{seed};
+        while (!unsearched.empty()) {
+            const std::size_t member = unsearched.front();
+            unsearched.pop_front();
+            for (std::size_t other = 0; other < scans_.size(); ++other)
+                if (free[other] && !places_[other]) search(other, member);
+            while (const auto joined = join_best()) unsearched.push_back(*joined);
+        }
+        return places_;
+    }
+    std::vector<Refusal> refused;
+
+  private:
+    void search(std::size_t scan, std::size_t on)
+    {
+        for (const Hypothesis& h : search_pair(*scans_[scan], *scans_[on], length_))
+            if (is_credible(h.agreement) && h.score >= kMinScore) candidates_.push_back({scan, on, h});
+        const double pairs = 0.5 * static_cast<double>(scans_.size() * (scans_.size() - 1));
+        core::report_progress(progress_, std::min(1.0, static_cast<double>(++searched_) / pairs));
+    }
+
+    /// Joins the scan of the best candidate. @return  the scan; nothing if no candidate is good enough
+    std::optional<std::size_t> join_best()
+    {
+        std::ranges::stable_sort(candidates_, std::ranges::greater{},
+                                 [](const Candidate& c) { return c.hypothesis.score; });
+        for (std::size_t k = 0; k < candidates_.size(); ++k) {
+            const Candidate candidate = candidates_[k];
+            if (places_[candidate.scan]) continue;
+            const Place& on = *places_[candidate.on];
+            const PairPose& pose = candidate.hypothesis.pose;
+            const Place place{align::orthonormalized(on.T_world_scan * pose.T_b_a), on.side * pose.side};
+            const auto confirmed = confirmations(candidate, place);
+            if (!confirmed) { // it never will
+                candidates_.erase(candidates_.begin() + static_cast<std::ptrdiff_t>(k--));
+                continue;
+            }
+            if (candidate.hypothesis.score < kSureScore && *confirmed == 0) continue;
+            places_[candidate.scan] = place;
+            return candidate.scan;
+        }
+        return std::nullopt;
+    }
+
+    /// Number of other scans of the group that agree with a place; nothing if one of them contradicts it.
+    std::optional<int> confirmations(const Candidate& candidate, const Place& place)
+    {
+        std::vector<std::size_t> members;
+        for (std::size_t m = 0; m < scans_.size(); ++m)
+            if (places_[m] && m != candidate.on) members.push_back(m);
+        std::vector<Hypothesis> judged(members.size());
+        const Scan& scan = *scans_[candidate.scan];
+        std::vector<char> is_same(members.size());
+        tbb::parallel_for(std::size_t{0}, members.size(), [&](std::size_t k) {
+            const PairPose expected = pose_between(place, *places_[members[k]]);
+            judged[k] = judge_pair(scan, *scans_[members[k]], expected, length_);
+            is_same[k] = align::pose_distance(judged[k].pose.T_b_a, expected.T_b_a, scan.frame) <
+                         kSamePoseRadii * scan.frame.radius;
+        });
+        int confirmed = 0;
+        for (std::size_t k = 0; k < members.size(); ++k) {
+            if (is_contradiction(judged[k].agreement)) {
+                refused.push_back({candidate.scan, candidate.on,
+                                   "the pose that fits them best contradicts " + scans_[members[k]]->name});
+                return std::nullopt;
+            }
+            confirmed += is_same[k] && is_credible(judged[k].agreement) ? 1 : 0;
+        }
+        return confirmed;
+    }
+
+    const Scans& scans_;
+    double length_;
+    const core::Progress& progress_;
+    std::vector<std::optional<Place>> places_;
+    std::vector<Candidate> candidates_;
+    std::size_t searched_ = 0;
+};
+
+} // namespace
+
+PairPose pose_between(const Place& a, const Place& b)
+{
+    return {b.T_world_scan.inverse() * a.T_world_scan, a.side * b.side};
+}
+
+Growth grow(const Scans& scans, double length, const core::Progress& progress)
+{
+    Growth growth;
+    Grower grower(scans, length, progress);
+    std::vector<bool> free(scans.size(), true);
+    std::size_t largest = 0, left = scans.size();
+    for (std::size_t seed = 0; seed < scans.size() && left > largest; ++seed) {
+        if (!free[seed]) continue;
+        const std::vector<std::optional<Place>> places = grower.group_from(seed, free);
+        std::size_t size = 0;
+        for (std::size_t i = 0; i < scans.size(); ++i) {
+            if (!places[i]) continue;
+            free[i] = false;
+            ++size;
+        }
+        left -= size;
+        if (size > largest) {
+            largest = size;
+            growth.places = places;
+        }
+    }
+    growth.refused = std::move(grower.refused);
+    return growth;
+}
+
+} // namespace fettle::merge
