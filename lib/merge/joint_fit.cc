@@ -31,53 +31,15 @@ struct Height {
     double height;  ///< over the place along its normal, mm
     double weight;  ///< 1/variance, 1/mm²
     int points;     ///< that it was fitted to
+    Eigen::Vector3d slope; ///< by which a small motion changes the height: the place's normal, tilted as the plane is
 };
-
-struct SharedPlace {
-    Eigen::Vector3d place, normal; ///< in the world, mm
-    std::vector<Height> heights;
-};
-
-/// Places on the union of all scans, one in each cube, where it has a direction.
-std::vector<SharedPlace> shared_places(const Scans& scans, const std::vector<std::optional<Place>>& places,
-                                       double length)
-{
-    Eigen::Index total = 0;
-    for (std::size_t s = 0; s < scans.size(); ++s)
-        if (places[s]) total += scans[s]->means.xyz.cols();
-    Eigen::Matrix3Xd xyz(3, total), normals(3, total);
-    Eigen::Index next = 0;
-    for (std::size_t s = 0; s < scans.size(); ++s) {
-        if (!places[s]) continue;
-        const VoxelMeans& means = scans[s]->means;
-        xyz.middleCols(next, means.xyz.cols()) = places[s]->T_world_scan * means.xyz;
-        normals.middleCols(next, means.xyz.cols()) =
-            places[s]->side * (places[s]->T_world_scan.linear() * means.normals);
-        next += means.xyz.cols();
-    }
-    const VoxelGrid grid(xyz, length);
-    std::vector<SharedPlace> shared;
-    for (std::size_t v = 0; v < grid.size(); ++v) {
-        const Eigen::Index first = grid.points(v).front(); // the other side of a thin wall has another normal
-        Eigen::Vector3d sum = Eigen::Vector3d::Zero(), normal = Eigen::Vector3d::Zero();
-        double count = 0;
-        for (const std::uint32_t i : grid.points(v)) {
-            if (!(normals.col(i).dot(normals.col(first)) > 0)) continue;
-            sum += xyz.col(i);
-            normal += normals.col(i);
-            ++count;
-        }
-        if (count > 0) shared.push_back({sum / count, normal.stableNormalized(), {}});
-    }
-    return shared;
-}
 
 /// Height of a scan over a place, by the plane z = c₀ + c₁ u + c₂ v through its points within `radius`; nothing if the
 /// scan ends there or sees another face.
-std::optional<Height> height_of(const Scan& scan, const Place& at, const SharedPlace& shared, double radius)
+std::optional<Height> height_of(const Scan& scan, const Place& at, const SurfacePlace& at_surface, double radius)
 {
     const Eigen::Isometry3d to_scan = at.T_world_scan.inverse();
-    const Eigen::Vector3d p = to_scan * shared.place, n = to_scan.linear() * shared.normal;
+    const Eigen::Vector3d p = to_scan * at_surface.place, n = to_scan.linear() * at_surface.normal;
     const Eigen::Vector3d along = n.unitOrthogonal(), across = n.cross(along);
     Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
     Eigen::Vector3d b = Eigen::Vector3d::Zero();
@@ -107,7 +69,8 @@ std::optional<Height> height_of(const Scan& scan, const Place& at, const SharedP
     constexpr double kMinBendRatio = 1.5, kBendShare = 0.5;
     const double bend = std::max(0.0, noise - kMinBendRatio * std::pow(scan.means.noise, 2));
     const double variance = share * noise + kBendShare * kBendShare * bend + std::pow(kRounding * radius, 2);
-    return Height{0, c[0], 1 / variance, count};
+    const Eigen::Vector3d tilted = n - (c[1] * along + c[2] * across) / radius;
+    return Height{0, c[0], 1 / variance, count, at.T_world_scan.linear() * tilted};
 }
 
 /// Sums over the differences of a pair.
@@ -135,29 +98,63 @@ PoseEdge edge_of(const IndexPair& pair, const PairPose& pose, const align::Twist
     return edge;
 }
 
-std::vector<SharedPlace> measured_places(const Scans& scans, const std::vector<std::optional<Place>>& places,
-                                         double length)
+/// The heights of all scans that see a place.
+std::vector<std::vector<Height>> heights_at(const std::vector<SurfacePlace>& surface, const Scans& scans,
+                                            const std::vector<std::optional<Place>>& places, double length)
 {
-    std::vector<SharedPlace> shared = shared_places(scans, places, length);
-    tbb::parallel_for(std::size_t{0}, shared.size(), [&](std::size_t k) {
-        if (shared[k].normal.isZero(0)) return;
+    std::vector<std::vector<Height>> heights(surface.size());
+    tbb::parallel_for(std::size_t{0}, surface.size(), [&](std::size_t k) {
+        if (surface[k].normal.isZero(0)) return;
         for (std::size_t s = 0; s < scans.size(); ++s) {
             if (!places[s]) continue;
-            auto height = height_of(*scans[s], *places[s], shared[k], length);
+            auto height = height_of(*scans[s], *places[s], surface[k], length);
             if (!height) continue;
             height->scan = s;
-            shared[k].heights.push_back(*height);
+            heights[k].push_back(*height);
         }
     });
-    return shared;
+    return heights;
 }
 
 } // namespace
 
-JointFit fit_jointly(const Scans& scans, const std::vector<std::optional<Place>>& places,
-                     const std::vector<IndexPair>& pairs, double length)
+std::vector<SurfacePlace> surface_places(const Scans& scans, const std::vector<std::optional<Place>>& places,
+                                         double length)
 {
-    const std::vector<SharedPlace> shared = measured_places(scans, places, length);
+    Eigen::Index total = 0;
+    for (std::size_t s = 0; s < scans.size(); ++s)
+        if (places[s]) total += scans[s]->means.xyz.cols();
+    Eigen::Matrix3Xd xyz(3, total), normals(3, total);
+    Eigen::Index next = 0;
+    for (std::size_t s = 0; s < scans.size(); ++s) {
+        if (!places[s]) continue;
+        const VoxelMeans& means = scans[s]->means;
+        xyz.middleCols(next, means.xyz.cols()) = places[s]->T_world_scan * means.xyz;
+        normals.middleCols(next, means.xyz.cols()) =
+            places[s]->side * (places[s]->T_world_scan.linear() * means.normals);
+        next += means.xyz.cols();
+    }
+    const VoxelGrid grid(xyz, length);
+    std::vector<SurfacePlace> found;
+    for (std::size_t v = 0; v < grid.size(); ++v) {
+        const Eigen::Index first = grid.points(v).front(); // the other side of a thin wall has another normal
+        Eigen::Vector3d sum = Eigen::Vector3d::Zero(), normal = Eigen::Vector3d::Zero();
+        double count = 0;
+        for (const std::uint32_t i : grid.points(v)) {
+            if (!(normals.col(i).dot(normals.col(first)) > 0)) continue;
+            sum += xyz.col(i);
+            normal += normals.col(i);
+            ++count;
+        }
+        if (count > 0) found.push_back({sum / count, normal.stableNormalized()});
+    }
+    return found;
+}
+
+JointFit fit_jointly(const Scans& scans, const std::vector<std::optional<Place>>& places,
+                     const std::vector<IndexPair>& pairs, const std::vector<SurfacePlace>& surface, double length)
+{
+    const std::vector<std::vector<Height>> all_heights = heights_at(surface, scans, places, length);
     std::map<std::pair<std::size_t, std::size_t>, std::size_t> number;
     std::vector<align::TwistFrame> frames; // in b's frame
     std::vector<Eigen::Isometry3d> to_b;
@@ -169,16 +166,17 @@ JointFit fit_jointly(const Scans& scans, const std::vector<std::optional<Place>>
     std::vector<PairSums> sums(pairs.size());
     std::vector<double> seen(scans.size(), 0), used(scans.size(), 0);
     geometry::CompensatedSum weighted_squares, freedom;
-    for (const SharedPlace& place : shared) {
+    for (std::size_t n = 0; n < surface.size(); ++n) {
+        const std::vector<Height>& heights = all_heights[n];
         double weights = 0;
-        for (const Height& h : place.heights) {
+        for (const Height& h : heights) {
             ++seen[h.scan];
             used[h.scan] += h.points;
             weights += h.weight;
         }
-        const auto seeing = static_cast<double>(place.heights.size());
-        for (const Height& a : place.heights)
-            for (const Height& b : place.heights) {
+        const auto seeing = static_cast<double>(heights.size());
+        for (const Height& a : heights)
+            for (const Height& b : heights) {
                 const auto found = number.find({a.scan, b.scan});
                 if (found == number.end()) continue;
                 const double offset = a.height - b.height;
@@ -186,8 +184,8 @@ JointFit fit_jointly(const Scans& scans, const std::vector<std::optional<Place>>
                 PairSums& sum = sums[found->second];
                 if (std::abs(relative) >= 1) continue;
                 const double robust = std::pow(1 - relative * relative, 2), weight = a.weight * b.weight / weights;
-                const align::Twist g = frames[found->second].gradient(to_b[found->second] * place.place,
-                                                                      to_b[found->second].linear() * place.normal);
+                const align::Twist g = frames[found->second].gradient(to_b[found->second] * surface[n].place,
+                                                                      to_b[found->second].linear() * (a.slope + b.slope) / 2);
                 sum.information.noalias() += robust * weight * g * g.transpose();
                 sum.rhs += robust * weight * offset * g;
                 sum.squares += offset * offset;

@@ -16,7 +16,7 @@ namespace {
 
 // What is compared follows the poses: so many rounds at most, until no scan moves farther than this share of the
 // standard deviation of its pose.
-constexpr int kMaxRounds = 12;
+constexpr int kMaxRounds = 40;
 constexpr double kStepToleranceSigmas = 0.1;
 // Width of Cauchy's loss while wrong pairs may be among them, and from where on a pair is one: in standard deviations
 // over √6, which are of the noise alone.
@@ -131,8 +131,11 @@ void fit_all(Registration& registration, const Scans& scans, Places& places, std
     std::vector<IndexPair> pairs = agreeing_pairs(scans, places, length);
     JointFit fit;
     PoseGraphSolution solution;
+    constexpr int kMovingRounds = 3; // later the places at which the scans are compared stay
+    std::vector<SurfacePlace> surface;
     for (int round = 0; round < kMaxRounds; ++round) {
-        fit = fit_jointly(scans, places, pairs, length);
+        if (round < kMovingRounds) surface = surface_places(scans, places, length);
+        fit = fit_jointly(scans, places, pairs, surface, length);
         const bool is_first = round == 0;
         solution = solve_pose_graph(graph_of(scans, places, fit, fixed), is_first ? kRobustWidth : 0);
         if (is_first && drop_misfits(pairs, solution.misfits, registration.refused)) continue;
@@ -141,7 +144,7 @@ void fit_all(Registration& registration, const Scans& scans, Places& places, std
         registration.converged = solution.converged && round > 1 && moved <= kStepToleranceSigmas;
         if (registration.converged) break;
     }
-    fit = fit_jointly(scans, places, pairs, length);
+    fit = fit_jointly(scans, places, pairs, surface, length);
     solution = solve_pose_graph(graph_of(scans, places, fit, fixed), 0);
     set_poses(registration, scans, places, solution, fit.variance_scale);
     registration.scatter = fit.scatter;
