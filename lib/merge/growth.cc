@@ -12,8 +12,9 @@
 namespace fettle::merge {
 namespace {
 
-// A pair with a higher score is joined unless it contradicts; one with a lower score must be confirmed by another scan.
-constexpr double kSureScore = 0.25, kMinScore = 0.08;
+// A pair with a higher score is joined unless it contradicts; one with a lower score, or with another pose of more than
+// this share of its score, must be confirmed by another scan.
+constexpr double kSureScore = 0.25, kMaxSecondShare = 0.6, kMinScore = 0.08;
 // Pairs that refinement moves farther than this, in scan radii, from where the others say, do not confirm them.
 constexpr double kSamePoseRadii = 0.05;
 
@@ -21,6 +22,7 @@ constexpr double kSamePoseRadii = 0.05;
 struct Candidate {
     std::size_t scan, on;
     Hypothesis hypothesis;
+    bool is_sure; ///< needs no confirmation
 };
 
 class Grower {
@@ -51,8 +53,13 @@ class Grower {
   private:
     void search(std::size_t scan, std::size_t on)
     {
-        for (const Hypothesis& h : search_pair(*scans_[scan], *scans_[on], length_))
-            if (is_credible(h.agreement) && h.score >= kMinScore) candidates_.push_back({scan, on, h});
+        const std::vector<Hypothesis> found = search_pair(*scans_[scan], *scans_[on], length_);
+        for (std::size_t k = 0; k < found.size(); ++k) {
+            const double rival = found.size() < 2 ? 0 : found[k == 0 ? 1 : 0].score;
+            const bool is_sure = found[k].score >= kSureScore && rival <= kMaxSecondShare * found[k].score;
+            if (is_credible(found[k].agreement) && found[k].score >= kMinScore)
+                candidates_.push_back({scan, on, found[k], is_sure});
+        }
         const double pairs = 0.5 * static_cast<double>(scans_.size() * (scans_.size() - 1));
         core::report_progress(progress_, std::min(1.0, static_cast<double>(++searched_) / pairs));
     }
@@ -73,7 +80,7 @@ class Grower {
                 candidates_.erase(candidates_.begin() + static_cast<std::ptrdiff_t>(k--));
                 continue;
             }
-            if (candidate.hypothesis.score < kSureScore && *confirmed == 0) continue;
+            if (!candidate.is_sure && *confirmed == 0) continue;
             places_[candidate.scan] = place;
             return candidate.scan;
         }

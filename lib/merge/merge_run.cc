@@ -4,6 +4,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/text.h"
+#include "geometry/quantiles.h"
 #include "job/shape_warnings.h"
 #include "merge/fusion.h"
 #include "mesh/cloud_mesh.h"
@@ -17,9 +18,9 @@
 namespace fettle::merge {
 namespace {
 
-// Edges of the cubes in distances of neighbouring points: some nine points say where a plane is, and the part's shape
-// is hardly levelled.
-constexpr double kLengthSpacings = 3;
+// Edges of the cubes in distances of neighbouring points: of most scans some nine points are in a cube, and of each a
+// dozen within one such length of a place. They say where the surface is, and the part's shape is hardly levelled.
+constexpr double kLengthMedianSpacings = 3, kLengthMaxSpacings = 2;
 // Points of another scan are looked for within this many distances of its points: there is one.
 constexpr double kReachSpacings = 1.5;
 // With fewer points there is no telling a surface from its noise.
@@ -101,7 +102,11 @@ MergeRun merge_files(const MergeRequest& request)
     for (const std::string& path : request.scans) raw.push_back(read_scan(path, request, run, raw.empty()));
     const auto [finest, coarsest] = std::ranges::minmax(raw, {}, &RawScan::spacing);
     const double spacing = finest.spacing, reach = kReachSpacings * coarsest.spacing;
-    RegistrationRequest registration_request{kLengthSpacings * coarsest.spacing, {}, request.progress};
+    std::vector<double> spacings;
+    for (const RawScan& scan : raw) spacings.push_back(scan.spacing);
+    const double length =
+        std::max(kLengthMedianSpacings * geometry::median(spacings), kLengthMaxSpacings * coarsest.spacing);
+    RegistrationRequest registration_request{length, {}, request.progress};
     if (!request.poses.empty()) {
         std::vector<std::string> names;
         for (const RawScan& scan : raw) names.push_back(scan.name);

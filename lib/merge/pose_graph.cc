@@ -82,9 +82,27 @@ align::TwistMatrix root_of(const align::TwistMatrix& A)
     return roots.asDiagonal() * vectors.transpose();
 }
 
+/// Whether the edges determine all motions: Ceres would complain on stderr.
+bool is_determined(ceres::Problem& problem, Blocks& twists, std::size_t fixed)
+{
+    constexpr double kMinReciprocalCondition = 1e-11; // of JᵀJ; Ceres refuses 1e-14
+    ceres::Problem::EvaluateOptions options;
+    options.apply_loss_function = false;
+    for (std::size_t i = 0; i < twists.size(); ++i)
+        if (i != fixed) options.parameter_blocks.push_back(twists[i].data());
+    ceres::CRSMatrix sparse;
+    problem.Evaluate(options, nullptr, nullptr, nullptr, &sparse);
+    Eigen::MatrixXd J = Eigen::MatrixXd::Zero(sparse.num_rows, sparse.num_cols);
+    for (int row = 0; row < sparse.num_rows; ++row)
+        for (int k = sparse.rows[row]; k < sparse.rows[row + 1]; ++k) J(row, sparse.cols[k]) = sparse.values[k];
+    const auto values = core::symmetric_eigen<Eigen::Dynamic>(J.transpose() * J).values;
+    return values.size() == 0 || values[0] > kMinReciprocalCondition * values[values.size() - 1];
+}
+
 std::optional<std::vector<align::TwistMatrix>> covariances_of(ceres::Problem& problem, Blocks& twists,
                                                               std::size_t fixed)
 {
+    if (!is_determined(problem, twists, fixed)) return std::nullopt;
     ceres::Covariance::Options options;
     options.num_threads = 1;
     options.apply_loss_function = false; // of the edges as they are stated
@@ -95,8 +113,7 @@ std::optional<std::vector<align::TwistMatrix>> covariances_of(ceres::Problem& pr
     for (std::size_t i = 0; i < twists.size(); ++i)
         if (i != fixed) blocks.emplace_back(twists[i].data(), twists[i].data());
     std::vector<align::TwistMatrix> found(twists.size(), align::TwistMatrix::Zero());
-    if (blocks.empty()) return found;
-    if (!covariance.Compute(blocks, &problem)) return std::nullopt;
+    if (!blocks.empty() && !covariance.Compute(blocks, &problem)) return std::nullopt;
     for (std::size_t i = 0; i < twists.size(); ++i) {
         if (i == fixed) continue;
         Eigen::Matrix<double, 6, 6, Eigen::RowMajor> block;

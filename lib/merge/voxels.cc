@@ -24,8 +24,8 @@ namespace {
 constexpr int kKeyBits = 21; // three of them fill a key of 64 bits
 constexpr double kMaxVoxels = 1 << 20; // along an axis
 
-// A plane needs so many points, and its standard deviation so many that three of them, the plane's, are few.
-constexpr double kMinPlanePoints = 6, kMinNoisePoints = 7;
+// A plane needs three points, and its direction and standard deviation some more.
+constexpr double kMinPlanePoints = 6, kMinNoisePoints = 5;
 
 std::uint64_t key_of(std::int64_t x, std::int64_t y, std::int64_t z)
 {
@@ -72,9 +72,13 @@ struct Cell {
 double noise_of(const std::vector<Cell>& cells)
 {
     std::vector<double> variances;
-    for (const auto& [m, normal, neighbours] : cells)
-        if (m.count >= kMinNoisePoints)
-            variances.push_back(std::max(0.0, core::symmetric_eigen<3>(m.scatter).values[0]) / (m.count - 3));
+    for (const auto& [m, normal, neighbours] : cells) {
+        if (m.count < kMinNoisePoints) continue;
+        const double freedom = m.count - 3;
+        const double median_over_mean = std::pow(1 - 2 / (9 * freedom), 3); // of chi-squared (Wilson & Hilferty 1931)
+        const double squares = std::max(0.0, core::symmetric_eigen<3>(m.scatter).values[0]);
+        variances.push_back(squares / (freedom * median_over_mean));
+    }
     return variances.empty() ? 0 : std::sqrt(geometry::median(variances));
 }
 
