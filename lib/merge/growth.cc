@@ -12,9 +12,10 @@
 namespace fettle::merge {
 namespace {
 
-// A pair with a higher score is joined unless it contradicts; one with a lower score, or with another pose of more than
-// this share of its score, must be confirmed by another scan.
-constexpr double kSureScore = 0.25, kMaxSecondShare = 0.6, kMinScore = 0.08;
+// A pair with a higher score is joined unless it contradicts. One with a lower score waits until all pairs with the
+// group have been searched; if its score is still lower, or if another pose of the pair has more than this share of it,
+// another scan must confirm it.
+constexpr double kEarlyScore = 0.3, kSureScore = 0.1, kMaxSecondShare = 0.5, kMinScore = 0.04;
 // Pairs that refinement moves farther than this, in scan radii, from where the others say, do not confirm them.
 constexpr double kSamePoseRadii = 0.05;
 
@@ -44,7 +45,9 @@ class Grower {
             unsearched.pop_front();
             for (std::size_t other = 0; other < scans_.size(); ++other)
                 if (free[other] && !places_[other]) search(other, member);
-            while (const auto joined = join_best()) unsearched.push_back(*joined);
+            while (const auto joined = join_best(kEarlyScore)) unsearched.push_back(*joined);
+            if (!unsearched.empty()) continue;
+            if (const auto joined = join_best(0)) unsearched.push_back(*joined);
         }
         return places_;
     }
@@ -64,13 +67,14 @@ class Grower {
         core::report_progress(progress_, std::min(1.0, static_cast<double>(++searched_) / pairs));
     }
 
-    /// Joins the scan of the best candidate. @return  the scan; nothing if no candidate is good enough
-    std::optional<std::size_t> join_best()
+    /// Joins the scan of the best candidate with a score of at least `min_score`. @return  the scan; nothing if no candidate is good enough
+    std::optional<std::size_t> join_best(double min_score)
     {
         std::ranges::stable_sort(candidates_, std::ranges::greater{},
                                  [](const Candidate& c) { return c.hypothesis.score; });
         for (std::size_t k = 0; k < candidates_.size(); ++k) {
             const Candidate candidate = candidates_[k];
+            if (candidate.hypothesis.score < min_score) break;
             if (places_[candidate.scan]) continue;
             const Place& on = *places_[candidate.on];
             const PairPose& pose = candidate.hypothesis.pose;
@@ -99,8 +103,9 @@ class Grower {
         tbb::parallel_for(std::size_t{0}, members.size(), [&](std::size_t k) {
             const PairPose expected = pose_between(place, *places_[members[k]]);
             judged[k] = judge_pair(scan, *scans_[members[k]], expected, length_);
-            is_same[k] = align::pose_distance(judged[k].pose.T_b_a, expected.T_b_a, scan.frame) <
-                         kSamePoseRadii * scan.frame.radius;
+            const double distance = align::pose_distance(judged[k].pose.T_b_a, expected.T_b_a, scan.frame);
+            is_same[k] = distance < kSamePoseRadii * scan.frame.radius;
+            if (!is_same[k]) judged[k].agreement = agreement(scan, *scans_[members[k]], expected, length_);
         });
         int confirmed = 0;
         for (std::size_t k = 0; k < members.size(); ++k) {

@@ -64,7 +64,9 @@ OneWay look(const Scan& a, const Scan& b, const PairPose& pose, double length, E
     // Near is what lies over the other's surface and not far from it, though perhaps not on it.
     constexpr double kNearLengths = 6, kMaxNearSideways = 1;
     // Offsets of two scans of one surface: their noise, and what the grid does on edges and curved faces.
-    constexpr double kMaxOffsetSigmas = 4, kMaxOffsetLengths = 0.25;
+    constexpr double kMaxOffsetSigmas = 4, kMaxOffsetLengths = 0.1;
+    // What runs beside the other surface at this distance is not there by an error of the pose.
+    constexpr double kMinParallelLengths = 0.5;
     OneWay way;
     const Eigen::Isometry3d& T = pose.T_b_a;
     for (Eigen::Index i = 0; i < a.means.xyz.cols(); i += every) {
@@ -82,10 +84,8 @@ OneWay look(const Scan& a, const Scan& b, const PairPose& pose, double length, E
         ++way.near;
         const double limit = std::max(kMaxOffsetSigmas * std::hypot(a.sd(i), b.sd(j)), kMaxOffsetLengths * length);
         if (cosine < kMinNormalCosine) continue;
-        if (std::abs(offset) > limit) {
-            ++way.parallel;
-            continue;
-        }
+        if (std::abs(offset) > kMinParallelLengths * length) ++way.parallel;
+        if (std::abs(offset) > limit) continue;
         ++way.on;
         way.limits += limit * limit;
         way.squares += offset * offset;
