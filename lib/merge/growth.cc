@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <map>
+#include <utility>
 
 namespace fettle::merge {
 namespace {
@@ -56,15 +58,33 @@ class Grower {
   private:
     void search(std::size_t scan, std::size_t on)
     {
-        const std::vector<Hypothesis> found = search_pair(*scans_[scan], *scans_[on], length_);
+        const std::vector<Hypothesis>& found = hypotheses(scan, on);
         for (std::size_t k = 0; k < found.size(); ++k) {
             const double rival = found.size() < 2 ? 0 : found[k == 0 ? 1 : 0].score;
             const bool is_sure = found[k].score >= kSureScore && rival <= kMaxSecondShare * found[k].score;
             if (is_credible(found[k].agreement) && found[k].score >= kMinScore)
                 candidates_.push_back({scan, on, found[k], is_sure});
         }
+    }
+
+    /// Poses of a scan on another. Each pair is searched once, the smaller scan on the larger, whatever their order.
+    const std::vector<Hypothesis>& hypotheses(std::size_t scan, std::size_t on)
+    {
+        const auto found = known_.find({scan, on});
+        if (found != known_.end()) return found->second;
+        const auto size = [&](std::size_t s) { return scans_[s]->means.xyz.cols(); };
+        const bool turned = size(scan) > size(on) || (size(scan) == size(on) && scan > on);
+        const std::size_t a = turned ? on : scan, b = turned ? scan : on;
+        std::vector<Hypothesis> list = search_pair(*scans_[a], *scans_[b], length_);
+        std::vector<Hypothesis>& there = known_[{a, b}] = list;
+        for (Hypothesis& h : list) {
+            h.pose.T_b_a = h.pose.T_b_a.inverse();
+            std::swap(h.agreement.overlap_a, h.agreement.overlap_b);
+        }
+        std::vector<Hypothesis>& back = known_[{b, a}] = std::move(list);
         const double pairs = 0.5 * static_cast<double>(scans_.size() * (scans_.size() - 1));
-        core::report_progress(progress_, std::min(1.0, static_cast<double>(++searched_) / pairs));
+        core::report_progress(progress_, std::min(1.0, static_cast<double>(known_.size()) / 2 / pairs));
+        return turned ? back : there;
     }
 
     /// Joins the scan of the best candidate with a score of at least `min_score`. @return  the scan; nothing if no candidate is good enough
@@ -124,7 +144,7 @@ class Grower {
     const core::Progress& progress_;
     std::vector<std::optional<Place>> places_;
     std::vector<Candidate> candidates_;
-    std::size_t searched_ = 0;
+    std::map<std::pair<std::size_t, std::size_t>, std::vector<Hypothesis>> known_; ///< by scan and the other
 };
 
 } // namespace
@@ -138,18 +158,15 @@ Growth grow(const Scans& scans, double length, const core::Progress& progress)
 {
     Growth growth;
     Grower grower(scans, length, progress);
-    std::vector<bool> free(scans.size(), true);
+    std::vector<bool> free(scans.size(), true); // of a group; a scan alone may still join another's
     std::size_t largest = 0, left = scans.size();
     for (std::size_t seed = 0; seed < scans.size() && left > largest; ++seed) {
         if (!free[seed]) continue;
         const std::vector<std::optional<Place>> places = grower.group_from(seed, free);
-        std::size_t size = 0;
-        for (std::size_t i = 0; i < scans.size(); ++i) {
-            if (!places[i]) continue;
-            free[i] = false;
-            ++size;
-        }
-        left -= size;
+        const auto size = static_cast<std::size_t>(std::ranges::count_if(places, [](const auto& p) { return p.has_value(); }));
+        for (std::size_t i = 0; i < scans.size(); ++i)
+            if (places[i] && size > 1) free[i] = false;
+        if (size > 1) left -= size;
         if (size > largest) {
             largest = size;
             growth.places = places;

@@ -18,9 +18,9 @@
 namespace fettle::merge {
 namespace {
 
-// Edges of the cubes in distances of neighbouring points: of most scans some nine points are in a cube, and of each a
-// dozen within one such length of a place. They say where the surface is, and the part's shape is hardly levelled.
-constexpr double kLengthMedianSpacings = 3, kLengthMaxSpacings = 2;
+// Edges of the cubes in distances of neighbouring points of the scan in the middle: some nine points of a scan are in a
+// cube, and more within one such length of a place. They say where the surface is, and hardly level the part's shape.
+constexpr double kLengthSpacings = 3;
 // Points of another scan are looked for within this many distances of its points: there is one.
 constexpr double kReachSpacings = 1.5;
 // With fewer points there is no telling a surface from its noise.
@@ -79,17 +79,25 @@ RawScan read_scan(const std::string& path, const MergeRequest& request, MergeRun
     return scan;
 }
 
-/// Makes a scan ready for registration, and refuses one that shows no surface.
+bool shows_surface(const VoxelMeans& means)
+{
+    constexpr double kMinSurfaceShare = 0.5;
+    const auto with_normal = (means.normals.colwise().squaredNorm().array() > 0).count();
+    return static_cast<double>(with_normal) >= kMinSurfaceShare * static_cast<double>(means.xyz.cols());
+}
+
+/// Makes a scan ready for registration. One that is only coarse beside the others will fit none of them.
+/// @throws InputError for one that shows no surface: profiles far apart
 std::unique_ptr<const Scan> prepared(RawScan raw, double length)
 {
-    auto scan = core::with_error_prefix(raw.name, [&] {
-        return std::make_unique<const Scan>(raw.name, std::move(raw.xyz), raw.sides, length);
+    return core::with_error_prefix(raw.name, [&] {
+        auto scan = std::make_unique<const Scan>(raw.name, std::move(raw.xyz), raw.sides, length);
+        const double own_length = kLengthSpacings * raw.spacing;
+        if (!shows_surface(scan->means) &&
+            !shows_surface(voxel_means(scan->xyz, VoxelGrid(scan->xyz, own_length), raw.sides, own_length)))
+            throw core::InputError("shows no surface: its points lie on lines, or far apart");
+        return scan;
     });
-    constexpr double kMinSurfaceShare = 0.5;
-    const auto with_normal = (scan->means.normals.colwise().squaredNorm().array() > 0).count();
-    if (static_cast<double>(with_normal) < kMinSurfaceShare * static_cast<double>(scan->means.xyz.cols()))
-        throw core::InputError(scan->name, "shows no surface: its points lie on lines, or far apart");
-    return scan;
 }
 
 } // namespace
@@ -104,8 +112,7 @@ MergeRun merge_files(const MergeRequest& request)
     const double spacing = finest.spacing, reach = kReachSpacings * coarsest.spacing;
     std::vector<double> spacings;
     for (const RawScan& scan : raw) spacings.push_back(scan.spacing);
-    const double length =
-        std::max(kLengthMedianSpacings * geometry::median(spacings), kLengthMaxSpacings * coarsest.spacing);
+    const double length = kLengthSpacings * geometry::median(spacings);
     RegistrationRequest registration_request{length, {}, request.progress};
     if (!request.poses.empty()) {
         std::vector<std::string> names;
