@@ -88,7 +88,8 @@ MergedPoint merged_point(std::uint32_t point, const AllPoints& all, const VoxelG
             if (sideways >= std::min(sights[s].sideways_squared, reach * reach)) continue;
             const double limit =
                 std::max(kMaxHeightSigmas * std::hypot(noises[own], noises[s]), kMaxHeightReaches * reach);
-            if (std::abs(height) <= limit && all.normals.col(i).dot(n) >= kMinNormalCosine) sights[s] = {sideways, height};
+            if (std::abs(height) <= limit && all.normals.col(i).dot(n) >= kMinNormalCosine)
+                sights[s] = {sideways, height};
         }
     double weights = 0, sum = 0, count = 0, squares = 0;
     for (std::size_t s = 0; s < sights.size(); ++s) {

@@ -87,7 +87,8 @@ class Grower {
         return turned ? back : there;
     }
 
-    /// Joins the scan of the best candidate with a score of at least `min_score`. @return  the scan; nothing if no candidate is good enough
+    /// Joins the scan of the best candidate with a score of at least `min_score`. @return  the scan; nothing if no
+    /// candidate is good enough
     std::optional<std::size_t> join_best(double min_score)
     {
         std::ranges::stable_sort(candidates_, std::ranges::greater{},
@@ -163,7 +164,8 @@ Growth grow(const Scans& scans, double length, const core::Progress& progress)
     for (std::size_t seed = 0; seed < scans.size() && left > largest; ++seed) {
         if (!free[seed]) continue;
         const std::vector<std::optional<Place>> places = grower.group_from(seed, free);
-        const auto size = static_cast<std::size_t>(std::ranges::count_if(places, [](const auto& p) { return p.has_value(); }));
+        const auto size =
+            static_cast<std::size_t>(std::ranges::count_if(places, [](const auto& p) { return p.has_value(); }));
         for (std::size_t i = 0; i < scans.size(); ++i)
             if (places[i] && size > 1) free[i] = false;
         if (size > 1) left -= size;

@@ -17,8 +17,8 @@ namespace {
 
 // A plane's three coefficients and so many points more, by which the noise is known within a third.
 constexpr int kMinHeightPoints = 9;
-// A scan whose points lie to one side of the place, by this share of the radius, ends there: its plane is tilted by what
-// it does not see.
+// A scan whose points lie to one side of the place, by this share of the radius, ends there: its plane is tilted by
+// what it does not see.
 constexpr double kMaxEccentricity = 0.2;
 // Normals of a scan and of the place: other faces of the part are not meant.
 constexpr double kMinPlaneCosine = 0.7;
@@ -28,9 +28,9 @@ constexpr double kMinNoiseShare = 0.5;
 /// A scan's surface at a place.
 struct Height {
     std::size_t scan;
-    double height;  ///< over the place along its normal, mm
-    double weight;  ///< 1/variance, 1/mm²
-    int points;     ///< that it was fitted to
+    double height;         ///< over the place along its normal, mm
+    double weight;         ///< 1/variance, 1/mm²
+    int points;            ///< that it was fitted to
     Eigen::Vector3d slope; ///< by which a small motion changes the height: the place's normal, tilted as the plane is
 };
 
@@ -184,8 +184,8 @@ JointFit fit_jointly(const Scans& scans, const std::vector<std::optional<Place>>
                 PairSums& sum = sums[found->second];
                 if (std::abs(relative) >= 1) continue;
                 const double robust = std::pow(1 - relative * relative, 2), weight = a.weight * b.weight / weights;
-                const align::Twist g = frames[found->second].gradient(to_b[found->second] * surface[n].place,
-                                                                      to_b[found->second].linear() * (a.slope + b.slope) / 2);
+                const align::Twist g = frames[found->second].gradient(
+                    to_b[found->second] * surface[n].place, to_b[found->second].linear() * (a.slope + b.slope) / 2);
                 sum.information.noalias() += robust * weight * g * g.transpose();
                 sum.rhs += robust * weight * offset * g;
                 sum.squares += offset * offset;

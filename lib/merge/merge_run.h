@@ -2,9 +2,9 @@
 
 #include "cloud/cloud.h"
 #include "core/progress.h"
-#include "json/document.h"
 #include "merge/registration.h"
 #include "units/units.h"
+#include "json/document.h"
 
 #include <optional>
 #include <string>
@@ -14,16 +14,16 @@ namespace fettle::merge {
 
 /// Merging of files, each a cloud or a mesh, whose vertices are then the points.
 struct MergeRequest {
-    std::vector<std::string> scans;                ///< paths, two or more
-    std::optional<units::Units::Length> unit;      ///< of the files; nothing: as they say, else mm
-    std::string poses;                             ///< a report of an earlier run to start from; empty: search
+    std::vector<std::string> scans;           ///< paths, two or more
+    std::optional<units::Units::Length> unit; ///< of the files; nothing: as they say, else mm
+    std::string poses;                        ///< a report of an earlier run to start from; empty: search
     core::Progress progress;
 };
 
 struct MergeRun {
-    cloud::Cloud merged;  ///< in the frame of the first scan that has a place, mm
-    units::Units units;   ///< of the first file
-    json::Value report;   ///< kind "poses"
+    cloud::Cloud merged; ///< in the frame of the first scan that has a place, mm
+    units::Units units;  ///< of the first file
+    json::Value report;  ///< kind "poses"
     std::vector<std::string> warnings;
     bool all_placed = false; ///< no scan was left out
     bool converged = false;

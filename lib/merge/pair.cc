@@ -157,8 +157,7 @@ Agreement agreement(const Scan& a, const Scan& b, const PairPose& pose, double l
     result.parallel = std::max(there.parallel / there.all, back.parallel / back.all);
     // Offsets that are evenly distributed up to the limit have a mean square of a third of its square.
     const double by_chance = (there.limits + back.limits) / 3;
-    if (by_chance > 0)
-        result.tightness = std::max(0.0, 1 - std::sqrt((there.squares + back.squares) / by_chance));
+    if (by_chance > 0) result.tightness = std::max(0.0, 1 - std::sqrt((there.squares + back.squares) / by_chance));
     result.rms = std::sqrt((there.squares + back.squares) / std::max(there.on + back.on, 1.0));
     result.information = core::symmetric_eigen<6>(information).values[0] / std::max(there.on, 1.0);
     return result;

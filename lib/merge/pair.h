@@ -36,9 +36,10 @@ std::vector<Correspondence> correspondences(const Scan& a, const Scan& b, const 
 struct Agreement {
     double overlap_a = 0, overlap_b = 0; ///< shares of the means that lie on the other scan
     double agreeing = 0; ///< of the means near the other scan's surface, the share that lies on it, of the worse scan
-    double parallel = 0; ///< share of the means that lie over or under the other surface, parallel to it: of the worse scan
-    double rms = 0;      ///< of the offsets of those that do, mm
-    double tightness = 0; ///< 1: the offsets vanish; 0: they fill all that is allowed, as those of chance do
+    double parallel =
+        0;          ///< share of the means that lie over or under the other surface, parallel to it: of the worse scan
+    double rms = 0; ///< of the offsets of those that do, mm
+    double tightness = 0;   ///< 1: the offsets vanish; 0: they fill all that is allowed, as those of chance do
     double information = 0; ///< eigenvalue of the least determined motion, per mean: 1 if all offsets showed it in full
 };
 /// @param length  of the cubes of the means, mm   @param every  of so many means one is looked at

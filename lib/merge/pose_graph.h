@@ -10,13 +10,13 @@
 
 namespace fettle::merge {
 
-/// A measured pose of scan a on scan b. The cost of a pose T_b_a is xᵀ information x, where the twist x in `frame` leads
-/// from the measured pose to it: T_b_a = frame.motion(x) · measured.
+/// A measured pose of scan a on scan b. The cost of a pose T_b_a is xᵀ information x, where the twist x in `frame`
+/// leads from the measured pose to it: T_b_a = frame.motion(x) · measured.
 struct PoseEdge {
     std::size_t a = 0, b = 0;
     Eigen::Isometry3d T_b_a;
-    align::TwistFrame frame;         ///< in b's frame, mm
-    align::TwistMatrix information;  ///< 1/mm²; motions that the pair does not determine have eigenvalue 0
+    align::TwistFrame frame;        ///< in b's frame, mm
+    align::TwistMatrix information; ///< 1/mm²; motions that the pair does not determine have eigenvalue 0
 };
 
 struct PoseGraph {

@@ -108,8 +108,8 @@ align::TwistMatrix in_radians(const align::TwistMatrix& covariance, double radiu
     return scale.asDiagonal() * covariance * scale.asDiagonal();
 }
 
-void set_poses(Registration& registration, const Scans& scans, const Places& places,
-               const PoseGraphSolution& solution, double variance_scale)
+void set_poses(Registration& registration, const Scans& scans, const Places& places, const PoseGraphSolution& solution,
+               double variance_scale)
 {
     registration.scans.resize(scans.size());
     std::size_t next = 0;
@@ -149,8 +149,8 @@ void fit_all(Registration& registration, const Scans& scans, Places& places, std
     set_poses(registration, scans, places, solution, fit.variance_scale);
     registration.scatter = fit.scatter;
     for (std::size_t k = 0; k < pairs.size(); ++k)
-        registration.pairs.push_back({pairs[k].a, pairs[k].b, fit.pairs[k].overlap_a, fit.pairs[k].overlap_b, fit.pairs[k].rms,
-                                      solution.misfits[k] / std::sqrt(6 * fit.variance_scale)});
+        registration.pairs.push_back({pairs[k].a, pairs[k].b, fit.pairs[k].overlap_a, fit.pairs[k].overlap_b,
+                                      fit.pairs[k].rms, solution.misfits[k] / std::sqrt(6 * fit.variance_scale)});
 }
 
 } // namespace

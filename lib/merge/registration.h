@@ -38,7 +38,7 @@ struct Registration {
 };
 
 struct RegistrationRequest {
-    double length = 0;               ///< of the cubes of the means, mm
+    double length = 0;                     ///< of the cubes of the means, mm
     std::vector<Eigen::Isometry3d> starts; ///< T_world_scan of each scan; empty: all poses are searched
     core::Progress progress;
 };

@@ -21,7 +21,7 @@
 namespace fettle::merge {
 namespace {
 
-constexpr int kKeyBits = 21; // three of them fill a key of 64 bits
+constexpr int kKeyBits = 21;           // three of them fill a key of 64 bits
 constexpr double kMaxVoxels = 1 << 20; // along an axis
 
 // A plane needs three points, and its direction and standard deviation some more.
@@ -125,7 +125,8 @@ std::vector<std::size_t> join_layers(std::vector<Cell>& cells, double noise, dou
         }
         if (target[v] != v) cells[target[v]].moments.add(cell.moments);
     }
-    for (const std::size_t v : order | std::views::reverse) target[v] = target[target[v]]; // the larger ones are resolved
+    for (const std::size_t v : order | std::views::reverse)
+        target[v] = target[target[v]]; // the larger ones are resolved
     return target;
 }
 
@@ -209,7 +210,8 @@ VoxelMeans voxel_means(const Eigen::Matrix3Xd& xyz, const VoxelGrid& grid, const
 
 double point_spacing(const Eigen::Matrix3Xd& xyz)
 {
-    constexpr Eigen::Index kSamples = 1000, kNeighbour = 8; // of so many points; within the circle through the neighbour
+    constexpr Eigen::Index kSamples = 1000,
+                           kNeighbour = 8; // of so many points; within the circle through the neighbour
     const geometry::PointIndex<3> index(xyz);
     const Eigen::Index count = std::min(kSamples, xyz.cols());
     std::vector<double> spacings(static_cast<std::size_t>(count));
