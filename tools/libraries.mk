@@ -2,6 +2,7 @@
 $(B)/bin/fettle-clean:   LDLIBS = $(PCL)
 $(B)/bin/fettle-place:   LDLIBS = $(PLACE)
 $(B)/bin/fettle-find:    LDLIBS = $(OPENCV)
+$(B)/bin/fettle-merge:   LDLIBS = $(CERES) $(PCL)
 $(B)/bin/fettle-collide: LDLIBS = $(OPENCV) $(PNG)
 $(B)/bin/fettle-fit:     LDLIBS = $(CERES)
 $(B)/bin/fettle-sample:  LDLIBS = $(CERES)

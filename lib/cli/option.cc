@@ -70,6 +70,13 @@ const std::string& Tool::positional_file(const std::string& name, const std::str
     return required_file_option(name, "FILE", help);
 }
 
+const std::vector<std::string>& Tool::positional_files(const std::string& name, const std::string& help)
+{
+    std::vector<std::string>& values = state_->file_lists.emplace_back();
+    state_->app->add_option(name, values, help)->type_name("FILE")->required();
+    return values;
+}
+
 const std::string& Tool::main_input(const std::string& name, const std::string& help)
 {
     std::string& value = state_->texts.emplace_back("-");

@@ -86,6 +86,8 @@ void Tool::parse()
     for (std::string& word : words) argv.push_back(word.data());
     check_options(*s.app, static_cast<int>(argv.size()), argv.data());
     s.app->parse(static_cast<int>(argv.size()), argv.data());
+    for (const std::vector<std::string>& files : s.file_lists)
+        for (const std::string& file : files) s.outputs.add_input(file);
     s.outputs.declare(s.report_path, nullptr);
     s.outputs.open(s.has_output ? &s.output : nullptr, s.main_input);
     if (s.threads > 0)

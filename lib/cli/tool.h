@@ -30,6 +30,8 @@ class Tool {
   public:
     /// A required positional file, in order of declaration: fettle-fit JOB
     const std::string& positional_file(const std::string& name, const std::string& help);
+    /// Positional files, at least one, after all others: fettle-merge SCAN…
+    const std::vector<std::string>& positional_files(const std::string& name, const std::string& help);
     /// A required positional word out of `choices`, in order with the positional files: fettle-form flatness
     const std::string& positional_choice(const std::string& name, const std::vector<std::string>& choices,
                                          const std::string& help);

@@ -31,6 +31,7 @@ struct Tool::State {
     std::deque<std::optional<double>> optional_numbers;
     std::deque<int> counts;
     std::deque<std::string> texts;
+    std::deque<std::vector<std::string>> file_lists; ///< of inputs
     std::deque<std::optional<units::Units::Length>> units;
     std::map<std::string, std::vector<std::string>> optional_values; ///< choices of options with an optional value
     std::string example;

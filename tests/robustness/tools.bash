@@ -11,7 +11,7 @@
 . "$HERE/../bad-inputs/probe.bash"
 
 # fettle-gantry-linuxcnc is for a machine that runs: tests/linuxcnc.
-names='align arm assess belt clean collide compare contact diff estimate feed find finish fit form gantry-virtual grind manual margin mesh mill part path place
+names='align arm assess belt clean collide compare contact diff estimate feed find finish fit form gantry-virtual grind manual margin merge mesh mill part path place
     plan render report sample station stock-linuxcnc surfel teach verify'
 
 inputs() { # STEP
@@ -51,6 +51,7 @@ command_of() { # NAME
     grind) command=(--stock good.pcd --cell 0.5 --gantry virtual:dynamic --machine machine.json plan.json) writes=(--trace) ;;
     manual) command=(--stock good.pcd --cell 0.5 --machine machine.json --steer steer.txt job.json) writes=(--trace) ;;
     margin) command=(job.json fit.json) ;;
+    merge) command=(--file-units mm "$SAMPLES/scans/views/2.pcd" "$SAMPLES/scans/views/3.pcd") ;;
     mesh) command=(--at good.pcd surface.json) ;;
     mill) command=(--stock box:0,0,0,9,9,9 --cutter ball:6 --step 0.5 path.nc) writes=(--trace) ;;
     part) command=(part.json) ;;

@@ -1,0 +1,32 @@
+# What cannot be merged: status 2 and one line that names the file.
+refuses() { "$HERE/../refuses" "$1" fettle-merge "${@:2}"; }
+cp "$SAMPLES"/scans/views/[123].pcd .
+refuses 'needs two scans or more, got 1' 1.pcd
+refuses 'missing.pcd: cannot open' 1.pcd missing.pcd
+printf 'VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 0\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 0\nDATA ascii\n' >empty.pcd
+refuses 'empty.pcd: ' 1.pcd empty.pcd
+for i in $(seq 200); do echo nan nan nan; done >nan.xyz
+refuses 'nan.xyz: nothing is left: 200 invalid' 1.pcd nan.xyz
+seq 50 | awk '{ print $1, $1 % 7, $1 % 5 }' >few.xyz
+refuses 'few.xyz: has 50 points; 100 are needed' few.xyz 1.pcd
+seq 2000 | awk '{ print $1 / 10, 0, sin($1 / 100) }' >profile.xyz
+refuses 'profile.xyz: shows no surface' 1.pcd profile.xyz
+fettle-place "$SAMPLES/scans/panel.pcd" --units mm --centre -o panel.pcd
+fettle-clean panel.pcd --crop sphere:0,0,0,40 -o foreign.pcd
+refuses "no two of the scans fit each other" 1.pcd foreign.pcd
+refuses 'poses.json: ' --poses poses.json 1.pcd 2.pcd
+echo '{"kind": "poses", "units": {"length": "mm"}, "scans": [{"file": "1.pcd", "matrix": [[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]}]}' >poses.json
+refuses 'poses.json: scans: none of them is 2.pcd' --poses poses.json 1.pcd 2.pcd
+echo '{"kind": "poses", "units": {"length": "mm"}, "scans": [{"file": "1.pcd", "matrix": [[2,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]}]}' >poses.json
+refuses 'is not a rotation and a translation' --poses poses.json 1.pcd 2.pcd
+refuses 'a cloud is written as PCD, PLY, CSV or VTK, not as stl' 1.pcd 2.pcd -o out.stl
+[ ! -e out.stl ]
+
+# NaN blocks in a scan are left out. Reference: the scan without them.
+fettle-clean 2.pcd --ascii >2.txt
+awk '/^DATA/ { data = 1 } { print } data && NR % 5 == 0 { print "nan nan nan"; ++added }' 2.txt >holes.txt
+count=$(grep -c -v '^[#A-Z]' holes.txt)
+sed -i "s/^WIDTH .*/WIDTH $count/; s/^POINTS .*/POINTS $count/" holes.txt
+fettle-merge 3.pcd 2.txt --report a.json -o a.pcd
+fettle-merge 3.pcd holes.txt --report b.json -o b.pcd
+cmp a.pcd b.pcd
