@@ -245,8 +245,9 @@ include tests/fuzz/fuzz.mk
 # --- the rest ---------------------------------------------------------------------------------------------------------
 demo:
 	@.ci/install-packages packages.txt --for-demo
-	@$(MAKE) --no-print-directory -j$(JOBS) $(call tools_named_in,pipelines/casting.mk)
+	@$(MAKE) --no-print-directory -j$(JOBS) $(call tools_named_in,pipelines/casting.mk) $(B)/bin/fettle-find
 	@$(MAKE) --no-print-directory -j$(JOBS) -f pipelines/casting.mk B=$(B) demo
+	@$(MAKE) --no-print-directory -j$(JOBS) -s -f pipelines/raw.mk B=$(B) demo
 
 figures: all
 	@$(MAKE) --no-print-directory -j$(JOBS) -f pipelines/casting.mk B=$(B) figures

@@ -1,16 +1,18 @@
 # Raw scans in, verdict out: a part is cleaned, its anomalies are found, and each is ground by a job of its own. Nobody marks anything.
 #
-#   make -f pipelines/raw.mk demo                             the hammer with its bead and burr, lying anyhow, and the welded part
+#   make -f pipelines/raw.mk demo                             the hammer with its bead and burr
 #   make -f pipelines/raw.mk part PART=SCAN TEMPLATE=JOB      a scan of yours; JOB has the machine's values
 #       NAME=part                  a folder of its own in $(RAW)
 #       UNITS=mm                   of SCAN, if it states none
+#       CLEAN=no                   SCAN, in mm, is clean
 #       FIND='--keep 3 --drop 1'   what a person decided about doubtful rows
+#       LIMIT=0.4                  the verdict: within ± this of it, mm; without it, JOB's tolerance
 #       TRUTH=FILE                 what the ground surface is judged against; without it, the surface that was fitted
 #
 # In $(RAW)/NAME: found.json, jobs/ROW.json, and for each row a folder with found.png and its page report.html; at last a table.
 
 B   ?= build
-RAW := $(B)/raw
+RAW ?= $(B)/raw
 export PATH := $(abspath $(B)/bin):$(PATH)
 
 NAME     ?= part
@@ -18,8 +20,11 @@ UNITS    ?= mm
 TEMPLATE ?= samples/jobs/hammer.json
 FIND     ?=
 TRUTH    ?=
+LIMIT    ?=
+CLEAN    ?= yes
 NOISE    ?= normal:$(shell jq .probe.accuracy $(TEMPLATE))
 D        := $(RAW)/$(NAME)
+part_in   = $(if $(filter no,$(CLEAN)),$(PART),$D/clean.ply)
 ROWS     := $(patsubst $D/jobs/%.json,%,$(wildcard $D/jobs/*.json))
 
 .DELETE_ON_ERROR:
@@ -27,7 +32,7 @@ ROWS     := $(patsubst $D/jobs/%.json,%,$(wildcard $D/jobs/*.json))
 .PHONY: demo part ground table
 
 part: $D/found.json
-	@$(MAKE) --no-print-directory -f pipelines/raw.mk ground NAME=$(NAME) PART=$(PART) TEMPLATE=$(TEMPLATE) TRUTH=$(TRUTH)
+	@$(MAKE) --no-print-directory -f pipelines/raw.mk ground NAME=$(NAME) PART=$(PART) CLEAN=$(CLEAN) TEMPLATE=$(TEMPLATE) TRUTH=$(TRUTH) LIMIT=$(LIMIT)
 
 ground: $(ROWS:%=$D/%/report.html) $(ROWS:%=$D/%/found.png)
 	@pipelines/raw-table $D
@@ -39,19 +44,19 @@ $D/clean.ply: $(PART) $(B)/bin/fettle-clean $(B)/bin/fettle-place
 	fettle-place $< --file-units $(UNITS) --units mm --format ply | fettle-clean - -o $@
 
 # Exit 1: rows that a person must decide about have no job; the table names them.
-$D/found.json: $D/clean.ply $(TEMPLATE) $(B)/bin/fettle-find
-	@rm -rf $D/jobs
-	fettle-find $< --jobs $D/jobs --template $(TEMPLATE) $(FIND) --report $@ -o $D/found.pcd || test $$? -eq 1
+$D/found.json: $(part_in) $(TEMPLATE) $(B)/bin/fettle-find
+	@mkdir -p $D && rm -rf $D/jobs
+	fettle-find $< --file-units mm --jobs $D/jobs --template $(TEMPLATE) $(FIND) --report $@ -o $D/found.pcd || test $$? -eq 1
 
 # The part as the job sees it.
-$D/%/found.png: $D/jobs/%.json $D/found.json $(B)/bin/fettle-render $(B)/bin/fettle-place
+$D/%/found.png: $D/jobs/%.json $D/found.json $(B)/bin/fettle-render
 	@mkdir -p $(@D)
-	fettle-place $D/found.pcd --into $< | fettle-render - --field height --within $< --title "$(NAME), row $*: height over the surface beneath" -o $@
+	fettle-render $D/found.pcd --field height --within $< --title "$(NAME), row $*: height over the surface beneath" -o $@
 
 # --- each row ------------------------------------------------------------------------------------------------------------
-$D/%/samples.pcd: $D/jobs/%.json $D/clean.ply $(B)/bin/fettle-sample
+$D/%/samples.pcd: $D/jobs/%.json $(part_in) $(B)/bin/fettle-sample
 	@mkdir -p $(@D)
-	fettle-sample $< --on $D/clean.ply --noise $(NOISE) --seed 1 --report $(@D)/sample.json -o $@
+	fettle-sample $< --on $(part_in) --noise $(NOISE) --seed 1 --report $(@D)/sample.json -o $@
 
 $D/%/desired.json: $D/jobs/%.json $D/%/samples.pcd $(B)/bin/fettle-fit $(B)/bin/fettle-margin
 	fettle-fit $< $(@D)/samples.pcd | fettle-margin $< -o $@
@@ -59,28 +64,28 @@ $D/%/desired.json: $D/jobs/%.json $D/%/samples.pcd $(B)/bin/fettle-fit $(B)/bin/
 $D/%/plan.json: $D/jobs/%.json $D/%/desired.json $(B)/bin/fettle-plan
 	fettle-plan $< $(@D)/desired.json -o $@
 
-$D/%/ground.pcd: $D/%/plan.json $D/clean.ply $(B)/bin/fettle-grind
-	fettle-grind $< --stock $D/clean.ply --trace $(@D)/trace.pcd --report $(@D)/grind.json -o $@
+$D/%/ground.pcd: $D/%/plan.json $(part_in) $(B)/bin/fettle-grind
+	fettle-grind $< --stock $(part_in) --trace $(@D)/trace.pcd --report $(@D)/grind.json -o $@
 
 $D/%/wanted.stl: $D/jobs/%.json $D/%/desired.json $(B)/bin/fettle-mesh
 	fettle-mesh $(@D)/desired.json --within $< --step 0.5 --stl -o $@
 
 $D/%/errors.pcd: $D/jobs/%.json $D/%/ground.pcd $(or $(TRUTH),$D/%/wanted.stl) $(B)/bin/fettle-compare
-	fettle-compare $(@D)/ground.pcd --to $(or $(TRUTH),$(@D)/wanted.stl) --within $< --report $(@D)/errors.json -o $@ || test $$? -eq 1
+	fettle-compare $(@D)/ground.pcd --to $(or $(TRUTH),$(@D)/wanted.stl) --within $< $(LIMIT:%=--tolerance %) --report $(@D)/errors.json -o $@ || test $$? -eq 1
 
 $D/%/report.html: $D/jobs/%.json $D/%/errors.pcd $(B)/bin/fettle-report
 	fettle-report --title "$(NAME), row $*" --job $< --samples $(@D)/samples.pcd --surface $(@D)/desired.json --plan $(@D)/plan.json \
-	    --grinding $(@D)/grind.json --trace $(@D)/trace.pcd --before $D/clean.ply --after $(@D)/ground.pcd \
+	    --grinding $(@D)/grind.json --trace $(@D)/trace.pcd --before $(part_in) --after $(@D)/ground.pcd \
 	    --errors $(@D)/errors.pcd --comparison $(@D)/errors.json -o $@
 
 # --- the demonstration ----------------------------------------------------------------------------------------------------
-$(RAW)/hammer.stl: samples/parts/hammer.json $(B)/bin/fettle-part $(B)/bin/fettle-place
+$(RAW)/hammer.stl: samples/parts/hammer.json $(B)/bin/fettle-part
 	@mkdir -p $(@D)
-	fettle-part $< | fettle-place - --turn x,140,z,35 -o $@
+	fettle-part $< -o $@
 
-$(RAW)/hammer-truth.stl: samples/parts/hammer.json $(B)/bin/fettle-part $(B)/bin/fettle-place
+$(RAW)/hammer-truth.stl: samples/parts/hammer.json $(B)/bin/fettle-part
 	@mkdir -p $(@D)
-	fettle-part $< --without-anomaly | fettle-place - --turn x,140,z,35 -o $@
+	fettle-part $< --without-anomaly -o $@
 
 demo: $(RAW)/hammer.stl $(RAW)/hammer-truth.stl
-	@$(MAKE) --no-print-directory -f pipelines/raw.mk part NAME=hammer PART=$(RAW)/hammer.stl TEMPLATE=samples/jobs/hammer.json TRUTH=$(RAW)/hammer-truth.stl
+	@$(MAKE) --no-print-directory -f pipelines/raw.mk part NAME=hammer CLEAN=no PART=$(RAW)/hammer.stl TEMPLATE=samples/jobs/hammer.json TRUTH=$(RAW)/hammer-truth.stl LIMIT=0.4

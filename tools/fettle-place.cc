@@ -88,8 +88,8 @@ int main(int argc, char** argv)
         const Options o{t};
         t.example("fettle-place scans/hammer.stl --up plane --centre --inverse back.txt -o lying.stl",
                   "the hammer with its largest flat face up, and the matrix that moves it back");
-        t.example("fettle-place part.stl --into jobs/1.json --inverse back.txt -o turned.stl",
-                  "the part as the job sees it; `--matrix back.txt` moves what was ground back");
+        t.example("fettle-place scans/hammer.stl --into jobs/hammer.json --inverse back.txt -o there.stl",
+                  "the part as the job sees it; --matrix back.txt moves back what was ground");
         t.reference("Fischler & Bolles 1981 (RANSAC); PCL's SACSegmentationFromNormals");
         t.parse();
         place::PlaceRequest request = parse_request(o);

@@ -7,10 +7,10 @@
 
 namespace fettle::cloud {
 
-/// Parses XYZ text: a point per line, with 3 or more numbers between blanks or tabs, commas, or semicolons, the same number on all lines.
-/// Comments (#) and blank lines are skipped. The first line may name the columns, beginning with x y z (also "//X Y Z
-/// …"); without names the columns after z become fields column4, column5, …, of type F8. The cloud is in the units of
-/// the file.
+/// Parses XYZ text: a point per line, with 3 or more numbers between blanks or tabs, commas, or semicolons, the same
+/// number on all lines. Comments (#) and blank lines are skipped. The first line may name the columns, beginning with x
+/// y z (also "//X Y Z …"); without names the columns after z become fields column4, column5, …, of type F8. The cloud
+/// is in the units of the file.
 /// @throws InputError with the line
 Cloud parse_xyz(std::string_view bytes, const std::string& source);
 

@@ -19,8 +19,8 @@ inline constexpr std::size_t kMaxJsonBytes = std::size_t{1} << 26;
 /// kMaxJsonBytes, or other text whose first line is longer than 64 KiB
 std::string read_file(const std::string& path, std::size_t max = std::string::npos);
 
-/// A file, a FIFO or stdin ("-") with random access, for several threads at once. A stream, and what gzip compressed, is
-/// copied to memory if it is small, else to an unnamed file in $TMPDIR (else /tmp).
+/// A file, a FIFO or stdin ("-") with random access, for several threads at once. A stream, and what gzip compressed,
+/// is copied to memory if it is small, else to an unnamed file in $TMPDIR (else /tmp).
 class InputFile {
   public:
     /// @throws InputError as read_file()

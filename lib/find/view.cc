@@ -18,6 +18,8 @@ constexpr int kDirections = 200;        // tried: neighbours are about 14 degree
 constexpr double kMinCosine = 0.5;      // of the angle between normal and view: 60 degrees
 constexpr double kSeenShare = 0.98;     // of what any direction sees
 constexpr double kMinGain = 0.01;       // a view that adds less is none
+constexpr double kFaceCosine = 0.9;     // normals within 26 degrees of a direction are of one face
+constexpr int kShifts = 4;              // after which the mean hardly moves
 constexpr double kOcclusionCells = 3;   // what lies deeper beneath what is seen is hidden
 
 struct Samples {
@@ -88,6 +90,21 @@ std::vector<char> seen_from(const Samples& samples, const Eigen::Vector3d& direc
     return is_seen;
 }
 
+/// The mean normal of what faces a direction, repeated: the nearest mode of the normals (mean shift), so that a face is
+/// looked at along its own normal. A cell of a face that is seen askew holds points of many heights.
+Eigen::Vector3d towards_face(const Samples& samples, Eigen::Vector3d direction, const std::vector<char>& is_covered)
+{
+    for (int step = 0; step < kShifts; ++step) {
+        Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+        for (Index i = 0; i < samples.points.xyz.cols(); ++i) {
+            const auto normal = samples.points.normals.col(i);
+            if (!is_covered[std::size_t(i)] && normal.dot(direction) >= kFaceCosine) sum += normal;
+        }
+        if (sum.norm() > 0) direction = sum.normalized();
+    }
+    return direction;
+}
+
 } // namespace
 
 std::vector<View> choose_views(const mesh::CloudMesh& part)
@@ -102,21 +119,31 @@ std::vector<View> choose_views(const mesh::CloudMesh& part)
     for (std::size_t i = 0; i < count; ++i)
         coverable += std::ranges::any_of(seen, [&](const std::vector<char>& one) { return one[i]; });
     std::vector<View> views;
+    // What is seen squarely tells most; a face that is seen at 60 degrees hardly counts.
     const auto gain_of = [&](std::size_t d) {
-        std::size_t gain = 0;
-        for (std::size_t i = 0; i < count; ++i) gain += seen[d][i] && !is_covered[i];
+        double gain = 0;
+        for (std::size_t i = 0; i < count; ++i)
+            if (seen[d][i] && !is_covered[i]) gain += std::pow(samples.points.normals.col(Index(i)).dot(all[d]), 4);
         return gain;
     };
     while (double(covered) < kSeenShare * double(coverable)) {
-        std::size_t best = 0, best_gain = gain_of(0);
-        if (!views.empty() || double(best_gain) < kMinGain * double(count))
+        std::size_t best = 0;
+        double best_gain = gain_of(0);
+        // A cloud's own direction is +z.
+        if (samples.is_outward || !views.empty() || best_gain < kMinGain * double(count))
             for (std::size_t d = 1; d < all.size(); ++d)
-                if (const std::size_t gain = gain_of(d); gain > best_gain) best = d, best_gain = gain;
-        if (double(best_gain) < kMinGain * double(count)) break;
-        for (std::size_t i = 0; i < count; ++i) is_covered[i] |= seen[best][i];
-        covered += best_gain;
-        views.push_back(view_from(all[best]));
-        // A cloud's own direction is +z: without normals nothing says that what lies under it is a surface.
+                if (const double gain = gain_of(d); gain > best_gain) best = d, best_gain = gain;
+        if (best_gain < kMinGain * double(count)) break;
+        const Eigen::Vector3d direction = samples.is_outward ? towards_face(samples, all[best], is_covered) : all[best];
+        const std::vector<char> is_seen = seen_from(samples, direction);
+        const std::size_t before = covered;
+        for (std::size_t i = 0; i < count; ++i) {
+            covered += (is_seen[i] || seen[best][i]) && !is_covered[i];
+            is_covered[i] |= is_seen[i] | seen[best][i];
+        }
+        if (covered == before) break;
+        views.push_back(view_from(direction));
+        // Without normals nothing says that what lies under it is a surface.
         if (views.size() == 1 && !samples.is_outward && double(covered) > 0.5 * double(count)) break;
     }
     if (views.empty()) views.push_back(View::Identity());

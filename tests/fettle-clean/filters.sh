@@ -25,7 +25,7 @@ echo '{ "kind": "job", "units": {"length": "mm"}, "surface": {"type": "freeform"
     "sampling": [[0.5, -2], [4, -2], [4, 1], [0.5, 1]] }' > job.json
 [ "$(left --crop job.json)" = 247 ]
 jq '.units.length = "in" | (.anomaly, .sampling) |= map(map(. / 25.4))' job.json > inch.json
-[ "$(left --crop inch.json)" = 247 ]
+[ "$(left --crop inch.json --file-units mm)" = 247 ]
 # One (0, 0, 0) may be a corner of the part.
 printf '0 0 0\n1 0 0\n' | fettle-clean --report report.json > two.pcd
 jq -e '.at_origin == 0 and .points_left == 2' report.json > ok

@@ -15,7 +15,7 @@ printf 'OFF\n3 1 0\n0 0 0\n9 0 0\n0 9 0\n3 0 1 2\n' > facet.off
 refuses '--drop: 1 is no row: 0 anomalies were found' facet.off --drop 1
 refuses "--keep: expected a number, got 'one'" facet.off --keep one
 refuses '--against: is needed by --transform-in' facet.off --transform-in T.txt
-refuses 'left.stl: a cloud is written as PCD, PLY, CSV or VTK, not as stl' same.xyz -o left.stl
+refuses 'left.stl: an STL has no fields: write PLY, or the points as PCD' same.xyz -o left.stl
 [ ! -e left.stl ]
 
 # One profile, points without any order, a sheet with a block of NaN, two sheets far apart: nothing is found, and nothing is wrong.

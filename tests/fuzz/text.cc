@@ -1,4 +1,5 @@
-// Small texts: XYZ points, PTX scans, points that were picked in a viewer, transforms, and what the operator's stick did.
+// Small texts: XYZ points, PTX scans, points that were picked in a viewer, transforms, and what the operator's stick
+// did.
 
 #include "align/rigid.h"
 #include "cloud/ptx.h"

@@ -537,7 +537,7 @@ TEST(Xyz, NamesCommentsAndColumns)
     EXPECT_EQ(cloud::field(cloud::parse_cloud("//X Y Z intensity\n1 2 3 4\n", "file").cloud, "intensity")[0], 4);
     expect_refused("1 2\n", "line 1: expected at least 3 numbers, got 2", "two columns");
     expect_refused("1 2 3\n1 2 3 4\n", "line 2: expected 3 numbers, got 4", "uneven");
-    expect_refused("1 2 3\n1,5 2 3\n", "line 2: '1,5'", "decimal comma");
+    expect_refused("1 2 3\n1,5 2 3\n", "line 2: '5 2 3' is not a number", "decimal comma");
     expect_refused(std::string("x y z a\0b\n1 2 3 4\n", 18), "be called 'a", "a name with a zero byte");
     expect_refused("x y z a\rb\n1 2 3 4\n", "be called 'a", "a name with a carriage return");
     expect_refused("x y z " + std::string(1 << 16, 'a') + "\n1 2 3 4\n", "names of the fields take", "a long name");

@@ -108,7 +108,7 @@ TEST(Place, TurnsFollowTheMatrixAndTheInverseLeadsBack)
                                       (Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitX()) *
                                        (inches * part.points.xyz.colwise().homogeneous()));
     EXPECT_LT((placed.part.points.xyz - expected).cwiseAbs().maxCoeff(), 1e-9);
-    const cloud::Cloud back = align::transformed(placed.part.points, place::inverse_of(placed.transform), 25.4);
+    const cloud::Cloud back = cloud::transformed(placed.part.points, place::inverse_of(placed.transform), 25.4);
     EXPECT_LT((back.xyz - part.points.xyz).cwiseAbs().maxCoeff(), 1e-9);
 }
 
