@@ -1,11 +1,13 @@
 #include "find/jobs.h"
 
 #include "core/constants.h"
+#include "find/ring_fit.h"
 #include "find/view.h"
 #include "job/boundary.h"
 
 #include <opencv2/imgproc.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -18,6 +20,11 @@ constexpr int kCornerReach = 1;
 // A face is a plane if its cells scatter about the plane of least squares by no more than this many times the noise:
 // the plane's own uncertainty, and what a scan's errors have in common.
 constexpr double kPlaneNoises = 1.5;
+
+// The part leaves a surface where it is off it by so many standard deviations of the metal around; S stays so many
+// cells before that.
+constexpr double kLeavingSds = 4, kEdgeCells = 2.5;
+constexpr int kMaxDegree = 3; // of that surface: one more would follow a fillet
 
 // Cells that are needed to tell whether a face is a plane: ten times as many as a quadric has coefficients.
 constexpr Eigen::Index kMinPlaneCells = 60;
@@ -38,6 +45,18 @@ Eigen::Matrix3Xd with_heights(const Eigen::Matrix2Xd& polygon, const HeightMap& 
     return corners;
 }
 
+/// The point of a polygon's edge that is nearest to another.
+Eigen::Vector2d nearest_on(const Eigen::Matrix2Xd& polygon, const Eigen::Vector2d& point)
+{
+    Eigen::Vector2d nearest = polygon.col(0);
+    for (Eigen::Index k = 0; k < polygon.cols(); ++k) {
+        const Eigen::Vector2d from = polygon.col(k), along = polygon.col((k + 1) % polygon.cols()) - from;
+        const double t = std::clamp((point - from).dot(along) / along.squaredNorm(), 0.0, 1.0);
+        if ((from + t * along - point).norm() < (nearest - point).norm()) nearest = from + t * along;
+    }
+    return nearest;
+}
+
 /// The places between B and S as the part's map has them, 3xN.
 Eigen::Matrix3Xd metal_around(const FoundAnomaly& anomaly, const HeightMap& map)
 {
@@ -49,6 +68,38 @@ Eigen::Matrix3Xd metal_around(const FoundAnomaly& anomaly, const HeightMap& map)
                 places.emplace_back(p.x(), p.y(), double(map.z(y, x)));
         }
     return job::columns_to_matrix(places);
+}
+
+/// S, each corner drawn towards B until no edge, fillet or hole lies between: a place where nothing is seen, or where
+/// the part leaves the surface that goes on from B, the robust one through the metal between B and S. What was found in
+/// a view may lie askew to it, with its edges at other places than where that view showed them.
+Eigen::Matrix2Xd before_edges(const FoundAnomaly& anomaly, const HeightMap& map)
+{
+    const Eigen::Matrix3Xd metal = metal_around(anomaly, map);
+    Eigen::VectorXd weights(metal.cols());
+    for (Eigen::Index i = 0; i < metal.cols(); ++i) {
+        const Eigen::Vector2d place = metal.col(i).head<2>();
+        const double distance = (nearest_on(anomaly.boundary, place) - place).norm();
+        weights[i] = 1 / (1 + distance / map.cell); // what lies near B tells what lies beneath it
+    }
+    const std::optional<RingFit> surface = fit_ring({metal.topRows<2>(), metal.row(2), weights}, map.sigma, kMaxDegree);
+    if (!surface) return anomaly.sampling;
+    const double limit = kLeavingSds * std::max(surface->sd, map.sigma);
+    const auto is_on_surface = [&](const Eigen::Vector2d& place) {
+        const cv::Point cell = map.cell_of(place);
+        if (!cv::Rect({0, 0}, map.z.size()).contains(cell)) return false;
+        return std::abs(double(map.z(cell)) - surface->z_at(place.x(), place.y())) <= limit; // false for NaN
+    };
+    Eigen::Matrix2Xd sampling = anomaly.sampling;
+    for (auto corner : sampling.colwise()) {
+        const Eigen::Vector2d from = nearest_on(anomaly.boundary, corner);
+        const double length = (corner - from).norm();
+        const Eigen::Vector2d along = (corner - from) / std::max(length, 1e-12);
+        double reach = map.cell;
+        while (reach <= length && is_on_surface(from + reach * along)) reach += map.cell;
+        if (reach <= length) corner = from + std::max(map.cell, reach - kEdgeCells * map.cell) * along;
+    }
+    return sampling;
 }
 
 /// Whether the metal around an anomaly is a plane, as far as its noise tells.
@@ -88,12 +139,15 @@ double theta_along(const Eigen::Matrix2Xd& boundary, char feed_axis)
 
 } // namespace
 
-job::Job job_for(const FoundAnomaly& anomaly, const mesh::CloudMesh& part, double noise, const job::Job& settings)
+job::Job job_for(const FoundAnomaly& found, const mesh::CloudMesh& part, double noise, const job::Job& settings)
 {
+    FoundAnomaly anomaly = found;
+    HeightMap map = height_map(part, anomaly.T_anomaly_part);
+    clean(map); // single holes are no edges
+    anomaly.sampling = before_edges(anomaly, map);
     job::Job job = settings;
     job.T_part_job = anomaly.T_anomaly_part.inverse();
     job.theta = theta_along(anomaly.boundary, settings.feed.axis);
-    const HeightMap map = height_map(part, anomaly.T_anomaly_part);
     job.surface = is_plane(metal_around(anomaly, map), noise) ? job::SurfaceType::plane : job::SurfaceType::freeform;
     job.anomaly = with_heights(anomaly.boundary, map);
     job.sampling = with_heights(anomaly.sampling, map);

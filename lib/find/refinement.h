@@ -1,0 +1,71 @@
+#pragma once
+
+#include "find/ring_fit.h"
+#include "find/verification.h"
+
+#include <optional>
+
+namespace fettle::find {
+
+// Share of the ring's variance in the smoothed residual.
+inline constexpr double kRingVariance = 0.35;
+inline constexpr double kRingGap = 2; ///< the ring begins beyond the region's rounded foot, cells
+
+/// Thickness of a region: the diameter of its largest inscribed circle, cells.
+double thickness_of(const Mask& mask);
+
+/// The surface beneath a region, from the ring around it.
+struct Beneath {
+    RingFit fit;
+    Mask ring;
+    Image distance; ///< from the region
+    double width;   ///< of the ring
+    Image residual; ///< over the surface
+    Image smooth;   ///< the same, smoothed; very low where nothing is seen
+    Image sd;       ///< of the surface
+};
+
+/// The refinement of one candidate within its window.
+class Refinement {
+  public:
+    Refinement(const HeightMap& map, const Candidate& candidate, const Mask& others, const SearchBounds& bounds);
+
+    /// The region without the rim that only smoothing has raised.
+    Mask trimmed() const;
+
+    /// @return  false if no region remains
+    bool run();
+
+    Verified result(double texture) const;
+
+  private:
+    Mask ring_of(const Image& distance, double width) const;
+
+    std::optional<RingFit> fit(const Mask& ring, const Image& distance, double width, int max_degree) const;
+
+    bool fit_beneath();
+
+    /// Heights over the surface, and its standard deviation, which is smooth: at every few cells it is computed.
+    void evaluate();
+
+    Mask region_over_surface() const;
+
+    /// Components of a mask that hold a seed.
+    static Mask connected_to(const Mask& mask, const Mask& seeds);
+
+    /// The component with the largest volume over the surface.
+    Mask largest(const Mask& mask) const;
+
+    void measure_shell(Evidence& evidence) const;
+    void measure_stability(Evidence& evidence) const;
+    int growth() const;
+
+    SearchBounds bounds_;
+    double cell_, sigma_;
+    cv::Rect window_;
+    Image z_;
+    Mask seen_, others_, region_, core_;
+    Beneath beneath_;
+};
+
+} // namespace fettle::find
