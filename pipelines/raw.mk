@@ -1,7 +1,7 @@
 # Raw scans in, verdict out: a part is cleaned, its anomalies are found, and each is ground by a job of its own. Nobody marks anything.
 #
 #   make -f pipelines/raw.mk demo                             the hammer with its bead and burr
-#   make -f pipelines/raw.mk part PART=SCAN TEMPLATE=JOB      a scan of yours; JOB has the machine's values
+#   make -f pipelines/raw.mk part PART=SCAN TEMPLATE=JOB      a scan of yours; JOB has the machine's values. PART='SCAN SCAN …' are put together
 #       NAME=part                  a folder of its own in $(RAW)
 #       UNITS=mm                   of SCAN, if it states none
 #       CLEAN=no                   SCAN, in mm, is clean
@@ -32,14 +32,19 @@ ROWS     := $(patsubst $D/jobs/%.json,%,$(wildcard $D/jobs/*.json))
 .PHONY: demo part ground table
 
 part: $D/found.json
-	@$(MAKE) --no-print-directory -f pipelines/raw.mk ground NAME=$(NAME) PART=$(PART) CLEAN=$(CLEAN) TEMPLATE=$(TEMPLATE) TRUTH=$(TRUTH) LIMIT=$(LIMIT)
+	@$(MAKE) --no-print-directory -f pipelines/raw.mk ground NAME=$(NAME) PART="$(PART)" CLEAN=$(CLEAN) TEMPLATE=$(TEMPLATE) TRUTH=$(TRUTH) LIMIT=$(LIMIT)
 
 ground: $(ROWS:%=$D/%/report.html) $(ROWS:%=$D/%/found.png)
 	@pipelines/raw-table $D
 
 # --- what is found ------------------------------------------------------------------------------------------------------
 # A mesh stays one: its vertices are no outliers of each other.
-$D/clean.ply: $(PART) $(B)/bin/fettle-clean $(B)/bin/fettle-place
+# A scan that fits nowhere (exit 1) is named, and left out.
+$D/merged.pcd: $(PART) $(B)/bin/fettle-merge
+	@mkdir -p $D
+	fettle-merge $(PART) --file-units $(UNITS) --report $D/poses.json -o $@ || test $$? -eq 1
+
+$D/clean.ply: $(if $(word 2,$(PART)),$D/merged.pcd,$(PART)) $(B)/bin/fettle-clean $(B)/bin/fettle-place
 	@mkdir -p $D
 	fettle-place $< --file-units $(UNITS) --units mm --format ply | fettle-clean - -o $@
 
