@@ -76,7 +76,7 @@ $D/%/wanted.stl: $D/jobs/%.json $D/%/desired.json $(B)/bin/fettle-mesh
 	fettle-mesh $(@D)/desired.json --within $< --step 0.5 --stl -o $@
 
 $D/%/errors.pcd: $D/jobs/%.json $D/%/ground.pcd $(or $(TRUTH),$D/%/wanted.stl) $(B)/bin/fettle-compare
-	fettle-compare $(@D)/ground.pcd --to $(or $(TRUTH),$(@D)/wanted.stl) --within $< $(LIMIT:%=--tolerance %) --report $(@D)/errors.json -o $@ || test $$? -eq 1
+	fettle-compare $(@D)/ground.pcd --to $(or $(TRUTH),$(@D)/wanted.stl) --within $< -q $(LIMIT:%=--tolerance %) --report $(@D)/errors.json -o $@ || test $$? -eq 1
 
 $D/%/report.html: $D/jobs/%.json $D/%/errors.pcd $(B)/bin/fettle-report
 	fettle-report --title "$(NAME), row $*" --job $< --samples $(@D)/samples.pcd --surface $(@D)/desired.json --plan $(@D)/plan.json \

@@ -70,6 +70,40 @@ Eigen::Matrix3Xd metal_around(const FoundAnomaly& anomaly, const HeightMap& map)
     return job::columns_to_matrix(places);
 }
 
+/// The outline of two polygons together, the second grown by a cell and a half: corners that were moved one by one may
+/// have made the first cross itself. Its corners lie on half cells.
+Eigen::Matrix2Xd joined_outline(const Eigen::Matrix2Xd& polygon, const Eigen::Matrix2Xd& inner, double cell)
+{
+    constexpr int kMargin = 8; // pixels, of half a cell
+    constexpr double kTolerance = 1.5;
+    const double pixel = cell / 2;
+    const Eigen::Vector2d low = polygon.rowwise().minCoeff().cwiseMin(inner.rowwise().minCoeff());
+    const Eigen::Vector2d high = polygon.rowwise().maxCoeff().cwiseMax(inner.rowwise().maxCoeff());
+    const auto pixels_of = [&](const Eigen::Matrix2Xd& corners) {
+        std::vector<cv::Point> places;
+        for (const auto& corner : corners.colwise())
+            places.emplace_back(cvRound((corner.x() - low.x()) / pixel) + kMargin,
+                                cvRound((corner.y() - low.y()) / pixel) + kMargin);
+        return std::vector<std::vector<cv::Point>>{places};
+    };
+    const Eigen::Vector2d size = (high - low) / pixel;
+    Mask outer(int(size.y()) + 2 * kMargin + 1, int(size.x()) + 2 * kMargin + 1, std::uint8_t(0)), core = outer.clone();
+    cv::fillPoly(outer, pixels_of(polygon), 255);
+    cv::fillPoly(core, pixels_of(inner), 255);
+    const Mask joined = opened(outer, 3) | dilated(core, 3);
+    std::vector<std::vector<cv::Point>> outlines;
+    cv::findContours(joined, outlines, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
+    const auto largest = std::ranges::max_element(
+        outlines, {}, [](const std::vector<cv::Point>& outline) { return cv::contourArea(outline); });
+    std::vector<cv::Point> corners;
+    cv::approxPolyDP(*largest, corners, kTolerance, true);
+    Eigen::Matrix2Xd result(2, static_cast<Eigen::Index>(corners.size()));
+    for (std::size_t i = 0; i < corners.size(); ++i)
+        result.col(static_cast<Eigen::Index>(i)) =
+            low + pixel * Eigen::Vector2d(corners[i].x - kMargin, corners[i].y - kMargin);
+    return result;
+}
+
 /// S, each corner drawn towards B until no edge, fillet or hole lies between: a place where nothing is seen, or where
 /// the part leaves the surface that goes on from B, the robust one through the metal between B and S. What was found in
 /// a view may lie askew to it, with its edges at other places than where that view showed them.
@@ -99,7 +133,7 @@ Eigen::Matrix2Xd before_edges(const FoundAnomaly& anomaly, const HeightMap& map)
         while (reach <= length && is_on_surface(from + reach * along)) reach += map.cell;
         if (reach <= length) corner = from + std::max(map.cell, reach - kEdgeCells * map.cell) * along;
     }
-    return sampling;
+    return joined_outline(sampling, anomaly.boundary, map.cell);
 }
 
 /// Whether the metal around an anomaly is a plane, as far as its noise tells.
