@@ -46,10 +46,10 @@ $(BELT)/nasa/%: UNITS = --file-units m
 # The facets of the leading edge look inwards.
 $(BELT)/edge/design: $(EDGE)/LE_mesh_grinded.ply $(B)/study/stock
 	@mkdir -p $(@D)
-	$(B)/study/stock $< --turned --least 0 --most 0 -o $@
+	$(B)/study/stock $< --turned --min 0 --max 0 -o $@
 $(BELT)/edge/stock.stl: $(EDGE)/LE_mesh.ply $(B)/study/stock
 	@mkdir -p $(@D)
-	$(B)/study/stock $< --turned --least 0 --most 0 -o $@
+	$(B)/study/stock $< --turned --min 0 --max 0 -o $@
 # It has half a millimetre at its tip alone, and so little time.
 $(BELT)/edge/ground.pcd: FEED = 40
 
@@ -72,7 +72,7 @@ $(BELT)/law/wheel.json: $(BELT)/law/static.json samples/wheels/rubber.json
 
 # --- stages ---------------------------------------------------------------------------------------------------------------
 $(BELT)/%/stock.stl: $(BELT)/%/design $(B)/study/stock
-	$(B)/study/stock $< $(UNITS) --least 0.2 --most 0.6 -o $@
+	$(B)/study/stock $< $(UNITS) --min 0.2 --max 0.6 -o $@
 
 # Of third-party meshes only the piece with the most surfels is used: at the edges of the other pieces facets overlap.
 KEEP = cat
@@ -136,7 +136,7 @@ WHEEL_FOR_BALL = $$wheel[0] as $$w | .bodies |= map(select(.name | IN("ball", "s
 $(BELT)/cell.json: samples/robots/irb1400_vise.json $(WHEEL)
 	jq --slurpfile wheel $(WHEEL) '$(WHEEL_FOR_BALL)' $< > $@
 $(BELT)/%/placed.stl: $(BELT)/%/design $(BELT)/%/one.pcd $(B)/study/stock
-	$(B)/study/stock $< $(UNITS) --least 0.4 --most 0.4 --at "$$(pipelines/belt-points under $(SPOT) < $(@D)/one.pcd)" -o $@
+	$(B)/study/stock $< $(UNITS) --min 0.4 --max 0.4 --at "$$(pipelines/belt-points under $(SPOT) < $(@D)/one.pcd)" -o $@
 $(BELT)/spot.pcd:
 	printf '# units mm\nVERSION 0.7\nFIELDS x y z qw qx qy qz\nSIZE 4 4 4 4 4 4 4\nTYPE F F F F F F F\nCOUNT 1 1 1 1 1 1 1\nWIDTH 1\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 1\nDATA ascii\n%s 1 0 0 0\n' "$$(echo $(SPOT) | tr , ' ')" > $@
 # Exit status 1 says that the rigid wheel of the picture is in the part by more than the tolerance, as on a nose beside the contact point.
@@ -153,8 +153,8 @@ VARY  ?= feed force
 FINER ?= $(shell awk 'BEGIN { print 0.7 * $(SPACING) }')
 # Of the points along a row, mm.
 STEP  ?= 1.25
-LIMITS_feed  := --least 0.5 --most 200
-LIMITS_force := --least 1 --most 40
+LIMITS_feed  := --min 0.5 --max 200
+LIMITS_force := --min 1 --max 40
 OTHER_feed   := --force $(PRESS)
 OTHER_force  := --feed $(FEED)
 PLAN := $(BELT)/plan

@@ -19,7 +19,7 @@ ARM     := $(B)/bin/fettle-arm samples/robots/irb1400.json
 
 .PHONY: keel reach hulls times
 keel: $(ROBOT)/keel/clearance.png
-	@jq -r '"\(.reached) of \(.count) poses reached, \(.collisions) collide, \(.collisions_between) ways between them; least clearance \(1000 * .least.clearance | round / 1000) mm, \(.least.pair | join(" and "))"' $(ROBOT)/keel/report.json
+	@jq -r '"\(.reached) of \(.count) poses reached, \(.collisions) collide, \(.collisions_between) ways between them; least clearance \(1000 * .min.clearance | round / 1000) mm, \(.min.pair | join(" and "))"' $(ROBOT)/keel/report.json
 
 reach: $(HEIGHTS:%=$(ROBOT)/reach/%.png) $(ROBOT)/reach/cell.json
 	@jq -r '"of \(.cells) cells \(100 * .reached | round) % are reached, \(100 * .reached_from_all_sides | round) % from all sides"' $(ROBOT)/reach/cell.json

@@ -27,7 +27,7 @@ const std::string kDescription =
     "and other (which bodies: indices in the robot file from 0, the workpiece after the last), foot_x foot_y foot_z "
     "(where, in the cell). Exit 1 if something collides, a pose is not reached or the path jumps.\n"
     "With --avoid such poses are tilted about the centre of the ball at the tip, so that the point of contact stays "
-    "(about the tip if there is no ball), on cones 5 degrees apart up to --most-tilt; the first tilt that is free of "
+    "(about the tip if there is no ball), on cones 5 degrees apart up to --max-tilt; the first tilt that is free of "
     "collisions and reached without a jump is taken. Where that does not help, the tool retreats by steps of 0.1 mm, "
     "along the normal if the path has normals, else along its axis. smooth optimises the tilts of all poses together, "
     "so that they change as little as possible from pose to pose. Track and table stay. Added: avoided, tilt, "
@@ -55,9 +55,9 @@ struct Options {
     const std::string& avoid = t.optional_choice(
         "--avoid", {"pose", "smooth"}, "Change the path to avoid collisions, pose by pose or smoothly [pose]");
     const double& max_tilt =
-        t.number("--most-tilt", 45, "DEG", "With --avoid: maximum tilt of the tool", core::Range::between(0, 90));
+        t.number("--max-tilt", 45, "DEG", "With --avoid: maximum tilt of the tool", core::Range::between(0, 90));
     const std::optional<double>& max_retreat = t.optional_number(
-        "--most-retreat", "LENGTH", "With --avoid: maximum retreat of the tool [1 mm]", core::Range::at_least(0));
+        "--max-retreat", "LENGTH", "With --avoid: maximum retreat of the tool [1 mm]", core::Range::at_least(0));
     const std::string& method =
         t.choice("--method", "exact", {"exact", "grid", "paper"},
                  "Workpiece as all triangles; as those under the tool, elsewhere cuboids over a grid; or the same by "

@@ -28,8 +28,8 @@ int main(int argc, char** argv)
         const std::string& wheel_file = t.required_file_option("--wheel", "FILE", "The wheel, JSON");
         const bool& by_force = t.choice<bool>("--vary", {{"feed", false}, {"force", true}}, "What is chosen");
         const auto& lower =
-            t.optional_number("--least", "N or LENGTH/S", "Lower limit of what is chosen [1 N or 1 mm/s]", kLimitRange);
-        const auto& upper = t.optional_number("--most", "N or LENGTH/S",
+            t.optional_number("--min", "N or LENGTH/S", "Lower limit of what is chosen [1 N or 1 mm/s]", kLimitRange);
+        const auto& upper = t.optional_number("--max", "N or LENGTH/S",
                                               "Upper limit of what is chosen [100 N or 100 mm/s]", kLimitRange);
         const belt::GrindingOptions grinding(t);
         const double& target =
@@ -59,7 +59,7 @@ int main(int argc, char** argv)
         options.by_force = by_force;
         if (lower) options.min = *lower * unit;
         if (upper) options.max = *upper * unit;
-        if (options.min > options.max) throw core::InputError("--least", "is above --most");
+        if (options.min > options.max) throw core::InputError("--min", "is above --max");
         options.target_displacement = target * mm;
         if (smoothness) options.smoothness = *smoothness * mm;
         options.max_rounds = rounds;

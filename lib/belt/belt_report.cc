@@ -58,8 +58,8 @@ json::Value to_json(const BeltPlan& plan, bool by_force, const units::Units& uni
         .set("ratio", plan.rms_planned / plan.rms_constant)
         .set("time_constant", plan.time_constant)
         .set("time_planned", plan.time_planned)
-        .set("at_least", plan.at_min)
-        .set("at_most", plan.at_max)
+        .set("at_min", plan.at_min)
+        .set("at_max", plan.at_max)
         .set("rounds", plan.rounds)
         .set("converged", plan.converged);
 }

@@ -45,7 +45,7 @@ json::Value to_json(const SampledDesign& design, const StockRays& rays)
         .set("patches", design.patches)
         .set("on_edges", design.edges.on_edges)
         .set("shrunk", design.edges.shrunk)
-        .set("least_spacing", design.min_spacing)
+        .set("min_spacing", design.min_spacing)
         .set("no_hit", rays.missed)
         .set("several_hits", rays.multiple)
         .set("turned_patches", rays.flipped_patches);

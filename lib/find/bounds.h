@@ -10,7 +10,7 @@ struct SearchBounds {
     double min_height = 0.2; ///< mm: less is texture of castings, and no work for a wheel
 };
 
-/// The same in proportion, for anomalies up to another width, mm.
+/// The default bounds, scaled to anomalies up to another width, mm.
 inline SearchBounds bounds_for_width(double width)
 {
     SearchBounds bounds;

@@ -17,8 +17,8 @@ constexpr std::array<double, 8> kThresholdSigmas{1.5, 3, 6, 12, 24, 48, 96, 192}
 constexpr double kResidualSmoothing = 0.8; // cells
 
 constexpr int kMinCells = 10;
-// A region that fills so much of the one around it at the next lower threshold is the same one.
-constexpr double kSameShare = 0.85;
+// A region that fills more than this share of the one around it at the next lower threshold is a duplicate of it.
+constexpr double kMaxNestedAreaShare = 0.85;
 
 // A candidate stands over the median of a shell around it, from 2 to 4 cells off, by this many sigmas; this share of
 // the shell lies within 0.3 of its height about that median.
@@ -82,7 +82,7 @@ std::vector<Candidate> cut_out(const Image& residual, const Mask& domain, const 
                 const int x = box.x + int(std::ranges::find(parts.labels.ptr<int>(box.y) + box.x,
                                                             parts.labels.ptr<int>(box.y) + box.x + box.width, k) -
                                           (parts.labels.ptr<int>(box.y) + box.x));
-                if (parts.area(k) > kSameShare * below.area(below.labels(box.y, x))) continue;
+                if (parts.area(k) > kMaxNestedAreaShare * below.area(below.labels(box.y, x))) continue;
             }
             if (const double rank = rank_of(residual(around), domain(around), mask, map.sigma, bounds.min_height);
                 rank > 0)

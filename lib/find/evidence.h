@@ -46,8 +46,8 @@ Features features_of(const Evidence& evidence);
 /// docs/methods/find.md describes.
 double probability_of(const Evidence& evidence);
 
-/// The same of departures from a reference, where the part's own features are gone: by their significance, and by their
-/// height over the noise.
+/// Probability that a departure from a reference is an anomaly. The reference has the part's own features, so that
+/// significance and height over the noise suffice.
 double probability_against(const Evidence& evidence);
 
 /// Whether the evidence is worth a probability at all: bounds far outside of what anomalies of the evaluation set show.

@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Index;
 
-// Of two finds that share more than this of either's points, the more probable one stays.
+// If two finds share more than this of either's points, the more probable one is kept.
 constexpr double kMaxOverlap = 0.1;
 
 /// A find of a side, and what it is of the part.

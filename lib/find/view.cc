@@ -119,7 +119,7 @@ std::vector<View> choose_views(const mesh::CloudMesh& part)
     for (std::size_t i = 0; i < count; ++i)
         coverable += std::ranges::any_of(seen, [&](const std::vector<char>& one) { return one[i]; });
     std::vector<View> views;
-    // What is seen squarely tells most; a face that is seen at 60 degrees hardly counts.
+    // A face seen along its normal has weight 1, one seen at 60 degrees 1/16.
     const auto gain_of = [&](std::size_t d) {
         double gain = 0;
         for (std::size_t i = 0; i < count; ++i)

@@ -57,7 +57,7 @@ struct Extent {
     }
 };
 
-// Least z of a point's unit normal: on a wall steeper than 84° a height is ten times as uncertain as the scan.
+// Minimum z of a point's unit normal: on a wall steeper than 84° a height is ten times as uncertain as the scan.
 constexpr double kMinNormalZ = 0.1;
 
 /// False for NaN: nothing is known of the point's side.

@@ -16,9 +16,9 @@ namespace {
 /// Whether the surface was fitted to boundary points of the job, too: griddata and --use-boundary take them as touches.
 bool has_boundary_points(const Eigen::Matrix3Xd& touches, const job::Job& job)
 {
-    constexpr double kSamePoint = 1e-6; // mm: the points are copies, rounded at most by a change of units
+    constexpr double kMaxCopyDistance = 1e-6; // mm: the points are copies, rounded at most by a change of units
     const auto is_touch = [&](const Eigen::Vector3d& point) {
-        return (touches.colwise() - point).colwise().squaredNorm().minCoeff() < kSamePoint * kSamePoint;
+        return (touches.colwise() - point).colwise().squaredNorm().minCoeff() < kMaxCopyDistance * kMaxCopyDistance;
     };
     for (const Eigen::Matrix3Xd* boundary : {&job.anomaly, &job.sampling})
         for (const Eigen::Vector3d& point : boundary->colwise())

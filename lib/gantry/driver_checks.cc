@@ -32,12 +32,13 @@ void DriverGantry::check_radius(double radius)
     last_radius_ = radius;
 }
 
-/// A guarded descent ends early on metal, and the head must have felt it: or the strategy would take air for metal.
+/// A guarded descent ends early only on metal, so the head must report a force: else the strategy would take air for
+/// metal.
 void DriverGantry::check_contact(const Eigen::Vector3d& target, const std::string& command)
 {
     const double above = status_.commanded.z() - target.z();
     if (above > height_tolerance_ && status_.peak_force < kMinGuardShare * head_.max_force)
-        fail("stops " + core::to_short_text(above) + " mm early after '" + command + "', but felt at most " +
+        fail("stops " + core::to_short_text(above) + " mm early after '" + command + "', but reported at most " +
              core::to_short_text(status_.peak_force) + " N");
 }
 

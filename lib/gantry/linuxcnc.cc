@@ -50,7 +50,7 @@ protocol::Limits LinuxcncGantry::limits() const
         min[k] = link_.setting(axis, "MIN_LIMIT");
         max[k] = link_.setting(axis, "MAX_LIMIT");
     }
-    return {min, max, link_.setting("TRAJ", "MAX_LINEAR_VELOCITY"), link_.setting("FETTLE", "MOST_FORCE")};
+    return {min, max, link_.setting("TRAJ", "MAX_LINEAR_VELOCITY"), link_.setting("FETTLE", "MAX_FORCE")};
 }
 
 GantryStatus LinuxcncGantry::travel(const Eigen::Vector3d& tool_point)

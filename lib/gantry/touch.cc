@@ -17,7 +17,7 @@ namespace {
 
 const std::string kGantry = "gantry:exec:";
 /// Places of touches that were written to a file and read again are equal but for rounding.
-constexpr double kSamePlace = 1e-6; // mm
+constexpr double kMaxCopyDistance = 1e-6; // mm
 
 double search_limit(const job::Job& job)
 {
@@ -58,8 +58,8 @@ Eigen::Matrix3Xd GantryProbe::operator()(const sampling::TouchPlan& plan)
 
 const Eigen::Vector3d* GantryProbe::find_touch(const Eigen::Vector2d& xy) const
 {
-    const auto at =
-        std::ranges::find_if(touches_, [&](const auto& touch) { return (touch.head(2) - xy).norm() <= kSamePlace; });
+    const auto at = std::ranges::find_if(
+        touches_, [&](const auto& touch) { return (touch.head(2) - xy).norm() <= kMaxCopyDistance; });
     return at == touches_.end() ? nullptr : &*at;
 }
 

@@ -43,7 +43,7 @@ class NearestSet {
 
 /// The points no farther than a radius.
 struct RadiusSet {
-    double worst; ///< the least number above the squared radius
+    double worst; ///< the smallest number above the squared radius
 
     bool full() const { return true; }
     double worstDist() const { return worst; }

@@ -19,7 +19,7 @@ namespace {
 // another scan must confirm it.
 constexpr double kEarlyScore = 0.3, kSureScore = 0.1, kMaxSecondShare = 0.5, kMinScore = 0.04;
 // Pairs that refinement moves farther than this, in scan radii, from where the others say, do not confirm them.
-constexpr double kSamePoseRadii = 0.05;
+constexpr double kDuplicatePoseRadii = 0.05;
 
 /// A scan outside of the group, on one of the group.
 struct Candidate {
@@ -120,13 +120,13 @@ class Grower {
             if (places_[m] && m != candidate.on) members.push_back(m);
         std::vector<Hypothesis> judged(members.size());
         const Scan& scan = *scans_[candidate.scan];
-        std::vector<char> is_same(members.size());
+        std::vector<char> keeps_pose(members.size());
         tbb::parallel_for(std::size_t{0}, members.size(), [&](std::size_t k) {
             const PairPose expected = pose_between(place, *places_[members[k]]);
             judged[k] = judge_pair(scan, *scans_[members[k]], expected, length_);
             const double distance = align::pose_distance(judged[k].pose.T_b_a, expected.T_b_a, scan.frame);
-            is_same[k] = distance < kSamePoseRadii * scan.frame.radius;
-            if (!is_same[k]) judged[k].agreement = agreement(scan, *scans_[members[k]], expected, length_);
+            keeps_pose[k] = distance < kDuplicatePoseRadii * scan.frame.radius;
+            if (!keeps_pose[k]) judged[k].agreement = agreement(scan, *scans_[members[k]], expected, length_);
         });
         int confirmed = 0;
         for (std::size_t k = 0; k < members.size(); ++k) {
@@ -135,7 +135,7 @@ class Grower {
                                    "the pose that fits them best contradicts " + scans_[members[k]]->name});
                 return std::nullopt;
             }
-            confirmed += is_same[k] && is_credible(judged[k].agreement) ? 1 : 0;
+            confirmed += keeps_pose[k] && is_credible(judged[k].agreement) ? 1 : 0;
         }
         return confirmed;
     }

@@ -28,8 +28,8 @@ struct PoseGraph {
 
 struct PoseGraphSolution {
     std::vector<Eigen::Isometry3d> T_world_scan;
-    /// Of each scan's twist about its own centre, along the axes of the world, mm²; zero for the fixed one. Nothing if
-    /// the edges leave a motion undetermined.
+    /// Covariance of each scan's twist about its own centre, along the axes of the world, mm²; zero for the fixed one.
+    /// Nothing if the edges leave a motion undetermined.
     std::optional<std::vector<align::TwistMatrix>> covariances;
     std::vector<double> misfits; ///< of each edge: √(xᵀ information x), in standard deviations
     bool converged = false;

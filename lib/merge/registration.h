@@ -15,8 +15,9 @@ namespace fettle::merge {
 /// The pose of a scan, and how well it is known.
 struct ScanPose {
     Eigen::Isometry3d T_world_scan;
-    /// Of a small motion of the placed scan about its own centroid: shift, mm, then rotation vector, rad; along the
-    /// axes of the world. Zero for the first one; infinite variances on the diagonal if not all poses are determined.
+    /// Covariance of a small motion of the placed scan about its own centroid: shift, mm, then rotation vector, rad;
+    /// along the axes of the world. Zero for the first one; infinite variances on the diagonal if not all poses are
+    /// determined.
     align::TwistMatrix covariance = align::TwistMatrix::Zero();
     double side = 1; ///< as Place::side
 };

@@ -46,7 +46,7 @@ Segment segment(const align::OrientedPoints& points, const Eigen::Vector3d& midd
     search.setDistanceThreshold(threshold);
     search.setMaxIterations(kMaxIterations);
     search.setOptimizeCoefficients(true);
-    // A cylinder wider than the part is long cannot be told from a plane.
+    // A cylinder wider than the part is long cannot be distinguished from a plane.
     search.setRadiusLimits(0, geometry::bounding_box(points.xyz).diagonal().norm());
     search.setInputCloud(cloud::to_pcl(points.xyz, middle));
     search.setInputNormals(normals);

@@ -133,8 +133,8 @@ bool add_report(Value& report, const Robot& robot, const FollowedPath& path, dou
         .set("undefined", count_of(path, PoseState::undefined))
         .set("jumps", jumps)
         .set("singular", near_count)
-        .set("least_singularity", nearest < 0 ? NAN : path.singularity[nearest])
-        .set("least_singularity_at", index_or_null(nearest));
+        .set("min_singularity", nearest < 0 ? NAN : path.singularity[nearest])
+        .set("min_singularity_at", index_or_null(nearest));
     std::array<JointRate, 8> rates;
     if (times) rates = joint_rates(robot, path, *times);
     if (times && times->size() > 0) report.set("time", (*times)[times->size() - 1] - (*times)[0]);

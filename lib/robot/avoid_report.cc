@@ -100,9 +100,9 @@ void add_report(Value& report, const Robot& robot, const AvoidedPath& avoided, c
                                 .set("drawn_back", retreated)
                                 .set("unsolved", unsolved.size())
                                 .set("unsolved_ways", colliding_motions)
-                                .set("most_tilt_deg", max_tilt / core::kRadPerDegree)
-                                .set("most_tilt_change_deg", max_tilt_change / core::kRadPerDegree)
-                                .set("most_retreat", max_retreat / units.mm())
+                                .set("max_tilt_deg", max_tilt / core::kRadPerDegree)
+                                .set("max_tilt_change_deg", max_tilt_change / core::kRadPerDegree)
+                                .set("max_retreat", max_retreat / units.mm())
                                 .set("changes", changes)
                                 .set("unsolved_poses", unsolved));
 }

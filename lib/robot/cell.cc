@@ -216,7 +216,7 @@ double Cell::max_arc_excess(const CellJoints& change) const
     return std::max(arm_arc_excess(change, max_arm_extent_), table_arc_excess(change, max_table_extent_));
 }
 
-// Of the workpiece the distance of the body's ball from the box around it.
+// For the workpiece this is the distance of the body's ball from the box around it.
 double Cell::ball_clearance(const CellState& state, std::size_t index) const
 {
     const CellPair& pair = pairs_[index];

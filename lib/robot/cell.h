@@ -89,7 +89,7 @@ class Cell {
     /// Lower bound of a clearance from balls around the bodies and a box around the workpiece, mm. A positive one says
     /// that the body does not lie inside the workpiece.
     double ball_clearance(const CellState& state, std::size_t pair) const;
-    /// The same, of the body itself and the box around the workpiece: it still costs little.
+    /// Lower bound of a clearance from the body itself and the box around the workpiece, mm: tighter, at little cost.
     double rough_clearance(const CellState& state, std::size_t pair) const;
     bool is_of_workpiece(std::size_t pair) const { return pairs_[pair].b == robot_.bodies.size(); }
 

@@ -1,6 +1,6 @@
 #include "robot/collision.h"
 
-#include "robot/walk.h"
+#include "robot/clearance_tracker.h"
 
 #include <tbb/parallel_for.h>
 

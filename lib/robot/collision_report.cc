@@ -86,15 +86,15 @@ bool add_report(Value& report, const Robot& robot, const CheckedPath& checked, c
         colliding.push_back(Value()
                                 .set("pair", pair_to_json(robot, pairs[pair]))
                                 .set("poses", collisions.poses)
-                                .set("least_clearance", collisions.min_clearance / mm));
-    report.set("looked_at", measured)
+                                .set("min_clearance", collisions.min_clearance / mm));
+    report.set("checked", measured)
         .set("collisions", poses)
         .set("collisions_between", motions)
-        .set("looks_between", checked.midpoint_count)
+        .set("midpoints_checked", checked.midpoint_count)
         .set("tolerance", options.tolerance / mm)
-        .set("not_missed", (options.tolerance + options.resolution / 2) / mm)
-        .set("least", minimum_to_json(robot, checked.at_poses, times, mm))
-        .set("least_between", minimum_to_json(robot, checked.between_poses, times, mm))
+        .set("max_missed_depth", (options.tolerance + options.resolution / 2) / mm)
+        .set("min", minimum_to_json(robot, checked.at_poses, times, mm))
+        .set("min_between", minimum_to_json(robot, checked.between_poses, times, mm))
         .set("colliding", colliding);
     if (options.model != nullptr)
         report.set("grids", options.model->grid_count())

@@ -176,7 +176,7 @@ class SegmentSearch {
     Vector3d on_segment_, on_triangle_;
 };
 
-// Of a capsule the nearest point is in closed form, and most triangles are ruled out by their planes.
+// The nearest point of a capsule has a closed form, and most triangles are excluded by their planes.
 std::optional<TriangleFoot> nearest_to_capsule(const RoundSolid& capsule, const mesh::Triangle& triangle,
                                                double upper_bound)
 {

@@ -46,7 +46,7 @@ void ContactWatch::follow(const gantry::GantryStatus& status, double feed)
     if (!(needed > kMaxSoftness * (std::max(force, preload_) + min_force_))) return void(length_without_force_ = 0);
     length_without_force_ += length;
     if (length_without_force_ < max_length_without_force_) return;
-    throw gantry::GantryFault("no contact is felt at x " + core::to_short_text(to.x()) + ", y " +
+    throw gantry::GantryFault("no contact is reported at x " + core::to_short_text(to.x()) + ", y " +
                               core::to_short_text(to.y()) + " mm: what stands there of the stock takes " +
                               core::to_short_text(needed) + " N, at most " + core::to_short_text(force) +
                               " N were reported");

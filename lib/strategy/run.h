@@ -46,8 +46,8 @@ struct RunOptions {
     std::vector<TraceRow> previous_trace;
     std::string previous_source;  ///< name of that trace, for messages
     TraceFile* journal = nullptr; ///< write-ahead copy of the trace; nullptr: none
-    /// The stock as far as it is known, at the end of `previous_trace`: a head that does not feel it ends the run
-    /// (contact_watch.h). nullptr for a simulated machine, whose head feels what it meets.
+    /// The stock as far as it is known, at the end of `previous_trace`: a head that reports no contact with it ends the
+    /// run (contact_watch.h). nullptr for a simulated machine, whose head always reports contact.
     const removal::HeightField* known_stock = nullptr;
     std::function<void(const TraceRow&)> watch; ///< called after each action with its row; may be empty
 };

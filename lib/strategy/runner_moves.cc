@@ -225,7 +225,7 @@ void Runner::lower_bound(const gantry::GantryStatus& status, double feed)
     bound_.lower(from + up, tip_ + up, radius());
 }
 
-/// Of the wheel as it was measured last, mm.
+/// Radius of the wheel as it was measured last, mm.
 double Runner::radius() const { return result_.wheel_radius > 0 ? result_.wheel_radius : plan_.job.wheel.radius; }
 
 } // namespace fettle::strategy

@@ -23,7 +23,7 @@ class StockBound {
 
     /// The wheel's lowest line has been at `tip` (frame M, mm): the stock ends at its rim.
     void lower(const Eigen::Vector3d& tip, double radius) { lower(tip, tip, radius); }
-    /// The same all along a straight line.
+    /// The wheel's lowest line has been at every tip along a straight line.
     void lower(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double radius);
 
     /// Largest force while the wheel grinds along a polyline, N, if the stock stood as high as the bound and were twice

@@ -18,7 +18,7 @@ class WheelWear {
 
     /// Estimated loss since the last measurement, mm: on the low side, so that nothing is ground too deep.
     double loss() const;
-    /// The same, all of it: the rim is that much higher than the drives assume.
+    /// Estimated loss since the last measurement, mm, without bias: the rim is that much higher than the drives assume.
     double expected_loss() const;
     /// True if the error of loss() may exceed its bound.
     bool measurement_due() const;

@@ -176,8 +176,8 @@ void visit_members(Io& io, Swept& swept)
     io.number("scale", swept.scale, 1, core::Range::positive());
     io.vector("section", swept.section, 1);
     io.number("slope", swept.slope, 0);
-    io.number("section_least", swept.section_min, 1);
-    io.number("section_most", swept.section_max, 1, core::Range::at_least(swept.section_min / io.mm()));
+    io.number("section_min", swept.section_min, 1);
+    io.number("section_max", swept.section_max, 1, core::Range::at_least(swept.section_min / io.mm()));
 }
 
 template <typename Io>

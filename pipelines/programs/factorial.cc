@@ -42,7 +42,7 @@ constexpr double kAccuracy = 0.005 * kInch;
 constexpr int kAcross = 40;
 // Seeds of the corners' noise begin beyond those of the cells' touches.
 constexpr std::uint64_t kCornerSeeds = std::uint64_t{1} << 32;
-// Of the touch noise, for the limit: the median of so many bands scatters by 4 % of itself.
+// Draws of the touch noise for the limit: the median of so many bands scatters by 4 % of itself.
 constexpr int kLimitDraws = 199;
 
 struct Kind {

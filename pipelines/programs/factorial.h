@@ -108,7 +108,7 @@ inline Study read_study(const std::string& path)
     return study;
 }
 
-/// Of the values that are not NaN; NaN if there are none.
+/// Quantile of the values that are not NaN; NaN if there are none.
 inline double quantile(std::vector<double> values, double share)
 {
     std::erase_if(values, [](double value) { return std::isnan(value); });

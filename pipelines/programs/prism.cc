@@ -38,7 +38,7 @@ double layer_distance(const job::Job& job, double removal_factor)
     return job.removal_coefficient * removal_factor * job.force.max / (job.feed.step_over * job.feed.rate);
 }
 
-/// Of the metal over the desired surface inside B, mm.
+/// Largest height of the metal over the desired surface inside B, mm.
 double highest_metal(const removal::HeightField& stock, const plan::Plan& plan)
 {
     const job::Polygon anomaly = job::working_boundaries(plan.job).anomaly;

@@ -191,8 +191,8 @@ int main(int argc, char** argv)
         argc, argv, "A rough part: a design with an allowance that varies over it, STL.", [](cli::Tool& t) {
             const std::string& path = t.main_input("DESIGN", "B-spline patches (JSON) or a mesh");
             const auto& unit = t.length_unit("--file-units", "Unit of a mesh, if it is not mm");
-            const double& min = t.number("--least", 0.2, "MM", "Allowance", core::Range::at_least(0));
-            const double& max = t.number("--most", 0.6, "MM", "Allowance", core::Range::at_least(0));
+            const double& min = t.number("--min", 0.2, "MM", "Allowance", core::Range::at_least(0));
+            const double& max = t.number("--max", 0.6, "MM", "Allowance", core::Range::at_least(0));
             const std::string& at = t.text("--at", "0,0,0,1,0,0,0", "X,Y,Z,QW,QX,QY,QZ", "Where it stands");
             const bool& turned = t.flag("--turned", "Facets look the other way");
             t.parse();

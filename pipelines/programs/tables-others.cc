@@ -50,7 +50,7 @@ constexpr std::array<Formula, 5> kSaddles = {hyperbolic, pass, ring_inside, skew
 const std::array<Eigen::Vector2d, 5> kSizes = {
     Eigen::Vector2d(1, 1), {3.25, 1}, {3.25, 3.25}, {3.25, 5.5}, {5.5, 7.75}};
 constexpr double kDistance = 3.25;
-// Of the experiments of 4.5: normal, 99 % within ±0.005 in.
+// Touch noise of the experiments of 4.5: normal, 99 % within ±0.005 in.
 const sampling::TouchNoise kNormal = {sampling::TouchNoise::Kind::normal, kNoise.amplitude};
 
 struct Kind {

@@ -44,7 +44,7 @@ Eigen::Matrix3Xd touch_plane(const Setup& setup, const Eigen::Matrix2Xd& xy, std
     return touches;
 }
 
-/// Places in the rectangle, all at least `apart` from each other.
+/// Places in the rectangle, with at least `min_distance` between any two of them.
 Eigen::Matrix2Xd places(Random& random, int count, double min_distance)
 {
     Eigen::Matrix2Xd xy(2, count);

@@ -22,7 +22,7 @@ inline std::string padded(const std::string& words, std::size_t width)
     return words + std::string(width - std::min(width, words.size()), ' ');
 }
 
-/// Of the mean; not known from one value.
+/// Standard error of the mean; infinite for one value.
 inline double standard_error(const std::vector<double>& x)
 {
     return x.size() < 2 ? core::kInfinity : deviation(x) / std::sqrt(static_cast<double>(x.size()));
@@ -83,7 +83,7 @@ class Report {
     {
         out_ << padded("  " + what, 70) << verdict(true_here, "holds") << "\n";
     }
-    /// The same of an inequality whose sides are estimated: value > 0, give or take its standard error.
+    /// Tests an inequality whose sides are estimated: value > 0, give or take its standard error.
     void holds(const std::string& what, double value, double standard_error)
     {
         out_ << padded("  " + what, 70) << verdict(value > 0, -value, standard_error, "holds") << "\n";

@@ -26,7 +26,7 @@ constexpr int kPlacesAcross = 20;
 /// z over x-y, mm.
 using Height = std::function<double(const Eigen::Vector2d&)>;
 
-/// The same draws on every platform.
+/// Random numbers that are the same on every platform.
 class Random {
   public:
     explicit Random(std::uint64_t seed) : bits_(seed) {}

@@ -15,7 +15,7 @@ company_of() { # NAME OPTION: changes `command`
     case "$1 $2" in
     'arm --box' | 'arm --step') command=(robot.json --reach --box 700,0,500,720,20,520) ;;
     *' --table') command[0]=$SAMPLES/robots/irb1400_table.json ;;
-    'collide --most'*) command+=(--avoid) ;;
+    'collide --max-t'* | 'collide --max-r'*) command+=(--avoid) ;;
     'collide --cell') command+=(--method grid) ;;
     'collide --at' | 'collide --from') command+=(--picture picture.png) ;;
     'compare --direction') command+=(--mode direction) ;;

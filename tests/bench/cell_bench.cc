@@ -2,9 +2,9 @@
 // of 100,000 triangles: all pairs at the poses, and between them. One core. The hull hangs over the bench.
 
 #include "../lib/boat_hull.h"
+#include "robot/clearance_tracker.h"
 #include "robot/collision.h"
 #include "robot/follow.h"
-#include "robot/walk.h"
 
 #include <tbb/global_control.h>
 
@@ -51,12 +51,12 @@ int main(int argc, char** argv)
     const robot::Cell cell(robot, &workpiece, {});
     for (int round = 0; round < kRounds; ++round) {
         double start = cpu_seconds();
-        robot::ClearanceTracker walk(cell);
+        robot::ClearanceTracker tracker(cell);
         int reached = 0, colliding = 0;
         for (const auto q : followed.joints.colwise()) {
             if (robot::CellJoints(q).hasNaN()) continue;
             ++reached;
-            colliding += walk.advance(q).clearance < -0.01;
+            colliding += tracker.advance(q).clearance < -0.01;
         }
         const double at_poses = cpu_seconds() - start;
         start = cpu_seconds();

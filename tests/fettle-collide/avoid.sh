@@ -8,7 +8,7 @@ look() { fettle-collide clamp.json "$1" --workpiece keel.stl --track 350 --resol
 status=0
 look "$path" before.json -o before.pcd || status=$?
 test $status -eq 1
-jq -e '.collisions > 5 and (.least.pair | index("clamp") != null)' before.json >/dev/null
+jq -e '.collisions > 5 and (.min.pair | index("clamp") != null)' before.json >/dev/null
 
 centres() { # of the ball: 6 mm up the tool's axis; and how far it is drawn back
     awk -v OFMT=%.5f 'd { w = $4; x = $5; y = $6; z = $7; print $1 + 12 * (x * z + w * y), $2 + 12 * (y * z - w * x), $3 + 6 * (1 - 2 * (x * x + y * y)), $NF }
@@ -19,7 +19,7 @@ for how in pose smooth; do
     look "$path" $how.json --avoid $how -o $how.pcd || test $? -eq 1
     jq -e '.collisions == 0 and .avoidance.unsolved == 0 and .avoidance.tilted >= $before[0].collisions and
         .avoidance.changed == (.avoidance.changes | length) and (.avoidance.unsolved_poses | length) == 0 and
-        .avoidance.most_tilt_deg <= 45.001 and .avoidance.most_retreat <= 1.001' --slurpfile before before.json $how.json >/dev/null
+        .avoidance.max_tilt_deg <= 45.001 and .avoidance.max_retreat <= 1.001' --slurpfile before before.json $how.json >/dev/null
     centres $how.pcd | paste -d' ' given - | awk '{ d = sqrt(($1 - $4)^2 + ($2 - $5)^2 + ($3 - $6)^2); if (d > $7 + 2e-3) { print; exit 1 } }'
     # the changed poses are clear when they are checked again
     sed 's/ joint/ j/g' $how.pcd >again.pcd
@@ -27,14 +27,14 @@ for how in pose smooth; do
     jq -e '.collisions == 0 and .reached == 61' again.json >/dev/null
 done
 # smoothly the tilt changes by less than a third as much from pose to pose, and the ways between are clear, too
-jq -es '.[1].avoidance.most_tilt_change_deg <= 0.3 * .[0].avoidance.most_tilt_change_deg' pose.json smooth.json >/dev/null
+jq -es '.[1].avoidance.max_tilt_change_deg <= 0.3 * .[0].avoidance.max_tilt_change_deg' pose.json smooth.json >/dev/null
 jq -e '.avoidance.by == "smooth" and .avoidance.unsolved_ways == .collisions_between' smooth.json >/dev/null
 # --avoid alone is pose by pose, in any position; the same bytes for any number of threads
 fettle-collide --avoid clamp.json "$path" --workpiece keel.stl --track 350 --resolution 1 -q --ascii --threads 1 | cmp - pose.pcd
 fettle-collide clamp.json "$path" --workpiece keel.stl --track 350 --resolution 1 -q --ascii --threads 1 --avoid=smooth | cmp - smooth.pcd
 # with less tilt it cannot be done: exit 1, and which poses
 status=0
-look "$path" little.json --avoid --most-tilt 5 -o little.pcd || status=$?
+look "$path" little.json --avoid --max-tilt 5 -o little.pcd || status=$?
 test $status -eq 1
 jq -e '.avoidance.unsolved > 0 and .avoidance.unsolved == .collisions and (.avoidance.unsolved_poses[0].pair | index("clamp") != null)' little.json >/dev/null
 # nothing to avoid: nothing is changed

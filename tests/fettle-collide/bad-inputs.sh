@@ -25,15 +25,15 @@ sed '$s/^1000/9000/' path.pcd >far.pcd
 status=0
 fettle-collide robot.json far.pcd --report r.json --ascii >far.out || status=$?
 test $status -eq 1
-jq -e '.reached == 60 and .looked_at == 60 and .unreachable == 1' r.json >/dev/null
+jq -e '.reached == 60 and .checked == 60 and .unreachable == 1' r.json >/dev/null
 tail -n 1 far.out | grep -q nan
 refuses "--avoid: 'smoot' is none of pose, smooth; did you mean 'smooth'" fettle-collide robot.json path.pcd --avoid=smoot
-refuses '--most-tilt' fettle-collide robot.json path.pcd --avoid --most-tilt 91
-refuses '--most-retreat' fettle-collide robot.json path.pcd --avoid --most-retreat -1
+refuses '--max-tilt' fettle-collide robot.json path.pcd --avoid --max-tilt 91
+refuses '--max-retreat' fettle-collide robot.json path.pcd --avoid --max-retreat -1
 refuses 'twice' fettle-collide robot.json path.pcd --avoid --avoid smooth
 # A flat body, two triangles in a plane: its hull has no inside, and it touches the keel without a depth. It took half a minute.
 printf 'OFF\n4 2 0\n-200 -200 20\n200 -200 20\n200 200 20\n-200 200 20\n3 0 1 2\n3 0 2 3\n' >sheet.off
 jq '.bodies += [{name: "sheet", link: 7, shape: "hull", file: "sheet.off"}]' robot.json >sheet.json
 fettle-part "$SAMPLES/parts/keel.json" >keel.stl
 timeout 20 fettle-collide sheet.json path.pcd --workpiece keel.stl --report sheet.report -q -o /dev/null || test $? -eq 1
-jq -e '.least.clearance <= 0 and .least.clearance > -1e-3 and (.least.pair | index("sheet") != null)' sheet.report >/dev/null
+jq -e '.min.clearance <= 0 and .min.clearance > -1e-3 and (.min.pair | index("sheet") != null)' sheet.report >/dev/null

@@ -6,7 +6,7 @@ check() { fettle-collide "$robot" "$1" --workpiece keel.stl --method "$2" "${@:4
 check joints.pcd exact exact
 check joints.pcd grid grid
 check joints.pcd grid fine --cell 0.5
-jq -es '.[0].collisions == 0 and .[1].collisions == 0 and (.[1].least.clearance - .[0].least.clearance | fabs) < 1e-6 and
+jq -es '.[0].collisions == 0 and .[1].collisions == 0 and (.[1].min.clearance - .[0].min.clearance | fabs) < 1e-6 and
     .[1].grids >= 1 and .[1].cell == 1 and .[2].cell == 0.5 and .[2].cuboids_too_near < .[1].cuboids_too_near and
     .[0].grids == null' exact.json grid.json fine.json >/dev/null
 clearances() { awk '/^FIELDS/ { for (i = 2; i <= NF; ++i) if ($i == "clearance") n = i - 1 } data { print $n } /^DATA/ { data = 1 }' "$1"; }
@@ -15,7 +15,7 @@ paste <(clearances exact.pcd) <(clearances grid.pcd) | awk '$2 > $1 + 1e-6 { bad
 fettle-arm "$robot" --forward joints.pcd --ascii | awk 'data { $3 -= 0.1 } { print } $1 == "DATA" { data = 1 }' | sed 's/joint/j/g' >low.pcd
 check low.pcd grid deep
 check low.pcd paper paper
-jq -es '.[0].collisions == 61 and .[0].least.pair == ["ball", "workpiece"] and .[1].collisions == 61' deep.json paper.json >/dev/null
+jq -es '.[0].collisions == 61 and .[0].min.pair == ["ball", "workpiece"] and .[1].collisions == 61' deep.json paper.json >/dev/null
 # the same bytes for any number of threads
 fettle-collide "$robot" joints.pcd --workpiece keel.stl --method grid --threads 1 -q --ascii | cmp - grid.pcd
 refuses() { "$HERE/../refuses" "$@" </dev/null; }

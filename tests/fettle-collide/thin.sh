@@ -20,6 +20,6 @@ jq --argjson x "$x" --argjson z "$z" '.bodies += [{name: "rod", link: -1, shape:
 status=0
 fettle-collide rod.json two.pcd --report r.json -o /dev/null || status=$?
 test $status -eq 1
-jq -e '.collisions == 0 and .collisions_between == 1 and .least_between.pose == 1 and (.least_between.pair | index("rod") != null)' r.json >/dev/null
+jq -e '.collisions == 0 and .collisions_between == 1 and .min_between.pose == 1 and (.min_between.pair | index("rod") != null)' r.json >/dev/null
 fettle-collide "$SAMPLES/robots/irb1400.json" two.pcd --report r.json -o /dev/null
-jq -e '.collisions_between == 0 and .looked_at == 2' r.json >/dev/null
+jq -e '.collisions_between == 0 and .checked == 2' r.json >/dev/null

@@ -11,8 +11,8 @@ refused() { "$HERE/../refuses" "$@"; }
 refused 'path.pcd: no field force or depth' fettle-feed path.pcd --on plate.pcd --wheel wheel.json
 refused 'one of them' fettle-feed path.pcd --on plate.pcd --wheel wheel.json --force 1 --depth 1
 refused 'path.pcd: point 0: is pressed to a depth' fettle-feed path.pcd --on plate.pcd --wheel wheel.json --depth 0.2 --vary force
-refused 'is above --most' fettle-feed path.pcd --on plate.pcd --wheel wheel.json --force 1 --least 5 --most 4
-refused '--least' fettle-feed path.pcd --on plate.pcd --wheel wheel.json --force 1 --least 0
+refused 'is above --max' fettle-feed path.pcd --on plate.pcd --wheel wheel.json --force 1 --min 5 --max 4
+refused '--min' fettle-feed path.pcd --on plate.pcd --wheel wheel.json --force 1 --min 0
 refused 'off.pcd: no point is on the part' fettle-feed off.pcd --on plate.pcd --wheel wheel.json --force 1
 refused 'empty.pcd: no point is on the part' fettle-feed empty.pcd --on plate.pcd --wheel wheel.json --force 1
 refused 'away.pcd: point 0: there is nothing under the wheel' fettle-feed away.pcd --on plate.pcd --wheel wheel.json --force 1

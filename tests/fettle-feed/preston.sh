@@ -10,7 +10,7 @@ awk 'BEGIN {
     printf "WIDTH %d\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS %d\nDATA ascii\n", n, n
     for (j = 0; j < 21; ++j) for (i = 0; i < 21; ++i) printf "%g %g 5.25 1 0 0 0 %d\n", 2 * i - 20, 2 * j - 20, j }' > rows.pcd
 constant() { # FACTOR WHEEL OPTION…
-    fettle-feed rows.pcd --on plate.pcd --wheel "$2" --cells 16 --rounds 1 --least 0.01 --most 10000 --feed 5 --report feed.json "${@:3}" > feed.pcd
+    fettle-feed rows.pcd --on plate.pcd --wheel "$2" --cells 16 --rounds 1 --min 0.01 --max 10000 --feed 5 --report feed.json "${@:3}" > feed.pcd
     jq -c --argjson by "$1" '{constant: (.constant / $by)}' feed.json
 }
 wheel=$SAMPLES/wheels/crowned.json

@@ -20,8 +20,8 @@ jq -e --argjson rms "$(rms planned.pcd)" --slurpfile belt belt.json \
     '(.rms_planned / $rms - 1 | fabs) < 1e-3 and (.time_planned / $belt[0].time - 1 | fabs) < 1e-9' feed.json > ok
 fettle-belt plate.pcd --path rows.pcd --force 5 --feed "$(jq .constant feed.json)" --wheel "$SAMPLES/wheels/crowned.json" --cells 16 --ascii > constant.pcd
 jq -e --argjson rms "$(rms constant.pcd)" '.rms_constant / $rms - 1 | fabs < 0.01' feed.json > ok
-fettle-feed rows.pcd "${how[@]}" --vary force --force 5 --feed 5 --least 2 --most 12 --ascii --report force.json > force.pcd
-jq -e '.ratio < 0.3 and .at_least + .at_most < 100' force.json > ok
+fettle-feed rows.pcd "${how[@]}" --vary force --force 5 --feed 5 --min 2 --max 12 --ascii --report force.json > force.pcd
+jq -e '.ratio < 0.3 and .at_min + .at_max < 100' force.json > ok
 sed '1,/^DATA/d' force.pcd | awk '$9 < 2 - 1e-9 || $9 > 12 + 1e-9 || $10 != 5 { exit 1 }'
 # Something may be left on purpose.
 fettle-feed rows.pcd "${how[@]}" --force 5 --feed 5 --wanted 0.1 --rounds 1 --report wanted.json > wanted.pcd

@@ -17,7 +17,7 @@ plan() { # NAME OPTION…
     grep '^FIELDS' "$1.pcd" > "$1.fields"
 }
 report='{"points": 0, "touched": 0, "reached": 0, "rms_before": 1, "rms_constant": 1, "rms_planned": 1, "ratio": 0, "time_constant": 0,
-    "time_planned": 0, "at_least": 0, "at_most": 0, "rounds": 0, "constant": 1}'
+    "time_planned": 0, "at_min": 0, "at_max": 0, "rounds": 0, "constant": 1}'
 fields='{"x": 1, "y": 1, "z": 1, "qw": 0, "qx": 0, "qy": 0, "qz": 0, "force": 0, "feed": 1}'
 while read -r unit mm; do
     scaled path.pcd "$mm" "$unit" > "path-$unit.pcd"
@@ -39,7 +39,7 @@ plan mm --force 5 --vary force --feed 5
 plan lbf --force 5 --vary force --feed 5
 "$HERE/../scales" lbf "$(jq 'map_values(0) + {constant: 1}' <<<"$report")" mm.json lbf.json 0.02
 "$HERE/../scales" lbf "$(jq 'map_values(0) + {force: 1}' <<<"$fields")" mm.pcd lbf.pcd 0.02
-"$HERE/../refuses" '--least: is above --most' fettle-feed path-m.pcd --on plate-m.pcd --wheel "$SAMPLES/wheels/crowned.json" --force 5 --least 0.2
-for option in --least --most --wanted; do
+"$HERE/../refuses" '--min: is above --max' fettle-feed path-m.pcd --on plate-m.pcd --wheel "$SAMPLES/wheels/crowned.json" --force 5 --min 0.2
+for option in --min --max --wanted; do
     "$HERE/../refuses" "$option" fettle-feed path-mm.pcd --on plate-mm.pcd --wheel "$SAMPLES/wheels/crowned.json" --force 5 $option 1e300
 done

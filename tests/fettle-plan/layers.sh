@@ -4,6 +4,6 @@
 echo '{"kind": "surface", "units": {"length": "in"}, "shape": {"type": "plane", "origin": [0, 0], "z0": 0.75, "slope": [0, 0]}}' |
     fettle-plan "$SAMPLES/jobs/wang1.json" - --report report.json > plan.json
 jq -e '(.layer_thickness - 0.05 | fabs) < 1e-12 and (.layer_distance - 0.025 | fabs) < 1e-12 and .overlap_case == 3 and
-       .most_layers == 51 and .passes == 10 and (.covering_length - 20 | fabs) < 1e-9' report.json > passes
+       .max_layers == 51 and .passes == 10 and (.covering_length - 20 | fabs) < 1e-9' report.json > passes
 jq -e '(.start[0] - 0.5 | fabs) < 1e-12 and (.start[1] - 0.5 | fabs) < 1e-12 and (.start[2] - 0.75 | fabs) < 1e-12 and
        .passes[0].from == [0.625, 0.5] and (.passes[9].from[0] - 2.375 | fabs) < 0.0032 and .units.length == "in"' plan.json > passes

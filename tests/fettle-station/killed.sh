@@ -1,5 +1,5 @@
 # Killed with -9 at 20 moments of a session: what was shown, touched and ground until then is in the folder, and --resume goes on from
-# there without doing it again; the machine moves when it is told to. Then a power failure that has taken the last rows of the trace.
+# there without doing it again; the machine moves only on a command. Then a power failure that has taken the last rows of the trace.
 # References: an undisturbed session; the plane.
 # shellcheck source=tests/fettle-station/kit.bash
 . "$HERE/kit.bash"

@@ -144,7 +144,7 @@ TEST(Adaptive, ExtendsALayoutWhereItIsNotGoodEnough)
     EXPECT_LT(hopeless.plan.size(), 60);
 }
 
-// The same number of touches is worth more than Wang's layout.
+// Chosen adaptively, as many touches are worth more than in Wang's layout.
 TEST(Adaptive, BeatsWangsLayout)
 {
     const job::Job job = square_job();

@@ -35,7 +35,7 @@ Case sphere_with_anomalies()
     return c;
 }
 
-/// The same part and job, turned about Z by `angle` and moved by `offset`.
+/// A part and its job, turned about Z by `angle` and moved by `offset`.
 Case moved(Case c, double angle, const Eigen::Vector3d& offset)
 {
     const Eigen::Matrix3d R = Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()).toRotationMatrix();

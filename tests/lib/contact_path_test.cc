@@ -28,7 +28,7 @@ belt::Surfels half_cylinder(double spacing)
     return surfels;
 }
 
-/// Of all passes; none of the steps is longer than the spacing.
+/// Length of all passes; none of the steps is longer than the spacing.
 double length_of_short_steps(const belt::ContactPath& path, double spacing)
 {
     double length = 0;

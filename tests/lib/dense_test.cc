@@ -420,7 +420,7 @@ TEST(Dense, RefusesPointsThatDetermineNothing)
     EXPECT_NE(refusal(anomaly).find("none of the 1000 points lies inside the sampling boundary"), std::string::npos);
 }
 
-// The same bytes for any number of threads.
+// Results are the same bytes for any number of threads.
 TEST(Dense, ThreadsDoNotMatter)
 {
     cloud::Cloud cloud = scan(200000, wavy, 0.05);

@@ -168,7 +168,8 @@ TEST(Driver, IsNotBelievedAboutLimitsWheelsAndTime)
     EXPECT_EQ(says(reply_to({kLimits, "60", kHome, "20 2" + at, "3" + at, "25 4" + at}, renewed), "quit"), "");
     EXPECT_EQ(says(reply_after("1e12 5 0 30 0 0 0", grind), "jumps ahead in time by 1e+12 s"), "");
     EXPECT_EQ(says(reply_after("2 0 0 506 0 0 0", touch), "makes no sense"), "");
-    EXPECT_EQ(says(reply_after("6 0 0 21 0 0 0", lower), "stops 1 mm early after 'lift 20', but felt at most 0 N"), "");
+    EXPECT_EQ(says(reply_after("6 0 0 21 0 0 0", lower), "stops 1 mm early after 'lift 20', but reported at most 0 N"),
+              "");
     EXPECT_EQ(says(reply_after("6 0 0 21 1 35 60", lower), "quit"), "");
     EXPECT_EQ(says(reply_after("20 9 0 0 506 0 0 0", touch), "stands at 0 0 506, out of its range"), "");
 }

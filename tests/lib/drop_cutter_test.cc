@@ -65,8 +65,8 @@ double over_segment(const machining::Cutter& cutter, const Eigen::Vector3d& a, c
     return max;
 }
 
-/// The same over a triangle: of the segments from a corner to the points of the other side, the greatest, which is a
-/// concave function, too, where the cutter reaches all of them.
+/// Height of the cutter over a triangle: the maximum over the segments from a corner to the points of the other side,
+/// which is a concave function, too, where the cutter reaches all of them.
 double over_triangle(const machining::Cutter& cutter, const Eigen::Matrix3d& t, const Eigen::Vector2d& xy)
 {
     double max = -std::numeric_limits<double>::infinity();

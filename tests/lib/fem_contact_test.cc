@@ -33,7 +33,7 @@ MatrixXd paraboloid(Index n, double cell, double radius)
     return (x.square().replicate(1, n) + x.square().transpose().replicate(n, 1)) / (2 * radius);
 }
 
-/// A flat layer wide enough that its sides are not felt.
+/// A flat layer wide enough that its sides have no influence.
 belt::LayerContact flat(const belt::ElasticLayer& layer, double cell, Index cells, Index elements)
 {
     return {belt::layer_mesh(layer, 1e6 * layer.thickness, 20 * layer.thickness, {cell, cell}, cells, elements), cells};

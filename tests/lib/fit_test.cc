@@ -162,7 +162,7 @@ struct ImplicitQuadric {
     }
 };
 
-/// Of all kinds, inches; the touches reach 2.5 in from the origin.
+/// Quadrics of all kinds, inches; the touches reach 2.5 in from the origin.
 std::vector<ImplicitQuadric> implicit_quadrics()
 {
     const auto diagonal = [](double x, double y, double z) {
@@ -632,7 +632,7 @@ TEST(Bspline, SigmaCoversUnknownSurfaces)
     }
 }
 
-/// The same touches with one of them 1 mm off.
+/// A fit recovers the truth from touches one of which is 1 mm off.
 template <typename FitFunction, typename Height>
 void expect_robust(FitFunction fit_function, const Height& truth)
 {

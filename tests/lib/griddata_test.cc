@@ -264,7 +264,7 @@ TEST(GriddataFit, covariance_is_that_of_the_touches)
     EXPECT_NEAR(surface::sigma(surface, xy), std::sqrt(variance) * surface.touch_sigma, 1e-6);
 }
 
-/// The same with the sampling boundary, the square of the outer touches; z of its corners, NaN: not measured.
+/// lines_input() with the sampling boundary, the square of the outer touches; z of its corners, NaN: not measured.
 fit::FitInput input_with_corners(const std::function<double(const Eigen::Vector2d&)>& z, bool measured)
 {
     fit::FitInput input = lines_input(z);
@@ -325,7 +325,7 @@ TEST(GriddataFit, prefers_touches_to_the_job)
     EXPECT_NEAR(surface::height(surface, {20, 20}), 1, 1e-9);
 }
 
-/// The same with touches of the anomaly's boundary beside those of the lines, 0.5 mm away.
+/// input_with_corners() with touches of the anomaly's boundary beside those of the lines, 0.5 mm away.
 fit::FitInput input_with_boundary(const std::function<double(const Eigen::Vector2d&)>& z)
 {
     fit::FitInput input = input_with_corners(z, true);

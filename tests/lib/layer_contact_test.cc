@@ -23,7 +23,7 @@ using std::numbers::pi;
 
 constexpr double kTightTolerance = 1e-8;
 
-/// Of a paraboloid on the plane, in the middle of the grid.
+/// Gap between a plane and a paraboloid that touches it in the middle of the grid.
 MatrixXd paraboloid(Index rows, Index columns, const Eigen::Vector2d& cell, double radius_x, double radius_y)
 {
     MatrixXd gap(rows, columns);

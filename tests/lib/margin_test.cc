@@ -200,8 +200,8 @@ TEST(Posterior, of_one_number_has_normal_quantiles)
     EXPECT_GT(margin::predict_by_posterior(surface, job, 0.99, 1).shift, prediction.shift);
 }
 
-// The same where the noise was estimated with 4 degrees of freedom, which has doubled the variance: Student's t. 4096
-// independent draws of the noise, three standard errors.
+// The quantiles are Student's where the noise was estimated with 4 degrees of freedom, which has doubled the variance.
+// 4096 independent draws of the noise, three standard errors.
 TEST(Posterior, of_one_number_with_estimated_noise_has_students_quantiles)
 {
     const job::Job job = square_job(job::SurfaceType::plane);

@@ -414,7 +414,7 @@ TEST(Mesh, DistinctTriangles)
     EXPECT_EQ(mesh::unique_triangles(Eigen::Matrix3Xi(3, 0)).cols(), 0);
 }
 
-// The same corners the other way round, after a triangle that has them. The reference: all pairs.
+// Triangles with the corners of an earlier one in opposite order are found. The reference: all pairs.
 TEST(Mesh, OppositeTriangles)
 {
     std::mt19937 random(1);

@@ -107,8 +107,7 @@ belt::ContactWheel wheel()
     return wheel;
 }
 
-/// Of a sphere with an even stock, tilted and shifted: the pressure's distance from that on the exact gap, over its
-/// size.
+/// Relative error of the pressure on a sphere with an even stock, tilted and shifted, against that on the exact gap.
 double pressure_error(double spacing, belt::Gridding gridding)
 {
     const double R = 60, stock = 0.2;

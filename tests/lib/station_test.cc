@@ -46,7 +46,7 @@ Command push(Session& session, Button button)
     return session.input(stick);
 }
 
-// As the station does: a command is executed, and what came of it is told.
+// Does what the station does: executes a command and hands its result to the session.
 void show(Session& session, const std::vector<Eigen::Vector3d>& points)
 {
     for (const Eigen::Vector3d& point : points) {

@@ -58,7 +58,8 @@ TEST(Statistics, OfNothing)
     EXPECT_FALSE(compare::judge_conformity(s, 1, 0).within);
 }
 
-// The same numbers whether the errors are in memory or in a file, in one block or many; independent: a sorted list.
+// Statistics are equal whether the errors are in memory or in a file, in one block or many. Independent reference: a
+// sorted list.
 TEST(Statistics, OfManyBlocks)
 {
     std::mt19937 random(1);

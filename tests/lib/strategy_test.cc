@@ -65,7 +65,7 @@ class Script {
         time_ += 1;
         return command_text();
     }
-    // The same force n times; the last decision.
+    // Reports a force n times. @return  the last decision
     std::string forces(double f, int n)
     {
         std::string last;

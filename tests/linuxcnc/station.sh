@@ -58,7 +58,7 @@ echo '0 start' >&3
 RANDOM=1
 for k in {1..6}; do
     in_cut
-    sleep "0.0$((RANDOM % 10))" # the wheel is off the part between two passes: soon after it was felt, most moments are in the cut
+    sleep "0.0$((RANDOM % 10))" # the wheel is off the part between two passes: soon after contact, most moments are in the cut
     mark 1
     echo '0 stop' >&3
     wait_for stopped

@@ -25,7 +25,7 @@ status=0
 test $status = 1
 grep -q MISSED bad
 box 0 0 0 0.02 0.01 0.005 > box.off
-stock box.off --file-units m --least 0.3 --most 0.3 > stock.stl
+stock box.off --file-units m --min 0.3 --max 0.3 > stock.stl
 fettle-surfel box.off --file-units m --stock stock.stl --spacing 1 --report box.json > box.pcd
 # its faces go out by 0.3 mm, and its edges to where they meet
 jq -e '.min > 0.2999 and .max < 0.3001 and .no_hit == 0' box.json > ok

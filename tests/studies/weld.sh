@@ -1,5 +1,5 @@
 # The weld of a real workpiece, from the raw text of the profiler to the page. References: its design, which the part is warped against by some
-# tenths (told beside the verdict), and, for what is beneath sound metal, the scan itself; the mesh of profiles: by hand.
+# tenths (printed beside the verdict), and, for what is beneath sound metal, the scan itself; the mesh of profiles: by hand.
 root=$(realpath "$HERE/../..")
 build=$(realpath --relative-to="$root" "$(dirname "$(dirname "$(command -v fettle-grind)")")")
 unset MAKEFLAGS MFLAGS MAKELEVEL

@@ -21,7 +21,7 @@ NEWTON = {"N": 1.0, "lbf": 4.4482216152605}
 DIMENSIONS = [
     ((1, 0), """assess u, assess v"""),  # passed through: a plane's are lengths in the file's unit, a patch's have none
     ((0, 0), """surfel *, path *, assess *, finish *, mill *, verify *"""),  # these write mm, whatever the unit of what they read
-    ((0, 0), """* looked_at, * joints.*_at, align degrees_of_freedom.shift"""),
+    ((0, 0), """* checked, * joints.*_at, align degrees_of_freedom.shift"""),
     ((0, 1), """*force, *force.min, *force.max, *force.down"""),
     ((-1, 1), """*force.stiffness"""),
     ((-2, 1), """*pressure"""),
@@ -30,7 +30,7 @@ DIMENSIONS = [
     ((3, 0), """*volume"""),
     ((2, 0), """*area"""),
     ((1, 0), """* x, * y, * z, * error, * sigma, * removed, * displacement, * radius, * u, * v, * gap, * indentation, * deepest"""),
-    ((1, 0), """* clearance*, *.clearance, * foot_?, * joint7, * least, * least_between, * tolerance, * not_missed, * beyond"""),
+    ((1, 0), """* clearance*, *.clearance, * foot_?, * joint7, * min, * min_between, * tolerance, * max_missed_depth, * beyond"""),
     ((1, 0), """* mean, * mean_abs, * rms, * sd, * min, * max, * band, * p??, * median, * misfit, * max_distance, * worst"""),
     ((1, 0), """*regions.*.mean, *regions.*.mean_abs, *regions.*.rms, *regions.*.sd, *regions.*.min, *regions.*.max"""),
     ((1, 0), """*regions.*.band, *regions.*.p??, *_at, *histogram.limit, *weld_tolerance, *reference_sigma"""),
@@ -46,7 +46,7 @@ DIMENSIONS = [
 # Numbers without one dimension: products of a surface's parameters; the last column of a rigid motion, which ends in 1.
 MIXED = ["covariance", "surface.covariance", "alternatives.covariance", "surface.alternatives.covariance", "transform.3", "next.transform.3"]
 MIXED += ["joints.min", "joints.max"]  # degrees, and the track's lengths
-MIXED += ["least.pose", "least.point", "least_between.pose", "least_between.point", "joints.max_acceleration_at"]  # which one it is of several that are equal
+MIXED += ["min.pose", "min.point", "min_between.pose", "min_between.point", "joints.max_acceleration_at"]  # which one it is of several that are equal
 
 TOLERANCE = 0.05  # wrong units are off by 4 times at least; grinding step by step amplifies the rounding of coordinates
 FLOOR = 1e-5  # mm, N and their products: below it, numbers are rounding

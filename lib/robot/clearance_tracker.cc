@@ -1,4 +1,4 @@
-#include "robot/walk.h"
+#include "robot/clearance_tracker.h"
 
 #include "core/constants.h"
 
@@ -9,7 +9,7 @@ namespace fettle::robot {
 
 namespace {
 
-// Bound of the bisections between two steps: they divide 1 m into hundredths of a micrometre.
+// Maximum depth of the bisection between two steps: it divides 1 m into hundredths of a micrometre.
 constexpr std::size_t kMaxBisections = 26;
 // A clearance is measured as far as the pair would travel in this many steps like the last one. Pairs farther apart are
 // then not measured again for about as many steps.
@@ -43,9 +43,9 @@ void ClearanceTracker::set_current_bound(std::size_t pair, double lower_bound)
     clearance_bound_at_reset_[pair] = lower_bound + distance_travelled_[a] + distance_travelled_[b];
 }
 
-// Renews the lower bound of a pair at the current state without measuring it.
-// @return  is the bound at least `sufficient`?
-bool ClearanceTracker::bound_current(std::size_t pair, double sufficient, double look_ahead)
+// Tries to renew the lower bound of a pair at the current state without measuring the pair.
+// @return  true if the new bound is at least `required`, mm
+bool ClearanceTracker::renew_bound(std::size_t pair, double required, double look_ahead)
 {
     if (cell_.options().model != nullptr) return false;
     double bound = cell_.ball_clearance(current_.cell_state, pair);
@@ -54,7 +54,7 @@ bool ClearanceTracker::bound_current(std::size_t pair, double sufficient, double
         // The tree's bounds say nothing of a body that may lie wholly inside.
         if (!cell_.is_of_workpiece(pair) || !(clearance_lower_bound(pair) > 0)) return false;
         bound = cell_.bound_clearance(current_.cell_state, pair, look_ahead);
-        if (!(bound > 0 && bound >= sufficient)) return false;
+        if (!(bound > 0 && bound >= required)) return false;
     }
     set_current_bound(pair, bound);
     return true;
@@ -95,15 +95,15 @@ CellClearance ClearanceTracker::advance(const CellJoints& joints)
         if (pair == nearest_pair_) continue;
         const auto& [a, b, margin] = cell_.pairs()[pair];
         const double relative_motion = displacement[a] + displacement[b], lower_bound = clearance_lower_bound(pair);
-        const double sufficient = std::min(minimum.clearance + relative_motion, max_clearance);
+        const double required = std::min(minimum.clearance + relative_motion, max_clearance);
         // While the bound is positive a body cannot have moved into the workpiece without touching its surface.
-        if (lower_bound > 0 && lower_bound >= sufficient) {
+        if (lower_bound > 0 && lower_bound >= required) {
             current_.bounds[pair].clearance = lower_bound;
             continue;
         }
         double look_ahead = std::max(minimum.clearance, 0.0) + kLookAheadSteps * relative_motion;
         look_ahead = step_count_ == 1 ? max_clearance : std::min(look_ahead, max_clearance);
-        if (bound_current(pair, sufficient, look_ahead)) continue;
+        if (renew_bound(pair, required, look_ahead)) continue;
         measure(current_, pair, look_ahead);
         const CellClearance& found = current_.cell_state.clearances[pair];
         if (found.clearance < minimum.clearance) minimum = found;
@@ -123,7 +123,7 @@ CellClearance ClearanceTracker::swept_clearance()
 // Upper bound of the sum of the distances that the two bodies of a pair move between two states, mm.
 double ClearanceTracker::body_motion_bound(const State& from, State& to, std::size_t pair) const
 {
-    const auto of_body = [&](std::size_t body) {
+    const auto motion_of = [&](std::size_t body) {
         double& bound = to.motion_bounds[body];
         if (!std::isnan(bound)) return bound;
         const bool is_step = &from == &previous_ && &to == &current_;
@@ -132,7 +132,7 @@ double ClearanceTracker::body_motion_bound(const State& from, State& to, std::si
         return bound = displacement + cell_.arc_excess(body, to.joints - from.joints);
     };
     const auto& [a, b, margin] = cell_.pairs()[pair];
-    return of_body(a) + of_body(b);
+    return motion_of(a) + motion_of(b);
 }
 
 // Raises the lower bound of a pair that has not been measured by a rough estimate.
@@ -157,7 +157,7 @@ bool ClearanceTracker::sweep_pair(State& from, State& to, std::size_t pair, std:
     };
     if (lower_bound() >= result.upper_bound) return true;
     double reach = options.max_clearance;
-    if (options.model == nullptr) { // a model's geometry depends on the pose: nothing is known of it from afar
+    if (options.model == nullptr) { // the geometry of a model depends on the pose, so that no bound holds beyond it
         motion =
             std::min(motion, cell_.relative_motion_bound(pair, from.joints, from.cell_state, to.joints, to.cell_state));
         for (State* end : {&from, &to}) raise_bound(*end, pair);
@@ -166,7 +166,7 @@ bool ClearanceTracker::sweep_pair(State& from, State& to, std::size_t pair, std:
         if (!cell_.is_of_workpiece(pair)) reach = std::max(reach, motion);
     }
     for (State* end : {&from, &to})
-        if (!end->bounds[pair].is_known_to(reach)) measure(*end, pair, reach);
+        if (!end->bounds[pair].is_measured_up_to(reach)) measure(*end, pair, reach);
     const CellClearance &at0 = from.cell_state.clearances[pair], &at1 = to.cell_state.clearances[pair];
     CellClearance nearer_end = at1.clearance < at0.clearance ? at1 : at0;
     result.upper_bound = std::min(result.upper_bound, nearer_end.clearance);
@@ -208,19 +208,19 @@ void ClearanceTracker::sweep(State& from, State& to, std::span<const std::size_t
     const std::size_t nearest =
         is_step ? nearest_pair_
                 : *std::ranges::min_element(pairs, {}, [&](std::size_t i) { return to.bounds[i].clearance; });
-    // No body moves farther between two steps: it spares the motion bounds of most pairs.
+    // Upper bound for all bodies between two steps. It spares computing the motion bounds of most pairs.
     const double max_motion = is_step
                                   ? std::ranges::max(step_displacement_) + cell_.max_arc_excess(to.joints - from.joints)
                                   : core::kInfinity;
     State& middle = midpoints_[bisections];
     middle.pairs.clear();
-    const auto decide = [&](std::size_t pair) {
+    const auto sweep_or_bisect = [&](std::size_t pair) {
         if (!sweep_pair(from, to, pair, bisections, result)) middle.pairs.push_back(pair);
     };
-    decide(nearest);
+    sweep_or_bisect(nearest);
     for (const std::size_t pair : pairs) {
         const double nearer_end = std::min(from.bounds[pair].clearance, to.bounds[pair].clearance);
-        if (pair != nearest && nearer_end - max_motion < result.upper_bound) decide(pair);
+        if (pair != nearest && nearer_end - max_motion < result.upper_bound) sweep_or_bisect(pair);
     }
     if (middle.pairs.empty()) return;
     place_midpoint(from, to, middle);

@@ -31,27 +31,28 @@ class ClearanceTracker {
     std::size_t midpoint_count() const { return midpoint_count_; } ///< configurations measured between steps
 
   private:
-    /// What is known of a clearance. It is exact if it is below `measured_to`.
+    /// Result of measuring a clearance. It is exact if it is below `measured_to`, else a lower bound.
     struct Bound {
-        double clearance = -core::kInfinity;   ///< lower bound, mm; not cut off at CollisionOptions::max_clearance
+        double clearance = -core::kInfinity;   ///< mm; not cut off at CollisionOptions::max_clearance
         double measured_to = -core::kInfinity; ///< larger clearances were not measured, mm
 
-        bool is_known_to(double distance) const { return clearance < measured_to || measured_to >= distance; }
+        /// True if the clearance is exact, or known to exceed `limit`, mm.
+        bool is_measured_up_to(double limit) const { return clearance < measured_to || measured_to >= limit; }
     };
     struct State {
         CellJoints joints = CellJoints::Zero();
         CellState cell_state;
         std::vector<Bound> bounds;         ///< by pair
-        std::vector<double> motion_bounds; ///< by body: of its motion to this state, mm; NaN: not yet
-        std::vector<std::size_t> pairs;    ///< of a midpoint: those that it is to decide about
+        std::vector<double> motion_bounds; ///< by body: of its motion to this state, mm; NaN: not yet computed
+        std::vector<std::size_t> pairs;    ///< of a midpoint: those whose motion is bisected there
     };
-    /// Result of a motion so far.
+    /// Minimum of the swept clearances of a motion, as far as its pairs have been processed.
     struct Sweep {
         CellClearance minimum;
         double upper_bound = core::kInfinity; ///< of the result: the smallest clearance measured on the motion, mm
     };
     void measure(State& state, std::size_t pair, double max_clearance);
-    bool bound_current(std::size_t pair, double sufficient, double look_ahead);
+    bool renew_bound(std::size_t pair, double required, double look_ahead);
     void set_current_bound(std::size_t pair, double lower_bound);
     double clearance_lower_bound(std::size_t pair) const;
     double body_motion_bound(const State& from, State& to, std::size_t pair) const;
