@@ -2,7 +2,7 @@
 
 namespace fettle::find {
 
-/// Bounds of what is looked for.
+/// Bounds on the anomalies that are searched for.
 struct SearchBounds {
     double max_width = 45;   ///< of an anomaly, mm
     double max_area = 2500;  ///< mm²

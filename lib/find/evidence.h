@@ -8,7 +8,8 @@
 
 namespace fettle::find {
 
-/// What tells an anomaly from a feature of the part, measured on one candidate. Lengths mm unless they say otherwise.
+/// Quantities that distinguish an anomaly from a feature of the part, measured on one candidate. Lengths mm unless they
+/// say otherwise.
 struct Evidence {
     double height = 0;        ///< 0.9 quantile over the surface beneath
     double ring_sd = 0;       ///< of the metal around, about that surface

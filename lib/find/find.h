@@ -22,7 +22,7 @@ struct FoundAnomaly {
     double area = 0;         ///< of the surface beneath, mm²
     double volume = 0;       ///< over that surface, mm³
     double significance = 0; ///< height in standard deviations of the surface beneath
-    std::string doubt;       ///< why a person should look at it; empty: nothing speaks against it
+    std::string doubt;       ///< why an operator should check it; empty: none
     std::string job;         ///< file of its job; empty: it has none
 
     Eigen::Isometry3d T_anomaly_part; ///< its own frame: origin on the surface beneath, whose mean normal is +z
@@ -43,7 +43,8 @@ struct FindOptions {
     double min_probability = 0.5; ///< less probable ones are left out
 };
 
-/// Finds anomalies of a part without a model: the part itself is the witness (docs/methods/find.md).
+/// Finds anomalies of a part without a model: the metal around each candidate predicts the surface beneath it
+/// (docs/methods/find.md).
 /// @throws InputError if the part has no surface
 FindResult find_anomalies(const mesh::CloudMesh& part, const FindOptions& options = {});
 
@@ -56,7 +57,8 @@ using SignedDistances = std::function<Eigen::VectorXd(const Eigen::Matrix3Xd&)>;
 FindResult find_anomalies_against(const mesh::CloudMesh& part, const SignedDistances& distances,
                                   const FindOptions& options = {});
 
-/// Takes a person's word: rows of `keep` are anomalies without doubt, rows of `drop` are none. Rows keep their numbers.
+/// Applies an operator's decisions: rows of `keep` are anomalies without doubt, rows of `drop` are none. Rows keep
+/// their numbers.
 /// @throws InputError for a number that is no row, or in both
 void judge(FindResult& result, const std::vector<int>& keep, const std::vector<int>& drop);
 

@@ -1,9 +1,9 @@
 #include "find/ring_fit.h"
 
+#include "core/decompositions.h"
 #include "geometry/quantiles.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
@@ -153,10 +153,9 @@ FittedPolynomial fit_polynomial(const Ring& ring, int degree, Eigen::VectorXd we
     const Eigen::VectorXd all = weights.cwiseProduct(ring.near);
     const double repeats = double(ring.z.size()) / ring.independent;
     // Semidefinite where few points are left: the root by eigenvalues exists for any.
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(normal_matrix(A, all));
-    const Eigen::VectorXd scales =
-        (repeats / eigen.eigenvalues().array().max(kRingRidge * eigen.eigenvalues().maxCoeff() + 1e-300)).sqrt();
-    fit.polynomial.covariance_root = sd * eigen.eigenvectors() * scales.asDiagonal();
+    const auto [values, vectors] = core::symmetric_eigen<Eigen::Dynamic>(normal_matrix(A, all));
+    const Eigen::VectorXd scales = (repeats / values.array().max(kRingRidge * values.maxCoeff() + 1e-300)).sqrt();
+    fit.polynomial.covariance_root = sd * vectors * scales.asDiagonal();
     fit.polynomial.sd = sd;
     fit.polynomial.inliers = double((weights.array() > kMinWeight).count()) / double(weights.size());
     return fit;

@@ -7,9 +7,9 @@
 
 namespace fettle::merge {
 
-/// Turns normals to one side of the surface: neighbours agree, from the surest pair to the least sure (Hoppe et al.,
-/// Surface reconstruction from unorganized points, 1992). The pieces of the surface turn to where `hints` point, and
-/// without hints to the side of the largest piece: one scanner has seen them all.
+/// Turns normals to one side of the surface: neighbours agree, the pairs with the most parallel normals first (Hoppe et
+/// al., Surface reconstruction from unorganized points, 1992). The pieces of the surface turn to where `hints` point,
+/// and without hints to the side of the largest piece: one scanner has seen them all.
 /// @param normals     3xN, unit or zero   @param xyz  3xN, mm
 /// @param neighbours  of each point
 /// @param hints       3xN: towards the outer side; zero: unknown

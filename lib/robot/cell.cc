@@ -13,13 +13,14 @@ namespace {
 
 using Eigen::Isometry3d, Eigen::Vector3d;
 
+bool is_on_arm(int on) { return on >= link::kBase && on <= link::kTool; }
+
 // Can bodies on these two links never collide: do the links not move against each other, or are they neighbours?
 bool never_collide(const Robot& robot, int a, int b)
 {
     const auto is_fixed = [&](int on) { return on == link::kCell || (on == link::kBase && !robot.track); };
     if (a == b || (is_fixed(a) && is_fixed(b))) return true;
-    const auto on_arm = [](int on) { return on >= link::kBase && on <= link::kTool; };
-    return on_arm(a) && on_arm(b) && std::abs(a - b) == 1;
+    return is_on_arm(a) && is_on_arm(b) && std::abs(a - b) == 1;
 }
 
 double margin_of(const Robot& robot, const BodyPair& pair)
@@ -87,11 +88,8 @@ Cell::Cell(const Robot& robot, const Workpiece* workpiece, const CollisionOption
     }
     for (std::size_t body = 0; body < body_count(); ++body) {
         axis_distances_.push_back(axis_distances(body));
-        const double extent = bounding_balls_[body].extent;
-        if (link_of(body) == link::kTable)
-            max_table_extent_ = std::max(max_table_extent_, extent);
-        else
-            max_arm_extent_ = std::max(max_arm_extent_, extent);
+        double& max_extent = link_of(body) == link::kTable ? max_table_extent_ : max_arm_extent_;
+        max_extent = std::max(max_extent, bounding_balls_[body].extent);
     }
 }
 
@@ -261,10 +259,9 @@ double Cell::relative_motion_bound(std::size_t index, const CellJoints& q0, cons
                                    const CellState& s1) const
 {
     const CellJoints change = q1 - q0;
-    const auto on_arm = [](int on) { return on >= link::kBase && on <= link::kTool; };
     std::size_t near = pairs_[index].a, far = pairs_[index].b; // from the base
     if (link_of(near) > link_of(far)) std::swap(near, far);
-    if (on_arm(link_of(near)) && on_arm(link_of(far))) {
+    if (is_on_arm(link_of(near)) && is_on_arm(link_of(far))) {
         const Isometry3d T0 = s0.T_cell_body[near].inverse() * s0.T_cell_body[far];
         const Isometry3d T1 = s1.T_cell_body[near].inverse() * s1.T_cell_body[far];
         return displacement_bound(bounding_balls_[far], T0, T1) +
@@ -273,8 +270,7 @@ double Cell::relative_motion_bound(std::size_t index, const CellJoints& q0, cons
     double bound = 0;
     for (const std::size_t body : {near, far}) {
         bound += displacement_bound(body, s0, s1) + acceleration_bound(body, change, 1) / 4;
-        if (link_of(body) == link::kTable)
-            bound += change[7] * change[7] * (bounding_balls_[body].extent + robot_.table->point.norm()) / 4;
+        if (link_of(body) == link::kTable) bound += table_arc_excess(change, bounding_balls_[body].extent) / 2;
     }
     return bound;
 }

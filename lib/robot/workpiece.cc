@@ -254,8 +254,7 @@ bool Workpiece::contains(const Vector3d& point) const
 Workpiece::Nearest Workpiece::nearest_of(const PlacedSolid& body, double max_distance,
                                          const std::function<bool(Eigen::Index)>& is_selected) const
 {
-    Nearest best;
-    best.clearance.distance = max_distance;
+    Nearest best{.clearance = {.distance = max_distance}};
     search(body, &is_selected, best);
     return best;
 }
@@ -263,9 +262,7 @@ Workpiece::Nearest Workpiece::nearest_of(const PlacedSolid& body, double max_dis
 Workpiece::Nearest Workpiece::nearest_of_surface(const PlacedSolid& body, double max_distance,
                                                  std::uint32_t start_leaf) const
 {
-    Nearest best;
-    best.clearance.distance = max_distance;
-    best.leaf = start_leaf;
+    Nearest best{.clearance = {.distance = max_distance}, .leaf = start_leaf};
     search(body, nullptr, best);
     return best;
 }
@@ -273,9 +270,7 @@ Workpiece::Nearest Workpiece::nearest_of_surface(const PlacedSolid& body, double
 Workpiece::LowerBound Workpiece::lower_bound(const PlacedSolid& body, double max_distance,
                                              std::uint32_t start_leaf) const
 {
-    Nearest best;
-    best.clearance.distance = max_distance;
-    best.leaf = start_leaf;
+    Nearest best{.clearance = {.distance = max_distance}, .leaf = start_leaf};
     search(body, nullptr, best, true);
     return {best.clearance.distance, best.leaf};
 }
