@@ -16,7 +16,7 @@ align::HeldAxes held_axes(const std::string& text)
         const auto found = std::find(axes.begin(), axes.end(), part);
         if (found == axes.end())
             throw core::InputError("--hold", "expected some of x,y,z,rx,ry,rz with commas between, got '" + text + "'");
-        held[static_cast<std::size_t>(found - axes.begin())] = true;
+        held[found - axes.begin()] = true;
     }
     return held;
 }

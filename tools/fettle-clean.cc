@@ -52,7 +52,7 @@ Eigen::Vector3d parse_direction(const std::string& text)
     const std::vector<std::string> words = cli::split_list(text);
     if (words.size() != 3) throw core::InputError("expected X,Y,Z, got '" + text + "'");
     Eigen::Vector3d direction;
-    for (int k = 0; k < 3; ++k) direction[k] = cli::parse_number_in(words[static_cast<std::size_t>(k)], {});
+    for (int k = 0; k < 3; ++k) direction[k] = cli::parse_number_in(words[k], {});
     if (!(direction.norm() > 0)) throw core::InputError("a direction is not 0,0,0");
     return direction.stableNormalized();
 }

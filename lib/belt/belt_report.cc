@@ -68,7 +68,7 @@ void set_trace(cloud::Cloud& path, const std::vector<BeltTrace>& trace)
 {
     const auto add = [&](const char* name, double BeltTrace::*member) {
         Eigen::VectorXd values(path.size());
-        for (Eigen::Index i = 0; i < path.size(); ++i) values[i] = trace[static_cast<std::size_t>(i)].*member;
+        for (Eigen::Index i = 0; i < path.size(); ++i) values[i] = trace[i].*member;
         cloud::set_field(path, name, values, 8);
     };
     add("t", &BeltTrace::time);
@@ -84,7 +84,7 @@ void set_plan(cloud::Cloud& path, const BeltPlan& plan)
     constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
     Eigen::VectorXd force = Eigen::VectorXd::Constant(path.size(), kNone), depth = force, feed = force;
     for (Eigen::Index i = 0; i < path.size(); ++i) {
-        const BeltPoint& point = plan.path[static_cast<std::size_t>(i)];
+        const BeltPoint& point = plan.path[i];
         if (!point.is_on_part()) continue;
         (point.load.by_force ? force : depth)[i] = point.load.value;
         feed[i] = point.feed;

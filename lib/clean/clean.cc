@@ -38,7 +38,7 @@ class Cleaner {
                 Select select)
     {
         std::vector<Eigen::Index> kept;
-        kept.reserve(static_cast<std::size_t>(count));
+        kept.reserve(count);
         for (Eigen::Index i = 0; i < count; ++i)
             if (!is_left_out(i)) kept.push_back(i);
         const Eigen::Index removed = count - static_cast<Eigen::Index>(kept.size());

@@ -37,7 +37,7 @@ void for_each_neighbourhood(const Eigen::Matrix3Xd& xyz, int count, const Use& u
 
 std::vector<char> find_outliers(const Eigen::Matrix3Xd& xyz, const StatisticalFilter& filter)
 {
-    std::vector<float> mean_distances(static_cast<std::size_t>(xyz.cols())); // PCL's precision
+    std::vector<float> mean_distances(xyz.cols()); // PCL's precision
     for_each_neighbourhood(xyz, filter.neighbours, [&](std::size_t i, const std::vector<float>& squared) {
         double sum = 0;
         for (std::size_t k = 1; k < squared.size(); ++k) sum += std::sqrt(squared[k]);
@@ -56,7 +56,7 @@ std::vector<char> find_outliers(const Eigen::Matrix3Xd& xyz, const StatisticalFi
 
 std::vector<char> find_outliers(const Eigen::Matrix3Xd& xyz, const RadiusFilter& filter)
 {
-    std::vector<char> is_outlier(static_cast<std::size_t>(xyz.cols()));
+    std::vector<char> is_outlier(xyz.cols());
     for_each_neighbourhood(xyz, filter.neighbours, [&](std::size_t i, const std::vector<float>& squared) {
         is_outlier[i] = !(squared.back() <= filter.radius * filter.radius);
     });

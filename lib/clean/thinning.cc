@@ -51,10 +51,9 @@ struct Entry {
 std::vector<char> thin_by_voxels(const Eigen::Matrix3Xd& xyz, double length)
 {
     const CubeGrid grid = cube_grid(xyz, length);
-    std::vector<Entry> entries(static_cast<std::size_t>(xyz.cols()));
+    std::vector<Entry> entries(xyz.cols());
     tbb::parallel_for(std::size_t{0}, entries.size(), [&](std::size_t i) {
-        entries[i] = {CubeGrid::key_of(grid.cell_of(xyz.col(static_cast<Eigen::Index>(i)))),
-                      static_cast<std::uint32_t>(i)};
+        entries[i] = {CubeGrid::key_of(grid.cell_of(xyz.col(i))), static_cast<std::uint32_t>(i)};
     });
     tbb::parallel_sort(entries);
     std::vector<char> stays(entries.size(), 0);
@@ -89,10 +88,10 @@ std::vector<char> thin_by_spacing(const Eigen::Matrix3Xd& xyz, double length)
         }
         return false;
     };
-    std::vector<char> stays(static_cast<std::size_t>(xyz.cols()), 0);
+    std::vector<char> stays(xyz.cols(), 0);
     for (Eigen::Index i = 0; i < xyz.cols(); ++i) {
         if (is_near_a_kept_one(xyz.col(i))) continue;
-        stays[static_cast<std::size_t>(i)] = 1;
+        stays[i] = 1;
         kept[CubeGrid::key_of(grid.cell_of(xyz.col(i)))].push_back(i);
     }
     return stays;
@@ -125,14 +124,14 @@ std::vector<char> find_duplicates(const Eigen::Matrix3Xd& xyz)
     constexpr std::uint32_t kEmpty = UINT32_MAX;
     const std::size_t size = std::bit_ceil(2 * static_cast<std::size_t>(xyz.cols()) + 1);
     std::vector<std::uint32_t> slots(size, kEmpty); // open addressing, at most half full
-    std::vector<char> is_duplicate(static_cast<std::size_t>(xyz.cols()), 0);
+    std::vector<char> is_duplicate(xyz.cols(), 0);
     for (Eigen::Index i = 0; i < xyz.cols(); ++i) {
         std::size_t slot = hash_of(xyz.col(i)) & (size - 1);
         while (slots[slot] != kEmpty && xyz.col(slots[slot]) != xyz.col(i)) slot = (slot + 1) & (size - 1);
         if (slots[slot] == kEmpty)
             slots[slot] = static_cast<std::uint32_t>(i);
         else
-            is_duplicate[static_cast<std::size_t>(i)] = 1;
+            is_duplicate[i] = 1;
     }
     return is_duplicate;
 }

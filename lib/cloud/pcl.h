@@ -18,8 +18,7 @@ inline pcl::PointCloud<pcl::PointXYZ>::Ptr to_pcl(const Eigen::Matrix3Xd& xyz, c
 {
     const pcl::PointCloud<pcl::PointXYZ>::Ptr cloud(new pcl::PointCloud<pcl::PointXYZ>);
     cloud->resize(static_cast<std::size_t>(xyz.cols()));
-    for (Eigen::Index i = 0; i < xyz.cols(); ++i)
-        (*cloud)[static_cast<std::size_t>(i)].getVector3fMap() = (xyz.col(i) - centre).cast<float>();
+    for (Eigen::Index i = 0; i < xyz.cols(); ++i) (*cloud)[i].getVector3fMap() = (xyz.col(i) - centre).cast<float>();
     cloud->is_dense = xyz.allFinite();
     return cloud;
 }
@@ -28,9 +27,9 @@ inline pcl::PointCloud<pcl::PointXYZ>::Ptr to_pcl(const Eigen::Matrix3Xd& xyz, c
 template <typename Point>
 Eigen::Matrix3Xd from_pcl(const pcl::PointCloud<Point>& cloud, const Eigen::Vector3d& centre)
 {
-    Eigen::Matrix3Xd xyz(3, static_cast<Eigen::Index>(cloud.size()));
+    Eigen::Matrix3Xd xyz(3, cloud.size());
     for (Eigen::Index i = 0; i < xyz.cols(); ++i)
-        xyz.col(i) = cloud[static_cast<std::size_t>(i)].getVector3fMap().template cast<double>() + centre;
+        xyz.col(i) = cloud[i].getVector3fMap().template cast<double>() + centre;
     return xyz;
 }
 

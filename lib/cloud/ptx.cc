@@ -57,8 +57,7 @@ class PtxParser : core::FileLines {
             read_points(columns * rows, T_file_scanner);
         }
         cloud.xyz.resize(3, static_cast<Eigen::Index>(points_.xyz.size()));
-        for (std::size_t i = 0; i < points_.xyz.size(); ++i)
-            cloud.xyz.col(static_cast<Eigen::Index>(i)) = points_.xyz[i];
+        for (std::size_t i = 0; i < points_.xyz.size(); ++i) cloud.xyz.col(i) = points_.xyz[i];
         if (scans == 1) cloud.width = rows;
         set_field(cloud, "intensity", Eigen::Map<const Eigen::VectorXd>(points_.intensities.data(), cloud.size()));
         if (!points_.colours.empty() && points_.colours.size() == points_.xyz.size())

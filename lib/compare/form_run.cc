@@ -19,7 +19,7 @@ Eigen::Matrix3Xd select_points(const cloud::Cloud& cloud, const std::optional<jo
     for (Eigen::Index i = 0; i < cloud.size(); ++i) {
         if (!cloud.xyz.col(i).allFinite())
             ++dropped;
-        else if (regions.empty() || regions[static_cast<std::size_t>(i)] == job::Region::inside)
+        else if (regions.empty() || regions[i] == job::Region::inside)
             used.push_back(i);
     }
     return cloud.xyz(Eigen::all, used);

@@ -81,7 +81,7 @@ Eigen::VectorXd parse_number_list(std::string_view list, const std::vector<std::
         if (!number || !std::isfinite(*number) || last != (comma == list.size()))
             throw InputError("expected a number for " + names[k] + (last ? " at the end" : " and a comma") + ", got '" +
                              std::string(list) + "'");
-        numbers[static_cast<Eigen::Index>(k)] = *number;
+        numbers[k] = *number;
         list.remove_prefix(std::min(comma + 1, list.size()));
     }
     return numbers;

@@ -97,10 +97,9 @@ Eigen::Matrix2Xd joined_outline(const Eigen::Matrix2Xd& polygon, const Eigen::Ma
         outlines, {}, [](const std::vector<cv::Point>& outline) { return cv::contourArea(outline); });
     std::vector<cv::Point> corners;
     cv::approxPolyDP(*largest, corners, kTolerance, true);
-    Eigen::Matrix2Xd result(2, static_cast<Eigen::Index>(corners.size()));
+    Eigen::Matrix2Xd result(2, corners.size());
     for (std::size_t i = 0; i < corners.size(); ++i)
-        result.col(static_cast<Eigen::Index>(i)) =
-            low + pixel * Eigen::Vector2d(corners[i].x - kMargin, corners[i].y - kMargin);
+        result.col(i) = low + pixel * Eigen::Vector2d(corners[i].x - kMargin, corners[i].y - kMargin);
     return result;
 }
 

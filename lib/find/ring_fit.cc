@@ -166,7 +166,7 @@ void set_shares(std::vector<FittedPolynomial>& fits, double independent)
 {
     double sd = std::numeric_limits<double>::infinity();
     for (const FittedPolynomial& fit : fits) sd = std::min(sd, fit.polynomial.sd);
-    Eigen::VectorXd criteria(static_cast<Index>(fits.size()));
+    Eigen::VectorXd criteria(fits.size());
     for (std::size_t k = 0; k < fits.size(); ++k) {
         const double limit = kInlierCutoff * sd;
         const double mean = fits[k].residuals.array().square().min(limit * limit).mean();

@@ -62,7 +62,7 @@ std::vector<Sheet> find_sheets(const HeightMap& map, double reach)
     const double median = quantile_of(values_in(turn, map.seen), 0.5);
     const Mask smooth = opened(map.seen & (turn < std::max(kMinCreaseAngle, kCreaseMedians * median)), 3);
     const Components pieces = components(smooth);
-    std::vector<int> order(static_cast<std::size_t>(pieces.count));
+    std::vector<int> order(pieces.count);
     std::iota(order.begin(), order.end(), 1);
     std::ranges::stable_sort(order, std::greater{}, [&](int k) { return pieces.area(k); });
     const double min_cells = std::max(double(kMinSheetCells), kMinSheetShare * cv::countNonZero(map.seen));

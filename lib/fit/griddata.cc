@@ -78,7 +78,7 @@ void merge_close(std::vector<Node>& nodes, double min_distance)
             }
         if (second == 0) return;
         merge(nodes[first], nodes[second]);
-        nodes.erase(nodes.begin() + static_cast<std::ptrdiff_t>(second));
+        nodes.erase(nodes.begin() + second);
     }
 }
 
@@ -99,7 +99,7 @@ Eigen::MatrixXd node_weights(const surface::Surface& surface, double min_distanc
     merge_close(nodes, min_distance);
     Eigen::MatrixXd weights = Eigen::MatrixXd::Zero(std::ssize(nodes), surface.touches.cols());
     for (Eigen::Index n = 0; n < weights.rows(); ++n) {
-        const Node& node = nodes[static_cast<std::size_t>(n)];
+        const Node& node = nodes[n];
         for (const Eigen::Index i : node.touches) weights(n, i) = 1 / static_cast<double>(node.touches.size());
     }
     return weights;

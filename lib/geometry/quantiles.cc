@@ -6,7 +6,7 @@ namespace fettle::geometry {
 
 double nth_smallest(std::span<double> numbers, std::size_t rank)
 {
-    const auto nth = numbers.begin() + static_cast<std::ptrdiff_t>(rank);
+    const auto nth = numbers.begin() + rank;
     std::nth_element(numbers.begin(), nth, numbers.end());
     return *nth;
 }

@@ -114,7 +114,7 @@ std::vector<TipLine> tip_lines(const mesh::Mesh& design, const Cutter& cutter, c
         if (!touch) return std::nullopt;
         return Eigen::Vector3d(xy.x(), xy.y(), touch->z + options.allowance);
     };
-    std::vector<TipLine> lines(static_cast<std::size_t>(passes));
+    std::vector<TipLine> lines(passes);
     tbb::parallel_for(std::size_t{0}, lines.size(), [&](std::size_t p) {
         const bool forwards = p % 2 == 0;
         const double b = across_at(p);

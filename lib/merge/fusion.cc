@@ -28,7 +28,7 @@ AllPoints all_points(const Scans& scans, const Registration& registration)
     for (std::size_t s = 0; s < scans.size(); ++s)
         if (registration.scans[s]) total += scans[s]->xyz.cols();
     AllPoints all{Eigen::Matrix3Xd(3, total), Eigen::Matrix3Xd(3, total), {}};
-    all.scan.reserve(static_cast<std::size_t>(total));
+    all.scan.reserve(total);
     Eigen::Index next = 0;
     for (std::size_t s = 0; s < scans.size(); ++s) {
         if (!registration.scans[s]) continue;
@@ -36,8 +36,7 @@ AllPoints all_points(const Scans& scans, const Registration& registration)
         const Eigen::Isometry3d& T = registration.scans[s]->T_world_scan;
         all.xyz.middleCols(next, scan.xyz.cols()) = T * scan.xyz;
         const Eigen::Matrix3Xd turned = registration.scans[s]->side * (T.linear() * scan.means.normals);
-        for (Eigen::Index i = 0; i < scan.xyz.cols(); ++i)
-            all.normals.col(next++) = turned.col(scan.means.of_point[static_cast<std::size_t>(i)]);
+        for (Eigen::Index i = 0; i < scan.xyz.cols(); ++i) all.normals.col(next++) = turned.col(scan.means.of_point[i]);
         all.scan.insert(all.scan.end(), static_cast<std::size_t>(scan.xyz.cols()), static_cast<std::uint16_t>(s));
     }
     return all;
@@ -138,7 +137,7 @@ cloud::Cloud merge_points(const Scans& scans, const Registration& registration, 
     merged.xyz.resize(3, count);
     Eigen::VectorXd seen(count), disagreement(count);
     tbb::parallel_for(Eigen::Index{0}, count, [&](Eigen::Index k) {
-        const MergedPoint point = merged_point(kept[static_cast<std::size_t>(k)], all, grid, reach, noises);
+        const MergedPoint point = merged_point(kept[k], all, grid, reach, noises);
         merged.xyz.col(k) = point.place;
         seen[k] = point.scans;
         disagreement[k] = point.disagreement;

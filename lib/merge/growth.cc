@@ -102,7 +102,7 @@ class Grower {
             const Place place{align::orthonormalized(on.T_world_scan * pose.T_b_a), on.side * pose.side};
             const auto confirmed = confirmations(candidate, place);
             if (!confirmed) { // it never will
-                candidates_.erase(candidates_.begin() + static_cast<std::ptrdiff_t>(k--));
+                candidates_.erase(candidates_.begin() + k--);
                 continue;
             }
             if (!candidate.is_sure && *confirmed == 0) continue;

@@ -125,8 +125,8 @@ PairPose refine_pair(const Scan& a, const Scan& b, PairPose pose, double reach, 
         const double limit = std::pow(reach, 1 - share) * std::pow(std::min(reach, 2 * length), share);
         const auto matches = correspondences(a, b, pose, limit, chosen);
         if (matches.size() < 6) break; // one for each degree of freedom
-        Eigen::VectorXd offsets(static_cast<Eigen::Index>(matches.size()));
-        for (std::size_t m = 0; m < matches.size(); ++m) offsets[static_cast<Eigen::Index>(m)] = matches[m].offset;
+        Eigen::VectorXd offsets(matches.size());
+        for (std::size_t m = 0; m < matches.size(); ++m) offsets[m] = matches[m].offset;
         const double sigma = std::max(geometry::kMedianToSigma * geometry::median_absolute(offsets), 1e-3 * length);
         const align::TwistFrame frame{pose.T_b_a * a.frame.centre, a.frame.radius};
         align::TwistMatrix A = align::TwistMatrix::Zero();

@@ -141,7 +141,7 @@ VoxelGrid::VoxelGrid(const Eigen::Matrix3Xd& xyz, double length) : length_(lengt
     std::vector<std::pair<std::uint64_t, std::uint32_t>> entries(order_.size());
     tbb::parallel_for(std::size_t{0}, entries.size(), [&](std::size_t i) {
         const Eigen::Array<std::int64_t, 3, 1> cell =
-            ((xyz.col(static_cast<Eigen::Index>(i)).array() - low_) / length_).floor().cast<std::int64_t>();
+            ((xyz.col(i).array() - low_) / length_).floor().cast<std::int64_t>();
         entries[i] = {key_of(cell[0], cell[1], cell[2]), static_cast<std::uint32_t>(i)};
     });
     tbb::parallel_sort(entries);
@@ -187,7 +187,7 @@ VoxelMeans voxel_means(const Eigen::Matrix3Xd& xyz, const VoxelGrid& grid, const
     means.xyz.resize(3, count);
     means.normals.resize(3, count);
     means.counts.resize(count);
-    means.of_point.resize(static_cast<std::size_t>(xyz.cols()));
+    means.of_point.resize(xyz.cols());
     Eigen::Matrix3Xd hints = Eigen::Matrix3Xd::Zero(3, count); // towards the outer side
     std::vector<std::vector<std::uint32_t>> neighbours(count);
     for (std::size_t v = 0; v < cells.size(); ++v) {
@@ -214,11 +214,11 @@ double point_spacing(const Eigen::Matrix3Xd& xyz)
                            kNeighbour = 8; // of so many points; within the circle through the neighbour
     const geometry::PointIndex<3> index(xyz);
     const Eigen::Index count = std::min(kSamples, xyz.cols());
-    std::vector<double> spacings(static_cast<std::size_t>(count));
+    std::vector<double> spacings(count);
     tbb::parallel_for(Eigen::Index{0}, count, [&](Eigen::Index k) {
         const Eigen::Vector3d p = xyz.col(k * xyz.cols() / count);
         const double radius = (xyz.col(index.nearest(p, 1 + kNeighbour).back()) - p).norm();
-        spacings[static_cast<std::size_t>(k)] = radius * std::sqrt(std::numbers::pi / kNeighbour);
+        spacings[k] = radius * std::sqrt(std::numbers::pi / kNeighbour);
     });
     return geometry::median(spacings);
 }

@@ -74,8 +74,8 @@ CloudMesh select_triangles(const CloudMesh& part, const std::vector<Eigen::Index
 {
     CloudMesh result;
     result.triangles = part.triangles(Eigen::all, indices);
-    std::vector<int> new_index(static_cast<std::size_t>(part.points.size()), -1);
-    for (const int corner : result.triangles.reshaped()) new_index[static_cast<std::size_t>(corner)] = 0;
+    std::vector<int> new_index(part.points.size(), -1);
+    for (const int corner : result.triangles.reshaped()) new_index[corner] = 0;
     std::vector<Eigen::Index> used;
     for (std::size_t i = 0; i < new_index.size(); ++i)
         if (new_index[i] == 0) {
@@ -83,15 +83,15 @@ CloudMesh select_triangles(const CloudMesh& part, const std::vector<Eigen::Index
             used.push_back(static_cast<Eigen::Index>(i));
         }
     result.points = cloud::select_points(part.points, used);
-    for (int& corner : result.triangles.reshaped()) corner = new_index[static_cast<std::size_t>(corner)];
+    for (int& corner : result.triangles.reshaped()) corner = new_index[corner];
     return result;
 }
 
 CloudMesh select_points(const CloudMesh& part, const std::vector<Eigen::Index>& indices)
 {
     if (!part.is_mesh()) return {cloud::select_points(part.points, indices), {}};
-    std::vector<char> is_kept(static_cast<std::size_t>(part.points.size()), 0);
-    for (const Eigen::Index i : indices) is_kept[static_cast<std::size_t>(i)] = 1;
+    std::vector<char> is_kept(part.points.size(), 0);
+    for (const Eigen::Index i : indices) is_kept[i] = 1;
     std::vector<Eigen::Index> kept;
     for (Eigen::Index t = 0; t < part.triangles.cols(); ++t)
         if (std::ranges::all_of(part.triangles.col(t), [&](int corner) { return is_kept[std::size_t(corner)] != 0; }))

@@ -38,7 +38,7 @@ Segment segment(const align::OrientedPoints& points, const Eigen::Vector3d& midd
     const pcl::PointCloud<pcl::Normal>::Ptr normals(new pcl::PointCloud<pcl::Normal>);
     normals->resize(static_cast<std::size_t>(points.normals.cols()));
     for (Eigen::Index i = 0; i < points.normals.cols(); ++i)
-        (*normals)[static_cast<std::size_t>(i)].getNormalVector3fMap() = points.normals.col(i).cast<float>();
+        (*normals)[i].getNormalVector3fMap() = points.normals.col(i).cast<float>();
     pcl::SACSegmentationFromNormals<pcl::PointXYZ, pcl::Normal> search;
     search.setModelType(model);
     search.setMethodType(pcl::SAC_RANSAC);
