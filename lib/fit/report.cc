@@ -38,7 +38,7 @@ void report(json::Value& out, const Fit& fit)
         .set("goodness", fit.surface.goodness)
         .set("touch_freedom", fit.surface.touch_sigma_dof)
         .set("weight", fit.surface.weight)
-        .set("gross_errors", static_cast<int>(fit.surface.outliers.size()));
+        .set("outliers", static_cast<int>(fit.surface.outliers.size()));
     report_scores(out, fit.surface);
 }
 

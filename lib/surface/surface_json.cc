@@ -130,7 +130,7 @@ Value write_fit(const Surface& surface, double mm)
     if (!surface.alternatives.empty()) fit.set("score", surface.score).set("weight", surface.weight);
     if (!surface.outliers.empty()) {
         const std::vector<double> outliers(surface.outliers.begin(), surface.outliers.end());
-        fit.set("gross_errors", Value(Eigen::VectorXd(Eigen::VectorXd::Map(outliers.data(), outliers.size()))));
+        fit.set("outliers", Value(Eigen::VectorXd(Eigen::VectorXd::Map(outliers.data(), outliers.size()))));
     }
     return fit.set("ignored", surface.ignored);
 }
@@ -146,10 +146,10 @@ void read_fit(Reader reader, Surface& surface, double mm)
     surface.ignored = reader.integer("ignored", 0, std::numeric_limits<int>::max());
     surface.score = reader.number_or("score", 0);
     surface.weight = reader.number_or("weight", 1, core::Range::between(0, 1));
-    if (reader.has("gross_errors"))
-        for (const double column : reader.vector("gross_errors")) {
+    if (reader.has("outliers"))
+        for (const double column : reader.vector("outliers")) {
             if (!(column >= 0 && column < kMaxTouches && column == std::floor(column)))
-                reader.refuse("gross_errors", core::to_text(column) + " is not the index of a touch");
+                reader.refuse("outliers", core::to_text(column) + " is not the index of a touch");
             surface.outliers.push_back(column);
         }
     reader.reject_unknown_keys();
@@ -232,7 +232,7 @@ Surface parse_surface(json::Reader reader)
     surface.precision = read_precision(reader, surface, mm);
     if (reader.has("alternatives")) read_alternatives(reader, surface, mm);
     for (const Eigen::Index column : surface.outliers)
-        if (column >= surface.touches.cols()) reader.refuse("fit.gross_errors", "there are fewer touches");
+        if (column >= surface.touches.cols()) reader.refuse("fit.outliers", "there are fewer touches");
     reader.reject_unknown_keys();
     return surface;
 }

@@ -30,7 +30,7 @@ fettle-report --job "$job" --grinding stopped.json | grep -q 'Grinding not finis
 jq '.surface = {"type": "swept", "direction_deg": 30}' "$job" >swept.json
 fettle-report --job swept.json | grep -q 'swept, rulings 30°'
 # outliers are named
-jq '.fit.gross_errors = [2]' desired.json >outlier.json
+jq '.fit.outliers = [2]' desired.json >outlier.json
 fettle-report --job "$job" --surface outlier.json | grep -q 'Outliers, left out</th><td>1<.*>touch 2<'
 # files of one run agree; those of another are reported
 fettle-report --job "$job" --surface desired.json --plan plan.json -o /dev/null 2>err

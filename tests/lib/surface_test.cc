@@ -437,8 +437,8 @@ TEST(SurfaceJson, RefusesWhatIsWrong)
     EXPECT_EQ(
         refusal(surface_text(
             plane,
-            R"(, "fit": {"method": "plane", "touch_sigma": 1, "rms": 1, "ignored": 0, "gross_errors": [1, 1.5]})")),
-        "s.json: fit.gross_errors: 1.5 is not the index of a touch");
+            R"(, "fit": {"method": "plane", "touch_sigma": 1, "rms": 1, "ignored": 0, "outliers": [1, 1.5]})")),
+        "s.json: fit.outliers: 1.5 is not the index of a touch");
 }
 
 TEST(SurfaceGrid, CoversTheOutlineOnce)
