@@ -436,8 +436,7 @@ TEST(SurfaceJson, RefusesWhatIsWrong)
               "s.json: precision: belongs to a shape of type bspline");
     EXPECT_EQ(
         refusal(surface_text(
-            plane,
-            R"(, "fit": {"method": "plane", "touch_sigma": 1, "rms": 1, "ignored": 0, "outliers": [1, 1.5]})")),
+            plane, R"(, "fit": {"method": "plane", "touch_sigma": 1, "rms": 1, "ignored": 0, "outliers": [1, 1.5]})")),
         "s.json: fit.outliers: 1.5 is not the index of a touch");
 }
 
