@@ -35,7 +35,7 @@ struct Options {
     gantry::GantryOptions gantry{
         t,
         {.fallback = "", .gantry = "The machine: a simulated gantry, one with drives, or a driver (docs/driver.md)"}};
-    gantry::StockOptions stock{t, false};
+    gantry::StockOptions stock{t, "beneath a virtual gantry; of a driver's machine if it is known"};
     const double& removal_factor = gantry::declare_removal_factor(t);
     const std::string& steering = t.optional_file(
         "--steer", "EVENTS",

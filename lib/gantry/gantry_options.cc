@@ -44,11 +44,9 @@ const double& declare_removal_factor(cli::Tool& tool)
                        core::Range::between(1 / kMaxFactor, kMaxFactor));
 }
 
-StockOptions::StockOptions(cli::Tool& tool, bool is_required)
-    : file(is_required ? tool.required_file_option("--stock", "PART", "The part as it is: STL, PLY, OBJ or PCD")
-                       : tool.optional_file("--stock", "PART",
-                                            "The part as it is, STL, PLY, OBJ or PCD: beneath a virtual gantry; of a "
-                                            "driver's machine if it is known")),
+StockOptions::StockOptions(cli::Tool& tool, const std::string& help)
+    : file(help.empty() ? tool.required_file_option("--stock", "PART", "The part as it is: STL, PLY, OBJ or PCD")
+                        : tool.optional_file("--stock", "PART", "The part as it is, STL, PLY, OBJ or PCD: " + help)),
       unit(tool.length_unit("--stock-units", "Unit of PART, if it is not the job's")),
       cell(tool.optional_number("--cell", "LENGTH", "Side of a cell of the stock; default: 1/64 of the wheel's width",
                                 core::Range::positive()))

@@ -43,8 +43,8 @@ const double& declare_removal_factor(cli::Tool& tool);
 
 /// The options that name the part on a machine.
 struct StockOptions {
-    /// @param is_required  false: a driver's part may be unknown
-    explicit StockOptions(cli::Tool& tool, bool is_required = true);
+    /// @param help  of a part that need not be given: what it is for; empty: it is required
+    explicit StockOptions(cli::Tool& tool, const std::string& help = "");
 
     const std::string& file;                         ///< --stock
     const std::optional<units::Units::Length>& unit; ///< --stock-units

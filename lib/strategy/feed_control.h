@@ -20,8 +20,13 @@ namespace fettle::strategy {
 /// length, so m is below 1.
 ///
 /// A slow feed is not thorough: the force falls with what is left, so two strokes at the job's feed remove more than
-/// one at half of it. Where the target needs less than half of the job's feed, the job's feed is kept: another stroke
-/// is due anyway.
+/// one at half of it. Where the target needs less than half of the job's feed, more strokes are due, and all go as fast
+/// as the fewest of them allow. Over flat stock of the height h a stroke at the feed v leaves δ, h − δ = c F / (w v)
+/// with the wheel's width w; so with κ = k c / (w v) n strokes lower the force of the height by (1 + κ)ⁿ, and
+///
+///   (1 + κ)ⁿ F_target = F(h) = (1 + κ_job) F_job,
+///
+/// where F_job is what the job's feed would leave, by the last period.
 class FeedControl {
   public:
     /// @param max_remaining  largest height that may be left above the reference surface, mm
@@ -34,11 +39,13 @@ class FeedControl {
     void update(double before, double after, double duration);
 
   private:
+    double feed_of_strokes(double excess) const;
     double force(double deflection) const { return deflection > 0 ? preload_ + stiffness_ * deflection : 0; }
 
     double preload_, stiffness_;
     double target_;       ///< N
     double removal_rate_; ///< c / A, mm/(N s)
+    double stroke_rate_;  ///< κ at the job's feed
     double max_feed_;     ///< mm/s
     double period_;
     double feed_;

@@ -123,14 +123,30 @@ TEST(FeedControl, HoldsTheTargetWhateverTheMetalYields)
     }
 }
 
-TEST(FeedControl, KeepsTheFeedWhereAnotherStrokeIsDue)
+TEST(FeedControl, DoesWithTheFewestStrokes)
 {
-    job::Job job;
-    strategy::FeedControl control(job, 0.05);
-    control.update(1, 1, 0.02); // 20 times the limit
-    EXPECT_EQ(control.feed(), job.feed.rate);
+    // Flat stock of the height h; a stroke at the feed v leaves δ with (h − δ) w v = c k δ. As many strokes as the
+    // control foresees, each at its feed, leave the target, three quarters of the limit; one less would need less than
+    // half of the job's feed.
+    const job::Job job;
+    const double limit = 0.05, target = 0.75 * limit, k = job.force.stiffness, v = job.feed.rate;
+    const auto left = [&](double h, double feed) {
+        return h / (1 + k * job.removal_coefficient / (job.wheel.width * feed));
+    };
+    for (const double h : {0.3, 0.5, 1.0, 3.0}) {
+        strategy::FeedControl control(job, limit);
+        const double z = left(h, v);
+        control.update(z, z, 0.02);
+        EXPECT_GE(control.feed(), 0.5 * v);
+        EXPECT_LE(control.feed(), v);
+        int strokes = 0, slow = 0;
+        for (double high = h; high > target * (1 + 1e-9); high = left(high, control.feed())) ++strokes;
+        for (double high = h; high > target * (1 + 1e-9); high = left(high, 0.5 * v)) ++slow;
+        EXPECT_EQ(strokes, std::max(slow, 2)) << h;
+    }
+    strategy::FeedControl control(job, limit);
     control.update(0, 0, 0.02); // air
-    EXPECT_EQ(control.feed(), job.feed.rate);
+    EXPECT_EQ(control.feed(), v);
 }
 
 /// Strokes to and fro over a flat stock `high` above the reference until no more than `limit` is left in the

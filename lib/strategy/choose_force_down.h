@@ -1,0 +1,43 @@
+#pragma once
+
+#include "job/job.h"
+#include "removal/height_field.h"
+#include "surface/surface.h"
+#include "units/units.h"
+#include "json/document.h"
+
+#include <string>
+#include <vector>
+
+namespace fettle::strategy {
+
+/// A simulated run with one F_down. N, s.
+struct ForceDownTrial {
+    double force_down = 0;
+    bool finished = false;
+    std::string failure; ///< of a run that did not finish
+    double machine_time = 0;
+    double peak_force = 0;
+    int layers = 0; ///< highest layer
+    int raises = 0, re_cuts = 0, skipped_re_cuts = 0;
+};
+
+struct ForceDownChoice {
+    std::vector<ForceDownTrial> trials; ///< by ascending F_down
+    std::size_t chosen = 0;             ///< index of the fastest one that finishes
+};
+
+/// Chooses F_down by simulation (Wang 2007, 5.3.1, leaves it to the operator): the part is ground with each of some
+/// values from F_min to just below F_max on the quasi-static gantry, and the one that takes the least machine time is
+/// taken; of equal ones the smallest. With a higher F_down cuts are repeated less often, but layers are closer: which
+/// matters more depends on how fast the stock yields.
+/// @param stock  the part with its anomaly, lower than the job's safe height
+/// @param removal_factor  the stock's removal coefficient relative to the job's
+/// @throws InputError if the work finishes with none of them, or as plan::make_plan()
+ForceDownChoice choose_force_down(const job::Job& job, const surface::Surface& surface,
+                                  const removal::HeightField& stock, double removal_factor);
+
+/// The trials for a report, in the job's units.
+json::Value to_json(const ForceDownChoice& choice, const units::Units& units);
+
+} // namespace fettle::strategy
