@@ -207,7 +207,10 @@ LINUXCNC_RUNS := $(patsubst %.sh,%.case,$(sort $(wildcard tests/linuxcnc/*.sh)))
 # Of one tool: what its cases name. Statistical tests take a quarter of their draws, with test-all all of them.
 test: export FETTLE_DRAWS ?= $(if $(filter test-all,$(MAKECMDGOALS)),all,few)
 test-all: test
-test: deps
+# While what only tests need is installed, the tools that do without it are built: one of two processors had nothing to do.
+test:
+	@.ci/install-packages packages.txt --for-demo
+	@.ci/install-packages packages.txt $(if $(TOOL),,& $(MAKE) --no-print-directory -j$(JOBS) $(DEMO_TOOLS); status=$$?; wait $$! && exit $$status)
 	@rm -rf $(B)/results && mkdir -p $(B)/results
 	@$(MAKE) --no-print-directory -j$(JOBS) $(if $(TOOL),$(call tools_named_in,$(CASES)),build tests-built)
 	@$(MAKE) --no-print-directory -j$$(($(JOBS) + 2)) -k -s run-cases $(TEST_RUNS) 2>/dev/null; tests/summary $(B)/results
@@ -216,6 +219,8 @@ tests-built: $(TESTS)
 
 # Tools and studies' programs whose names stand in some files, and the list of all for its own cases.
 tools_named_in = $(if $(filter tests/fettle/%,$(1)),$(LIST)) $(addprefix $(B)/bin/,$(sort $(filter $(TOOLS),$(shell grep -ohE "fettle-[a-z-]+" $(1)))))
+# What `make demo` runs: these need no package beyond its own.
+DEMO_TOOLS = $(call tools_named_in,pipelines/casting.mk) $(B)/bin/fettle-find
 run-cases: $(CASE_RUNS)
 
 # One after the other: each has a machine that wants the computer for itself.
@@ -245,7 +250,7 @@ include tests/fuzz/fuzz.mk
 # --- the rest ---------------------------------------------------------------------------------------------------------
 demo:
 	@.ci/install-packages packages.txt --for-demo
-	@$(MAKE) --no-print-directory -j$(JOBS) $(call tools_named_in,pipelines/casting.mk) $(B)/bin/fettle-find
+	@$(MAKE) --no-print-directory -j$(JOBS) $(DEMO_TOOLS)
 	@$(MAKE) --no-print-directory -j$(JOBS) -f pipelines/casting.mk B=$(B) demo
 	@$(MAKE) --no-print-directory -j$(JOBS) -s -f pipelines/raw.mk B=$(B) demo
 
