@@ -1,5 +1,6 @@
 #include "cloud/pcd.h"
 
+#include "cloud/e57.h"
 #include "cloud/element.h"
 #include "cloud/fields.h"
 #include "cloud/pcd_header.h"
@@ -173,6 +174,14 @@ CloudFile parse_cloud(std::string_view bytes, const std::string& source, std::op
     bytes = core::strip_byte_order_mark(bytes, source);
     if (bytes.starts_with('{')) throw core::WrongFileType(source, "JSON, expected points");
     CloudFile file;
+    if (looks_like_e57(bytes)) {
+        const DeclaredUnits metres{units::Units::Length::m, std::nullopt};
+        file.units = resolve_units(metres, units, source);
+        file.cloud = parse_e57(bytes, source);
+        to_base_units(file.cloud, file.units);
+        check_coordinate_range(file.cloud.xyz, source);
+        return file;
+    }
     const bool is_ply = looks_like_ply(bytes);
     if (is_ply || looks_like_xyz(bytes)) {
         file = {is_ply                  ? parse_ply(bytes, source).vertices

@@ -20,8 +20,8 @@ struct CloudFile {
     units::Units units; ///< units of the file
 };
 
-/// Reads a point cloud from PCD (ascii, binary, binary_compressed), PLY or XYZ text; the content decides which. The
-/// header is checked against the size of the file before memory is allocated.
+/// Reads a point cloud from PCD (ascii, binary, binary_compressed), PLY, E57, PTX or XYZ text; the content decides
+/// which. The header is checked against the size of the file before memory is allocated.
 /// @param path   a file, or "-" for stdin
 /// @param units  units of the file, which its `# units` comment may not contradict; without them those of the comment,
 /// else mm

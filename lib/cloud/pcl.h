@@ -23,6 +23,21 @@ inline pcl::PointCloud<pcl::PointXYZ>::Ptr to_pcl(const Eigen::Matrix3Xd& xyz, c
     return cloud;
 }
 
+/// Points with normals as PCL's, relative to a centre. @param normals  3xN, unit
+inline pcl::PointCloud<pcl::PointNormal>::Ptr to_pcl(const Eigen::Matrix3Xd& xyz, const Eigen::Matrix3Xd& normals,
+                                                     const Eigen::Vector3d& centre)
+{
+    const pcl::PointCloud<pcl::PointNormal>::Ptr cloud(new pcl::PointCloud<pcl::PointNormal>);
+    cloud->resize(static_cast<std::size_t>(xyz.cols()));
+    for (Eigen::Index i = 0; i < xyz.cols(); ++i) {
+        pcl::PointNormal& point = (*cloud)[static_cast<std::size_t>(i)];
+        point.getVector3fMap() = (xyz.col(i) - centre).cast<float>();
+        point.getNormalVector3fMap() = normals.col(i).cast<float>();
+    }
+    cloud->is_dense = xyz.allFinite() && normals.allFinite();
+    return cloud;
+}
+
 /// Coordinates of PCL's points, of any type with x, y and z. @param centre  that of to_pcl(), mm   @return  3xN, mm
 template <typename Point>
 Eigen::Matrix3Xd from_pcl(const pcl::PointCloud<Point>& cloud, const Eigen::Vector3d& centre)

@@ -5,6 +5,7 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "geometry/quantiles.h"
+#include "geometry/spacing.h"
 #include "job/shape_warnings.h"
 #include "merge/fusion.h"
 #include "mesh/cloud_mesh.h"
@@ -74,7 +75,7 @@ RawScan read_scan(const std::string& path, const MergeRequest& request, MergeRun
     scan.sides.has_view = scan.sides.normals.cols() == 0 && !part.points.view_origin.isZero(0);
     scan.sides.view = part.points.view_origin;
     scan.xyz = part.points.xyz;
-    scan.spacing = point_spacing(scan.xyz);
+    scan.spacing = geometry::point_spacing(scan.xyz);
     if (!(scan.spacing > 0)) throw core::InputError(scan.name, "most of its points coincide");
     return scan;
 }

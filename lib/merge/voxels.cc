@@ -3,9 +3,9 @@
 #include "core/decompositions.h"
 #include "core/error.h"
 #include "geometry/bounding_box.h"
+#include "geometry/orientation.h"
 #include "geometry/point_index.h"
 #include "geometry/quantiles.h"
-#include "merge/orientation.h"
 
 #include <Eigen/Dense>
 #include <tbb/parallel_for.h>
@@ -204,23 +204,8 @@ VoxelMeans voxel_means(const Eigen::Matrix3Xd& xyz, const VoxelGrid& grid, const
     }
     if (sides.has_view) hints = -(means.xyz.colwise() - sides.view);
     means.outward = sides.has_view || sides.normals.cols() > 0;
-    orient_consistently(means.normals, means.xyz, neighbours, hints);
+    geometry::orient_consistently(means.normals, means.xyz, neighbours, hints);
     return means;
-}
-
-double point_spacing(const Eigen::Matrix3Xd& xyz)
-{
-    constexpr Eigen::Index kSamples = 1000,
-                           kNeighbour = 8; // of so many points; within the circle through the neighbour
-    const geometry::PointIndex<3> index(xyz);
-    const Eigen::Index count = std::min(kSamples, xyz.cols());
-    std::vector<double> spacings(count);
-    tbb::parallel_for(Eigen::Index{0}, count, [&](Eigen::Index k) {
-        const Eigen::Vector3d p = xyz.col(k * xyz.cols() / count);
-        const double radius = (xyz.col(index.nearest(p, 1 + kNeighbour).back()) - p).norm();
-        spacings[k] = radius * std::sqrt(std::numbers::pi / kNeighbour);
-    });
-    return geometry::median(spacings);
 }
 
 } // namespace fettle::merge

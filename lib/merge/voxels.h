@@ -55,7 +55,4 @@ struct Sides {
 /// @param xyz  3xN, mm   @param grid  of the points   @param length  of its cubes, mm
 VoxelMeans voxel_means(const Eigen::Matrix3Xd& xyz, const VoxelGrid& grid, const Sides& sides, double length);
 
-/// Distance of neighbouring points of a scan, mm, as if they lay in a square lattice: the median over the scan.
-double point_spacing(const Eigen::Matrix3Xd& xyz);
-
 } // namespace fettle::merge

@@ -1,5 +1,6 @@
 #include "mesh/mesh_file.h"
 
+#include "cloud/e57.h"
 #include "cloud/pcd_header.h"
 #include "cloud/ply.h"
 #include "cloud/reach.h"
@@ -12,6 +13,7 @@
 #include "mesh/obj_off.h"
 #include "mesh/polygons.h"
 #include "mesh/stl.h"
+#include "mesh/three_mf.h"
 
 namespace fettle::mesh {
 
@@ -27,9 +29,15 @@ Mesh parse_ply_mesh(std::string_view bytes, const std::string& source)
     return mesh;
 }
 
-Mesh parse_unscaled(std::string_view bytes, const std::string& source, MeshRepair& repair)
+/// @param mm  millimetres in the unit of the file; set where the file states it
+Mesh parse_unscaled(std::string_view bytes, const std::string& source, MeshRepair& repair, double& mm)
 {
     if (is_binary_stl(bytes)) return parse_stl(bytes, source, repair);
+    if (looks_like_three_mf(bytes)) {
+        ThreeMf file = parse_three_mf(bytes, source);
+        mm = file.unit_mm;
+        return std::move(file.mesh);
+    }
     bytes = core::strip_byte_order_mark(bytes, source);
     if (cloud::looks_like_ply(bytes)) return parse_ply_mesh(bytes, source);
     if (looks_like_off(bytes)) return parse_off(bytes, source);
@@ -38,21 +46,22 @@ Mesh parse_unscaled(std::string_view bytes, const std::string& source, MeshRepai
     if (looks_like_cloud(bytes)) throw core::WrongFileType(source, "points, expected a mesh");
     if (bytes.starts_with('{')) throw core::WrongFileType(source, "JSON, expected a mesh");
     if (!looks_like_damaged_stl(bytes)) core::refuse_other_content(bytes, source, "a mesh");
-    if (bytes.find('\0') == std::string_view::npos) throw core::InputError(source, "neither STL, PLY, OBJ nor OFF");
+    if (bytes.find('\0') == std::string_view::npos)
+        throw core::InputError(source, "neither STL, PLY, OBJ, OFF nor 3MF");
     return parse_stl(bytes, source, repair); // throws with the reason
 }
 
 /// Drops triangles that are not finite and converts the mesh to mm.
+/// @param mm  millimetres in the unit of the mesh
 /// @param repaired  what reading repaired so far   @param repair  receives it together with the triangles dropped here
 /// @throws InputError if few or no triangles are left, or coordinates are out of range
-Mesh checked_and_scaled(Mesh mesh, MeshRepair repaired, const std::string& source, units::Units::Length unit,
-                        MeshRepair* repair)
+Mesh checked_and_scaled(Mesh mesh, MeshRepair repaired, const std::string& source, double mm, MeshRepair* repair)
 {
     const Eigen::Index nonfinite = drop_nonfinite(mesh);
     if (nonfinite > 0) drop_unused_vertices(mesh); // the finite corners of those triangles
     repaired.dropped_triangles += nonfinite;
     check_triangles_left(mesh.triangles.cols(), repaired.dropped_triangles, source);
-    if (unit != units::Units::Length::mm) mesh.vertices *= units::mm_per(unit);
+    if (mm != 1) mesh.vertices *= mm;
     cloud::check_coordinate_range(mesh.vertices, source);
     if (repair != nullptr) *repair = repaired;
     return mesh;
@@ -94,15 +103,16 @@ Mesh read_mesh(const core::InputFile& file, const std::string& source, units::Un
     MeshRepair repaired;
     const auto read = [&](std::size_t offset, char* to, std::size_t count) { file.read(offset, to, count); };
     Mesh mesh = read_binary_stl(header, read, source, repaired);
-    return checked_and_scaled(std::move(mesh), repaired, source, unit, repair);
+    return checked_and_scaled(std::move(mesh), repaired, source, units::mm_per(unit), repair);
 }
 
 Mesh parse_mesh(std::string_view bytes, const std::string& source, units::Units::Length unit, MeshRepair* repair)
 {
     MeshRepair repaired;
-    Mesh mesh = parse_unscaled(bytes, source, repaired);
+    double mm = units::mm_per(unit);
+    Mesh mesh = parse_unscaled(bytes, source, repaired, mm);
     repaired.unused_vertices = drop_unused_vertices(mesh);
-    return checked_and_scaled(std::move(mesh), repaired, source, unit, repair);
+    return checked_and_scaled(std::move(mesh), repaired, source, mm, repair);
 }
 
 bool looks_like_cloud(std::string_view bytes)
@@ -110,7 +120,8 @@ bool looks_like_cloud(std::string_view bytes)
     if (is_binary_stl(bytes)) return false;
     if (bytes.starts_with("\xef\xbb\xbf")) bytes.remove_prefix(3);
     if (cloud::looks_like_ply(bytes)) return !cloud::ply_has_faces(bytes);
-    return cloud::looks_like_pcd(bytes) || (cloud::looks_like_xyz(bytes) && !looks_like_obj(bytes));
+    return cloud::looks_like_pcd(bytes) || cloud::looks_like_e57(bytes) ||
+           (cloud::looks_like_xyz(bytes) && !looks_like_obj(bytes));
 }
 
 } // namespace fettle::mesh

@@ -13,10 +13,10 @@ class InputFile;
 
 namespace fettle::mesh {
 
-/// Reads a mesh from STL (binary or ASCII), PLY, OBJ or OFF; size and content decide which. Equal vertices of an STL
-/// are merged and numbered in order of appearance; polygons are triangulated.
+/// Reads a mesh from STL (binary or ASCII), PLY, OBJ, OFF or 3MF; size and content decide which. Equal vertices of an
+/// STL are merged and numbered in order of appearance; polygons are triangulated.
 /// @param path  a file, or "-" for stdin
-/// @param unit  length unit of the file
+/// @param unit  length unit of the file; a 3MF states its own
 /// @param repair  receives what was dropped or repaired, unless null
 /// @return  mm
 /// @throws InputError for a malformed file, with the location, and for a mesh without triangles
@@ -32,7 +32,7 @@ Mesh parse_mesh(std::string_view bytes, const std::string& source, units::Units:
 /// Writes binary STL; its header names the unit.
 void write_stl(std::ostream& out, const Mesh& mesh, units::Units::Length unit = units::Units::Length::mm);
 
-/// True if the content is a point cloud (PCD, PLY without faces, or XYZ text) rather than a mesh.
+/// True if the content is a point cloud (PCD, PLY without faces, E57, PTX or XYZ text) rather than a mesh.
 bool looks_like_cloud(std::string_view bytes);
 
 } // namespace fettle::mesh

@@ -1,11 +1,13 @@
 #include "mesh/shape_file.h"
 
 #include "cloud/pcd.h"
+#include "cloud/stated_units.h"
 #include "core/content.h"
 #include "core/file.h"
 #include "core/wrong_kind.h"
 #include "mesh/mesh_file.h"
 #include "mesh/stl.h"
+#include "mesh/three_mf.h"
 
 #include <tbb/parallel_for.h>
 
@@ -26,6 +28,18 @@ std::vector<char> read_in_parallel(const core::InputFile& file)
         file.read(first, bytes.data() + first, std::min(kPieceBytes, bytes.size() - first));
     });
     return bytes;
+}
+
+/// Units of a 3MF file by what it states; in a unit that no other file is in (micron, foot) it counts as mm.
+/// @throws InputError if others are requested
+units::Units resolve_three_mf_units(std::string_view bytes, const std::string& source,
+                                    const std::optional<units::Units>& requested)
+{
+    using Length = units::Units::Length;
+    const double mm = three_mf_unit(bytes, source);
+    for (const Length length : {Length::mm, Length::in, Length::m})
+        if (units::mm_per(length) == mm) return cloud::resolve_units({{length, std::nullopt}}, requested, source);
+    return requested.value_or(units::Units{});
 }
 
 } // namespace
@@ -54,9 +68,10 @@ ShapeFile parse_shape(std::string_view bytes, const std::string& source, const s
         cloud::CloudFile file = cloud::parse_cloud(bytes, source, units);
         return {std::move(file.cloud), file.units, {}};
     }
-    if (!is_binary_stl(bytes) && !looks_like_damaged_stl(bytes))
+    if (!is_binary_stl(bytes) && !looks_like_damaged_stl(bytes) && !looks_like_three_mf(bytes))
         core::refuse_other_content(bytes, source, "points or a mesh");
     ShapeFile shape{Mesh(), units.value_or(units::Units{}), {}};
+    if (looks_like_three_mf(bytes)) shape.units = resolve_three_mf_units(bytes, source, units);
     shape.shape = parse_mesh(bytes, source, shape.units.length, &shape.repair);
     return shape;
 }

@@ -5,7 +5,7 @@ FUZZ_SECONDS ?= $(if $(filter -1,$(FUZZ_RUNS)),60,0)
 FUZZ_TARGETS := $(patsubst tests/fuzz/%.cc,%,$(wildcard tests/fuzz/*.cc))
 # What the readers are made of: whole modules, and of the others the files that the targets call.
 FUZZ_LIBRARY := $(wildcard $(addprefix lib/,$(addsuffix /*.cc,core geometry units json cloud job surface plan removal))) \
-    $(addprefix lib/,$(addsuffix .cc,$(addprefix mesh/,mesh mesh_file stl obj off polygons equal_corners) \
+    $(addprefix lib/,$(addsuffix .cc,$(addprefix mesh/,mesh mesh_file three_mf stl obj off polygons equal_corners) \
     $(addprefix gantry/,protocol serve driver driver_checks driver_halt head_check child machine virtual_gantry quasi_static) \
     $(addprefix strategy/,trace trace_file run_identity steering joystick keys) align/rigid compare/comparison_report \
     $(addprefix belt/,contact_wheel belt_journal_file assess running_error) \

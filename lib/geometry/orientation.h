@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace fettle::merge {
+namespace fettle::geometry {
 
 /// Turns normals to one side of the surface: neighbours agree, the pairs with the most parallel normals first (Hoppe et
 /// al., Surface reconstruction from unorganized points, 1992). The pieces of the surface turn to where `hints` point,
@@ -16,4 +16,4 @@ namespace fettle::merge {
 void orient_consistently(Eigen::Matrix3Xd& normals, const Eigen::Matrix3Xd& xyz,
                          const std::vector<std::vector<std::uint32_t>>& neighbours, const Eigen::Matrix3Xd& hints);
 
-} // namespace fettle::merge
+} // namespace fettle::geometry

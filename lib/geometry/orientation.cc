@@ -1,4 +1,4 @@
-#include "merge/orientation.h"
+#include "geometry/orientation.h"
 
 #include "geometry/union_find.h"
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <tuple>
 
-namespace fettle::merge {
+namespace fettle::geometry {
 namespace {
 
 struct Edge {
@@ -17,7 +17,7 @@ struct Edge {
 };
 
 /// Sum of the normals of each piece, at its root.
-Eigen::Matrix3Xd sums_of_pieces(const Eigen::Matrix3Xd& normals, geometry::UnionFind& pieces)
+Eigen::Matrix3Xd sums_of_pieces(const Eigen::Matrix3Xd& normals, UnionFind& pieces)
 {
     Eigen::Matrix3Xd sums = Eigen::Matrix3Xd::Zero(3, normals.cols());
     for (Eigen::Index i = 0; i < normals.cols(); ++i)
@@ -36,7 +36,7 @@ void orient_consistently(Eigen::Matrix3Xd& normals, const Eigen::Matrix3Xd& xyz,
             if (a < b && !normals.col(a).isZero(0) && !normals.col(b).isZero(0))
                 edges.push_back({static_cast<float>(1 - std::abs(normals.col(a).dot(normals.col(b)))), a, b});
     tbb::parallel_sort(edges, [](const Edge& one, const Edge& other) { return one.key() < other.key(); });
-    geometry::UnionFind pieces(neighbours.size());
+    UnionFind pieces(neighbours.size());
     for (const Edge& edge : edges) pieces.join(edge.a, edge.b, normals.col(edge.a).dot(normals.col(edge.b)) < 0);
     Eigen::VectorXd votes = Eigen::VectorXd::Zero(normals.cols());
     for (Eigen::Index i = 0; i < normals.cols(); ++i) {
@@ -58,4 +58,4 @@ void orient_consistently(Eigen::Matrix3Xd& normals, const Eigen::Matrix3Xd& xyz,
     }
 }
 
-} // namespace fettle::merge
+} // namespace fettle::geometry
