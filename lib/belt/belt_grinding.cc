@@ -120,22 +120,21 @@ void BeltGrinding::step()
     BeltRun& run = state_.run;
     if (point.touches_down) solver_.reset();
     if (point.is_on_part()) {
+        const double moving_time = tributary_lengths_[k] / point.feed;
+        const double cutting_time = moving_time + std::pow(point.dwell, wheel_.law.dwell_exponent);
+        const RemovalStep removal = removal_step(wheel_.law, wheel_.belt_speed, point.feed, cutting_time,
+                                                 options_.prior_work + run.work);
+        const bool is_local = options_.model == BeltModel::local;
         const WheelContact* contact = nullptr;
         try {
-            contact = &solver_.solve(point.T_part_tool, point.load);
+            contact = &solver_.solve(point.T_part_tool, point.load, is_local ? removal : RemovalStep{});
         } catch (const core::InputError& error) {
             throw core::InputError("point " + std::to_string(k), error.what());
         }
-        const double moving_time = tributary_lengths_[k] / point.feed;
-        const double cutting_time = moving_time + std::pow(point.dwell, wheel_.law.dwell_exponent);
-        const auto depth_at = [&](double p) {
-            return removed_depth(wheel_.law, p, wheel_.belt_speed, point.feed, cutting_time,
-                                 options_.prior_work + run.work);
-        };
+        const auto depth_at = [&](double p) { return removal.depth(p); };
         const MatrixXd& pressure = contact->contact.pressure;
         remove_material(*contact,
-                        options_.model == BeltModel::local ? pressure.unaryExpr(depth_at)
-                                                           : spread_over_rectangle(pressure).unaryExpr(depth_at),
+                        is_local ? pressure.unaryExpr(depth_at) : spread_over_rectangle(pressure).unaryExpr(depth_at),
                         moving_time + point.dwell);
     } else {
         constexpr double kNan = std::numeric_limits<double>::quiet_NaN();

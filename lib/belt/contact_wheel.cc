@@ -72,14 +72,6 @@ BeltLaw read_law(Reader reader, double mm)
 
 } // namespace
 
-double removed_depth(const BeltLaw& law, double p, double belt_speed, double feed, double duration, double prior_work)
-{
-    if (!(p > law.threshold)) return 0;
-    const double sharpness = law.wear_work > 0 ? std::exp(-prior_work / law.wear_work) : 1;
-    return law.coefficient * std::pow(p - law.threshold, law.pressure_exponent) *
-           std::pow(belt_speed, law.speed_exponent) * std::pow(feed, law.feed_exponent) * sharpness * duration;
-}
-
 double young_from_shore_a(double shore_a)
 {
     constexpr double kMpaPerKgfCm2 = 0.0981;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "belt/belt_law.h"
 #include "belt/layer_compliance.h"
 
 #include <Eigen/Core>
@@ -9,23 +10,6 @@
 namespace fettle::belt {
 
 inline constexpr double kNewtonMmPerJoule = 1000; ///< N mm
-
-/// Removal law of a belt: depth rate = coefficient · (p - threshold)^pressure · V_b^speed · V_w^feed, in MPa, mm/s and
-/// s, for a new belt. The rate has fallen to 1/e when the belt has done `wear_work`; work is force · V_b · time, which
-/// is the friction work divided by the friction coefficient. The default exponents are Preston's law (1927), the local
-/// form of Hammann's (Ren et al. 2006, eq. 5) with C_A K_A = coefficient and k_t = the wear of the belt.
-struct BeltLaw {
-    double coefficient = 0; ///< (mm/s) / (MPa^pressure (mm/s)^(speed + feed))
-    double pressure_exponent = 1, speed_exponent = 1, feed_exponent = 0; ///< exponents
-    double dwell_exponent = 1;                                           ///< exponent of the dwell time in s
-    double threshold = 0; ///< pressure below which the belt does not cut, MPa
-    double wear_work = 0; ///< N mm; 0: the belt does not wear
-};
-
-/// Depth removed by pressure p in `duration`, mm.
-/// @param p  MPa   @param belt_speed, feed  mm/s   @param duration  s
-/// @param prior_work  that the belt did before, N mm
-double removed_depth(const BeltLaw& law, double p, double belt_speed, double feed, double duration, double prior_work);
 
 /// A contact wheel under a grinding belt: an elastic layer on a rigid hub. The axis is y of the tool frame; the origin
 /// is the lowest point, at the middle of the width.

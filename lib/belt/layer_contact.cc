@@ -96,22 +96,59 @@ MatrixXd LayerContact::initial_pressure(const MatrixXd& gap, const Contact& give
     return p * (given.force / (p.sum() * cell_area_));
 }
 
+ArrayXXd LayerContact::removed_depth(const RemovalStep& removal, const ArrayXXd& pressure) const
+{
+    if (removal.is_linear()) {
+        if (!fem_) return removal.scale * pressure;
+        return (removal.scale * pressure).colwise() / fem_->tilt_cosines().square();
+    }
+    const auto depth = [&](double p) { return removal.depth(p); };
+    if (!fem_) return pressure.unaryExpr(depth);
+    const auto cosines = fem_->tilt_cosines();
+    return (pressure.colwise() / cosines).unaryExpr(depth).colwise() / cosines;
+}
+
+double LayerContact::step_length(const ArrayXXd& pressure, const MatrixXd& step, const RemovalStep& removal,
+                                 double slope, double curvature) const
+{
+    const ArrayXXd before = removed_depth(removal, pressure), s = step.array();
+    const auto removal_slope = [&](double length) {
+        return ((removed_depth(removal, pressure + length * s) - before) * s).sum();
+    };
+    if (removal.is_linear()) return -slope / (curvature + removal_slope(1));
+    // The slope of the energy grows along the step, so that the minimum is bracketed from the elastic solution down.
+    constexpr int kMaxIterations = 30;
+    constexpr double kRelativeTolerance = 1e-3; // the step's direction is not better than this
+    double low = 0, high = -slope / curvature, slope_low = slope;
+    double slope_high = removal_slope(high); // the elastic part is 0 there
+    for (int k = 0; k < kMaxIterations && high - low > kRelativeTolerance * high; ++k) {
+        const bool bisect = k % 3 == 2; // regula falsi alone may keep one end
+        const double length = bisect ? (low + high) / 2 : low + (high - low) * slope_low / (slope_low - slope_high);
+        const double found = slope + length * curvature + removal_slope(length);
+        if (std::abs(found) <= kRelativeTolerance * std::abs(slope)) return length;
+        (found < 0 ? low : high) = length;
+        (found < 0 ? slope_low : slope_high) = found;
+    }
+    return (low + high) / 2;
+}
+
 /// Solves in the window and ignores the cells outside. @return  whether it converged
-bool LayerContact::iterate(const MatrixXd& gap, const Window& window, double tolerance, bool is_force_known,
-                           int max_iterations, Contact& contact)
+bool LayerContact::iterate(const MatrixXd& gap, const Window& window, double tolerance,
+                           const RemovalStep& removal, bool is_force_known, int max_iterations, Contact& contact)
 {
     const ArrayXXd undeformed = window.block(gap).array();
     const Mask has_workpiece = undeformed.isFinite();
     MatrixXd pressure = window.block(contact.pressure), displacement, step_displacement;
     MatrixXd step = MatrixXd::Zero(window.rows, window.columns);
+    const bool is_grinding = removal.scale > 0;
     double last_squares = 0; // sum of squared gaps; 0: restart along the gradient
     bool is_displacement_valid = false;
     for (; contact.iterations < max_iterations; ++contact.iterations) {
         auto p = pressure.array();
         if (!is_displacement_valid) compute_displacement(pressure, displacement);
         is_displacement_valid = true;
-        const ArrayXXd open =
-            has_workpiece.select(undeformed + displacement.array(), std::numeric_limits<double>::max());
+        ArrayXXd open = has_workpiece.select(undeformed + displacement.array(), std::numeric_limits<double>::max());
+        if (is_grinding) open += removed_depth(removal, p);
         if (is_force_known) contact.indentation = (p > 0).select(open, 0).sum() / (p > 0).count();
         const ArrayXXd g = open - contact.indentation;
         if ((p * g).abs().maxCoeff() <= tolerance * p.maxCoeff() * contact.indentation &&
@@ -126,7 +163,10 @@ bool LayerContact::iterate(const MatrixXd& gap, const Window& window, double tol
         compute_displacement(step, step_displacement);
         ArrayXXd gradient_change = step_displacement.array();
         if (is_force_known) gradient_change -= active.select(gradient_change, 0).sum() / active.count();
-        const double length = -(active.select(g, 0) * step.array()).sum() / (gradient_change * step.array()).sum();
+        const double slope = (active.select(g, 0) * step.array()).sum();
+        const double curvature = (gradient_change * step.array()).sum();
+        const double length =
+            is_grinding ? step_length(p, step, removal, slope, curvature) : -slope / curvature;
         pressure += length * step;
         if (pressure.minCoeff() < 0) {
             pressure = pressure.cwiseMax(0);
@@ -146,7 +186,7 @@ bool LayerContact::iterate(const MatrixXd& gap, const Window& window, double tol
 }
 
 Contact LayerContact::solve(const MatrixXd& input_gap, const Contact& given, double tolerance, const MatrixXd& start,
-                            bool is_force_known)
+                            const RemovalStep& removal, bool is_force_known)
 {
     Contact contact = given;
     MatrixXd gap = input_gap;
@@ -176,7 +216,7 @@ Contact LayerContact::solve(const MatrixXd& input_gap, const Contact& given, dou
             std::tie(window.row, window.rows) = window_side(may_touch.rowwise().any());
             std::tie(window.column, window.columns) = window_side(may_touch.colwise().any().transpose());
         }
-        contact.converged = iterate(gap, window, tolerance, is_force_known,
+        contact.converged = iterate(gap, window, tolerance, removal, is_force_known,
                                     start.size() > 0 ? kMaxIterationsFromStart : kMaxIterations, contact);
         const double bulge = min_influence_ * contact.pressure.sum(); // lower bound of the displacement at any cell
         const double open = contact.indentation * (1 - tolerance) - bulge;
@@ -190,7 +230,7 @@ Contact LayerContact::solve(const MatrixXd& input_gap, const Contact& given, dou
         if (!interpenetrating.any()) break;
         may_touch = may_touch || interpenetrating;
     }
-    if (!contact.converged && start.size() > 0) return solve(input_gap, given, tolerance, {}, is_force_known);
+    if (!contact.converged && start.size() > 0) return solve(input_gap, given, tolerance, {}, removal, is_force_known);
     contact.indentation += first_touch;
     contact.force = contact.pressure.sum() * cell_area_;
     if (fem_) contact.pressure.array().colwise() /= fem_->tilt_cosines();
@@ -213,19 +253,20 @@ MatrixXd LayerContact::residual_gap(const MatrixXd& gap, const Contact& contact)
 }
 
 Contact LayerContact::solve_by_indentation(const MatrixXd& gap, double indentation, double tolerance,
-                                           const MatrixXd& start)
+                                           const MatrixXd& start, const RemovalStep& removal)
 {
     Contact contact;
     contact.indentation = indentation;
-    return solve(gap, contact, tolerance, start, false);
+    return solve(gap, contact, tolerance, start, removal, false);
 }
 
-Contact LayerContact::solve_by_force(const MatrixXd& gap, double force, double tolerance, const MatrixXd& start)
+Contact LayerContact::solve_by_force(const MatrixXd& gap, double force, double tolerance, const MatrixXd& start,
+                                     const RemovalStep& removal)
 {
     if (!gap.array().isFinite().any()) throw core::InputError("contact", "no workpiece under the wheel");
     Contact contact;
     contact.force = force;
-    return solve(gap, contact, tolerance, start, true);
+    return solve(gap, contact, tolerance, start, removal, true);
 }
 
 } // namespace fettle::belt

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "belt/belt_law.h"
 #include "belt/convolution.h"
 #include "belt/fem_layer.h"
 #include "belt/layer_compliance.h"
@@ -24,6 +25,12 @@ struct Contact {
 /// Frictionless unilateral contact (Signorini) of a layer with a workpiece: pressure ≥ 0, gap ≥ 0, pressure · gap = 0.
 /// Solved by constrained conjugate gradients (after Polonsky and Keer 1999). A step costs one convolution of the
 /// pressure with the influence coefficients, on a window just larger than the contact. Not thread-safe.
+///
+/// While a belt grinds, the workpiece recedes by what the pressure removes. Taking the pressure at the end of the step
+/// for all of it (the implicit Euler method) adds that depth r(p) to the gap: g = gap + K p + r(p) - indentation. A
+/// ripple of the workpiece whose pressure the layer resists with the compliance C then shrinks by C / (C + r'(p)) in
+/// each step, whatever the step's length; with the pressure at the beginning (explicit) it would change by
+/// 1 - r'(p) / C, and grow where r' > 2 C: short waves, for which rubber is stiffest.
 class LayerContact {
   public:
     /// Uses the compliance of a flat layer without edges.
@@ -38,23 +45,30 @@ class LayerContact {
     /// ≥ -tolerance · approach. The approach is the displacement of the hub since first touch.
     /// @param gap  before deformation with the hub at indentation 0, mm; infinite where there is no workpiece
     /// @param start  initial pressure, such as that of the previous contact point; empty: none
+    /// @param removal  by a belt during the contact
     Contact solve_by_indentation(const Eigen::MatrixXd& gap, double indentation, double tolerance,
-                                 const Eigen::MatrixXd& start = {});
+                                 const Eigen::MatrixXd& start = {}, const RemovalStep& removal = {});
     /// Solves for a given force.
     /// @param force  N, > 0
     /// @throws InputError if no gap is finite
     Contact solve_by_force(const Eigen::MatrixXd& gap, double force, double tolerance,
-                           const Eigen::MatrixXd& start = {});
+                           const Eigen::MatrixXd& start = {}, const RemovalStep& removal = {});
 
-    /// Gap after deformation, mm, ≥ 0; 0 in contact.
+    /// Gap after deformation, without removal, mm, ≥ 0; 0 in contact.
     Eigen::MatrixXd residual_gap(const Eigen::MatrixXd& gap, const Contact& contact);
 
   private:
     struct Window;
     Contact solve(const Eigen::MatrixXd& gap, const Contact& given, double tolerance, const Eigen::MatrixXd& start,
-                  bool is_force_known);
-    bool iterate(const Eigen::MatrixXd& gap, const Window& window, double tolerance, bool is_force_known,
-                 int max_iterations, Contact& contact);
+                  const RemovalStep& removal, bool is_force_known);
+    bool iterate(const Eigen::MatrixXd& gap, const Window& window, double tolerance, const RemovalStep& removal,
+                 bool is_force_known, int max_iterations, Contact& contact);
+    /// Depth that the cells lose along the radius at the middle.
+    Eigen::ArrayXXd removed_depth(const RemovalStep& removal, const Eigen::ArrayXXd& pressure) const;
+    /// Length of the step to the minimum of the energy along it. @param slope  of the energy, < 0  @param curvature  of
+    /// its elastic part
+    double step_length(const Eigen::ArrayXXd& pressure, const Eigen::MatrixXd& step, const RemovalStep& removal,
+                       double slope, double curvature) const;
     Eigen::MatrixXd initial_pressure(const Eigen::MatrixXd& gap, const Contact& given, bool is_force_known) const;
     /// Gap after deformation; negative where the surfaces interpenetrate.
     Eigen::MatrixXd signed_gap(const Eigen::MatrixXd& gap, const Contact& contact);

@@ -57,8 +57,10 @@ class WheelContactSolver {
     WheelContactSolver(const Surfels& surfels, const ContactWheel& wheel, const WheelContactOptions& options);
 
     /// Solves the contact at a pose.
+    /// @param removal  by the belt during the contact
     /// @throws InputError if there is nothing under the wheel, or the contact does not converge
-    const WheelContact& solve(const Eigen::Isometry3d& T_part_tool, const ContactLoad& load);
+    const WheelContact& solve(const Eigen::Isometry3d& T_part_tool, const ContactLoad& load,
+                              const RemovalStep& removal = {});
     /// Indices of the surfels from which the last grid was made.
     const std::vector<Eigen::Index>& surfels_in_grid() const { return surfels_in_grid_; }
     /// Their coordinates, 3xN, mm: as the cells, and the height.
@@ -75,9 +77,9 @@ class WheelContactSolver {
 
   private:
     void set_grid(const ContactGrid& grid, LayerSolver solver);
-    void find_grid(const Eigen::Isometry3d& T_part_tool, const ContactLoad& load);
+    void find_grid(const Eigen::Isometry3d& T_part_tool, const ContactLoad& load, const RemovalStep& removal);
     void solve_on_grid(const Eigen::Isometry3d& T_part_tool, const ContactLoad& load, Gridding gridding,
-                       double tolerance);
+                       double tolerance, const RemovalStep& removal);
     bool is_at_border() const;
 
     const Surfels& surfels_;

@@ -200,8 +200,8 @@ TEST(Belt, FollowsThePowerLaw)
     law.speed_exponent = 0.5;
     law.feed_exponent = -1;
     law.threshold = 0.1;
-    EXPECT_EQ(belt::removed_depth(law, 0.1, 9, 4, 3, 0), 0);
-    EXPECT_NEAR(belt::removed_depth(law, 0.35, 9, 4, 3, 0), 2 * 0.125 * 3 / 4.0 * 3, 1e-12);
+    EXPECT_EQ(belt::removal_step(law, 9, 4, 3, 0).depth(0.1), 0);
+    EXPECT_NEAR(belt::removal_step(law, 9, 4, 3, 0).depth(0.35), 2 * 0.125 * 3 / 4.0 * 3, 1e-12);
 }
 
 // Two passes 10 mm apart: the wheel does not travel between them, and each end dwells.
