@@ -125,6 +125,8 @@ int main(int argc, char** argv)
         if (run.near_edge > 0)
             t.warn(std::to_string(run.near_edge) + " contacts are nearer to the wheel's edge than 1.5 thicknesses of "
                                                    "its layer, where it is softer than computed");
+        if (const std::string doubt = belt::coarse_grid_warning(run, options.contact.cells); !doubt.empty())
+            t.warn(doubt);
         return cli::Verdict::yes;
     });
 }

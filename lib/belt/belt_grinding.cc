@@ -89,6 +89,15 @@ void BeltGrinding::restore(BeltState state)
     solver_.restore(state_.contact);
 }
 
+/// Between cells farther apart than the surfels, the contact does not see how high single surfels stand.
+void BeltGrinding::count_coarse_grid(const WheelContact& contact)
+{
+    const double ratio = contact.grid.cell_size.maxCoeff() / mean_spacing(solver_.surfel_coordinates());
+    if (!(ratio > kMaxCellSpacings)) return;
+    ++state_.run.coarse_grids;
+    state_.run.max_cell_spacings = std::max(state_.run.max_cell_spacings, ratio);
+}
+
 /// Lowers the surfels and records the point's results.
 void BeltGrinding::remove_material(const WheelContact& contact, const MatrixXd& depth, double duration)
 {
@@ -108,6 +117,7 @@ void BeltGrinding::remove_material(const WheelContact& contact, const MatrixXd& 
     run.removed_volume += volume;
     run.work += found.force * wheel_.belt_speed * duration;
     run.near_edge += contact.is_near_edge ? 1 : 0;
+    count_coarse_grid(contact);
     const double time = (run.trace.empty() ? 0 : run.trace.back().time) + duration;
     run.trace.push_back(
         {time, duration, found.force, found.indentation, found.pressure.maxCoeff(), contact.area(), volume});
@@ -122,8 +132,8 @@ void BeltGrinding::step()
     if (point.is_on_part()) {
         const double moving_time = tributary_lengths_[k] / point.feed;
         const double cutting_time = moving_time + std::pow(point.dwell, wheel_.law.dwell_exponent);
-        const RemovalStep removal = removal_step(wheel_.law, wheel_.belt_speed, point.feed, cutting_time,
-                                                 options_.prior_work + run.work);
+        const RemovalStep removal =
+            removal_step(wheel_.law, wheel_.belt_speed, point.feed, cutting_time, options_.prior_work + run.work);
         const bool is_local = options_.model == BeltModel::local;
         const WheelContact* contact = nullptr;
         try {

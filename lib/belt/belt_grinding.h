@@ -25,6 +25,10 @@ struct BeltOptions {
     std::optional<ToleranceRange> range; ///< for the errors after each point; without it BeltRun::errors stays empty
 };
 
+/// Largest cells of the contact's grid over the surfels' spacing at which ripples from surfel to surfel are ground off:
+/// of larger ones, half a wave and more is hidden in each.
+inline constexpr double kMaxCellSpacings = 1;
+
 /// Contact and removal at one point of the path; NaN where the wheel is off the part.
 struct BeltTrace {
     double time = 0; ///< at the end of the point, since the start, s
@@ -52,6 +56,8 @@ struct BeltRun {
     double removed_volume = 0;           ///< mm³
     double work = 0;                     ///< that the belt did in this run, N mm (BeltLaw)
     Eigen::Index near_edge = 0;          ///< points whose contact is near the layer's free edge
+    Eigen::Index coarse_grids = 0;       ///< points whose grid has larger cells than the surfels are apart
+    double max_cell_spacings = 0;        ///< largest cell over the surfels' spacing, at these points
     std::vector<SurfelRemoval> removals; ///< ordered by point; empty without BeltOptions::keep_removals
     std::vector<BeltError> errors;       ///< one for each point; empty without BeltOptions::range
 };
@@ -67,7 +73,9 @@ struct BeltState {
 /// Grinds along a path, point by point. At each point the surfels under the contact lose depth along their normals by
 /// the wheel's law; the time is that for the point's tributary length (belt_path.h) plus the dwell. The law gives the
 /// depth normal to the tangent plane, so that the integral of the pressure is the force whatever the surfels' normals
-/// are (Ren et al. 2006, 4).
+/// are (Ren et al. 2006, 4). The pressure is that at the end of the point, when its removal has made room
+/// (layer_contact.h): so ripples shrink, and with force F the volume is that of F all the same. Ripples that the grid
+/// does not resolve stay (BeltRun::coarse_grids). The global model takes the pressure at the beginning.
 class BeltGrinding {
   public:
     /// Keeps references to all arguments except the options.
@@ -89,6 +97,7 @@ class BeltGrinding {
 
   private:
     void remove_material(const WheelContact& contact, const Eigen::MatrixXd& depth, double duration);
+    void count_coarse_grid(const WheelContact& contact);
 
     Surfels& surfels_;
     const ContactWheel& wheel_;

@@ -124,7 +124,7 @@ void serialize(Archive& archive, BeltCheckpoint& checkpoint)
     archive.serialize_all(state.next_point, checkpoint.displacement, run.removed);
     archive.serialize(run.trace, [&](BeltTrace& trace) { serialize(archive, trace); });
     archive.serialize(run.errors, [&](BeltError& error) { serialize(archive, error); });
-    archive.serialize_all(run.removed_volume, run.work, run.near_edge);
+    archive.serialize_all(run.removed_volume, run.work, run.near_edge, run.coarse_grids, run.max_cell_spacings);
     if (state.error) serialize(archive, *state.error);
     archive.serialize_all(contact.grid.cell_size, contact.grid.rows, contact.grid.columns, contact.pressure,
                           contact.previous);

@@ -41,7 +41,8 @@ json::Value to_json(const BeltRun& run, const units::Units& units)
         .set("max_force", force / newton)
         .set("peak_pressure", peak * mm * mm / newton)
         .set("max_area", area / (mm * mm))
-        .set("near_edge", run.near_edge);
+        .set("near_edge", run.near_edge)
+        .set("coarse_grids", run.coarse_grids);
 }
 
 json::Value to_json(const BeltPlan& plan, bool by_force, const units::Units& units)
@@ -62,6 +63,16 @@ json::Value to_json(const BeltPlan& plan, bool by_force, const units::Units& uni
         .set("at_max", plan.at_max)
         .set("rounds", plan.rounds)
         .set("converged", plan.converged);
+}
+
+std::string coarse_grid_warning(const BeltRun& run, int cells_per_side)
+{
+    if (run.coarse_grids == 0) return "";
+    const int enough = static_cast<int>(std::ceil(cells_per_side * run.max_cell_spacings / kMaxCellSpacings));
+    return std::to_string(run.coarse_grids) +
+           " contacts have cells larger than the surfels are apart: ripples from surfel to surfel that the stock had "
+           "stay; --cells " +
+           std::to_string(enough) + " grinds them off, or take fewer surfels";
 }
 
 void set_trace(cloud::Cloud& path, const std::vector<BeltTrace>& trace)

@@ -7,6 +7,8 @@
 #include "units/units.h"
 #include "json/document.h"
 
+#include <string>
+
 namespace fettle::belt {
 
 /// Reports of fettle-contact, fettle-belt and fettle-feed, in `units`.
@@ -14,6 +16,10 @@ json::Value to_json(const WheelContact& press, const units::Units& units);
 json::Value to_json(const BeltRun& run, const units::Units& units);
 /// @param by_force  whether forces were planned, in N, not feeds
 json::Value to_json(const BeltPlan& plan, bool by_force, const units::Units& units);
+
+/// Warning with its remedy where ripples of the surfels may be left because the contact's grid does not resolve them;
+/// empty: none. @param cells_per_side  of the grid
+std::string coarse_grid_warning(const BeltRun& run, int cells_per_side);
 
 /// Adds the contact and the removal at each point to a path: fields t, force, indentation, pressure, area and
 /// removed_volume.

@@ -133,8 +133,8 @@ double LayerContact::step_length(const ArrayXXd& pressure, const MatrixXd& step,
 }
 
 /// Solves in the window and ignores the cells outside. @return  whether it converged
-bool LayerContact::iterate(const MatrixXd& gap, const Window& window, double tolerance,
-                           const RemovalStep& removal, bool is_force_known, int max_iterations, Contact& contact)
+bool LayerContact::iterate(const MatrixXd& gap, const Window& window, double tolerance, const RemovalStep& removal,
+                           bool is_force_known, int max_iterations, Contact& contact)
 {
     const ArrayXXd undeformed = window.block(gap).array();
     const Mask has_workpiece = undeformed.isFinite();
@@ -165,8 +165,7 @@ bool LayerContact::iterate(const MatrixXd& gap, const Window& window, double tol
         if (is_force_known) gradient_change -= active.select(gradient_change, 0).sum() / active.count();
         const double slope = (active.select(g, 0) * step.array()).sum();
         const double curvature = (gradient_change * step.array()).sum();
-        const double length =
-            is_grinding ? step_length(p, step, removal, slope, curvature) : -slope / curvature;
+        const double length = is_grinding ? step_length(p, step, removal, slope, curvature) : -slope / curvature;
         pressure += length * step;
         if (pressure.minCoeff() < 0) {
             pressure = pressure.cwiseMax(0);

@@ -17,7 +17,7 @@ convert() { # UNIT PER: lengths of x y z, and in the last two columns of the sur
 }
 powers='{"x": 1, "y": 1, "z": 1, "normal_x": 0, "normal_y": 0, "normal_z": 0, "displacement": 1, "area": 2, "removed": 1, "removed_volume": 3,
     "qw": 0, "qx": 0, "qy": 0, "qz": 0, "t": 0, "force": 0, "indentation": 1, "pressure": -2, "peak_pressure": -2, "points": 0,
-    "time": 0, "work": 0, "touched": null, "surfels": 0, "deepest": 1, "max_force": 0, "max_area": 2, "near_edge": 0, "cell": 1,
+    "time": 0, "work": 0, "touched": null, "surfels": 0, "deepest": 1, "max_force": 0, "max_area": 2, "near_edge": 0, "coarse_grids": 0, "cell": 1,
     "iterations": 0, "gap": 1}'
 grind() { # UNIT FEED DEPTH...
     fettle-belt "$1.surfels" --wheel wheel.json --path "$1.path" --depth "$3" --feed "$2" --cells 16 --ascii --trace "$1.trace" --report "$1.json" \

@@ -86,6 +86,51 @@ TEST(Belt, RemovesWhatTheLawSays)
         }
 }
 
+/// A law that takes 0.2 mm/MPa in 2 mm of slow_line(), where the layer yields about 0.1 mm/MPa to a ripple of two
+/// surfels' length: with the pressure at the beginning of each step the ripple grows.
+belt::ContactWheel fast()
+{
+    belt::ContactWheel wheel = crowned();
+    wheel.law.coefficient = 3e-5;
+    return wheel;
+}
+
+/// The line at a feed at which a fast law takes a good part of a millimetre.
+std::vector<belt::BeltPoint> slow_line(double step)
+{
+    std::vector<belt::BeltPoint> path = line(step);
+    for (belt::BeltPoint& point : path) point.feed = kFeed / 8;
+    return path;
+}
+
+// A checkerboard laid on the stock shrinks with Preston's law and with a steeper one: to less than half in a pass.
+TEST(Belt, GrindsOffARippleOfTwoSurfels)
+{
+    constexpr double kAmplitude = 0.02;
+    const auto rows = static_cast<Index>(kLength / kSpacing);
+    for (const double exponent : {1.0, 2.3}) {
+        belt::ContactWheel wheel = fast();
+        constexpr double kPressure = 0.15; // MPa, in the middle of the contact: there both laws take the same
+        wheel.law.pressure_exponent = exponent;
+        wheel.law.coefficient *= std::pow(kPressure, 1 - exponent);
+        belt::Surfels surfels = plate();
+        for (Index k = 0; k < surfels.size(); ++k)
+            surfels.displacement[k] += (k % rows + k / rows) % 2 == 0 ? kAmplitude : -kAmplitude;
+        belt::BeltOptions options;
+        options.contact.tolerance = 1e-4;
+        const belt::BeltRun run = belt::grind(surfels, wheel, slow_line(2), options);
+        EXPECT_EQ(run.coarse_grids, 0);
+        double ripple = 0;
+        const auto height = Eigen::MatrixXd::Map(surfels.displacement.data(), rows, surfels.size() / rows);
+        for (Index j = height.cols() / 2 - 4; j < height.cols() / 2 + 4; ++j)
+            for (Index i = rows / 2 - 10; i < rows / 2 + 10; ++i)
+                ripple = std::max(ripple, std::abs(4 * height(i, j) - height(i - 1, j) - height(i + 1, j) -
+                                                   height(i, j - 1) - height(i, j + 1)) /
+                                              8);
+        EXPECT_LE(ripple, 0.5 * kAmplitude) << exponent;
+    }
+}
+
 TEST(Belt, DependsNotOnThePathsSpacing)
 {
     const belt::ContactWheel wheel = crowned();
@@ -102,6 +147,23 @@ TEST(Belt, DependsNotOnThePathsSpacing)
         deepest = std::max(deepest, fine[i]);
     }
     EXPECT_LE(max, 0.005 * deepest);
+}
+
+// A bead of 3 mm under a fast law: half the distance of the contact points changes the depth by 2 % rms at most.
+TEST(Belt, ConvergesOnABead)
+{
+    const belt::ContactWheel wheel = fast();
+    const auto ground = [&](double step) {
+        belt::Surfels surfels = plate();
+        for (Index k = 0; k < surfels.size(); ++k)
+            surfels.displacement[k] = 3 * std::exp(-std::pow(surfels.position(1, k) / 3, 2));
+        belt::BeltOptions options;
+        options.contact.tolerance = 1e-4;
+        return belt::grind(surfels, wheel, slow_line(step), options).removed;
+    };
+    const Eigen::VectorXd coarse = ground(2), fine = ground(1);
+    EXPECT_GE(fine.maxCoeff(), 0.3);
+    EXPECT_LE((coarse - fine).norm(), 0.02 * fine.norm());
 }
 
 // The depth is normal to the tangent plane: a surfel whose normal leans loses its cosine of it.

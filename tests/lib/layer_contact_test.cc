@@ -158,6 +158,24 @@ TEST(LayerContact, IsComplementary)
         }
 }
 
+// While a belt grinds, the gap with what it removes is complementary to the pressure, by any law.
+TEST(LayerContact, MakesRoomByWhatIsRemoved)
+{
+    const Index n = 48;
+    belt::LayerContact contact({10, 5, 0.45}, {0.5, 0.5}, n, n);
+    const MatrixXd gap = paraboloid(n, n, {0.5, 0.5}, 40, 60);
+    for (const belt::RemovalStep& removal :
+         {belt::RemovalStep{0.3, 1, 0}, belt::RemovalStep{0.5, 2.3, 0}, belt::RemovalStep{0.4, 1.2, 0.05}}) {
+        const belt::Contact found = contact.solve_by_force(gap, 40, kTightTolerance, {}, removal);
+        ASSERT_TRUE(found.converged);
+        const MatrixXd depth = found.pressure.unaryExpr([&](double p) { return removal.depth(p); });
+        const belt::Contact still = contact.solve_by_force(gap + depth, 40, kTightTolerance);
+        EXPECT_LE((still.pressure - found.pressure).cwiseAbs().maxCoeff(), 1e-4 * found.pressure.maxCoeff());
+        EXPECT_NEAR(still.indentation, found.indentation, 1e-5 * found.indentation);
+        EXPECT_LT(found.pressure.maxCoeff(), contact.solve_by_force(gap, 40, 1e-4).pressure.maxCoeff());
+    }
+}
+
 // On a rippled surface, starts extrapolated from forces that fell from 40 to 10 N led round in circles.
 TEST(LayerContact, BeginsAnewWhereAStartLeadsNowhere)
 {
