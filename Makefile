@@ -78,8 +78,6 @@ FCL    := -lfcl -lccd
 PCL    := -lpcl_kdtree -lpcl_common
 # Segmentation needs more of PCL.
 PLACE  := $(PCL) -lpcl_segmentation -lpcl_sample_consensus -lpcl_search
-# Its triangulation is compiled from the header: libpcl_surface would link VTK.
-RECONSTRUCT := $(PCL) -lpcl_search
 LDLIBS_ALL := -llzf -ltbb -lminizip -lexpat -lz
 
 # The files that see OpenCV. Private: what a file needs before it, the precompiled header, is compiled as ever.
@@ -162,7 +160,6 @@ $(B)/tests/%: LDLIBS = $(CERES) $(OPENCV) $(PNG) $(MD) -lgtest_main -lgtest
 $(B)/tests/cloud_test: LDLIBS += -lpcl_io -lpcl_common
 $(B)/tests/clean_test: LDLIBS += $(PCL) -lpcl_filters -lpcl_search
 $(B)/tests/place_test: LDLIBS += $(PLACE)
-$(B)/tests/reconstruct_test: LDLIBS += $(RECONSTRUCT)
 $(B)/tests/fcl_test: LDLIBS += $(FCL)
 $(B)/tests/%: $(B)/tests/lib/%.o $$(call archives,tests/lib/$$*)
 	@mkdir -p $(@D)

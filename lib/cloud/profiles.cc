@@ -10,7 +10,8 @@ constexpr double kMinReturnSteps = 10;     // of a return to the begin of the ne
 constexpr double kMaxStepSteps = 5;        // longer steps cross gaps, and say nothing about the direction
 constexpr Eigen::Index kMinProfiles = 3;   // two are no surface that is wider than a gap
 constexpr Eigen::Index kMinMeanPoints = 5; // points in any other order seldom advance as often
-constexpr double kMaxBackwardShare = 0.05; // of short steps: reflections, and what lies beneath an overhang
+constexpr double kMaxBackwardShare =
+    0.2; // of all steps: reflections, noise, overhangs; half of them in any other order
 
 /// The direction of the short steps, unit; the points advance along it.
 Eigen::Vector3d main_direction(const Eigen::Matrix3Xd& steps, double max_length)

@@ -12,7 +12,7 @@
 
 # fettle-gantry-linuxcnc is for a machine that runs: tests/linuxcnc.
 names='align arm assess belt clean collide compare contact diff estimate feed find finish fit form gantry-virtual grind manual margin merge mesh mill part path place
-    plan render report sample station stock-linuxcnc surfel teach verify'
+    plan reconstruct render report sample station stock-linuxcnc surfel teach verify'
 
 inputs() { # STEP
     good "$@"
@@ -58,6 +58,7 @@ command_of() { # NAME
     path) command=(work.pcd) ;;
     place) command=(--up plane --centre good.pcd) writes=(--transform-out --inverse) ;;
     plan) command=(job.json surface.json) ;;
+    reconstruct) command=(good.pcd) ;;
     render) command=(good.pcd) ;;
     report) command=(--job job.json --samples samples.pcd --errors good.pcd) ;;
     sample) command=(--on good.pcd job.json) ;;
