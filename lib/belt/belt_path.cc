@@ -38,11 +38,12 @@ std::vector<BeltPoint> belt_path(const cloud::Cloud& path, const BeltSettings& s
     const Eigen::VectorXd force = has_setting ? constant(settings.force.value_or(kNan)) : values("force", kNan);
     const Eigen::VectorXd feed = values("feed", settings.feed), dwell = values("dwell", 0), pass = values("pass", 0);
     const cloud::PosePath poses = cloud::read_poses(path);
+    const Eigen::VectorXd stroke = cloud::read_strokes(path);
     std::vector<BeltPoint> points;
     for (std::size_t k = 0; k < poses.size(); ++k) {
         const bool by_force = std::isnan(depth[k]);
         points.push_back({poses[k], {by_force, by_force ? force[k] : depth[k]}, feed[k], dwell[k], false});
-        if (!poses[k].translation().allFinite())
+        if (!poses[k].translation().allFinite() || stroke[k] < 0)
             points[k].T_part_tool.matrix().setConstant(kNan);
         else
             check(points[k], k);

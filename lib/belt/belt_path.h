@@ -28,8 +28,9 @@ struct BeltSettings {
     double dwell = 0;                   ///< at both ends of each run, in addition to the field dwell, s
 };
 
-/// A belt path from poses and the fields force, depth, feed, dwell and pass. Each pass is a run of its own. At each
-/// point the depth holds if there is one, otherwise the force; the other of the two may be NaN.
+/// A belt path from poses and the fields force, depth, feed, dwell, pass and stroke. Each pass is a run of its own;
+/// points of a negative stroke are off the part. At each point the depth holds if there is one, otherwise the force;
+/// the other of the two may be NaN.
 /// @throws InputError if a point has neither force nor depth, or a value is not positive
 std::vector<BeltPoint> belt_path(const cloud::Cloud& path, const BeltSettings& settings);
 

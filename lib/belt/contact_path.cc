@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <set>
 #include <string>
 
 namespace fettle::belt {
@@ -88,7 +89,9 @@ class PathBuilder {
     void add_pose(const LocalFit& fit, const Eigen::Vector2d& direction)
     {
         const Eigen::Vector3d z = fit.n.normalized();
-        const Eigen::Vector3d feed = direction[0] * fit.P_u + direction[1] * fit.P_v;
+        const bool is_fixed = options_.orientation == PathOrientation::fixed;
+        const Eigen::Vector2d towards = is_fixed ? swapped(Eigen::Vector2d::UnitX()) : direction;
+        const Eigen::Vector3d feed = towards[0] * fit.P_u + towards[1] * fit.P_v;
         const Eigen::Vector3d x = (feed - feed.dot(z) * z).normalized();
         Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
         pose.linear() << x, z.cross(x), z;
@@ -145,9 +148,7 @@ void add_spiral(PathBuilder& builder, double step)
     }
 }
 
-} // namespace
-
-ContactPath contact_path(const Surfels& surfels, const ContactPathOptions& options)
+ContactPath path_over_patch(const Surfels& surfels, const ContactPathOptions& options)
 {
     const PatchSurface surface(surfels, options.patch, options.on_stock);
     PathBuilder builder(surface, options);
@@ -158,16 +159,41 @@ ContactPath contact_path(const Surfels& surfels, const ContactPathOptions& optio
     return std::move(builder.path);
 }
 
+} // namespace
+
+ContactPath contact_path(const Surfels& surfels, const ContactPathOptions& options)
+{
+    if (options.patch != kAllPatches) return path_over_patch(surfels, options);
+    const std::set<int> patches(surfels.patch.begin(), surfels.patch.end());
+    if (patches.empty()) throw core::InputError("no surfels");
+    ContactPath whole;
+    for (const int patch : patches) {
+        ContactPathOptions options_of_patch = options;
+        options_of_patch.patch = patch;
+        try {
+            const ContactPath path = path_over_patch(surfels, options_of_patch);
+            const int first_pass = whole.pass.empty() ? 0 : whole.pass.back() + 1;
+            whole.poses.insert(whole.poses.end(), path.poses.begin(), path.poses.end());
+            for (const int pass : path.pass) whole.pass.push_back(first_pass + pass);
+        } catch (const PatchTooSmall&) {
+            whole.skipped_patches.push_back(patch);
+            if (whole.skipped_patches.size() == patches.size()) throw;
+        }
+    }
+    return whole;
+}
+
 cloud::Cloud interpolate_path(const cloud::Cloud& path, double spacing)
 {
     const cloud::PosePath poses = cloud::read_poses(path);
     const Eigen::VectorXd pass = cloud::has_field(path, "pass") ? cloud::field(path, "pass")
                                                                 : Eigen::VectorXd(Eigen::VectorXd::Zero(path.size()));
+    const std::vector<cloud::Motion> motions = cloud::read_motions(path);
     std::vector<Eigen::Index> from; // index of the given point at or before each new point
     std::vector<double> shares;
     for (Eigen::Index i = 0; i < path.size(); ++i) {
         double parts = 1;
-        if (i + 1 < path.size() && pass[i] == pass[i + 1]) {
+        if (i + 1 < path.size() && pass[i] == pass[i + 1] && motions[i + 1] == cloud::Motion::stroke) {
             const double length = (path.xyz.col(i + 1) - path.xyz.col(i)).norm();
             if (std::isfinite(length)) parts = std::max(1.0, std::ceil(length / spacing - 1e-6));
         }
@@ -191,7 +217,7 @@ cloud::Cloud interpolate_path(const cloud::Cloud& path, double spacing)
                                       .toRotationMatrix();
     }
     for (const cloud::Field& source : path.fields) {
-        if (source.count != 1 || source.type != 'F') continue;
+        if (source.count != 1 || source.type != 'F' || source.name == "motion") continue;
         const Eigen::VectorXd values = cloud::field(path, source.name);
         Eigen::VectorXd lerped(dense.size());
         for (std::size_t k = 0; k < from.size(); ++k) {
@@ -199,6 +225,12 @@ cloud::Cloud interpolate_path(const cloud::Cloud& path, double spacing)
             lerped[k] = shares[k] == 0 ? value : (1 - shares[k]) * value + shares[k] * values[from[k] + 1];
         }
         cloud::set_field(dense, source.name, lerped, source.size);
+    }
+    if (cloud::has_field(dense, "motion")) {
+        Eigen::VectorXd motion = cloud::field(dense, "motion");
+        for (std::size_t k = 0; k < from.size(); ++k)
+            if (shares[k] != 0) motion[k] = static_cast<double>(cloud::Motion::stroke);
+        cloud::set_field(dense, "motion", motion);
     }
     cloud::set_poses(dense, dense_poses);
     return dense;

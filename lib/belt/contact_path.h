@@ -15,11 +15,21 @@ enum class PathPattern {
     spiral ///< along the four sides of the patch's rectangle in u and v, from outside in
 };
 
+/// How the tool turns about its axis along a path.
+enum class PathOrientation {
+    fixed, ///< its x points along u (along v) on every row, whichever way the row runs
+    along  ///< its x points along the feed
+};
+
+/// One patch after the other, in the order of their numbers.
+inline constexpr int kAllPatches = -1;
+
 struct ContactPathOptions {
-    int patch = 0;
+    int patch = kAllPatches;
     PathPattern pattern = PathPattern::rows;
-    bool along_v = false;  ///< rows, and the first side of a spiral, run along v, otherwise along u
-    bool one_way = false;  ///< all rows run in the same direction; otherwise they alternate
+    bool along_v = false; ///< rows, and the first side of a spiral, run along v, otherwise along u
+    bool one_way = false; ///< all rows run in the same direction; otherwise they alternate
+    PathOrientation orientation = PathOrientation::along;
     bool on_stock = false; ///< points on the stock, not on the design
     double step_over = 1;  ///< max. distance of rows or turns of the spiral, mm
     double spacing = 1;    ///< max. distance of points along a row, mm
@@ -27,18 +37,19 @@ struct ContactPathOptions {
 
 /// Contact points along a path.
 struct ContactPath {
-    cloud::PosePath poses; ///< part frame: +z the outward normal, +x along the feed
+    cloud::PosePath poses; ///< part frame: +z the outward normal, +x as PathOrientation says
     std::vector<int> pass; ///< of each point, from 0: a row, or a piece of a row that holes and borders interrupt
+    std::vector<int> skipped_patches; ///< of all patches those with too few surfels for a surface
 };
 
-/// Plans a contact path over a patch. Between surfels the surface is a local quadratic in u and v (local_fit.h). Where
-/// no surfel is within its radius the patch ends, and so does the pass.
-/// @throws InputError if there is no such patch, or too few surfels on it
+/// Plans a contact path over one patch or all. Between surfels the surface is a local quadratic in u and v
+/// (local_fit.h). Where no surfel is within its radius the patch ends, and so does the pass.
+/// @throws InputError if there is no such patch, or too few surfels on it, of all patches on each
 ContactPath contact_path(const Surfels& surfels, const ContactPathOptions& options);
 
 /// Inserts points, equally spaced, between points of a path that are farther apart than the spacing. Positions and
 /// scalar fields are interpolated linearly, orientations by slerp along the shorter arc (Ren et al. 2006, eq. 6;
-/// Shoemake 1985). Nothing is inserted between points of different `pass` and next to NaN poses.
+/// Shoemake 1985). Nothing is inserted between points of different `pass`, next to NaN poses, and off the part.
 /// @param path  with poses   @param spacing  mm
 cloud::Cloud interpolate_path(const cloud::Cloud& path, double spacing);
 

@@ -25,7 +25,7 @@ PatchSurface::PatchSurface(const Surfels& surfels, int patch, bool on_stock) : p
     std::vector<Eigen::Index> own;
     for (Eigen::Index i = 0; i < surfels.size(); ++i)
         if (surfels.patch[i] == patch_ && (!on_stock || !std::isnan(surfels.displacement[i]))) own.push_back(i);
-    if (own.empty()) throw core::InputError("no surfels on patch " + std::to_string(patch_));
+    if (own.empty()) throw PatchTooSmall("no surfels on patch " + std::to_string(patch_));
     surfels_.position = surfels.position(Eigen::all, own);
     surfels_.normal = surfels.normal(Eigen::all, own);
     surfels_.radius = surfels.radius(own);
@@ -96,7 +96,7 @@ void PatchSurface::measure_lengths()
     const Eigen::Matrix2Xd speeds = max_speeds();
     const Eigen::Vector2d overall = speeds.rowwise().maxCoeff();
     if (!(overall.minCoeff() > 0))
-        throw core::InputError("too few surfels on patch " + std::to_string(patch_) + " for a path");
+        throw PatchTooSmall("too few surfels on patch " + std::to_string(patch_) + " for a path");
     for (int axis = 0; axis < 2; ++axis) {
         lengths_[axis] = Eigen::VectorXd::Zero(kIntervals + 1);
         for (int k = 0; k < kIntervals; ++k) {

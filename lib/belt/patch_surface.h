@@ -1,6 +1,7 @@
 #pragma once
 
 #include "belt/local_fit.h"
+#include "core/error.h"
 #include "geometry/point_index.h"
 
 #include <Eigen/Geometry>
@@ -10,12 +11,17 @@
 
 namespace fettle::belt {
 
+/// A patch has no or too few surfels for a surface.
+struct PatchTooSmall : core::InputError {
+    using core::InputError::InputError;
+};
+
 /// One patch of surfels as a surface over two lengths, along u and v from their minima, mm. The lengths are measured by
 /// the maximum speeds of the parameters, so that no iso-curve is longer than its difference in length.
 class PatchSurface {
   public:
     /// @param on_stock  the surface is the stock's, where it is known, otherwise the design's
-    /// @throws InputError if there is no such patch, or too few surfels on it
+    /// @throws PatchTooSmall if there is no such patch, or too few surfels on it
     PatchSurface(const Surfels& surfels, int patch, bool on_stock);
 
     /// Width of the patch along u (axis 0) or v (axis 1), mm: an upper bound of the iso-curves' lengths.

@@ -15,7 +15,9 @@ cloud::Cloud to_cloud(const ContactPath& path)
     cloud.xyz.resize(3, size);
     cloud.comment = "frame: part";
     cloud::set_poses(cloud, path.poses);
-    cloud::set_field(cloud, "pass", Eigen::VectorXi::Map(path.pass.data(), size).cast<double>());
+    const Eigen::VectorXd pass = Eigen::VectorXi::Map(path.pass.data(), size).cast<double>();
+    cloud::set_field(cloud, "pass", pass);
+    cloud::set_field(cloud, "stroke", pass);
     return cloud;
 }
 
@@ -24,15 +26,16 @@ json::Value report_path(const cloud::Cloud& path)
     const cloud::PosePath poses = cloud::read_poses(path);
     Eigen::VectorXd pass = Eigen::VectorXd::Zero(path.size());
     if (cloud::has_field(path, "pass")) pass = cloud::field(path, "pass");
-    double length = 0, longest = 0, turn = 0;
-    std::size_t passes = poses.empty() ? 0 : 1;
-    for (std::size_t i = 1; i < poses.size(); ++i) {
-        if (pass[i] != pass[i - 1]) {
-            ++passes;
-            continue;
-        }
+    double length = 0, length_between = 0, longest = 0, turn = 0;
+    std::size_t passes = 0;
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+        if (pass[i] >= 0 && (i == 0 || pass[i] != pass[i - 1])) ++passes;
+        if (i == 0) continue;
         const double step = (poses[i].translation() - poses[i - 1].translation()).norm();
         if (!std::isfinite(step)) continue;
+        const bool is_off_part = pass[i] < 0 || pass[i - 1] < 0; // the tool moves off the part
+        if (is_off_part) length_between += step;
+        if (is_off_part || pass[i] != pass[i - 1]) continue;
         length += step;
         longest = std::max(longest, step);
         turn = std::max(
@@ -42,6 +45,7 @@ json::Value report_path(const cloud::Cloud& path)
         .set("points", poses.size())
         .set("passes", passes)
         .set("length", length)
+        .set("length_between", length_between)
         .set("longest_step", longest)
         .set("largest_turn_deg", turn * 180 / std::numbers::pi);
 }

@@ -12,6 +12,14 @@ Eigen::Matrix3Xd displaced_positions(const Surfels& surfels)
     return surfels.position + surfels.normal * surfels.displacement.asDiagonal();
 }
 
+Eigen::Matrix3Xd outer_positions(const Surfels& surfels)
+{
+    Eigen::Matrix3Xd outer = surfels.position;
+    for (Eigen::Index i = 0; i < surfels.size(); ++i)
+        if (surfels.displacement[i] > 0) outer.col(i) += surfels.displacement[i] * surfels.normal.col(i);
+    return outer;
+}
+
 Surfels surfels_from_cloud(const cloud::Cloud& cloud, const std::string& source)
 {
     if (!cloud::has_normals(cloud)) throw core::InputError(source, "no fields normal_x normal_y normal_z");

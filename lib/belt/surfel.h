@@ -27,6 +27,9 @@ struct Surfels {
 /// Points on the surface of the stock, 3xN.
 Eigen::Matrix3Xd displaced_positions(const Surfels& surfels);
 
+/// The outer of the design's and the stock's surface at each surfel, 3xN: nothing of the workpiece stands beyond it.
+Eigen::Matrix3Xd outer_positions(const Surfels& surfels);
+
 /// Surfels from the fields normal_x normal_y normal_z radius u v patch displacement area. A missing radius, u, v, patch
 /// or displacement is 0, so that the points of an ordinary cloud are the surface of the stock.
 /// @param source  name of the cloud for messages

@@ -56,6 +56,30 @@ void set_poses(Cloud& cloud, const PosePath& poses)
     for (Eigen::Index k = 0; k < 4; ++k) set_field(cloud, kQuaternion[k], q.row(k), 8);
 }
 
+Eigen::VectorXd read_strokes(const Cloud& cloud)
+{
+    for (const char* name : {"stroke", "pass"})
+        if (has_field(cloud, name)) return field(cloud, name);
+    return Eigen::VectorXd::Zero(cloud.size());
+}
+
+std::vector<Motion> read_motions(const Cloud& cloud)
+{
+    std::vector<Motion> motions(cloud.size(), Motion::stroke);
+    const bool is_given = has_field(cloud, "motion");
+    const Eigen::VectorXd values = is_given ? field(cloud, "motion") : read_strokes(cloud);
+    for (Eigen::Index i = 0; i < cloud.size(); ++i) {
+        if (is_given && !(values[i] == 0 || values[i] == 1 || values[i] == 2 || values[i] == 3))
+            throw core::InputError("point " + std::to_string(i) + ": motion is " + core::to_short_text(values[i]) +
+                                   ", expected 0 to 3");
+        if (is_given)
+            motions[i] = static_cast<Motion>(static_cast<int>(values[i]));
+        else if (values[i] < 0)
+            motions[i] = Motion::travel;
+    }
+    return motions;
+}
+
 Eigen::Isometry3d parse_pose(const std::string& text)
 {
     const Eigen::VectorXd numbers = core::parse_number_list(text);

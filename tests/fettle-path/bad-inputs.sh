@@ -10,7 +10,11 @@ printf '1 2 3\n4 5 6\n' > points.xyz
 refused 'empty.pcd' fettle-path empty.pcd
 refused 'points.xyz: no fields normal_x' fettle-path points.xyz
 refused 'work.pcd: no surfels on patch 6' fettle-path work.pcd --patch 6
-refused 'coarse.pcd: too few surfels on patch 0' fettle-path coarse.pcd
+refused 'coarse.pcd: too few surfels on patch 5' fettle-path coarse.pcd # on none of the six is there enough
+refused 'coarse.pcd: too few surfels on patch 0' fettle-path coarse.pcd --patch 0
+refused '--approach and --part go with --clearance' fettle-path work.pcd --approach 3
+refused '--clearance: over a path it needs the --part' fettle-path <(fettle-path work.pcd --patch 1) --clearance 5
+refused 'joined already' fettle-path <(fettle-path work.pcd --patch 1 --clearance 5) --clearance 5 --part box.off
 refused '--held part and --wheel' fettle-path work.pcd --held part
 refused '--held part and --wheel' fettle-path work.pcd --wheel 0,0,0,1,0,0,0
 refused '--wheel: expected x,y,z,qw,qx,qy,qz, got' fettle-path work.pcd --held part --wheel 0,0,0,1

@@ -115,7 +115,7 @@ TEST(ContactPath, passes_end_where_the_patch_does)
         const Eigen::Vector3d p = pose.translation();
         EXPECT_GT(from_hole({std::atan2(p.x(), p.z()), p.y()}), -0.36); // within a radius of a surfel
     }
-    EXPECT_THROW(belt::contact_path(holed, {}), std::runtime_error);
+    EXPECT_THROW(belt::contact_path(holed, {.patch = 0}), std::runtime_error);
 }
 
 // Like a blade's profile: at the nose the parameter runs at a tenth of its speed at the ends, the surfels are evenly
