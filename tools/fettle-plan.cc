@@ -1,9 +1,11 @@
 #include "cli/tool.h"
+#include "cloud/pcd.h"
 #include "core/file.h"
 #include "gantry/gantry_options.h"
 #include "job/plausible.h"
 #include "plan/gcode.h"
 #include "plan/plan.h"
+#include "plan/pose_path.h"
 #include "plan/tool_path.h"
 #include "strategy/choose_force_down.h"
 
@@ -20,6 +22,10 @@ struct Options {
     const std::string& surface = t.main_input("SURFACE", "the desired surface, JSON (fettle-margin)");
     const std::string& gcode = t.choice("--gcode", "", {"linuxcnc", "grbl"},
                                         "Write layer 1 alone as G-code for this controller, instead of the plan");
+    const std::string& path = t.optional_output(
+        "--path", "Write the passes as the tool path of a robot, too, PCD, in the part's frame: tip, wheel's plane, "
+                  "normal, layer, stroke, feed and limits of force");
+    const int& layers = t.count("--layers", 1, "Number of layers in --path, from the highest down", 1, 10000);
     const std::string& force_down =
         t.choice("--f-down", "job", {"job", "auto"},
                  "F_down: the job's, or the one with which the simulated part is ground fastest");
@@ -63,10 +69,13 @@ int main(int argc, char** argv)
                 job.force.down = choice->trials[choice->chosen].force_down;
             }
             const plan::Plan plan = plan::make_plan(job, surface);
+            const auto tool_path = [&] { return plan::ToolPath(plan.job, plan.surface, plan.passes, plan.step); };
+            if (!o.path.empty())
+                cloud::write_pcd(t.output_file(o.path), plan::pose_path(plan, tool_path(), o.layers), plan.job.units);
             if (o.gcode.empty())
                 t.output() << plan::to_json(plan);
             else
-                plan::write_gcode(t.output(), plan, plan::ToolPath(plan.job, plan.surface, plan.passes, plan.step),
+                plan::write_gcode(t.output(), plan, tool_path(),
                                   o.gcode == "grbl" ? plan::GcodeDialect::grbl : plan::GcodeDialect::linuxcnc);
             t.report() = plan::report_json(plan);
             if (choice) t.report().set("force_down", strategy::to_json(*choice, job.units));
