@@ -75,6 +75,7 @@ OPENCV := -lopencv_imgproc -lopencv_core
 PNG    := -lpng
 MD     := -lmd
 FCL    := -lfcl -lccd
+URDF   := -lurdfdom_model -lconsole_bridge -ltinyxml
 PCL    := -lpcl_kdtree -lpcl_common
 # Segmentation needs more of PCL.
 PLACE  := $(PCL) -lpcl_segmentation -lpcl_sample_consensus -lpcl_search
@@ -151,21 +152,22 @@ $(LIST): packaging/fettle.in packaging/tool-list packaging/about README.md CHANG
 	chmod +x $@
 
 # Programs of the studies: what would be too slow as a chain of tools for each of thousands of cells.
-$(B)/study/%: LDLIBS = $(CERES) $(OPENCV) $(PNG) $(MD)
+$(B)/study/%: LDLIBS = $(CERES) $(OPENCV) $(PNG) $(MD) $(URDF)
 $(B)/study/%: $(B)/pipelines/programs/%.o $$(call archives,pipelines/programs/$$*)
 	@mkdir -p $(@D)
 	$(CXX) $(LDFLAGS) -o $@ $^ $(LDLIBS) $(LDLIBS_ALL)
 
-$(B)/tests/%: LDLIBS = $(CERES) $(OPENCV) $(PNG) $(MD) -lgtest_main -lgtest
+$(B)/tests/%: LDLIBS = $(CERES) $(OPENCV) $(PNG) $(MD) $(URDF) -lgtest_main -lgtest
 $(B)/tests/cloud_test: LDLIBS += -lpcl_io -lpcl_common
 $(B)/tests/clean_test: LDLIBS += $(PCL) -lpcl_filters -lpcl_search
 $(B)/tests/place_test: LDLIBS += $(PLACE)
 $(B)/tests/fcl_test: LDLIBS += $(FCL)
+$(B)/tests/urdf_test: LDLIBS += -lorocos-kdl
 $(B)/tests/%: $(B)/tests/lib/%.o $$(call archives,tests/lib/$$*)
 	@mkdir -p $(@D)
 	$(CXX) $(LDFLAGS) -o $@ $^ $(LDLIBS) $(LDLIBS_ALL)
 
-$(B)/bench/%: LDLIBS = $(CERES) $(EMBREE) $(OPENCV) $(PNG) $(MD) -lbenchmark_main -lbenchmark
+$(B)/bench/%: LDLIBS = $(CERES) $(EMBREE) $(OPENCV) $(PNG) $(MD) $(URDF) -lbenchmark_main -lbenchmark
 $(B)/bench/tool_hull_bench: LDLIBS += $(FCL)
 $(B)/bench/libraries_bench: LDLIBS += $(PCL) -lflann_cpp -llz4
 $(B)/bench/%: $(B)/tests/bench/%.o $$(call archives,tests/bench/$$*)

@@ -18,7 +18,7 @@ HEIGHTS := 100 300 500 700 900 1100 1300 1500 1700 1900
 ARM     := $(B)/bin/fettle-arm samples/robots/irb1400.json
 
 .PHONY: keel reach hulls times
-keel: $(ROBOT)/keel/clearance.png
+keel: $(ROBOT)/keel/clearance.png $(ROBOT)/keel/keel.mod
 	@jq -r '"\(.reached) of \(.count) poses reached, \(.collisions) collide, \(.collisions_between) ways between them; least clearance \(1000 * .min.clearance | round / 1000) mm, \(.min.pair | join(" and "))"' $(ROBOT)/keel/report.json
 
 reach: $(HEIGHTS:%=$(ROBOT)/reach/%.png) $(ROBOT)/reach/cell.json
@@ -99,17 +99,20 @@ $(ROBOT)/%/model.png: $(ROBOT)/%/path.pcd $(ROBOT)/%/hull.stl $(B)/bin/fettle-co
 	$(call step,pipelines/robot-hull pick 30000 < $< | $(B)/bin/fettle-collide $(CELL_OF) --workpiece $(@D)/hull.stl $(WAYS) --method grid --cell 5 --picture $@.part --from $(NEAR) -q -o /dev/null || test $$? = 1)
 
 $(ROBOT)/%/hull.mod: $(ROBOT)/%/smooth.pcd $(B)/bin/fettle-arm
-	$(call step,$(B)/bin/fettle-arm $(CELL_OF) --inverse $< $(WAYS) --feed 50 --rapid $@.part -q -o /dev/null)
+	$(call step,$(B)/bin/fettle-arm $(CELL_OF) --forward $< --feed 50 --rapid $@.part --unchecked -q -o /dev/null)
 
 $(ROBOT)/keel/keel.stl: $(B)/bin/fettle-part samples/parts/keel.json
 	$(call step,$< samples/parts/keel.json -o $@.part)
 
 $(ROBOT)/keel/joints.pcd: samples/paths/keel.pcd $(B)/bin/fettle-arm samples/robots/irb1400.json
-	$(call step,$(ARM) --inverse $< --feed 50 --rapid $(@D)/keel.mod -o $@.part)
+	$(call step,$(ARM) --inverse $< --feed 50 -o $@.part)
 
 # Exit status 1 is an answer, which the report holds.
 $(ROBOT)/keel/checked.pcd: $(ROBOT)/keel/joints.pcd $(ROBOT)/keel/keel.stl $(B)/bin/fettle-collide samples/robots/irb1400.json
 	$(call step,$(B)/bin/fettle-collide samples/robots/irb1400.json $< --workpiece $(@D)/keel.stl --report $(@D)/report.json -q -o $@.part || test $$? = 1)
+
+$(ROBOT)/keel/keel.mod: $(ROBOT)/keel/checked.pcd $(B)/bin/fettle-arm
+	$(call step,$(ARM) --forward $< --feed 50 --rapid $@.part -q -o /dev/null)
 
 $(ROBOT)/keel/clearance.png: $(ROBOT)/keel/checked.pcd $(B)/bin/fettle-render
 	$(call step,$(B)/bin/fettle-render $< --field clearance --title "Clearance along the keel" -o $@.part)

@@ -1,12 +1,13 @@
 #include "cli/tool.h"
 #include "cloud/pcd.h"
+#include "cloud/poses.h"
 #include "core/constants.h"
 #include "core/file.h"
 #include "mesh/shape_file.h"
+#include "program/program_options.h"
 #include "robot/arm_report.h"
 #include "robot/path_cloud.h"
 #include "robot/path_options.h"
-#include "robot/rapid.h"
 #include "robot/reach.h"
 
 #include <optional>
@@ -22,11 +23,15 @@ const std::string kDescription =
     "least motion. Points: x y z is the tip, qw qx qy qz turns the tool's frame (+z from the tip to the holder, +x "
     "along the feed) to the part's; joint1 to joint6 in degrees, joint7 the track, joint8 the table in degrees. Added: "
     "state (0 reached, 1 unreachable, 2 out of range, 3 undefined) and singularity, the distance from one. Exit 1 "
-    "if a pose is not reached, the path jumps or a joint is too fast.";
+    "if a pose is not reached, the path jumps or a joint is too fast. Robot programs are written of paths only that "
+    "fettle-collide has checked, with the joints that it has checked: to the first pose by joints, on straight from "
+    "pose "
+    "to pose; a part of its own for each value of the field anomaly, called one after the other; feeds from the field "
+    "feed, where it has a value, else --feed.";
 
 struct Options {
     cli::Tool& t;
-    const std::string& robot = t.positional_file("ROBOT", "The robot, JSON");
+    robot::RobotOptions robot{t};
     const std::string& points = t.main_input("POINTS", "joints or path, PCD");
     const bool& to_poses = t.flag("--forward", "From joints to poses");
     const bool& to_joints = t.flag("--inverse", "From poses to joints");
@@ -43,20 +48,22 @@ struct Options {
                  "of the elbow, and the distance of the wrist centre from axis 1 over the reach",
                  core::Range::between(0, 1));
     const std::optional<double>& feed = t.optional_number(
-        "--feed", "LENGTH/S", "Speed of the tip, for speeds and accelerations of the joints [the field t]",
+        "--feed", "LENGTH/S", "Speed of the tip on the part, for speeds and accelerations of the joints [the field t]",
         core::Range::positive());
+    const std::optional<double>& travel = t.optional_number(
+        "--travel-feed", "LENGTH/S", "Its speed from stroke to stroke [250 mm/s]", core::Range::positive());
     const double& turn_feed =
         t.number("--turn-feed", 500, "DEG/S", "Maximum turn rate of the tool", core::Range::positive());
     const bool& all = t.flag("--all", "Write every solution of each pose: a point each, with pose and branch");
-    const std::string& rapid = t.optional_output("--rapid", "Write an ABB RAPID module, too; it needs --feed");
-    const std::string& zone = t.choice("--zone", "z0", {"fine", "z0", "z1", "z5", "z10"}, "RAPID: of the targets");
+    program::ProgramArguments program{t};
     const bool& ascii = t.flag("--ascii", "Text instead of binary");
 };
 
 void add_usage(cli::Tool& t)
 {
-    t.example("fettle-arm robots/irb1400.json --inverse paths/keel.pcd --feed 50 --rapid keel.mod > joints.pcd",
-              "joints along the keel of a hull, and the robot's program");
+    t.example("fettle-part parts/keel.json | fettle-collide robots/irb1400.json paths/keel.pcd --workpiece - | "
+              "fettle-arm robots/irb1400.json --inverse - --feed 50 --rapid keel.mod > joints.pcd",
+              "joints along the keel of a hull, checked, and the robot's program");
     t.reference("Chen & Wei, eq. 1 and 2, table 1; Pieper 1968 (closed form)");
 }
 
@@ -65,8 +72,9 @@ void check(const Options& o)
     if (int(o.to_poses) + int(o.to_joints) + int(o.reach) != 1)
         throw core::InputError("give one of --forward, --inverse and --reach");
     if (o.all && o.to_poses) throw core::InputError("--all goes with --inverse");
-    if (!o.rapid.empty() && !o.feed) throw core::InputError("--rapid needs --feed");
-    if (!o.rapid.empty() && o.reach) throw core::InputError("--rapid needs a path");
+    if (o.program.any() && o.reach) throw core::InputError(o.program.option_of_first() + " needs a path");
+    if (o.program.any() && !o.feed) throw core::InputError(o.program.option_of_first() + " needs --feed");
+    if (o.program.any() && o.all) throw core::InputError(o.program.option_of_first() + " and --all do not go together");
     if (!o.box.empty() && !o.reach) throw core::InputError("--box goes with --reach");
 }
 
@@ -80,6 +88,22 @@ cli::Verdict study_reach(const Options& o, const robot::Robot& robot)
     return cli::Verdict::yes;
 }
 
+/// Speed of the motion to each pose, mm/s: the field feed on the part, else --feed; --travel-feed off it.
+Eigen::VectorXd speeds_along(const Options& o, const cloud::Cloud& path, double mm)
+{
+    constexpr double kTravelSpeed = 250; // mm/s: a robot's reduced speed in manual mode (ISO 10218-1)
+    const std::vector<cloud::Motion> motions = cloud::read_motions(path);
+    Eigen::VectorXd speeds = Eigen::VectorXd::Constant(path.size(), *o.feed * mm);
+    if (cloud::has_field(path, "feed")) {
+        const Eigen::VectorXd feeds = cloud::field(path, "feed");
+        for (Eigen::Index i = 0; i < feeds.size(); ++i)
+            if (feeds[i] > 0) speeds[i] = feeds[i];
+    }
+    for (std::size_t i = 0; i < motions.size(); ++i)
+        if (motions[i] >= cloud::Motion::lead) speeds[i] = o.travel ? *o.travel * mm : kTravelSpeed;
+    return speeds;
+}
+
 } // namespace
 
 int main(int argc, char** argv)
@@ -90,7 +114,7 @@ int main(int argc, char** argv)
         t.parse();
         check(o);
 
-        const robot::Robot robot = robot::read_robot(o.robot);
+        const robot::Robot robot = o.robot.read();
         if (o.reach) return study_reach(o, robot);
         cloud::CloudFile file = cloud::read_cloud(o.points, mesh::resolve_file_units(o.unit));
         cloud::Cloud& cloud = file.cloud;
@@ -101,22 +125,31 @@ int main(int argc, char** argv)
         });
 
         const cloud::PcdEncoding encoding = cloud::pcd_encoding(o.ascii);
+        const cloud::Cloud given = cloud;
         if (o.all) cloud::write_pcd(t.output(), robot::all_solutions(robot, cloud, solved), file.units, encoding);
         if (o.to_poses) cloud::set_poses(cloud, solved.poses);
         if (o.to_joints) robot::set_joints(cloud, robot, solved.path.joints);
-        const robot::Feedrate feedrate = {o.feed.value_or(0) * mm, o.turn_feed * core::kRadPerDegree};
-        if (o.feed) cloud::set_field(cloud, "t", robot::arrival_times(solved.poses, feedrate), 8);
+        program::ProgramOptions options;
+        options.turn_rate = o.turn_feed * core::kRadPerDegree;
+        if (o.feed) {
+            options.speeds = speeds_along(o, cloud, mm);
+            cloud::set_field(cloud, "t", robot::arrival_times(solved.poses, options.speeds, options.turn_rate), 8);
+        }
         robot::set_states(cloud, solved.path);
         if (!o.all) cloud::write_pcd(t.output(), cloud, file.units, encoding);
 
         if (o.to_joints) robot::add_report(t.report(), robot, solved.externals, file.units);
         const auto times = robot::pose_times(cloud);
         const bool done = robot::add_report(t.report(), robot, solved.path, o.singular, times, file.units);
-        if (done && !o.rapid.empty())
-            robot::write_rapid(t.output_file(o.rapid), robot, solved.poses, solved.path, {feedrate, o.zone});
-        if (!done && !o.rapid.empty())
+        if (done && o.program.any()) {
+            options.remark = cli::with_error_prefix(core::display_name(o.points), [&] {
+                return program::check_remark(robot, given, solved, o.program.unchecked, mm);
+            });
+            program::write_programs(t, o.program, robot, given, solved, options);
+        }
+        if (!done && o.program.any())
             t.warn("the robot cannot run this path: " + robot::path_obstacle(robot, solved.path, times) + "; " +
-                   o.rapid + " is not written");
+                   o.program.name_of_first() + " is not written");
         return done ? cli::Verdict::yes : cli::Verdict::no;
     });
 }

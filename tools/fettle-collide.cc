@@ -10,6 +10,7 @@
 #include "robot/collision_study.h"
 #include "robot/path_cloud.h"
 #include "robot/path_options.h"
+#include "robot/path_stamp.h"
 
 #include <optional>
 
@@ -25,7 +26,10 @@ const std::string kDescription =
     "the tolerance is no collision. PATH holds poses (as for fettle-arm --inverse, whose joints are found here) or "
     "joints. Added: clearance of the pose, clearance_between (on the motion from the pose before, a lower bound), body "
     "and other (which bodies: indices in the robot file from 0, the workpiece after the last), foot_x foot_y foot_z "
-    "(where, in the cell). Exit 1 if something collides, a pose is not reached or the path jumps.\n"
+    "(where, in the cell). Exit 1 if something collides, a pose is not reached or the path jumps. A path that is clear "
+    "of "
+    "a --workpiece is stamped in its header, checked DIGEST clearance D between D strokes D (minimum at poses, between "
+    "them, and on the way from stroke to stroke): fettle-arm writes programs of such paths only.\n"
     "With --avoid such poses are tilted about the centre of the ball at the tip, so that the point of contact stays "
     "(about the tip if there is no ball), on cones 5 degrees apart up to --max-tilt; the first tilt that is free of "
     "collisions and reached without a jump is taken. Where that does not help, the tool retreats by steps of 0.1 mm, "
@@ -35,7 +39,7 @@ const std::string kDescription =
 
 struct Options {
     cli::Tool& t;
-    const std::string& robot = t.positional_file("ROBOT", "The robot, JSON");
+    robot::RobotOptions robot{t};
     const std::string& points = t.main_input("PATH", "path or joints, PCD");
     const std::string& part = t.optional_file("--workpiece", "MESH", "STL, PLY, OBJ, OFF, in the part's frame [none]");
     const std::optional<units::Units::Length>& part_unit =
@@ -115,6 +119,18 @@ void draw(const Options& o, const robot::Robot& robot, const mesh::Mesh* workpie
                                                                 units);
 }
 
+/// Stamps a path that the robot can run without a collision, or says why it does not.
+void stamp(cli::Tool& t, const robot::Robot& robot, const robot::CollisionStudy& study, bool has_workpiece,
+           const std::optional<double>& strokes, double mm, cloud::Cloud& path)
+{
+    const std::string obstacle = robot::stamp_obstacle(robot, study, has_workpiece);
+    t.report().set("stamped", obstacle.empty());
+    if (obstacle.empty())
+        path.comment = robot::stamp_text(robot, path, study.checked, strokes, mm);
+    else
+        t.note("the path is not stamped as checked, so that it becomes no program: " + obstacle);
+}
+
 } // namespace
 
 int main(int argc, char** argv)
@@ -124,7 +140,7 @@ int main(int argc, char** argv)
         add_usage(t);
         t.parse();
 
-        const robot::Robot robot = robot::read_robot(o.robot);
+        const robot::Robot robot = o.robot.read();
         auto [path, units] = cloud::read_cloud(o.points, mesh::resolve_file_units(o.unit));
         const robot::CollisionRequest wanted = request(o, units.mm());
         std::optional<mesh::Mesh> mesh;
@@ -141,6 +157,11 @@ int main(int argc, char** argv)
         draw(o, robot, mesh ? &*mesh : nullptr, study, units);
         robot::set_fields(path, robot, study);
         const bool clear = robot::add_report(t.report(), robot, study, robot::pose_times(path), units);
+        const std::optional<double> strokes =
+            robot::min_travel_clearance(robot, workpiece ? &*workpiece : nullptr, path, study);
+        if (strokes) t.report().set("min_between_strokes", *strokes / units.mm());
+        path.comment.clear();
+        if (clear) stamp(t, robot, study, workpiece.has_value(), strokes, units.mm(), path);
         cloud::write_pcd(t.output(), path, units, cloud::pcd_encoding(o.ascii));
         return clear ? cli::Verdict::yes : cli::Verdict::no;
     });

@@ -135,10 +135,11 @@ Cloud read_ascii(const PcdHeader& header, std::string_view body, const std::stri
     return gather(header, buffer.get());
 }
 
-void set_width_viewpoint_and_frame(Cloud& cloud, const PcdHeader& header)
+void set_header_data(Cloud& cloud, const PcdHeader& header)
 {
     cloud.width = header.height > 1 ? header.width : 0;
     cloud.frame = header.frame;
+    cloud.comment = header.stamp;
     cloud.view_origin = header.view_origin;
     cloud.view_orientation = header.view_orientation;
 }
@@ -153,7 +154,7 @@ CloudFile parse_pcd(std::string_view bytes, const std::string& source, const std
     Cloud cloud = header.data == PcdHeader::Data::ascii    ? read_ascii(header, body, source)
                   : header.data == PcdHeader::Data::binary ? read_binary(header, body, source)
                                                            : read_compressed(header, body, source);
-    set_width_viewpoint_and_frame(cloud, header);
+    set_header_data(cloud, header);
     return {std::move(cloud), units};
 }
 
@@ -164,7 +165,7 @@ Cloud parse_pcd_records(const PcdHeader& header, std::string_view records, const
     PcdHeader part_header = header;
     part_header.points = records.size() / header.stride();
     Cloud cloud = gather(part_header, records.data());
-    set_width_viewpoint_and_frame(cloud, header);
+    set_header_data(cloud, header);
     to_base_units(cloud, units);
     return cloud;
 }

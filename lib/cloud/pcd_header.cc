@@ -15,10 +15,11 @@ namespace fettle::cloud {
 namespace {
 
 // Limits that no real file reaches. They keep a malformed one from using much memory.
-constexpr std::size_t kMaxPcdLineBytes = 1 << 16; // PCL's histograms name at most a few hundred fields
-constexpr std::size_t kMaxElements = 1 << 16;     // of one field; PCL's longest descriptor has 1344
-constexpr std::size_t kMaxHeaderLines = 1000;     // eleven entries, the rest are comments
-constexpr std::size_t kMaxPoints = 4294967295;    // PCL keeps widths and heights in 32 bits
+constexpr std::size_t kMaxPcdLineBytes = 1 << 16;  // PCL's histograms name at most a few hundred fields
+constexpr std::size_t kMaxElements = 1 << 16;      // of one field; PCL's longest descriptor has 1344
+constexpr std::string_view kStampWord = "checked"; // begins the comment of a checked path
+constexpr std::size_t kMaxHeaderLines = 1000;      // eleven entries, the rest are comments
+constexpr std::size_t kMaxPoints = 4294967295;     // PCL keeps widths and heights in 32 bits
 
 constexpr std::string_view kEntries[] = {"VERSION", "FIELDS", "COLUMNS",   "SIZE",   "TYPE", "COUNT",
                                          "WIDTH",   "HEIGHT", "VIEWPOINT", "POINTS", "DATA"};
@@ -90,6 +91,8 @@ class PcdHeaderParser : core::FileLines {
     void read_comment(std::string_view text)
     {
         if (is_job_frame_comment(text)) header_.frame = Frame::job;
+        if (const Words parts = core::words(text); !parts.empty() && parts[0] == kStampWord)
+            header_.stamp = text.substr(text.find(kStampWord));
         std::optional<DeclaredUnits> units;
         try {
             units = parse_units_comment(text);

@@ -36,6 +36,7 @@ struct PcdHeader {
     Eigen::Quaterniond view_orientation = Eigen::Quaterniond::Identity();
     std::optional<DeclaredUnits> units; ///< of the `# units` comment
     Frame frame = Frame::part;          ///< of the `# frame` comment
+    std::string stamp; ///< text of the `# checked` comment of a checked path: the only one that readers keep
     Data data = Data::ascii;
     std::size_t body = 0;  ///< offset of the first byte after the header
     std::size_t lines = 0; ///< number of header lines, for line numbers in messages

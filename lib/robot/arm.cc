@@ -1,4 +1,4 @@
-#include "robot/arm.h"
+#include "robot/arm_target.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,22 +8,12 @@ namespace fettle::robot {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-// Below this sine of joint 5 the pose determines only the sum of joints 4 and 6. Any split of the sum changes the pose
-// by no more than this, rad.
-constexpr double kMinWristSine = 1e-10;
-// A wrist centre no farther from axis 1 counts as on it, mm.
-constexpr double kAxisDistanceTolerance = 1e-10;
-// A cosine that exceeds 1 by no more counts as rounded: 1e-12 moves a wrist centre 1 m away by less than 1e-9 mm.
-constexpr double kCosineRounding = 1e-12;
+constexpr double kFewTurns = 8 * kPi;
 
-struct CosSin {
-    double cosine, sine;
-};
-
-// Shifts an angle by whole turns to within half a turn of `middle`; it is at most a few turns away.
+// Shifts an angle by whole turns to within half a turn of `middle`; it mostly is at most a few turns away.
 double wrap_about(double angle, double middle)
 {
+    if (std::abs(angle - middle) > kFewTurns) return middle + std::remainder(angle - middle, 2 * kPi);
     while (angle - middle > kPi) angle -= 2 * kPi;
     while (middle - angle > kPi) angle += 2 * kPi;
     return angle;
@@ -31,22 +21,15 @@ double wrap_about(double angle, double middle)
 
 } // namespace
 
-/// What the inverse is to reach, with the choice of the shoulder.
-struct Arm::Target {
-    const Eigen::Matrix3d& R;     ///< R_base_5 R_z(theta6)
-    Eigen::Vector3d wrist_centre; ///< base frame, mm
-    const Joints& seed;
-    Ranges ranges;
-    double across; ///< signed distance of the wrist centre from axis 1 in the arm's plane, negative behind the axis
-    CosSin turn1;  ///< of theta1
-};
-
 double Singularity::min() const { return std::min({shoulder, elbow, wrist}); }
 
-Arm::Arm(const Robot& robot) : dh_(robot.dh), coupling_(robot.coupling)
+Arm::Arm(const Robot& robot)
+    : dh_(robot.dh), kind_(robot.arm_kind), coupling_(robot.coupling), is_exact_(is_closed_form_exact())
 {
-    for (std::size_t i = 0; i < 5; ++i) sin_alpha_[i] = std::sin(dh_[i].alpha);
-    const Eigen::Vector2d forearm(dh_[2].a, -sin_alpha_[2] * dh_[3].d);
+    // Twists that nearly are right angles are, in closed form.
+    for (std::size_t i = 0; i < 5; ++i) sin_alpha_[i] = std::round(std::sin(dh_[i].alpha));
+    const bool is_spherical = kind_ == ArmKind::spherical_wrist;
+    const Eigen::Vector2d forearm(dh_[2].a, is_spherical ? -sin_alpha_[2] * dh_[3].d : 0);
     forearm_length_ = forearm.norm();
     forearm_angle_ = std::atan2(forearm.y(), forearm.x());
     R_alpha6_ = Eigen::AngleAxisd(-dh_[5].alpha, Eigen::Vector3d::UnitX()).toRotationMatrix();
@@ -58,7 +41,7 @@ std::array<Eigen::Isometry3d, 7> Arm::frames(const Joints& joints) const
     std::array<Eigen::Isometry3d, 7> T;
     T[0].setIdentity();
     for (std::size_t i = 0; i < 6; ++i) {
-        double theta = joints[i] + dh_[i].offset;
+        double theta = dh_[i].sign * joints[i] + dh_[i].offset;
         if (i == 2 && coupling_ == Coupling::parallelogram) theta -= joints[1];
         T[i + 1] = T[i] * dh_transform(theta, dh_[i].d, dh_[i].a, dh_[i].alpha);
     }
@@ -67,12 +50,29 @@ std::array<Eigen::Isometry3d, 7> Arm::frames(const Joints& joints) const
 
 Singularity Arm::singularity(const Joints& joints) const
 {
-    const double theta2 = joints[1] + dh_[1].offset;
-    const double theta3 = joints[2] + dh_[2].offset - (coupling_ == Coupling::parallelogram ? joints[1] : 0);
+    if (kind_ == ArmKind::general) {
+        // No closed form tells the kinds apart: the smallest singular value, lengths over the reach of the arm.
+        Eigen::Matrix<double, 6, 6> J = jacobian(joints);
+        double reach = 1;
+        for (const DhRow& row : dh_) reach += std::abs(row.a) + std::abs(row.d);
+        J.topRows<3>() /= reach;
+        const double min = J.jacobiSvd().singularValues()[5];
+        return {min, min, min};
+    }
+    const double theta2 = dh_[1].sign * joints[1] + dh_[1].offset;
+    const double theta3 =
+        dh_[2].sign * joints[2] + dh_[2].offset - (coupling_ == Coupling::parallelogram ? joints[1] : 0);
     const double bend = theta3 + forearm_angle_;
     const double across = dh_[0].a + dh_[1].a * std::cos(theta2) + forearm_length_ * std::cos(theta2 + bend);
+    if (kind_ == ArmKind::parallel_axes) {
+        const auto T = frames(joints);
+        const double offset = dh_[1].d + dh_[2].d + dh_[3].d;
+        const double from_axis = std::sqrt(std::max(T[5].translation().head<2>().squaredNorm() - offset * offset, 0.0));
+        return {from_axis / (std::abs(dh_[1].a) + forearm_length_), std::abs(std::sin(theta3)),
+                std::abs(std::sin(dh_[4].sign * joints[4] + dh_[4].offset))};
+    }
     return {std::abs(across) / (std::abs(dh_[1].a) + forearm_length_), std::abs(std::sin(bend)),
-            std::abs(std::sin(joints[4] + dh_[4].offset))};
+            std::abs(std::sin(dh_[4].sign * joints[4] + dh_[4].offset))};
 }
 
 bool Arm::in_range(const Joints& joints) const
@@ -91,6 +91,15 @@ bool Arm::wrap(Joints& joints, Eigen::Index k, Ranges ranges) const
 
 ArmSolutions Arm::solve(const Eigen::Isometry3d& T_base_flange, const Joints& seed, Ranges ranges) const
 {
+    if (kind_ == ArmKind::general) return solve_general(T_base_flange, seed, ranges);
+    const Ranges asked = is_exact_ ? ranges : Ranges::ignore; // a correction may bring a joint into its range
+    const ArmSolutions found = kind_ == ArmKind::spherical_wrist ? solve_spherical(T_base_flange, seed, asked)
+                                                                 : solve_parallel(T_base_flange, seed, asked);
+    return is_exact_ ? found : corrected(found, T_base_flange, ranges);
+}
+
+ArmSolutions Arm::solve_spherical(const Eigen::Isometry3d& T_base_flange, const Joints& seed, Ranges ranges) const
+{
     ArmSolutions found;
     const Eigen::Matrix3d R = T_base_flange.linear() * R_alpha6_;
     const Eigen::Vector3d wrist = T_base_flange.translation() - T_base_flange.linear() * wrist_to_flange_;
@@ -105,7 +114,7 @@ ArmSolutions Arm::solve(const Eigen::Isometry3d& T_base_flange, const Joints& se
         CosSin turn1 = {(wrist.x() * u + wrist.y() * offset) / squared, (wrist.y() * u - wrist.x() * offset) / squared};
         double theta1 = std::atan2(turn1.sine, turn1.cosine);
         if (on_axis) {
-            theta1 = seed[0] + dh_[0].offset + shoulder * kPi;
+            theta1 = dh_[0].sign * seed[0] + dh_[0].offset + shoulder * kPi;
             turn1 = {std::cos(theta1), std::sin(theta1)};
         }
         add_elbow_solutions({R, wrist, seed, ranges, u, turn1}, theta1, shoulder, found);
@@ -124,7 +133,7 @@ void Arm::add_elbow_solutions(const Target& target, double theta1, int shoulder,
     if (from_straight < -kCosineRounding || from_folded < -kCosineRounding) return;
     found.reachable = true;
     Joints joints;
-    joints[0] = theta1 - dh_[0].offset;
+    joints[0] = dh_[0].sign * (theta1 - dh_[0].offset);
     if (!wrap(joints, 0, target.ranges)) return;
     const double sine = std::sqrt(std::max(from_straight * from_folded, 0.0)),
                  cosine = (from_folded - from_straight) / 2;
@@ -134,10 +143,11 @@ void Arm::add_elbow_solutions(const Target& target, double theta1, int shoulder,
         const double s = elbow == 0 ? sine : -sine;
         const double k1 = a2 + L * cosine, k2 = L * s;
         // With the wrist centre on axis 2 (only if |a2| = L) any theta2 is a solution.
-        const double theta2 = r2 > 0 ? std::atan2(y * k1 - x * k2, x * k1 + y * k2) : target.seed[1] + dh_[1].offset;
+        const double theta2 =
+            r2 > 0 ? std::atan2(y * k1 - x * k2, x * k1 + y * k2) : dh_[1].sign * target.seed[1] + dh_[1].offset;
         const double theta3 = (elbow == 0 ? bend : -bend) - forearm_angle_;
-        joints[1] = theta2 - dh_[1].offset;
-        joints[2] = theta3 - dh_[2].offset + (coupling_ == Coupling::parallelogram ? joints[1] : 0);
+        joints[1] = dh_[1].sign * (theta2 - dh_[1].offset);
+        joints[2] = dh_[2].sign * (theta3 - dh_[2].offset) + (coupling_ == Coupling::parallelogram ? joints[1] : 0);
         if (!wrap(joints, 1, target.ranges) || !wrap(joints, 2, target.ranges)) continue;
         const double c = std::cos(theta2 + theta3), sn = std::sin(theta2 + theta3);
         const double s1 = sin_alpha_[0], s3 = sin_alpha_[2];
@@ -163,7 +173,7 @@ void Arm::add_wrist_solutions(const Target& target, const Joints& arm, const Eig
         turn4 = {s5 * M(0, 2) / sine5, s5 * M(1, 2) / sine5};
         theta4 = std::atan2(turn4.sine, turn4.cosine);
     } else {
-        theta4 = target.seed[3] + dh_[3].offset;
+        theta4 = dh_[3].sign * target.seed[3] + dh_[3].offset;
         turn4 = {std::cos(theta4), std::sin(theta4)};
     }
     const double theta5 = std::atan2(sine5, cosine5);
@@ -172,9 +182,9 @@ void Arm::add_wrist_solutions(const Target& target, const Joints& arm, const Eig
         std::atan2(s4 * s5 * (turn4.sine * M(0, 0) - turn4.cosine * M(1, 0)), cosine5 * x + sine5 * y);
     for (int wrist = 0; wrist < 2; ++wrist) {
         Joints joints = arm;
-        joints[3] = theta4 + wrist * kPi - dh_[3].offset;
-        joints[4] = (wrist == 0 ? theta5 : -theta5) - dh_[4].offset;
-        joints[5] = theta6 + wrist * kPi - dh_[5].offset;
+        joints[3] = dh_[3].sign * (theta4 + wrist * kPi - dh_[3].offset);
+        joints[4] = dh_[4].sign * ((wrist == 0 ? theta5 : -theta5) - dh_[4].offset);
+        joints[5] = dh_[5].sign * (theta6 + wrist * kPi - dh_[5].offset);
         if (wrap(joints, 3, target.ranges) && wrap(joints, 4, target.ranges) && wrap(joints, 5, target.ranges))
             found.solutions[found.count++] = {joints, branch + wrist};
     }

@@ -22,12 +22,17 @@ struct Singularity {
 /// One solution of the inverse kinematics.
 struct ArmSolution {
     Joints joints; ///< rad, each within half a turn of the middle of its range
-    int branch;    ///< 4: the wrist centre lies behind axis 1, + 2: the elbow bends the other way, + 1: the wrist does
+    /// 4: the wrist centre lies behind axis 1 (parallel axes: the other solution for joint 1), + 2: the elbow bends the
+    /// other way, + 1: the wrist does. Of a general arm: in the order in which they were found.
+    int branch;
 };
 
-/// The solutions of the inverse kinematics of one pose, at most eight.
+/// Number of solutions that a pose of six revolute joints can have (Raghavan & Roth 1993).
+inline constexpr std::size_t kMaxSolutions = 16;
+
+/// The solutions of the inverse kinematics of one pose; of closed form at most eight.
 struct ArmSolutions {
-    std::array<ArmSolution, 8> solutions;
+    std::array<ArmSolution, kMaxSolutions> solutions;
     std::size_t count = 0;
     bool reachable = false; ///< the wrist centre is within the links' lengths, whatever the joint ranges
 
@@ -36,11 +41,17 @@ struct ArmSolutions {
     std::size_t size() const { return count; }
 };
 
+/// Error of a pose that Newton's method reaches, mm, and rad at a lever of 1 m.
+inline constexpr double kNewtonTolerance = 1e-10;
+
 /// Are solutions with joints out of their ranges dropped?
 enum class Ranges { respect, ignore };
 
-/// Forward and closed-form inverse kinematics of an arm with parallel axes 2 and 3 and a spherical wrist (Pieper 1968),
-/// in the Denavit-Hartenberg convention of Chen & Wei, eq. 1 and 2.
+/// Forward and inverse kinematics of an arm, in the Denavit-Hartenberg convention of Chen & Wei, eq. 1 and 2: in closed
+/// form with parallel axes 2 and 3 and a spherical wrist (Pieper 1968), or with parallel axes 2, 3 and 4 (Hawkins 2013,
+/// Analytic inverse kinematics for the Universal Robots); by Newton's method otherwise. Where a table departs a little
+/// from the closed form's right angles and common points, as of a calibrated arm, Newton's method corrects its
+/// solutions.
 class Arm {
   public:
     explicit Arm(const Robot& robot);
@@ -54,11 +65,27 @@ class Arm {
     /// @param seed  joints, rad
     ArmSolutions solve(const Eigen::Isometry3d& T_base_flange, const Joints& seed, Ranges ranges) const;
 
+    /// d(flange)/d(joints): rows 0 to 2 the velocity of the flange's origin, mm, 3 to 5 its rotation, both in the base.
+    Eigen::Matrix<double, 6, 6> jacobian(const Joints& joints) const;
+    /// Newton's method towards a pose, damped where it would lead away (Levenberg-Marquardt).
+    /// @return  is it reached, to kNewtonTolerance?
+    bool refine(const Eigen::Isometry3d& T_base_flange, Joints& joints, int max_steps) const;
+
     Singularity singularity(const Joints& joints) const;
     bool in_range(const Joints& joints) const;
 
   private:
     struct Target;
+    ArmSolutions solve_spherical(const Eigen::Isometry3d& T_base_flange, const Joints& seed, Ranges ranges) const;
+    ArmSolutions solve_parallel(const Eigen::Isometry3d& T_base_flange, const Joints& seed, Ranges ranges) const;
+    ArmSolutions solve_general(const Eigen::Isometry3d& T_base_flange, const Joints& seed, Ranges ranges) const;
+    void add_parallel_wrist(const Target& target, int branch, ArmSolutions& found) const;
+    void add_parallel_elbows(const Target& target, const Eigen::Vector2d& wrist, double total_turn, Joints joints,
+                             int branch, ArmSolutions& found) const;
+    /// Newton's correction of the closed form's solutions.
+    ArmSolutions corrected(ArmSolutions found, const Eigen::Isometry3d& T_base_flange, Ranges ranges) const;
+    bool is_closed_form_exact() const;
+    Eigen::Matrix<double, 6, 1> error_to(const Eigen::Isometry3d& T_base_flange, const Joints& joints) const;
     void add_elbow_solutions(const Target& target, double theta1, int shoulder, ArmSolutions& found) const;
     void add_wrist_solutions(const Target& target, const Joints& arm, const Eigen::Matrix3d& R_3_5, int branch,
                              ArmSolutions& found) const;
@@ -67,7 +94,9 @@ class Arm {
     bool wrap(Joints& joints, Eigen::Index k, Ranges ranges) const;
 
     std::array<DhRow, 6> dh_;
+    ArmKind kind_;
     Coupling coupling_;
+    bool is_exact_;                   ///< the closed form's assumptions hold exactly
     double sin_alpha_[5];             ///< of rows 1 to 5; 1 or -1 but for the second
     double forearm_length_;           ///< L: from joint 3 to the wrist centre, mm
     double forearm_angle_;            ///< from x3 to the line of L, rad

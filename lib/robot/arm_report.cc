@@ -55,17 +55,34 @@ struct Obstacle {
 
 std::string joint_text(Eigen::Index joint) { return "joint " + std::to_string(joint + 1); }
 
-std::optional<Obstacle> first_unreached(const FollowedPath& path)
+double joint_unit(Eigen::Index joint) { return joint == 6 ? 1 : core::kRadPerDegree; }
+std::string joint_unit_text(Eigen::Index joint) { return joint == 6 ? " mm" : " degrees"; }
+std::string value_text(Eigen::Index joint, double value) { return core::to_short_text(value / joint_unit(joint)); }
+
+JointRange range_of(const Robot& robot, Eigen::Index joint)
+{
+    if (joint < 6) return robot.dh[joint].range;
+    return joint == 6 ? robot.track->range : robot.table->range;
+}
+
+std::optional<Obstacle> first_unreached(const Robot& robot, const FollowedPath& path)
 {
     for (std::size_t i = 0; i < path.state.size(); ++i) {
         const auto pose = static_cast<Eigen::Index>(i);
+        const double value = path.obstacle_value[pose];
+        const Eigen::Index joint = path.joint_out_of_range[i];
         switch (path.state[i]) {
         case PoseState::reached:
             break;
         case PoseState::unreachable:
-            return Obstacle{pose, "is out of the arm's reach"};
-        case PoseState::out_of_range:
-            return Obstacle{pose, joint_text(path.joint_out_of_range[i]) + " is out of its range"};
+            return Obstacle{pose, "is out of the arm's reach: the flange would be " + core::to_short_text(value) +
+                                      " mm from the base"};
+        case PoseState::out_of_range: {
+            const JointRange range = range_of(robot, joint);
+            return Obstacle{pose, joint_text(joint) + " would be at " + value_text(joint, value) +
+                                      joint_unit_text(joint) + ", out of its range of " + value_text(joint, range.min) +
+                                      " to " + value_text(joint, range.max)};
+        }
         case PoseState::undefined:
             return Obstacle{pose, "is not defined"};
         }
@@ -81,8 +98,9 @@ std::optional<Obstacle> first_jump(const FollowedPath& path)
     turn[6] = 0; // a track does not jump
     Eigen::Index joint = 0;
     const double max = turn.maxCoeff(&joint);
-    return Obstacle{pose,
-                    joint_text(joint) + " jumps by " + core::to_short_text(max / core::kRadPerDegree) + " degrees"};
+    return Obstacle{pose, joint_text(joint) + " jumps by " + value_text(joint, max) + " degrees, from " +
+                              value_text(joint, path.joints(joint, pose - 1)) + " to " +
+                              value_text(joint, path.joints(joint, pose))};
 }
 
 std::optional<Obstacle> first_too_fast(const Robot& robot, const FollowedPath& path, const Eigen::VectorXd& times)
@@ -91,8 +109,11 @@ std::optional<Obstacle> first_too_fast(const Robot& robot, const FollowedPath& p
     const std::array<JointRate, 8> rates = joint_rates(robot, path, times);
     for (Eigen::Index joint = 0; joint < 8; ++joint) {
         const Eigen::Index pose = rates[joint].first_over_limit;
-        if (pose >= 0 && (!first || pose < first->pose))
-            first = {pose, joint_text(joint) + " is too fast on the way to it"};
+        if (pose < 0 || (first && pose >= first->pose)) continue;
+        const double speed =
+            std::abs(path.joints(joint, pose) - path.joints(joint, pose - 1)) / (times[pose] - times[pose - 1]);
+        first = {pose, joint_text(joint) + " is too fast on the way to it: " + value_text(joint, speed) +
+                           joint_unit_text(joint) + "/s"};
     }
     return first;
 }
@@ -103,7 +124,7 @@ std::string path_obstacle(const Robot& robot, const FollowedPath& path, const st
 {
     std::optional<Obstacle> first;
     for (const std::optional<Obstacle>& found :
-         {first_unreached(path), first_jump(path), times ? first_too_fast(robot, path, *times) : std::nullopt})
+         {first_unreached(robot, path), first_jump(path), times ? first_too_fast(robot, path, *times) : std::nullopt})
         if (found && (!first || found->pose < first->pose)) first = found;
     return first ? "pose " + std::to_string(first->pose) + ": " + first->reason : "";
 }

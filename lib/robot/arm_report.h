@@ -19,8 +19,8 @@ namespace fettle::robot {
 bool add_report(json::Value& report, const Robot& robot, const FollowedPath& path, double singularity_threshold,
                 const std::optional<Eigen::VectorXd>& times, const units::Units& units);
 
-/// Why a robot cannot run a path: the first pose in the way, with the joint and the reason ("pose 3: joint 5 is out of
-/// its range"); empty if it can.
+/// Why a robot cannot run a path: the first pose in the way, with the joint and the reason ("pose 3: joint 5
+/// would be at 121 degrees, out of its range of -115 to 115"); empty if it can.
 std::string path_obstacle(const Robot& robot, const FollowedPath& path, const std::optional<Eigen::VectorXd>& times);
 
 /// Adds the rules of track and table, where the robot has them, as {"follows": …, "value": …}; degrees and `units`.

@@ -67,11 +67,16 @@ class PathSearch {
     std::vector<std::vector<ArmSolution>> layers_; // solutions of each pose that was added
 };
 
+struct BlockingJoint {
+    Eigen::Index joint = 0;
+    double value = core::kNaN; // rad
+};
+
 // The joint that is farthest out of its range, in the solution for which this is the smallest excess.
-Eigen::Index blocking_joint(const Robot& robot, const Arm& arm, const Eigen::Isometry3d& flange)
+BlockingJoint blocking_joint(const Robot& robot, const Arm& arm, const Eigen::Isometry3d& flange)
 {
     double min_excess = core::kInfinity;
-    Eigen::Index joint = 0;
+    BlockingJoint blocking;
     for (const ArmSolution& solution : arm.solve(flange, Joints::Zero(), Ranges::ignore)) {
         Joints excess;
         for (Eigen::Index k = 0; k < 6; ++k) {
@@ -82,10 +87,10 @@ Eigen::Index blocking_joint(const Robot& robot, const Arm& arm, const Eigen::Iso
         const double max = excess.maxCoeff(&worst);
         if (max < min_excess) {
             min_excess = max;
-            joint = worst;
+            blocking = {worst, solution.joints[worst]};
         }
     }
-    return joint;
+    return blocking;
 }
 
 // The index of the track (6) or table (7) if it is out of its range, else -1.
@@ -104,12 +109,14 @@ FollowedPath undefined_path(Eigen::Index count)
     path.branch.assign(count, -1);
     path.joint_out_of_range.assign(count, -1);
     path.singularity = Eigen::VectorXd::Constant(count, core::kNaN);
+    path.obstacle_value = Eigen::VectorXd::Constant(count, core::kNaN);
     path.out_of_range_counts.setZero();
     return path;
 }
 
-void set_out_of_range(FollowedPath& path, Eigen::Index pose, Eigen::Index joint)
+void set_out_of_range(FollowedPath& path, Eigen::Index pose, Eigen::Index joint, double value)
 {
+    path.obstacle_value[pose] = value;
     path.state[pose] = PoseState::out_of_range;
     path.joint_out_of_range[pose] = static_cast<int>(joint);
     ++path.out_of_range_counts[joint];
@@ -158,9 +165,12 @@ FollowedPath follow_path(const Robot& robot, const cloud::PosePath& poses, const
             state = PoseState::reached;
             last = i;
         } else if (external >= 0 || solutions.reachable) {
-            set_out_of_range(path, i, external >= 0 ? external : blocking_joint(robot, arm, flange));
+            const BlockingJoint blocking = external >= 0 ? BlockingJoint{external, externals(external - 6, i)}
+                                                         : blocking_joint(robot, arm, flange);
+            set_out_of_range(path, i, blocking.joint, blocking.value);
         } else {
             state = PoseState::unreachable;
+            path.obstacle_value[i] = flange.translation().norm();
         }
     }
     const std::vector<ArmSolution> solutions = search.path();
@@ -188,7 +198,7 @@ FollowedPath evaluate_joints(const Robot& robot, const CellJointsPath& joints, d
         for (Eigen::Index k = 5; k >= 0; --k)
             if (!robot.dh[k].range.contains(q[k])) out_of_range = k;
         path.state[i] = PoseState::reached;
-        if (out_of_range >= 0) set_out_of_range(path, i, out_of_range);
+        if (out_of_range >= 0) set_out_of_range(path, i, out_of_range, q[out_of_range]);
         path.singularity[i] = arm.singularity(q.head<6>()).min();
     }
     path.jumps = find_jumps(joints, jump_threshold);

@@ -30,6 +30,9 @@ struct FollowedPath {
     Eigen::VectorXd singularity;         ///< N, distance from a singularity (Singularity::min)
     std::vector<Eigen::Index> jumps;     ///< poses with a jump of a joint or the table from the pose before
     std::vector<int> joint_out_of_range; ///< N, index of the joint that puts the pose out of range; -1: none does
+    /// N: the value of that joint, rad or mm; where the pose is unreachable the distance of the flange from the base's
+    /// origin, mm; else NaN.
+    Eigen::VectorXd obstacle_value;
     Eigen::Matrix<Eigen::Index, 8, 1> out_of_range_counts; ///< by joint: number of poses that it puts out of range
 };
 

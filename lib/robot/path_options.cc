@@ -1,5 +1,8 @@
 #include "robot/path_options.h"
 
+#include "core/file.h"
+#include "robot/urdf.h"
+
 namespace fettle::robot {
 
 PathOptions::PathOptions(cli::Tool& tool)
@@ -13,6 +16,23 @@ PathOptions::PathOptions(cli::Tool& tool)
       jump(tool.number("--jump", PathArguments().jump_threshold_deg, "DEG",
                        "A larger turn of a joint from pose to pose is a jump", core::Range::positive()))
 {
+}
+
+RobotOptions::RobotOptions(cli::Tool& of_tool)
+    : tool(of_tool), file(tool.positional_file("ROBOT", "The robot, JSON or URDF")),
+      packages(tool.text("--package", "", "NAME=DIR,…", "URDF: folders of the packages of its meshes")),
+      srdf(tool.optional_file("--srdf", "FILE", "URDF: pairs of links that may touch")),
+      tip(tool.text("--tip", "", "LINK",
+                    "URDF: the link whose frame is the tool's, z out of the robot [tool0, or the "
+                    "last]"))
+{
+}
+
+Robot RobotOptions::read() const
+{
+    Robot robot = read_robot(file, {parse_packages(packages), srdf, tip});
+    for (const std::string& note : robot.notes) tool.warn(core::display_name(file) + ": " + note);
+    return robot;
 }
 
 } // namespace fettle::robot

@@ -19,4 +19,18 @@ struct PathOptions {
     const double& jump;       ///< --jump, degrees
 };
 
+/// The robot of a command line, and the options of a URDF.
+struct RobotOptions {
+    explicit RobotOptions(cli::Tool& tool);
+
+    /// Reads the robot; warns of what its file leaves open.
+    Robot read() const;
+
+    cli::Tool& tool;
+    const std::string& file;
+    const std::string& packages; ///< --package
+    const std::string& srdf;     ///< --srdf
+    const std::string& tip;      ///< --tip
+};
+
 } // namespace fettle::robot

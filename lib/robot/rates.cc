@@ -33,12 +33,17 @@ Eigen::VectorXd mean_speeds(const FollowedPath& path, const Eigen::VectorXd& tim
 
 Eigen::VectorXd arrival_times(const cloud::PosePath& poses, const Feedrate& feed)
 {
+    return arrival_times(poses, Eigen::VectorXd::Constant(poses.size(), feed.tip_speed), feed.turn_rate);
+}
+
+Eigen::VectorXd arrival_times(const cloud::PosePath& poses, const Eigen::VectorXd& speeds, double turn_rate)
+{
     Eigen::VectorXd times = Eigen::VectorXd::Zero(poses.size());
     for (std::size_t i = 1; i < poses.size(); ++i) {
         const double distance = (poses[i].translation() - poses[i - 1].translation()).norm();
         const double turn =
             Eigen::Quaterniond(poses[i].linear()).angularDistance(Eigen::Quaterniond(poses[i - 1].linear()));
-        const double time = std::isnan(distance) ? 0 : std::max(distance / feed.tip_speed, turn / feed.turn_rate);
+        const double time = std::isnan(distance) ? 0 : std::max(distance / speeds[i], turn / turn_rate);
         times[i] = times[i - 1] + time;
     }
     return times;

@@ -2,7 +2,11 @@
 
 #include "core/constants.h"
 #include "robot/body_json.h"
+#include "robot/urdf.h"
 
+#include "core/digest.h"
+#include "core/error.h"
+#include "core/file.h"
 #include "core/text.h"
 #include "json/document.h"
 #include "json/units.h"
@@ -109,6 +113,37 @@ Table read_table(Reader reader, double mm)
     return table;
 }
 
+Robot parse_robot(const std::string& text, const std::string& path)
+{
+    Reader reader = Reader::parse(text, core::display_name(path));
+    Robot robot;
+    reader.expect_kind("robot");
+    const double mm = units::mm_per(json::read_length_unit(reader));
+    parse_dh(reader, mm, robot);
+    const std::string coupling = reader.choice("coupling", {"serial", "parallelogram"});
+    robot.coupling = coupling == "serial" ? Coupling::serial : Coupling::parallelogram;
+    const Eigen::AngleAxisd half_turn(std::numbers::pi, Eigen::Vector3d::UnitX());
+    const auto tool = reader.optional_object("tool");
+    robot.T_flange_tool = (tool ? read_tool(*tool, mm) : Eigen::Isometry3d::Identity()) * half_turn;
+    if (const auto base = reader.optional_object("base")) robot.T_cell_base = read_placement(*base, mm);
+    if (const auto track = reader.optional_object("track")) robot.track = read_track(*track, mm);
+    if (const auto table = reader.optional_object("table")) robot.table = read_table(*table, mm);
+    parse_bodies(reader, path, mm, robot);
+    reader.reject_unknown_keys();
+    return robot;
+}
+
+std::string digest_of(const std::string& text, const Robot& robot)
+{
+    core::Digest digest;
+    digest.add(text);
+    for (const Body& body : robot.bodies)
+        if (const auto* hull = std::get_if<solid::Hull>(&body.solid))
+            digest.add({reinterpret_cast<const char*>(hull->points.data()),
+                        static_cast<std::size_t>(hull->points.size()) * sizeof(double)});
+    return digest.text();
+}
+
 } // namespace
 
 std::string body_name(const Robot& robot, std::size_t body)
@@ -128,21 +163,20 @@ Eigen::Isometry3d dh_transform(double theta, double d, double a, double alpha)
 
 Robot read_robot(const std::string& path)
 {
-    Reader reader = Reader::open(path);
-    Robot robot;
-    reader.expect_kind("robot");
-    const double mm = units::mm_per(json::read_length_unit(reader));
-    parse_dh(reader, mm, robot);
-    const std::string coupling = reader.choice("coupling", {"serial", "parallelogram"});
-    robot.coupling = coupling == "serial" ? Coupling::serial : Coupling::parallelogram;
-    const Eigen::AngleAxisd half_turn(std::numbers::pi, Eigen::Vector3d::UnitX());
-    const auto tool = reader.optional_object("tool");
-    robot.T_flange_tool = (tool ? read_tool(*tool, mm) : Eigen::Isometry3d::Identity()) * half_turn;
-    if (const auto base = reader.optional_object("base")) robot.T_cell_base = read_placement(*base, mm);
-    if (const auto track = reader.optional_object("track")) robot.track = read_track(*track, mm);
-    if (const auto table = reader.optional_object("table")) robot.table = read_table(*table, mm);
-    parse_bodies(reader, path, mm, robot);
-    reader.reject_unknown_keys();
+    const std::string text = core::read_file(path, core::kMaxJsonBytes);
+    Robot robot = parse_robot(text, path);
+    robot.digest = digest_of(text, robot);
+    return robot;
+}
+
+Robot read_robot(const std::string& path, const UrdfOptions& options)
+{
+    const std::string text = core::read_file(path, core::kMaxJsonBytes);
+    if (!looks_like_xml(text) && !(options.srdf.empty() && options.tip.empty() && options.packages.empty()))
+        throw core::InputError("--package, --srdf and --tip go with a URDF, and " + core::display_name(path) +
+                               " is none");
+    Robot robot = looks_like_xml(text) ? parse_urdf(text, core::display_name(path), options) : parse_robot(text, path);
+    robot.digest = digest_of(text, robot);
     return robot;
 }
 

@@ -32,11 +32,20 @@ struct JointRange {
 };
 
 /// One row of a Denavit-Hartenberg table, Chen & Wei eq. 1: A = R_z(theta) T_z(d) T_x(a) R_x(alpha), mm and rad, with
-/// theta = q + offset (but see Coupling).
+/// theta = sign q + offset (but see Coupling).
 struct DhRow {
     double alpha = 0, a = 0, d = 0, offset = 0;
     JointRange range;                ///< allowed values of q, rad
     std::optional<double> max_speed; ///< limit of |dq/dt|, rad/s
+    double sign = 1;                 ///< -1: the controller counts the joint against the axis
+};
+
+/// How the inverse kinematics of an arm are found (robot/arm.h).
+enum class ArmKind {
+    spherical_wrist, ///< axes 2 and 3 parallel, 4 to 6 through one point: closed form, up to eight branches (Pieper
+                     ///< 1968)
+    parallel_axes,   ///< axes 2, 3 and 4 parallel, as Universal Robots': closed form, up to eight branches
+    general          ///< numerically, from many starts: branches may be missing
 };
 
 /// Meaning of the controller's joint 3: the angle of the forearm to the upper arm (serial), or, with a parallelogram
@@ -82,10 +91,11 @@ inline constexpr const char* kWorkpieceName = "workpiece";
 /// Two bodies by their index in Robot::bodies, the lower one first. The index bodies.size() means the workpiece.
 using BodyPair = std::pair<std::size_t, std::size_t>;
 
-/// A robot cell ("kind": "robot"), mm and rad. The arm has a spherical wrist and parallel axes 2 and 3, so that its
-/// inverse kinematics have a closed form (robot/arm.h).
+/// A robot cell ("kind": "robot"), mm and rad. That of a robot file has a spherical wrist; a URDF's may have any arm of
+/// six joints.
 struct Robot {
     std::array<DhRow, 6> dh;
+    ArmKind arm_kind = ArmKind::spherical_wrist;
     Coupling coupling = Coupling::serial;
     /// Tool frame of the path: the tool's D-H frame, whose z points out of the robot, after half a turn about its x.
     Eigen::Isometry3d T_flange_tool = Eigen::Isometry3d::Identity();
@@ -100,12 +110,18 @@ struct Robot {
         BodyPair pair;
         double distance; ///< mm
     };
-    std::vector<Margin> margins; ///< 0 for pairs that are not listed
+    std::vector<Margin> margins;    ///< 0 for pairs that are not listed
+    std::vector<std::string> notes; ///< what a user should know of how the file was read
+    std::string digest; ///< SHA-256 of the file and the points of its meshes: by it a checked path knows its robot
 };
 
+struct UrdfOptions;
+
 /// Reads a robot file ("-": stdin). Hulls are read from mesh files in the same folder.
-/// @throws InputError with the key's path, also for an arm whose inverse kinematics have no closed form
+/// @throws InputError with the key's path, also for an arm whose inverse kinematics have no closed form, and for a URDF
 Robot read_robot(const std::string& path);
+/// Reads a robot file or a URDF (urdf.h); the content decides which. @throws InputError as both
+Robot read_robot(const std::string& path, const UrdfOptions& options);
 
 /// Name of the body with that index; bodies.size() gives kWorkpieceName.
 std::string body_name(const Robot& robot, std::size_t body);

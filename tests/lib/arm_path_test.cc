@@ -4,7 +4,6 @@
 #include "robot/arm_report.h"
 #include "robot/follow.h"
 #include "robot/path_cloud.h"
-#include "robot/rapid.h"
 #include "robot/rates.h"
 
 #include <gtest/gtest.h>
@@ -284,55 +283,6 @@ TEST(PathCloud, GoesThereAndBack)
     cloud::set_field(cloud, "qy", Eigen::VectorXd::Zero(3), 8);
     cloud::set_field(cloud, "qz", Eigen::VectorXd::Zero(3), 8);
     EXPECT_THROW(cloud::read_poses(cloud), core::InputError);
-}
-
-// Reference: what an ABB arm shows at home, tool z ahead: q = 0.7071, 0, 0.7071, 0; and its quadrants.
-TEST(Rapid, TargetsOfTheHomePose)
-{
-    robot::Robot robot = irb1400();
-    robot::CellJointsPath joints = robot::CellJointsPath::Zero(8, 2);
-    joints.col(1).head<6>() = degrees(-100, 0, 0, 95, 30, 200);
-    const robot::FollowedPath path = robot::evaluate_joints(robot, joints, 10);
-    std::ostringstream text;
-    robot::write_rapid(text, robot, robot::forward_kinematics(robot, joints), path, {{50}, "z1"});
-    const std::string module = text.str();
-    EXPECT_NE(module.find("p1 := [[1155,0,1095],[0.707106781,0,0.707106781,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];"),
-              std::string::npos)
-        << module;
-    EXPECT_NE(module.find("tooldata fettle_tool := [TRUE,[[100,0,200],[1,0,0,0]],"), std::string::npos) << module;
-    EXPECT_NE(module.find(",[-2,1,2,0],["), std::string::npos) << module;
-    EXPECT_NE(module.find("speeddata fettle_speed := [50,500,5000,1000];"), std::string::npos);
-    EXPECT_NE(module.find("MoveL p2, fettle_speed, fine, fettle_tool"), std::string::npos);
-    robot.track = kTrack;
-    robot.table = kTable;
-    robot.table->unit = "TURN";
-    joints(6, 0) = 1500;
-    joints(7, 0) = 90 * kDegree;
-    std::ostringstream cell;
-    robot::write_rapid(cell, robot, robot::forward_kinematics(robot, joints), robot::evaluate_joints(robot, joints, 10),
-                       {{50}, "z1"});
-    EXPECT_NE(cell.str().find("[1500,90,9E9,9E9,9E9,9E9]"), std::string::npos) << cell.str();
-    EXPECT_NE(cell.str().find(
-                  "wobjdata fettle_part := [FALSE,FALSE,\"TURN\",[[0,0,0],[1,0,0,0]],[[-1000,0,-400],[1,0,0,0]]]"),
-              std::string::npos)
-        << cell.str();
-}
-
-TEST(Rapid, EightBranchesOfASerialArm)
-{
-    const robot::Robot robot = irb1400(robot::Coupling::serial);
-    const auto configuration = [&](const robot::Joints& q) { return robot::rapid_configuration(robot, q)[3]; };
-    EXPECT_EQ(configuration(degrees(0, 0, 0, 0, 30, 0)), 0);
-    EXPECT_EQ(configuration(degrees(0, 0, 0, 0, -30, 0)), 1);
-    EXPECT_EQ(configuration(degrees(0, 60, -150, 0, 30, 0)),
-              2); // forearm folded back over the arm, which leans far ahead
-    EXPECT_EQ(configuration(degrees(0, -90, 70, 0, 30, 0)),
-              0); // the arm lies back, the forearm points ahead past axis 1
-    EXPECT_EQ(configuration(degrees(0, -70, -10, 0, 30, 0)),
-              4); // the arm leans back, the forearm points upwards from it
-    EXPECT_EQ(configuration(degrees(0, -80, -100, 0, 30, 0)), 6); // and lies back, too
-    EXPECT_EQ(configuration(degrees(0, -80, -100, 0, -30, 0)), 7);
-    EXPECT_EQ(robot::rapid_configuration(irb1400(), degrees(0, 0, 0, 0, -30, 0))[3], 0);
 }
 
 } // namespace

@@ -33,7 +33,7 @@ command_of() { # NAME
     lines=
     case $1 in
     align) command=(--to plate.stl --near good.pcd) writes=(--transform-out) ;;
-    arm) command=(robot.json --inverse --feed 50 tips.pcd) writes=(--rapid) ;;
+    arm) command=(robot.json --inverse --feed 50 --unchecked tips.pcd) writes=(--rapid --krl --ls --urscript) ;;
     assess) command=(--lower -1 --upper 1 good.pcd) ;;
     belt) command=(--path rows.pcd --wheel wheel.json --force 5 --lower -1 --upper 1 work.pcd) writes=(--trace --watch --journal) ;;
     clean) command=(--outliers statistical:4,3 --thin 1 good.pcd) ;;

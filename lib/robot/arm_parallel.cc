@@ -1,0 +1,104 @@
+#include "robot/arm_target.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fettle::robot {
+
+// With alpha1, alpha4, alpha5 = ±90°, alpha2 = alpha3 = 0 and a1 = a4 = a5 = 0. The axes 2, 3 and 4 share a direction
+// n, and the origin o5 of frame 5 lies at the distance d2 + d3 + d4 along it from axis 1: that gives theta1, as the
+// wrist centre does with a spherical wrist. The flange is fixed to frame 5 but for axis 6.
+ArmSolutions Arm::solve_parallel(const Eigen::Isometry3d& T_base_flange, const Joints& seed, Ranges ranges) const
+{
+    ArmSolutions found;
+    const Eigen::Matrix3d R = T_base_flange.linear() * R_alpha6_;
+    const Eigen::Vector3d o5 = T_base_flange.translation() - T_base_flange.linear() * wrist_to_flange_;
+    const double offset = -sin_alpha_[0] * (dh_[1].d + dh_[2].d + dh_[3].d);
+    const double squared = o5.head<2>().squaredNorm(), across2 = squared - offset * offset;
+    const bool on_axis = squared < kAxisDistanceTolerance * kAxisDistanceTolerance;
+    if (!on_axis && across2 < 0) return found;
+    const double across = on_axis ? 0 : std::sqrt(across2);
+    for (int shoulder = 0; shoulder < 2; ++shoulder) {
+        const double u = shoulder == 0 ? across : -across;
+        CosSin turn1 = {(o5.x() * u + o5.y() * offset) / squared, (o5.y() * u - o5.x() * offset) / squared};
+        if (on_axis) {
+            const double theta1 = dh_[0].sign * seed[0] + dh_[0].offset + shoulder * kPi;
+            turn1 = {std::cos(theta1), std::sin(theta1)};
+        }
+        add_parallel_wrist({R, o5, seed, ranges, u, turn1}, 4 * shoulder, found);
+    }
+    return found;
+}
+
+// z6 = z5 makes with n an angle whose cosine is -s4 s5 cos(theta5), and lies along x of frame 4 across n: this gives
+// theta5 but for its sign, and the turn psi = theta2 + theta3 + theta4.
+void Arm::add_parallel_wrist(const Target& target, int branch, ArmSolutions& found) const
+{
+    const double s1 = sin_alpha_[0], s4 = sin_alpha_[3], s5 = sin_alpha_[4];
+    const auto [c1, sn1] = target.turn1;
+    Joints joints;
+    joints[0] = dh_[0].sign * (std::atan2(sn1, c1) - dh_[0].offset);
+    const bool is_in_range = wrap(joints, 0, target.ranges);
+    Eigen::Matrix3d R_base_1; // R_z(theta1) R_x(alpha1)
+    R_base_1 << c1, 0, sn1 * s1, sn1, 0, -c1 * s1, 0, s1, 0;
+    const Eigen::Matrix3d M =
+        R_base_1.transpose() * target.R; // R_z(psi) R_x(alpha4) R_z(theta5) R_x(alpha5) R_z(theta6)
+    const double sine5 = std::hypot(M(0, 2), M(1, 2)), cosine5 = -s4 * s5 * M(2, 2);
+    const double angle5 = std::atan2(sine5, cosine5);
+    for (int wrist = 0; wrist < 2; ++wrist) {
+        const double sign = wrist == 0 ? 1 : -1;
+        double c, s, theta6;
+        if (sine5 > kMinWristSine) {
+            c = sign * s5 * M(0, 2) / sine5;
+            s = sign * s5 * M(1, 2) / sine5;
+            // M' R_z(psi)'s third row, n in frame 6 before its turn: (s4 sn5, ., .) turned by theta6.
+            theta6 = std::atan2(-s4 * sign * M(2, 1), s4 * sign * M(2, 0));
+        } else {
+            if (wrist == 1) return; // both coincide
+            theta6 = dh_[5].sign * target.seed[5] + dh_[5].offset;
+            // x of frame 5 before theta6, in frame 1: (c cos5, s cos5, .)
+            const double x = std::cos(theta6) * M(0, 0) - std::sin(theta6) * M(0, 1),
+                         y = std::cos(theta6) * M(1, 0) - std::sin(theta6) * M(1, 1);
+            c = x * cosine5;
+            s = y * cosine5;
+        }
+        joints[4] = dh_[4].sign * (sign * angle5 - dh_[4].offset);
+        joints[5] = dh_[5].sign * (theta6 - dh_[5].offset);
+        // From o1 to o4 in the plane of frame 1: o5 less d5 along z4 = (s4 s, -s4 c).
+        const double height = s1 * (target.wrist_centre.z() - dh_[0].d);
+        const Eigen::Vector2d o4(target.across - dh_[4].d * s4 * s, height + dh_[4].d * s4 * c);
+        const bool ok5 = wrap(joints, 4, target.ranges), ok6 = wrap(joints, 5, target.ranges);
+        if (is_in_range && ok5 && ok6)
+            add_parallel_elbows(target, o4, std::atan2(s, c), joints, branch + wrist, found);
+        else
+            found.reachable = found.reachable || o4.norm() <= std::abs(dh_[1].a) + std::abs(dh_[2].a);
+    }
+}
+
+// The links a2 and a3 in the plane.
+void Arm::add_parallel_elbows(const Target& target, const Eigen::Vector2d& wrist, double total_turn, Joints joints,
+                              int branch, ArmSolutions& found) const
+{
+    const double a2 = dh_[1].a, a3 = dh_[2].a, r2 = wrist.squaredNorm(), r = std::sqrt(r2), twice = 2 * a2 * a3;
+    const double from_straight = (a2 + a3 - r) * (a2 + a3 + r) / twice; // 1 - cosine of theta3
+    const double from_folded = (r - (a2 - a3)) * (r + (a2 - a3)) / twice;
+    if (from_straight < -kCosineRounding || from_folded < -kCosineRounding) return;
+    found.reachable = true;
+    const double sine = std::sqrt(std::max(from_straight * from_folded, 0.0)),
+                 cosine = (from_folded - from_straight) / 2;
+    const double bend = std::atan2(sine, cosine);
+    for (int elbow = 0; elbow < 2; ++elbow) {
+        if (elbow == 1 && sine == 0) return;
+        const double k1 = a2 + a3 * cosine, k2 = a3 * (elbow == 0 ? sine : -sine);
+        const double theta3 = elbow == 0 ? bend : -bend;
+        const double theta2 = r2 > 0 ? std::atan2(wrist.y() * k1 - wrist.x() * k2, wrist.x() * k1 + wrist.y() * k2)
+                                     : dh_[1].sign * target.seed[1] + dh_[1].offset;
+        joints[1] = dh_[1].sign * (theta2 - dh_[1].offset);
+        joints[2] = dh_[2].sign * (theta3 - dh_[2].offset);
+        joints[3] = dh_[3].sign * (total_turn - theta2 - theta3 - dh_[3].offset);
+        if (wrap(joints, 1, target.ranges) && wrap(joints, 2, target.ranges) && wrap(joints, 3, target.ranges))
+            found.solutions[found.count++] = {joints, branch + 2 * elbow};
+    }
+}
+
+} // namespace fettle::robot

@@ -1,0 +1,34 @@
+#pragma once
+
+// What the closed forms of the inverse kinematics share. Used by arm*.cc only.
+
+#include "robot/arm.h"
+
+#include <numbers>
+
+namespace fettle::robot {
+
+inline constexpr double kPi = std::numbers::pi;
+/// Below this sine of joint 5 the pose determines only the sum of the joints beside it. Any split of the sum changes
+/// the pose by no more than this, rad.
+inline constexpr double kMinWristSine = 1e-10;
+/// A wrist centre no farther from axis 1 counts as on it, mm.
+inline constexpr double kAxisDistanceTolerance = 1e-10;
+/// A cosine that exceeds 1 by no more counts as rounded: 1e-12 moves a wrist centre 1 m away by less than 1e-9 mm.
+inline constexpr double kCosineRounding = 1e-12;
+
+struct CosSin {
+    double cosine, sine;
+};
+
+/// What the inverse is to reach, with the choice of the shoulder.
+struct Arm::Target {
+    const Eigen::Matrix3d& R;     ///< R_base_5 R_z(theta6)
+    Eigen::Vector3d wrist_centre; ///< base frame, mm
+    const Joints& seed;
+    Ranges ranges;
+    double across; ///< signed distance of the wrist centre from axis 1 in the arm's plane, negative behind the axis
+    CosSin turn1;  ///< of theta1
+};
+
+} // namespace fettle::robot

@@ -1,0 +1,352 @@
+#include "robot/urdf.h"
+
+#include "core/constants.h"
+#include "core/error.h"
+#include "core/text.h"
+#include "mesh/mesh_file.h"
+#include "robot/arm.h"
+#include "robot/body_json.h"
+#include "robot/dh_from_axes.h"
+#include "robot/hull_points.h"
+#include "robot/srdf.h"
+
+#include <console_bridge/console.h>
+#include <urdf_parser/urdf_parser.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+#include <vector>
+
+namespace fettle::robot {
+
+namespace {
+
+using Eigen::Isometry3d, Eigen::Vector3d;
+
+constexpr double kMmPerMetre = 1000;
+// What URDFs leave of a right angle (1.570796327) and of a zero (-1.9e-11 m): rad, and m.
+constexpr double kQuarterTurnTolerance = 1e-9, kLengthRounding = 1e-10;
+// A joint without limits that turns for ever, degrees either way: what cables stand.
+constexpr double kContinuousDegrees = 360;
+
+/// Keeps liburdfdom's messages from the screen, and the first one of them.
+class FirstMessage : public console_bridge::OutputHandler {
+  public:
+    FirstMessage() { console_bridge::useOutputHandler(this); }
+    ~FirstMessage() override { console_bridge::restorePreviousOutputHandler(); }
+    void log(const std::string& text, console_bridge::LogLevel level, const char*, int) override
+    {
+        if (text_.empty() && level >= console_bridge::CONSOLE_BRIDGE_LOG_ERROR) text_ = text;
+    }
+    const std::string& text() const { return text_; }
+
+  private:
+    std::string text_;
+};
+
+// A rotation by quarter turns, written with nine digits or more, is one: then the closed form is exact.
+void round_quarter_turns(Eigen::Ref<Eigen::Matrix3d> R)
+{
+    const Eigen::Matrix3d rounded = R.array().round();
+    if ((R - rounded).cwiseAbs().maxCoeff() < kQuarterTurnTolerance) R = rounded;
+}
+
+Isometry3d to_isometry(const urdf::Pose& pose)
+{
+    Isometry3d T = Isometry3d::Identity();
+    const urdf::Rotation& q = pose.rotation;
+    const Eigen::Quaterniond rotation(q.w, q.x, q.y, q.z);
+    T.linear() = rotation.normalized().toRotationMatrix();
+    round_quarter_turns(T.linear());
+    const Vector3d metres(pose.position.x, pose.position.y, pose.position.z);
+    T.translation() = kMmPerMetre * ((metres / kLengthRounding).array().round() * kLengthRounding).matrix();
+    if (!T.matrix().allFinite() || T.translation().cwiseAbs().maxCoeff() > kMaxLength)
+        throw core::InputError("a place is not finite, or beyond 100 m");
+    return T;
+}
+
+std::string of_joint(const urdf::Joint& joint) { return "joint '" + joint.name + "': "; }
+
+bool moves(const urdf::Joint& joint) { return joint.type != urdf::Joint::FIXED; }
+
+class UrdfReader {
+  public:
+    UrdfReader(const urdf::ModelInterface& model, std::string source, const UrdfOptions& options)
+        : model_(model), source_(std::move(source)), options_(options)
+    {
+    }
+
+    Robot read()
+    {
+        check_tree();
+        find_chain();
+        read_kinematics();
+        for (const auto& [name, link] : model_.links_) read_bodies(*link);
+        if (!options_.srdf.empty()) read_srdf(options_.srdf, links_of_bodies_, robot_);
+        return std::move(robot_);
+    }
+
+  private:
+    // Every link but the root hangs on it: liburdfdom does not see a loop apart from the root.
+    void check_tree() const
+    {
+        for (const auto& [name, link] : model_.links_) {
+            const urdf::Link* at = link.get();
+            for (std::size_t steps = 0; at->getParent() != nullptr; at = at->getParent().get())
+                if (++steps > model_.links_.size()) throw core::InputError("link '" + name + "' is part of a loop");
+            if (at != model_.getRoot().get())
+                throw core::InputError("link '" + name + "' does not hang on the root '" + model_.getRoot()->name +
+                                       "'");
+        }
+    }
+
+    const urdf::Link& find_tip() const
+    {
+        const std::string wanted = options_.tip.empty() ? "tool0" : options_.tip;
+        if (const auto found = model_.links_.find(wanted); found != model_.links_.end()) return *found->second;
+        if (!options_.tip.empty()) throw core::InputError("--tip: no link is called '" + options_.tip + "'");
+        // The link with the most moving joints before it, of equal ones the last by name.
+        const urdf::Link* tip = nullptr;
+        std::size_t most = 0;
+        for (const auto& [name, link] : model_.links_) {
+            std::size_t count = 0;
+            for (const urdf::Link* at = link.get(); at->parent_joint != nullptr; at = at->getParent().get())
+                count += moves(*at->parent_joint) ? 1 : 0;
+            if (tip == nullptr || count >= most) {
+                tip = link.get();
+                most = count;
+            }
+        }
+        return *tip;
+    }
+
+    // The moving joints from the root to the tip.
+    void find_chain()
+    {
+        tip_ = &find_tip();
+        for (const urdf::Link* at = tip_; at->parent_joint != nullptr; at = at->getParent().get())
+            if (moves(*at->parent_joint)) chain_.insert(chain_.begin(), at->parent_joint.get());
+        const bool has_track = chain_.size() == 7 && chain_[0]->type == urdf::Joint::PRISMATIC;
+        if (has_track) track_ = chain_[0];
+        const auto arm = chain_.begin() + (has_track ? 1 : 0);
+        for (auto joint = arm; joint != chain_.end(); ++joint) {
+            const auto type = (*joint)->type;
+            if (type != urdf::Joint::REVOLUTE && type != urdf::Joint::CONTINUOUS)
+                throw core::InputError(of_joint(**joint) + "neither turns nor is fixed, and is not the first of seven");
+            if ((*joint)->mimic != nullptr)
+                throw core::InputError(of_joint(**joint) + "mimics '" + (*joint)->mimic->joint_name +
+                                       "': a joint of the arm must move by itself");
+        }
+        if (chain_.end() - arm != 6)
+            throw core::InputError("from the root '" + model_.getRoot()->name + "' to '" + tip_->name + "' " +
+                                   std::to_string(chain_.end() - arm) + " joints turn, expected 6");
+        arm_.assign(arm, chain_.end());
+        for (const auto& [name, joint] : model_.joints_)
+            if (joint->mimic != nullptr)
+                robot_.notes.push_back("joint '" + name + "' mimics '" + joint->mimic->joint_name +
+                                       "': it stays where it is at 0");
+    }
+
+    Vector3d direction_of(const urdf::Joint& joint, const Isometry3d& T_root_joint) const
+    {
+        const Vector3d axis(joint.axis.x, joint.axis.y, joint.axis.z);
+        if (!(axis.norm() > 0) || !axis.allFinite()) throw core::InputError(of_joint(joint) + "its axis is 0");
+        return T_root_joint.linear() * axis.normalized();
+    }
+
+    void read_kinematics()
+    {
+        std::array<JointAxis, 6> axes;
+        for (std::size_t k = 0; k < 6; ++k) {
+            const Isometry3d T = place(*model_.getLink(arm_[k]->child_link_name));
+            axes[k] = {T.translation(), direction_of(*arm_[k], T)};
+        }
+        const DhFromAxes table = dh_from_axes(axes);
+        robot_.dh = table.dh;
+        robot_.arm_kind = table.kind;
+        robot_.T_cell_base = table.T_base_0;
+        if (table.kind == ArmKind::general)
+            robot_.notes.push_back(
+                "the arm has neither a spherical wrist nor parallel axes 2 to 4: its joints are found "
+                "numerically, and branches may be missing");
+        for (std::size_t k = 0; k < 6; ++k) read_limits(*arm_[k], robot_.dh[k]);
+        if (track_ != nullptr) read_track();
+        frames_ = Arm(robot_).frames(Joints::Zero());
+        const Eigen::AngleAxisd half_turn(std::numbers::pi, Vector3d::UnitX());
+        robot_.T_flange_tool = (robot_.T_cell_base * frames_[6]).inverse() * place(*tip_) * half_turn;
+    }
+
+    void read_limits(const urdf::Joint& joint, DhRow& row) const
+    {
+        row.range = {-kContinuousDegrees * core::kRadPerDegree, kContinuousDegrees * core::kRadPerDegree};
+        if (joint.limits == nullptr && joint.type == urdf::Joint::REVOLUTE)
+            throw core::InputError(of_joint(joint) + "has no limits");
+        if (joint.limits == nullptr) return;
+        if (joint.type == urdf::Joint::REVOLUTE) row.range = {joint.limits->lower, joint.limits->upper};
+        const double max = kMaxJointDegrees * core::kRadPerDegree;
+        if (!(row.range.min < row.range.max) || row.range.min < -max || row.range.max > max)
+            throw core::InputError(of_joint(joint) + "its limits, " + core::to_short_text(joint.limits->lower) +
+                                   " and " + core::to_short_text(joint.limits->upper) + " rad, are no range within " +
+                                   core::to_short_text(kMaxJointDegrees) + " degrees");
+        if (joint.limits->velocity > 0) row.max_speed = joint.limits->velocity;
+    }
+
+    void read_track()
+    {
+        if (track_->limits == nullptr) throw core::InputError(of_joint(*track_) + "has no limits");
+        const Isometry3d T = place(*model_.getLink(track_->child_link_name));
+        const JointRange range = {track_->limits->lower * kMmPerMetre, track_->limits->upper * kMmPerMetre};
+        if (!(range.min <= range.max) || std::max(std::abs(range.min), std::abs(range.max)) > kMaxLength)
+            throw core::InputError(of_joint(*track_) + "its limits are no range within 100 m");
+        robot_.track = Track{direction_of(*track_, T), range, std::nullopt};
+        if (track_->limits->velocity > 0) robot_.track->max_speed = track_->limits->velocity * kMmPerMetre;
+    }
+
+    // T_root_link with all joints at 0.
+    Isometry3d place(const urdf::Link& link) const
+    {
+        Isometry3d T = Isometry3d::Identity();
+        for (const urdf::Link* at = &link; at->parent_joint != nullptr; at = at->getParent().get())
+            T = to_isometry(at->parent_joint->parent_to_joint_origin_transform) * T;
+        return T;
+    }
+
+    // The index of the frame that a link moves with (robot.h, link).
+    int moving_link(const urdf::Link& link) const
+    {
+        for (const urdf::Link* at = &link; at->parent_joint != nullptr; at = at->getParent().get()) {
+            const auto found = std::ranges::find(arm_, at->parent_joint.get());
+            if (found != arm_.end()) return static_cast<int>(found - arm_.begin()) + 1;
+            if (at->parent_joint.get() == track_) return link::kBase;
+        }
+        // Fixed to the root: of the robot, if that does not move.
+        return track_ != nullptr ? link::kCell : link::kBase;
+    }
+
+    void read_bodies(const urdf::Link& link)
+    {
+        const int index = moving_link(link);
+        const Isometry3d T_root_frame =
+            index == link::kCell ? Isometry3d::Identity() : robot_.T_cell_base * frames_[index];
+        std::size_t count = 0;
+        for (const auto& collision : link.collision_array) {
+            if (collision == nullptr || collision->geometry == nullptr) continue;
+            const Isometry3d T = T_root_frame.inverse() * place(link) * to_isometry(collision->origin);
+            const std::string name = link.name + (count == 0 ? "" : " " + std::to_string(count + 1));
+            ++count;
+            if (name == kWorkpieceName) throw core::InputError("link 'workpiece': the name is that of the part");
+            links_of_bodies_.push_back(link.name);
+            robot_.bodies.push_back({name, index, solid_of(*collision->geometry, T, link.name)});
+        }
+    }
+
+    Solid solid_of(const urdf::Geometry& geometry, const Isometry3d& T, const std::string& link) const
+    {
+        const auto check = [&](double length) {
+            if (!(length > 0 && length * kMmPerMetre <= kMaxLength))
+                throw core::InputError("link '" + link + "': a length of its collision shape is " +
+                                       core::to_short_text(length) + " m");
+            return length * kMmPerMetre;
+        };
+        if (const auto* sphere = dynamic_cast<const urdf::Sphere*>(&geometry))
+            return solid::Sphere{T.translation(), check(sphere->radius)};
+        if (const auto* box = dynamic_cast<const urdf::Box*>(&geometry))
+            return solid::Box{T, Vector3d(check(box->dim.x), check(box->dim.y), check(box->dim.z)) / 2};
+        if (const auto* cylinder = dynamic_cast<const urdf::Cylinder*>(&geometry)) {
+            const Vector3d half(0, 0, check(cylinder->length) / 2);
+            return solid::Cylinder{T * Vector3d(-half), T * half, check(cylinder->radius)};
+        }
+        return mesh_solid(dynamic_cast<const urdf::Mesh&>(geometry), T, link);
+    }
+
+    Solid mesh_solid(const urdf::Mesh& shape, const Isometry3d& T, const std::string& link) const
+    {
+        const std::string path = resolve(shape.filename, link);
+        const mesh::Mesh mesh = mesh::read_mesh(path, units::Units::Length::m);
+        const Vector3d scale(shape.scale.x, shape.scale.y, shape.scale.z);
+        if (!scale.allFinite() || scale.cwiseAbs().minCoeff() == 0)
+            throw core::InputError("link '" + link + "': the scale of its mesh is 0");
+        const Eigen::Matrix3Xd points = scale.asDiagonal() * mesh.vertices;
+        return solid::Hull{T * hull_points(points)};
+    }
+
+    std::string resolve(const std::string& name, const std::string& link) const
+    {
+        const std::string package = "package://", file = "file://";
+        std::filesystem::path path = name;
+        if (name.starts_with(package)) {
+            const std::string rest = name.substr(package.size());
+            const std::string called = rest.substr(0, rest.find('/'));
+            const auto found = options_.packages.find(called);
+            if (found == options_.packages.end())
+                throw core::InputError("link '" + link + "': " + name + ": where is the package? --package " + called +
+                                       "=DIR says it");
+            path = std::filesystem::path(found->second) / rest.substr(std::min(called.size() + 1, rest.size()));
+        } else if (name.starts_with(file)) {
+            path = name.substr(file.size());
+        } else if (path.is_relative()) {
+            path = std::filesystem::path(source_).parent_path() / path;
+        }
+        std::string suffix = path.extension().string();
+        std::ranges::transform(suffix, suffix.begin(), [](unsigned char c) { return std::tolower(c); });
+        if (suffix == ".dae")
+            throw core::InputError("link '" + link + "': " + name + ": COLLADA is not read; convert it to STL");
+        if (!std::filesystem::exists(path))
+            throw core::InputError("link '" + link + "': there is no mesh " + path.string());
+        return path.string();
+    }
+
+    const urdf::ModelInterface& model_;
+    std::string source_;
+    const UrdfOptions& options_;
+    Robot robot_;
+    const urdf::Link* tip_ = nullptr;
+    std::vector<const urdf::Joint*> chain_, arm_;
+    const urdf::Joint* track_ = nullptr;
+    std::array<Isometry3d, 7> frames_;         ///< of the Denavit-Hartenberg table, all joints at 0
+    std::vector<std::string> links_of_bodies_; ///< by body
+};
+
+} // namespace
+
+std::map<std::string, std::string> parse_packages(const std::string& text)
+{
+    std::map<std::string, std::string> packages;
+    for (std::size_t from = 0; from < text.size();) {
+        const std::size_t end = std::min(text.find(',', from), text.size());
+        const std::string one = text.substr(from, end - from);
+        const std::size_t equals = one.find('=');
+        if (equals == std::string::npos || equals == 0 || equals + 1 == one.size())
+            throw core::InputError("--package: expected NAME=DIR, got '" + one + "'");
+        packages[one.substr(0, equals)] = one.substr(equals + 1);
+        from = end + 1;
+    }
+    return packages;
+}
+
+bool looks_like_xml(std::string_view text)
+{
+    const std::size_t first = text.find_first_not_of(" \t\r\n\xef\xbb\xbf");
+    return first != std::string_view::npos && text[first] == '<';
+}
+
+Robot parse_urdf(const std::string& text, const std::string& source, const UrdfOptions& options)
+{
+    if (text.find("xacro:") != std::string::npos || text.find("${") != std::string::npos)
+        throw core::InputError(source, "is a xacro file: expand it first (xacro FILE > robot.urdf)");
+    if (text.find('\0') != std::string::npos) throw core::InputError(source, "zero byte in the file");
+    FirstMessage message;
+    const urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(text);
+    if (model == nullptr || model->getRoot() == nullptr)
+        throw core::InputError(source, message.text().empty() ? "is no URDF" : message.text());
+    try {
+        return UrdfReader(*model, source, options).read();
+    } catch (const core::InputError& error) {
+        if (std::string(error.what()).starts_with("--") || std::string(error.what()).starts_with(source)) throw;
+        throw core::InputError(source, error.what());
+    }
+}
+
+} // namespace fettle::robot
