@@ -12,8 +12,6 @@ namespace fettle::program {
 
 namespace {
 
-std::string number(double value, int digits) { return core::to_fixed_text(value, digits); }
-
 std::string upper(std::string text)
 {
     for (char& c : text) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
@@ -54,13 +52,13 @@ std::string configuration(const robot::Robot& robot, const robot::Joints& joints
     return text + "'";
 }
 
-std::string external_axes(const robot::Robot& robot, const robot::CellJoints& joints)
+std::string fanuc_axes(const robot::Robot& robot, const robot::CellJoints& joints)
 {
     std::string text;
-    if (robot.track) text += ",\n\tE1 = " + number(joints[6], 4) + " mm";
+    if (robot.track) text += ",\n\tE1 = " + core::to_fixed_text(joints[6], 4) + " mm";
     if (robot.table)
-        text += std::string(",\n\t") + (robot.track ? "E2 = " : "E1 = ") + number(joints[7] / core::kRadPerDegree, 6) +
-                " deg";
+        text += std::string(",\n\t") + (robot.track ? "E2 = " : "E1 = ") +
+                core::to_fixed_text(joints[7] / core::kRadPerDegree, 6) + " deg";
     return text;
 }
 
@@ -70,17 +68,19 @@ std::string position_text(const robot::Robot& robot, const Step& step, std::uint
     if (step.kind == StepKind::move_joints) {
         const Eigen::VectorXd q = fanuc_joints(robot, step.joints.head<6>());
         for (int k = 0; k < 6; ++k)
-            text +=
-                std::string(k == 0 ? "\n" : ",\n") + "\tJ" + std::to_string(k + 1) + " = " + number(q[k], 6) + " deg";
+            text += std::string(k == 0 ? "\n" : ",\n") + "\tJ" + std::to_string(k + 1) + " = " +
+                    core::to_fixed_text(q[k], 6) + " deg";
     } else {
         const Eigen::Isometry3d T = target_in_world(robot, step);
         const Eigen::Vector3d zyx = z_y_x_angles(T.linear());
         text += "\tCONFIG : " + configuration(robot, step.joints.head<6>()) +
-                ",\n\tX = " + number(T.translation().x(), 4) + " mm,\tY = " + number(T.translation().y(), 4) +
-                " mm,\tZ = " + number(T.translation().z(), 4) + " mm,\n\tW = " + number(zyx[2], 6) +
-                " deg,\tP = " + number(zyx[1], 6) + " deg,\tR = " + number(zyx[0], 6) + " deg";
+                ",\n\tX = " + core::to_fixed_text(T.translation().x(), 4) +
+                " mm,\tY = " + core::to_fixed_text(T.translation().y(), 4) +
+                " mm,\tZ = " + core::to_fixed_text(T.translation().z(), 4) +
+                " mm,\n\tW = " + core::to_fixed_text(zyx[2], 6) + " deg,\tP = " + core::to_fixed_text(zyx[1], 6) +
+                " deg,\tR = " + core::to_fixed_text(zyx[0], 6) + " deg";
     }
-    return text + external_axes(robot, step.joints) + "\n};\n";
+    return text + fanuc_axes(robot, step.joints) + "\n};\n";
 }
 
 // CNT in per cent of the smoothing that the controller can do.
@@ -109,7 +109,7 @@ class File {
                      end);
             break;
         case StepKind::move_linear:
-            add_line("L " + target + number(step.speed, 1) + "mm/sec" + end);
+            add_line("L " + target + core::to_fixed_text(step.speed, 1) + "mm/sec" + end);
             break;
         case StepKind::process_on:
             add_line(output + "ON ;");
@@ -118,7 +118,8 @@ class File {
             add_line(output + "OFF ;");
             break;
         case StepKind::force_on:
-            add_line(remark("Force Control (option): " + number(program_->options.force.value_or(0), 1) + " N"));
+            add_line(remark("Force Control (option): " + core::to_fixed_text(program_->options.force.value_or(0), 1) +
+                            " N"));
             break;
         case StepKind::force_off:
             add_line(remark("Force Control: off"));
@@ -170,9 +171,11 @@ std::vector<ProgramFile> fanuc_files(const Program& program, const std::string& 
     main.add_line("  UTOOL_NUM=1 ;");
     const Eigen::Isometry3d tool = outward_tool(program.robot->T_flange_tool);
     const Eigen::Vector3d zyx = z_y_x_angles(tool.linear());
-    main.add_line(remark("UTOOL 1: X " + number(tool.translation().x(), 3) + " Y " + number(tool.translation().y(), 3) +
-                         " Z " + number(tool.translation().z(), 3)));
-    main.add_line(remark("W " + number(zyx[2], 4) + " P " + number(zyx[1], 4) + " R " + number(zyx[0], 4)));
+    main.add_line(remark("UTOOL 1: X " + core::to_fixed_text(tool.translation().x(), 3) + " Y " +
+                         core::to_fixed_text(tool.translation().y(), 3) + " Z " +
+                         core::to_fixed_text(tool.translation().z(), 3)));
+    main.add_line(remark("W " + core::to_fixed_text(zyx[2], 4) + " P " + core::to_fixed_text(zyx[1], 4) + " R " +
+                         core::to_fixed_text(zyx[0], 4)));
     std::vector<ProgramFile> files;
     const auto close = [&](const File& file) {
         const std::string called = upper(name.substr(0, 12)) + "_" + std::to_string(files.size() + 1);

@@ -6,25 +6,22 @@ namespace fettle::program {
 
 namespace {
 
-constexpr double kMmPerMetre = 1000;
-
-std::string number(double value, int digits) { return core::to_fixed_text(value, digits); }
-
 // "X 1,Y 2,Z 3,A 4,B 5,C 6": a tenth of a micrometre, and degrees that give as much at the end of a tool 1 m long.
 std::string frame_text(const Eigen::Isometry3d& T)
 {
     const Eigen::Vector3d angles = z_y_x_angles(T.linear());
-    return "X " + number(T.translation().x(), 4) + ",Y " + number(T.translation().y(), 4) + ",Z " +
-           number(T.translation().z(), 4) + ",A " + number(angles[0], 6) + ",B " + number(angles[1], 6) + ",C " +
-           number(angles[2], 6);
+    return "X " + core::to_fixed_text(T.translation().x(), 4) + ",Y " + core::to_fixed_text(T.translation().y(), 4) +
+           ",Z " + core::to_fixed_text(T.translation().z(), 4) + ",A " + core::to_fixed_text(angles[0], 6) + ",B " +
+           core::to_fixed_text(angles[1], 6) + ",C " + core::to_fixed_text(angles[2], 6);
 }
 
 // The track is E1, the table the next.
-std::string external_axes(const robot::Robot& robot, const robot::CellJoints& joints)
+std::string krl_axes(const robot::Robot& robot, const robot::CellJoints& joints)
 {
     std::string text;
-    if (robot.track) text += ",E1 " + number(joints[6], 4);
-    if (robot.table) text += std::string(robot.track ? ",E2 " : ",E1 ") + number(joints[7] / core::kRadPerDegree, 6);
+    if (robot.track) text += ",E1 " + core::to_fixed_text(joints[6], 4);
+    if (robot.table)
+        text += std::string(robot.track ? ",E2 " : ",E1 ") + core::to_fixed_text(joints[7] / core::kRadPerDegree, 6);
     return text;
 }
 
@@ -57,15 +54,14 @@ class Writer {
             std::string axes;
             for (int k = 0; k < 6; ++k)
                 axes += (k > 0 ? ",A" : "A") + std::to_string(k + 1) + " " +
-                        number(step.joints[k] / core::kRadPerDegree, 6);
-            text_ += "  PTP {E6AXIS: " + axes + external_axes(robot_, step.joints) + "}\n";
+                        core::to_fixed_text(step.joints[k] / core::kRadPerDegree, 6);
+            text_ += "  PTP {E6AXIS: " + axes + krl_axes(robot_, step.joints) + "}\n";
             break;
         }
         case StepKind::move_linear:
-            if (step.speed != speed_) text_ += "  $VEL.CP=" + number(step.speed / kMmPerMetre, 7) + "\n";
+            if (step.speed != speed_) text_ += "  $VEL.CP=" + core::to_fixed_text(step.speed / kMmPerMetre, 7) + "\n";
             speed_ = step.speed;
-            text_ += "  LIN {E6POS: " + frame_text(outward_tool(step.T_part_tool)) +
-                     external_axes(robot_, step.joints) +
+            text_ += "  LIN {E6POS: " + frame_text(outward_tool(step.T_part_tool)) + krl_axes(robot_, step.joints) +
                      (step.stops || program_.options.zone.radius == 0 ? "}\n" : "} C_DIS\n");
             break;
         case StepKind::process_on:
@@ -76,7 +72,7 @@ class Writer {
             break;
         case StepKind::force_on:
             text_ += "  ; force control is an option (KUKA.ForceTorqueControl): press with " +
-                     number(program_.options.force.value_or(0), 3) + " N along the tool from here\n";
+                     core::to_fixed_text(program_.options.force.value_or(0), 3) + " N along the tool from here\n";
             break;
         case StepKind::force_off:
             text_ += "  ; force control: off\n";
@@ -101,11 +97,11 @@ std::string krl_text(const Program& program, const std::string& name)
         "\n  ; positions in $BASE (mm, A, B, C about z, y, x in degrees), the world frame is the robot's "
         "base; E1, E2: track (mm), table (degrees)\n"
         "  BAS(#INITMOV,0)\n  BAS(#VEL_PTP," +
-        number(options.joint_speed, 3) + ")\n" + base_text(robot) + "  $TOOL={" +
+        core::to_fixed_text(options.joint_speed, 3) + ")\n" + base_text(robot) + "  $TOOL={" +
         frame_text(outward_tool(robot.T_flange_tool)) +
-        "}\n  $VEL.ORI1=" + number(options.turn_rate / core::kRadPerDegree, 4) +
-        "\n  $VEL.ORI2=" + number(options.turn_rate / core::kRadPerDegree, 4) +
-        "\n  $APO.CDIS=" + number(options.zone.radius, 4) + "\n";
+        "}\n  $VEL.ORI1=" + core::to_fixed_text(options.turn_rate / core::kRadPerDegree, 4) +
+        "\n  $VEL.ORI2=" + core::to_fixed_text(options.turn_rate / core::kRadPerDegree, 4) +
+        "\n  $APO.CDIS=" + core::to_fixed_text(options.zone.radius, 4) + "\n";
     for (const Routine& routine : program.routines) text += "  " + routine.name + "( )\n";
     text += "END\n";
     for (const Routine& routine : program.routines) text += Writer(program).routine(routine);

@@ -13,6 +13,8 @@
 /// Robot programs: a neutral one, made from a path, and its text in the languages of four makers.
 namespace fettle::program {
 
+inline constexpr double kMmPerMetre = 1000;
+
 enum class StepKind {
     move_joints, ///< each joint evenly
     move_linear, ///< the tip straight

@@ -11,12 +11,9 @@ namespace fettle::program {
 
 namespace {
 
-constexpr double kMmPerMetre = 1000;
 // A blend radius must be shorter than half the way to the target and from it: controllers refuse overlapping blends.
 constexpr double kMaxBlendShare = 0.49;
 constexpr double kAcceleration = 1.2; // m/s², URScript's default of movel
-
-std::string number(double value, int digits) { return core::to_fixed_text(value, digits); }
 
 // From the base where the track, which rests, has brought it.
 Eigen::Isometry3d target_in_resting_base(const robot::Robot& robot, const Step& step)
@@ -26,13 +23,13 @@ Eigen::Isometry3d target_in_resting_base(const robot::Robot& robot, const Step& 
 }
 
 // p[x, y, z, rx, ry, rz]: m to a tenth of a micrometre, and the rotation vector, rad.
-std::string pose_text(const Eigen::Isometry3d& T)
+std::string script_pose(const Eigen::Isometry3d& T)
 {
     const Eigen::AngleAxisd turn(T.linear());
     const Eigen::Vector3d rotation = turn.angle() * turn.axis();
     std::string text = "p[";
-    for (int k = 0; k < 3; ++k) text += number(T.translation()[k] / kMmPerMetre, 7) + ", ";
-    for (int k = 0; k < 3; ++k) text += number(rotation[k], 9) + (k < 2 ? ", " : "]");
+    for (int k = 0; k < 3; ++k) text += core::to_fixed_text(T.translation()[k] / kMmPerMetre, 7) + ", ";
+    for (int k = 0; k < 3; ++k) text += core::to_fixed_text(rotation[k], 9) + (k < 2 ? ", " : "]");
     return text;
 }
 
@@ -78,16 +75,17 @@ std::string routine_text(const Program& program, const Routine& routine)
         switch (step.kind) {
         case StepKind::move_joints: {
             std::string joints;
-            for (int k = 0; k < 6; ++k) joints += (k > 0 ? ", " : "") + number(step.joints[k], 9);
-            text += "    movej([" + joints + "], v=" + number(program.options.joint_speed / 100 * std::numbers::pi, 4) +
-                    ")\n";
+            for (int k = 0; k < 6; ++k) joints += (k > 0 ? ", " : "") + core::to_fixed_text(step.joints[k], 9);
+            text += "    movej([" + joints +
+                    "], v=" + core::to_fixed_text(program.options.joint_speed / 100 * std::numbers::pi, 4) + ")\n";
             ++move;
             break;
         }
         case StepKind::move_linear:
-            text += "    movel(" + pose_text(target_in_resting_base(robot, step)) + ", a=" + number(kAcceleration, 3) +
-                    ", v=" + number(step.speed / kMmPerMetre, 7) + ", r=" + number(radii[move] / kMmPerMetre, 7) +
-                    ")\n";
+            text += "    movel(" + script_pose(target_in_resting_base(robot, step)) +
+                    ", a=" + core::to_fixed_text(kAcceleration, 3) +
+                    ", v=" + core::to_fixed_text(step.speed / kMmPerMetre, 7) +
+                    ", r=" + core::to_fixed_text(radii[move] / kMmPerMetre, 7) + ")\n";
             ++move;
             break;
         case StepKind::process_on:
@@ -99,7 +97,7 @@ std::string routine_text(const Program& program, const Routine& routine)
         case StepKind::force_on:
             // Along z of the tool, which points out of the robot; the other axes are held by position.
             text += "    force_mode(get_actual_tcp_pose(), [0, 0, 1, 0, 0, 0], [0.0, 0.0, " +
-                    number(program.options.force.value_or(0), 3) +
+                    core::to_fixed_text(program.options.force.value_or(0), 3) +
                     ", 0.0, 0.0, 0.0], 2, [0.1, 0.1, 0.05, 0.35, 0.35, 0.35])\n";
             break;
         case StepKind::force_off:
@@ -119,7 +117,7 @@ std::string urscript_text(const Program& program, const std::string& name)
     std::string text = "# " + program.options.remark + "\ndef " + name +
                        "():\n  # poses p[x, y, z, rx, ry, rz] from the robot's base: m, and rotation vectors in rad\n"
                        "  set_tcp(" +
-                       pose_text(outward_tool(robot.T_flange_tool)) + ")\n";
+                       script_pose(outward_tool(robot.T_flange_tool)) + ")\n";
     for (const Routine& routine : program.routines) text += routine_text(program, routine);
     for (const Routine& routine : program.routines) text += "  " + routine.name + "()\n";
     return text + "end\n";

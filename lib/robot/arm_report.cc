@@ -55,9 +55,9 @@ struct Obstacle {
 
 std::string joint_text(Eigen::Index joint) { return "joint " + std::to_string(joint + 1); }
 
-double joint_unit(Eigen::Index joint) { return joint == 6 ? 1 : core::kRadPerDegree; }
-std::string joint_unit_text(Eigen::Index joint) { return joint == 6 ? " mm" : " degrees"; }
-std::string value_text(Eigen::Index joint, double value) { return core::to_short_text(value / joint_unit(joint)); }
+double unit_of_joint(Eigen::Index joint) { return joint == 6 ? 1 : core::kRadPerDegree; }
+std::string unit_text(Eigen::Index joint) { return joint == 6 ? " mm" : " degrees"; }
+std::string value_text(Eigen::Index joint, double value) { return core::to_short_text(value / unit_of_joint(joint)); }
 
 JointRange range_of(const Robot& robot, Eigen::Index joint)
 {
@@ -79,9 +79,9 @@ std::optional<Obstacle> first_unreached(const Robot& robot, const FollowedPath& 
                                       " mm from the base"};
         case PoseState::out_of_range: {
             const JointRange range = range_of(robot, joint);
-            return Obstacle{pose, joint_text(joint) + " would be at " + value_text(joint, value) +
-                                      joint_unit_text(joint) + ", out of its range of " + value_text(joint, range.min) +
-                                      " to " + value_text(joint, range.max)};
+            return Obstacle{pose, joint_text(joint) + " would be at " + value_text(joint, value) + unit_text(joint) +
+                                      ", out of its range of " + value_text(joint, range.min) + " to " +
+                                      value_text(joint, range.max)};
         }
         case PoseState::undefined:
             return Obstacle{pose, "is not defined"};
@@ -113,7 +113,7 @@ std::optional<Obstacle> first_too_fast(const Robot& robot, const FollowedPath& p
         const double speed =
             std::abs(path.joints(joint, pose) - path.joints(joint, pose - 1)) / (times[pose] - times[pose - 1]);
         first = {pose, joint_text(joint) + " is too fast on the way to it: " + value_text(joint, speed) +
-                           joint_unit_text(joint) + "/s"};
+                           unit_text(joint) + "/s"};
     }
     return first;
 }
