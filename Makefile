@@ -116,6 +116,15 @@ $(B)/lib/%.a: $$(OBJECTS_$$*)
 	@rm -f $@
 	$(AR) rcs $@ $^
 
+# --- the script of pages that can be turned, as text in the program: without comments and indentation ------------------
+VIEW_SCRIPTS := $(patsubst %,lib/view/%.js,decode camera renderer overlay pick section view main)
+VIEW_HEADER  := $(B)/generated/view/view_script.h
+$(VIEW_HEADER): $(VIEW_SCRIPTS) Makefile
+	@mkdir -p $(@D)
+	@{ echo 'inline constexpr char kViewScript[] = R"js('; sed -e 's/^ *//' -e '/^\/\//d' -e '/^$$/d' $(VIEW_SCRIPTS); echo ')js";'; } > $@
+$(OBJECTS_view): private override CPPFLAGS += -I$(B)/generated
+$(OBJECTS_view): | $(VIEW_HEADER)
+
 # --- rules ----------------------------------------------------------------------------------------------------------
 precompiled = $(filter $(B)/$(if $(filter tests/lib/%,$(1)),tests/)lib/%,$(PRECOMPILED))
 
@@ -273,9 +282,9 @@ lint:
 	@.ci/lint
 
 # Every file from its own includes alone: what is precompiled hides one that is missing.
-includes: deps
+includes: deps $(VIEW_HEADER)
 	@git ls-files '*.cc' '*.h' | grep -v -e precompiled -e linuxcnc | xargs -n 1 -P $(JOBS) \
-	    $(CXX) $(CPPFLAGS) -isystem /usr/include/opencv4 $(CXXFLAGS) -w -Itests/lib -x c++ -fsyntax-only
+	    $(CXX) $(CPPFLAGS) -I$(B)/generated -isystem /usr/include/opencv4 $(CXXFLAGS) -w -Itests/lib -x c++ -fsyntax-only
 
 # --- installation: tools with manual pages and completion, and the library for other programs -------------------------
 PAGES := $(TOOLS:%=$(B)/man/%.1) $(B)/man/fettle.1

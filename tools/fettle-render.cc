@@ -19,11 +19,13 @@ int main(int argc, char** argv)
             const std::string& path =
                 t.main_input("POINTS", "An error map or a part (PCD), or a mesh (STL, PLY, OBJ, OFF)");
             const std::string& shown =
-                t.text("--field", "", "NAME", "What to show: error, z, removed, … [error if there is one, else z]");
+                t.text("--field", "", "NAME",
+                       "What to show: error, z, class, rgb, removed, … [error if there is one, else z]");
             const std::optional<double>& scale = t.optional_number(
                 "--scale", "A", "Colours from -A to A (error), from the smallest value to A above it (others)",
                 core::Range::positive());
             const int& bands = t.count("--bands", 0, "Colours in so many steps; 0: continuous", 0, 100);
+            const draw::Palette& palette = t.choice("--palette", draw::kPalettes, draw::kPaletteHelp);
             const std::string& from =
                 t.text("--from", "0,0,1", "X,Y,Z",
                        "Towards the eye, in the machine frame; Z is up in the picture, or Y when looking along Z");
@@ -41,6 +43,7 @@ int main(int argc, char** argv)
             options.title = title;
             options.scale = scale;
             options.bands = bands;
+            options.palette = palette;
             options.towards_eye = core::parse_direction(from, "--from");
             if (!within.empty()) options.job = job::read_job(within);
             const std::optional<units::Units> units =

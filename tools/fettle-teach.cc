@@ -1,6 +1,7 @@
 #include "cli/questions.h"
 #include "cli/tool.h"
 #include "core/constants.h"
+#include "core/file.h"
 #include "core/text.h"
 #include "gantry/gantry_options.h"
 #include "gantry/make_virtual.h"
@@ -25,10 +26,15 @@ struct Options {
     const std::string& job =
         t.positional_file("JOB", "Settings to start from: any job, JSON; its boundaries are replaced");
     const std::string& anomaly =
-        t.optional_file("--anomaly", "POINTS", "Around the anomaly, picked in CloudCompare or pcd_viewer: their text");
+        t.optional_file("--anomaly", "POINTS",
+                        "Around the anomaly, picked in CloudCompare, pcd_viewer or a page of fettle-view --pick: "
+                        "their text. A page's list may hold both boundaries");
     const std::string& sampling = t.optional_file("--sampling", "POINTS", "Around the area that may be touched");
     const std::optional<units::Units::Length>& file_units =
         t.length_unit("--file-units", "Unit of POINTS, if it is not the job's");
+    const std::string& on = t.optional_file("--on", "SCAN", "Of points without z: the part whose height they get");
+    const std::optional<units::Units::Length>& on_units =
+        t.length_unit("--on-units", "Unit of SCAN, if it is not the job's");
     gantry::GantryOptions gantry{
         t,
         {.fallback = "",
@@ -70,8 +76,8 @@ void check(const Options& o)
             throw core::InputError("--stock", "goes with a virtual gantry, and that with it");
         if (o.steering.empty()) throw core::InputError("--steer", "goes with --gantry");
     }
-    if (on_gantry && (!o.sampling.empty() || o.file_units))
-        throw core::InputError("--sampling, --file-units: go with --anomaly");
+    if (on_gantry && (!o.sampling.empty() || o.file_units || !o.on.empty()))
+        throw core::InputError("--sampling, --file-units, --on: go with --anomaly");
 }
 
 /// Sets surface and θ by the options, or else by the operator's answers. @param answers  null: nobody is asked
@@ -94,18 +100,37 @@ void apply_settings(job::Job& job, const Options& o, cli::OperatorPrompt* answer
         throw core::InputError("--direction", "goes with a swept surface alone");
 }
 
+/// Sets the heights of points without z to those of the part.
+void set_heights(Eigen::Matrix3Xd& points, const job::Job& job, const Options& o)
+{
+    if (points.row(2).allFinite()) return;
+    if (job.T_part_job)
+        throw core::InputError("--on", "a job with a frame of its own needs points with z: its z is not the part's");
+    const sampling::Scan scan = sampling::read_scan(o.on, job, o.on_units);
+    for (auto point : points.colwise()) {
+        if (std::isfinite(point.z())) continue;
+        const std::optional<double> height = scan.height(point.head<2>());
+        if (!height)
+            throw core::InputError(core::display_name(o.on),
+                                   "has no surface at " + job::point_text(point.head<2>(), job.units));
+        point.z() = *height;
+    }
+}
+
 void set_picked_points(job::Job& job, const Options& o, bool was_plane)
 {
     const double mm = units::mm_per(o.file_units.value_or(job.units.length));
-    const auto picked = [&](const std::string& path) { // in the part's frame
+    const auto picked = [&](const std::string& path, char boundary) { // in the part's frame
         cloud::Cloud points;
-        points.xyz = job::read_picked_points(path) * mm;
+        points.xyz = job::read_picked_points(path, {boundary, !o.on.empty()}) * mm;
+        set_heights(points.xyz, job, o);
         job::move_to_job_frame(points, job);
         return points.xyz;
     };
-    job.anomaly = picked(o.anomaly);
-    if (!o.sampling.empty())
-        job.sampling = picked(o.sampling);
+    const bool has_both = o.sampling.empty() && job::holds_both_boundaries(o.anomaly);
+    job.anomaly = picked(o.anomaly, 'B');
+    if (has_both || !o.sampling.empty())
+        job.sampling = picked(has_both ? o.anomaly : o.sampling, 'S');
     else if (was_plane && job.surface == job::SurfaceType::plane)
         job.sampling.resize(3, 0); // it is optional for a plane, and the old one is about another place
 }

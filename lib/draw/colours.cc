@@ -23,6 +23,19 @@ constexpr std::array<Rgb, 11> kRedBlue = {{{103, 0, 31},
                                            {33, 102, 172},
                                            {5, 48, 97}}};
 
+// The order of hues of a spectrum, as GOM, PolyWorks and CloudCompare show deviations; green about zero.
+constexpr std::array<Rgb, 11> kSpectrum = {{{20, 20, 140},
+                                            {30, 70, 220},
+                                            {30, 150, 235},
+                                            {40, 200, 200},
+                                            {70, 200, 110},
+                                            {90, 190, 70},
+                                            {150, 205, 60},
+                                            {230, 215, 50},
+                                            {245, 155, 35},
+                                            {225, 65, 30},
+                                            {150, 10, 20}}};
+
 constexpr double kLimitTolerances = 2;
 constexpr double kLimitShare = 0.99;
 
@@ -31,12 +44,13 @@ constexpr double kLimitShare = 0.99;
 Rgb ColourScale::operator()(double error) const
 {
     if (std::isnan(error)) return kUndefinedColour;
+    const auto& stops = palette == Palette::accessible ? kRedBlue : kSpectrum;
     constexpr int kIntervals = static_cast<int>(kRedBlue.size()) - 1;
     const double position = (std::clamp(error / limit, -1.0, 1.0) + 1) / 2 * kIntervals;
     const int below = std::min(static_cast<int>(position), kIntervals - 1);
     Rgb mixed;
     for (std::size_t i = 0; i < mixed.size(); ++i) {
-        const double low = kRedBlue[below][i], high = kRedBlue[below + 1][i];
+        const double low = stops[below][i], high = stops[below + 1][i];
         mixed[i] = static_cast<std::uint8_t>(low + (position - below) * (high - low) + 0.5);
     }
     return mixed;

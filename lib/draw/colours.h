@@ -4,16 +4,33 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace fettle::draw {
 
 using Rgb = std::array<std::uint8_t, 3>;
 
-/// Diverging colour scale of signed errors, from -limit to +limit, clamped beyond: dark red over-cut, nearly white
-/// zero, dark blue under-cut (material left). Red and blue are distinguishable with every common colour blindness, and
-/// either side darkens evenly, so that the size shows in grey print as well.
+/// Colours of signed errors.
+enum class Palette {
+    accessible, ///< dark red over-cut, nearly white zero, dark blue under-cut. Red and blue are distinguishable with
+                ///< every common colour blindness, and either side darkens evenly, so that the size shows in grey print
+    inspection, ///< as inspection programs draw it: red material left, green zero, blue over-cut
+};
+
+/// The palettes by their names, and what a tool's help says of them; the first is the default.
+inline const std::vector<std::pair<std::string, Palette>> kPalettes = {{"accessible", Palette::accessible},
+                                                                       {"inspection", Palette::inspection}};
+inline constexpr const char* kPaletteHelp =
+    "Colours of errors and classes: red over-cut, blue material left, safe for colour blindness; or, as inspection "
+    "programs draw it, red material left, green zero, blue over-cut";
+
+/// Diverging colour scale of signed errors, from -limit (over-cut) to +limit (under-cut, material left), clamped
+/// beyond.
 struct ColourScale {
     double limit = 1; ///< positive, in the unit of the errors
+    Palette palette = Palette::accessible;
 
     Rgb operator()(double error) const; ///< NaN: kUndefinedColour
 };

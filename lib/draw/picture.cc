@@ -1,11 +1,8 @@
 #include "draw/picture.h"
 
-#include "cloud/fields.h"
 #include "core/error.h"
 #include "draw/canvas.h"
 #include "draw/picture_parts.h"
-#include "geometry/statistics.h"
-#include "job/region.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,59 +13,16 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector2d;
 
-// Smallest span of a scale relative to its largest value: closer ticks would need more digits than a label shows.
-constexpr double kMinRelativeSpan = 1e-9;
 // The sheet, in pixels: the map in its frame, the title above it, the legend to the right, a line of numbers below.
 constexpr double kHeightToWidth = 680.0 / 900, kMinHeightToWidth = 0.4, kMinHeight = 290; // for the legend
 constexpr double kMapLeft = 84, kMapTop = 36, kTitleHeight = 42, kBelowMap = 122, kLegendWidth = 310;
 constexpr Rgb kBackground = {228, 228, 232}; // darker than error 0, lighter than undefined
 
-/// The smallest of 1, 1.5, 2, 3, 4, 5, 6, 8, 10 times a power of ten that is not below x.
-double round_up(double x)
-{
-    const double power = std::pow(10, std::floor(std::log10(x)));
-    for (const double digit : {1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0})
-        if (digit * power >= x * (1 - 1e-9)) return digit * power;
-    return 10 * power;
-}
-
-std::string unit_of(const std::string& field, const units::Units& units)
-{
-    const units::Dimension d = field == "z" ? units::Dimension{1, 0} : cloud::field_dimension(field);
-    const std::string length = units::to_string(units.length), force = units::to_string(units.force);
-    if (d.force_power == 0 && d.length_power == 0) return "";
-    if (d.force_power == 0 && field == "feed") return length + "/s";
-    if (d.force_power == 0) return length;
-    return force + (d.length_power == 0 ? "" : "/" + length + std::to_string(-d.length_power));
-}
-
-PictureScale scale_for(const Eigen::VectorXd& values, const PictureOptions& options)
-{
-    PictureScale scale;
-    scale.bands = options.bands;
-    scale.diverging = options.field == "error";
-    if (scale.diverging) {
-        scale.high = options.scale ? *options.scale : round_up(colour_scale(values, 0).limit);
-        scale.low = -scale.high;
-        return scale;
-    }
-    double min = std::numeric_limits<double>::infinity(), max = -min;
-    for (const double value : values)
-        if (std::isfinite(value)) {
-            min = std::min(min, value);
-            max = std::max(max, value);
-        }
-    scale.low = std::isfinite(min) ? min : 0;
-    const double span = options.scale ? *options.scale : max - min;
-    // If all values are equal, or there are none, the scale still gets a span.
-    scale.high = scale.low + (std::isfinite(span) && span > kMinRelativeSpan * std::max(1.0, std::abs(max)) ? span : 1);
-    return scale;
-}
-
 bool from_above(const Eigen::Vector3d& towards_eye) { return towards_eye.head<2>().isZero(0) && towards_eye.z() > 0; }
 
 /// @param visible  3xN, V, points that must be visible   @param spacing  side of their cells, mm; 0 for a mesh
-Layout lay_out(const Eigen::Matrix3Xd& visible, double spacing, const PictureOptions& options)
+Layout lay_out(const Eigen::Matrix3Xd& visible, double spacing, const std::vector<Outline>& outlines,
+               const PictureOptions& options)
 {
     Eigen::AlignedBox2d box;
     for (const Eigen::Vector3d& p : visible.colwise())
@@ -77,17 +31,20 @@ Layout lay_out(const Eigen::Matrix3Xd& visible, double spacing, const PictureOpt
         throw core::InputError("no point has a finite " +
                                std::string(from_above(options.towards_eye) ? "x and y" : "x, y and z") +
                                ": there is nothing to draw");
-    if (options.job)
-        for (const Eigen::Matrix3Xd* polygon : {&options.job->anomaly, &options.job->sampling}) {
-            const Eigen::Matrix3Xd corners = in_view(view_rotation(options.towards_eye), with_heights(*polygon));
-            for (const Eigen::Vector3d& p : corners.colwise()) box.extend(p.head<2>());
-        }
+    const Eigen::Matrix3d rotation = view_rotation(options.towards_eye);
+    for (const Outline& outline : outlines) {
+        const Eigen::Matrix3Xd line = in_view(rotation, outline.line);
+        for (const Eigen::Vector3d& p : line.colwise()) box.extend(p.head<2>());
+    }
+    if (!options.extent.isEmpty())
+        for (int corner = 0; corner < 8; ++corner)
+            box.extend(Vector2d((rotation * options.extent.corner(Eigen::AlignedBox3d::CornerType(corner))).head<2>()));
     box = Eigen::AlignedBox2d(box.min() - Vector2d::Constant(spacing / 2), box.max() + Vector2d::Constant(spacing / 2));
     // A line of points is drawn as a strip.
     constexpr double kMinSideRatio = 1e-3;
     const Vector2d size = box.sizes().cwiseMax(kMinSideRatio * box.sizes().maxCoeff());
     Layout layout;
-    layout.rotation_view_machine = view_rotation(options.towards_eye);
+    layout.rotation_view_machine = rotation;
     layout.view.pixel = std::max(size.x() / options.width, size.y() / (kHeightToWidth * options.width));
     // Rounding removes the error of the division: one side is a whole number of pixels.
     const Eigen::Array2i pixels = (size / layout.view.pixel).array().round().cast<int>().max(1);
@@ -111,20 +68,6 @@ double splat_radius(Index points, double spacing, double pixel)
     return points < kMaxDots ? kDotRadiusPixels * pixel : std::max(kRadiusSpacings * spacing, kMinRadiusPixels * pixel);
 }
 
-/// The numbers at points inside B, or all of them without a job. @param points  3xN, M
-Eigen::VectorXd inside_job(const Eigen::Matrix3Xd& points, const Eigen::VectorXd& numbers,
-                           const std::optional<job::Job>& job)
-{
-    if (!job) return numbers;
-    Eigen::Matrix3Xd flat = points;
-    flat.row(2).setZero(); // the region of a point with undefined z is defined, too
-    const std::vector<job::Region> region = job::classify_regions(*job, flat);
-    std::vector<double> chosen;
-    for (std::size_t i = 0; i < region.size(); ++i)
-        if (region[i] == job::Region::inside) chosen.push_back(numbers[i]);
-    return Eigen::Map<Eigen::VectorXd>(chosen.data(), chosen.size());
-}
-
 /// Values and depths of all pixels, ready to be coloured.
 struct Drawing {
     Layout layout;
@@ -132,6 +75,8 @@ struct Drawing {
     Raster raster;    ///< values in the units of the picture
     double smoothing; ///< of the hill shading, pixels
     PictureValues values;
+    PictureScale scale;
+    std::vector<Outline> outlines;
 };
 
 View finer(const View& view, int times)
@@ -145,17 +90,16 @@ Drawing render(const cloud::Cloud& cloud, const PictureOptions& options)
     const double spacing = point_spacing(cloud.xyz);
     constexpr double kSinglePointCell = 1; // mm
     const Eigen::Matrix3Xd projected = in_view(view_rotation(options.towards_eye), cloud.xyz);
-    d.layout = lay_out(projected, spacing > 0 ? spacing : kSinglePointCell, options);
-    const bool heights = options.field == "z";
-    const Eigen::VectorXd numbers =
-        heights ? Eigen::VectorXd(cloud.xyz.row(2) / options.units.mm())
-                : Eigen::VectorXd(cloud::field(cloud, options.field) /
-                                  units::base_unit_factor(options.units, cloud::field_dimension(options.field)));
+    const FieldValues values = field_values(cloud, options.field, options.units, options.job, options);
+    if (options.job) d.outlines = outlines_on(cloud, *options.job);
+    d.layout = lay_out(projected, spacing > 0 ? spacing : kSinglePointCell, d.outlines, options);
     d.view = finer(d.layout.view, options.supersampling);
     const double pixel = d.view.pixel;
-    d.raster = rasterise(d.view, projected, numbers, splat_radius(projected.cols(), spacing, d.layout.view.pixel));
+    d.raster =
+        rasterise(d.view, projected, values.numbers, splat_radius(projected.cols(), spacing, d.layout.view.pixel));
     d.smoothing = std::max(0.7, spacing / pixel / 2); // half a cell removes the steps between cells
-    d.values.numbers = inside_job(cloud.xyz, numbers, options.job);
+    d.values.numbers = numbers_inside(cloud.xyz, values.numbers, options.job);
+    d.scale = values.scale;
     return d;
 }
 
@@ -165,7 +109,8 @@ Drawing render(const mesh::Mesh& mesh, const PictureOptions& options)
     Drawing d;
     const Eigen::Matrix3d rotation = view_rotation(options.towards_eye);
     const mesh::Mesh projected = {in_view(rotation, mesh.vertices), mesh.triangles};
-    d.layout = lay_out(projected.vertices, 0, options);
+    if (options.job) d.outlines = outlines_on(mesh, *options.job);
+    d.layout = lay_out(projected.vertices, 0, d.outlines, options);
     d.view = finer(d.layout.view, options.supersampling);
     d.raster = rasterise(d.view, projected, mesh.vertices.row(2).transpose() / options.units.mm());
     d.smoothing = 0.7;
@@ -173,7 +118,9 @@ Drawing render(const mesh::Mesh& mesh, const PictureOptions& options)
     if (!from_above(options.towards_eye)) { // the statistics do not depend on the view direction
         PictureOptions above = options;
         above.towards_eye = Eigen::Vector3d::UnitZ();
-        d.values.numbers = render(mesh, above).values.numbers;
+        const Drawing seen_from_above = render(mesh, above);
+        d.values.numbers = seen_from_above.values.numbers;
+        d.scale = seen_from_above.scale;
         return d;
     }
     // The statistics are those of the visible pixels, which weights them by area; vertices would be weighted by the
@@ -186,7 +133,8 @@ Drawing render(const mesh::Mesh& mesh, const PictureOptions& options)
                 points.col(k) << d.view.centre(row, column), d.raster.depth(row, column);
                 numbers[k++] = d.raster.value(row, column);
             }
-    d.values.numbers = inside_job(points, numbers, options.job);
+    d.values.numbers = numbers_inside(points, numbers, options.job);
+    d.scale = scale_for(options.field, d.values.numbers, options);
     return d;
 }
 
@@ -221,6 +169,7 @@ void draw_map(Sheet& sheet, const Drawing& d, const PictureScale& scale, double 
 {
     const View& view = d.view;
     Eigen::ArrayXXd shade = Eigen::ArrayXXd::Ones(view.rows, view.columns);
+    const bool keeps_colours = scale.diverging || scale.packed || !scale.classes.empty();
     if (shading > 0) shade = hill_shading(d.raster, view.pixel, d.smoothing);
     std::vector<std::uint8_t> pixels;
     pixels.reserve(std::size_t{3} * view.rows * view.columns);
@@ -228,7 +177,7 @@ void draw_map(Sheet& sheet, const Drawing& d, const PictureScale& scale, double 
         for (int column = 0; column < view.columns; ++column) {
             Rgb colour = kBackground;
             if (d.raster.covered(row, column))
-                colour = shaded(scale(d.raster.value(row, column)), shading, shade(row, column), scale.diverging);
+                colour = shaded(scale(d.raster.value(row, column)), shading, shade(row, column), keeps_colours);
             pixels.insert(pixels.end(), colour.begin(), colour.end());
         }
     sheet.image(d.layout.view_corner, {double(d.layout.view.columns), double(d.layout.view.rows)}, view.columns,
@@ -242,23 +191,29 @@ void draw_picture(const mesh::MeshOrCloud& part, const PictureOptions& options,
 {
     Drawing d = std::visit([&](const auto& p) { return render(p, options); }, part);
     d.values.name = options.field;
-    d.values.unit = unit_of(options.field, options.units);
+    d.values.unit = unit_of_field(options.field, options.units);
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     const auto finite_or = [&](double other) { return d.raster.value.isFinite().select(d.raster.value, other); };
     d.values.min_shown = finite_or(kInfinity).minCoeff();
     d.values.max_shown = finite_or(-kInfinity).maxCoeff();
-    const PictureScale scale = scale_for(d.values.numbers, options);
+    const PictureScale& scale = d.scale;
     const Layout& layout = d.layout;
 
     Sheet& sheet = make(static_cast<int>(layout.map_corner.x() + layout.map_size.x() + kLegendWidth),
                         static_cast<int>(layout.map_corner.y() + layout.map_size.y() + kBelowMap));
     sheet.box(layout.map_corner, layout.map_size, kBackground);
     draw_map(sheet, d, scale, shading_strength(options));
-    if (options.job) draw_outlines(sheet, layout, d.raster, *options.job);
+    draw_outlines(sheet, layout, d.raster, d.outlines);
     draw_axes(sheet, layout, options.units);
     draw_legend(sheet, layout, d.values, scale);
-    draw_numbers(sheet, layout, d.values, options.job ? "inside B" : "");
+    const bool has_statistics = !scale.packed && scale.classes.empty();
+    if (has_statistics) draw_numbers(sheet, layout, d.values, options.job ? "inside B" : "");
     sheet.text(options.title, {kMapLeft, kMapTop + 4}, kTitleCapitals, Sheet::kInk, Sheet::Align::left, true);
+}
+
+PictureScale picture_scale(const mesh::MeshOrCloud& part, const PictureOptions& options)
+{
+    return std::visit([&](const auto& p) { return render(p, options).scale; }, part);
 }
 
 std::string picture(const mesh::MeshOrCloud& part, const PictureOptions& options)

@@ -12,24 +12,11 @@ using Align = Sheet::Align;
 using Eigen::Index;
 using Eigen::Vector2d;
 
-// YlGnBu of ColorBrewer (Cynthia Brewer, Apache-2.0) without its palest and its darkest two: darkens evenly, is safe
-// for colour blindness, and light enough for shading.
-constexpr std::array<Rgb, 6> kSequential = {
-    {{237, 248, 177}, {199, 233, 180}, {127, 205, 187}, {65, 182, 196}, {29, 145, 192}, {34, 94, 168}}};
-
-Rgb sequential(double share)
-{
-    const double position = std::clamp(share, 0.0, 1.0) * (kSequential.size() - 1);
-    const std::size_t below = std::min(static_cast<std::size_t>(position), kSequential.size() - 2);
-    Rgb mixed;
-    for (std::size_t i = 0; i < 3; ++i)
-        mixed[i] = static_cast<std::uint8_t>(
-            std::lround(std::lerp(kSequential[below][i], kSequential[below + 1][i], position - double(below))));
-    return mixed;
-}
-
 // Legend, pixels: distance from the map, widths of bar and ticks, and margin above and below for tips and names.
-constexpr double kMapDistance = 40, kBarWidth = 22, kTicksWidth = 70, kBarMargin = 62;
+constexpr double kMapDistance = 40, kBarWidth = 22, kMinTicksWidth = 70, kBarMargin = 62;
+// From the bar to the right end of the legend, for ticks and histogram.
+constexpr double kBesideBar = 222, kMinHistogramWidth = 30, kMaxHistogramWidth = 150;
+constexpr double kTickOffset = 10, kTickMargin = 12; // before and after the text of a tick
 
 /// "1.2 % beyond", at least "< 0.1 % beyond".
 std::string beyond_text(Index beyond, Index count)
@@ -45,6 +32,7 @@ struct Bar {
     Vector2d corner;
     double height;
     const PictureScale& scale;
+    double ticks_width = kMinTicksWidth; ///< of the bar's ticks with their text
 
     double row_of(double value) const { return corner.y() + height * (scale.high - value) / (scale.high - scale.low); }
 };
@@ -56,12 +44,10 @@ void draw_bar(Sheet& sheet, const Bar& bar)
         sheet.box(bar.corner + Vector2d(0, row), {kBarWidth, 1},
                   scale(scale.high - (row + 0.5) / bar.height * (scale.high - scale.low)));
     sheet.line(rectangle_corners(bar.corner, {kBarWidth, bar.height}), kFrameGrey, 1, true);
-    const double step = tick_step(scale.high - scale.low, 8);
-    for (double k = std::ceil(scale.low / step - 1e-9); k * step <= scale.high + 1e-9 * step; ++k) {
-        const Vector2d at(bar.corner.x() + kBarWidth, bar.row_of(k * step));
+    for (const auto& [value, text] : scale_ticks(scale)) {
+        const Vector2d at(bar.corner.x() + kBarWidth, bar.row_of(value));
         sheet.box(at, {5, 0}, kTextGrey);
-        const std::string sign = scale.diverging && k > 0.5 ? "+" : "";
-        sheet.text(sign + tick_text(k * step, step), at + Vector2d(10, 0), kSmallCapitals);
+        sheet.text(text, at + Vector2d(kTickOffset, 0), kSmallCapitals);
     }
 }
 
@@ -94,16 +80,16 @@ ScaleHistogram scale_histogram(const Eigen::VectorXd& numbers, const PictureScal
 
 void draw_histogram(Sheet& sheet, const Bar& bar, const Eigen::ArrayXd& bins)
 {
-    constexpr double kWidth = 150;
-    const double left = bar.corner.x() + kBarWidth + kTicksWidth, max = bins.maxCoeff(),
+    const double left = bar.corner.x() + kBarWidth + bar.ticks_width, max = bins.maxCoeff(),
                  half = bar.height / double(bins.size()) / 2;
+    const double width = std::clamp(kBesideBar - bar.ticks_width, kMinHistogramWidth, kMaxHistogramWidth);
     for (Index i = 0; i < bins.size(); ++i) {
         if (!(bins[i] > 0)) continue;
         const double value = std::lerp(bar.scale.low, bar.scale.high, (double(i) + 0.5) / double(bins.size()));
         const double upper = std::round(bar.row_of(value) - half), lower = std::round(bar.row_of(value) + half);
         Rgb colour = bar.scale(value);
         for (std::uint8_t& c : colour) c = static_cast<std::uint8_t>(0.9 * c); // keeps the palest visible on white
-        sheet.box({left, upper}, {std::max(1.0, kWidth * bins[i] / max), lower - upper - 2}, colour);
+        sheet.box({left, upper}, {std::max(1.0, width * bins[i] / max), lower - upper - 2}, colour);
     }
     sheet.box({left - 1, bar.corner.y()}, {0, bar.height}, kFrameGrey);
 }
@@ -121,25 +107,48 @@ void draw_end(Sheet& sheet, const Bar& bar, bool upper, Index beyond, Index all,
                   bar.scale(upper ? bar.scale.high : bar.scale.low));
     }
     sheet.text(beyond > 0 ? beyond_text(beyond, all) : "some beyond",
-               {bar.corner.x() + kBarWidth + kTicksWidth, middle.y() + (upper ? -10 : 10)}, kSmallCapitals, kTextGrey);
+               {bar.corner.x() + kBarWidth + bar.ticks_width, middle.y() + (upper ? -10 : 10)}, kSmallCapitals,
+               kTextGrey);
+}
+
+void draw_classes(Sheet& sheet, const Vector2d& corner, const std::vector<FieldClass>& classes)
+{
+    constexpr double kSwatch = 16, kFirst = 40, kDistance = 30, kCountColumn = 230;
+    Vector2d at = corner + Vector2d(0, kFirst);
+    for (const FieldClass& found : classes) {
+        sheet.box(at - Vector2d(0, kSwatch / 2), {kSwatch, kSwatch}, found.colour);
+        sheet.line(rectangle_corners(at - Vector2d(0, kSwatch / 2), {kSwatch, kSwatch}), kFrameGrey, 1, true);
+        sheet.text(found.name, at + Vector2d(kSwatch + 10, 0), kLabelCapitals);
+        sheet.text(std::to_string(found.count), at + Vector2d(kCountColumn, 0), kLabelCapitals, kTextGrey,
+                   Align::right);
+        at.y() += kDistance;
+    }
 }
 
 } // namespace
 
-Rgb PictureScale::operator()(double value) const
+std::vector<std::pair<double, std::string>> scale_ticks(const PictureScale& scale)
 {
-    if (std::isnan(value)) return kUndefinedColour;
-    double share = std::clamp((value - low) / (high - low), 0.0, 1.0);
-    if (bands > 0) share = (std::min(std::floor(share * bands), bands - 1.0) + 0.5) / bands;
-    return diverging ? ColourScale{1}(2 * share - 1) : sequential(share);
+    std::vector<std::pair<double, std::string>> ticks;
+    const double step = tick_step(scale.high - scale.low, 8);
+    for (double k = std::ceil(scale.low / step - 1e-9); k * step <= scale.high + 1e-9 * step; ++k)
+        ticks.emplace_back(k * step, (scale.diverging && k > 0.5 ? "+" : "") + tick_text(k * step, step));
+    return ticks;
 }
 
 void draw_legend(Sheet& sheet, const Layout& layout, const PictureValues& values, const PictureScale& scale)
 {
     const Vector2d corner = layout.map_corner + Vector2d(layout.map_size.x() + kMapDistance, 0);
-    const Bar bar = {corner + Vector2d(0, kBarMargin), layout.map_size.y() - 2 * kBarMargin, scale};
+    Bar bar = {corner + Vector2d(0, kBarMargin), layout.map_size.y() - 2 * kBarMargin, scale};
+    for (const auto& [value, text] : scale_ticks(scale))
+        bar.ticks_width = std::max(bar.ticks_width, kTickOffset + sheet.text_width(text, kSmallCapitals) + kTickMargin);
     sheet.text(values.name + (values.unit.empty() ? "" : ", " + values.unit), corner + Vector2d(0, 4), kLabelCapitals,
                Sheet::kInk, Align::left, true);
+    if (scale.packed) return;
+    if (!scale.classes.empty()) {
+        draw_classes(sheet, corner, scale.classes);
+        return;
+    }
     if (scale.diverging) {
         sheet.text("material left", corner + Vector2d(0, 28), kSmallCapitals, kTextGrey);
         sheet.text("over-cut", corner + Vector2d(0, layout.map_size.y() - 28), kSmallCapitals, kTextGrey);

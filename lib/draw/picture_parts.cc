@@ -73,7 +73,7 @@ void draw_tripod(Sheet& sheet, const Vector2d& centre, const Eigen::Matrix3d& ro
 /// The pieces of a closed line that the part does not hide. @param corners  3xN, V
 std::vector<Eigen::Matrix2Xd> visible_pieces(const Layout& layout, const Raster& part, const Eigen::Matrix3Xd& corners)
 {
-    // A straight line between corners sinks into a convex part. It counts as visible down to this share of the picture.
+    // A line on the part, at the height of its cells, counts as visible down to this share of the picture.
     constexpr double kMaxDepthToSize = 0.03, kStepPixels = 2;
     const View& view = layout.view;
     const double fineness = double(part.depth.cols()) / view.columns;
@@ -151,27 +151,11 @@ void draw_axes(Sheet& sheet, const Layout& layout, const units::Units& units)
                {corner.x() - 2 * kTripod - 8, y}, kSmallCapitals, kTextGrey, Align::right);
 }
 
-Eigen::Matrix3Xd with_heights(const Eigen::Matrix3Xd& polygon)
-{
-    Eigen::Matrix3Xd corners = polygon;
-    double sum = 0;
-    Index known = 0;
-    for (const double z : polygon.row(2))
-        if (std::isfinite(z)) {
-            sum += z;
-            ++known;
-        }
-    for (double& z : corners.row(2))
-        if (!std::isfinite(z)) z = known > 0 ? sum / double(known) : 0;
-    return corners;
-}
-
-void draw_outlines(Sheet& sheet, const Layout& layout, const Raster& part, const job::Job& job)
+void draw_outlines(Sheet& sheet, const Layout& layout, const Raster& part, const std::vector<Outline>& outlines)
 {
     const bool from_above = layout.rotation_view_machine.isIdentity(0);
     const auto draw = [&](const Eigen::Matrix3Xd& polygon, const Rgb& colour, double width, const std::string& name) {
-        if (polygon.cols() == 0) return;
-        const Eigen::Matrix3Xd corners = in_view(layout.rotation_view_machine, with_heights(polygon));
+        const Eigen::Matrix3Xd corners = in_view(layout.rotation_view_machine, polygon);
         std::vector<Eigen::Matrix2Xd> lines;
         if (from_above) {
             lines.emplace_back(2, corners.cols());
@@ -199,8 +183,9 @@ void draw_outlines(Sheet& sheet, const Layout& layout, const Raster& part, const
         at.x() = std::clamp(at.x(), left, left + layout.map_size.x() - 2 * kLabelCapitals);
         sheet.text(name, at, kLabelCapitals, colour, Align::centre, true);
     };
-    draw(job.sampling, kSamplingEdge, 1, "S");
-    draw(job.anomaly, kInsideEdge, 2, "B");
+    for (const Outline& outline : outlines)
+        draw(outline.line, outline.name == "S" ? kSamplingEdge : kInsideEdge, outline.name == "S" ? 1 : 2,
+             outline.name);
 }
 
 } // namespace fettle::draw

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "draw/field_scale.h"
+#include "draw/outline.h"
 #include "draw/raster.h"
 #include "draw/sheet.h"
 #include "job/job.h"
@@ -15,15 +17,6 @@ struct PictureValues {
     Eigen::VectorXd numbers;             ///< NaN: undefined
     std::string counted = "points";      ///< what has these numbers: the points of a cloud, pixels that show a mesh
     double min_shown = 0, max_shown = 0; ///< of the whole map, outside B, too
-};
-
-/// Colour map of values: the diverging ColourScale, or a sequential one.
-struct PictureScale {
-    double low = 0, high = 1;
-    bool diverging = false;
-    int bands = 0;
-
-    Rgb operator()(double value) const; ///< NaN: kUndefinedColour
 };
 
 /// Position of the map on the sheet.
@@ -47,10 +40,8 @@ Eigen::Matrix2Xd rectangle_corners(const Eigen::Vector2d& corner, const Eigen::V
 /// Draws the frame, a scale bar, and ticks along each side that is parallel to a machine axis; in an oblique view, a
 /// tripod of the axes.
 void draw_axes(Sheet& sheet, const Layout& layout, const units::Units& units);
-/// Corners of B or S, 3xN, M, with undefined z replaced by the mean of the others, or 0 if all are undefined.
-Eigen::Matrix3Xd with_heights(const Eigen::Matrix3Xd& polygon);
-/// Draws B and S of a job where the part does not hide them; from above, completely.
-void draw_outlines(Sheet& sheet, const Layout& layout, const Raster& part, const job::Job& job);
+/// Draws outlines where the part does not hide them; from above, completely.
+void draw_outlines(Sheet& sheet, const Layout& layout, const Raster& part, const std::vector<Outline>& outlines);
 /// Draws the colour bar with ticks and the histogram; the ends of the bar are pointed where values lie beyond.
 void draw_legend(Sheet& sheet, const Layout& layout, const PictureValues& values, const PictureScale& scale);
 /// Draws a line of statistics. @param region  to which they apply; empty: all

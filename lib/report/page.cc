@@ -3,6 +3,7 @@
 #include "draw/figures.h"
 #include "report/sections.h"
 #include "report/style.h"
+#include "view/view.h"
 
 #include <filesystem>
 
@@ -31,7 +32,7 @@ std::string report_page(const RunFiles& run, const std::string& title, const std
     const draw::Html head =
         draw::empty_element("meta", {{"charset", "utf-8"}}) +
         draw::empty_element("meta", {{"name", "viewport"}, {"content", "width=device-width, initial-scale=1"}}) +
-        draw::element("title", headline) + style_sheet();
+        draw::element("title", headline) + style_sheet() + view::view_style();
     draw::Html body = draw::element("header", draw::element("h1", headline) + draw::element("p", subtitle)) +
                       draw::Html::from_markup("\n");
     for (const auto part : {verdict_section, job_section, fit_section, margin_section, plan_section, grinding_section,
@@ -39,6 +40,7 @@ std::string report_page(const RunFiles& run, const std::string& title, const std
         body += part(run);
     body += draw::element("footer", "Written by fettle-report " + version +
                                         ". The page's source has the full value of each number.");
+    if (run.before || run.after || run.errors) body += view::view_script();
     return "<!DOCTYPE html>\n" +
            draw::element("html", {{"lang", "en"}},
                          draw::element("head", head) + draw::Html::from_markup("\n") + draw::element("body", body))

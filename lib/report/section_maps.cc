@@ -2,6 +2,7 @@
 #include "draw/picture.h"
 #include "draw/svg_sheet.h"
 #include "report/sections.h"
+#include "view/view.h"
 
 #include <algorithm>
 
@@ -20,6 +21,39 @@ try {
     throw core::InputError(std::ranges::find(run.sources, role, &SourceFile::role)->name, error.what());
 }
 
+/// One view of the part before, after and its errors, to be turned. Where it cannot be shown the pictures below it
+/// stand for it.
+draw::Html rotatable_view(const RunFiles& run, const draw::PictureOptions& options)
+{
+    std::vector<view::Layer> layers;
+    if (run.errors) {
+        const mesh::CloudMesh part{*run.errors, {}};
+        layers.push_back({"errors", part, view::default_fields(part.points)});
+    }
+    if (run.before) layers.push_back({"before", view::as_cloud_mesh(*run.before), {"z"}});
+    if (run.after) layers.push_back({"after", view::as_cloud_mesh(*run.after), {"z"}});
+    if (layers.empty()) return {};
+    view::ViewOptions view;
+    view.picture = options;
+    if (run.surface)
+        view.touches = run.surface->touches;
+    else if (run.samples)
+        view.touches = run.samples->xyz;
+    return draw::element("div", {{"class", "view"}}, view::view_element(layers, view, {}));
+}
+
+/// Before and after are drawn over the same area, with the same colours.
+void set_common_scale(const RunFiles& run, draw::PictureOptions& options)
+{
+    if (!run.before || !run.after) return;
+    const draw::PictureScale before = draw::picture_scale(*run.before, options),
+                             after = draw::picture_scale(*run.after, options);
+    options.range = {std::min(before.low, after.low), std::max(before.high, after.high)};
+    for (const auto* part : {&*run.before, &*run.after})
+        for (const Eigen::Vector3d& p : mesh::coordinates_of(*part).colwise())
+            if (p.allFinite()) options.extent.extend(p);
+}
+
 } // namespace
 
 draw::Html maps_section(const RunFiles& run)
@@ -30,11 +64,16 @@ draw::Html maps_section(const RunFiles& run)
     constexpr int kWidth = 560; // pixels; its text then has the size of the page's text
     options.width = kWidth;
     options.supersampling = 2;
-    draw::Html html;
+    if (run.errors && run.comparison && run.comparison->tolerance > 0) options.scale = run.comparison->tolerance;
+    draw::Html html = rotatable_view(run, options);
+    options.scale.reset();
+    set_common_scale(run, options);
     if (run.before) html += picture_of(run, "part before", *run.before, options, "Before: heights, with hill shading.");
     if (run.after) html += picture_of(run, "part after", *run.after, options, "After: heights, with hill shading.");
     if (run.errors) {
         options.field = "error";
+        options.range.reset();
+        options.extent.setEmpty();
         std::string scale;
         if (run.comparison && run.comparison->tolerance > 0) {
             options.scale = run.comparison->tolerance;

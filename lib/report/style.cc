@@ -55,6 +55,7 @@ td.bar i { display: block; height: .62rem; background: var(--blue); min-width: 1
 figure { margin: .8rem 0 1.1rem; }
 figure img, figure svg { display: block; width: 100%; height: auto; }
 figcaption { color: var(--soft); font-size: .88rem; margin-top: .3rem; }
+.view .stage { height: 30rem; flex: none; }
 .hash { font: .78rem "DejaVu Sans Mono", "Liberation Mono", Consolas, monospace; overflow-wrap: anywhere; color: var(--soft); }
 .name { overflow-wrap: anywhere; }
 footer { margin-top: 2rem; border-top: 1px solid var(--rule); padding-top: .5rem; color: var(--soft); font-size: .82rem; }
