@@ -7,6 +7,7 @@
 #   make test TOOL=fettle-fit
 #   make bless TOOL=fettle-fit                make docs      pages of docs/tools from --help, modules.svg
 #   make test-linuxcnc  on LinuxCNC, simulated      make fuzz     build the fuzzing targets
+#   make test-browser   pages in headless Chromium
 #   make lint       format and scripts        make includes   every file by its own includes
 #   make install PREFIX=/usr/local DESTDIR=
 #
@@ -32,8 +33,8 @@ LIST     := $(B)/bin/fettle
 TESTS    := $(patsubst tests/lib/%.cc,$(B)/tests/%,$(wildcard tests/lib/*_test.cc))
 STUDIES  := $(patsubst pipelines/programs/%.cc,$(B)/study/%,$(wildcard pipelines/programs/*.cc))
 BENCHES  := $(patsubst tests/bench/%.cc,$(B)/bench/%,$(wildcard tests/bench/*_bench.cc))
-# Those of tests/linuxcnc have a machine of their own to start: make test-linuxcnc.
-CASES    := $(sort $(filter-out tests/linuxcnc/%,$(wildcard tests/$(or $(TOOL),*)/*.sh)))
+# Those of tests/linuxcnc have a machine of their own to start, those of tests/browser a browser: make test-linuxcnc, test-browser.
+CASES    := $(sort $(filter-out tests/linuxcnc/% tests/browser/%,$(wildcard tests/$(or $(TOOL),*)/*.sh)))
 PROGRAMS := $(TOOLS:%=tools/%.cc) $(wildcard tests/lib/*_test.cc tests/bench/*_bench.cc pipelines/programs/*.cc)
 MODULES  := $(if $(LINUXCNC),$(B)/linuxcnc/fettle_head.so $(B)/linuxcnc/fettle_press.so $(B)/linuxcnc/fettle_watch.so)
 
@@ -59,7 +60,7 @@ BUNDLE ?= 8
 
 .DELETE_ON_ERROR:
 .SECONDARY:
-.PHONY: fettle $(TOOLS) all build deps coverage test test-all test-linuxcnc tests-built run-cases demo figures bench bless docs lint includes install clean
+.PHONY: fettle $(TOOLS) all build deps coverage test test-all test-linuxcnc test-browser tests-built run-cases demo figures bench bless docs lint includes install clean
 
 all: deps
 	@$(MAKE) --no-print-directory -j$(JOBS) build
@@ -212,7 +213,8 @@ $(B)/linuxcnc/fettle_watch.so: tools/linuxcnc/fettle_watch.comp
 CASE_RUNS := $(CASES:.sh=.case)
 TEST_RUNS := $(if $(TOOL),,$(TESTS:%=%.run))
 LINUXCNC_RUNS := $(patsubst %.sh,%.case,$(sort $(wildcard tests/linuxcnc/*.sh)))
-.PHONY: $(CASE_RUNS) $(TEST_RUNS) $(LINUXCNC_RUNS)
+BROWSER_RUNS := $(patsubst %.sh,%.case,$(sort $(wildcard tests/browser/*.sh)))
+.PHONY: $(CASE_RUNS) $(TEST_RUNS) $(LINUXCNC_RUNS) $(BROWSER_RUNS)
 
 # More at once than there are processors: some wait most of their time.
 # Of one tool: what its cases name. Statistical tests take a quarter of their draws, with test-all all of them.
@@ -242,7 +244,14 @@ test-linuxcnc: deps
 	@$(MAKE) --no-print-directory -j1 -k -s $(LINUXCNC_RUNS) 2>/dev/null; tests/summary $(B)/results || \
 	    [ -z "$$(find $(B)/results -name '*.failed')" ] # where namespaces are not allowed all are skipped
 
-$(CASE_RUNS) $(LINUXCNC_RUNS): %.case: %.sh
+# One after the other: frames are timed.
+test-browser: deps
+	@.ci/install-packages packages-browser.txt
+	@mkdir -p $(B)/results && rm -f $(B)/results/browser__*
+	@$(MAKE) --no-print-directory -j$(JOBS) $(call tools_named_in,$(wildcard tests/browser/*.sh))
+	@$(MAKE) --no-print-directory -j1 -k -s $(BROWSER_RUNS) 2>/dev/null; tests/summary $(B)/results
+
+$(CASE_RUNS) $(LINUXCNC_RUNS) $(BROWSER_RUNS): %.case: %.sh
 	tests/run $(B) $<
 
 $(TEST_RUNS): %.run: %

@@ -76,6 +76,22 @@ draw::Html tiles(const RunFiles& run)
     return items.empty() ? draw::Html() : draw::element("ul", {{"class", "tiles"}}, items);
 }
 
+/// Warns of a force above F_max, with its place; empty if there was none.
+draw::Html force_card(const RunFiles& run)
+{
+    if (!run.grinding || !run.job) return {};
+    const double peak = run.grinding->numbers.at("peak_force"), max = run.job->force.max / run.units.newton();
+    if (!(peak > max)) return {};
+    const std::string force = " " + units::to_string(run.units.force);
+    draw::Html text = "Peak force " + number_figure("grinding.peak_force", peak) + force + ", " +
+                      draw::fixed_text(100 * peak / max, 0) + " % of " + draw::symbol_with_subscript("F_max") + " (" +
+                      draw::short_text(max) + force + ")";
+    if (const Eigen::VectorXd& at = run.grinding->peak_at; at.size() > 0)
+        text += ", at x " + draw::short_text(at.x()) + ", y " + draw::short_text(at.y()) + ", z " +
+                draw::short_text(at.z()) + " " + units::to_string(run.units.length);
+    return card("force", "!", "Force above the limit", text + ".");
+}
+
 } // namespace
 
 draw::Html verdict_section(const RunFiles& run)
@@ -95,6 +111,7 @@ draw::Html verdict_section(const RunFiles& run)
     }
     if (run.grinding && !run.grinding->finished)
         html += card("out", "!", "Grinding not finished", "The machine stopped at a limit of the plan.");
+    html += force_card(run);
     return draw::element("section", {{"id", "verdict"}}, html + tiles(run)) + draw::Html::from_markup("\n");
 }
 

@@ -28,6 +28,8 @@ p { margin: .5rem 0; max-width: 46rem; }
 .verdict.within .sign, .verdict.within strong { color: var(--green); }
 .verdict.out .sign, .verdict.out strong { color: #b34700; }
 .verdict strong { display: block; font-size: 1.35rem; line-height: 1.25; font-weight: 650; }
+.verdict.force { border-left-color: var(--over); margin-top: .7rem; }
+.verdict.force .sign, .verdict.force strong, .verdict.force p { color: var(--over); }
 .verdict p { margin: .15rem 0 0; }
 .tiles { display: grid; grid-template-columns: repeat(auto-fill, minmax(8.2rem, 1fr)); gap: .7rem; margin: 1rem 0 0; padding: 0; list-style: none; }
 .tiles li { border: 1px solid var(--rule); padding: .5rem .75rem .55rem; }

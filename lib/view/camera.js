@@ -41,8 +41,8 @@ class Camera {
     fit() {
         const { min, max } = this.box;
         const half = direction => [0, 1, 2].reduce((sum, k) => sum + Math.abs(direction[k]) * (max[k] - min[k]) / 2, 0);
-        const legend = this.width > kNarrow ? kLegendWidth : 0;
-        this.scale = Math.max(half(this.right) / Math.max(20, (this.width - legend) / 2 - 24), half(this.up) / Math.max(20, this.height / 2 - 56), 1e-9 * this.radius);
+        const legend = this.width > kNarrow ? kLegendWidth : kNarrowLegendWidth;
+        this.scale = Math.max(half(this.right) / Math.max(20, (this.width - legend) / 2 - 16), half(this.up) / Math.max(20, this.height / 2 - 56), 1e-9 * this.radius);
         this.centre = [0, 1, 2].map(k => (min[k] + max[k]) / 2);
         this.pan(-legend / 2, 0);
         this.isFitted = true;

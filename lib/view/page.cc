@@ -10,7 +10,7 @@ constexpr const char* kStyle = R"css(
 .fettle-view .bar { display: flex; flex-wrap: wrap; gap: .3rem .8rem; padding: .3rem 0; }
 .fettle-view .group { display: inline-flex; flex-wrap: wrap; gap: .2rem; }
 .fettle-view button { font: inherit; font-size: .85rem; padding: .2rem .6rem; border: 1px solid #b4bdc5; border-radius: 3px; background: #fff; color: #1c2733; cursor: pointer;
-  max-width: 16rem; overflow: hidden; text-overflow: ellipsis; white-space: nowrap; }
+  max-width: 22rem; overflow: hidden; text-overflow: ellipsis; white-space: nowrap; }
 .fettle-view button[aria-pressed="true"] { background: #1c2733; color: #fff; border-color: #1c2733; }
 .fettle-view .stage { position: relative; flex: 1 1 auto; min-height: 18rem; overflow: hidden; border: 1px solid #aaa; }
 .fettle-view .stage canvas { position: absolute; left: 0; top: 0; width: 100%; height: 100%; }

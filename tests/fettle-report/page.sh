@@ -4,7 +4,10 @@
 page --title 'Part 1' -o page.html
 page --title 'Part 1' --threads 1 | cmp - page.html
 xmllint --noout --nonet page.html
-! grep -qiE '<(script|link|iframe|object|embed)|https?:|@import|url\(|src=' page.html || exit 1
+# its scripts are in it
+sed '/<!\[CDATA\[/,/\]\]>/d' page.html >markup.html
+! grep -qiE '<(link|iframe|object|embed)|https?:|@import|url\(|src=' markup.html || exit 1
+! grep -qE 'https?:|fetch\(|XMLHttpRequest|importScripts|<script [^>]*src' page.html || exit 1
 test "$(grep -o 'href="[^"]\{22\}' page.html | sort -u)" = 'href="data:image/png;base64,'
 for id in verdict job fit margin plan grinding registration maps statistics form provenance; do grep -q "<section id=\"$id\">" page.html; done
 grep -q 'data-verdict="Within tolerance"' page.html
@@ -43,3 +46,10 @@ grep -qx 'fettle-report: warning: plan.json: made for another surface than raise
 # a plan carries job and surface
 fettle-report --plan plan.json | grep -o '<section id="[a-z]*"' | tr '\n' ' ' >sections
 grep -q 'id="job" <section id="fit" <section id="margin" <section id="plan"' sections
+# a force above F_max is told with its place
+jq '.peak_force = 1000' grind.json >pressed.json
+fettle-report --job "$job" --grinding pressed.json | grep -q 'data-verdict="Force above the limit".*, at x '
+jq '.peak_force = 1' grind.json >gentle.json
+! fettle-report --job "$job" --grinding gentle.json | grep -q 'Force above the limit' || exit 1
+# the part before and after, and the errors, can be turned
+grep -q 'class="fettle-view"' page.html

@@ -12,7 +12,7 @@
 
 # fettle-gantry-linuxcnc is for a machine that runs: tests/linuxcnc.
 names='align arm assess belt clean collide compare contact diff estimate feed find finish fit form gantry-virtual grind manual margin merge mesh mill part path place
-    plan reconstruct render report sample station stock-linuxcnc surfel teach verify'
+    plan reconstruct render report sample station stock-linuxcnc surfel teach verify view'
 
 inputs() { # STEP
     good "$@"
@@ -67,6 +67,7 @@ command_of() { # NAME
     surfel) command=(--stock plate.stl --spacing 4 plate.stl) ;;
     teach) command=(--anomaly picked.txt job.json) ;;
     verify) command=(--design plate.stl --step 4 --correct path.nc --cutter ball:6 plate.stl) writes=(--csv --z-errors --corrected) ;;
+    view) command=(good.pcd) ;;
     *) return 1 ;;
     esac
 }
