@@ -30,6 +30,8 @@ class SteeredView extends View {
         canvas.addEventListener("pointerleave", () => { this.tip.hidden = true; });
         canvas.addEventListener("contextmenu", event => event.preventDefault());
         canvas.addEventListener("wheel", event => {
+            // In a page with more than the view the wheel scrolls until the view has been clicked.
+            if (this.root.closest(".view") && document.activeElement !== canvas) return;
             event.preventDefault();
             this.camera.zoom(Math.exp(0.0015 * event.deltaY), ...this.place(event));
             this.move();
