@@ -11,5 +11,5 @@ if(NOT TARGET fettle::fettle)
         IMPORTED_LOCATION "${_fettle_libdir}/libfettle.a"
         INTERFACE_INCLUDE_DIRECTORIES "${_fettle_headers}"
         INTERFACE_COMPILE_FEATURES cxx_std_20
-        INTERFACE_LINK_LIBRARIES "Eigen3::Eigen;ceres;glog;opencv_imgproc;opencv_core;png;md;lzf;tbb;minizip;expat;z")
+        INTERFACE_LINK_LIBRARIES "Eigen3::Eigen;ceres;glog;opencv_imgproc;opencv_core;png;md;urdfdom_model;console_bridge;tinyxml;lzf;tbb;minizip;expat;z")
 endif()
