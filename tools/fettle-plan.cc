@@ -2,6 +2,7 @@
 #include "cloud/pcd.h"
 #include "core/file.h"
 #include "gantry/gantry_options.h"
+#include "gantry/make_virtual.h"
 #include "job/plausible.h"
 #include "plan/gcode.h"
 #include "plan/plan.h"
@@ -40,7 +41,9 @@ strategy::ForceDownChoice choose_force_down(const Options& o, const job::Job& jo
     const auto [stock, doubts, dropped] = gantry::read_stock(o.stock, complete, removal::Extent::anomaly);
     gantry::require_below_safe_height(stock, complete, core::display_name(o.stock.file));
     for (const std::string& doubt : doubts) o.t.warn(doubt);
-    return strategy::choose_force_down(job, surface, stock, o.removal_factor);
+    return strategy::choose_force_down(job, surface, [&, &field = stock](const job::Job& tried) {
+        return gantry::make_virtual_gantry(field, tried, {"", o.removal_factor, 1});
+    });
 }
 
 } // namespace

@@ -2,7 +2,6 @@
 
 #include "core/error.h"
 #include "core/text.h"
-#include "gantry/make_virtual.h"
 #include "plan/plan.h"
 #include "strategy/run.h"
 
@@ -19,12 +18,12 @@ namespace {
 /// these it is a tenth of their thickness.
 constexpr std::array<double, 7> kShares = {0, 0.15, 0.3, 0.45, 0.6, 0.75, 0.9};
 
-ForceDownTrial try_force_down(job::Job job, const surface::Surface& surface, const removal::HeightField& stock,
-                              double removal_factor, double share)
+ForceDownTrial try_force_down(job::Job job, const surface::Surface& surface, const MakeGantry& make_gantry,
+                              double share)
 {
     job.force.down = job.force.min + share * (job.force.max - job.force.min);
     const plan::Plan plan = plan::make_plan(job, surface);
-    const auto gantry = gantry::make_virtual_gantry(stock, plan.job, {"", removal_factor, 1});
+    const std::unique_ptr<gantry::Gantry> gantry = make_gantry(plan.job);
     const GrindRun run = strategy::run(plan, *gantry);
     return {job.force.down,           run.finished,      run.failure,        run.trace.back().time,     run.force.peak,
             run.counts.highest_layer, run.counts.raises, run.counts.re_cuts, run.counts.skipped_re_cuts};
@@ -32,14 +31,12 @@ ForceDownTrial try_force_down(job::Job job, const surface::Surface& surface, con
 
 } // namespace
 
-ForceDownChoice choose_force_down(const job::Job& job, const surface::Surface& surface,
-                                  const removal::HeightField& stock, double removal_factor)
+ForceDownChoice choose_force_down(const job::Job& job, const surface::Surface& surface, const MakeGantry& make_gantry)
 {
     ForceDownChoice choice;
     choice.trials.resize(kShares.size());
-    tbb::parallel_for(std::size_t{0}, kShares.size(), [&](std::size_t i) {
-        choice.trials[i] = try_force_down(job, surface, stock, removal_factor, kShares[i]);
-    });
+    tbb::parallel_for(std::size_t{0}, kShares.size(),
+                      [&](std::size_t i) { choice.trials[i] = try_force_down(job, surface, make_gantry, kShares[i]); });
     choice.chosen = choice.trials.size();
     for (std::size_t i = 0; i < choice.trials.size(); ++i)
         if (choice.trials[i].finished && (choice.chosen == choice.trials.size() ||

@@ -1,11 +1,13 @@
 #pragma once
 
+#include "gantry/gantry.h"
 #include "job/job.h"
-#include "removal/height_field.h"
 #include "surface/surface.h"
 #include "units/units.h"
 #include "json/document.h"
 
+#include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -27,15 +29,16 @@ struct ForceDownChoice {
     std::size_t chosen = 0;             ///< index of the fastest one that finishes
 };
 
+/// Makes the gantry of a trial; its job has the F_down that is tried.
+using MakeGantry = std::function<std::unique_ptr<gantry::Gantry>(const job::Job& job)>;
+
 /// Chooses F_down by simulation (Wang 2007, 5.3.1, leaves it to the operator): the part is ground with each of some
-/// values from F_min to just below F_max on the quasi-static gantry, and the one that takes the least machine time is
+/// values from F_min to just below F_max on a simulated gantry, and the one that takes the least machine time is
 /// taken; of equal ones the smallest. With a higher F_down cuts are repeated less often, but layers are closer: which
 /// matters more depends on how fast the stock yields.
-/// @param stock  the part with its anomaly, lower than the job's safe height
-/// @param removal_factor  the stock's removal coefficient relative to the job's
+/// @param make_gantry  a simulated gantry on the part with its anomaly; called from several threads
 /// @throws InputError if the work finishes with none of them, or as plan::make_plan()
-ForceDownChoice choose_force_down(const job::Job& job, const surface::Surface& surface,
-                                  const removal::HeightField& stock, double removal_factor);
+ForceDownChoice choose_force_down(const job::Job& job, const surface::Surface& surface, const MakeGantry& make_gantry);
 
 /// The trials for a report, in the job's units.
 json::Value to_json(const ForceDownChoice& choice, const units::Units& units);
