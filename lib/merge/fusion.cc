@@ -14,7 +14,7 @@ namespace {
 // Heights within so many standard deviations, or within this share of the reach, are of one surface.
 constexpr double kMaxHeightSigmas = 6, kMaxHeightReaches = 0.5;
 // A thin wall's other side has another normal.
-constexpr double kMinNormalCosine = 0.5;
+constexpr double kMinSameSideCosine = 0.5;
 
 /// The points of all registered scans, in the world.
 struct AllPoints {
@@ -87,7 +87,7 @@ MergedPoint merged_point(std::uint32_t point, const AllPoints& all, const VoxelG
             if (sideways >= std::min(sights[s].sideways_squared, reach * reach)) continue;
             const double limit =
                 std::max(kMaxHeightSigmas * std::hypot(noises[own], noises[s]), kMaxHeightReaches * reach);
-            if (std::abs(height) <= limit && all.normals.col(i).dot(n) >= kMinNormalCosine)
+            if (std::abs(height) <= limit && all.normals.col(i).dot(n) >= kMinSameSideCosine)
                 sights[s] = {sideways, height};
         }
     double weights = 0, sum = 0, count = 0, squares = 0;
