@@ -83,7 +83,7 @@ PLACE  := $(PCL) -lpcl_segmentation -lpcl_sample_consensus -lpcl_search
 LDLIBS_ALL := -llzf -ltbb -lminizip -lexpat -lz
 
 # The files that see OpenCV. Private: what a file needs before it, the precompiled header, is compiled as ever.
-$(B)/lib/draw/canvas.o $(B)/lib/belt/convolution.o $(B)/lib/cli/version.o $(B)/lib/find/%.o $(B)/tests/lib/find_test.o $(B)/pipelines/programs/find-evidence.o $(B)/pipelines/programs/find-score.o: private override CPPFLAGS += $(addprefix -isystem ,$(wildcard /usr/include/opencv4))
+$(B)/lib/draw/canvas.o $(B)/lib/belt/convolution.o $(B)/lib/cli/version.o $(B)/lib/find/%.o $(B)/tests/lib/find_test.o $(patsubst %,$(B)/pipelines/programs/find-%.o,case evidence score): private override CPPFLAGS += $(addprefix -isystem ,$(wildcard /usr/include/opencv4))
 
 # Square roots of eight numbers at once are one instruction where nobody reads errno.
 $(B)/lib/mesh/mesh_index.o $(B)/lib/robot/workpiece.o: private override CXXFLAGS += -fno-math-errno

@@ -1,7 +1,9 @@
 #include "align/rigid.h"
 #include "cli/option.h"
 #include "cli/tool.h"
+#include "cloud/pcd.h"
 #include "core/file.h"
+#include "find/earlier.h"
 #include "find/find.h"
 #include "find/jobs.h"
 #include "find/registration.h"
@@ -37,6 +39,11 @@ struct Options {
                         "A mesh or cloud of the part as it should be, or of a good part: departures from it are "
                         "compared instead of the part with itself");
     const std::optional<units::Units::Length>& against_unit = t.length_unit("--against-units", "Unit of REF");
+    const std::string& like = t.text(
+        "--like", "", "FOLDER",
+        "Jobs of an earlier casting of the same kind, as --jobs wrote them: what is found at their places is the same "
+        "again, has no doubt, and gets the earlier job. PART is registered to FOLDER/part.pcd, or to the REF of "
+        "--against, the part for which the jobs were made");
     const std::string& transform_in = t.optional_file(
         "--transform-in", "FILE", "4 x 4 matrix that puts PART onto REF, as fettle-align writes it: do not register");
     const std::string& transform_out =
@@ -51,8 +58,10 @@ struct Options {
     const std::string& keep =
         t.text("--keep", "", "ROW,…", "These rows are anomalies: takes the doubt away that the run without it reports");
     const std::string& drop = t.text("--drop", "", "ROW,…", "These rows belong to the part: leaves them out");
-    const std::string& jobs = t.text(
-        "--jobs", "", "FOLDER", "Write a job for each anomaly without a doubt, FOLDER/ROW.json; goes with --template");
+    const std::string& jobs =
+        t.text("--jobs", "", "FOLDER",
+               "Write a job for each anomaly without a doubt, FOLDER/ROW.json, and FOLDER/part.pcd, "
+               "which --like registers to; goes with --template, or --like");
     const std::string& settings =
         t.optional_file("--template", "JOB",
                         "Job with the machine's values for --jobs: probe, tolerance, wheel, forces, feed, removal; "
@@ -63,15 +72,34 @@ struct Options {
     const bool& ascii = t.flag("--ascii", "Write PCD as text");
 };
 
-/// Writes the jobs of all anomalies without a doubt. Whether each anomaly has one.
-bool write_jobs(const Options& o, find::FindResult& result, const mesh::CloudMesh& part, const job::Job& settings)
+/// Jobs to go by: those of an earlier casting, and one with the machine's values for all others.
+struct Settings {
+    std::vector<find::EarlierJob> earlier;
+    std::optional<job::Job> machine;
+
+    const job::Job* of(const find::FoundAnomaly& anomaly) const
+    {
+        const auto same = std::ranges::find(earlier, anomaly.like, &find::EarlierJob::file);
+        return same != earlier.end() ? &same->job : machine ? &*machine : nullptr;
+    }
+};
+
+/// Writes the jobs of all anomalies without a doubt, and the part by which --like will find them. Whether each anomaly
+/// has one.
+bool write_jobs(const Options& o, find::FindResult& result, const mesh::CloudMesh& part, const Settings& settings)
 {
     std::filesystem::create_directories(o.jobs);
+    cloud::write_pcd(o.t.output_file(o.jobs + "/part.pcd"), find::registration_points(part), {});
     std::set<std::string> written;
     for (find::FoundAnomaly& anomaly : result.anomalies) {
         if (!anomaly.doubt.empty()) continue;
+        const job::Job* const machine = settings.of(anomaly);
+        if (machine == nullptr) {
+            anomaly.doubt = "no earlier job has it: --template gives the machine's values";
+            continue;
+        }
         try {
-            const job::Job job = find::job_for(anomaly, part, result.noise, settings);
+            const job::Job job = find::job_for(anomaly, part, result.noise, *machine);
             anomaly.job = o.jobs + "/" + std::to_string(anomaly.number) + ".json";
             o.t.output_file(anomaly.job) << job::to_json(job);
             written.insert(anomaly.job);
@@ -86,12 +114,13 @@ bool write_jobs(const Options& o, find::FindResult& result, const mesh::CloudMes
     return written.size() == result.anomalies.size();
 }
 
-find::FindOptions find_options(const Options& o, const std::optional<job::Job>& settings, double mm)
+find::FindOptions find_options(const Options& o, const Settings& settings, double mm)
 {
     find::FindOptions options;
     options.min_probability = o.probability;
     if (o.width) options.bounds = find::bounds_for_width(*o.width * mm);
-    if (settings) options.bounds.min_height = settings->tolerance;
+    for (const find::EarlierJob& earlier : settings.earlier) options.bounds.min_height = earlier.job.tolerance;
+    if (settings.machine) options.bounds.min_height = settings.machine->tolerance;
     if (o.height) options.bounds.min_height = *o.height * mm;
     return options;
 }
@@ -106,11 +135,12 @@ mesh::PartFormat output_format(const Options& o, const std::string& name)
     return o.ascii ? mesh::PartFormat::pcd_ascii : format;
 }
 
-find::FindResult find_against(const Options& o, const find::FindOptions& options, const mesh::CloudMeshFile& part,
-                              const std::string& name)
+/// The part registered to a reference, which is read for it.
+std::pair<find::Registration, mesh::MeshOrCloud> registered(const Options& o, const std::string& reference_path,
+                                                            const mesh::CloudMeshFile& part, const std::string& name)
 {
-    const std::string reference_name = core::display_name(o.against);
-    const mesh::ShapeFile reference = mesh::read_shape(o.against, mesh::resolve_file_units(o.against_unit));
+    const std::string reference_name = core::display_name(reference_path);
+    mesh::ShapeFile reference = mesh::read_shape(reference_path, mesh::resolve_file_units(o.against_unit));
     for (const std::string& warning : job::shape_warnings(reference, reference_name, reference.units))
         o.t.warn(warning);
     const double mm = part.units.mm();
@@ -119,7 +149,7 @@ find::FindResult find_against(const Options& o, const find::FindOptions& options
         stated = Eigen::Isometry3d(align::read_transform(o.transform_in));
         stated->translation() *= mm;
     }
-    const find::Registration registration =
+    find::Registration registration =
         cli::with_error_prefix(name, [&] { return find::register_part(part.part, reference.shape, stated); });
     if (!registration.converged) throw core::InputError(name, "cannot be registered to " + reference_name);
     for (const std::string& doubt : registration.doubts) o.t.warn(name + ": " + doubt);
@@ -128,9 +158,52 @@ find::FindResult find_against(const Options& o, const find::FindOptions& options
         matrix.topRightCorner<3, 1>() /= mm;
         align::write_transform(o.t.output_file(o.transform_out), matrix);
     }
-    const find::SignedDistances distances =
-        find::signed_distances(part.part, reference.shape, registration.T_reference_part);
+    return {std::move(registration), std::move(reference.shape)};
+}
+
+find::FindResult find_against(const Options& o, const find::FindOptions& options, const mesh::CloudMeshFile& part,
+                              const std::string& name)
+{
+    const auto [registration, reference] = registered(o, o.against, part, name);
+    const find::SignedDistances distances = find::signed_distances(part.part, reference, registration.T_reference_part);
     return cli::with_error_prefix(name, [&] { return find::find_anomalies_against(part.part, distances, options); });
+}
+
+// What is less probable by itself is no anomaly, whatever stood there on an earlier casting.
+constexpr double kMinLikeProbability = 0.05;
+
+find::FindResult find_like(const Options& o, find::FindOptions options, const std::vector<find::EarlierJob>& jobs,
+                           const mesh::CloudMeshFile& part, const std::string& name)
+{
+    const find::Registration registration =
+        registered(o, o.against.empty() ? o.like + "/part.pcd" : o.against, part, name).first;
+    const double alone = options.min_probability;
+    options.min_probability = std::min(alone, kMinLikeProbability);
+    find::FindResult result = cli::with_error_prefix(name, [&] { return find::find_anomalies(part.part, options); });
+    find::match_earlier(result, part.part, jobs, registration.T_reference_part, alone);
+    for (const std::string& file : result.absent) o.t.note(file + ": nothing stands there");
+    return result;
+}
+
+find::FindResult search(const Options& o, const find::FindOptions& options, const Settings& settings,
+                        const mesh::CloudMeshFile& part, const std::string& name)
+{
+    if (!o.like.empty()) return find_like(o, options, settings.earlier, part, name);
+    if (!o.against.empty()) return find_against(o, options, part, name);
+    return cli::with_error_prefix(name, [&] { return find::find_anomalies(part.part, options); });
+}
+
+void check(const Options& o)
+{
+    if (o.against.empty() && o.like.empty() && (!o.transform_in.empty() || !o.transform_out.empty() || o.against_unit))
+        throw core::InputError("--against", "is needed by --transform-in, --transform-out and --against-units");
+    if (o.jobs.empty() && !o.settings.empty())
+        throw core::InputError("--template", "--jobs and --template go together");
+    if (!o.jobs.empty() && o.settings.empty() && o.like.empty())
+        throw core::InputError("--jobs", "--jobs and --template go together");
+    if (!o.like.empty() && !o.jobs.empty() &&
+        std::filesystem::path(o.like).lexically_normal() == std::filesystem::path(o.jobs).lexically_normal())
+        throw core::InputError("--jobs", "is the folder of --like: the earlier jobs would be lost");
 }
 
 const std::string kDescription =
@@ -153,12 +226,10 @@ int main(int argc, char** argv)
         t.reference("ISO 16610-71 (robust regression filter); Sternberg 1986 (opening by a ball); Rousseeuw 1984; "
                     "Platt 1999 (probabilities)");
         t.parse();
-        if (o.against.empty() && (!o.transform_in.empty() || !o.transform_out.empty() || o.against_unit))
-            throw core::InputError("--against", "is needed by --transform-in, --transform-out and --against-units");
-        if (o.jobs.empty() != o.settings.empty())
-            throw core::InputError(o.jobs.empty() ? "--template" : "--jobs", "--jobs and --template go together");
-        std::optional<job::Job> settings;
-        if (!o.settings.empty()) settings = job::read_job(o.settings);
+        check(o);
+        Settings settings;
+        if (!o.like.empty()) settings.earlier = find::read_earlier_jobs(o.like);
+        if (!o.settings.empty()) settings.machine = job::read_job(o.settings);
         const std::vector<int> keep = parse_rows("--keep", o.keep), drop = parse_rows("--drop", o.drop);
 
         mesh::CloudMeshFile file = mesh::read_cloud_mesh(o.path, mesh::resolve_file_units(o.unit));
@@ -167,11 +238,10 @@ int main(int argc, char** argv)
         for (const std::string& warning : job::shape_warnings(file, name)) t.warn(warning);
 
         const find::FindOptions options = find_options(o, settings, file.units.mm());
-        find::FindResult result =
-            o.against.empty() ? cli::with_error_prefix(name, [&] { return find::find_anomalies(file.part, options); })
-                              : find_against(o, options, file, name);
+        find::FindResult result = search(o, options, settings, file, name);
         find::judge(result, keep, drop);
-        const bool all_have_jobs = settings ? write_jobs(o, result, file.part, *settings) : result.anomalies.empty();
+        const bool all_have_jobs =
+            o.jobs.empty() ? result.anomalies.empty() : write_jobs(o, result, file.part, settings);
         find::set_report(t.report(), result, file.units);
         for (const find::FoundAnomaly& anomaly : result.anomalies)
             if (!anomaly.doubt.empty()) t.note(std::to_string(anomaly.number) + ": " + anomaly.doubt);

@@ -24,6 +24,7 @@ struct FoundAnomaly {
     double significance = 0; ///< height in standard deviations of the surface beneath
     std::string doubt;       ///< why an operator should check it; empty: none
     std::string job;         ///< file of its job; empty: it has none
+    std::string like;        ///< file of the job of an earlier casting that has it, too; empty: none
 
     Eigen::Isometry3d T_anomaly_part; ///< its own frame: origin on the surface beneath, whose mean normal is +z
     Eigen::Matrix2Xd boundary;        ///< 2xN, polygon B in that frame's x-y plane: around all of it
@@ -36,6 +37,7 @@ struct FoundAnomaly {
 struct FindResult {
     double noise = 0;                    ///< standard deviation of the part's points, mm
     std::vector<FoundAnomaly> anomalies; ///< most probable first
+    std::vector<std::string> absent; ///< files of jobs of an earlier casting whose anomalies this part does not have
 };
 
 struct FindOptions {

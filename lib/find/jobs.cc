@@ -103,10 +103,8 @@ Eigen::Matrix2Xd joined_outline(const Eigen::Matrix2Xd& polygon, const Eigen::Ma
     return result;
 }
 
-/// S, each corner drawn towards B until no edge, fillet or hole lies between: a place where nothing is seen, or where
-/// the part leaves the surface that goes on from B, the robust one through the metal between B and S. What was found in
-/// a view may lie askew to it, with its edges at other places than where that view showed them.
-Eigen::Matrix2Xd before_edges(const FoundAnomaly& anomaly, const HeightMap& map)
+/// The robust surface through the metal between B and S; nothing if that is too little.
+std::optional<RingFit> surface_beneath(const FoundAnomaly& anomaly, const HeightMap& map)
 {
     const Eigen::Matrix3Xd metal = metal_around(anomaly, map);
     Eigen::VectorXd weights(metal.cols());
@@ -115,13 +113,19 @@ Eigen::Matrix2Xd before_edges(const FoundAnomaly& anomaly, const HeightMap& map)
         const double distance = (nearest_on(anomaly.boundary, place) - place).norm();
         weights[i] = 1 / (1 + distance / map.cell); // what lies near B tells what lies beneath it
     }
-    const std::optional<RingFit> surface = fit_ring({metal.topRows<2>(), metal.row(2), weights}, map.sigma, kMaxDegree);
-    if (!surface) return anomaly.sampling;
-    const double limit = kLeavingSds * std::max(surface->sd, map.sigma);
+    return fit_ring({metal.topRows<2>(), metal.row(2), weights}, map.sigma, kMaxDegree);
+}
+
+/// S, each corner drawn towards B until no edge, fillet or hole lies between: a place where nothing is seen, or where
+/// the part leaves the surface that goes on from B, the robust one through the metal between B and S. What was found in
+/// a view may lie askew to it, with its edges at other places than where that view showed them.
+Eigen::Matrix2Xd before_edges(const FoundAnomaly& anomaly, const HeightMap& map, const RingFit& surface)
+{
+    const double limit = kLeavingSds * std::max(surface.sd, map.sigma);
     const auto is_on_surface = [&](const Eigen::Vector2d& place) {
         const cv::Point cell = map.cell_of(place);
         if (!cv::Rect({0, 0}, map.z.size()).contains(cell)) return false;
-        return std::abs(double(map.z(cell)) - surface->z_at(place.x(), place.y())) <= limit; // false for NaN
+        return std::abs(double(map.z(cell)) - surface.z_at(place.x(), place.y())) <= limit; // false for NaN
     };
     Eigen::Matrix2Xd sampling = anomaly.sampling;
     for (auto corner : sampling.colwise()) {
@@ -170,6 +174,42 @@ double theta_along(const Eigen::Matrix2Xd& boundary, char feed_axis)
     return std::remainder(theta, 2 * quarter); // a pass runs both ways: half a turn is none
 }
 
+// A fitted surface bends more than this one here and there: shares of the sag and the radius that are allowed.
+constexpr double kSagShare = 0.6, kRadiusShare = 0.8;
+constexpr int kCurvaturePoints = 12; // along the longer side of B
+
+/// Takes the narrower wheel, and the smaller one, that the surface's curvature asks for (as plan/wheel_fit.h): over the
+/// width the surface may sag by the tolerance, and no hollow may be sharper than the wheel.
+void fit_wheel(job::Job& job, const RingFit& surface)
+{
+    const job::Polygon boundary = job::working_boundaries(job).anomaly;
+    const Eigen::Matrix2d R = job::rotation_working_machine(job.theta).transpose(); // columns: the wheel's axis, feed
+    const Eigen::AlignedBox2d box(boundary.rowwise().minCoeff(), boundary.rowwise().maxCoeff());
+    const double step = box.sizes().maxCoeff() / kCurvaturePoints;
+    const auto curvature = [&](const Eigen::Vector2d& at, const Eigen::Vector2d& along, double h) {
+        const auto z = [&](double t) { return surface.z_at(at.x() + t * along.x(), at.y() + t * along.y()); };
+        const double slope = (z(h) - z(-h)) / (2 * h);
+        return (z(h) - 2 * z(0) + z(-h)) / (h * h) / std::pow(1 + slope * slope, 1.5);
+    };
+    double across = 0, hollow = 0; // largest curvatures along the axis, and concave ones along the feed, 1/mm
+    for (double y = box.min().y(); y <= box.max().y(); y += step)
+        for (double x = box.min().x(); x <= box.max().x(); x += step) {
+            if (!job::contains(boundary, {x, y})) continue;
+            const Eigen::Vector2d at = R * Eigen::Vector2d(x, y);
+            across = std::max(across, std::abs(curvature(at, R.col(0), job.wheel.width / 2)));
+            hollow = std::max(hollow, curvature(at, R.col(1), step));
+        }
+    const double width = across > 0 ? std::sqrt(8 * kSagShare * job.tolerance / across) : job.wheel.width;
+    if (const double ratio = width / job.wheel.width; ratio < 1) {
+        job.wheel.width *= ratio;
+        job.feed.step_over *= ratio;
+    }
+    if (const double ratio = kRadiusShare / (hollow * job.wheel.radius); hollow > 0 && ratio < 1) {
+        job.wheel.radius *= ratio;
+        job.wheel.min_radius *= ratio;
+    }
+}
+
 } // namespace
 
 job::Job job_for(const FoundAnomaly& found, const mesh::CloudMesh& part, double noise, const job::Job& settings)
@@ -177,13 +217,15 @@ job::Job job_for(const FoundAnomaly& found, const mesh::CloudMesh& part, double 
     FoundAnomaly anomaly = found;
     HeightMap map = height_map(part, anomaly.T_anomaly_part);
     clean(map); // single holes are no edges
-    anomaly.sampling = before_edges(anomaly, map);
+    const std::optional<RingFit> beneath = surface_beneath(anomaly, map);
+    if (beneath) anomaly.sampling = before_edges(anomaly, map, *beneath);
     job::Job job = settings;
     job.T_part_job = anomaly.T_anomaly_part.inverse();
     job.theta = theta_along(anomaly.boundary, settings.feed.axis);
     job.surface = is_plane(metal_around(anomaly, map), noise) ? job::SurfaceType::plane : job::SurfaceType::freeform;
     job.anomaly = with_heights(anomaly.boundary, map);
     job.sampling = with_heights(anomaly.sampling, map);
+    if (beneath) fit_wheel(job, *beneath);
     job.is_safe_height_known = true;
     job.safe_height = highest_under_way(anomaly, map, settings.wheel.radius) + job::kTravelClearance;
     return job::validated(job, "row " + std::to_string(anomaly.number));

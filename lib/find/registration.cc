@@ -12,7 +12,25 @@ namespace {
 
 constexpr Eigen::Index kFieldPoints = 6000; // 168 coefficients follow from them
 
+constexpr Eigen::Index kRegistrationPoints = 20000; // as fettle-align takes of a mesh
+
+align::OrientedPoints oriented_points_of(const mesh::CloudMesh& part)
+{
+    return part.is_mesh() ? align::oriented_points(mesh::Mesh{part.points.xyz, part.triangles})
+                          : align::oriented_points(part.points);
+}
+
 } // namespace
+
+cloud::Cloud registration_points(const mesh::CloudMesh& part)
+{
+    const align::OrientedPoints points = oriented_points_of(part);
+    const std::vector<Eigen::Index> chosen = align::evenly_spaced_indices(points.xyz.cols(), kRegistrationPoints);
+    cloud::Cloud result;
+    result.xyz = points.xyz(Eigen::all, chosen);
+    cloud::set_normals(result, points.normals(Eigen::all, chosen));
+    return result;
+}
 
 Registration register_part(const mesh::CloudMesh& part, const mesh::MeshOrCloud& reference,
                            const std::optional<Eigen::Isometry3d>& stated)
@@ -20,9 +38,7 @@ Registration register_part(const mesh::CloudMesh& part, const mesh::MeshOrCloud&
     if (stated) return {*stated, true, {}};
     const auto target =
         std::visit([](const auto& shape) { return std::make_unique<align::AlignReference>(shape); }, reference);
-    const align::OrientedPoints points = part.is_mesh()
-                                             ? align::oriented_points(mesh::Mesh{part.points.xyz, part.triangles})
-                                             : align::oriented_points(part.points);
+    const align::OrientedPoints points = oriented_points_of(part);
     const align::AlignOptions options;
     const align::Alignment alignment = align::align(points, *target, options);
     return {alignment.fit.T_reference_scan, alignment.fit.converged, align::doubts(alignment, options.icp)};

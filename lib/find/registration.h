@@ -20,6 +20,9 @@ struct Registration {
 Registration register_part(const mesh::CloudMesh& part, const mesh::MeshOrCloud& reference,
                            const std::optional<Eigen::Isometry3d>& stated);
 
+/// Points with normals, to which another casting of the same kind can be registered: at most 20,000, evenly over it.
+cloud::Cloud registration_points(const mesh::CloudMesh& part);
+
 /// Distances of the part's points along the reference's normals (compare::signed_distance), after the slow field
 /// between both (slow_field.h) has been taken off.
 SignedDistances signed_distances(const mesh::CloudMesh& part, const mesh::MeshOrCloud& reference,

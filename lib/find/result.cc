@@ -49,17 +49,22 @@ void set_report(json::Value& report, const FindResult& result, const units::Unit
     const double mm = units.mm();
     report.set("kind", "found").set("units", json::to_json(units.length)).set("noise", result.noise / mm);
     std::vector<json::Value> rows;
-    for (const FoundAnomaly& found : result.anomalies)
-        rows.push_back(json::Value()
-                           .set("anomaly", found.number)
-                           .set("probability", found.probability)
-                           .set("height", found.height / mm)
-                           .set("area", found.area / (mm * mm))
-                           .set("volume", found.volume / (mm * mm * mm))
-                           .set("significance", found.significance)
-                           .set("doubt", found.doubt)
-                           .set("job", found.job));
+    for (const FoundAnomaly& found : result.anomalies) {
+        json::Value row;
+        row.set("anomaly", found.number)
+            .set("probability", found.probability)
+            .set("height", found.height / mm)
+            .set("area", found.area / (mm * mm))
+            .set("volume", found.volume / (mm * mm * mm))
+            .set("significance", found.significance)
+            .set("doubt", found.doubt)
+            .set("job", found.job);
+        if (!found.like.empty()) row.set("like", found.like);
+        rows.push_back(row);
+    }
     report.set("anomalies", rows);
+    if (!result.absent.empty())
+        report.set("absent", std::vector<json::Value>(result.absent.begin(), result.absent.end()));
 }
 
 } // namespace fettle::find

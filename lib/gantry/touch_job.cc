@@ -71,6 +71,19 @@ void choose_by_hill_climbing(JobTouches& result, const job::Job& job, const Touc
     result.plan = result.best->plan;
 }
 
+/// The layout by Wang's rules; touches chosen one after the other where they may and it has no room, as at an edge.
+void choose_layout(JobTouches& result, const job::Job& job, const TouchedPart* part, const TouchRequest& request)
+{
+    try {
+        result.plan = sampling::plan_touches(job);
+    } catch (const sampling::NoRoomError& error) {
+        if (request.strategy != TouchStrategy::extended || part == nullptr || request.plan_only) throw;
+        result.warnings.push_back(std::string(error.what()) + "; touched adaptively");
+        set_adaptive(result, job, *part,
+                     margin::touch_adaptively(job, adaptive_limits(job, request.max_touches), part->touch));
+    }
+}
+
 void choose(JobTouches& result, const job::Job& job, const TouchedPart* part, const TouchRequest& request)
 {
     if (request.strategy == TouchStrategy::adaptive) {
@@ -83,7 +96,7 @@ void choose(JobTouches& result, const job::Job& job, const TouchedPart* part, co
     } else if (const int lines = request.lines; lines > 0) {
         result.plan = sampling::plan_freeform(job, sampling::LineCount{lines, lines});
     } else {
-        result.plan = sampling::plan_touches(job);
+        choose_layout(result, job, part, request);
     }
     if (request.sampling_boundary) sampling::append_sampling_boundary(result.plan, job);
 }
@@ -129,7 +142,7 @@ JobTouches touch_job(const job::Job& job, const TouchedPart* part, const TouchRe
     JobTouches result;
     choose(result, job, part, request);
     touch(result, job, part, request.plan_only);
-    if (request.strategy == TouchStrategy::extended && part != nullptr && !request.plan_only)
+    if (request.strategy == TouchStrategy::extended && part != nullptr && !request.plan_only && !result.adaptive)
         extend(result, job, *part, request.max_touches);
     check_heights(result, job, request.plan_only ? nullptr : part);
     return result;

@@ -15,7 +15,8 @@ namespace fettle::gantry {
 
 /// How the touch points of a job are chosen.
 enum class TouchStrategy {
-    extended,  ///< wang, then adaptive while the predicted band exceeds the job's tolerance
+    extended,  ///< wang, then adaptive while the predicted band exceeds the job's tolerance; adaptive alone where the
+               ///< layout has no room on one side
     wang,      ///< by the rules of Wang 2007, 4.4.4
     adaptive,  ///< one after the other (margin/adaptive.h)
     hillclimb, ///< the best subset of many candidates on a known surface (margin/best_touches.h)

@@ -59,7 +59,7 @@ TouchPlan plan_freeform(const job::Job& job, const std::optional<LineCount>& lin
             // The difference of two touches closer than the probe's accuracy does not determine a slope.
             const auto t = crossings_around(both, start, direction, job.probe.accuracy);
             if (!t)
-                throw core::InputError(
+                throw NoRoomError(
                     job.source,
                     "sampling: no room to touch on both sides of the anomaly, on the line through " +
                         job::point_text(job::rotation_working_machine(job.theta).transpose() * start, job.units) +

@@ -59,8 +59,12 @@ std::vector<Row> read_rows(const std::string& path)
     while (part.size() > 2 && !(part.back() >= 'a' && part.back() <= 'z')) part.pop_back();
     std::vector<Row> rows;
     for (std::string line; std::getline(in, line);) {
+        if (!line.starts_with("candidate,")) continue;
         std::ranges::replace(line, ',', ' ');
         std::istringstream words(line);
+        std::string kind;
+        int number = 0; // of the anomaly
+        words >> kind >> number;
         Row row{part, scan, 0, 0, 0, 0, 0, 0, {}, 0};
         words >> row.iou >> row.share >> row.x >> row.y >> row.width >> row.height;
         for (double& feature : row.features) words >> feature;
