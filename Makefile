@@ -8,6 +8,7 @@
 #   make bless TOOL=fettle-fit                make docs      pages of docs/tools from --help, modules.svg
 #   make test-linuxcnc  on LinuxCNC, simulated      make fuzz     build the fuzzing targets
 #   make test-browser   pages in headless Chromium
+#   make test-cad   fettle-step, with OpenCASCADE, which it installs
 #   make lint       format and scripts        make includes   every file by its own includes
 #   make install PREFIX=/usr/local DESTDIR=
 #
@@ -26,16 +27,20 @@ JOBS     ?= $(shell nproc)
 # What needs LinuxCNC's headers (linuxcnc-uspace-dev) is built where they are.
 LINUXCNC := $(wildcard /usr/include/linuxcnc/emc_nml.hh)
 NEEDS_LINUXCNC := $(if $(LINUXCNC),,tools/fettle-gantry-linuxcnc.cc lib/gantry/linuxcnc.cc lib/gantry/linuxcnc_touch.cc lib/gantry/linuxcnc_link.cc)
-TOOLS    := $(patsubst tools/%.cc,%,$(filter-out $(NEEDS_LINUXCNC),$(wildcard tools/fettle-*.cc)))
+# What needs OpenCASCADE (packages-cad.txt), likewise.
+OCCT     := $(wildcard /usr/include/opencascade/STEPCAFControl_Reader.hxx)
+NEEDS_OCCT := $(if $(OCCT),,tools/fettle-step.cc tests/lib/cad_test.cc $(wildcard lib/cad/*.cc))
+LEFT_OUT := $(NEEDS_LINUXCNC) $(NEEDS_OCCT)
+TOOLS    := $(patsubst tools/%.cc,%,$(filter-out $(LEFT_OUT),$(wildcard tools/fettle-*.cc)))
 BINARIES := $(TOOLS:%=$(B)/bin/%)
 # The command that lists them.
 LIST     := $(B)/bin/fettle
-TESTS    := $(patsubst tests/lib/%.cc,$(B)/tests/%,$(wildcard tests/lib/*_test.cc))
+TESTS    := $(patsubst tests/lib/%.cc,$(B)/tests/%,$(filter-out $(LEFT_OUT),$(wildcard tests/lib/*_test.cc)))
 STUDIES  := $(patsubst pipelines/programs/%.cc,$(B)/study/%,$(wildcard pipelines/programs/*.cc))
 BENCHES  := $(patsubst tests/bench/%.cc,$(B)/bench/%,$(wildcard tests/bench/*_bench.cc))
 # Those of tests/linuxcnc have a machine of their own to start, those of tests/browser a browser: make test-linuxcnc, test-browser.
-CASES    := $(sort $(filter-out tests/linuxcnc/% tests/browser/%,$(wildcard tests/$(or $(TOOL),*)/*.sh)))
-PROGRAMS := $(TOOLS:%=tools/%.cc) $(wildcard tests/lib/*_test.cc tests/bench/*_bench.cc pipelines/programs/*.cc)
+CASES    := $(sort $(filter-out tests/linuxcnc/% tests/browser/% $(if $(OCCT),,tests/fettle-step/%),$(wildcard tests/$(or $(TOOL),*)/*.sh)))
+PROGRAMS := $(TOOLS:%=tools/%.cc) $(TESTS:$(B)/tests/%=tests/lib/%.cc) $(wildcard tests/bench/*_bench.cc pipelines/programs/*.cc)
 MODULES  := $(if $(LINUXCNC),$(B)/linuxcnc/fettle_head.so $(B)/linuxcnc/fettle_press.so $(B)/linuxcnc/fettle_watch.so)
 
 # -ffp-contract=off: the same digits on every processor. No -march: Debian's PCL is built without it, and Eigen's
@@ -60,7 +65,7 @@ BUNDLE ?= 8
 
 .DELETE_ON_ERROR:
 .SECONDARY:
-.PHONY: fettle $(TOOLS) all build deps coverage test test-all test-linuxcnc test-browser tests-built run-cases demo figures bench bless docs lint includes install clean
+.PHONY: fettle $(TOOLS) all build deps coverage test test-all test-linuxcnc test-browser test-cad tests-built run-cases demo figures bench bless docs lint includes install clean
 
 all: deps
 	@$(MAKE) --no-print-directory -j$(JOBS) build
@@ -80,10 +85,15 @@ URDF   := -lurdfdom_model -lconsole_bridge -ltinyxml
 PCL    := -lpcl_kdtree -lpcl_common
 # Segmentation needs more of PCL.
 PLACE  := $(PCL) -lpcl_segmentation -lpcl_sample_consensus -lpcl_search
+# OpenCASCADE: readers with names and colours, triangulation, sewing, and what these call.
+OCCT_LIBS := $(addprefix -lTK,XDESTEP XDEIGES XCAF IGES STEP STEPBase STEPAttr XSBase LCAF CAF CDF Mesh ShHealing TopAlgo GeomAlgo BRep GeomBase G3d G2d Math ernel)
 LDLIBS_ALL := -llzf -ltbb -lminizip -lexpat -lz
 
 # The files that see OpenCV. Private: what a file needs before it, the precompiled header, is compiled as ever.
 $(B)/lib/draw/canvas.o $(B)/lib/belt/convolution.o $(B)/lib/cli/version.o $(B)/lib/find/%.o $(B)/tests/lib/find_test.o $(patsubst %,$(B)/pipelines/programs/find-%.o,case evidence score): private override CPPFLAGS += $(addprefix -isystem ,$(wildcard /usr/include/opencv4))
+
+# Those that see OpenCASCADE.
+$(B)/lib/cad/%.o $(B)/tests/lib/cad_test.o: private override CPPFLAGS += -isystem /usr/include/opencascade
 
 # Square roots of eight numbers at once are one instruction where nobody reads errno.
 $(B)/lib/mesh/mesh_index.o $(B)/lib/robot/workpiece.o: private override CXXFLAGS += -fno-math-errno
@@ -100,13 +110,13 @@ $(foreach module,cli diff draw job json part report station units,$(B)/lib/$(mod
 include tools/libraries.mk
 
 # --- archives, module by module: a program links, and so makes, only the modules that it includes -------------------
-SOURCES := $(filter-out $(NEEDS_LINUXCNC),$(wildcard lib/*/*.cc))
+SOURCES := $(filter-out $(LEFT_OUT),$(wildcard lib/*/*.cc))
 ifneq ($(filter clean,$(MAKECMDGOALS)),clean)
 include $(B)/archives.mk
 endif
 $(B)/archives.mk: lib/archives Makefile $(wildcard lib/*/*.h) $(SOURCES) $(PROGRAMS)
 	@mkdir -p $(@D)
-	@ALONE="$(ALONE)" LEFT_OUT="$(NEEDS_LINUXCNC)" lib/archives $(B) $(BUNDLE) $(PROGRAMS) > $@
+	@ALONE="$(ALONE)" LEFT_OUT="$(LEFT_OUT)" lib/archives $(B) $(BUNDLE) $(PROGRAMS) > $@
 
 ARCHIVES := $(patsubst lib/%,$(B)/lib/%.a,$(filter-out %.h,$(wildcard lib/*)))
 .SECONDEXPANSION:
@@ -146,8 +156,8 @@ $(B)/%.h.gch: %.h
 	@cp $< $(basename $@)
 	$(CXX) $(CPPFLAGS) $(CXXFLAGS) -MMD -MP -x c++-header -c $< -o $@
 
-# All of them as one, for programs outside.
-$(B)/libfettle.a: $(foreach module,$(ARCHIVES:$(B)/lib/%.a=%),$(OBJECTS_$(module)))
+# All of them as one, for programs outside; without what needs OpenCASCADE, which those would have to link.
+$(B)/libfettle.a: $(foreach module,$(filter-out cad,$(ARCHIVES:$(B)/lib/%.a=%)),$(OBJECTS_$(module)))
 	@rm -f $@
 	$(AR) rcs $@ $^
 
@@ -173,6 +183,7 @@ $(B)/tests/clean_test: LDLIBS += $(PCL) -lpcl_filters -lpcl_search
 $(B)/tests/place_test: LDLIBS += $(PLACE)
 $(B)/tests/fcl_test: LDLIBS += $(FCL)
 $(B)/tests/urdf_test: LDLIBS += -lorocos-kdl
+$(B)/tests/cad_test: LDLIBS += $(OCCT_LIBS) -lTKPrim
 $(B)/tests/%: $(B)/tests/lib/%.o $$(call archives,tests/lib/$$*)
 	@mkdir -p $(@D)
 	$(CXX) $(LDFLAGS) -o $@ $^ $(LDLIBS) $(LDLIBS_ALL)
@@ -236,6 +247,13 @@ tools_named_in = $(if $(filter tests/fettle/%,$(1)),$(LIST)) $(addprefix $(B)/bi
 DEMO_TOOLS = $(call tools_named_in,pipelines/casting.mk) $(B)/bin/fettle-find
 run-cases: $(CASE_RUNS)
 
+# With OpenCASCADE there is one more tool; from then on `make test` runs its cases, too. A make of its own sees it.
+test-cad: deps
+	@.ci/install-packages packages-cad.txt
+	@$(MAKE) --no-print-directory -j$(JOBS) $(B)/tests/cad_test
+	@tests/run $(B) $(B)/tests/cad_test
+	@$(MAKE) --no-print-directory test TOOL=fettle-step
+
 # One after the other: each has a machine that wants the computer for itself.
 test-linuxcnc: deps
 	@.ci/install-packages packages-linuxcnc.txt
@@ -292,8 +310,8 @@ lint:
 
 # Every file from its own includes alone: what is precompiled hides one that is missing.
 includes: deps $(VIEW_HEADER)
-	@git ls-files '*.cc' '*.h' | grep -v -e precompiled -e linuxcnc | xargs -n 1 -P $(JOBS) \
-	    $(CXX) $(CPPFLAGS) -I$(B)/generated -isystem /usr/include/opencv4 $(CXXFLAGS) -w -Itests/lib -x c++ -fsyntax-only
+	@git ls-files '*.cc' '*.h' | grep -v -e precompiled -e linuxcnc $(if $(OCCT),,-e cad/ -e fettle-step -e cad_test) | xargs -n 1 -P $(JOBS) \
+	    $(CXX) $(CPPFLAGS) -I$(B)/generated -isystem /usr/include/opencv4 -isystem /usr/include/opencascade $(CXXFLAGS) -w -Itests/lib -x c++ -fsyntax-only
 
 # --- installation: tools with manual pages and completion, and the library for other programs -------------------------
 PAGES := $(TOOLS:%=$(B)/man/%.1) $(B)/man/fettle.1
@@ -318,7 +336,7 @@ install: build $(B)/libfettle.a $(PAGES) $(B)/completion/fettle $(addprefix $(B)
 	install -m 644 $(PAGES) $(DESTDIR)$(PREFIX)/share/man/man1
 	install -m 644 $(B)/completion/fettle $(DESTDIR)$(PREFIX)/share/bash-completion/completions
 	for tool in $(TOOLS); do ln -sf fettle $(DESTDIR)$(PREFIX)/share/bash-completion/completions/$$tool; done
-	for header in $(filter-out precompiled.h,$(patsubst lib/%,%,$(wildcard lib/*/*.h))); do \
+	for header in $(filter-out precompiled.h cad/%,$(patsubst lib/%,%,$(wildcard lib/*/*.h))); do \
 	    install -m 644 -D lib/$$header $(DESTDIR)$(PREFIX)/include/fettle/$$header || exit 1; done
 	install -m 644 $(B)/libfettle.a $(DESTDIR)$(LIBDIR)
 	install -m 644 $(B)/packaging/fettle.pc $(DESTDIR)$(LIBDIR)/pkgconfig

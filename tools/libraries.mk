@@ -15,5 +15,6 @@ $(B)/bin/fettle-grind $(B)/bin/fettle-manual $(B)/bin/fettle-plan $(B)/bin/fettl
 $(B)/bin/fettle-contact: LDLIBS = -lopencv_core
 $(B)/bin/fettle-belt:    LDLIBS = -lopencv_core $(MD)
 $(B)/bin/fettle-feed:    LDLIBS = -lopencv_core
+$(B)/bin/fettle-step:    LDLIBS = $(OCCT_LIBS)
 # LinuxCNC's libraries are under the GPL: so is this program as a whole.
 $(B)/bin/fettle-gantry-linuxcnc: LDLIBS = /usr/lib/liblinuxcnc.a -lnml -llinuxcncini -ltooldata -llinuxcnchal

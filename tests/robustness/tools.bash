@@ -13,6 +13,7 @@
 # fettle-gantry-linuxcnc is for a machine that runs: tests/linuxcnc.
 names='align arm assess belt clean collide compare contact diff estimate feed find finish fit form gantry-virtual grind manual margin merge mesh mill part path place
     plan reconstruct render report sample station stock-linuxcnc surfel teach verify view'
+if command -v fettle-step > /dev/null; then names+=' step'; fi # built where OpenCASCADE is
 
 inputs() { # STEP
     good "$@"
@@ -64,6 +65,7 @@ command_of() { # NAME
     sample) command=(--on good.pcd job.json) ;;
     station) command=(--gantry virtual:dynamic --machine machine.json --stock good.pcd --cell 0.5 --lowest 0 --steer operator.txt --resume job.json) bulk=() writes=(--session) ;;
     stock-linuxcnc) command=(--stock good.pcd --cell 0.5 plan.json) ;;
+    step) command=(--tolerance 0.5 "$SAMPLES/designs/clamp.step") ;;
     surfel) command=(--stock plate.stl --spacing 4 plate.stl) ;;
     teach) command=(--anomaly picked.txt job.json) ;;
     verify) command=(--design plate.stl --step 4 --correct path.nc --cutter ball:6 plate.stl) writes=(--csv --z-errors --corrected) ;;

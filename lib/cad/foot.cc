@@ -1,0 +1,153 @@
+#include "cad/foot.h"
+
+#include <gp_Pnt.hxx>
+#include <gp_Vec.hxx>
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace fettle::cad {
+namespace {
+
+constexpr int kMaxSteps = 60;        // Newton takes under ten; from where the distance is not convex, more
+constexpr double kStep = 1e-13;      // of the coordinates' size: a step below it changes the last digits
+constexpr double kMaxDamping = 1e12; // of the metric: a step then no longer moves the point
+
+Eigen::Vector3d vector_of(const gp_XYZ& p) { return {p.X(), p.Y(), p.Z()}; }
+
+/// Range of a parameter; of a periodic one, everything.
+struct Limits {
+    double min, max;
+    double clamp(double x) const { return std::clamp(x, min, max); }
+    bool stops(double x, double direction) const { return (x <= min && direction < 0) || (x >= max && direction > 0); }
+};
+
+Limits limits(double first, double last, bool is_periodic)
+{
+    constexpr double kAll = std::numeric_limits<double>::infinity();
+    return is_periodic ? Limits{-kAll, kAll} : Limits{first, last};
+}
+
+/// Half the squared distance of a point of the surface, its gradient, its Hessian, and the Gauss-Newton part of that.
+struct Distance {
+    Eigen::Vector3d point;
+    double value = 0;
+    Eigen::Vector2d gradient;
+    Eigen::Matrix2d hessian, metric;
+};
+
+Distance distance_at(const Adaptor3d_Surface& surface, const Eigen::Vector2d& uv, const Eigen::Vector3d& to)
+{
+    gp_Pnt p;
+    gp_Vec du, dv, duu, dvv, duv;
+    surface.D2(uv.x(), uv.y(), p, du, dv, duu, dvv, duv);
+    Distance d;
+    d.point = vector_of(p.XYZ());
+    const Eigen::Vector3d r = d.point - to, u = vector_of(du.XYZ()), v = vector_of(dv.XYZ());
+    d.value = r.squaredNorm() / 2;
+    d.gradient = {r.dot(u), r.dot(v)};
+    d.metric << u.dot(u), u.dot(v), u.dot(v), v.dot(v);
+    d.hessian = d.metric;
+    d.hessian(0, 0) += r.dot(vector_of(duu.XYZ()));
+    d.hessian(1, 1) += r.dot(vector_of(dvv.XYZ()));
+    d.hessian(0, 1) += r.dot(vector_of(duv.XYZ()));
+    d.hessian(1, 0) = d.hessian(0, 1);
+    return d;
+}
+
+/// Newton's step where the distance is convex, else one of the damped metric, downhill. Parameters that stand at a
+/// limit and would leave it are held.
+Eigen::Vector2d step_of(const Distance& d, double damping, const std::array<bool, 2>& is_held)
+{
+    const double scale = std::max(d.metric.trace(), std::numeric_limits<double>::min());
+    const bool is_convex = d.hessian(0, 0) > 0 && d.hessian(1, 1) > 0 && d.hessian.determinant() > 0;
+    Eigen::Matrix2d matrix = is_convex ? d.hessian : d.metric;
+    matrix.diagonal() += (damping + (is_convex ? 0 : 1e-12)) * (d.metric.diagonal().array() + 1e-15 * scale).matrix();
+    Eigen::Vector2d gradient = d.gradient;
+    for (int k = 0; k < 2; ++k)
+        if (is_held[static_cast<std::size_t>(k)]) {
+            matrix(0, 1) = matrix(1, 0) = 0;
+            matrix(k, k) = 1;
+            gradient[k] = 0;
+        }
+    const double det = matrix.determinant();
+    if (!(det > 0)) return -gradient / scale;
+    return -Eigen::Vector2d(matrix(1, 1) * gradient[0] - matrix(0, 1) * gradient[1],
+                            matrix(0, 0) * gradient[1] - matrix(1, 0) * gradient[0]) /
+           det;
+}
+
+} // namespace
+
+SurfaceFoot foot_on_surface(const Adaptor3d_Surface& surface, const Eigen::Vector2d& start,
+                            const Eigen::Vector3d& point)
+{
+    const std::array<Limits, 2> range = {
+        limits(surface.FirstUParameter(), surface.LastUParameter(), surface.IsUPeriodic()),
+        limits(surface.FirstVParameter(), surface.LastVParameter(), surface.IsVPeriodic())};
+    Eigen::Vector2d uv(range[0].clamp(start[0]), range[1].clamp(start[1]));
+    Distance d = distance_at(surface, uv, point);
+    std::array<bool, 2> is_held{};
+    double damping = 0;
+    for (int step = 0; step < kMaxSteps && damping < kMaxDamping; ++step) {
+        for (std::size_t k = 0; k < 2; ++k)
+            is_held[k] = range[k].stops(uv[Eigen::Index(k)], -d.gradient[Eigen::Index(k)]);
+        const Eigen::Vector2d by = step_of(d, damping, is_held);
+        const Eigen::Vector2d next(range[0].clamp(uv[0] + by[0]), range[1].clamp(uv[1] + by[1]));
+        const double moved = std::sqrt(std::max(0.0, (next - uv).dot(d.metric * (next - uv))));
+        const double smallest = kStep * (1 + point.cwiseAbs().maxCoeff());
+        const Distance there = distance_at(surface, next, point);
+        if (there.value <= d.value) {
+            uv = next;
+            d = there;
+            damping = damping > 1e-3 ? damping / 10 : 0;
+            if (moved <= smallest) break;
+        } else {
+            if (moved <= smallest) break; // rounding alone
+            damping = std::max(1e-3, 10 * damping);
+        }
+    }
+    for (std::size_t k = 0; k < 2; ++k) is_held[k] = range[k].stops(uv[Eigen::Index(k)], -d.gradient[Eigen::Index(k)]);
+    return {uv, d.point, is_held[0] || is_held[1]};
+}
+
+CurveFoot foot_on_curve(const Adaptor3d_Curve& curve, double start, const Eigen::Vector3d& point)
+{
+    const Limits range = limits(curve.FirstParameter(), curve.LastParameter(), false);
+    double t = range.clamp(start), damping = 0;
+    gp_Pnt p;
+    gp_Vec d1, d2;
+    curve.D2(t, p, d1, d2);
+    Eigen::Vector3d at = vector_of(p.XYZ());
+    for (int step = 0; step < kMaxSteps && damping < kMaxDamping; ++step) {
+        const Eigen::Vector3d r = at - point;
+        const double slope = r.dot(vector_of(d1.XYZ())), speed2 = d1.SquareMagnitude();
+        const double hessian = speed2 + r.dot(vector_of(d2.XYZ()));
+        const double divisor = (hessian > 0 ? hessian : speed2) + damping * speed2;
+        if (!(divisor > 0)) break;
+        const double next = range.clamp(t - slope / divisor);
+        const double moved = std::abs(next - t) * std::sqrt(speed2);
+        const double smallest = kStep * (1 + point.cwiseAbs().maxCoeff());
+        gp_Pnt q;
+        gp_Vec q1, q2;
+        curve.D2(next, q, q1, q2);
+        const Eigen::Vector3d there = vector_of(q.XYZ());
+        if ((there - point).squaredNorm() <= r.squaredNorm()) {
+            t = next;
+            at = there;
+            d1 = q1;
+            d2 = q2;
+            damping = damping > 1e-3 ? damping / 10 : 0;
+        } else {
+            damping = std::max(1e-3, 10 * damping);
+        }
+        if (moved <= smallest) break;
+    }
+    return {t, at};
+}
+
+} // namespace fettle::cad

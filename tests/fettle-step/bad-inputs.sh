@@ -1,0 +1,20 @@
+# What is no design, or not a whole one, is refused in one line. Reference: exit status 2 and the message.
+refuses() { "$HERE/../refuses" "$1" fettle-step "${@:2}"; }
+cp "$SAMPLES/designs/clamp.step" good.stp
+refuses 'missing.stp: cannot open' missing.stp
+refuses 'expected a design, STEP' "$SAMPLES/jobs/wang1.json"
+head -c 3000 /dev/zero > zeros.stp
+refuses 'zeros.stp: nothing but zero bytes, expected a design, STEP or IGES' zeros.stp
+: > empty.stp
+refuses 'empty.stp: ' empty.stp
+head -c 20000 good.stp > cut.stp
+refuses 'cut.stp: ' cut.stp
+sed 's/SI_UNIT(.MILLI.,.METRE.)/SI_UNIT(.MILLI.,.SECOND.)/' good.stp > unit.stp
+refuses "unit.stp: states a unit of length that is not known, 'milli'" unit.stp
+sed 's/MANIFOLD_SOLID_BREP(/MANIFOLD_SOLID_BROP(/' good.stp > none.stp
+refuses 'none.stp: has no solid, and no face' none.stp
+first=$(grep -m 1 -o '^#[0-9]* = ADVANCED_FACE(' good.stp)
+sed "s/^$first/${first%% =*} = ADVANCED_FOCE(/" good.stp > broken.stp
+refuses 'cannot be built' broken.stp --tolerance 1
+refuses 'a mesh is written as STL or PLY, not as pcd' good.stp -o x.pcd
+refuses '--tolerance' good.stp --tolerance 0

@@ -1,0 +1,207 @@
+// Solids that OpenCASCADE makes and writes are read and triangulated. References: closed forms of the solids.
+
+#include "cad/triangulation.h"
+#include "core/error.h"
+
+#include <BRepBuilderAPI_NurbsConvert.hxx>
+#include <BRepPrimAPI_MakeBox.hxx>
+#include <BRepPrimAPI_MakeCone.hxx>
+#include <BRepPrimAPI_MakeCylinder.hxx>
+#include <BRepPrimAPI_MakeSphere.hxx>
+#include <BRepPrimAPI_MakeTorus.hxx>
+#include <IGESControl_Writer.hxx>
+#include <Interface_Static.hxx>
+#include <Message.hxx>
+#include <Message_Messenger.hxx>
+#include <Quantity_Color.hxx>
+#include <STEPCAFControl_Writer.hxx>
+#include <STEPControl_Writer.hxx>
+#include <TDataStd_Name.hxx>
+#include <TDocStd_Document.hxx>
+#include <TopExp_Explorer.hxx>
+#include <XCAFApp_Application.hxx>
+#include <XCAFDoc_ColorTool.hxx>
+#include <XCAFDoc_DocumentTool.hxx>
+#include <XCAFDoc_ShapeTool.hxx>
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <numbers>
+
+using namespace fettle;
+
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kTolerance = 0.05; // mm
+constexpr double kFloat = 1e-5;     // rounding of the coordinates written, mm
+
+struct Solid {
+    const char* name;
+    TopoDS_Shape shape;
+    std::function<double(const Eigen::Vector3d&)> distance; ///< from its surface, mm
+    double volume, area;
+};
+
+std::vector<Solid> solids()
+{
+    const auto ring = [](const Eigen::Vector3d& p) { return std::hypot(std::hypot(p.x(), p.y()) - 20, p.z()) - 6; };
+    const auto cone = [](const Eigen::Vector3d& p) { // apex at z = 24, radius 10 at z = 0
+        const double r = std::hypot(p.x(), p.y());
+        return std::min(std::abs((24 * r + 10 * p.z() - 240) / 26), std::abs(p.z()));
+    };
+    const auto cylinder = [](const Eigen::Vector3d& p) {
+        return std::min({std::abs(std::hypot(p.x(), p.y()) - 8), std::abs(p.z()), std::abs(p.z() - 30)});
+    };
+    return {{"sphere", BRepPrimAPI_MakeSphere(15).Shape(), [](const Eigen::Vector3d& p) { return p.norm() - 15; },
+             4.0 / 3 * kPi * 3375, 4 * kPi * 225},
+            {"cylinder", BRepPrimAPI_MakeCylinder(8, 30).Shape(), cylinder, kPi * 64 * 30, 2 * kPi * 8 * 38},
+            {"cone", BRepPrimAPI_MakeCone(10, 0, 24).Shape(), cone, kPi * 100 * 8, kPi * 10 * 36},
+            {"torus", BRepPrimAPI_MakeTorus(20, 6).Shape(), ring, 2 * kPi * kPi * 20 * 36, 4 * kPi * kPi * 120},
+            {"B-spline torus", BRepBuilderAPI_NurbsConvert(BRepPrimAPI_MakeTorus(20, 6).Shape()).Shape(), ring,
+             2 * kPi * kPi * 20 * 36, 4 * kPi * kPi * 120}};
+}
+
+std::string written(const TopoDS_Shape& shape, const std::string& name, const char* unit = "MM")
+{
+    Message::DefaultMessenger()->ChangePrinters().Clear();
+    STEPControl_Writer writer;
+    Interface_Static::SetCVal("write.step.unit", unit);
+    writer.Transfer(shape, STEPControl_AsIs);
+    const std::string path = (std::filesystem::temp_directory_path() / ("fettle_cad_test_" + name + ".step")).string();
+    writer.Write(path.c_str());
+    Interface_Static::SetCVal("write.step.unit", "MM");
+    return path;
+}
+
+double volume_of(const mesh::Mesh& mesh)
+{
+    double six = 0;
+    for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) six += mesh::triangle_of(mesh, t).determinant();
+    return six / 6;
+}
+
+/// Largest distance of points on all triangles from the solid: corners, middles of edges, centroids.
+double largest_distance(const mesh::Mesh& mesh, const Solid& solid)
+{
+    double largest = 0;
+    for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
+        const mesh::Triangle c = mesh::triangle_of(mesh, t);
+        for (const Eigen::Vector3d& weights :
+             {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 0.5, 0.5), Eigen::Vector3d(0.5, 0, 0.5),
+              Eigen::Vector3d(0.5, 0.5, 0), Eigen::Vector3d::Constant(1.0 / 3).eval()})
+            largest = std::max(largest, std::abs(solid.distance(c * weights)));
+    }
+    return largest;
+}
+
+void expect_within(const cad::Design& design, const Solid& solid, double tolerance = kTolerance)
+{
+    const cad::Triangulation result = cad::triangulate(design, tolerance);
+    const double stated = *std::ranges::max_element(result.deviation);
+    EXPECT_LE(stated, tolerance);
+    EXPECT_LE(largest_distance(result.mesh, solid), stated + kFloat);
+    EXPECT_EQ(result.open_edges, 0);
+    EXPECT_NEAR(volume_of(result.mesh), solid.volume, solid.area * stated);
+    EXPECT_LT(volume_of(result.mesh),
+              solid.volume * (1 + 1e-6)); // all are convex along their circles: chords lie inside
+}
+
+TEST(Cad, SolidsWithClosedFormsAreWithinTheToleranceStatedForThem)
+{
+    for (const Solid& solid : solids()) {
+        SCOPED_TRACE(solid.name);
+        const cad::Design design = cad::read_design(written(solid.shape, "solid"), 0.01);
+        EXPECT_EQ(design.solids(), 1);
+        EXPECT_EQ(design.file_unit(), "millimetre");
+        expect_within(design, solid);
+    }
+}
+
+TEST(Cad, TheFileSaysTheUnit)
+{
+    const double r = 15 * 25.4; // the writer puts the numbers of the shape behind a unit of inches
+    const Solid sphere{"sphere", BRepPrimAPI_MakeSphere(15).Shape(),
+                       [r](const Eigen::Vector3d& p) { return p.norm() - r; }, 4.0 / 3 * kPi * r * r * r,
+                       4 * kPi * r * r};
+    const cad::Design design = cad::read_design(written(sphere.shape, "inch", "INCH"), 0.01);
+    EXPECT_NE(design.file_unit(), "millimetre");
+    expect_within(design, sphere, 2);
+}
+
+TEST(Cad, FacesOfIgesAreSewnToSolids)
+{
+    for (const Solid& solid : solids()) {
+        SCOPED_TRACE(solid.name);
+        const std::string path = (std::filesystem::temp_directory_path() / "fettle_cad_test.igs").string();
+        IGESControl_Writer writer("MM", 0); // faces alone
+        writer.AddShape(solid.shape);
+        writer.Write(path.c_str());
+        expect_within(cad::read_design(path, 0.01), solid);
+    }
+}
+
+TEST(Cad, AssembliesArePlacedAndKeepNamesAndColours)
+{
+    Handle(TDocStd_Document) document;
+    XCAFApp_Application::GetApplication()->NewDocument("BinXCAF", document);
+    const Handle(XCAFDoc_ShapeTool) shapes = XCAFDoc_DocumentTool::ShapeTool(document->Main());
+    const Handle(XCAFDoc_ColorTool) colours = XCAFDoc_DocumentTool::ColorTool(document->Main());
+    const TopoDS_Shape box = BRepPrimAPI_MakeBox(10, 20, 30).Shape();
+    const TDF_Label vice = shapes->NewShape(), jaw = shapes->AddShape(box, false);
+    TDataStd_Name::Set(vice, "vice");
+    TDataStd_Name::Set(jaw, "jaw");
+    const TDF_Label face = shapes->AddSubShape(jaw, TopExp_Explorer(box, TopAbs_FACE).Current());
+    colours->SetColor(face, Quantity_Color(1, 0, 0, Quantity_TOC_sRGB), XCAFDoc_ColorSurf);
+    for (const double x : {0.0, 100.0}) {
+        gp_Trsf shift;
+        shift.SetTranslation(gp_Vec(x, 0, 0));
+        shapes->AddComponent(vice, jaw, TopLoc_Location(shift));
+    }
+    shapes->UpdateAssemblies();
+    const std::string path = (std::filesystem::temp_directory_path() / "fettle_cad_test_vice.step").string();
+    STEPCAFControl_Writer writer;
+    writer.Transfer(document);
+    writer.Write(path.c_str());
+
+    const cad::Design design = cad::read_design(path, 0.01);
+    EXPECT_EQ(design.solids(), 2);
+    ASSERT_EQ(design.faces().size(), 12u);
+    EXPECT_EQ(design.faces().front().part, "vice/jaw");
+    const auto red = std::ranges::count_if(design.faces(), [](const cad::Face& f) {
+        return f.colour == std::array<std::uint8_t, 3>{255, 0, 0};
+    });
+    EXPECT_EQ(red, 2); // of each jaw one
+    const cad::Triangulation result = cad::triangulate(design, kTolerance);
+    EXPECT_EQ(result.mesh.triangles.cols(), 24);
+    EXPECT_NEAR(volume_of(result.mesh), 2 * 6000, 1e-3);
+    EXPECT_NEAR(result.mesh.vertices.row(0).maxCoeff(), 110, 1e-4);
+    EXPECT_NEAR(result.mesh.vertices.row(0).minCoeff(), 0, 1e-4);
+}
+
+TEST(Cad, OpenFacesAreNoSolid)
+{
+    const TopoDS_Shape cylinder = BRepPrimAPI_MakeCylinder(8, 30).Shape();
+    const TopoDS_Shape face = TopExp_Explorer(cylinder, TopAbs_FACE).Current(); // without its lids
+    try {
+        cad::read_design(written(face, "open"), 0.01);
+        FAIL();
+    } catch (const core::InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("has no solid: its 1 face leave"), std::string::npos) << error.what();
+    }
+}
+
+TEST(Cad, AToleranceBelowTheRoundingOfTheFileIsRefused)
+{
+    const cad::Design design = cad::read_design(written(BRepPrimAPI_MakeBox(1e3, 1e3, 1e3).Shape(), "box"), 0.01);
+    EXPECT_NO_THROW(cad::triangulate(design, 1e-3));
+    EXPECT_THROW(cad::triangulate(design, 1e-6), core::InputError);
+}
+
+} // namespace
