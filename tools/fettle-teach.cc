@@ -100,13 +100,13 @@ void apply_settings(job::Job& job, const Options& o, cli::OperatorPrompt* answer
         throw core::InputError("--direction", "goes with a swept surface alone");
 }
 
-/// Sets the heights of points without z to those of the part.
+/// Sets the heights of points without z to those of the part, which is read, and so refused, even where none is without.
 void set_heights(Eigen::Matrix3Xd& points, const job::Job& job, const Options& o)
 {
+    const sampling::Scan scan = sampling::read_scan(o.on, job, o.on_units);
     if (points.row(2).allFinite()) return;
     if (job.T_part_job)
         throw core::InputError("--on", "a job with a frame of its own needs points with z: its z is not the part's");
-    const sampling::Scan scan = sampling::read_scan(o.on, job, o.on_units);
     for (auto point : points.colwise()) {
         if (std::isfinite(point.z())) continue;
         const std::optional<double> height = scan.height(point.head<2>());
@@ -123,7 +123,7 @@ void set_picked_points(job::Job& job, const Options& o, bool was_plane)
     const auto picked = [&](const std::string& path, char boundary) { // in the part's frame
         cloud::Cloud points;
         points.xyz = job::read_picked_points(path, {boundary, !o.on.empty()}) * mm;
-        set_heights(points.xyz, job, o);
+        if (!o.on.empty()) set_heights(points.xyz, job, o);
         job::move_to_job_frame(points, job);
         return points.xyz;
     };

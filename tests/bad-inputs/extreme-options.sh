@@ -13,6 +13,7 @@ ordinary=(5 20 1 0.5 300)
 # The command in which an option counts, where that of tools.bash is not one.
 company_of() { # NAME OPTION: changes `command`
     case "$1 $2" in
+    'arm --joint-speed') command=(robot.json --inverse --feed 50 --unchecked --krl program.src tips.pcd) ;;
     'arm --box' | 'arm --step') command=(robot.json --reach --box 700,0,500,720,20,520) ;;
     *' --table') command[0]=$SAMPLES/robots/irb1400_table.json ;;
     'collide --max-t'* | 'collide --max-r'*) command+=(--avoid) ;;
@@ -33,6 +34,7 @@ company_of() { # NAME OPTION: changes `command`
     'mesh --step') command=(surface.json --within job.json) ;;
     'mill --tolerance') without --step ;;
     'mill --feed') command=(--stock box:0,0,0,9,9,9 --cutter ball:6 --step 0.5 path.xyz) ;;
+    'path --approach') command+=(--clearance 5) ;;
     'path --wheel') command+=(--held part) ;;
     'station '*)
         rm -rf session
@@ -61,6 +63,7 @@ word_of() { # PLACEHOLDER VALUE: into `word`
     REGION) word=sphere:15,15,5,$2 ;;
     FILTER) word=radius:$2,1 ;;
     uniform:A\|normal:A) word=normal:$2 ;;
+    %) word=$2 ;;
     X,Y,Z,QW*) [ "$2" = 5 ] && word=15,15,5,1,0,0,0 || word=$2,$2,$2,$2,$2,$2,$2 ;;
     DEG,…) word=$2,$2,$2,$2,$2,$2 ;;
     *) word=$(sed -E "s/[A-Z][A-Z0-9]*/$2/g; s|/$2||; s/,…//" <<<"$1") ;;
@@ -87,7 +90,7 @@ within_bounds() { # COMMAND…: sets `status`; complains of anything but an answ
 for name in $names; do
     tool=fettle-$name
     while IFS='= ' read -r option placeholder default; do
-        case $placeholder in FILE | FOLDER | DEVICE | PART | REF | ROW* | SURFELS | SURFACE* | MESH | JOB | POINTS | PATH | TRACE | EVENTS | TEXT | NAME | LIST | AXES | RULE | exec:*) continue ;; esac
+        case $placeholder in FILE | FOLDER | DEVICE | PART | REF | ROW* | SURFELS | SURFACE* | MESH | JOB | POINTS | PATH | TRACE | EVENTS | TEXT | NAME | NAME,… | LINK | LIST | AXES | RULE | exec:*) continue ;; esac
         [ "$name $option" != 'station --pace' ] || continue # it makes a simulated machine wait
         case $option:$placeholder in --threads:* | --seed:*) continue ;; *:uniform:A*) ;; *\|*) continue ;; esac # command-line.sh has them
         command_of "$name"
