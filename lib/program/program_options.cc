@@ -96,10 +96,12 @@ void write_programs(cli::Tool& tool, const ProgramArguments& arguments, const ro
     if (!arguments.urscript.empty())
         tool.output_file(arguments.urscript) << urscript_text(program, program_name(arguments.urscript));
     if (arguments.fanuc.empty()) return;
-    const std::filesystem::path folder = std::filesystem::path(arguments.fanuc).parent_path();
+    const std::filesystem::path first = arguments.fanuc;
+    const bool is_device = std::filesystem::exists(first) && !std::filesystem::is_regular_file(first); // it takes all
     const std::vector<ProgramFile> files = fanuc_files(program, program_name(arguments.fanuc));
     tool.output_file(arguments.fanuc) << files.front().text;
-    for (std::size_t k = 1; k < files.size(); ++k) tool.output_file((folder / files[k].name).string()) << files[k].text;
+    for (std::size_t k = 1; k < files.size(); ++k)
+        tool.output_file(is_device ? arguments.fanuc : (first.parent_path() / files[k].name).string()) << files[k].text;
 }
 
 } // namespace fettle::program

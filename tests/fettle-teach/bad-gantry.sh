@@ -13,7 +13,7 @@ refuses '--stock: goes with' --gantry virtual --steer "$steer"
 refuses '--stock: goes with' --gantry exec:true --stock part.stl --steer "$steer"
 refuses '--steer: goes with' --gantry virtual --stock part.stl
 refuses 'ended with status 3' --gantry 'exec:exit 3' --steer "$steer"
-refuses '--sampling, --file-units: go with' --gantry virtual --stock part.stl --steer "$steer" --sampling part.stl
+refuses '--sampling, --file-units, --on: go with' --gantry virtual --stock part.stl --steer "$steer" --sampling part.stl
 on "is not a number" < <(echo left)
 on "none of plane, swept, freeform" < <(printf '0\nround\n')
 on "none of start, stop" < <(printf '0\nplane\nslow\n')
