@@ -100,7 +100,8 @@ void apply_settings(job::Job& job, const Options& o, cli::OperatorPrompt* answer
         throw core::InputError("--direction", "goes with a swept surface alone");
 }
 
-/// Sets the heights of points without z to those of the part, which is read, and so refused, even where none is without.
+/// Sets the heights of points without z to those of the part, which is read, and so refused, even where none is
+/// without.
 void set_heights(Eigen::Matrix3Xd& points, const job::Job& job, const Options& o)
 {
     const sampling::Scan scan = sampling::read_scan(o.on, job, o.on_units);

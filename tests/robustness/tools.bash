@@ -58,7 +58,7 @@ command_of() { # NAME
     part) command=(part.json) ;;
     path) command=(work.pcd) ;;
     place) command=(--up plane --centre good.pcd) writes=(--transform-out --inverse) ;;
-    plan) command=(job.json surface.json) ;;
+    plan) command=(job.json surface.json) writes=(--path) ;;
     reconstruct) command=(good.pcd) ;;
     render) command=(good.pcd) ;;
     report) command=(--job job.json --samples samples.pcd --errors good.pcd) ;;
