@@ -228,7 +228,8 @@ int main(int argc, char** argv)
         t.parse();
         check(o);
         Settings settings;
-        if (!o.like.empty()) settings.earlier = find::read_earlier_jobs(o.like);
+        if (!o.like.empty())
+            settings.earlier = cli::with_error_prefix("--like", [&] { return find::read_earlier_jobs(o.like); });
         if (!o.settings.empty()) settings.machine = job::read_job(o.settings);
         const std::vector<int> keep = parse_rows("--keep", o.keep), drop = parse_rows("--drop", o.drop);
 

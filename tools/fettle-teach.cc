@@ -121,14 +121,17 @@ void set_heights(Eigen::Matrix3Xd& points, const job::Job& job, const Options& o
 void set_picked_points(job::Job& job, const Options& o, bool was_plane)
 {
     const double mm = units::mm_per(o.file_units.value_or(job.units.length));
+    const std::string list = core::read_file(o.anomaly);              // once: it may be a pipe
     const auto picked = [&](const std::string& path, char boundary) { // in the part's frame
         cloud::Cloud points;
-        points.xyz = job::read_picked_points(path, {boundary, !o.on.empty()}) * mm;
+        const job::WantedPicks wanted{boundary, !o.on.empty()};
+        points.xyz = mm * (path == o.anomaly ? job::parse_picked_points(list, core::display_name(path), wanted)
+                                             : job::read_picked_points(path, wanted));
         if (!o.on.empty()) set_heights(points.xyz, job, o);
         job::move_to_job_frame(points, job);
         return points.xyz;
     };
-    const bool has_both = o.sampling.empty() && job::holds_both_boundaries(o.anomaly);
+    const bool has_both = o.sampling.empty() && job::holds_both_boundaries(list);
     job.anomaly = picked(o.anomaly, 'B');
     if (has_both || !o.sampling.empty())
         job.sampling = picked(has_both ? o.anomaly : o.sampling, 'S');

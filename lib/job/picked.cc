@@ -134,9 +134,8 @@ Eigen::Matrix3Xd parse_picked_points(std::string_view bytes, const std::string& 
     return Eigen::Map<const Eigen::Matrix3Xd>(numbers.data(), 3, Eigen::Index(numbers.size() / 3));
 }
 
-bool holds_both_boundaries(const std::string& path)
+bool holds_both_boundaries(std::string_view bytes)
 {
-    const std::string bytes = core::read_file(path);
     bool has_B = false, has_S = false;
     core::Lines lines(bytes);
     while (lines.next()) {

@@ -24,6 +24,7 @@ Eigen::Matrix3Xd read_picked_points(const std::string& path, const WantedPicks& 
 Eigen::Matrix3Xd parse_picked_points(std::string_view bytes, const std::string& source, const WantedPicks& wanted = {});
 
 /// True if a list has points labelled as corners of B and as corners of S.
-bool holds_both_boundaries(const std::string& path);
+/// @param bytes  the list
+bool holds_both_boundaries(std::string_view bytes);
 
 } // namespace fettle::job
