@@ -246,7 +246,7 @@ TEST(Stl, MalformedAsciiIsRefusedWithItsLine)
     expect_refused(kSolid.substr(0, kSolid.size() - 14), "the end of the file", "no endsolid");
     expect_refused(kSolid + std::string(100, '\1'), "expected solid, got '?????", "a binary tail");
     expect_refused("solid a\nendsolid a\n", "no triangles", "an empty solid");
-    expect_refused("hello", "neither STL, PLY, OBJ nor OFF", "no mesh");
+    expect_refused("hello", "neither STL, PLY, OBJ, OFF nor 3MF", "no mesh");
     expect_refused("1 2 3\n4 5 6\n", "points, expected a mesh", "a cloud");
     expect_refused("%PDF-1.4\n", "a PDF document, expected a mesh", "a document");
 }
