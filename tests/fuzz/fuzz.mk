@@ -11,7 +11,7 @@ FUZZ_LIBRARY := $(wildcard $(addprefix lib/,$(addsuffix /*.cc,core geometry unit
     $(addprefix belt/,contact_wheel belt_journal_file assess running_error) \
     $(addprefix machining/,nc_block nc_arc nc_program nc_writer cutter_path cutter) \
     $(addprefix part/,spec surface anomalies outline profile) sampling/noise \
-    $(addprefix robot/,robot body_json hull_points simplex)))
+    $(addprefix robot/,robot body_json hull_points simplex urdf srdf dh_from_axes arm arm_newton arm_parallel)))
 FUZZ_LIBRARY := $(patsubst %.cc,$(B)/fuzz/%.o,$(FUZZ_LIBRARY))
 FUZZ_FLAGS = $(filter-out -O% -DNDEBUG --param ggc-%,$(CXXFLAGS)) -O1 -fsanitize=address,undefined,float-cast-overflow -fno-sanitize-recover=all \
     -Wno-psabi -Wno-unused-const-variable
@@ -44,6 +44,6 @@ $(B)/fuzz/library.a: $(FUZZ_LIBRARY)
 	$(AR) rcs $@ $^
 
 $(B)/fuzz/%: $(B)/fuzz/tests/fuzz/%.o $(B)/fuzz/library.a
-	$(FUZZ_CXX) $(FUZZ_FLAGS) -fsanitize=fuzzer -o $@ $^ $(MD) $(LDLIBS_ALL)
+	$(FUZZ_CXX) $(FUZZ_FLAGS) -fsanitize=fuzzer -o $@ $^ $(MD) $(URDF) $(LDLIBS_ALL)
 
 -include $(B)/fuzz/precompiled.h.d
