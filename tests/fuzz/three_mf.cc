@@ -12,7 +12,7 @@ namespace {
 
 void append(std::string& to, std::uint64_t value, int bytes)
 {
-    for (int k = 0; k < bytes; ++k) to += static_cast<char>(value >> 8 * k & 0xff);
+    for (int k = 0; k < bytes; ++k, value >>= 8) to += static_cast<char>(value & 0xff);
 }
 
 /// An archive of stored files (PKWARE's APPNOTE, 4.3).
