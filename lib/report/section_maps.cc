@@ -35,6 +35,7 @@ draw::Html rotatable_view(const RunFiles& run, const draw::PictureOptions& optio
     if (layers.empty()) return {};
     view::ViewOptions view;
     view.picture = options;
+    if (run.comparison && run.comparison->tolerance > 0) view.error_limit = run.comparison->tolerance;
     if (run.surface)
         view.touches = run.surface->touches;
     else if (run.samples)
@@ -64,9 +65,7 @@ draw::Html maps_section(const RunFiles& run)
     constexpr int kWidth = 560; // pixels; its text then has the size of the page's text
     options.width = kWidth;
     options.supersampling = 2;
-    if (run.errors && run.comparison && run.comparison->tolerance > 0) options.scale = run.comparison->tolerance;
     draw::Html html = rotatable_view(run, options);
-    options.scale.reset();
     set_common_scale(run, options);
     if (run.before) html += picture_of(run, "part before", *run.before, options, "Before: heights, with hill shading.");
     if (run.after) html += picture_of(run, "part after", *run.after, options, "After: heights, with hill shading.");

@@ -191,7 +191,8 @@ class Renderer {
             gl.drawElements(gl.TRIANGLES, 3 * layer.triangles, gl.UNSIGNED_INT, 0);
         }
     }
-    // @param points  [[x, y, z], …]; a line through them, or dots   @param above  1: over what was drawn with 0
+    // @param points  [[x, y, z], …]; a line through them, or dots
+    // @param above  1: over what was drawn with 0, whose segments reach half their width beyond their ends at the ends' depth
     drawLine(points, ink, width, isRound, above = 0) {
         const gl = this.gl, { program, uniforms } = this.line, camera = this.camera;
         const segments = isRound ? points.map(p => [p, p]) : points.slice(1).map((p, i) => [points[i], p]);
@@ -209,7 +210,7 @@ class Renderer {
         gl.uniform3fv(uniforms.extent, this.extent);
         gl.uniform2fv(uniforms.pixel, [2 / camera.width, 2 / camera.height]);
         gl.uniform1f(uniforms.width, width);
-        gl.uniform1f(uniforms.lift, (0.008 + 0.001 * above) * camera.radius + 2 * camera.scale);
+        gl.uniform1f(uniforms.lift, 0.008 * camera.radius + (2 + 6 * above) * camera.scale);
         gl.uniform1i(uniforms.isRound, isRound ? 1 : 0);
         gl.uniform3fv(uniforms.ink, ink);
         const buffers = [["from", from, 3], ["to", to, 3], ["corner", corner, 2]].map(([name, data, size]) => {

@@ -22,6 +22,7 @@ draw::PictureScale own_scale(const Layer& layer, const std::string& field, const
 {
     draw::PictureOptions picture = options.picture;
     picture.field = field;
+    if (field == "error" && options.error_limit) picture.scale = options.error_limit;
     // A mesh's heights are judged by what is seen of it, as in its picture.
     if (field == "z") return draw::picture_scale(as_shape(layer.part), picture);
     return draw::field_values(layer.part.points, field, picture.units, picture.job, picture).scale;

@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,8 +22,10 @@ struct Layer {
 
 struct ViewOptions {
     draw::PictureOptions picture; ///< job, units, scale, bands and palette; its other members are not used
-    Eigen::Matrix3Xd touches;     ///< 3xN, M, mm, drawn as dots
-    bool pick = false;            ///< clicks set the corners of B and S
+    std::optional<double>
+        error_limit;          ///< of the errors' colours, instead of picture.scale, which other fields have too
+    Eigen::Matrix3Xd touches; ///< 3xN, M, mm, drawn as dots
+    bool pick = false;        ///< clicks set the corners of B and S
 };
 
 /// A view that can be turned, in a page that has view_style() in its head and view_script() at its end: the element
