@@ -16,6 +16,7 @@ namespace {
 constexpr int kMaxSteps = 60;        // Newton takes under ten; from where the distance is not convex, more
 constexpr double kStep = 1e-13;      // of the coordinates' size: a step below it changes the last digits
 constexpr double kMaxDamping = 1e12; // of the metric: a step then no longer moves the point
+constexpr double kMinDamping = 1e-3; // of the metric: less hardly changes a step, so that Newton goes on undamped
 
 Eigen::Vector3d vector_of(const gp_XYZ& p) { return {p.X(), p.Y(), p.Z()}; }
 
@@ -104,11 +105,11 @@ SurfaceFoot foot_on_surface(const Adaptor3d_Surface& surface, const Eigen::Vecto
         if (there.value <= d.value) {
             uv = next;
             d = there;
-            damping = damping > 1e-3 ? damping / 10 : 0;
+            damping = damping > kMinDamping ? damping / 10 : 0;
             if (moved <= smallest) break;
         } else {
             if (moved <= smallest) break; // rounding alone
-            damping = std::max(1e-3, 10 * damping);
+            damping = std::max(kMinDamping, 10 * damping);
         }
     }
     for (std::size_t k = 0; k < 2; ++k) is_held[k] = range[k].stops(uv[Eigen::Index(k)], -d.gradient[Eigen::Index(k)]);
@@ -141,9 +142,9 @@ CurveFoot foot_on_curve(const Adaptor3d_Curve& curve, double start, const Eigen:
             at = there;
             d1 = q1;
             d2 = q2;
-            damping = damping > 1e-3 ? damping / 10 : 0;
+            damping = damping > kMinDamping ? damping / 10 : 0;
         } else {
-            damping = std::max(1e-3, 10 * damping);
+            damping = std::max(kMinDamping, 10 * damping);
         }
         if (moved <= smallest) break;
     }
