@@ -1,8 +1,7 @@
 # Which heavy libraries a tool links. A tool that is not listed links none of them.
-$(B)/bin/fettle-clean:   LDLIBS = $(PCL)
 $(B)/bin/fettle-place:   LDLIBS = $(PLACE)
 $(B)/bin/fettle-find:    LDLIBS = $(OPENCV)
-$(B)/bin/fettle-merge:   LDLIBS = $(CERES) $(PCL)
+$(B)/bin/fettle-merge:   LDLIBS = $(CERES)
 $(B)/bin/fettle-arm:     LDLIBS = $(URDF) $(MD)
 $(B)/bin/fettle-collide: LDLIBS = $(OPENCV) $(PNG) $(URDF) $(MD)
 $(B)/bin/fettle-fit:     LDLIBS = $(CERES)

@@ -1,13 +1,8 @@
 #include "clean/outliers.h"
 
-#include "cloud/pcl.h"
+#include "clean/neighbour_distances.h"
 #include "core/error.h"
-#include "geometry/bounding_box.h"
 #include "geometry/sum.h"
-
-#include <pcl/kdtree/kdtree_flann.h>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -16,32 +11,13 @@
 namespace fettle::clean {
 namespace {
 
-/// Calls `use(i, squared)` with the squared distances of each point to itself and its `count` nearest others,
-/// ascending; in parallel.
-template <typename Use>
-void for_each_neighbourhood(const Eigen::Matrix3Xd& xyz, int count, const Use& use)
-{
-    pcl::KdTreeFLANN<pcl::PointXYZ> tree;
-    tree.setInputCloud(cloud::to_pcl(xyz, geometry::bounding_box(xyz).center()));
-    const auto& points = *tree.getInputCloud();
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points.size()),
-                      [&](const tbb::blocked_range<std::size_t>& range) {
-                          pcl::Indices indices;
-                          std::vector<float> squared;
-                          for (std::size_t i = range.begin(); i < range.end(); ++i) {
-                              tree.nearestKSearch(points[i], count + 1, indices, squared);
-                              use(i, squared);
-                          }
-                      });
-}
-
 std::vector<char> find_outliers(const Eigen::Matrix3Xd& xyz, const StatisticalFilter& filter)
 {
     std::vector<float> mean_distances(xyz.cols()); // PCL's precision
-    for_each_neighbourhood(xyz, filter.neighbours, [&](std::size_t i, const std::vector<float>& squared) {
+    for_each_neighbourhood(xyz, filter.neighbours, [&](Eigen::Index i, std::span<const float> squared) {
         double sum = 0;
-        for (std::size_t k = 1; k < squared.size(); ++k) sum += std::sqrt(squared[k]);
-        mean_distances[i] = static_cast<float>(sum / static_cast<double>(squared.size() - 1));
+        for (const float square : squared) sum += std::sqrt(square);
+        mean_distances[i] = static_cast<float>(sum / static_cast<double>(squared.size()));
     });
     geometry::CompensatedSum sum, squares;
     for (const float distance : mean_distances) sum.add(distance);
@@ -57,7 +33,7 @@ std::vector<char> find_outliers(const Eigen::Matrix3Xd& xyz, const StatisticalFi
 std::vector<char> find_outliers(const Eigen::Matrix3Xd& xyz, const RadiusFilter& filter)
 {
     std::vector<char> is_outlier(xyz.cols());
-    for_each_neighbourhood(xyz, filter.neighbours, [&](std::size_t i, const std::vector<float>& squared) {
+    for_each_neighbourhood(xyz, filter.neighbours, [&](Eigen::Index i, std::span<const float> squared) {
         is_outlier[i] = !(squared.back() <= filter.radius * filter.radius);
     });
     return is_outlier;

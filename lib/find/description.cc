@@ -17,6 +17,10 @@ using Eigen::Index;
 // A point belongs to the map's surface if it lies no farther off it than this.
 constexpr double kSurfaceSigmas = 8, kSurfaceCells = 2;
 
+// Walls and feet are narrower than a cell: points of a region's cells and of those beside it belong to it, too, if they
+// themselves stand over the surface by so many standard deviations of the noise and this share of the region's height.
+constexpr double kOwnSigmas = 3, kOwnShare = 0.08;
+
 // Doubts. Below this probability a person looks at a find.
 constexpr double kSureProbability = 0.85;
 // What is thicker than this multiple of the ring that could be fitted rests on extrapolation.
@@ -111,14 +115,59 @@ CellPoints points_by_cell(const mesh::CloudMesh& part, const SeenSide& side)
         const Eigen::Vector3d p = side.view * Eigen::Vector3d(part.points.xyz.col(i));
         const cv::Point cell = map.cell_of(p.head<2>());
         if (!all.contains(cell)) continue;
-        if (!(std::abs(p.z() - map.z(cell)) <= kSurfaceSigmas * map.sigma + kSurfaceCells * map.cell)) continue;
         cells.next[std::size_t(i)] = cells.first(cell);
         cells.first(cell) = int(i);
     }
     return cells;
 }
 
-FoundAnomaly describe(const SeenSide& side, const CellPoints& cells, const Verified& find)
+std::vector<Index> CellPoints::in(const cv::Point& cell) const
+{
+    std::vector<Index> points;
+    if (cv::Rect({0, 0}, first.size()).contains(cell))
+        for (Index i = first(cell); i >= 0; i = next[std::size_t(i)]) points.push_back(i);
+    return points;
+}
+
+namespace {
+
+/// Points of a region with their heights over the surface beneath: those of its cells that lie on the map's surface,
+/// and those of its cells and the ones beside them that stand over the surface beneath by themselves.
+std::vector<std::pair<Index, double>> points_of(const mesh::CloudMesh& part, const SeenSide& side,
+                                                const CellPoints& cells, const Verified& find,
+                                                const Eigen::Vector3d& up)
+{
+    const HeightMap& map = side.surface;
+    const double tolerance = kSurfaceSigmas * map.sigma + kSurfaceCells * map.cell;
+    const double own_limit = std::max(kOwnSigmas * map.sigma, kOwnShare * find.evidence.height);
+    // Distances from a reference are those of cells.
+    const Mask near = side.is_along_normal ? find.mask : dilated(find.mask, 1);
+    const Image floor = filled(beneath(side, find));
+    std::vector<std::pair<Index, double>> points;
+    for (int y = 0; y < near.rows; ++y)
+        for (int x = 0; x < near.cols; ++x) {
+            if (!near(y, x)) continue;
+            const cv::Point cell(x + find.window.x, y + find.window.y);
+            const Eigen::Vector2d place = map.point_at(cell.x, cell.y);
+            const Eigen::Vector3d foot(place.x(), place.y(), floor(y, x));
+            const double height = std::isfinite(find.height(y, x)) ? find.height(y, x) : 0;
+            for (const Index i : cells.in(cell)) {
+                const Eigen::Vector3d p = side.view * Eigen::Vector3d(part.points.xyz.col(i));
+                const double own = up.dot(p - foot) / up.z();
+                const bool is_on_map = std::abs(p.z() - map.z(cell)) <= tolerance;
+                const bool stands = !side.is_along_normal && own > own_limit && own < 2 * find.evidence.height;
+                if (find.mask(y, x) && is_on_map)
+                    points.emplace_back(i, (side.is_along_normal ? 1 : up.z()) * height);
+                else if (stands)
+                    points.emplace_back(i, up.z() * own);
+            }
+        }
+    return points;
+}
+
+} // namespace
+
+FoundAnomaly describe(const mesh::CloudMesh& part, const SeenSide& side, const CellPoints& cells, const Verified& find)
 {
     const Eigen::Vector3d up = normal_beneath(side, find);
     const double along_normal = side.is_along_normal ? 1 : up.z();
@@ -131,7 +180,7 @@ FoundAnomaly describe(const SeenSide& side, const CellPoints& cells, const Verif
     found.T_anomaly_part =
         Eigen::Quaterniond::FromTwoVectors(side.view.linear().transpose() * up, Eigen::Vector3d::UnitZ());
     found.T_anomaly_part.pretranslate(-(found.T_anomaly_part * (side.view.inverse() * middle_beneath(side, find))));
-    std::vector<std::pair<Index, double>> points;
+    std::vector<std::pair<Index, double>> points = points_of(part, side, cells, find, up);
     double sum = 0;
     for (int y = 0; y < find.mask.rows; ++y)
         for (int x = 0; x < find.mask.cols; ++x) {
@@ -139,8 +188,6 @@ FoundAnomaly describe(const SeenSide& side, const CellPoints& cells, const Verif
             const double height = std::isfinite(find.height(y, x)) ? along_normal * find.height(y, x) : 0;
             sum += height;
             found.height = std::max(found.height, height);
-            for (Index i = cells.first(y + find.window.y, x + find.window.x); i >= 0; i = cells.next[std::size_t(i)])
-                points.emplace_back(i, height);
         }
     found.area = find.evidence.cells * cell_area;
     found.volume = sum * cell_area;

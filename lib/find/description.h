@@ -21,11 +21,13 @@ struct SeenSide {
 struct CellPoints {
     cv::Mat1i first;                ///< point of a cell, -1: none
     std::vector<Eigen::Index> next; ///< point of the same cell after each, -1: none
+
+    std::vector<Eigen::Index> in(const cv::Point& cell) const; ///< a cell beside the map has none
 };
 CellPoints points_by_cell(const mesh::CloudMesh& part, const SeenSide& side);
 
 /// Measures a find, without its outlines and number.
-FoundAnomaly describe(const SeenSide& side, const CellPoints& cells, const Verified& find);
+FoundAnomaly describe(const mesh::CloudMesh& part, const SeenSide& side, const CellPoints& cells, const Verified& find);
 
 /// Sets boundary and sampling boundary. @param others  cells of the other anomalies, of the map's size
 void set_outlines(FoundAnomaly& anomaly, const SeenSide& side, const Verified& find, const Mask& others);

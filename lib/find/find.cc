@@ -70,7 +70,7 @@ FindResult merge(const mesh::CloudMesh& part, const std::vector<SeenSide>& sides
     for (const SeenSide& side : sides) {
         if (side.finds.empty()) continue;
         const CellPoints cells = points_by_cell(part, side);
-        for (const Verified& find : side.finds) entries.push_back({&find, &side, describe(side, cells, find)});
+        for (const Verified& find : side.finds) entries.push_back({&find, &side, describe(part, side, cells, find)});
     }
     entries = without_overlaps(std::move(entries), part.points.size());
     set_all_outlines(entries);

@@ -149,6 +149,8 @@ Mask Refinement::region_over_surface() const
                 beneath_.distance(y, x) < beneath_.width + kRingGap)
                 low(y, x) = 255;
         }
+    // Steep sides hide cells: a few unseen ones within do not cut a region in two.
+    low |= closed(low, 1) & ~seen_;
     return largest(opened(connected_to(low, seeds), cv::countNonZero(low) > 60 ? 3 : 2));
 }
 

@@ -5,6 +5,8 @@
 #include "race.h"
 
 #include "belt/gridding.h"
+#include "clean/neighbour_distances.h"
+#include "cloud/pcl.h"
 #include "geometry/point_index.h"
 #include "mesh/equal_corners.h"
 #include "surface/basis.h"
@@ -113,6 +115,34 @@ void neighbours_by_pcl(benchmark::State& state)
         state, [&] { return search_all<geometry::PointIndex<3>>(points); }, [&] { return search_all<Pcl>(points); });
 }
 BENCHMARK(neighbours_by_pcl)->Arg(100'000)->Arg(1'000'000)->Iterations(4)->Unit(benchmark::kMillisecond);
+
+double sum_by_pcl(const Matrix3Xd& points, int count)
+{
+    pcl::KdTreeFLANN<pcl::PointXYZ> tree;
+    tree.setInputCloud(cloud::to_pcl(points, Vector3d::Zero()));
+    Eigen::VectorXd sums(points.cols());
+    tbb::parallel_for(Index{0}, points.cols(), [&](Index i) {
+        pcl::Indices indices;
+        std::vector<float> squared;
+        tree.nearestKSearch((*tree.getInputCloud())[static_cast<std::size_t>(i)], count + 1, indices, squared);
+        sums[i] = std::sqrt(squared.back());
+    });
+    return sums.sum();
+}
+
+/// The distance of the eighth neighbour of each point, for fettle-clean: all points together, beside PCL's tree.
+void neighbour_distances_by_pcl(benchmark::State& state)
+{
+    const Matrix3Xd points = scan(state.range(0));
+    const auto ours = [&] {
+        Eigen::VectorXd sums(points.cols());
+        clean::for_each_neighbourhood(
+            points, 8, [&](Index i, std::span<const float> squared) { sums[i] = std::sqrt(squared.back()); });
+        return sums.sum();
+    };
+    race(state, ours, [&] { return sum_by_pcl(points, 8); });
+}
+BENCHMARK(neighbour_distances_by_pcl)->Arg(1'000'000)->Iterations(4)->Unit(benchmark::kMillisecond);
 
 // --- equal corners --------------------------------------------------------------------------------------------------
 
