@@ -61,7 +61,9 @@ int main(int argc, char** argv)
                    "Directions from x,y,z,rx,ry,rz: no shift of the scan's centroid along these, no "
                    "rotation about these; rx,ry: only rotations about z are tried");
         const auto& max_distance = t.optional_number(
-            "--max-distance", "LENGTH", "Points farther from the reference do not overlap it", core::Range::positive());
+            "--max-distance", "LENGTH",
+            "Points farther from the reference do not overlap it; more than the length of SCAN is no limit",
+            core::Range::positive());
         const auto& overlap = t.optional_number("--overlap", "SHARE",
                                                 "Share of the scan that lies on the reference; "
                                                 "without either, found from the distances",

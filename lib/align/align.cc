@@ -9,6 +9,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace fettle::align {
 
@@ -20,6 +21,8 @@ constexpr Eigen::Index kRankingPoints = 400, kComparisonPoints = 2000, kFinalPoi
 // A few iterations show which poses deserve many: at poses where the scan fits, the search has nearly converged.
 // One that has not converged after the last number is not the best, which the final refinement continues.
 constexpr int kScreeningIterations = 4, kRankingIterations = 30, kComparisonIterations = 60;
+// Points of the reference for this: where the scan fits is seen with fewer than a fine scan of a whole scene has.
+constexpr Eigen::Index kRankingReferencePoints = 50000;
 constexpr std::size_t kMaxScreened = 16;
 constexpr std::size_t kMaxFinalists = 3;
 // Two poses closer than this, in scan radii, are duplicates.
@@ -55,8 +58,10 @@ std::vector<IcpFit> find_starts(const OrientedPoints& points, const TwistFrame& 
         limited.max_iterations = std::min(options.icp.max_iterations, iterations);
         return limited;
     };
-    starts = refine_all(starts, few, frame, reference, at_most(kScreeningIterations), kMaxScreened);
-    starts = refine_all(starts, few, frame, reference, at_most(kRankingIterations), kMaxFinalists);
+    const std::optional<AlignReference> thinned = reference.thinned(kRankingReferencePoints);
+    const AlignReference& ranking = thinned ? *thinned : reference;
+    starts = refine_all(starts, few, frame, ranking, at_most(kScreeningIterations), kMaxScreened);
+    starts = refine_all(starts, few, frame, ranking, at_most(kRankingIterations), kMaxFinalists);
     return refine_all(starts, scan(Eigen::all, evenly_spaced_indices(scan.cols(), kComparisonPoints)), frame, reference,
                       at_most(kComparisonIterations), kMaxFinalists);
 }

@@ -29,6 +29,8 @@ Eigen::Matrix4d to_matrix(const Eigen::Isometry3d& motion, double mm)
     return matrix;
 }
 
+double length_of(const Eigen::Matrix3Xd& points) { return geometry::finite_bounding_box(points).sizes().norm(); }
+
 /// What reading the two files left out, and sizes that are hardly meant.
 std::vector<std::string> file_warnings(const AlignRequest& request, const mesh::CloudMeshFile& scan,
                                        const mesh::ShapeFile& reference)
@@ -36,14 +38,11 @@ std::vector<std::string> file_warnings(const AlignRequest& request, const mesh::
     // A scan in mm seems a thousand times as long as its reference in m, and over ten times as long as one in inches.
     constexpr double kMaxScanToReference = 10, kMinScanToReference = 1.0 / 500;
     const std::string scan_name = core::display_name(request.scan);
-    const auto length = [](const Eigen::Matrix3Xd& points) {
-        return geometry::finite_bounding_box(points).sizes().norm();
-    };
     std::vector<std::string> list = job::shape_warnings(scan, scan_name);
     const std::string reference_name = core::display_name(request.reference);
     const auto more = job::shape_warnings(reference, reference_name, reference.units);
     list.insert(list.end(), more.begin(), more.end());
-    const double ratio = length(scan.part.points.xyz) / length(mesh::coordinates_of(reference.shape));
+    const double ratio = length_of(scan.part.points.xyz) / length_of(mesh::coordinates_of(reference.shape));
     if (ratio > kMaxScanToReference || ratio < kMinScanToReference)
         list.push_back(scan_name + ": is " + core::to_short_text(ratio) + " times as long as " + reference_name +
                        ": are the units of both right?");
@@ -60,7 +59,6 @@ AlignRun align_files(const AlignRequest& request)
         mesh::read_shape(request.reference, mesh::resolve_file_units(request.reference_unit));
     const double mm = scan.units.mm();
     AlignOptions options{std::nullopt, request.icp};
-    if (request.max_distance) options.icp.max_distance = *request.max_distance * mm;
     AlignRun run;
     run.units = scan.units;
     run.transform = request.start.empty() ? Eigen::Matrix4d::Identity() : read_transform(request.start);
@@ -73,6 +71,9 @@ AlignRun align_files(const AlignRequest& request)
     const OrientedPoints points = scan.part.is_mesh()
                                       ? oriented_points(mesh::Mesh{scan.part.points.xyz, scan.part.triangles})
                                       : oriented_points(scan.part.points);
+    // Beyond its own length no distance tells what overlaps: every point would, wherever the scan lies.
+    const bool is_limit = request.max_distance && *request.max_distance * mm <= length_of(points.xyz);
+    if (is_limit) options.icp.max_distance = *request.max_distance * mm;
     const Alignment alignment = core::with_error_prefix(scan_name, [&] { return align(points, *reference, options); });
     if (!applies_start) run.transform = to_matrix(alignment.fit.T_reference_scan, mm);
     run.converged = alignment.fit.converged || applies_start;
@@ -84,6 +85,10 @@ AlignRun align_files(const AlignRequest& request)
     if (!scan.part.is_mesh()) run.report.set("dropped", scan.part.points.size() - points.xyz.cols());
     run.warnings = file_warnings(request, scan, target);
     scan.part.points.frame = mesh::frame_of(target.shape);
+    if (request.max_distance && !is_limit)
+        run.warnings.push_back(scan_name + ": is " + core::to_short_text(length_of(points.xyz) / mm) +
+                               " long, so that --max-distance " + core::to_short_text(*request.max_distance) +
+                               " is no limit; --overlap 1 says that all of it lies on the reference");
     run.aligned = {cloud::transformed(std::move(scan.part.points), run.transform, mm), std::move(scan.part.triangles)};
     const std::vector<std::string> doubtful = doubts(alignment, options.icp);
     for (const std::string& doubt : doubtful) run.warnings.push_back(scan_name + ": " + doubt);

@@ -4,11 +4,14 @@
 #include "geometry/point_index.h"
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <span>
 
 namespace fettle::align {
 
@@ -31,6 +34,34 @@ Eigen::Matrix3Xd estimate_normals(const Eigen::Matrix3Xd& xyz, const Eigen::Vect
         normals.col(i) = normal.dot(view_origin - xyz.col(i)) < 0 ? Eigen::Vector3d(-normal) : normal;
     });
     return normals;
+}
+
+/// Points near each other, and the one of them that is farthest from all samples.
+struct Bucket {
+    std::span<const Eigen::Index> points; ///< ascending
+    Eigen::AlignedBox3d box;
+    double max_squared = std::numeric_limits<double>::infinity();
+    Eigen::Index farthest = 0;
+};
+
+/// Halves the points across the longest side of their box until the halves are small.
+/// @param order  their columns, which are reordered; the buckets refer to it
+void split_into_buckets(const Eigen::Matrix3Xd& points, std::span<Eigen::Index> order, std::vector<Bucket>& buckets)
+{
+    constexpr std::size_t kMaxBucket = 64; // about as much work to go through as the boxes of all buckets
+    Eigen::AlignedBox3d box;
+    for (const Eigen::Index i : order) box.extend(points.col(i));
+    if (order.size() <= kMaxBucket) {
+        std::ranges::sort(order);
+        buckets.push_back({order, box});
+        return;
+    }
+    Eigen::Index axis = 0;
+    box.sizes().maxCoeff(&axis);
+    const std::size_t half = order.size() / 2;
+    std::ranges::nth_element(order, order.begin() + half, {}, [&](Eigen::Index i) { return points(axis, i); });
+    split_into_buckets(points, order.first(half), buckets);
+    split_into_buckets(points, order.subspan(half), buckets);
 }
 
 } // namespace
@@ -99,12 +130,31 @@ std::vector<Eigen::Index> farthest_point_sample(const Eigen::Matrix3Xd& points, 
     const Eigen::Vector3d centroid = points.rowwise().mean();
     Eigen::Index next = 0;
     (points.colwise() - centroid).colwise().squaredNorm().maxCoeff(&next);
+    std::vector<Eigen::Index> order(points.cols());
+    std::iota(order.begin(), order.end(), Eigen::Index{0});
+    std::vector<Bucket> buckets;
+    split_into_buckets(points, order, buckets);
     Eigen::RowVectorXd squared = Eigen::RowVectorXd::Constant(points.cols(), std::numeric_limits<double>::infinity());
     for (Eigen::Index k = 0; k < std::min(count, points.cols()); ++k) {
         chosen.push_back(next);
         const Eigen::Vector3d last = points.col(next);
-        squared = squared.cwiseMin((points.colwise() - last).colwise().squaredNorm());
-        squared.maxCoeff(&next);
+        const Bucket* best = nullptr;
+        for (Bucket& bucket : buckets) {
+            // A sample changes nothing where it is farther off than the samples before it.
+            if (bucket.box.squaredExteriorDistance(last) < bucket.max_squared) {
+                bucket.max_squared = -1;
+                for (const Eigen::Index i : bucket.points) {
+                    squared[i] = std::min(squared[i], (points.col(i) - last).squaredNorm());
+                    if (squared[i] <= bucket.max_squared) continue;
+                    bucket.max_squared = squared[i];
+                    bucket.farthest = i;
+                }
+            }
+            if (!best || bucket.max_squared > best->max_squared ||
+                (bucket.max_squared == best->max_squared && bucket.farthest < best->farthest))
+                best = &bucket;
+        }
+        next = best->farthest;
     }
     return chosen;
 }

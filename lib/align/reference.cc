@@ -65,12 +65,14 @@ AlignReference::Foot AlignReference::State::closest_on_mesh(const Eigen::Vector3
     return {foot->point, facet_normals.col(foot->triangle)};
 }
 
-AlignReference::AlignReference(const cloud::Cloud& cloud)
+AlignReference::AlignReference(const cloud::Cloud& cloud) : AlignReference(oriented_points(cloud)) {}
+
+AlignReference::AlignReference(OrientedPoints points)
 {
+    if (points.xyz.cols() < 3)
+        throw core::InputError("needs at least 3 points, got " + std::to_string(points.xyz.cols()));
     auto state = std::make_unique<State>();
-    state->points = oriented_points(cloud);
-    if (state->points.xyz.cols() < 3)
-        throw core::InputError("needs at least 3 points, got " + std::to_string(state->points.xyz.cols()));
+    state->points = std::move(points);
     state->neighbours.emplace(state->points.xyz);
     state->radii = disc_radii(state->points.xyz, *state->neighbours);
     state_ = std::move(state);
@@ -87,7 +89,16 @@ AlignReference::AlignReference(const mesh::Mesh& mesh)
     state_ = std::move(state);
 }
 
+AlignReference::AlignReference(AlignReference&&) noexcept = default;
 AlignReference::~AlignReference() = default;
+
+std::optional<AlignReference> AlignReference::thinned(Eigen::Index count) const
+{
+    const OrientedPoints& all = state_->points;
+    if (state_->index || all.xyz.cols() <= count) return std::nullopt;
+    const std::vector<Eigen::Index> chosen = evenly_spaced_indices(all.xyz.cols(), count);
+    return AlignReference(OrientedPoints{all.xyz(Eigen::all, chosen), all.normals(Eigen::all, chosen), all.outward});
+}
 
 AlignReference::Foot AlignReference::closest(const Eigen::Vector3d& point) const
 {

@@ -3,6 +3,7 @@
 #include "align/oriented_points.h"
 
 #include <memory>
+#include <optional>
 
 namespace fettle::align {
 
@@ -13,7 +14,13 @@ class AlignReference {
     /// @throws InputError if there is nothing to align to: fewer than three points, a mesh without area
     explicit AlignReference(const cloud::Cloud& cloud);
     explicit AlignReference(const mesh::Mesh& mesh);
+    explicit AlignReference(OrientedPoints points);
+    AlignReference(AlignReference&& other) noexcept;
     ~AlignReference();
+
+    /// The same surface with fewer points, evenly spaced in their order: searches take less time. None for a mesh, and
+    /// where there are no more than `count` points.
+    std::optional<AlignReference> thinned(Eigen::Index count) const;
 
     struct Foot {
         Eigen::Vector3d point;  ///< the closest point of the mesh, or of the discs

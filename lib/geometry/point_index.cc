@@ -3,34 +3,46 @@
 #include <nanoflann.hpp>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 namespace fettle::geometry {
 
 namespace {
 
-using Candidate = std::pair<double, std::uint32_t>; ///< squared distance and number of a finite point
+using Candidate = std::pair<double, Eigen::Index>; ///< squared distance and column of a finite point
 
-/// The nearest points so far, nearest first, equally near ones by number. nanoflann's own sets drop some of these.
+/// The next larger number. std::nextafter() takes as long as a search's other steps.
+/// @param x  >= 0; infinity stays
+double next_above(double x)
+{
+    return x < std::numeric_limits<double>::infinity() ? std::bit_cast<double>(std::bit_cast<std::uint64_t>(x) + 1) : x;
+}
+
+/// The nearest points so far, nearest first, equally near ones by column. nanoflann's own sets drop some of these.
 class NearestSet {
   public:
-    explicit NearestSet(std::size_t count) : count_(count) { found.reserve(count); }
+    NearestSet(std::size_t count, const std::vector<Eigen::Index>& column) : count_(count), column_(column)
+    {
+        found.reserve(count);
+    }
 
     bool full() const { return found.size() == count_; }
     /// nanoflann offers only points that are nearer: not those that are equally near.
     double worstDist() const { return worst_; }
     bool addPoint(double squared, std::uint32_t number)
     {
-        const Candidate candidate{squared, number};
+        const Candidate candidate{squared, column_[number]};
         if (full()) {
             if (!(candidate < found.back())) return true;
             found.pop_back();
         }
         found.insert(std::ranges::upper_bound(found, candidate), candidate);
-        if (full()) worst_ = std::nextafter(found.back().first, std::numeric_limits<double>::infinity());
+        if (full()) worst_ = next_above(found.back().first);
         return true;
     }
 
@@ -38,30 +50,32 @@ class NearestSet {
 
   private:
     std::size_t count_;
+    const std::vector<Eigen::Index>& column_; ///< by number of the point in the tree
     double worst_ = std::numeric_limits<double>::infinity();
 };
 
 /// The points no farther than a radius.
 struct RadiusSet {
-    double worst; ///< the smallest number above the squared radius
+    double worst;                            ///< the smallest number above the squared radius
+    const std::vector<Eigen::Index>& column; ///< by number of the point in the tree
 
     bool full() const { return true; }
     double worstDist() const { return worst; }
     bool addPoint(double, std::uint32_t number)
     {
-        found.push_back(number);
+        found.push_back(column[number]);
         return true;
     }
 
-    std::vector<std::uint32_t> found;
+    std::vector<Eigen::Index> found;
 };
 
 } // namespace
 
 template <int Dim>
 struct PointIndex<Dim>::Tree {
-    std::vector<Eigen::Index> column; ///< of the finite points, ascending
-    Points points;                    ///< the finite points
+    std::vector<Eigen::Index> column; ///< of the points
+    Points points;                    ///< the finite points, in the order of the tree's leaves
     nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Tree, double, std::uint32_t>, Tree, Dim,
                                         std::uint32_t>
         tree;
@@ -69,6 +83,12 @@ struct PointIndex<Dim>::Tree {
     Tree(const Points& all, std::vector<Eigen::Index> finite)
         : column(std::move(finite)), points(all(Eigen::all, column)), tree(Dim, *this)
     {
+        // A search goes through leaves: with the points of a leaf side by side it waits less for the memory.
+        std::vector<Eigen::Index> ordered(column.size());
+        for (std::size_t k = 0; k < ordered.size(); ++k) ordered[k] = column[tree.vAcc[k]];
+        column = std::move(ordered);
+        points = all(Eigen::all, column);
+        std::iota(tree.vAcc.begin(), tree.vAcc.end(), std::uint32_t{0});
     }
 
     template <typename Set>
@@ -110,22 +130,21 @@ Eigen::Index PointIndex<Dim>::size() const
 template <int Dim>
 std::vector<Eigen::Index> PointIndex<Dim>::nearest(const Point& query, Eigen::Index count) const
 {
-    NearestSet nearest(count);
+    NearestSet nearest(count, tree_->column);
     if (count > 0) tree_->search(query, nearest);
     std::vector<Eigen::Index> columns;
-    for (const Candidate& candidate : nearest.found) columns.push_back(tree_->column[candidate.second]);
+    columns.reserve(nearest.found.size());
+    for (const Candidate& candidate : nearest.found) columns.push_back(candidate.second);
     return columns;
 }
 
 template <int Dim>
 std::vector<Eigen::Index> PointIndex<Dim>::radius_search(const Point& query, double radius) const
 {
-    RadiusSet within{std::nextafter(radius * radius, std::numeric_limits<double>::infinity()), {}};
+    RadiusSet within{next_above(radius * radius), tree_->column, {}};
     tree_->search(query, within);
     std::sort(within.found.begin(), within.found.end());
-    std::vector<Eigen::Index> columns;
-    for (const std::uint32_t number : within.found) columns.push_back(tree_->column[number]);
-    return columns;
+    return std::move(within.found);
 }
 
 template class PointIndex<2>;

@@ -36,3 +36,8 @@ grep -q 'metres.xyz: the part, 0.039 x 0.029 x 0.[0-9]* mm, is under 5 mm long: 
 grep -q 'metres.xyz: is 0.001 times as long as waves.xyz: are the units of both right?' err
 aligned 0 metres.xyz --file-units m --to waves.xyz --near
 [ ! -s err ]
+# A distance longer than the scan is no limit: the same place as without it, and no longer a search.
+fettle-align waves.xyz --to waves.xyz -q --transform-out free.txt -o out.pcd
+aligned 0 waves.xyz --to waves.xyz --max-distance 900 --transform-out beyond.txt --sure
+grep -q 'waves.xyz: is 52.* long, so that --max-distance 900 is no limit' err
+cmp free.txt beyond.txt
