@@ -19,6 +19,14 @@ class RecordReader {
     {
     }
 
+    /// @throws InputError where no section of points begins
+    std::string_view section_header() const
+    {
+        const std::string_view header = pages_.at(scan_.offset, kSectionHeaderBytes, "points");
+        if (header[0] != 1) refuse("no section of points at " + std::to_string(scan_.offset));
+        return header;
+    }
+
     Eigen::MatrixXd read()
     {
         collect_streams();
@@ -43,8 +51,7 @@ class RecordReader {
     /// Joins the pieces of each column's stream.
     void collect_streams()
     {
-        const std::string_view header = pages_.at(scan_.offset, kSectionHeaderBytes, "points");
-        if (header[0] != 1) refuse("no section of points at " + std::to_string(scan_.offset));
+        const std::string_view header = section_header();
         const auto length = load<std::uint64_t>(header.data() + 8), data = load<std::uint64_t>(header.data() + 16);
         const std::string_view section = pages_.at(scan_.offset, length, "section of points");
         std::string_view packets = pages_.from(data, "data packets");
@@ -133,8 +140,10 @@ class RecordReader {
 
 Eigen::MatrixXd read_e57_records(const E57Pages& pages, const E57Scan& scan, const std::string& source)
 {
-    if (scan.records == 0) return Eigen::MatrixXd(scan.columns.size(), 0);
-    return RecordReader(pages, scan, source).read();
+    RecordReader reader(pages, scan, source);
+    if (scan.records > 0) return reader.read();
+    if (scan.offset != 0) reader.section_header(); // 0: some writers leave out the section of a scan without points
+    return Eigen::MatrixXd(scan.columns.size(), 0);
 }
 
 } // namespace fettle::cloud

@@ -61,3 +61,9 @@ refuse 'no section of points at 48' fettle-clean section.e57
 change streams.e57 'b[84:86] = struct.pack("<H", 3)'
 refuse 'a data packet of 3 columns, the scan has 8' fettle-clean streams.e57
 refuse 'good.e57: units: the file says m, expected mm' fettle-clean good.e57 --file-units mm
+# A scan without points has a section all the same, or none at all: some writers leave it out, and then say that it begins at 0.
+change none.e57 'b[48] = 182; xml(b"recordCount=\"200\"", b"recordCount=\"0\"")'
+refuse 'none.e57: E57: no section of points at 48' fettle-clean none.e57
+change left-out.e57 'xml(b"fileOffset=\"48\" recordCount=\"200\"", b"fileOffset=\"0\" recordCount=\"0\"")'
+fettle-clean left-out.e57 --report report.json > empty.pcd
+jq -e '.points == 0' report.json > ok
