@@ -106,4 +106,15 @@ void XmlParser::feed(std::string_view piece)
 
 void XmlParser::finish() { state_->parse({}, true); }
 
+void require_plain_xml(std::string_view text, const std::string& source)
+{
+    struct : XmlHandler {
+        void begin(std::string_view, const XmlAttributes&) override {}
+        void end(std::string_view) override {}
+    } nothing;
+    XmlParser parser(nothing, source);
+    parser.feed(text);
+    parser.finish();
+}
+
 } // namespace fettle::core

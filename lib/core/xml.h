@@ -48,4 +48,8 @@ class XmlParser {
     std::unique_ptr<State> state_;
 };
 
+/// Checks a document before a library gets it that descends into elements without a bound, or is lenient.
+/// @throws InputError as XmlParser
+void require_plain_xml(std::string_view text, const std::string& source);
+
 } // namespace fettle::core

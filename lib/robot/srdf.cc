@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "core/xml.h"
 
 #include <tinyxml.h>
 
@@ -11,6 +12,7 @@ void read_srdf(const std::string& path, const std::vector<std::string>& links, R
 {
     const std::string text = core::read_file(path, core::kMaxJsonBytes);
     const std::string source = core::display_name(path);
+    core::require_plain_xml(text, source);
     TiXmlDocument document;
     document.Parse(text.c_str(), nullptr, TIXML_ENCODING_UTF8);
     if (document.Error())

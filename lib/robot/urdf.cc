@@ -3,6 +3,7 @@
 #include "core/constants.h"
 #include "core/error.h"
 #include "core/text.h"
+#include "core/xml.h"
 #include "mesh/mesh_file.h"
 #include "robot/arm.h"
 #include "robot/body_json.h"
@@ -336,7 +337,7 @@ Robot parse_urdf(const std::string& text, const std::string& source, const UrdfO
 {
     if (text.find("xacro:") != std::string::npos || text.find("${") != std::string::npos)
         throw core::InputError(source, "is a xacro file: expand it first (xacro FILE > robot.urdf)");
-    if (text.find('\0') != std::string::npos) throw core::InputError(source, "zero byte in the file");
+    core::require_plain_xml(text, source);
     FirstMessage message;
     const urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(text);
     if (model == nullptr || model->getRoot() == nullptr)
