@@ -9,6 +9,7 @@ import json
 import math
 import os
 import re
+import shutil
 import struct
 import subprocess
 import sys
@@ -41,13 +42,18 @@ DIMENSIONS = [
     ((1, 0), """form *least_squares, form *minimum_zone, form *.width, form *.centre, form *.radius, form *.point"""),
     ((1, 0), """form *.peak, form *.valley, form *.rms, form *.contacts.*, form *offset"""),
     ((1, 0), """contact cell, * track.value"""),
+    ((1, 0), """find anomalies.height, find height, find noise, merge disagreement, merge pairs.rms, merge scans.centre"""),
+    ((1, 0), """merge scans.noise, merge *.sd_shift, merge spacing, reconstruct max_gap, step *deviation"""),
+    ((1, 0), """station *anomaly.?, station *sampling.?, station settings.*"""),
     ((1, 0), """align centre, align next.*, align sd.[xyz], align degrees_of_freedom.sd"""),
 ]
 # Numbers without one dimension: products of a surface's parameters; the last column of a rigid motion, which ends in 1.
 MIXED = ["covariance", "surface.covariance", "alternatives.covariance", "surface.alternatives.covariance", "transform.3", "next.transform.3"]
+MIXED += ["scans.matrix.3", "scans.covariance.0", "scans.covariance.1", "scans.covariance.2"]
 MIXED += ["joints.min", "joints.max"]  # degrees, and the track's lengths
 MIXED += ["min.pose", "min.point", "min_between.pose", "min_between.point", "joints.max_acceleration_at"]  # which one it is of several that are equal
 
+COUNT_TOLERANCE = 1e-3  # of the cubes of merged scans: where rounding moves a lone point to the next one
 TOLERANCE = 0.05  # wrong units are off by 4 times at least; grinding step by step amplifies the rounding of coordinates
 FLOOR = 1e-5  # mm, N and their products: below it, numbers are rounding
 
@@ -243,6 +249,49 @@ def robot(work):
     work.tool("collide", "robot.json", "path.pcd", out="checked.pcd")
 
 
+def raw(work):
+    """From scans to the anomaly; a design, where fettle-step is built."""
+    samples = os.environ["SAMPLES"]
+    make_parts(work)
+    unit = work.length
+    with open("identity.txt", "w") as file:
+        file.write("1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n")
+    box = ",".join(repr(edge * work.mm) for edge in (-20, -20, -10, 20, 20, 15))
+    for filters in (["--outliers", f"radius:{4 * work.mm!r},3"], ["--outliers", "statistical:8,3", "--thin", 2.0]):
+        work.tool("clean", "part.pcd", "--crop", f"box:{box}", *filters, out="clean.pcd")
+    work.tool("place", "part.stl", "--up", "plane", "--threshold", 2.0, "--centre", "--file-units", unit, out="placed.ply")
+    work.tool("place", "part.pcd", "--turn", "x,30", "--centre", out="turned.pcd")
+    work.tool("reconstruct", "part.pcd", "--max-gap", 6.0, "--from", f"0,0,{300 * work.mm!r}", out="built.stl")
+    work.tool("reconstruct", "clean.pcd", "--facing", "0,0,1", out="built.stl")
+    work.tool("find", "part.stl", "--file-units", unit, "--max-width", 20.0, "--min-height", 0.5, out="found.pcd")
+    work.tool("find", "part.pcd", "--against", "truth.stl", "--against-units", unit, "--transform-in", "identity.txt", out="found.pcd")
+    for view in "2", "3":
+        work.tool("place", f"{samples}/scans/views/{view}.pcd", "--units", unit, out=f"{view}.pcd")
+    work.tool("merge", "2.pcd", "3.pcd", out="merged.pcd")
+    work.tool("view", "found.pcd", out="page.html")
+    if shutil.which("fettle-step"):
+        work.tool("step", f"{samples}/designs/clamp.step", "--units", unit, "--tolerance", 0.5, out="design.stl")
+
+
+def session(work):
+    """An operator's session from the first touch to the ground part."""
+    make_parts(work)
+    work.write("job.json", work.job())
+    with open("operator.txt", "w") as file:
+        file.write("0 next\n0 next\n0 start\n0 start\n")
+    shutil.rmtree("session", ignore_errors=True)
+    command = ["fettle-station", "job.json", "--gantry", "virtual", "--stock", "part.stl", "--cell", repr(0.5 * work.mm), "--steer", "operator.txt"]
+    ended = subprocess.run([*command, "--session", "session", "--report", "report.json", "-q"], capture_output=True, text=True)
+    if ended.returncode not in (0, 1):
+        sys.exit(f"{' '.join(command)}\n{ended.stderr}")
+    for path in ["report.json", *sorted(os.path.join("session", name) for name in os.listdir("session"))]:
+        if path.endswith(".json"):
+            with open(path) as file:
+                work.add("station", leaves(json.load(file)))
+        elif path.endswith(".pcd"):
+            work.add("station", fields(path))
+
+
 def sizes(work):
     """Root mean square of the numbers that a tool wrote under a key, and how many there are."""
     squares, counts = collections.Counter(), collections.Counter()
@@ -261,7 +310,7 @@ def compared(base, other):
         size, count = found.get((tool, key), (0, 0))
         length, force = dimension_of(tool, key)
         converted = size / (other.mm**length * other.newton**force)
-        if count != count_mm:
+        if abs(count - count_mm) > (COUNT_TOLERANCE * count_mm if tool == "merge" else 0):
             yield f"{other.length}: fettle-{tool} {key}: {count} values, {count_mm} in mm"
         elif key not in MIXED and not abs(converted - size_mm) <= max(TOLERANCE * size_mm, FLOOR):
             yield f"{other.length}: fettle-{tool} {key}: root mean square {size:.6g}, in mm {size_mm:.6g}"
@@ -273,6 +322,8 @@ def main():
         (casting, [("mm", "N"), ("in", "lbf")]),
         (scans, [("mm", "N"), ("in", "N"), ("m", "N")]),
         (belt, [("mm", "N"), ("in", "N"), ("m", "N")]),
+        (raw, [("mm", "N"), ("in", "N"), ("m", "N")]),
+        (session, [("mm", "N"), ("in", "lbf")]),
         (robot, [("mm", "N"), ("in", "N"), ("m", "N")]),
     ):
         runs = [Work(*system) for system in systems]
