@@ -31,12 +31,16 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <filesystem>
+#include <cerrno>
+#include <csignal>
 #include <fstream>
 #include <sstream>
 #include <string_view>
 #include <utility>
 
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 namespace fettle::cad {
@@ -136,25 +140,21 @@ std::string read_step(const std::string& bytes, const std::string& source, Handl
     return lengths.First().ToCString();
 }
 
-/// OpenCASCADE reads IGES from a named file only.
-class TemporaryFile {
+/// OpenCASCADE reads IGES from a named file only. This one is in memory: nothing is left of it after a crash.
+class NamedBytes {
   public:
-    explicit TemporaryFile(const std::string& bytes)
+    explicit NamedBytes(const std::string& bytes) : file_(memfd_create("design", 0))
     {
-        std::string name = (std::filesystem::temp_directory_path() / "fettle-XXXXXX").string();
-        const int descriptor = mkstemp(name.data());
-        if (descriptor < 0) throw core::InputError(name, "cannot be written");
-        close(descriptor);
-        path_ = name;
-        std::ofstream(path_, std::ios::binary) << bytes;
+        if (file_ < 0) throw core::InputError("no memory for a file");
+        std::ofstream(path(), std::ios::binary) << bytes;
     }
-    TemporaryFile(const TemporaryFile&) = delete;
-    TemporaryFile& operator=(const TemporaryFile&) = delete;
-    ~TemporaryFile() { std::filesystem::remove(path_); }
-    const std::string& path() const { return path_; }
+    NamedBytes(const NamedBytes&) = delete;
+    NamedBytes& operator=(const NamedBytes&) = delete;
+    ~NamedBytes() { close(file_); }
+    std::string path() const { return "/proc/self/fd/" + std::to_string(file_); }
 
   private:
-    std::string path_;
+    int file_;
 };
 
 /// @return  its unit of length
@@ -166,7 +166,7 @@ std::string read_iges(const std::string& bytes, const std::string& source, Handl
     IGESCAFControl_Reader reader;
     reader.SetNameMode(true);
     reader.SetColorMode(true);
-    const TemporaryFile file(bytes);
+    const NamedBytes file(bytes);
     require_read(reader.ReadFile(file.path().c_str()), source, "IGES");
     const IGESData_GlobalSection& global = reader.IGESModel()->GlobalSection();
     const int flag = global.UnitFlag();
@@ -176,6 +176,42 @@ std::string read_iges(const std::string& bytes, const std::string& source, Handl
                                "the unit of length is not known: flag " + std::to_string(flag) + ", '" + name + "'");
     if (!reader.Transfer(document)) throw core::InputError(source, "holds no shape");
     return flag == kNamed ? name : kUnits[static_cast<std::size_t>(flag - 1)];
+}
+
+/// OpenCASCADE follows references of damaged files to nowhere: what is to be read is read in a process of its own
+/// first.
+template <typename Read>
+void require_no_crash(const std::string& source, const Read& read)
+{
+    const pid_t child = fork();
+    if (child < 0) return; // no more processes
+    if (child == 0) {
+        const rlimit none = {0, 0};
+        setrlimit(RLIMIT_CORE, &none);
+        try {
+            read();
+        } catch (...) { // said by the one that reads it for use
+        }
+        _exit(0);
+    }
+    int status = 0;
+    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+    }
+    constexpr std::array kCrashes = {SIGSEGV, SIGBUS, SIGFPE, SIGABRT, SIGILL};
+    if (WIFSIGNALED(status) && std::ranges::find(kCrashes, WTERMSIG(status)) != kCrashes.end())
+        throw core::InputError(source, "OpenCASCADE's reader crashes on it: the file is damaged");
+}
+
+DesignFile parse_design(const std::string& bytes, const std::string& source, bool is_step)
+{
+    DesignFile file;
+    try {
+        XCAFApp_Application::GetApplication()->NewDocument("BinXCAF", file.document);
+        file.unit = is_step ? read_step(bytes, source, file.document) : read_iges(bytes, source, file.document);
+    } catch (const Standard_Failure& failure) {
+        throw core::InputError(source, std::string("OpenCASCADE cannot read it: ") + failure.GetMessageString());
+    }
+    return file;
 }
 
 } // namespace
@@ -190,14 +226,8 @@ DesignFile read_design_file(const std::string& path)
         throw core::InputError(source, "expected a design, STEP (ISO-10303-21) or IGES");
     }
     Message::DefaultMessenger()->ChangePrinters().Clear(); // OpenCASCADE would print
-    DesignFile file;
-    try {
-        XCAFApp_Application::GetApplication()->NewDocument("BinXCAF", file.document);
-        file.unit = is_step ? read_step(bytes, source, file.document) : read_iges(bytes, source, file.document);
-    } catch (const Standard_Failure& failure) {
-        throw core::InputError(source, std::string("OpenCASCADE cannot read it: ") + failure.GetMessageString());
-    }
-    return file;
+    require_no_crash(source, [&] { parse_design(bytes, source, is_step); });
+    return parse_design(bytes, source, is_step);
 }
 
 } // namespace fettle::cad

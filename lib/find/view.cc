@@ -20,6 +20,7 @@ constexpr double kSeenShare = 0.98;     // of what any direction sees
 constexpr double kMinGain = 0.01;       // a view that adds less is none
 constexpr double kFaceCosine = 0.9;     // normals within 26 degrees of a direction are of one face
 constexpr int kShifts = 4;              // after which the mean hardly moves
+constexpr double kMaxSideCells = 1000;  // of a part: bounds the memory where one point lies far off
 constexpr double kOcclusionCells = 3;   // what lies deeper beneath what is seen is hidden
 
 struct Samples {
@@ -74,7 +75,7 @@ std::vector<char> seen_from(const Samples& samples, const Eigen::Vector3d& direc
 {
     const Eigen::Matrix3Xd placed = view_from(direction) * samples.points.xyz;
     const Eigen::Vector3d min = placed.rowwise().minCoeff(), max = placed.rowwise().maxCoeff();
-    const double cell = 3 * samples.spacing;
+    const double cell = std::max(3 * samples.spacing, (max - min).head<2>().maxCoeff() / kMaxSideCells);
     const auto columns = Index((max.x() - min.x()) / cell) + 1, rows = Index((max.y() - min.y()) / cell) + 1;
     std::vector<double> top(std::size_t(columns * rows), -std::numeric_limits<double>::infinity());
     const auto cell_of = [&](Index i) {

@@ -5,6 +5,7 @@
 #include "core/error.h"
 #include "geometry/bounding_box.h"
 
+#include <pcl/console/print.h>
 #include <pcl/ModelCoefficients.h>
 #include <pcl/PointIndices.h>
 #include <pcl/sample_consensus/method_types.h>
@@ -39,6 +40,7 @@ Segment segment(const align::OrientedPoints& points, const Eigen::Vector3d& midd
     normals->resize(static_cast<std::size_t>(points.normals.cols()));
     for (Eigen::Index i = 0; i < points.normals.cols(); ++i)
         (*normals)[i].getNormalVector3fMap() = points.normals.col(i).cast<float>();
+    pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS); // what it finds is judged here; it would print
     pcl::SACSegmentationFromNormals<pcl::PointXYZ, pcl::Normal> search;
     search.setModelType(model);
     search.setMethodType(pcl::SAC_RANSAC);

@@ -27,3 +27,10 @@ for part in profile scattered block two; do
     fettle-find $part.xyz --report $part.json > $part.pcd
     jq -e '.anomalies == []' $part.json > ok
 done
+
+# One vertex, or one point, far off takes no more memory for it.
+awk 'BEGIN { for (y = 0; y < 12; ++y) for (x = 0; x < 12; ++x) print x, (x + y ? y : 1e12), sin(x) }' > far.xyz
+(ulimit -v 2000000; refuses 'far.xyz: the points lie too far apart for a map of 20 million cells' far.xyz)
+printf 'OFF\n4 4 0\n0 0 0\n9 0 0\n0 9 0\n0 -2e10 9\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n' > far.off
+(ulimit -v 2000000; fettle-find far.off --threads 2 --report far.json -q > far.pcd)
+jq -e '.anomalies == []' far.json > ok

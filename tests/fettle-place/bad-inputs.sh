@@ -20,3 +20,6 @@ printf 'nan 0 0\nnan 1 0\n' > none.xyz
 refuses 'none.xyz: has fewer than three points' none.xyz --up plane
 refuses 'out.stl: a cloud is written as PCD, PLY, CSV or VTK, not as stl' four.xyz -o out.stl
 [ ! -e out.stl ]
+# PCL's search complains of points that are all the same; here only the tool speaks.
+for _ in $(seq 200); do echo 1 2 3; done > same.xyz
+refuses 'same.xyz: ' same.xyz --up plane

@@ -18,3 +18,8 @@ sed "s/^$first/${first%% =*} = ADVANCED_FOCE(/" good.stp > broken.stp
 refuses 'cannot be built' broken.stp --tolerance 1
 refuses 'a mesh is written as STL or PLY, not as pcd' good.stp -o x.pcd
 refuses '--tolerance' good.stp --tolerance 0
+# A surface whose points are missing: OpenCASCADE follows the reference to nowhere, and crashes.
+point=$(grep -A 1 -m 1 ' B_SPLINE_SURFACE(' good.stp | grep -o '#[0-9]*' | tail -n 1)
+grep -q "^$point = CARTESIAN_POINT" good.stp
+sed "/^$point = CARTESIAN_POINT/d" good.stp > dangling.stp
+refuses "dangling.stp: OpenCASCADE's reader crashes on it: the file is damaged" dangling.stp
