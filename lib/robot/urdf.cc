@@ -4,19 +4,17 @@
 #include "core/error.h"
 #include "core/text.h"
 #include "core/xml.h"
-#include "mesh/mesh_file.h"
 #include "robot/arm.h"
 #include "robot/body_json.h"
 #include "robot/dh_from_axes.h"
-#include "robot/hull_points.h"
 #include "robot/srdf.h"
+#include "robot/urdf_shapes.h"
 
 #include <console_bridge/console.h>
 #include <urdf_parser/urdf_parser.h>
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <numbers>
 #include <vector>
 
@@ -27,8 +25,6 @@ namespace {
 using Eigen::Isometry3d, Eigen::Vector3d;
 
 constexpr double kMmPerMetre = 1000;
-// What URDFs leave of a right angle (1.570796327) and of a zero (-1.9e-11 m): rad, and m.
-constexpr double kQuarterTurnTolerance = 1e-9, kLengthRounding = 1e-10;
 // A joint without limits that turns for ever, degrees either way: what cables stand.
 constexpr double kContinuousDegrees = 360;
 
@@ -46,27 +42,6 @@ class FirstMessage : public console_bridge::OutputHandler {
   private:
     std::string text_;
 };
-
-// A rotation by quarter turns, written with nine digits or more, is one: then the closed form is exact.
-void round_quarter_turns(Eigen::Ref<Eigen::Matrix3d> R)
-{
-    const Eigen::Matrix3d rounded = R.array().round();
-    if ((R - rounded).cwiseAbs().maxCoeff() < kQuarterTurnTolerance) R = rounded;
-}
-
-Isometry3d to_isometry(const urdf::Pose& pose)
-{
-    Isometry3d T = Isometry3d::Identity();
-    const urdf::Rotation& q = pose.rotation;
-    const Eigen::Quaterniond rotation(q.w, q.x, q.y, q.z);
-    T.linear() = rotation.normalized().toRotationMatrix();
-    round_quarter_turns(T.linear());
-    const Vector3d metres(pose.position.x, pose.position.y, pose.position.z);
-    T.translation() = kMmPerMetre * ((metres / kLengthRounding).array().round() * kLengthRounding).matrix();
-    if (!T.matrix().allFinite() || T.translation().cwiseAbs().maxCoeff() > kMaxLength)
-        throw core::InputError("a place is not finite, or beyond 100 m");
-    return T;
-}
 
 std::string of_joint(const urdf::Joint& joint) { return "joint '" + joint.name + "': "; }
 
@@ -210,7 +185,7 @@ class UrdfReader {
     {
         Isometry3d T = Isometry3d::Identity();
         for (const urdf::Link* at = &link; at->parent_joint != nullptr; at = at->getParent().get())
-            T = to_isometry(at->parent_joint->parent_to_joint_origin_transform) * T;
+            T = urdf_isometry(at->parent_joint->parent_to_joint_origin_transform) * T;
         return T;
     }
 
@@ -231,72 +206,17 @@ class UrdfReader {
         const int index = moving_link(link);
         const Isometry3d T_root_frame =
             index == link::kCell ? Isometry3d::Identity() : robot_.T_cell_base * frames_[index];
+        const UrdfFiles files{source_, link.name, options_.packages};
         std::size_t count = 0;
         for (const auto& collision : link.collision_array) {
             if (collision == nullptr || collision->geometry == nullptr) continue;
-            const Isometry3d T = T_root_frame.inverse() * place(link) * to_isometry(collision->origin);
+            const Isometry3d T = T_root_frame.inverse() * place(link) * urdf_isometry(collision->origin);
             const std::string name = link.name + (count == 0 ? "" : " " + std::to_string(count + 1));
             ++count;
             if (name == kWorkpieceName) throw core::InputError("link 'workpiece': the name is that of the part");
             links_of_bodies_.push_back(link.name);
-            robot_.bodies.push_back({name, index, solid_of(*collision->geometry, T, link.name)});
+            robot_.bodies.push_back({name, index, urdf_solid(*collision->geometry, T, files)});
         }
-    }
-
-    Solid solid_of(const urdf::Geometry& geometry, const Isometry3d& T, const std::string& link) const
-    {
-        const auto check = [&](double length) {
-            if (!(length > 0 && length * kMmPerMetre <= kMaxLength))
-                throw core::InputError("link '" + link + "': a length of its collision shape is " +
-                                       core::to_short_text(length) + " m");
-            return length * kMmPerMetre;
-        };
-        if (const auto* sphere = dynamic_cast<const urdf::Sphere*>(&geometry))
-            return solid::Sphere{T.translation(), check(sphere->radius)};
-        if (const auto* box = dynamic_cast<const urdf::Box*>(&geometry))
-            return solid::Box{T, Vector3d(check(box->dim.x), check(box->dim.y), check(box->dim.z)) / 2};
-        if (const auto* cylinder = dynamic_cast<const urdf::Cylinder*>(&geometry)) {
-            const Vector3d half(0, 0, check(cylinder->length) / 2);
-            return solid::Cylinder{T * Vector3d(-half), T * half, check(cylinder->radius)};
-        }
-        return mesh_solid(dynamic_cast<const urdf::Mesh&>(geometry), T, link);
-    }
-
-    Solid mesh_solid(const urdf::Mesh& shape, const Isometry3d& T, const std::string& link) const
-    {
-        const std::string path = resolve(shape.filename, link);
-        const mesh::Mesh mesh = mesh::read_mesh(path, units::Units::Length::m);
-        const Vector3d scale(shape.scale.x, shape.scale.y, shape.scale.z);
-        if (!scale.allFinite() || scale.cwiseAbs().minCoeff() == 0)
-            throw core::InputError("link '" + link + "': the scale of its mesh is 0");
-        const Eigen::Matrix3Xd points = scale.asDiagonal() * mesh.vertices;
-        return solid::Hull{T * hull_points(points)};
-    }
-
-    std::string resolve(const std::string& name, const std::string& link) const
-    {
-        const std::string package = "package://", file = "file://";
-        std::filesystem::path path = name;
-        if (name.starts_with(package)) {
-            const std::string rest = name.substr(package.size());
-            const std::string called = rest.substr(0, rest.find('/'));
-            const auto found = options_.packages.find(called);
-            if (found == options_.packages.end())
-                throw core::InputError("link '" + link + "': " + name + ": where is the package? --package " + called +
-                                       "=DIR says it");
-            path = std::filesystem::path(found->second) / rest.substr(std::min(called.size() + 1, rest.size()));
-        } else if (name.starts_with(file)) {
-            path = name.substr(file.size());
-        } else if (path.is_relative()) {
-            path = std::filesystem::path(source_).parent_path() / path;
-        }
-        std::string suffix = path.extension().string();
-        std::ranges::transform(suffix, suffix.begin(), [](unsigned char c) { return std::tolower(c); });
-        if (suffix == ".dae")
-            throw core::InputError("link '" + link + "': " + name + ": COLLADA is not read; convert it to STL");
-        if (!std::filesystem::exists(path))
-            throw core::InputError("link '" + link + "': there is no mesh " + path.string());
-        return path.string();
     }
 
     const urdf::ModelInterface& model_;

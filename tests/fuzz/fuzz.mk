@@ -11,7 +11,7 @@ FUZZ_LIBRARY := $(wildcard $(addprefix lib/,$(addsuffix /*.cc,core geometry unit
     $(addprefix belt/,contact_wheel belt_journal_file assess running_error) \
     $(addprefix machining/,nc_block nc_arc nc_program nc_writer cutter_path cutter) \
     $(addprefix part/,spec surface anomalies outline profile) sampling/noise \
-    $(addprefix robot/,robot body_json hull_points simplex urdf srdf dh_from_axes arm arm_newton arm_parallel)))
+    $(addprefix robot/,robot body_json hull_points simplex urdf urdf_shapes srdf dh_from_axes arm arm_newton arm_parallel)))
 FUZZ_LIBRARY := $(patsubst %.cc,$(B)/fuzz/%.o,$(FUZZ_LIBRARY))
 FUZZ_FLAGS = $(filter-out -O% -DNDEBUG --param ggc-%,$(CXXFLAGS)) -O1 -fsanitize=address,undefined,float-cast-overflow -fno-sanitize-recover=all \
     -Wno-psabi -Wno-unused-const-variable
