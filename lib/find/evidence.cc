@@ -15,6 +15,18 @@ constexpr double kMinSeen = 0.05; // share of the shell that is seen, in ratios 
 
 // Logarithms of ratios grow without end where a ring is perfect; beyond this they say no more.
 constexpr double kMaxLogRatio = 4.5;
+constexpr double kMinRatio = 1e-3, kMaxRatio = 1e4; // nor do ratios beyond these; they keep the logarithm finite
+// Spreads that a height is divided by are at least these shares of the ring's, or of the noise: less is chance.
+constexpr double kMinDisagreementShare = 0.3, kMinTextureShare = 0.3, kMinSagShare = 0.1, kMinInstabilityShare = 0.1;
+constexpr double kMaxRoundness = 6; // cells over the square of the thickness: a disc has 0.8, a bead of six widths 6
+// Divisors that bring a feature to about 1, as the weights' penalty expects.
+constexpr double kDegreeScale = 4, kLogCellsScale = 5, kRoundnessScale = 3;
+
+// A candidate outside these is not measured further: they exclude what no anomaly of the training scans came near.
+constexpr double kMinPlausibleSignificance = 4, kMinPlausibleRingSds = 2.5, kMinPlausibleDisagreements = 2; // heights
+constexpr double kMinPlausibleThickness = 3;                                                                // cells
+constexpr double kMaxPlausibleDrop = 0.6, kMaxPlausibleRise = 0.4;
+constexpr double kMinPlausibleInliers = 0.35, kMinPlausibleEnclosure = 0.2, kMinPlausibleEnclosureOrUnseen = 0.35;
 
 /// weight · min(feature, knot).
 struct Term {
@@ -33,7 +45,10 @@ constexpr Term kTerms[] = {
 // Against a reference: standard deviations at which chance and anomaly are as probable, and over which that changes.
 constexpr double kEvenStanding = 6, kStandingScale = 1;
 
-double log_ratio(double a, double b) { return std::min(std::log(std::clamp(a / b, 1e-3, 1e4)), kMaxLogRatio); }
+double log_ratio(double a, double b)
+{
+    return std::min(std::log(std::clamp(a / b, kMinRatio, kMaxRatio)), kMaxLogRatio);
+}
 
 } // namespace
 
@@ -47,14 +62,15 @@ Features features_of(const Evidence& e)
 {
     const double seen = std::max(1 - e.unseen, kMinSeen);
     Features f;
-    f << 1, log_ratio(e.height, e.ring_sd), log_ratio(e.height, std::max(e.disagreement, 0.3 * e.ring_sd)),
-        e.enclosure / seen, e.inliers, e.drop / seen, e.rise / seen,
-        std::log(std::clamp(e.ring_sd / e.noise, 1.0, 1e4)), log_ratio(e.height, std::max(e.texture, 0.3 * e.noise)),
-        e.degree / 4, e.sharpness, e.pits, std::log(e.cells) / 5,
-        std::min(e.cells / (e.thickness * e.thickness), 6.0) / 3, e.unseen,
+    f << 1, log_ratio(e.height, e.ring_sd),
+        log_ratio(e.height, std::max(e.disagreement, kMinDisagreementShare * e.ring_sd)), e.enclosure / seen, e.inliers,
+        e.drop / seen, e.rise / seen, std::log(std::clamp(e.ring_sd / e.noise, 1.0, kMaxRatio)),
+        log_ratio(e.height, std::max(e.texture, kMinTextureShare * e.noise)), e.degree / kDegreeScale, e.sharpness,
+        e.pits, std::log(e.cells) / kLogCellsScale,
+        std::min(e.cells / (e.thickness * e.thickness), kMaxRoundness) / kRoundnessScale, e.unseen,
         std::min(std::log(e.significance()), kMaxLogRatio),
-        log_ratio(e.height, std::max(e.instability, 0.1 * e.ring_sd)),
-        log_ratio(e.height, std::max(e.sag, 0.1 * e.ring_sd)), log_ratio(e.height, e.thickness * e.cell),
+        log_ratio(e.height, std::max(e.instability, kMinInstabilityShare * e.ring_sd)),
+        log_ratio(e.height, std::max(e.sag, kMinSagShare * e.ring_sd)), log_ratio(e.height, e.thickness * e.cell),
         log_ratio(e.height, e.noise);
     return f;
 }
@@ -75,9 +91,11 @@ double probability_against(const Evidence& e)
 
 bool is_plausible(const Evidence& e, const SearchBounds& bounds)
 {
-    return e.height < bounds.max_height && e.height >= bounds.min_height && e.significance() > 4 &&
-           e.height > 2.5 * e.ring_sd && e.height > 2 * e.disagreement && e.thickness >= 3 && e.drop < 0.6 &&
-           e.rise < 0.4 && e.inliers > 0.35 && e.enclosure + e.unseen > 0.35 && e.enclosure > 0.2;
+    return e.height < bounds.max_height && e.height >= bounds.min_height &&
+           e.significance() > kMinPlausibleSignificance && e.height > kMinPlausibleRingSds * e.ring_sd &&
+           e.height > kMinPlausibleDisagreements * e.disagreement && e.thickness >= kMinPlausibleThickness &&
+           e.drop < kMaxPlausibleDrop && e.rise < kMaxPlausibleRise && e.inliers > kMinPlausibleInliers &&
+           e.enclosure + e.unseen > kMinPlausibleEnclosureOrUnseen && e.enclosure > kMinPlausibleEnclosure;
 }
 
 } // namespace fettle::find

@@ -14,9 +14,10 @@ namespace {
 
 using Eigen::Index;
 
-constexpr Index kMaxRingPoints = 450;  // more, evenly left out, change the surface by less than its own error
-constexpr double kCorrelatedCells = 6; // points that stand for an independent one: smoothing scanners correlate
-constexpr double kMinPointsPerTerm = 2.5;
+constexpr Index kMaxRingPoints = 450;     // more, evenly left out, change the surface by less than its own error
+constexpr double kCorrelatedCells = 6;    // points that stand for an independent one: smoothing scanners correlate
+constexpr double kMinPointsPerTerm = 2.5; // independent ones
+constexpr Index kMaxTerms = 15;           // of degree 4, the highest
 
 // The start: least median (here the 0.6 quantile) of absolute residuals (Rousseeuw 1984) over the whole ring and over
 // eight rings with a third of the directions left out, as a part's edge lies on one side. A partial ring must be better
@@ -26,12 +27,19 @@ constexpr double kSectorHalfAngle = std::numbers::pi / 3;
 constexpr double kStartQuantile = 0.6, kQuantilePerSigma = 1.2;
 constexpr double kPartialGain = 0.85;
 constexpr int kStartIterations = 3, kRefineIterations = 6;
+// The start is a quadratic from so many independent points on, and then a plane's or a quadratic's terms have at least
+// so many points each: half of them may be outliers.
+constexpr double kMinQuadraticPoints = 15, kMinStartPointsPerTerm = 3;
+// The first refinements measure the spread of the start's inliers; by then the residuals can tell inliers themselves.
+constexpr int kStartInlierIterations = 2;
 
 constexpr double kStartCutoff = 5, kCutoff = 4.5, kInlierCutoff = 6; // Tukey's, in standard deviations
 constexpr double kMinWeight = 0.05;                                  // below it a point is an outlier
 constexpr double kMinSigmas = 0.5;                                   // a residual spread below half the noise is chance
 constexpr double kMinShare = 1e-3;                                   // of a polynomial in the average
 constexpr double kRingRidge = 1e-9;                                  // of the trace: fixes what few points leave open
+constexpr double kMinSpread = 1e-9;       // mm: of a made ring that is fitted exactly, so that weights stay finite
+constexpr double kMinEigenvalue = 1e-300; // above 0: the inverse stays finite where all weights are 0
 
 Index terms_of(int degree) { return Index(degree + 1) * (degree + 2) / 2; }
 
@@ -102,12 +110,12 @@ Eigen::VectorXd outside_sector(const Ring& ring, int sector)
 /// Weights to start from.
 Eigen::VectorXd start_weights(const Ring& ring)
 {
-    const Eigen::MatrixXd A = basis(ring.xy, ring.independent > 15 ? 2 : 1);
+    const Eigen::MatrixXd A = basis(ring.xy, ring.independent > kMinQuadraticPoints ? 2 : 1);
     Eigen::VectorXd best;
     double best_quantile = std::numeric_limits<double>::infinity();
     for (int sector = -1; sector < kSectors; ++sector) {
         const Eigen::VectorXd chosen = sector < 0 ? Eigen::VectorXd::Ones(ring.z.size()) : outside_sector(ring, sector);
-        if (chosen.sum() < 3.0 * double(A.cols())) continue;
+        if (chosen.sum() < kMinStartPointsPerTerm * double(A.cols())) continue;
         Eigen::VectorXd weights = chosen, residuals;
         for (int iteration = 0; iteration < kStartIterations; ++iteration) {
             residuals = ring.z - A * solve(A, ring.z, weights.cwiseProduct(ring.near));
@@ -115,7 +123,7 @@ Eigen::VectorXd start_weights(const Ring& ring)
             for (Index i = 0; i < residuals.size(); ++i)
                 if (chosen[i] > 0) sizes.push_back(std::abs(residuals[i]));
             const double spread =
-                std::max({geometry::kMedianToSigma * geometry::median(sizes), kMinSigmas * ring.sigma, 1e-9});
+                std::max({geometry::kMedianToSigma * geometry::median(sizes), kMinSigmas * ring.sigma, kMinSpread});
             weights.array() /= (residuals.array().abs() / spread).max(1); // Huber's
         }
         const double quantile = quantile_of_sizes(residuals, kStartQuantile);
@@ -144,17 +152,19 @@ FittedPolynomial fit_polynomial(const Ring& ring, int degree, Eigen::VectorXd we
         std::vector<double> sizes;
         for (Index i = 0; i < weights.size(); ++i) {
             const double size = std::abs(fit.residuals[i]);
-            if (iteration < 2 ? weights[i] > kMinWeight : size < kInlierCutoff * sd) sizes.push_back(size);
+            if (iteration < kStartInlierIterations ? weights[i] > kMinWeight : size < kInlierCutoff * sd)
+                sizes.push_back(size);
         }
         const double spread = sizes.empty() ? sd : geometry::kMedianToSigma * geometry::median(sizes);
-        sd = std::max({spread, kMinSigmas * ring.sigma, 1e-9});
+        sd = std::max({spread, kMinSigmas * ring.sigma, kMinSpread});
         weights = biweights(fit.residuals, kCutoff * sd);
     }
     const Eigen::VectorXd all = weights.cwiseProduct(ring.near);
     const double repeats = double(ring.z.size()) / ring.independent;
     // Semidefinite where few points are left: the root by eigenvalues exists for any.
     const auto [values, vectors] = core::symmetric_eigen<Eigen::Dynamic>(normal_matrix(A, all));
-    const Eigen::VectorXd scales = (repeats / values.array().max(kRingRidge * values.maxCoeff() + 1e-300)).sqrt();
+    const Eigen::VectorXd scales =
+        (repeats / values.array().max(kRingRidge * values.maxCoeff() + kMinEigenvalue)).sqrt();
     fit.polynomial.covariance_root = sd * vectors * scales.asDiagonal();
     fit.polynomial.sd = sd;
     fit.polynomial.inliers = double((weights.array() > kMinWeight).count()) / double(weights.size());
@@ -170,7 +180,7 @@ void set_shares(std::vector<FittedPolynomial>& fits, double independent)
     for (std::size_t k = 0; k < fits.size(); ++k) {
         const double limit = kInlierCutoff * sd;
         const double mean = fits[k].residuals.array().square().min(limit * limit).mean();
-        criteria[Index(k)] = independent * std::log(mean + 1e-18) +
+        criteria[Index(k)] = independent * std::log(mean + kMinSpread * kMinSpread) +
                              double(fits[k].polynomial.coefficients.size()) * std::log(independent);
     }
     Eigen::VectorXd shares = (-0.5 * (criteria.array() - criteria.minCoeff())).exp();
@@ -193,7 +203,7 @@ Ring scaled_ring(const RingPoints& points, double sigma, RingFit& fit)
         ring.near[k] = points.weights[i];
     }
     fit.centre = ring.xy.rowwise().mean();
-    fit.scale = (ring.xy.rowwise().maxCoeff() - ring.xy.rowwise().minCoeff()).maxCoeff() / 2 + 1e-9;
+    fit.scale = (ring.xy.rowwise().maxCoeff() - ring.xy.rowwise().minCoeff()).maxCoeff() / 2 + kMinSpread;
     std::vector<double> heights(ring.z.begin(), ring.z.end());
     fit.height = geometry::median(heights);
     ring.xy = (ring.xy.colwise() - fit.centre) / fit.scale;
@@ -207,7 +217,7 @@ Ring scaled_ring(const RingPoints& points, double sigma, RingFit& fit)
 
 RingFit::Value RingFit::at(double x, double y) const
 {
-    double row[15]; // of degree 4
+    double row[kMaxTerms];
     const double u = (x - centre.x()) / scale, v = (y - centre.y()) / scale;
     monomials(u, v, polynomials.back().degree, row);
     double first = 0, square = 0;
@@ -222,7 +232,7 @@ RingFit::Value RingFit::at(double x, double y) const
 
 double RingFit::z_at(double x, double y) const
 {
-    double row[15];
+    double row[kMaxTerms];
     monomials((x - centre.x()) / scale, (y - centre.y()) / scale, polynomials.back().degree, row);
     return height + mean.dot(Eigen::Map<const Eigen::VectorXd>(row, mean.size()));
 }

@@ -17,7 +17,8 @@ constexpr int kFieldDegree = 5;
 constexpr Index kMonomials = 56; // of three variables, up to that degree
 constexpr int kFieldIterations = 8;
 // Ridge as a share of the mean diagonal: motions along the surface, which no distance shows, stay small.
-constexpr double kFieldRidge = 1e-4;
+constexpr double kFieldRidge = 1e-4, kMinRidge = 1e-12;         // the latter where no point has a weight
+constexpr double kMinFieldScale = 1e-9, kMinFieldCutoff = 1e-9; // mm: points at one place, residuals all 0
 
 using Monomials = Eigen::Matrix<double, kMonomials, 1>;
 
@@ -41,8 +42,8 @@ Eigen::VectorXd weights_of(const Eigen::VectorXd& residuals)
     if (defined.empty()) return Eigen::VectorXd::Zero(residuals.size());
     const double middle = geometry::median(defined);
     for (double& r : defined) r = std::abs(r - middle);
-    const double limit =
-        geometry::kTukeyCutoff * geometry::kMedianToSigma * geometry::median(defined) + std::abs(middle) + 1e-9;
+    const double limit = geometry::kTukeyCutoff * geometry::kMedianToSigma * geometry::median(defined) +
+                         std::abs(middle) + kMinFieldCutoff;
     Eigen::VectorXd weights(residuals.size());
     for (Index i = 0; i < residuals.size(); ++i) {
         const double rest = 1 - residuals[i] * residuals[i] / (limit * limit);
@@ -64,7 +65,7 @@ SlowField fit_slow_field(const Eigen::Matrix3Xd& points, const compare::Referenc
     SlowField field;
     const Eigen::AlignedBox3d box = geometry::bounding_box(points);
     field.centre = box.center();
-    field.scale = std::max(box.sizes().maxCoeff() / 2, 1e-9);
+    field.scale = std::max(box.sizes().maxCoeff() / 2, kMinFieldScale);
     Eigen::Matrix<double, kMonomials, Eigen::Dynamic> basis(kMonomials, points.cols());
     for (Index i = 0; i < points.cols(); ++i) basis.col(i) = monomials_of((points.col(i) - field.centre) / field.scale);
     field.coefficients = Eigen::Matrix3Xd::Zero(3, kMonomials);
@@ -83,7 +84,7 @@ SlowField fit_slow_field(const Eigen::Matrix3Xd& points, const compare::Referenc
         }
         Eigen::MatrixXd N = Eigen::MatrixXd::Zero(A.rows(), A.rows());
         N.selfadjointView<Eigen::Lower>().rankUpdate(A);
-        N.diagonal().array() += kFieldRidge * N.trace() / double(A.rows()) + 1e-12;
+        N.diagonal().array() += kFieldRidge * N.trace() / double(A.rows()) + kMinRidge;
         // LLT: the ridge makes the matrix definite.
         const Eigen::VectorXd solution = N.selfadjointView<Eigen::Lower>().llt().solve(A * b);
         for (int axis = 0; axis < 3; ++axis)

@@ -25,15 +25,17 @@ constexpr double kLayerCells = 3;
 // ones is seen, too.
 constexpr double kCellRatio = 1.25;
 constexpr double kMinFill = 0.8;
+constexpr int kFillRadius = 2; // cells: of the gaps that count as between seen cells
 constexpr int kMaxSpacingQueries = 4000;
 constexpr double kPointsPerGridCell = 3;
 
-// Triangles seen from the side have no height; a mesh has at least so many cells along its diagonal.
 // A mesh has been smoothed and interpolated: its second differences do not show the noise that is left in waves of a
 // few cells. This is its lower bound, in cells; scans have 0.03 to 0.1.
 constexpr double kMinMeshSigmaCells = 0.05;
-constexpr double kMinFacing = 0.17; // 80 degrees
-constexpr double kMinMeshCells = 300, kMaxMeshCells = 3000;
+constexpr double kMinFacing = 0.17; // cosine of 80 degrees: what is seen from the side has no height
+constexpr double kMinMeshCells = 300, kMaxMeshCells = 3000; // along a mesh's diagonal
+constexpr double kMinTriangleArea = 1e-12; // twice the area, in cells: a degenerate triangle covers no cell's centre
+constexpr double kOnEdge = -1e-9;          // barycentric: cells on the common edge of two triangles belong to both
 
 /// Median distance of points of a plane to their nearest others.
 double median_spacing(const Eigen::Matrix2Xd& points)
@@ -72,7 +74,7 @@ HeightMap empty_map(const Eigen::AlignedBox2d& box, double cell)
 double fill_of(const Image& z)
 {
     const Mask seen = finite(z);
-    return double(cv::countNonZero(seen)) / std::max(1, cv::countNonZero(closed(seen, 2)));
+    return double(cv::countNonZero(seen)) / std::max(1, cv::countNonZero(closed(seen, kFillRadius)));
 }
 
 HeightMap map_of_points(const Eigen::Matrix3Xd& placed, const Eigen::AlignedBox2d& box, double cell)
@@ -112,11 +114,10 @@ void draw(HeightMap& map, const Eigen::Matrix3d& corners)
         (Eigen::Matrix2d() << (corners.col(1) - corners.col(0)).head<2>(), (corners.col(2) - corners.col(0)).head<2>())
             .finished();
     const double area = edges.determinant();
-    if (!(std::abs(area) > 1e-12 * map.cell * map.cell)) return;
+    if (!(std::abs(area) > kMinTriangleArea * map.cell * map.cell)) return;
     const Eigen::Matrix2d inverse = edges.inverse();
     const Eigen::Vector2d low = (corners.topRows<2>().rowwise().minCoeff() - map.origin) / map.cell;
     const Eigen::Vector2d high = (corners.topRows<2>().rowwise().maxCoeff() - map.origin) / map.cell;
-    constexpr double kOnEdge = -1e-9; // cells on the common edge of two triangles belong to both
     for (int y = std::max(0, int(std::ceil(low.y()))); y <= std::min(map.z.rows - 1, int(high.y())); ++y)
         for (int x = std::max(0, int(std::ceil(low.x()))); x <= std::min(map.z.cols - 1, int(high.x())); ++x) {
             const Eigen::Vector2d weights = inverse * (map.point_at(x, y) - corners.col(0).head<2>());
