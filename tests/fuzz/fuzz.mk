@@ -4,7 +4,7 @@ FUZZ_RUNS ?= -1
 FUZZ_SECONDS ?= $(if $(filter -1,$(FUZZ_RUNS)),60,0)
 FUZZ_TARGETS := $(patsubst tests/fuzz/%.cc,%,$(wildcard tests/fuzz/*.cc))
 # What the readers are made of: whole modules, and of the others the files that the targets call.
-FUZZ_LIBRARY := $(wildcard $(addprefix lib/,$(addsuffix /*.cc,core geometry units json cloud job surface plan removal))) \
+FUZZ_SOURCES := $(wildcard $(addprefix lib/,$(addsuffix /*.cc,core geometry units json cloud job surface plan removal))) \
     $(addprefix lib/,$(addsuffix .cc,$(addprefix mesh/,mesh mesh_file three_mf stl obj off polygons equal_corners) \
     $(addprefix gantry/,protocol serve driver driver_checks driver_halt head_check child machine virtual_gantry quasi_static) \
     $(addprefix strategy/,trace trace_file run_identity steering joystick keys) align/rigid compare/comparison_report \
@@ -12,7 +12,14 @@ FUZZ_LIBRARY := $(wildcard $(addprefix lib/,$(addsuffix /*.cc,core geometry unit
     $(addprefix machining/,nc_block nc_arc nc_program nc_writer cutter_path cutter) \
     $(addprefix part/,spec surface anomalies outline profile) sampling/noise \
     $(addprefix robot/,robot body_json hull_points simplex urdf urdf_shapes srdf dh_from_axes arm arm_newton arm_parallel)))
-FUZZ_LIBRARY := $(patsubst %.cc,$(B)/fuzz/%.o,$(FUZZ_LIBRARY))
+# Compiled in bundles, as the library is.
+ifneq ($(filter $(B)/fuzz/%,$(MAKECMDGOALS)),)
+include $(B)/fuzz/archives.mk
+endif
+$(B)/fuzz/archives.mk: lib/archives Makefile tests/fuzz/fuzz.mk $(FUZZ_SOURCES)
+	@mkdir -p $(@D)
+	@ALONE="$(ALONE)" LEFT_OUT="$(filter-out $(FUZZ_SOURCES),$(wildcard lib/*/*.cc))" lib/archives $(B)/fuzz $(BUNDLE) | sed 's/^/FUZZ_/' > $@
+FUZZ_LIBRARY = $(foreach module,$(sort $(foreach source,$(FUZZ_SOURCES),$(word 2,$(subst /, ,$(source))))),$(FUZZ_OBJECTS_$(module)))
 FUZZ_FLAGS = $(filter-out -O% -DNDEBUG --param ggc-%,$(CXXFLAGS)) -O1 -fsanitize=address,undefined,float-cast-overflow -fno-sanitize-recover=all \
     -Wno-psabi -Wno-unused-const-variable
 
@@ -35,9 +42,14 @@ $(B)/fuzz/precompiled.h.pch: lib/precompiled.h
 	@mkdir -p $(@D)
 	$(FUZZ_CXX) $(CPPFLAGS) $(FUZZ_FLAGS) -fsanitize=fuzzer-no-link -MMD -MP -x c++-header -c $< -o $@
 
-$(B)/fuzz/%.o: %.cc | $(B)/fuzz/precompiled.h.pch
+define fuzz_compile
 	@mkdir -p $(@D)
 	$(FUZZ_CXX) $(CPPFLAGS) $(FUZZ_FLAGS) -fsanitize=fuzzer-no-link -include-pch $(B)/fuzz/precompiled.h.pch -MMD -MP -c $< -o $@
+endef
+$(B)/fuzz/%.o: %.cc | $(B)/fuzz/precompiled.h.pch
+	$(fuzz_compile)
+$(B)/fuzz/%.o: $(B)/fuzz/%.cc | $(B)/fuzz/precompiled.h.pch
+	$(fuzz_compile)
 
 $(B)/fuzz/library.a: $(FUZZ_LIBRARY)
 	@rm -f $@
