@@ -22,7 +22,7 @@ struct SurfaceFoot {
 SurfaceFoot foot_on_surface(const Adaptor3d_Surface& surface, const Eigen::Vector2d& start,
                             const Eigen::Vector3d& point);
 
-/// The same on a curve, within the limits of its parameter.
+/// The closest point on a curve, within the limits of its parameter; see foot_on_surface.
 struct CurveFoot {
     double t;
     Eigen::Vector3d point; ///< mm

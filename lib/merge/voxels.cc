@@ -39,7 +39,8 @@ struct Moments {
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
     Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero(); ///< Σ (p - mean)(p - mean)ᵀ
 
-    /// Of both together (Chan, Golub & LeVeque, Updating formulae for computing sample variances, 1979).
+    /// Makes these the moments of both sets together (Chan, Golub & LeVeque, Updating formulae for computing sample
+    /// variances, 1979).
     void add(const Moments& other)
     {
         const Eigen::Vector3d between = other.mean - mean;

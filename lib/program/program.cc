@@ -18,7 +18,7 @@ namespace {
 
 using cloud::Motion;
 
-// Of a program's name: the shortest bound of the four languages.
+// Maximum length of a program's name: the shortest bound of the four languages.
 constexpr std::size_t kMaxNameLength = 16;
 // Below this cosine of the second angle the first and the third turn about one axis.
 constexpr double kMinAngleCosine = 1e-9;

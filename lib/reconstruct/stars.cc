@@ -31,7 +31,8 @@ double weight_of(Eigen::Index point)
     const double multiple = static_cast<double>(point) * kGolden;
     return multiple - std::floor(multiple);
 }
-// Of the squared spacing: more than noise of a twentieth of the spacing changes, and too little to hide a point.
+// Weights relative to the squared spacing: more than noise of a twentieth of the spacing changes, too little to hide a
+// point.
 constexpr double kWeightScale = 5e-3;
 
 double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
@@ -67,7 +68,7 @@ std::vector<Spoke> star_of(Eigen::Index i, const geometry::PointIndex<3>& index,
         spokes.push_back(
             {place, (length * length + weight) / 2, std::atan2(place.y(), place.x()), static_cast<int>(k)});
     }
-    // Of several in one direction the nearest, which comes first, stays.
+    // The nearest spoke of several in one direction comes first, and stays.
     std::ranges::stable_sort(spokes, {}, &Spoke::angle);
     const auto repeated = std::ranges::unique(spokes, {}, &Spoke::angle);
     spokes.erase(repeated.begin(), repeated.end());

@@ -18,7 +18,7 @@ struct Feedrate {
 /// Times at which the poses are reached, s, from 0: the tip moves at its feed, or slower where the tool would turn too
 /// fast. The motions to and from a NaN pose take no time.
 Eigen::VectorXd arrival_times(const cloud::PosePath& poses, const Feedrate& feed);
-/// The same with a speed of the tip for the motion to each pose. @param speeds  N, mm/s   @param turn_rate  rad/s
+/// Arrival times with a speed of the tip for the motion to each pose. @param speeds  N, mm/s   @param turn_rate  rad/s
 Eigen::VectorXd arrival_times(const cloud::PosePath& poses, const Eigen::VectorXd& speeds, double turn_rate);
 
 /// Largest speed and acceleration of one joint along a path; rad/s and rad/s² (track: mm/s and mm/s²).

@@ -51,7 +51,7 @@ ForceDownChoice choose_force_down(const job::Job& job, const surface::Surface& s
 
 json::Value to_json(const ForceDownChoice& choice, const units::Units& units)
 {
-    // Of 6.5 lbf the conversion to N and back leaves 6.500000000000001.
+    // Conversion to N and back makes 6.500000000000001 of 6.5 lbf.
     const auto in_units = [&](double force) { return std::round(force / units.newton() * 1e9) / 1e9; };
     std::vector<json::Value> trials;
     for (const ForceDownTrial& trial : choice.trials)

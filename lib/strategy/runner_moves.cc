@@ -25,7 +25,8 @@ constexpr double kSteeper = 1.5; ///< the next climb relative to the last ones, 
 constexpr int kPiecesOnWall = 2; ///< of a step there: the force is read in the middle, too
 /// What is left of the steepest climb after a step: walls go on behind an edge.
 constexpr double kClimbMemory = 0.85;
-/// Of drives that stop, mm/s²: a laboratory gantry with ball screws. A machine behind a driver does not say its own.
+/// Deceleration of drives that stop, mm/s²: a laboratory gantry with ball screws. A machine behind a driver does not
+/// say its own.
 constexpr double kAcceleration = 1000;
 /// Slope that metal ahead may have where the wheel was set down on it.
 constexpr double kUnknownSlope = 0.7;

@@ -29,7 +29,7 @@ function pickPoint(camera, layer, x, y) {
         near.push([i, dx * dx + dy * dy, depth]);
         if (depth > bestDepth) bestDepth = depth;
     }
-    // Of those of the front surface the one nearest to the pointer.
+    // The nearest to the pointer of those on the front surface is picked.
     const behind = Math.max(4 * layer.spacing, 4 * radius * camera.scale);
     let nearest = Infinity, depth = 0;
     for (const [i, distance, d] of near)

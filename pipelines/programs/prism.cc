@@ -32,7 +32,7 @@ constexpr double kNoTolerance = 1e3; // mm
 // Lines are read from a file: a step-over equal to their distance within rounding reaches the next one.
 constexpr double kRelativeLineTolerance = 1e-6;
 
-/// Of neighbouring layers, mm.
+/// Distance of neighbouring layers, mm.
 double layer_distance(const job::Job& job, double removal_factor)
 {
     return job.removal_coefficient * removal_factor * job.force.max / (job.feed.step_over * job.feed.rate);

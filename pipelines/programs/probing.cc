@@ -25,7 +25,7 @@ using namespace cells;
 namespace {
 
 constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
-// Of Wang's touches, percent.
+// Shares of Wang's number of touches, percent.
 constexpr int kShares[] = {20, 25, 30, 35, 40, 45, 50, 55, 60, 65, 70, 75, 80, 85, 90, 95, 100};
 constexpr int kMinTouches = 6; // that a fit takes
 

@@ -95,7 +95,7 @@ Eigen::Vector3d mean_normal(const mesh::Mesh& mesh)
     return sum.normalized();
 }
 
-/// Of least squares; a cloud is seen from above.
+/// Normal of the least-squares plane, upwards: a cloud is seen from above.
 Eigen::Vector3d mean_normal(const cloud::Cloud& cloud)
 {
     const Eigen::Matrix3Xd about = cloud.xyz.colwise() - cloud.xyz.rowwise().mean().eval();

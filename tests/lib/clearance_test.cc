@@ -314,7 +314,8 @@ TEST(Clearance, TrianglesAgainstPoints)
     }
 }
 
-// Of points: as the distance of a tiny triangle there; and above the tangent plane at any other point.
+// A point's signed distance is that of a tiny triangle there; as a function of the point it is convex, so that it lies
+// above its tangent plane at any other point.
 TEST(Clearance, PointsAndTangentPlanes)
 {
     Draw draw(11);

@@ -81,7 +81,7 @@ TEST(Strokes, LeaveNoPlaceTooHighAndMoveByNeighbours)
 
 TEST(Strokes, GoOnlyWhereTooMuchIsLeft)
 {
-    // Of 20 places two in the middle need a second visit: back from the far end to one beyond them, and on to the
+    // Two in the middle of 20 places need a second visit: back from the far end to one beyond them, and on to the
     // nearer end.
     const auto passes = square(1, 20);
     strategy::LayerSwitching strategy(passes, settings());

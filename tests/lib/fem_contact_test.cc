@@ -78,7 +78,7 @@ TEST(FemContact, AgreesWithLayerTheory)
         }
 }
 
-// Of second order: half the elements' sides, a quarter of the error.
+// Convergence is of second order: half the elements' sides, a quarter of the error.
 TEST(FemContact, ConvergesToLayerTheory)
 {
     for (const double poisson : {0.3, 0.499}) {

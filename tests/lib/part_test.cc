@@ -238,7 +238,7 @@ TEST(Scan, OnlyWhatIsSeenFromAboveIsLifted)
     EXPECT_NEAR(highest, 11, 0.02);
 }
 
-// Of 20 x 20 squares those that lie in the region, with their corners, and no more.
+// Those of 20 x 20 squares that lie in the region are kept with their corners, and no more.
 TEST(Scan, MeshIsCropped)
 {
     const OwnFolder folder;

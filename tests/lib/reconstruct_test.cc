@@ -240,7 +240,7 @@ TEST(Reconstruct, ProfilesAreJoinedAlongTheirOrder)
         const Eigen::Matrix3d p = below.mesh.points.xyz(Eigen::all, below.mesh.triangles.col(0));
         EXPECT_LT((p.col(1) - p.col(0)).cross(p.col(2) - p.col(0)).z(), 0);
     }
-    // The same points in another order are no profiles.
+    // Profiles whose points come in another order are not recognised as such.
     cloud::Cloud scan = profiler_scan(1);
     std::mt19937_64 random(6);
     for (Eigen::Index i = scan.size(); i > 1; --i) {

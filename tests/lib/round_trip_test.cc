@@ -39,7 +39,7 @@ class Random {
     std::uint64_t bits() { return engine_(); }
     double between(double min, double max) { return std::uniform_real_distribution<double>(min, max)(engine_); }
     int integer(int min, int max) { return std::uniform_int_distribution<int>(min, max)(engine_); }
-    /// Of any size, denormals too.
+    /// A finite number of any size, denormals too.
     template <typename T>
     T finite()
     {
