@@ -228,7 +228,7 @@ BROWSER_RUNS := $(patsubst %.sh,%.case,$(sort $(wildcard tests/browser/*.sh)))
 .PHONY: $(CASE_RUNS) $(TEST_RUNS) $(LINUXCNC_RUNS) $(BROWSER_RUNS)
 
 # More at once than there are processors: some wait most of their time.
-# Of one tool: what its cases name. Statistical tests take a quarter of their draws, with test-all all of them.
+# For one tool only what its cases name is built. Statistical tests take a quarter of their draws, with test-all all of them.
 test: export FETTLE_DRAWS ?= $(if $(filter test-all,$(MAKECMDGOALS)),all,few)
 test-all: test
 # While what only tests need is installed, the tools that do without it are built: one of two processors had nothing to do.
@@ -275,7 +275,7 @@ $(CASE_RUNS) $(LINUXCNC_RUNS) $(BROWSER_RUNS): %.case: %.sh
 $(TEST_RUNS): %.run: %
 	tests/run $(B) $<
 
-# Of lib/, by the tests, in a build of its own. Four cases fail in it: its programs write profiles, and complain where they cannot.
+# Coverage of lib/ by the tests, in a build of its own. Four cases fail in it: its programs write profiles, and complain where they cannot.
 coverage: deps
 	@-$(MAKE) --no-print-directory test-all B=$(B)/coverage CXXFLAGS="-O1 -g1 --coverage" LDFLAGS=--coverage
 	@tests/coverage $(B)/coverage > $(B)/coverage/report; sed '/:/,$$d' $(B)/coverage/report

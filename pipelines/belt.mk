@@ -55,7 +55,7 @@ $(BELT)/edge/ground.pcd: FEED = 40
 
 # --- the removal law from measured trials ----------------------------------------------------------------------------------
 TRIALS ?= samples/removal
-# Of the contact, mm², and of the belt in a revolution, mm, which is not published: of the fitted law it scales coefficient and wear_work.
+# Area of the contact, mm², and length of the belt in a revolution, mm, which is not published: of the fitted law it scales coefficient and wear_work.
 AREA   ?= 50
 TRAVEL ?= 100
 
@@ -74,7 +74,7 @@ $(BELT)/law/wheel.json: $(BELT)/law/static.json samples/wheels/rubber.json
 $(BELT)/%/stock.stl: $(BELT)/%/design $(B)/study/stock
 	$(B)/study/stock $< $(UNITS) --min 0.2 --max 0.6 -o $@
 
-# Of third-party meshes only the piece with the most surfels is used: at the edges of the other pieces facets overlap.
+# Only the piece of a third-party mesh with the most surfels is used: at the edges of the other pieces facets overlap.
 KEEP = cat
 $(BELT)/nasa/work.pcd $(BELT)/handle/work.pcd: KEEP = pipelines/belt-points largest
 $(BELT)/%/work.pcd: $(BELT)/%/design $(BELT)/%/stock.stl $(B)/bin/fettle-surfel pipelines/belt-points
@@ -151,7 +151,7 @@ $(BELT)/%/report.html: $(BELT)/%/ground.pcd $(BELT)/%/left.pcd $(BELT)/%/errors.
 # closer together. BELT/plan/VARY/report.json is the plan's account, constant/ and planned/ have what is left.
 VARY  ?= feed force
 FINER ?= $(shell awk 'BEGIN { print 0.7 * $(SPACING) }')
-# Of the points along a row, mm.
+# Distance of the points along a row, mm.
 STEP  ?= 1.25
 LIMITS_feed  := --min 0.5 --max 200
 LIMITS_force := --min 1 --max 40

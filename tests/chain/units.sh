@@ -1,4 +1,4 @@
-# The same job in inches and in mm ends in the same error map. Reference: identity; float coordinates in inches and in mm
+# One job in inches and in mm ends in the same error map. Reference: identity; float coordinates in inches and in mm
 # round differently, by some 4e-6 mm.
 jq '(.. | numbers) *= 1
     | .units = {length: "mm", force: "N"}

@@ -1,4 +1,4 @@
-# The same bytes for any number of threads, for a mesh and for a cloud as reference.
+# Any number of threads writes the same bytes, for a mesh and for a cloud as reference.
 fettle-part "$SAMPLES/parts/hammer.json" >part.stl
 fettle-align part.stl --to part.stl --near --iterations 0 -o cloud.pcd
 for reference in "$SAMPLES/scans/hammer.stl" cloud.pcd; do

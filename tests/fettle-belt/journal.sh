@@ -26,7 +26,7 @@ done
 [ $kills -gt 0 ]
 (run killed --journal run.journal)
 for end in pcd trace json csv; do cmp whole.$end killed.$end; done
-# Of a run that is done the journal gives the result again.
+# The journal of a run that is done gives the result again.
 (run again --journal run.journal)
 cmp whole.pcd again.pcd
 cmp whole.csv again.csv

@@ -46,7 +46,7 @@ fettle-belt plate.pcd --wheel wheel.json --ascii --path both.pcd | cmp - fine.ou
 sed '$s/nan 10/0.2 10/' both.pcd > last.pcd
 fettle-belt plate.pcd --wheel wheel.json --path last.pcd --ascii --trace last.trace > last.out
 sed '1,/^DATA/d' last.trace | awk 'NR < 21 && ($9 - 10) ^ 2 > 1e-9 || NR == 21 && ($12 - 0.2) ^ 2 > 1e-12 { exit 1 } END { exit NR != 21 }'
-# The same in inches.
+# A strip in inches gives the same.
 awk '/^VERSION/ { print "# units in N" } /^-*[0-9]/ { $1 /= 25.4; $2 /= 25.4; $3 /= 25.4; $10 /= 25.4 }
     /^-*[0-9]/ && $8 != "nan" { $8 /= 25.4 } { print }' last.pcd > inches.pcd
 fettle-belt plate.pcd --wheel wheel.json --path inches.pcd --ascii | fettle-diff - last.out --tol 1e-6

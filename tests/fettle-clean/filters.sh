@@ -30,7 +30,7 @@ jq '.units.length = "in" | (.anomaly, .sampling) |= map(map(. / 25.4))' job.json
 printf '0 0 0\n1 0 0\n' | fettle-clean --report report.json > two.pcd
 jq -e '.at_origin == 0 and .points_left == 2' report.json > ok
 
-# Of a grid with 1 mm between its points and one far off: that one is the outlier, by both filters.
+# Both filters find the one outlier, far off a grid with 1 mm between its points.
 awk 'BEGIN { for (x = 0; x < 10; ++x) for (y = 0; y < 10; ++y) print x, y, 0; print 5, 5, 40 }' > grid.xyz
 for filter in statistical:4,3 radius:1.1,2; do
     fettle-clean grid.xyz --outliers $filter --ascii --report report.json | sed '1,/^DATA/d' > left

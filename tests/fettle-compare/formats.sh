@@ -1,4 +1,4 @@
-# The same error map in every format. Reference: the heights of four points over a plate, by hand.
+# Every format gives the same error map. Reference: the heights of four points over a plate, by hand.
 printf 'v 0 0 0\nv 10 0 0\nv 10 10 0\nv 0 10 0\nf 1 2 3 4\n' >plate.obj
 printf 'x y z layer\n1 1 0.5 7\n5 5 -0.25 8\n9 2 0 9\n12 8 0.25 10\n' >test.xyz
 compare() { fettle-compare test.xyz --to plate.obj --tolerance 0.5 "$@"; }

@@ -1,4 +1,4 @@
-# The same bytes from any number of threads: a wavy grid against itself, moved.
+# Any number of threads writes the same bytes: a wavy grid against itself, moved.
 wavy() { awk -v lift="$1" 'BEGIN { for (i = 0; i < 60; i++) for (j = 0; j < 60; j++) print i, j, sin(i / 7) + cos(j / 5) + lift * i * j }'; }
 wavy 0 >reference.xyz
 wavy 1e-4 >test.xyz

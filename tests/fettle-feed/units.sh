@@ -1,4 +1,4 @@
-# The same plan in mm, inches and metres, and in pounds: numbers and fields scale as their dimensions; limits that are not given are
+# One plan in mm, inches and metres, and in pounds: numbers and fields scale as their dimensions; limits that are not given are
 # the same lengths a second, whatever the unit. Reference: the plan in mm; rounding decides at the rim of the contact,
 # which moves the results by less than 2 %.
 # shellcheck source=tests/fettle-contact/plate.bash

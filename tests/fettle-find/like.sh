@@ -1,4 +1,4 @@
-# The same casting again: yesterday's jobs are found on today's part, which lies elsewhere, without a doubt; a place where nothing stands any
+# A casting of the same kind comes again: yesterday's jobs are found on today's part, which lies elsewhere, without a doubt; a place where nothing stands any
 # more is named. Reference: today's part without its bead and burr; the part turned by a known motion.
 settings=$SAMPLES/jobs/hammer.json
 fettle-part "$SAMPLES/parts/hammer.json" -o yesterday.stl

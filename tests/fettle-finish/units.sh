@@ -1,4 +1,4 @@
-# The same design in mm, inches and metres gives the same path, in mm; taken for the wrong unit it is warned of. Reference: each other.
+# One design in mm, inches and metres gives the same path, in mm; taken for the wrong unit it is warned of. Reference: each other.
 printf 'OFF\n4 2 0\n0 0 5\n40 0 8\n40 30 5\n0 30 4\n3 0 1 2\n3 0 2 3\n' > mm.off
 for unit in mm in m; do
     case $unit in mm) mm=1 ;; in) mm=25.4 ;; m) mm=1000 ;; esac

@@ -1,4 +1,4 @@
-# The same touches as a job in inches and one in millimetres, and as millimetres read into the job in inches.
+# One set of touches gives one surface: in a job in inches, in one in millimetres, and as millimetres read into the job in inches.
 # Reference: each other.
 source "$HERE/points.bash"
 job freeform | sed 's/1e-4/0.005/' >in.json

@@ -1,4 +1,4 @@
-# The same work through the driver's protocol: the same trace, byte for byte, as on the simulated machines themselves; and the
+# Work through the driver's protocol leaves the same trace, byte for byte, as on the simulated machines themselves; and the
 # part as the machine knows it is the part as it is, but for the wear of the wheel. References: each other.
 # shellcheck source=tests/fettle-grind/stock.bash
 . "$HERE/stock.bash"

@@ -1,4 +1,4 @@
-# The same bytes with one thread and two. Reference: each other.
+# One thread and two write the same bytes. Reference: each other.
 # shellcheck source=tests/fettle-grind/stock.bash
 . "$HERE/stock.bash"
 make_job 30

@@ -1,4 +1,4 @@
-# The same work in inches and pounds as in millimetres and newtons. Reference: the identity 1 in = 25.4 mm, 1 lbf =
+# Work in inches and pounds gives what it does in millimetres and newtons. Reference: the identity 1 in = 25.4 mm, 1 lbf =
 # 4.4482216152605 N.
 # shellcheck source=tests/fettle-grind/stock.bash
 . "$HERE/stock.bash"

@@ -1,4 +1,4 @@
-# Of a level surface whose height alone is uncertain, sigma 0.2 mm, shift and band at four confidences. Reference: the normal distribution's
+# Shift and band of a level surface whose height alone is uncertain, sigma 0.2 mm, at four confidences. Reference: the normal distribution's
 # one-sided and two-sided quantiles, by Newton's method on python's erf. Tolerance: at confidence c a quantile of 8192 draws has the standard
 # error sqrt(c (1 - c) / 8192) over the density there; four of them at 99 % are 0.033 mm, at lower confidences less.
 cat > surface.json << 'JSON'

@@ -26,7 +26,7 @@ fettle-place part.pcd --matrix views/2.txt -o there.pcd
 fettle-compare there.pcd --to "$SAMPLES/scans/hammer.stl" --report errors.json -o errors.pcd
 jq -e '.undefined <= 5 and .p99 < 0.2 and .p01 > -0.2 and (.p50 | fabs) < 0.02' errors.json >ok
 
-# The same bytes for any number of threads; from given poses no search, and the same poses.
+# Any number of threads writes the same bytes; from given poses no search, and the same poses.
 fettle-merge views/[1-4].pcd --threads 1 -o one.pcd --report one.json
 fettle-merge views/[1-4].pcd --threads 2 -o two.pcd --report two.json
 cmp one.pcd two.pcd

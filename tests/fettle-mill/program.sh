@@ -1,4 +1,4 @@
-# The same path as points, as a program, as one in inches and as one of relative words is the same machining: the same
+# One path as points, as a program, as one in inches and as one of relative words is the same machining: the same
 # bytes. Reference: each other.
 printf '0 0 10\n10 0 4\n20 8 4\n20 16 10\n' > path.xyz
 printf 'G0 X0 Y0 Z10\nG1 X10 Z4 F600\nX20 Y8\nY16 Z10\n' > mm.nc

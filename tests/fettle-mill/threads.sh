@@ -1,4 +1,4 @@
-# The same bytes with one thread and two. Reference: each other.
+# One thread and two write the same bytes. Reference: each other.
 for n in 1 2; do
     fettle-mill "$SAMPLES/programs/pocket.nc" --stock box:0,0,-12,80,60,0 --cutter taper:6,15,1 --step 0.1 --threads $n \
         --report $n.json > $n.stl

@@ -1,4 +1,4 @@
-# The same stock, design and points in mm, inches and metres: all numbers and fields of what comes out are the same, in mm.
+# One stock, design and points in mm, inches and metres: all numbers and fields of what comes out are the same, in mm.
 # Reference: each other.
 printf 'OFF\n6 8 0\n0 0 0\n30 0 0\n0 20 0\n0 0 9\n30 0 5\n0 20 5\n3 0 2 1\n3 3 4 5\n3 0 1 4\n3 0 4 3\n3 1 2 5\n3 1 5 4\n3 2 0 3\n3 2 3 5\n' > stock.off
 header='# .PCD v0.7\n# units %s\nVERSION 0.7\nFIELDS x y z feed\nSIZE 8 8 8 8\nTYPE F F F F\nCOUNT 1 1 1 1\nWIDTH 4\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 4\nDATA ascii\n'

@@ -1,4 +1,4 @@
-# The same job in inches and in mm gives the same touches, and so does a part in metres that is said to be. Reference:
+# One job in inches and in mm gives the same touches, and so does a part in metres that is said to be. Reference:
 # identity; 1e-4 mm is the resolution of the float coordinates.
 cat > in.json <<'JOB'
 {"kind": "job", "units": {"length": "in"}, "surface": {"type": "freeform"},

@@ -1,4 +1,4 @@
-# The same points as CloudCompare saves them, with and without index and label, and as pcd_viewer says them, make the same job; it holds the
+# Points as CloudCompare saves them, with and without index and label, and as pcd_viewer says them, make the same job; it holds the
 # points and what was given, and is read by the next tool. Units: points in mm for a job in inches. References: the numbers.
 printf '0.5,0.5,0.75\n2.5,0.5,0.75\n\n2.5,2.5,0.75\n0.5,2.5,0.76\n' > plain.txt
 awk -F, 'NF { print "Point #" n++ "," 17 + n "," $0 }' plain.txt > labelled.txt

@@ -1,4 +1,4 @@
-# The same surfaces in mm, inches and metres: all numbers and fields of what comes out are the same, in mm. Reference: each other.
+# One pair of surfaces in mm, inches and metres: all numbers and fields of what comes out are the same, in mm. Reference: each other.
 # shellcheck source=tests/fettle-verify/offset.bash
 . "$HERE/offset.bash"
 ramp 0.5 0 -2 12 7 | awk 'NF == 3 && NR > 2 { $3 += 0.002 * $1 * $1 * $2 } { print }' > design.off

@@ -14,7 +14,7 @@ fettle-manual "$SAMPLES/jobs/wang1.json" --stock part.stl --gantry "exec:$(drive
     --steer steer.txt --lowest -0.1 --trace trace.pcd --report report.json > seen.pcd
 jq -c '[.within, .contact_time, .removed_volume, .peak_force]' report.json
 jq -e '.within >= 0.95 and .contact_time > 20 and .removed_volume > 0.1 and .peak_force < 15' report.json > ok
-# The same from the servo thread itself: contact is more than a twentieth of the force.
+# The servo thread itself sees it too: contact is more than a twentieth of the force.
 awk -v lbf=4.4482216 '{ f = $4 / lbf } f > 0.5 { ++n; if (f >= 9 && f <= 11) ++good }
     END { print n " ms, " good / n; exit !(n > 20000 && good >= 0.95 * n) }' record
 

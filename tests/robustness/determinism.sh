@@ -1,4 +1,4 @@
-# The same bytes of every output of every tool: with 1, 2 and 8 threads, a second time, to stdout as to a file, without a home folder, and
+# Every output of every tool has the same bytes: with 1, 2 and 8 threads, a second time, to stdout as to a file, without a home folder, and
 # where decimals have commas. Clouds of four thousand points, so that there is work for more than one thread.
 # shellcheck source=tests/robustness/tools.bash
 . "$HERE/tools.bash"

@@ -13,7 +13,7 @@ jq -es 'map(.layers) == [2, 4] and (.[0].layer_distance - 0.15 | fabs) < 1e-9 an
 for table in prism overlap; do
     /usr/bin/python3 -c 'import csv, sys; rows = list(csv.reader(open(sys.argv[1]))); assert len(rows) > 1 and {len(r) for r in rows} == {11}' "all/$table.csv"
 done
-# Of the pictures those of the parts that are ground.
+# Only the pictures of the parts that are ground are made.
 make -n --no-print-directory -C "$root" -f pipelines/strategy.mk B="$build" STRATEGY="$PWD/none" PARTS=moon FACTORS=1 > plan
 grep -q moon.png plan && [ "$(grep -c hills plan)" = 0 ]
 awk '/^FIELDS/ { for (i = 2; i <= NF; i++) if ($i == "force") at = i - 1 } body { $at = 1 } /^DATA/ { body = 1 } { print }' all/hill/1/tall.pcd > air.pcd
