@@ -17,6 +17,16 @@ namespace {
 const std::vector<std::string> kKinds = {"flatness", "cylindricity", "sphericity", "straightness"}; // as FormKind
 constexpr double kMaxOverlap = 100; // sections that a point may belong to: bounds time and memory
 
+void check_sections(const std::string& kind, const std::optional<double>& spacing, const std::optional<double>& width)
+{
+    if (spacing && kind != "straightness")
+        throw core::InputError("--sections", "goes with straightness, not with " + kind);
+    if (width && !spacing) throw core::InputError("--section-width", "goes with --sections");
+    if (width && *width > kMaxOverlap * *spacing)
+        throw core::InputError("--section-width",
+                               "must be at most " + core::to_text(kMaxOverlap) + " times --sections");
+}
+
 } // namespace
 
 int main(int argc, char** argv)
@@ -55,12 +65,7 @@ int main(int argc, char** argv)
                   "how flat a scanned panel is, in the unit that the file states");
         t.reference("ISO 12781 (flatness), 12180 (cylindricity), 12780 (straightness), 1101; Wang 2007, 6.2");
         t.parse();
-        if (spacing && kind != "straightness")
-            throw core::InputError("--sections", "goes with straightness, not with " + kind);
-        if (width && !spacing) throw core::InputError("--section-width", "goes with --sections");
-        if (width && *width > kMaxOverlap * *spacing)
-            throw core::InputError("--section-width",
-                                   "must be at most " + core::to_text(kMaxOverlap) + " times --sections");
+        check_sections(kind, spacing, width);
 
         compare::FormRequest request;
         request.kind = static_cast<compare::FormKind>(std::ranges::find(kKinds, kind) - kKinds.begin());

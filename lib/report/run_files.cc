@@ -2,7 +2,6 @@
 
 #include "cloud/pcd.h"
 #include "cloud/pcd_header.h"
-#include "core/constants.h"
 #include "core/digest.h"
 #include "core/error.h"
 #include "core/file.h"
@@ -42,93 +41,6 @@ class Files {
   private:
     std::vector<SourceFile> sources_;
 };
-
-double number_or_nan(json::Reader& reader, const std::string& key)
-{
-    return reader.has(key) && reader.is_null_or_missing(key) ? core::kNaN : reader.number(key);
-}
-
-NamedNumbers read_numbers(json::Reader& reader, std::initializer_list<const char*> keys)
-{
-    NamedNumbers numbers;
-    for (const char* key : keys) numbers[key] = number_or_nan(reader, key);
-    return numbers;
-}
-
-NamedNumbers read_statistics(json::Reader& reader)
-{
-    return read_numbers(reader, {"count", "undefined", "mean", "mean_abs", "rms", "sd", "min", "max", "band", "p01",
-                                 "p05", "p50", "p95", "p99", "within", "over_cut_area", "under_cut_area",
-                                 "over_cut_volume", "under_cut_volume"});
-}
-
-ComparisonReport read_comparison(json::Reader& reader)
-{
-    ComparisonReport report;
-    report.regions.emplace_back("all", read_statistics(reader));
-    if (std::optional<json::Reader> regions = reader.optional_object("regions"))
-        for (const char* name : {"inside", "around", "outside"})
-            if (std::optional<json::Reader> region = regions->optional_object(name))
-                report.regions.emplace_back(name, read_statistics(*region));
-    if (std::optional<json::Reader> histogram = reader.optional_object("histogram")) {
-        report.limit = histogram->number("limit", core::Range::positive());
-        report.below = histogram->number("below");
-        report.above = histogram->number("above");
-        const Eigen::VectorXd counts = histogram->vector("counts");
-        report.counts.assign(counts.begin(), counts.end());
-    }
-    if (!reader.has("verdict")) return report;
-    report.within = reader.choice("verdict", {"within", "out of tolerance"}) == "within";
-    report.reversed = reader.has("reverse");
-    report.judged = reader.choice("judged", {"all", "inside"});
-    report.tolerance = reader.number("tolerance", core::Range::at_least(0));
-    report.worst = number_or_nan(reader, "worst");
-    if (report.judged == "inside" && (report.regions.size() == 1 || report.regions[1].first != report.judged))
-        reader.refuse("judged", "there is no region 'inside'");
-    return report;
-}
-
-Eigen::Matrix4d read_matrix(json::Reader& reader)
-{
-    const Eigen::MatrixXd rows = reader.matrix("transform", 4);
-    if (rows.rows() != 4) reader.refuse("transform", "expected 4 rows");
-    return rows;
-}
-
-AlignmentReport read_alignment(json::Reader& reader)
-{
-    const NamedNumbers numbers =
-        read_numbers(reader, {"count", "overlap", "max_distance", "median", "p95", "rms", "determined"});
-    AlignmentReport report{numbers, read_matrix(reader), reader.text_or("doubt", ""), {}};
-    if (std::optional<json::Reader> next = reader.optional_object("next"); next && next->has("transform"))
-        if (next->flag_or("nearly_as_good", false))
-            report.other_place = {read_numbers(*next, {"turn_deg", "shift", "misfit"}), read_matrix(*next)};
-    return report;
-}
-
-FormReport read_form(json::Reader& reader)
-{
-    FormReport report;
-    report.form = reader.text("form");
-    report.parameter = reader.text_or("parameter", "");
-    report.numbers = read_numbers(reader, {"count", "dropped", "outliers", "least_squares", "minimum_zone"});
-    return report;
-}
-
-GrindReport read_grinding(json::Reader& reader)
-{
-    GrindReport report;
-    if (!reader.has("finished")) reader.refuse("finished", "missing");
-    report.finished = reader.flag_or("finished", false);
-    report.numbers = read_numbers(reader, {"removed_volume", "machine_time", "grinding_time", "travel_time",
-                                           "service_time", "layers", "coverings", "re_cuts", "raises", "passes",
-                                           "steps", "peak_force", "touch_offs", "wheel_changes", "wheel_radius"});
-    if (!reader.has("peak_at")) return report; // by an older fettle-grind
-    report.peak_at = reader.vector("peak_at", 3);
-    for (const char* key : {"peak_layer", "strokes", "contact_time", "in_range"})
-        report.numbers[key] = reader.number(key, core::Range::at_least(0));
-    return report;
-}
 
 void require(const cloud::Cloud& cloud, const std::vector<std::string>& fields, const std::string& source)
 {
@@ -190,45 +102,57 @@ void drop_unfinished_action(cloud::Cloud& trace, const std::string& source, std:
     warnings.push_back(source + ": the run was killed in the middle of a move, which is left out");
 }
 
-} // namespace
+/// Reads the files of a run in the order in which they depend on each other: units and frame come from the first.
+class RunReader {
+  public:
+    explicit RunReader(const RunFileNames& names) : names_(names) {}
 
-const NamedNumbers& ComparisonReport::region(const std::string& name) const
-{
-    return std::ranges::find(regions, name, &std::pair<std::string, NamedNumbers>::first)->second;
-}
+    RunFiles read()
+    {
+        read_design();
+        read_grinding_files();
+        read_results();
+        run_.units = units_.value_or(units::Units{});
+        run_.sources = std::move(files_).sources();
+        if (run_.sources.empty()) throw core::InputError("nothing to report: name at least one file of the run");
+        return std::move(run_);
+    }
 
-RunFiles read_run(const RunFileNames& names)
-{
-    Files files;
-    RunFiles run;
-    std::optional<units::Units> units; // those of the first file that states them
-    const auto agree = [&](const units::Units& stated, const std::string& path) {
-        if (units && units->length != stated.length)
+  private:
+    void agree(const units::Units& stated, const std::string& path)
+    {
+        if (units_ && units_->length != stated.length)
             throw core::InputError(core::display_name(path), "in " + units::to_string(stated.length) +
                                                                  ", but the run is in " +
-                                                                 units::to_string(units->length));
-        if (!units) units = stated;
-    };
-    const auto cloud = [&](const std::string& role, const std::string& path, const std::vector<std::string>& fields) {
-        Files::Content content = files.read(role, path);
-        if (role == kTraceRole) content.bytes = take_whole_rows(content.bytes, content.source, run.warnings);
-        cloud::CloudFile file = cloud::parse_cloud(content.bytes, content.source, units);
+                                                                 units::to_string(units_->length));
+        if (!units_) units_ = stated;
+    }
+
+    cloud::Cloud cloud(const std::string& role, const std::string& path, const std::vector<std::string>& fields)
+    {
+        Files::Content content = files_.read(role, path);
+        if (role == kTraceRole) content.bytes = take_whole_rows(content.bytes, content.source, run_.warnings);
+        cloud::CloudFile file = cloud::parse_cloud(content.bytes, content.source, units_);
         agree(file.units, path);
         require(file.cloud, fields, content.source);
-        if (run.job) job::move_to_job_frame(file.cloud, *run.job);
+        if (run_.job) job::move_to_job_frame(file.cloud, *run_.job);
         return std::move(file.cloud);
-    };
-    const auto part = [&](const std::string& role, const std::string& path,
-                          const std::optional<units::Units::Length>& stated) -> mesh::MeshOrCloud {
-        const Files::Content content = files.read(role, path);
+    }
+
+    mesh::MeshOrCloud part(const std::string& role, const std::string& path,
+                           const std::optional<units::Units::Length>& stated)
+    {
+        const Files::Content content = files_.read(role, path);
         mesh::MeshOrCloud shape =
-            mesh::parse_shape(content.bytes, content.source, mesh::resolve_file_units(stated, units)).shape;
-        if (run.job) job::move_to_job_frame(shape, *run.job);
+            mesh::parse_shape(content.bytes, content.source, mesh::resolve_file_units(stated, units_)).shape;
+        if (run_.job) job::move_to_job_frame(shape, *run_.job);
         return shape;
-    };
-    const auto report = [&](const std::string& role, const std::string& kind, const std::string& path,
-                            const auto& content) {
-        json::Reader reader = files.json(role, path);
+    }
+
+    template <typename Content>
+    auto report(const std::string& role, const std::string& kind, const std::string& path, const Content& content)
+    {
+        json::Reader reader = files_.json(role, path);
         reader.expect_kind(kind);
         json::Reader stated = reader.object("units");
         agree({units::parse_length_unit(stated.choice("length", {"mm", "in", "m"})),
@@ -236,40 +160,57 @@ RunFiles read_run(const RunFileNames& names)
                                    : units::Units{}.force},
               path);
         return content(reader);
-    };
-    if (!names.job.empty()) {
-        run.job = job::parse_job(files.json("job", names.job));
-        units = run.job->units;
     }
-    if (!names.plan.empty()) {
-        run.plan = plan::parse_plan(files.json("plan", names.plan));
-        agree(run.plan->job.units, names.plan);
+
+    void read_design()
+    {
+        if (!names_.job.empty()) {
+            run_.job = job::parse_job(files_.json("job", names_.job));
+            units_ = run_.job->units;
+        }
+        if (!names_.plan.empty()) {
+            run_.plan = plan::parse_plan(files_.json("plan", names_.plan));
+            agree(run_.plan->job.units, names_.plan);
+        }
+        if (!names_.surface.empty()) {
+            run_.surface = surface::parse_surface(files_.json("desired surface", names_.surface));
+            agree(run_.surface->units, names_.surface);
+        }
+        run_.warnings = mismatch_warnings(run_, names_);
+        if (run_.plan && !run_.job) run_.job = run_.plan->job;
+        if (run_.plan && !run_.surface) run_.surface = run_.plan->surface;
     }
-    if (!names.surface.empty()) {
-        run.surface = surface::parse_surface(files.json("desired surface", names.surface));
-        agree(run.surface->units, names.surface);
+
+    void read_grinding_files()
+    {
+        if (!names_.samples.empty()) run_.samples = cloud("touches", names_.samples, {});
+        if (!names_.grinding.empty()) run_.grinding = report("grinding", "grinding", names_.grinding, read_grinding);
+        if (names_.trace.empty()) return;
+        run_.trace = cloud(kTraceRole, names_.trace, {"t", "layer", "event", "force", "feed"});
+        drop_unfinished_action(*run_.trace, core::display_name(names_.trace), run_.warnings);
+        check_trace(*run_.trace, core::display_name(names_.trace));
     }
-    run.warnings = mismatch_warnings(run, names);
-    if (run.plan && !run.job) run.job = run.plan->job;
-    if (run.plan && !run.surface) run.surface = run.plan->surface;
-    if (!names.samples.empty()) run.samples = cloud("touches", names.samples, {});
-    if (!names.grinding.empty()) run.grinding = report("grinding", "grinding", names.grinding, read_grinding);
-    if (!names.trace.empty()) {
-        run.trace = cloud(kTraceRole, names.trace, {"t", "layer", "event", "force", "feed"});
-        drop_unfinished_action(*run.trace, core::display_name(names.trace), run.warnings);
-        check_trace(*run.trace, core::display_name(names.trace));
+
+    void read_results()
+    {
+        if (!names_.errors.empty()) run_.errors = cloud("error map", names_.errors, {"error"});
+        if (!names_.comparison.empty())
+            run_.comparison = report("comparison", "comparison", names_.comparison, read_comparison);
+        if (!names_.alignment.empty())
+            run_.alignment = report("registration", "alignment", names_.alignment, read_alignment);
+        if (!names_.form.empty()) run_.form = report("form", "form", names_.form, read_form);
+        if (!names_.before.empty()) run_.before = part("part before", names_.before, names_.before_units);
+        if (!names_.after.empty()) run_.after = part("part after", names_.after, std::nullopt);
     }
-    if (!names.errors.empty()) run.errors = cloud("error map", names.errors, {"error"});
-    if (!names.comparison.empty())
-        run.comparison = report("comparison", "comparison", names.comparison, read_comparison);
-    if (!names.alignment.empty()) run.alignment = report("registration", "alignment", names.alignment, read_alignment);
-    if (!names.form.empty()) run.form = report("form", "form", names.form, read_form);
-    if (!names.before.empty()) run.before = part("part before", names.before, names.before_units);
-    if (!names.after.empty()) run.after = part("part after", names.after, std::nullopt);
-    run.units = units.value_or(units::Units{});
-    run.sources = std::move(files).sources();
-    if (run.sources.empty()) throw core::InputError("nothing to report: name at least one file of the run");
-    return run;
-}
+
+    const RunFileNames& names_;
+    Files files_;
+    RunFiles run_;
+    std::optional<units::Units> units_; ///< of the first file that states them
+};
+
+} // namespace
+
+RunFiles read_run(const RunFileNames& names) { return RunReader(names).read(); }
 
 } // namespace fettle::report

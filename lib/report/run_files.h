@@ -4,61 +4,15 @@
 #include "job/job.h"
 #include "mesh/shape_file.h"
 #include "plan/plan.h"
+#include "report/tool_reports.h"
 #include "surface/surface.h"
 #include "units/units.h"
 
-#include <map>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace fettle::report {
-
-/// Numbers of a JSON report by key, in the units of its file; null is NaN.
-using NamedNumbers = std::map<std::string, double>;
-
-/// Report of fettle-compare.
-struct ComparisonReport {
-    std::vector<std::pair<std::string, NamedNumbers>> regions; ///< "all" first, then the regions of the job
-    std::string judged;                                        ///< judged region; empty: no tolerance, no verdict
-    bool reversed = false;                                     ///< the verdict includes both directions of comparison
-    bool within = false;                                       ///< is the worst error within the tolerance?
-    double tolerance = 0, worst = 0;
-    double limit = 0;            ///< of the histogram, whose bins have equal widths from -limit to limit
-    std::vector<double> counts;  ///< of the bins
-    double below = 0, above = 0; ///< errors beyond the limit
-
-    /// @param name  an existing region: "all" or the judged one
-    const NamedNumbers& region(const std::string& name) const;
-};
-
-/// Report of fettle-grind.
-struct GrindReport {
-    bool finished = false;
-    NamedNumbers numbers;
-    Eigen::VectorXd peak_at; ///< place of the peak force, in the run's units; empty: not known
-};
-
-/// Where else a scan nearly fits its reference.
-struct OtherPlace {
-    NamedNumbers numbers; ///< turn_deg, shift from the place that was taken, misfit
-    Eigen::Matrix4d transform;
-};
-
-/// Report of fettle-align.
-struct AlignmentReport {
-    NamedNumbers numbers; ///< lengths in the run's units
-    Eigen::Matrix4d transform;
-    std::string doubt;                     ///< why the result may be wrong; empty: no known reason
-    std::optional<OtherPlace> other_place; ///< only if it fits nearly as well
-};
-
-/// Report of fettle-form.
-struct FormReport {
-    std::string form, parameter; ///< such as "flatness" and "FLTt"; the second may be empty
-    NamedNumbers numbers;
-};
 
 /// A file that was read.
 struct SourceFile {
