@@ -38,7 +38,7 @@ struct Term {
 constexpr double kNoKnot = std::numeric_limits<double>::infinity();
 
 // The model, made by pipelines/programs/find-train.cc; docs/methods/find.md says from what.
-constexpr Term kTerms[] = {
+constexpr Term kModelTerms[] = {
 #include "find/weights.inc"
 };
 
@@ -79,7 +79,7 @@ double probability_of(const Evidence& evidence)
 {
     const Features features = features_of(evidence);
     double score = 0;
-    for (const Term& term : kTerms) score += term.weight * std::min(features[term.feature], term.knot);
+    for (const Term& term : kModelTerms) score += term.weight * std::min(features[term.feature], term.knot);
     return 1 / (1 + std::exp(-score));
 }
 
