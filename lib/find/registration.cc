@@ -1,11 +1,14 @@
 #include "find/registration.h"
 
+#include "align/icp.h"
 #include "compare/signed_distance.h"
+#include "core/constants.h"
 #include "find/slow_field.h"
 
 #include <tbb/parallel_for.h>
 
 #include <memory>
+#include <utility>
 
 namespace fettle::find {
 namespace {
@@ -18,6 +21,37 @@ align::OrientedPoints oriented_points_of(const mesh::CloudMesh& part)
 {
     return part.is_mesh() ? align::oriented_points(mesh::Mesh{part.points.xyz, part.triangles})
                           : align::oriented_points(part.points);
+}
+
+// A bend makes the right pose fit worse than a wrong one, on which some of the part lies flat: by up to this factor of
+// the mean square distances of the points that overlap.
+constexpr double kMaxBentMisfitRatio = 9;
+
+/// How far a part is from its reference once the slow field between both is taken off, mm².
+double misfit_beyond_slow_field(const Eigen::Matrix3Xd& points, const compare::Reference& reference)
+{
+    const SlowField field = fit_slow_field(points, reference);
+    Eigen::Matrix3Xd unbent = points;
+    for (auto point : unbent.colwise()) point -= field.at(point);
+    std::vector<double> distances;
+    for (const double error : reference(unbent).error)
+        if (std::isfinite(error)) distances.push_back(std::abs(error));
+    if (distances.empty()) return core::kInfinity;
+    return align::estimate_overlap(Eigen::Map<Eigen::VectorXd>(distances.data(), Eigen::Index(distances.size())), 0)
+        .misfit;
+}
+
+/// Exchanges the two best poses if the second one fits better, the slow field taken off.
+void choose_bent_pose(align::Alignment& alignment, const align::OrientedPoints& points,
+                      const mesh::MeshOrCloud& reference)
+{
+    if (!alignment.second_best || alignment.second_best->misfit > kMaxBentMisfitRatio * alignment.fit.misfit) return;
+    const auto distances = std::visit([](const auto& shape) { return compare::Reference(shape, {}); }, reference);
+    const Eigen::Matrix3Xd some = points.xyz(Eigen::all, align::evenly_spaced_indices(points.xyz.cols(), kFieldPoints));
+    const auto misfit = [&](const align::IcpFit& fit) {
+        return misfit_beyond_slow_field(fit.T_reference_scan * some, distances);
+    };
+    if (misfit(*alignment.second_best) < misfit(alignment.fit)) std::swap(alignment.fit, *alignment.second_best);
 }
 
 } // namespace
@@ -40,7 +74,8 @@ Registration register_part(const mesh::CloudMesh& part, const mesh::MeshOrCloud&
         std::visit([](const auto& shape) { return std::make_unique<align::AlignReference>(shape); }, reference);
     const align::OrientedPoints points = oriented_points_of(part);
     const align::AlignOptions options;
-    const align::Alignment alignment = align::align(points, *target, options);
+    align::Alignment alignment = align::align(points, *target, options);
+    choose_bent_pose(alignment, points, reference);
     return {alignment.fit.T_reference_scan, alignment.fit.converged, align::doubts(alignment, options.icp)};
 }
 

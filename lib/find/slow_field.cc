@@ -24,12 +24,14 @@ using Monomials = Eigen::Matrix<double, kMonomials, 1>;
 
 Monomials monomials_of(const Eigen::Vector3d& p)
 {
+    Eigen::Matrix<double, 3, kFieldDegree + 1> powers;
+    powers.col(0).setOnes();
+    for (int k = 0; k < kFieldDegree; ++k) powers.col(k + 1) = powers.col(k).cwiseProduct(p);
     Monomials result;
     Index k = 0;
     for (int total = 0; total <= kFieldDegree; ++total)
         for (int a = 0; a <= total; ++a)
-            for (int b = 0; a + b <= total; ++b)
-                result[k++] = std::pow(p.x(), a) * std::pow(p.y(), b) * std::pow(p.z(), total - a - b);
+            for (int b = 0; a + b <= total; ++b) result[k++] = powers(0, a) * powers(1, b) * powers(2, total - a - b);
     return result;
 }
 
