@@ -164,9 +164,12 @@ std::pair<find::Registration, mesh::MeshOrCloud> registered(const Options& o, co
 find::FindResult find_against(const Options& o, const find::FindOptions& options, const mesh::CloudMeshFile& part,
                               const std::string& name)
 {
-    const auto [registration, reference] = registered(o, o.against, part, name);
-    const find::SignedDistances distances = find::signed_distances(part.part, reference, registration.T_reference_part);
-    return cli::with_error_prefix(name, [&] { return find::find_anomalies_against(part.part, distances, options); });
+    const std::pair<find::Registration, mesh::MeshOrCloud> against = registered(o, o.against, part, name);
+    return cli::with_error_prefix(name, [&] {
+        const find::SignedDistances distances =
+            find::signed_distances(part.part, against.second, against.first.T_reference_part);
+        return find::find_anomalies_against(part.part, distances, options);
+    });
 }
 
 // What is less probable by itself is no anomaly, whatever stood there on an earlier casting.

@@ -1,6 +1,7 @@
 #include "find/find.h"
 
 #include "find/description.h"
+#include "find/refinement.h"
 
 #include "core/error.h"
 
@@ -83,6 +84,18 @@ FindResult merge(const mesh::CloudMesh& part, const std::vector<SeenSide>& sides
     return result;
 }
 
+// Cells across: less is a line, and has no metal around an anomaly.
+constexpr double kMinSurfaceWidth = 3;
+
+/// @throws InputError if no side shows a surface
+void check_surface(const std::vector<SeenSide>& sides)
+{
+    double width = 0;
+    for (const SeenSide& side : sides) width = std::max(width, thickness_of(side.surface.seen));
+    if (width <= kMinSurfaceWidth)
+        throw core::InputError("no surface: its points lie on lines, as those of a single profile, or are too few");
+}
+
 /// Signed distances of what a side shows, as a map.
 HeightMap distance_map(const SeenSide& side, const SignedDistances& distances)
 {
@@ -109,9 +122,10 @@ FindResult find_anomalies(const mesh::CloudMesh& part, const FindOptions& option
         SeenSide side{view, height_map(part, view), {}, false, {}};
         clean(side.surface);
         side.searched = side.surface;
-        search(side, options);
         sides.push_back(std::move(side));
     }
+    check_surface(sides);
+    for (SeenSide& side : sides) search(side, options);
     return merge(part, sides);
 }
 

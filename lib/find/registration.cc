@@ -3,11 +3,19 @@
 #include "align/icp.h"
 #include "compare/signed_distance.h"
 #include "core/constants.h"
+#include "core/error.h"
 #include "find/slow_field.h"
+#include "find/view.h"
+
+#include "geometry/bounding_box.h"
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
 #include <memory>
+#include <sstream>
 #include <utility>
 
 namespace fettle::find {
@@ -47,7 +55,7 @@ void choose_bent_pose(align::Alignment& alignment, const align::OrientedPoints& 
 {
     if (!alignment.second_best || alignment.second_best->misfit > kMaxBentMisfitRatio * alignment.fit.misfit) return;
     const auto distances = std::visit([](const auto& shape) { return compare::Reference(shape, {}); }, reference);
-    const Eigen::Matrix3Xd some = points.xyz(Eigen::all, align::evenly_spaced_indices(points.xyz.cols(), kFieldPoints));
+    const Eigen::Matrix3Xd some = points.xyz(Eigen::all, scattered_indices(points.xyz.cols(), kFieldPoints));
     const auto misfit = [&](const align::IcpFit& fit) {
         return misfit_beyond_slow_field(fit.T_reference_scan * some, distances);
     };
@@ -79,6 +87,28 @@ Registration register_part(const mesh::CloudMesh& part, const mesh::MeshOrCloud&
     return {alignment.fit.T_reference_scan, alignment.fit.converged, align::doubts(alignment, options.icp)};
 }
 
+namespace {
+
+// Warp and anomalies leave this share of a part within this share of its diagonal of its reference. A field could bend
+// any part onto any other.
+constexpr double kMinSameShare = 0.75, kMaxSameDistance = 0.01;
+
+/// @throws InputError if the part is not that of the reference
+void check_same_part(const Eigen::Matrix3Xd& points, const compare::Reference& reference)
+{
+    const double limit = kMaxSameDistance * geometry::bounding_box(points).diagonal().norm();
+    const Eigen::VectorXd errors = reference(points).error;
+    const auto near = std::ranges::count_if(errors, [&](double error) { return std::abs(error) <= limit; });
+    if (double(near) >= kMinSameShare * double(errors.size())) return;
+    std::ostringstream text;
+    text << "is not the part of the reference, or more than that: "
+         << std::lround(100 - 100 * double(near) / double(errors.size())) << " % of its points lie more than "
+         << std::setprecision(2) << limit << " mm off it";
+    throw core::InputError(text.str());
+}
+
+} // namespace
+
 SignedDistances signed_distances(const mesh::CloudMesh& part, const mesh::MeshOrCloud& reference,
                                  const Eigen::Isometry3d& T_reference_part)
 {
@@ -87,9 +117,12 @@ SignedDistances signed_distances(const mesh::CloudMesh& part, const mesh::MeshOr
         reference);
     const align::OrientedPoints samples =
         part.is_mesh() ? align::oriented_points(mesh::Mesh{part.points.xyz, part.triangles}, kFieldPoints)
-                       : align::oriented_points(cloud::select_points(
-                             part.points, align::evenly_spaced_indices(part.points.size(), kFieldPoints)));
-    const SlowField field = fit_slow_field(T_reference_part * samples.xyz, *distances);
+                       : align::oriented_points(
+                             cloud::select_points(part.points, scattered_indices(part.points.size(), kFieldPoints)));
+    const Eigen::Matrix3Xd placed_samples = T_reference_part * samples.xyz;
+    check_same_part(placed_samples, *distances);
+    const SlowField field = fit_slow_field(placed_samples, *distances);
+
     return [distances, field, T_reference_part](const Eigen::Matrix3Xd& points) -> Eigen::VectorXd {
         Eigen::Matrix3Xd placed = T_reference_part * points;
         tbb::parallel_for(Eigen::Index{0}, placed.cols(), [&](Eigen::Index i) {

@@ -164,6 +164,10 @@ HeightMap height_map(const mesh::CloudMesh& part, const View& view)
         placed.conservativeResize(Eigen::NoChange, count);
     }
     if (placed.cols() == 0) throw core::InputError("no point is finite");
+    if (!part.is_mesh() && double(placed.cols()) > kMaxCells)
+        throw core::InputError(std::to_string(placed.cols()) + " points are more than a map of " +
+                               std::to_string(int(kMaxCells / 1e6)) +
+                               " million cells shows: thin them first (fettle-clean --thin)");
     const Eigen::AlignedBox2d box(placed.topRows<2>().rowwise().minCoeff(), placed.topRows<2>().rowwise().maxCoeff());
     if (part.is_mesh()) return map_of_mesh(part, placed, box);
     HeightMap map;

@@ -18,12 +18,16 @@ refuses '--against: is needed by --transform-in' facet.off --transform-in T.txt
 refuses 'left.stl: an STL has no fields: write PLY, or the points as PCD' same.xyz -o left.stl
 [ ! -e left.stl ]
 
-# One profile, points without any order, a sheet with a block of NaN, two sheets far apart: nothing is found, and nothing is wrong.
 awk 'BEGIN { for (x = 0; x < 500; ++x) print x / 10, 0, sin(x / 90) }' > profile.xyz
+refuses 'profile.xyz: no surface: its points lie on lines, as those of a single profile' profile.xyz
+# A reference of another part: a field could bend any part onto any other. Reference: the plate and the hammer's head.
+refuses 'is not the part of the reference' "$SAMPLES/scans/hammer.stl" --against "$SAMPLES/designs/plate.stl"
+
+# Points without any order, a sheet with a block of NaN, two sheets far apart: nothing is found, and nothing is wrong.
 awk 'BEGIN { srand(5); for (i = 0; i < 2000; ++i) print 99 * rand(), 99 * rand(), 99 * rand() }' > scattered.xyz
 awk 'BEGIN { for (y = 0; y < 60; ++y) for (x = 0; x < 60; ++x) if (x > 20 && x < 35 && y > 20 && y < 35) print "nan nan nan"; else print x, y, 0.001 * x * x }' > block.xyz
 awk 'BEGIN { for (y = 0; y < 60; ++y) for (x = 0; x < 60; ++x) { print x, y, 0.01 * x; print x + 300, y, 40 } }' > two.xyz
-for part in profile scattered block two; do
+for part in scattered block two; do
     fettle-find $part.xyz --report $part.json > $part.pcd
     jq -e '.anomalies == []' $part.json > ok
 done
