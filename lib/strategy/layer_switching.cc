@@ -15,8 +15,8 @@ constexpr double kRelativeLineTolerance = 1e-6;
 } // namespace
 
 LayerSwitching::LayerSwitching(const std::vector<plan::ToolPass>& passes, const Settings& settings,
-                               ForcePrediction prediction)
-    : passes_(passes), settings_(settings), prediction_(std::move(prediction))
+                               ForcePredictions predictions)
+    : passes_(passes), settings_(settings), predictions_(std::move(predictions))
 {
     levels_.push_back({});
 }
@@ -107,7 +107,8 @@ Action LayerSwitching::advance_above_layer_1(double force)
     level.cut.push_back(level.at);
     const bool in_range = force >= settings_.force_min;
     const bool pass_ended =
-        !in_range && (level.met_metal || std::abs(along(level.at) - level.pass_start) >= settings_.step_over);
+        !in_range && (level.met_metal || std::abs(along(level.at) - level.pass_start) >= settings_.step_over ||
+                      starts_below_force_min(level.at, level.direction, level.pass_start));
     level.met_metal = level.met_metal || in_range;
 
     const int point = level.at.point + level.direction;
@@ -118,10 +119,28 @@ Action LayerSwitching::advance_above_layer_1(double force)
         return act(Action::Kind::grind, Event::none);
     }
     const int next = farthest_pass(level.at.pass);
-    if (level.met_metal && next < int(passes_.size()))
-        return step_over_to(next, nearest_point(next, along(level.at)), false);
+    if (level.met_metal && next < int(passes_.size())) {
+        const PathIndex start = {next, nearest_point(next, along(level.at))};
+        if (!starts_below_force_min(start, -level.direction, along(start)))
+            return step_over_to(start.pass, start.point, false);
+    }
     cut_ended_ = true;
     return act(Action::Kind::stay, Event::cut_end);
+}
+
+/// Whether the force is expected to stay below F_min, from here, on the rest of a pass's first stretch: it would end
+/// the cut.
+bool LayerSwitching::starts_below_force_min(const PathIndex& from, int direction, double pass_start) const
+{
+    if (!predictions_.expected) return false;
+    const int interval = interval_of(from.pass, from.point);
+    std::vector<PathIndex> stretch;
+    for (PathIndex at = from; at.point >= 0 && at.point <= last_point(at.pass); at.point += direction) {
+        if (interval_of(at.pass, at.point) != interval) break;
+        stretch.push_back(at);
+        if (std::abs(along(at) - pass_start) >= settings_.step_over) break;
+    }
+    return stretch.size() > 1 && predictions_.expected(stretch, layer()) < settings_.force_min;
 }
 
 /// At the end of a stroke on which too much was left: turns back over the stretch where it was, plus a point on either
@@ -182,7 +201,7 @@ Action LayerSwitching::end_cut()
 bool LayerSwitching::needs_re_cut(const Level& level) const
 {
     return level.max_force > settings_.force_down &&
-           !(prediction_ && prediction_(level.cut, layer()) <= settings_.force_down);
+           !(predictions_.upper_bound && predictions_.upper_bound(level.cut, layer()) <= settings_.force_down);
 }
 
 Action LayerSwitching::start_covering(Event event)

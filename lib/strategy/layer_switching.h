@@ -60,8 +60,13 @@ struct Action {
     int layer = 1;
 };
 
-/// Predicts the largest force, N, of grinding once more in `layer` at these points, one after the other.
+/// Predictions of the largest force, N, of grinding in `layer` at these points, one after the other. Either may be
+/// empty: nothing is known.
 using ForcePrediction = std::function<double(const std::vector<PathIndex>& points, int layer)>;
+struct ForcePredictions {
+    ForcePrediction upper_bound; ///< in the hardest stock
+    ForcePrediction expected;    ///< in stock as the job says
+};
 
 struct StrategyCounts {
     int highest_layer = 1;
@@ -85,7 +90,8 @@ struct StrategyCounts {
 /// 3. Above layer 1, F < F_min ends a pass: step over, reverse. F < F_min at the beginning of a pass ends the cut. Its
 ///    largest force F_a > F_down: cut again from where this layer was entered; else down one layer, to the position
 ///    where that was left, and on in its direction. Where the forces of the cut predict that the next one would not
-///    exceed F_down, it is left out.
+///    exceed F_down, it is left out, and so is the beginning of a pass, or the rest of it,
+///    where the force is expected to stay below F_min.
 ///
 /// The beginning of a pass is its first stretch, as long as the step-over: an edge of the anomaly that recedes by up to
 /// 45° from pass to pass is still followed. The lines of the staircase that are closer than the step-over serve the
@@ -102,9 +108,8 @@ class LayerSwitching {
     };
 
     /// @param passes  must outlive the strategy; only their lines, positions and intervals are used
-    /// @param prediction  may be empty
     LayerSwitching(const std::vector<plan::ToolPass>& passes, const Settings& settings,
-                   ForcePrediction prediction = {});
+                   ForcePredictions predictions = {});
 
     Action first();
     Action next(const Measurement& measurement);
@@ -145,6 +150,7 @@ class LayerSwitching {
     int last_point() const { return last_point(levels_.back().at.pass); }
     int last_point(int pass) const { return int(passes_[pass].along.size()) - 1; }
     Action advance_above_layer_1(double force);
+    bool starts_below_force_min(const PathIndex& from, int direction, double pass_start) const;
     Action end_cut();
     bool needs_re_cut(const Level& level) const;
     Action start_covering(Event event);
@@ -159,7 +165,7 @@ class LayerSwitching {
 
     const std::vector<plan::ToolPass>& passes_;
     Settings settings_;
-    ForcePrediction prediction_;
+    ForcePredictions predictions_;
     std::vector<Level> levels_; ///< stack of layers 1, 2, …; the last is the current one
     bool cut_ended_ = false;
     bool roughing_ = false;

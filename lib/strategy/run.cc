@@ -28,8 +28,7 @@ Runner::Runner(const plan::Plan& plan, gantry::Gantry& gantry, const RunOptions&
     : plan_(plan), options_(options),
       machine_(gantry, plan.job.units, options.previous_trace, options.previous_source, options.journal),
       path_(plan.job, plan.surface, plan.passes, plan.step), settings_(strategy_settings(plan, single_covering())),
-      strategy_(path_.passes(), settings_,
-                [this](const std::vector<PathIndex>& points, int layer) { return force_of_re_cut(points, layer); }),
+      strategy_(path_.passes(), settings_, {force_on_passes(StockBound::kMaxHardness), force_on_passes(1)}),
       feed_control_(plan.job, settings_.max_remaining), force_control_(plan.job, settings_.max_remaining),
       wear_model_(plan.job, settings_.max_remaining), bound_(plan.job, highest_point(path_))
 {

@@ -52,8 +52,9 @@ class Runner {
     bool is_wall_ahead(double feed) const;
     double force_after_step(double feed, double slope) const;
     double decisive_force() const;
-    double max_force(std::vector<Eigen::Vector3d> way, int layer, double feed) const;
-    double force_of_re_cut(const std::vector<PathIndex>& points, int layer) const;
+    double max_force(std::vector<Eigen::Vector3d> way, int layer, double feed,
+                     double hardness = StockBound::kMaxHardness) const;
+    ForcePrediction force_on_passes(double hardness) const;
     void cross(const Action& action);
     void record_move(const gantry::GantryStatus& status, int layer, double feed);
     void lower_bound(const gantry::GantryStatus& status, double feed);
@@ -77,6 +78,7 @@ class Runner {
     double climb_ = 0;                              ///< steepest slope that the wheel has climbed lately
     bool is_climbing_ = false;                      ///< on a wall, in the last step
     double feed_share_ = 1;                         ///< above layer 1: of the job's feed
+    double crossing_share_ = 1;                     ///< the same from one pass to the next
     Eigen::Vector3d tip_ = Eigen::Vector3d::Zero(); ///< the wheel's, at the end of the last move
     GrindRun result_;
     PathIndex at_;

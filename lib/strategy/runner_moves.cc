@@ -13,6 +13,8 @@ namespace {
 constexpr double kMinFeedShare = 0.5, kMaxFeedShare = 2;
 /// The side face meets no wall that takes more than this share of F_max.
 constexpr double kMaxCrossingShare = 0.95;
+/// It crosses fast where the stock takes no more than this share: much harder stock then stays below F_max, too.
+constexpr double kMaxFastCrossingShare = 0.8;
 /// What just exceeds a limit, relative to it.
 constexpr double kJustAbove = 1e-6;
 /// Share of F_max above which the wheel goes slower, and of F_min below which it goes faster.
@@ -32,6 +34,9 @@ constexpr double kAcceleration = 1000;
 constexpr double kUnknownSlope = 0.7;
 /// A flatter slope is no wall.
 constexpr double kWallSlope = 0.2;
+
+/// @param feed  mm/s   @return  mm
+double braking_distance(double feed) { return feed * feed / (2 * kAcceleration); }
 
 } // namespace
 
@@ -73,8 +78,10 @@ double Runner::feed_to(const Action& action, const Eigen::Vector3d& reference)
     const job::ForceRange& limits = plan_.job.force;
     const double rate = plan_.job.feed.rate, force = machine_.status().force;
     const double climb = limits.stiffness * kMaxClimb * (reference - reference_point_).norm();
-    if (action.layer == 1 || action.event != Event::none)
+    if (action.layer == 1)
         feed_share_ = 1;
+    else if (action.event != Event::none)
+        feed_share_ = crossing_share_;
     else if (force > kSlowForceShare * limits.max)
         feed_share_ = kMinFeedShare;
     else if (force + climb > limits.max)
@@ -94,7 +101,7 @@ bool Runner::is_wall_ahead(double feed) const
 /// The force when the drives stand after another step, if the wheel climbs at this slope, N.
 double Runner::force_after_step(double feed, double slope) const
 {
-    const double way = plan_.step + feed * feed / (2 * kAcceleration);
+    const double way = plan_.step + braking_distance(feed);
     return machine_.status().force + plan_.job.force.stiffness * slope * way;
 }
 
@@ -138,17 +145,23 @@ void Runner::grind_controlled(const Action& action, const Eigen::Vector3d& refer
 
 /// Crosses to the next pass in pieces of a step, along the surface between the two. Ends early if the wheel climbs
 /// on something that is too high: the strategy goes up a layer at this position, and then on. Where the wheel's side
-/// face could meet a wall that takes more than F_max, it is lifted over, and lowered, guarded, beside it.
+/// face could meet a wall that takes more than F_max, it is lifted over, and lowered, guarded, beside it. Above layer 1
+/// it crosses as fast as it may, but for the end, beyond which the drives would come: nothing is to be ground between
+/// the passes.
 void Runner::cross(const Action& action)
 {
     force_offset_ = 0;
     force_control_.begin_pass(path_.passes()[action.to.pass].along);
     const std::vector<Eigen::Vector3d> way = way_across(action.to);
-    if (max_force(way, action.layer, plan_.job.feed.rate) > kMaxCrossingShare * plan_.job.force.max) {
-        return travel(action, way.back());
-    }
-    for (std::size_t i = 1; i < way.size() && (i == 1 || machine_.status().force <= plan_.job.force.max); ++i)
+    const double force_max = plan_.job.force.max, rate = plan_.job.feed.rate;
+    if (max_force(way, action.layer, rate) > kMaxCrossingShare * force_max) return travel(action, way.back());
+    const double fast = kMaxFeedShare * rate;
+    const bool is_free = max_force(way, action.layer, fast) <= kMaxFastCrossingShare * force_max;
+    for (std::size_t i = 1; i < way.size() && (i == 1 || machine_.status().force <= force_max); ++i) {
+        const double left = (way.back() - way[i]).norm();
+        crossing_share_ = is_free && left > braking_distance(fast) ? kMaxFeedShare : 1;
         grind(action, way[i]);
+    }
 }
 
 /// Reference points from here to the next pass.
@@ -170,25 +183,27 @@ std::vector<Eigen::Vector3d> Runner::way_across(const PathIndex& to) const
     return way;
 }
 
-/// The largest force that the stock could put on the wheel on a way of reference points, N.
-double Runner::max_force(std::vector<Eigen::Vector3d> way, int layer, double feed) const
+/// The largest force that stock of this hardness could put on the wheel on a way of reference points, N.
+double Runner::max_force(std::vector<Eigen::Vector3d> way, int layer, double feed, double hardness) const
 {
     const double up = tool_point(layer).z() - reference_point_.z();
     for (Eigen::Vector3d& at : way) at.z() += up;
-    return bound_.max_force(way, radius(), feed);
+    return bound_.max_force(way, radius(), feed, hardness);
 }
 
-/// The wheel goes along the passes, and is lifted over to the next.
-double Runner::force_of_re_cut(const std::vector<PathIndex>& points, int layer) const
+/// Of a wheel that goes along the passes, and is lifted over to the next.
+ForcePrediction Runner::force_on_passes(double hardness) const
 {
-    double force = 0;
-    for (std::size_t first = 0, end; first < points.size(); first = end) {
-        std::vector<Eigen::Vector3d> way;
-        for (end = first; end < points.size() && points[end].pass == points[first].pass; ++end)
-            way.push_back(reference(points[end]));
-        force = std::max(force, max_force(std::move(way), layer, plan_.job.feed.rate));
-    }
-    return force;
+    return [this, hardness](const std::vector<PathIndex>& points, int layer) {
+        double force = 0;
+        for (std::size_t first = 0, end; first < points.size(); first = end) {
+            std::vector<Eigen::Vector3d> way;
+            for (end = first; end < points.size() && points[end].pass == points[first].pass; ++end)
+                way.push_back(reference(points[end]));
+            force = std::max(force, max_force(std::move(way), layer, plan_.job.feed.rate, hardness));
+        }
+        return force;
+    };
 }
 
 /// Records the end of a move. A guarded descent may have stopped above the reference surface; a grinding step has

@@ -15,8 +15,6 @@ namespace {
 constexpr double kCellsPerWidth = 24, kMaxCellsPerRadius = 100;
 /// Distance of two positions of the wheel in cells.
 constexpr double kBoundStepCells = 2;
-/// The stock may be that many times harder than the job's removal coefficient says.
-constexpr double kMaxHardness = 2;
 /// Travels clear the bound by this height, mm: the rim between two cells, and the drives' errors.
 constexpr double kClearance = 0.5;
 
@@ -57,7 +55,7 @@ StockBound::StockBound(const job::Job& job, double sound_height)
     : bound_(grid_around(job)), inside_(cells_of_B(bound_, job)),
       wheel_(bound_ = unknown_stock(bound_, inside_, job.safe_height, sound_height), job.wheel.width),
       spring_{job.force.preload, job.force.stiffness}, R_working_machine_(job::rotation_working_machine(job.theta)),
-      width_(job.wheel.width), removal_(job.removal_coefficient / kMaxHardness), safe_height_(job.safe_height)
+      width_(job.wheel.width), removal_(job.removal_coefficient), safe_height_(job.safe_height)
 {
 }
 
@@ -77,7 +75,8 @@ void StockBound::lower(const Eigen::Vector3d& from, const Eigen::Vector3d& to, d
     });
 }
 
-double StockBound::max_force(const std::vector<Eigen::Vector3d>& path, double radius, double feed) const
+double StockBound::max_force(const std::vector<Eigen::Vector3d>& path, double radius, double feed,
+                             double hardness) const
 {
     removal::HeightField stock = cut_out(path, radius);
     removal::WheelInStock wheel(stock, width_);
@@ -87,7 +86,7 @@ double StockBound::max_force(const std::vector<Eigen::Vector3d>& path, double ra
         visit_positions(path[i - 1], path[i], [&](const Eigen::Vector3d& at) {
             wheel.place(R_working_machine_ * at.head<2>(), radius, at.z());
             const removal::Balance balance =
-                removal::press(wheel, spring_, at.z(), removal_ * (at - last).norm() / feed, tip);
+                removal::press(wheel, spring_, at.z(), removal_ / hardness * (at - last).norm() / feed, tip);
             if (balance.volume > 0) wheel.cut(balance.z_tip);
             max_force = std::max(max_force, balance.force);
             tip = balance.z_tip;

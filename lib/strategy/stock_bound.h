@@ -26,10 +26,13 @@ class StockBound {
     /// The wheel's lowest line has been at every tip along a straight line.
     void lower(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double radius);
 
-    /// Largest force while the wheel grinds along a polyline, N, if the stock stood as high as the bound and were twice
-    /// as hard as the job says.
+    /// The stock may be that many times harder than the job's removal coefficient says.
+    static constexpr double kMaxHardness = 2;
+    /// Largest force while the wheel grinds along a polyline, N, if the stock stood as high as the bound.
     /// @param path  commanded tool points, frame M; the wheel is at the first one   @param feed  mm/s
-    double max_force(const std::vector<Eigen::Vector3d>& path, double radius, double feed) const;
+    /// @param hardness  of the stock, relative to what the job says
+    double max_force(const std::vector<Eigen::Vector3d>& path, double radius, double feed,
+                     double hardness = kMaxHardness) const;
     /// Height at which the wheel moves from one place to another and touches nothing, mm: the safe height if it has to
     /// go where it has not been in B, or across a notch of B.
     double free_height(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double radius) const;
@@ -46,7 +49,7 @@ class StockBound {
     removal::Spring spring_;
     Eigen::Matrix2d R_working_machine_;
     double width_;       ///< of the wheel, mm
-    double removal_;     ///< of the hardest stock, mm³/(N s)
+    double removal_;     ///< as the job says, mm³/(N s)
     double safe_height_; ///< z, mm
 };
 

@@ -54,8 +54,9 @@ strategy::LayerSwitching::Settings settings()
 // Forces in, what was decided out: "event layer pass.point".
 class Script {
   public:
-    explicit Script(std::vector<plan::ToolPass> passes, strategy::LayerSwitching::Settings s = settings())
-        : passes_(std::move(passes)), strategy_(passes_, s), action_(strategy_.first())
+    explicit Script(std::vector<plan::ToolPass> passes, strategy::LayerSwitching::Settings s = settings(),
+                    strategy::ForcePredictions predictions = {})
+        : passes_(std::move(passes)), strategy_(passes_, s, std::move(predictions)), action_(strategy_.first())
     {
     }
 
@@ -115,6 +116,35 @@ TEST(LayerSwitching, CoversLayer1AgainUntilWithinTolerance)
     s.force(4, 0.1);
     s.force(4, 0.1);
     EXPECT_EQ(s.force(4, 0.1), "done 1 0.2"); // the tolerance itself is within
+}
+
+// Where the force is expected to stay below F_min a pass is not begun, and one that was begun ends at once.
+TEST(LayerSwitching, LeavesOutPassesThatWouldEndTheCut)
+{
+    double expected = kMin;
+    strategy::LayerSwitching::Settings s = settings();
+    s.step_over = 2;
+    const auto script = [&] {
+        return Script(square(5, 9, 2), s, {{}, [&](const std::vector<strategy::PathIndex>& points, int layer) {
+                                               EXPECT_EQ(layer, 2);
+                                               EXPECT_LE(points.size(), 3U); // no longer than the step-over
+                                               return expected;
+                                           }});
+    };
+    Script begun = script();
+    EXPECT_EQ(begun.force(16), "up 2 0.0");
+    begun.force(9);
+    EXPECT_EQ(begun.force(9), "go 2 0.2");
+    EXPECT_EQ(begun.force(4), "step-over 2 1.2");
+    EXPECT_EQ(begun.force(4), "go 2 1.1"); // F_min may come yet
+    expected = 0.9 * kMin;
+    EXPECT_EQ(begun.force(4), "cut-end 2 1.1");
+
+    Script left_out = script();
+    left_out.force(16);
+    left_out.force(9);
+    EXPECT_EQ(left_out.force(4), "cut-end 2 0.1");
+    EXPECT_EQ(left_out.force(0), "down 1 0.0");
 }
 
 TEST(LayerSwitching, TravelsOverAGapInLayer1)
