@@ -41,10 +41,13 @@ void set_adaptive(JobTouches& result, const job::Job& job, const TouchedPart& pa
         result.warnings.push_back(part.name + ": no surface at " + job::point_text(xy, job.units) +
                                   "; touched elsewhere");
     if (found.band_reached) return;
-    const double mm = job.units.mm();
+    const double mm = job.units.mm(), band = found.band[found.band.size() - 1];
+    const std::string tolerance = core::to_short_text(job.tolerance / mm);
     result.warnings.push_back(std::to_string(found.plan.size()) + " touches leave a predicted error band of " +
-                              core::to_short_text(found.band[found.band.size() - 1] / mm) +
-                              ", more than the tolerance " + core::to_short_text(job.tolerance / mm));
+                              core::to_short_text(band / mm) +
+                              (band > job.tolerance
+                                   ? ", more than the tolerance " + tolerance
+                                   : ", within the tolerance " + tolerance + ", which more of them would confirm"));
 }
 
 void extend(JobTouches& result, const job::Job& job, const TouchedPart& part, int max_touches)

@@ -3,6 +3,7 @@
 #include "core/constants.h"
 #include "core/error.h"
 #include "fit/fit.h"
+#include "fit/selection.h"
 #include "geometry/bounding_box.h"
 #include "job/boundary.h"
 #include "margin/anomaly_grid.h"
@@ -32,6 +33,8 @@ constexpr int kInitialTouches = 8;
 // Further touches during which the band must stay as small as required. A wrong surface may fit few touches; each of
 // these tests it at the most informative place.
 constexpr int kConfirmations = 4;
+// Twenty touches of a wavy surface are often explained by a cubic, thirty now and then.
+constexpr int kTouchesPerParameter = 4;
 // On a rough surface the band stops falling well above the tolerance, and touches only show more of the roughness.
 // Touches are worth their time as long as the mean band of the last ones is below this share of that of as many before.
 constexpr double kWorthwhileShare = 0.95;
@@ -132,6 +135,12 @@ void append(sampling::TouchPlan& plan, const Vector2d& xy, const job::Job& job, 
         static_cast<int>(nearer_to_anomaly ? sampling::Role::near_anomaly : sampling::Role::near_sampling_boundary);
 }
 
+/// Whether a surface may explain its touches by chance: it is of a rare family, with many parameters for their number.
+bool may_be_chance(const surface::Surface& surface, Index touches)
+{
+    return fit::prior_penalty(surface.method) > 0 && touches < kTouchesPerParameter * surface.covariance.rows();
+}
+
 surface::Surface fit_touches(const job::Job& job, const sampling::TouchPlan& plan, const Eigen::Matrix3Xd& touches)
 {
     fit::FitInput input;
@@ -165,6 +174,7 @@ class AdaptiveSearch {
         bands_.assign(layout.size(), core::kNaN);
         bands_.back() = band;
         surface_ = surface;
+        confirmed_ = band <= limits_.max_band ? 1 : 0;
         for (const auto& xy : layout.xy.colwise()) exclude(xy, min_distance_);
     }
 
@@ -214,7 +224,7 @@ class AdaptiveSearch {
         surface_ = fit_touches(job_, result_.plan, result_.touches);
         bands_.back() = predict_by_posterior(surface_, job_, limits_.confidence, 1).band;
         confirmed_ = bands_.back() <= limits_.max_band ? confirmed_ + 1 : 0;
-        result_.band_reached = confirmed_ > kConfirmations;
+        result_.band_reached = confirmed_ > kConfirmations && !may_be_chance(surface_, result_.plan.size());
     }
 
     const job::Job& job_;
@@ -242,7 +252,8 @@ AdaptiveTouches extend_layout(const job::Job& job, const sampling::TouchPlan& la
 {
     const surface::Surface surface = fit_touches(job, layout, touches);
     const double band = predict_by_posterior(surface, job, limits.confidence, 1).band;
-    if (band > limits.max_band && layout.size() < limits.max_touches && job.sampling.cols() > 0) {
+    const bool is_enough = band <= limits.max_band && !may_be_chance(surface, layout.size());
+    if (!is_enough && layout.size() < limits.max_touches && job.sampling.cols() > 0) {
         AdaptiveSearch search(job, limits, probe);
         search.begin(layout, touches, surface, band);
         return search.run();
