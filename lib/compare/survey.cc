@@ -3,6 +3,7 @@
 #include <tbb/task_group.h>
 
 #include <cstddef>
+#include <exception>
 
 namespace fettle::compare {
 
@@ -45,7 +46,7 @@ Survey::~Survey()
 {
     try {
         state_->task.wait();
-    } catch (...) { // results() was not called: nobody needs the error
+    } catch (const std::exception&) { // results() was not called: nobody needs the error
     }
 }
 

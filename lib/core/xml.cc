@@ -45,7 +45,7 @@ struct XmlParser::State {
         if (state.thrown) return;
         try {
             call(state);
-        } catch (...) {
+        } catch (const std::exception&) {
             state.thrown = std::current_exception();
             XML_StopParser(state.parser, XML_FALSE);
         }

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <memory>
 
 namespace fettle::core {
 namespace {
@@ -89,21 +90,16 @@ void ZipArchive::read(const std::string& name, const std::function<bool(std::str
         (info.flag & kEncrypted) != 0)
         throw InputError(state_->source, name + " is encrypted");
     int status = unzOpenCurrentFile(archive);
+    // Closes the file where `use` has enough, or throws.
+    std::unique_ptr<void, int (*)(unzFile)> open_file(archive, unzCloseCurrentFile);
     std::array<char, 1 << 16> piece;
     while (status == UNZ_OK) {
         const int count = unzReadCurrentFile(archive, piece.data(), piece.size());
         if (count < 0) status = count;
         if (count <= 0) break;
-        try {
-            if (use({piece.data(), static_cast<std::size_t>(count)})) continue;
-        } catch (...) {
-            unzCloseCurrentFile(archive);
-            throw;
-        }
-        unzCloseCurrentFile(archive);
-        return;
+        if (!use({piece.data(), static_cast<std::size_t>(count)})) return;
     }
-    const int closed = unzCloseCurrentFile(archive); // compares the checksum
+    const int closed = unzCloseCurrentFile(open_file.release()); // compares the checksum
     if (status != UNZ_OK || closed != UNZ_OK) throw InputError(state_->source, name + " is damaged in the ZIP archive");
 }
 
