@@ -65,7 +65,8 @@ void search(SeenSide& side, const FindOptions& options)
     std::erase_if(side.finds, [&](const Verified& find) { return find.probability < options.min_probability; });
 }
 
-FindResult merge(const mesh::CloudMesh& part, const std::vector<SeenSide>& sides)
+/// @param min_height  along the normal of the surface beneath: a view overstates heights on walls
+FindResult merge(const mesh::CloudMesh& part, const std::vector<SeenSide>& sides, double min_height)
 {
     std::vector<Entry> entries;
     for (const SeenSide& side : sides) {
@@ -73,6 +74,7 @@ FindResult merge(const mesh::CloudMesh& part, const std::vector<SeenSide>& sides
         const CellPoints cells = points_by_cell(part, side);
         for (const Verified& find : side.finds) entries.push_back({&find, &side, describe(part, side, cells, find)});
     }
+    std::erase_if(entries, [&](const Entry& entry) { return entry.found.height < min_height; });
     entries = without_overlaps(std::move(entries), part.points.size());
     set_all_outlines(entries);
     FindResult result;
@@ -126,7 +128,7 @@ FindResult find_anomalies(const mesh::CloudMesh& part, const FindOptions& option
     }
     check_surface(sides);
     for (SeenSide& side : sides) search(side, options);
-    return merge(part, sides);
+    return merge(part, sides, options.bounds.min_height);
 }
 
 FindResult find_anomalies_against(const mesh::CloudMesh& part, const SignedDistances& distances,
@@ -145,7 +147,7 @@ FindResult find_anomalies_against(const mesh::CloudMesh& part, const SignedDista
         sides.push_back(std::move(side));
     }
     if (!is_defined) throw core::InputError("the distances of all points from the reference are undefined");
-    return merge(part, sides);
+    return merge(part, sides, options.bounds.min_height);
 }
 
 } // namespace fettle::find

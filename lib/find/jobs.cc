@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <vector>
 
 namespace fettle::find {
@@ -70,11 +71,14 @@ Eigen::Matrix3Xd metal_around(const FoundAnomaly& anomaly, const HeightMap& map)
     return job::columns_to_matrix(places);
 }
 
-/// The outline of two polygons together, the second grown by a cell and a half: corners that were moved one by one may
-/// have made the first cross itself. Its corners lie on half cells.
-Eigen::Matrix2Xd joined_outline(const Eigen::Matrix2Xd& polygon, const Eigen::Matrix2Xd& inner, double cell)
+/// The outline of the good metal in a polygon together with an inner one: corners that were moved one by one may have
+/// made the first cross itself, and an edge may run between two of them. Its corners lie on half cells.
+/// @param is_good  of a place
+Eigen::Matrix2Xd joined_outline(const Eigen::Matrix2Xd& polygon, const Eigen::Matrix2Xd& inner, double cell,
+                                const std::function<bool(const Eigen::Vector2d&)>& is_good)
 {
     constexpr int kMargin = 8; // pixels, of half a cell
+    constexpr int kMinEdgePixels = 4, kEdgePixels = int(2 * kEdgeCells);
     constexpr double kTolerance = 1.5;
     const double pixel = cell / 2;
     const Eigen::Vector2d low = polygon.rowwise().minCoeff().cwiseMin(inner.rowwise().minCoeff());
@@ -90,7 +94,13 @@ Eigen::Matrix2Xd joined_outline(const Eigen::Matrix2Xd& polygon, const Eigen::Ma
     Mask outer(int(size.y()) + 2 * kMargin + 1, int(size.x()) + 2 * kMargin + 1, std::uint8_t(0)), core = outer.clone();
     cv::fillPoly(outer, pixels_of(polygon), 255);
     cv::fillPoly(core, pixels_of(inner), 255);
-    const Mask joined = opened(outer, 3) | dilated(core, 3);
+    Mask bad(outer.size(), 0);
+    for (int y = 0; y < bad.rows; ++y)
+        for (int x = 0; x < bad.cols; ++x)
+            if (!core(y, x) && !is_good(low + pixel * Eigen::Vector2d(x - kMargin, y - kMargin))) bad(y, x) = 255;
+    // Single cells are outliers of the noise, no edge.
+    const Mask edges = dilated(opened(bad, kMinEdgePixels), kEdgePixels);
+    const Mask joined = opened(outer & ~edges, 3) | dilated(core, 1);
     std::vector<std::vector<cv::Point>> outlines;
     cv::findContours(joined, outlines, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
     const auto largest = std::ranges::max_element(
@@ -136,7 +146,7 @@ Eigen::Matrix2Xd before_edges(const FoundAnomaly& anomaly, const HeightMap& map,
         while (reach <= length && is_on_surface(from + reach * along)) reach += map.cell;
         if (reach <= length) corner = from + std::max(map.cell, reach - kEdgeCells * map.cell) * along;
     }
-    return joined_outline(sampling, anomaly.boundary, map.cell);
+    return joined_outline(sampling, anomaly.boundary, map.cell, is_on_surface);
 }
 
 /// Whether the metal around an anomaly is a plane, as far as its noise tells.
