@@ -3,6 +3,7 @@
 #include "core/constants.h"
 #include "core/direction.h"
 #include "core/file.h"
+#include "job/shape_warnings.h"
 #include "mesh/mesh_file.h"
 #include "mesh/shape_file.h"
 #include "robot/cell_picture.h"
@@ -146,7 +147,11 @@ int main(int argc, char** argv)
         std::optional<mesh::Mesh> mesh;
         std::optional<robot::Workpiece> workpiece;
         if (!o.part.empty()) {
-            workpiece.emplace(mesh.emplace(mesh::read_mesh(o.part, o.part_unit.value_or(units.length))));
+            const units::Units unit{o.part_unit.value_or(units.length)};
+            mesh::MeshRepair repair;
+            workpiece.emplace(mesh.emplace(mesh::read_mesh(o.part, unit.length, &repair)));
+            for (const std::string& doubt : job::shape_warnings(*mesh, repair, core::display_name(o.part), unit))
+                t.warn(doubt);
             if (!workpiece->closed())
                 t.warn(core::display_name(o.part) + ": is not closed: a body wholly inside it would not be noticed");
         }

@@ -40,7 +40,8 @@ int main(int argc, char** argv)
 
         const auto [job, planned] = plan::read_job_or_plan(o.plan);
         const removal::Extent extent = planned ? removal::Extent::anomaly : removal::Extent::sampling;
-        const removal::HeightField stock = gantry::read_stock(o.stock, job, extent).field;
+        const auto [stock, doubts, dropped] = gantry::read_stock(o.stock, job, extent);
+        for (const std::string& doubt : doubts) t.warn(doubt);
         std::ostream* out = o.ground.empty() ? nullptr : &t.output_file(o.ground);
         const auto gantry = gantry::make_virtual_gantry(stock, job, {o.machine, o.removal_factor, t.seed()});
         gantry::serve(*gantry, gantry->limits(), job, core::FileDescriptor(::dup(STDIN_FILENO)),

@@ -5,6 +5,7 @@
 #include "cloud/pcd.h"
 #include "cloud/poses.h"
 #include "core/file.h"
+#include "job/shape_warnings.h"
 #include "mesh/shape_file.h"
 
 #include <optional>
@@ -90,8 +91,12 @@ cloud::Cloud make_path(const Options& o, cloud::Cloud cloud, const std::string& 
 try {
     belt::LinkOptions links;
     Eigen::Matrix3Xd part;
-    if (!o.part.empty())
-        part = mesh::coordinates_of(mesh::read_shape(o.part, mesh::resolve_file_units(o.part_unit)).shape);
+    if (!o.part.empty()) {
+        const mesh::ShapeFile file = mesh::read_shape(o.part, mesh::resolve_file_units(o.part_unit));
+        for (const std::string& doubt : job::shape_warnings(file, core::display_name(o.part), file.units))
+            o.t.warn(doubt);
+        part = mesh::coordinates_of(file.shape);
+    }
     if (!cloud::has_poses(cloud)) {
         const belt::Surfels surfels = belt::surfels_from_cloud(cloud, source);
         const belt::ContactPath path = belt::contact_path(surfels, path_options(o));

@@ -27,7 +27,8 @@ int main(int argc, char** argv)
 
             const auto [job, planned] = plan::read_job_or_plan(plan_file);
             const auto extent = planned ? removal::Extent::anomaly : removal::Extent::sampling;
-            removal::HeightField stock = gantry::read_stock(stock_options, job, extent).field;
+            auto [stock, doubts, dropped] = gantry::read_stock(stock_options, job, extent);
+            for (const std::string& doubt : doubts) t.warn(doubt);
             if (after.empty()) {
                 gantry::write_head(t.output(), gantry::head_and_stock(std::move(stock), job));
                 return cli::Verdict::yes;

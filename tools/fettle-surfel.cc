@@ -2,6 +2,7 @@
 #include "cli/tool.h"
 #include "cloud/pcd.h"
 #include "core/file.h"
+#include "job/shape_warnings.h"
 #include "mesh/shape_file.h"
 
 #include <numbers>
@@ -51,6 +52,9 @@ int main(int argc, char** argv)
         options.sharp_angle = sharp * std::numbers::pi / 180;
         belt::SampledDesign design = belt::read_design(path, unit, options);
         const mesh::ShapeFile stock = mesh::read_shape(stock_path, mesh::resolve_file_units(stock_unit));
+        for (const std::string& doubt : design.warnings) t.warn(doubt);
+        for (const std::string& doubt : job::shape_warnings(stock, core::display_name(stock_path), stock.units))
+            t.warn(doubt);
         const belt::StockRays rays = belt::cast_rays_on_stock(design.surfels, stock.shape, reach);
         cloud::write_pcd(t.output(), belt::to_cloud(design.surfels), units::Units{}, cloud::pcd_encoding(ascii));
         t.report() = belt::to_json(design, rays);

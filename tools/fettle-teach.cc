@@ -102,9 +102,11 @@ void apply_settings(job::Job& job, const Options& o, cli::OperatorPrompt* answer
 
 /// Sets the heights of points without z to those of the part, which is read, and so refused, even where none is
 /// without.
-void set_heights(Eigen::Matrix3Xd& points, const job::Job& job, const Options& o)
+void set_heights(cli::Tool& t, Eigen::Matrix3Xd& points, const job::Job& job, const Options& o)
 {
     const sampling::Scan scan = sampling::read_scan(o.on, job, o.on_units);
+    const std::string left_out = mesh::repair_warning(scan.repair());
+    if (!left_out.empty()) t.warn(core::display_name(o.on) + ": " + left_out);
     if (points.row(2).allFinite()) return;
     if (job.T_part_job)
         throw core::InputError("--on", "a job with a frame of its own needs points with z: its z is not the part's");
@@ -118,7 +120,7 @@ void set_heights(Eigen::Matrix3Xd& points, const job::Job& job, const Options& o
     }
 }
 
-void set_picked_points(job::Job& job, const Options& o, bool was_plane)
+void set_picked_points(cli::Tool& t, job::Job& job, const Options& o, bool was_plane)
 {
     const double mm = units::mm_per(o.file_units.value_or(job.units.length));
     const std::string list = core::read_file(o.anomaly);              // once: it may be a pipe
@@ -127,7 +129,7 @@ void set_picked_points(job::Job& job, const Options& o, bool was_plane)
         const job::WantedPicks wanted{boundary, !o.on.empty()};
         points.xyz = mm * (path == o.anomaly ? job::parse_picked_points(list, core::display_name(path), wanted)
                                              : job::read_picked_points(path, wanted));
-        if (!o.on.empty()) set_heights(points.xyz, job, o);
+        if (!o.on.empty()) set_heights(t, points.xyz, job, o);
         job::move_to_job_frame(points, job);
         return points.xyz;
     };
@@ -193,7 +195,7 @@ int main(int argc, char** argv)
         if (prompt) {
             teach_on_gantry(t, o, *prompt, job);
         } else {
-            set_picked_points(job, o, was_plane);
+            set_picked_points(t, job, o, was_plane);
         }
         const job::Job taught = job::validated(job, "the job that was taught");
         job::add_report(t.report(), taught);

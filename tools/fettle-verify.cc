@@ -120,6 +120,8 @@ void warn_of_meshes(const Options& o, const machining::PartMesh& machined, const
         job::scale_warning("the machined surface", box.sizes(), units::Units{},
                            {"the design", design_box.sizes().head<2>().norm(), 1 / kMaxRatio, kMaxRatio});
     if (!doubt.empty()) o.t.warn(core::display_name(o.machined) + ": " + doubt);
+    const std::string size = job::size_warning(design_box, design.mesh.vertices.cols(), units::Units{});
+    if (!size.empty()) o.t.warn(core::display_name(o.design) + ": " + size);
 }
 
 } // namespace

@@ -5,6 +5,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/lines.h"
+#include "job/shape_warnings.h"
 #include "mesh/shape_file.h"
 
 namespace fettle::belt {
@@ -15,6 +16,12 @@ bool looks_like_json(std::string_view bytes)
 {
     const std::size_t first = bytes.find_first_not_of(" \t\r\n");
     return first != std::string_view::npos && bytes[first] == '{';
+}
+
+void check_scan_options(const SurfelSampling& options)
+{
+    if (options.precision) throw core::InputError("--precision", "goes with patches and meshes, not with a scan");
+    if (options.edge_spacing) throw core::InputError("--edge-spacing", "a scan has no boundary curves");
 }
 
 } // namespace
@@ -30,12 +37,14 @@ SampledDesign read_design(const std::string& path, const std::optional<units::Un
         return core::with_error_prefix(source, [&] { return sample_surfels(patches, options); });
     }
     if (bytes.empty()) throw core::InputError(source, "empty, expected patches, a mesh or a scan");
-    const mesh::MeshOrCloud design = mesh::parse_shape(bytes, source, mesh::resolve_file_units(unit)).shape;
-    if (const mesh::Mesh* mesh = std::get_if<mesh::Mesh>(&design))
-        return core::with_error_prefix(source, [&] { return sample_surfels(*mesh, options); });
-    if (options.precision) throw core::InputError("--precision", "goes with patches and meshes, not with a scan");
-    if (options.edge_spacing) throw core::InputError("--edge-spacing", "a scan has no boundary curves");
-    return sample_surfels(std::get<cloud::Cloud>(design), source, options);
+    const mesh::ShapeFile design = mesh::parse_shape(bytes, source, mesh::resolve_file_units(unit));
+    const auto* mesh = std::get_if<mesh::Mesh>(&design.shape);
+    if (mesh == nullptr) check_scan_options(options);
+    SampledDesign sampled = mesh != nullptr
+                                ? core::with_error_prefix(source, [&] { return sample_surfels(*mesh, options); })
+                                : sample_surfels(std::get<cloud::Cloud>(design.shape), source, options);
+    sampled.warnings = job::shape_warnings(design, source, design.units);
+    return sampled;
 }
 
 json::Value to_json(const SampledDesign& design, const StockRays& rays)

@@ -30,7 +30,8 @@ struct SampledDesign {
     Surfels surfels;
     int patches = 0;
     EdgeCounts edges;
-    double min_spacing = 0; ///< the smallest of the patches' spacings, mm
+    double min_spacing = 0;            ///< the smallest of the patches' spacings, mm
+    std::vector<std::string> warnings; ///< of a file: what was left out of it, a size that is hardly meant
 };
 
 /// Samples a mesh. Its patches are charts (charts.h) between sharp edges; u and v are lengths in their planes, mm. Each

@@ -4,7 +4,6 @@
 #include "core/text.h"
 #include "gantry/driver.h"
 #include "gantry/make_virtual.h"
-#include "job/plausible.h"
 
 namespace fettle::gantry {
 namespace {
@@ -66,14 +65,8 @@ Stock stock_of_part(const sampling::Scan& part, const StockOptions& options, con
     if (cell > job.wheel.width)
         throw core::InputError("--cell", core::to_short_text(cell / job.units.mm()) + " is wider than the wheel, " +
                                              core::to_short_text(job.wheel.width / job.units.mm()));
-    std::vector<std::string> warnings;
-    if (const std::string doubt = job::part_box_warning(part.bounds(), job); !doubt.empty())
-        warnings.push_back(source + ": " + doubt);
-    const Eigen::Index dropped = part.dropped_triangles();
-    if (dropped > 0)
-        warnings.push_back(source +
-                           ": facets with vertices that are not finite are left out: " + std::to_string(dropped));
-    return {removal::stock_from_scan(part, job, cell, source, extent), warnings, dropped};
+    return {removal::stock_from_scan(part, job, cell, source, extent), sampling::scan_warnings(part, job, source),
+            part.repair().dropped_triangles};
 }
 
 void require_below_safe_height(const removal::HeightField& stock, const job::Job& job, const std::string& source)

@@ -117,7 +117,6 @@ void touch(JobTouches& result, const job::Job& job, const TouchedPart* part, boo
     if (part != nullptr && !plan_only) {
         result.touches = part->touch(result.plan);
         sampling::check_all_touched(result.touches, job, result.plan, part->name, part->warning);
-        if (!part->warning.empty()) result.warnings.push_back(part->name + ": " + part->warning);
     } else {
         result.touches = planned_points(result.plan);
         if (!plan_only && result.touches.row(2).hasNaN())
@@ -143,6 +142,7 @@ void check_heights(JobTouches& result, const job::Job& job, const TouchedPart* p
 JobTouches touch_job(const job::Job& job, const TouchedPart* part, const TouchRequest& request)
 {
     JobTouches result;
+    if (part != nullptr && part->scan) result.warnings = sampling::scan_warnings(*part->scan, job, part->name);
     choose(result, job, part, request);
     touch(result, job, part, request.plan_only);
     if (request.strategy == TouchStrategy::extended && part != nullptr && !request.plan_only && !result.adaptive)

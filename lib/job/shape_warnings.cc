@@ -29,4 +29,10 @@ std::vector<std::string> shape_warnings(const mesh::CloudMeshFile& file, const s
     return warnings_of(file.repair, file.part.points.xyz, name, file.units);
 }
 
+std::vector<std::string> shape_warnings(const mesh::Mesh& mesh, const mesh::MeshRepair& repair, const std::string& name,
+                                        const units::Units& units)
+{
+    return warnings_of(repair, mesh.vertices, name, units);
+}
+
 } // namespace fettle::job

@@ -17,4 +17,8 @@ std::vector<std::string> shape_warnings(const mesh::ShapeFile& file, const std::
 /// Likewise, in the units of the file.
 std::vector<std::string> shape_warnings(const mesh::CloudMeshFile& file, const std::string& name);
 
+/// Likewise, of a mesh.
+std::vector<std::string> shape_warnings(const mesh::Mesh& mesh, const mesh::MeshRepair& repair, const std::string& name,
+                                        const units::Units& units);
+
 } // namespace fettle::job

@@ -143,10 +143,12 @@ class RunReader {
                            const std::optional<units::Units::Length>& stated)
     {
         const Files::Content content = files_.read(role, path);
-        mesh::MeshOrCloud shape =
-            mesh::parse_shape(content.bytes, content.source, mesh::resolve_file_units(stated, units_)).shape;
-        if (run_.job) job::move_to_job_frame(shape, *run_.job);
-        return shape;
+        mesh::ShapeFile file =
+            mesh::parse_shape(content.bytes, content.source, mesh::resolve_file_units(stated, units_));
+        if (const std::string left_out = mesh::repair_warning(file.repair); !left_out.empty())
+            run_.warnings.push_back(content.source + ": " + left_out);
+        if (run_.job) job::move_to_job_frame(file.shape, *run_.job);
+        return std::move(file.shape);
     }
 
     template <typename Content>

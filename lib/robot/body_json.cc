@@ -1,5 +1,6 @@
 #include "robot/body_json.h"
 
+#include "core/error.h"
 #include "core/text.h"
 #include "mesh/mesh_file.h"
 #include "robot/hull_points.h"
@@ -62,7 +63,7 @@ solid::Hull read_hull(Reader& reader, const std::string& path, double mm)
     const std::string file = reader.text("file");
     const std::string unit = reader.choice_or("file_units", "mm", {"mm", "in", "m"});
     const std::filesystem::path mesh_path = std::filesystem::path(path).parent_path() / file;
-    const mesh::Mesh mesh = mesh::read_mesh(mesh_path.string(), units::parse_length_unit(unit));
+    const mesh::Mesh mesh = read_body_mesh(mesh_path.string(), units::parse_length_unit(unit));
     const auto at = reader.optional_object("at");
     const Eigen::Isometry3d T_body_file = at ? read_placement(*at, mm) : Eigen::Isometry3d::Identity();
     return {T_body_file * hull_points(mesh.vertices)};
@@ -155,6 +156,16 @@ Eigen::Isometry3d read_placement(Reader reader, double mm)
     }
     reader.reject_unknown_keys();
     return placement;
+}
+
+mesh::Mesh read_body_mesh(const std::string& path, units::Units::Length unit)
+{
+    mesh::MeshRepair repair;
+    mesh::Mesh mesh = mesh::read_mesh(path, unit, &repair);
+    if (repair.dropped_triangles > 0)
+        throw core::InputError(path, std::to_string(repair.dropped_triangles) +
+                                         " of its facets have NaN or infinite corners: the body is not whole");
+    return mesh;
 }
 
 void parse_bodies(Reader& reader, const std::string& path, double mm, Robot& robot)

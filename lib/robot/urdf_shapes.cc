@@ -58,7 +58,7 @@ std::string mesh_path(const std::string& name, const UrdfFiles& files)
 Solid mesh_solid(const urdf::Mesh& shape, const Isometry3d& T, const UrdfFiles& files)
 {
     const std::string path = mesh_path(shape.filename, files);
-    const mesh::Mesh mesh = mesh::read_mesh(path, units::Units::Length::m);
+    const mesh::Mesh mesh = read_body_mesh(path, units::Units::Length::m);
     const Vector3d scale(shape.scale.x, shape.scale.y, shape.scale.z);
     if (!scale.allFinite() || scale.cwiseAbs().minCoeff() == 0)
         throw core::InputError("link '" + files.link + "': the scale of its mesh is 0");

@@ -4,6 +4,7 @@
 #include "core/file.h"
 #include "geometry/bounding_box.h"
 #include "job/frame.h"
+#include "job/plausible.h"
 #include "mesh/shape_file.h"
 #include "sampling/point_surface.h"
 #include "sampling/triangle_grid.h"
@@ -15,9 +16,8 @@ namespace fettle::sampling {
 
 /// Either points or a mesh.
 struct Scan::State {
-    State(mesh::Mesh triangles, const mesh::MeshRepair& repair)
-        : bounds(geometry::finite_bounding_box(triangles.vertices)), mesh(std::move(triangles)),
-          dropped_triangles(repair.dropped_triangles)
+    State(mesh::Mesh triangles, const mesh::MeshRepair& done)
+        : bounds(geometry::finite_bounding_box(triangles.vertices)), mesh(std::move(triangles)), repair(done)
     {
     }
     explicit State(const cloud::Cloud& cloud)
@@ -34,7 +34,7 @@ struct Scan::State {
     Eigen::AlignedBox3d bounds;
     std::optional<PointSurface> points;
     mesh::Mesh mesh;
-    Eigen::Index dropped_triangles = 0;
+    mesh::MeshRepair repair;
     // Created at the first touch: grinding uses the triangles only.
     mutable std::once_flag grid_once;
     mutable std::optional<TriangleGrid> lazy_grid;
@@ -67,7 +67,7 @@ std::optional<double> Scan::highest_point(const Eigen::Vector2d& xy, double radi
 
 const mesh::Mesh* Scan::mesh() const { return state_->points ? nullptr : &state_->mesh; }
 
-Eigen::Index Scan::dropped_triangles() const { return state_->dropped_triangles; }
+const mesh::MeshRepair& Scan::repair() const { return state_->repair; }
 
 Eigen::AlignedBox3d Scan::bounds() const { return state_->bounds; }
 
@@ -80,6 +80,14 @@ Scan read_scan(const std::string& path, const job::Job& job, std::optional<units
     if (!geometry::finite_bounding_box(mesh::coordinates_of(file.shape)).min().allFinite())
         throw core::InputError(core::display_name(path), "no points");
     return Scan(std::get<cloud::Cloud>(std::move(file.shape)));
+}
+
+std::vector<std::string> scan_warnings(const Scan& scan, const job::Job& job, const std::string& name)
+{
+    std::vector<std::string> warnings;
+    for (const std::string& warning : {job::part_box_warning(scan.bounds(), job), mesh::repair_warning(scan.repair())})
+        if (!warning.empty()) warnings.push_back(name + ": " + warning);
+    return warnings;
 }
 
 } // namespace fettle::sampling

@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace fettle::sampling {
 
@@ -33,8 +34,8 @@ class Scan {
     std::optional<double> highest_point(const Eigen::Vector2d& xy, double radius) const;
     /// The mesh; null for a cloud.
     const mesh::Mesh* mesh() const;
-    /// Triangles of the file that the mesh does not have: their vertices are not finite.
-    Eigen::Index dropped_triangles() const;
+    /// What of the file the mesh does not have.
+    const mesh::MeshRepair& repair() const;
     /// Bounding box, mm: column 0 is the min corner, column 1 the max corner.
     Eigen::AlignedBox3d bounds() const;
 
@@ -47,5 +48,8 @@ class Scan {
 /// @param stated  length unit of the file; nothing: that of the job
 /// @throws InputError as read_shape() (mesh/shape_file.h), or if no point of a cloud is finite
 Scan read_scan(const std::string& path, const job::Job& job, std::optional<units::Units::Length> stated);
+
+/// Warnings about a part: what was left out of it, and that it may be the wrong one. @param name  of its file
+std::vector<std::string> scan_warnings(const Scan& scan, const job::Job& job, const std::string& name);
 
 } // namespace fettle::sampling

@@ -22,7 +22,7 @@ awk '$2 == "home" { homed = $3 > 0.5235 && $3 < 0.5237 } $2 == "probe" { n++; if
 
 # A place without material is no touch; a machine has no unit and no noise of the user's.
 jq '.sampling[1] = [40, 0.1, 0.4722]' job.json > far.json
-"$HERE/../refuses" 'touches find no surface' fettle-sample far.json --on "gantry:exec:fettle-gantry-virtual $PWD/far.json --stock $PWD/part.stl"
+"$HERE/../refuses" 'touches find no surface' fettle-sample far.json --on "gantry:exec:fettle-gantry-virtual -q $PWD/far.json --stock $PWD/part.stl"
 "$HERE/../refuses" 'for a SURFACE, not for a gantry' fettle-sample job.json --noise uniform:1 --on "gantry:exec:$driver"
 "$HERE/../refuses" 'status 3' fettle-sample job.json --on 'gantry:exec:exit 3'
 jq '.anomaly |= map(.[:2]) | .sampling |= map(.[:2])' job.json > flat.json
