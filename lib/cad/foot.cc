@@ -116,39 +116,4 @@ SurfaceFoot foot_on_surface(const Adaptor3d_Surface& surface, const Eigen::Vecto
     return {uv, d.point, is_held[0] || is_held[1]};
 }
 
-CurveFoot foot_on_curve(const Adaptor3d_Curve& curve, double start, const Eigen::Vector3d& point)
-{
-    const Limits range = limits(curve.FirstParameter(), curve.LastParameter(), false);
-    double t = range.clamp(start), damping = 0;
-    gp_Pnt p;
-    gp_Vec d1, d2;
-    curve.D2(t, p, d1, d2);
-    Eigen::Vector3d at = vector_of(p.XYZ());
-    for (int step = 0; step < kMaxSteps && damping < kMaxDamping; ++step) {
-        const Eigen::Vector3d r = at - point;
-        const double slope = r.dot(vector_of(d1.XYZ())), speed2 = d1.SquareMagnitude();
-        const double hessian = speed2 + r.dot(vector_of(d2.XYZ()));
-        const double divisor = (hessian > 0 ? hessian : speed2) + damping * speed2;
-        if (!(divisor > 0)) break;
-        const double next = range.clamp(t - slope / divisor);
-        const double moved = std::abs(next - t) * std::sqrt(speed2);
-        const double smallest = kStep * (1 + point.cwiseAbs().maxCoeff());
-        gp_Pnt q;
-        gp_Vec q1, q2;
-        curve.D2(next, q, q1, q2);
-        const Eigen::Vector3d there = vector_of(q.XYZ());
-        if ((there - point).squaredNorm() <= r.squaredNorm()) {
-            t = next;
-            at = there;
-            d1 = q1;
-            d2 = q2;
-            damping = damping > kMinDamping ? damping / 10 : 0;
-        } else {
-            damping = std::max(kMinDamping, 10 * damping);
-        }
-        if (moved <= smallest) break;
-    }
-    return {t, at};
-}
-
 } // namespace fettle::cad

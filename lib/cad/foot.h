@@ -2,7 +2,6 @@
 
 // For the files of this module alone.
 
-#include <Adaptor3d_Curve.hxx>
 #include <Adaptor3d_Surface.hxx>
 
 #include <Eigen/Core>
@@ -21,12 +20,5 @@ struct SurfaceFoot {
 /// @param start  u and v to begin with
 SurfaceFoot foot_on_surface(const Adaptor3d_Surface& surface, const Eigen::Vector2d& start,
                             const Eigen::Vector3d& point);
-
-/// The closest point on a curve, within the limits of its parameter; see foot_on_surface.
-struct CurveFoot {
-    double t;
-    Eigen::Vector3d point; ///< mm
-};
-CurveFoot foot_on_curve(const Adaptor3d_Curve& curve, double start, const Eigen::Vector3d& point);
 
 } // namespace fettle::cad

@@ -82,7 +82,7 @@ void Recorder::change_wheel(const Mark& mark)
     });
 }
 
-void Recorder::decide(const Mark& mark)
+void Recorder::record_decision(const Mark& mark)
 {
     if (!live_ && !replay_ended()) return replay(mark, 0);
     record(mark, 0);

@@ -55,7 +55,7 @@ class Recorder {
     void retract(const Mark& mark, double safe_height);
     void change_wheel(const Mark& mark);
     /// Records a decision that moves nothing.
-    void decide(const Mark& mark);
+    void record_decision(const Mark& mark);
     /// Records that the machine has stopped for good: in the trace, and in the journal if that can be written.
     void record_fault(const Mark& mark);
 

@@ -40,7 +40,7 @@ GrindRun Runner::run(const core::Progress& progress)
     Action action = strategy_.first();
     try {
         grind_until_done(action, progress);
-        machine_.decide(mark(action, action.event));
+        machine_.record_decision(mark(action, action.event));
         result_.failure = strategy_.failure();
         result_.finished = action.kind == Action::Kind::finish;
     } catch (const gantry::Interrupted& stop) {
@@ -105,7 +105,7 @@ void Runner::perform(const Action& action)
         grind(action, reference(action.to));
         break;
     default:
-        machine_.decide(mark(action, event_));
+        machine_.record_decision(mark(action, event_));
         break;
     }
     if (by_force(action.layer)) update_force_control(action);
