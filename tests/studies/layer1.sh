@@ -10,3 +10,13 @@ status=0
 (cd "$root" && pipelines/layer1-table "$OLDPWD/all" 2 1.5) > bad || status=$?
 [ $status = 1 ]
 grep -q 'feed .*MISSED: too often' bad
+# Force beyond its limit, and out of its range.
+jq '.coverings = 1 | .peak_force = 17.3' all/2/1.5/feed.json > worse.json
+mv worse.json all/2/1.5/feed.json
+jq '.contact_time = 9 | .in_range = 0.79' all/2/1.5/force.json > worse.json
+mv worse.json all/2/1.5/force.json
+status=0
+(cd "$root" && pipelines/layer1-table "$OLDPWD/all" 2 1.5) > bad || status=$?
+[ $status = 1 ]
+grep -q 'feed .*MISSED: too much force' bad
+grep -q 'force .*79% .*MISSED: force out of range' bad
