@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "draw/canvas.h"
 #include "draw/picture_parts.h"
+#include "draw/png.h"
 
 #include <algorithm>
 #include <cmath>
@@ -165,11 +166,12 @@ Rgb shaded(Rgb colour, double shading, double shade, bool diverging)
     return colour;
 }
 
-void draw_map(Sheet& sheet, const Drawing& d, const PictureScale& scale, double shading)
+/// Colours of all pixels, row by row from the top.
+std::vector<std::uint8_t> map_pixels(const Drawing& d, double shading)
 {
     const View& view = d.view;
     Eigen::ArrayXXd shade = Eigen::ArrayXXd::Ones(view.rows, view.columns);
-    const bool keeps_colours = scale.diverging || scale.packed || !scale.classes.empty();
+    const bool keeps_colours = d.scale.diverging || d.scale.packed || !d.scale.classes.empty();
     if (shading > 0) shade = hill_shading(d.raster, view.pixel, d.smoothing);
     std::vector<std::uint8_t> pixels;
     pixels.reserve(std::size_t{3} * view.rows * view.columns);
@@ -177,11 +179,10 @@ void draw_map(Sheet& sheet, const Drawing& d, const PictureScale& scale, double 
         for (int column = 0; column < view.columns; ++column) {
             Rgb colour = kBackground;
             if (d.raster.covered(row, column))
-                colour = shaded(scale(d.raster.value(row, column)), shading, shade(row, column), keeps_colours);
+                colour = shaded(d.scale(d.raster.value(row, column)), shading, shade(row, column), keeps_colours);
             pixels.insert(pixels.end(), colour.begin(), colour.end());
         }
-    sheet.image(d.layout.view_corner, {double(d.layout.view.columns), double(d.layout.view.rows)}, view.columns,
-                pixels);
+    return pixels;
 }
 
 } // namespace
@@ -202,13 +203,20 @@ void draw_picture(const mesh::MeshOrCloud& part, const PictureOptions& options,
     Sheet& sheet = make(static_cast<int>(layout.map_corner.x() + layout.map_size.x() + kLegendWidth),
                         static_cast<int>(layout.map_corner.y() + layout.map_size.y() + kBelowMap));
     sheet.box(layout.map_corner, layout.map_size, kBackground);
-    draw_map(sheet, d, scale, shading_strength(options));
+    sheet.image(layout.view_corner, {double(layout.view.columns), double(layout.view.rows)}, d.view.columns,
+                map_pixels(d, shading_strength(options)));
     draw_outlines(sheet, layout, d.raster, d.outlines);
     draw_axes(sheet, layout, options.units);
     draw_legend(sheet, layout, d.values, scale);
     const bool has_statistics = !scale.packed && scale.classes.empty();
     if (has_statistics) draw_numbers(sheet, layout, d.values, options.job ? "inside B" : "");
     sheet.text(options.title, {kMapLeft, kMapTop + 4}, kTitleCapitals, Sheet::kInk, Sheet::Align::left, true);
+}
+
+std::string map_picture(const mesh::MeshOrCloud& part, const PictureOptions& options)
+{
+    const Drawing d = std::visit([&](const auto& p) { return render(p, options); }, part);
+    return encode_png(map_pixels(d, shading_strength(options)), d.view.columns, d.view.rows);
 }
 
 PictureScale picture_scale(const mesh::MeshOrCloud& part, const PictureOptions& options)

@@ -34,6 +34,9 @@ struct PictureOptions : ScaleOptions {
 /// @throws InputError if there is no such field, or no point with finite x and y
 std::string picture(const mesh::MeshOrCloud& part, const PictureOptions& options);
 
+/// The map of picture() alone, without legend, frame and boundaries, as wide as options.width. @return  as picture()
+std::string map_picture(const mesh::MeshOrCloud& part, const PictureOptions& options);
+
 /// The scale that picture() has for a part.
 PictureScale picture_scale(const mesh::MeshOrCloud& part, const PictureOptions& options);
 

@@ -6,6 +6,9 @@
 
 namespace fettle::report {
 
+/// The headline of a page. @param title  empty: a default
+std::string headline_of(const RunFiles& run, const std::string& title);
+
 /// Self-contained report page (HTML 5, UTF-8) of a run: verdict, job, touches and fit, margin, plan, grinding, maps,
 /// statistics, provenance. Sections without data are left out. Every number from an input has its key and its full
 /// value as attributes (`data-key`, `data-value`). The output is deterministic.

@@ -201,6 +201,12 @@ class RunReader {
         if (!names_.alignment.empty())
             run_.alignment = report("registration", "alignment", names_.alignment, read_alignment);
         if (!names_.form.empty()) run_.form = report("form", "form", names_.form, read_form);
+        if (!names_.nominal.empty()) run_.nominal = report("nominal form", "form", names_.nominal, read_form);
+        if (run_.nominal && (!run_.form || run_.form->form != run_.nominal->form))
+            throw core::InputError(names_.nominal,
+                                   "is of the form " + run_.nominal->form + ", which --form does not measure");
+        if (!names_.frames.empty())
+            run_.frames = read_frames(files_.json("frames", names_.frames), names_.frames);
         if (!names_.before.empty()) run_.before = part("part before", names_.before, names_.before_units);
         if (!names_.after.empty()) run_.after = part("part after", names_.after, std::nullopt);
     }

@@ -36,13 +36,18 @@ struct RunFiles {
     std::optional<mesh::MeshOrCloud> after;
     std::optional<cloud::Cloud> errors;
     std::optional<ComparisonReport> comparison;
+    std::optional<FormReport> nominal;
+    std::vector<std::pair<std::string, std::string>> head; ///< name and value: part, serial number, operator, date, …
+    std::optional<PlayedFrames> frames;
+    bool judges_all = false;           ///< also what the part lacked before it was ground
     std::vector<SourceFile> sources;   ///< in the order of reading
     std::vector<std::string> warnings; ///< warnings about files that do not belong to the same run
 };
 
 /// Names of the files; empty: not given.
 struct RunFileNames {
-    std::string job, samples, surface, plan, grinding, trace, before, after, errors, comparison, alignment, form;
+    std::string job, samples, surface, plan, grinding, trace, before, after, errors, comparison, alignment, form,
+        nominal, frames;
     std::optional<units::Units::Length> before_units; ///< units of `before`, if not those of the run
 };
 

@@ -1,3 +1,5 @@
+#include "core/text.h"
+#include "draw/base64.h"
 #include "draw/figures.h"
 #include "plan/layers.h"
 #include "report/charts.h"
@@ -133,6 +135,60 @@ draw::Html totals(const RunFiles& run)
            time_shares(n) + draw::element("div", {{"class", "columns"}}, left + right);
 }
 
+// Steps through the pictures, and through the force trace above them if the page has one.
+constexpr const char* kPlayerScript = R"js(<script>//<![CDATA[
+"use strict";
+(() => {
+    const player = document.querySelector(".player"), image = player.querySelector("img"), range = player.querySelector("input"), button = player.querySelector("button");
+    const frames = [...player.querySelectorAll("[data-t]")].map(frame => ({ t: Number(frame.dataset.t), picture: frame.textContent }));
+    const time = player.querySelector("output"), axis = document.querySelector("rect.time-axis"), cursor = document.querySelector("line.cursor");
+    let timer;
+    const show = index => {
+        range.value = index;
+        image.src = "data:image/png;base64," + frames[index].picture;
+        time.textContent = frames[index].t.toFixed(1) + " s";
+        player.dataset.shown = index;
+        if (!axis) return;
+        const x = Number(axis.getAttribute("x")) + Math.min(1, frames[index].t / Number(axis.dataset.seconds)) * Number(axis.getAttribute("width"));
+        cursor.setAttribute("x1", x);
+        cursor.setAttribute("x2", x);
+        cursor.style.visibility = "visible";
+    };
+    const stop = () => { clearInterval(timer); timer = undefined; button.textContent = "\u25B6 Play"; };
+    button.addEventListener("click", () => {
+        if (timer) { stop(); return; }
+        if (Number(range.value) === frames.length - 1) show(0);
+        button.textContent = "\u23F8 Pause";
+        timer = setInterval(() => Number(range.value) < frames.length - 1 ? show(Number(range.value) + 1) : stop(), 250);
+    });
+    range.addEventListener("input", () => { stop(); show(Number(range.value)); });
+    show(frames.length - 1);
+})();
+//]]></script>)js";
+
+/// The pictures of the stock, to be played; without a script the last of them.
+draw::Html player(const PlayedFrames& played)
+{
+    const std::string last = std::to_string(played.frames.size() - 1);
+    draw::Html data;
+    for (const PlayedFrames::Frame& frame : played.frames)
+        data += draw::element("script", {{"type", "text/plain"}, {"data-t", core::to_text(frame.time)}},
+                              draw::Html::from_markup(draw::base64(frame.png)));
+    const draw::Html controls = draw::element("div", {{"class", "controls"}},
+                                              draw::element("button", {{"type", "button"}}, "\u25B6 Play") +
+                                                  draw::empty_element("input", {{"type", "range"},
+                                                                                {"min", "0"},
+                                                                                {"max", last},
+                                                                                {"value", last},
+                                                                                {"aria-label", "picture of the run"}}) +
+                                                  draw::element("output", draw::Html()));
+    const draw::Html picture = draw::empty_element(
+        "img", {{"alt", played.shown}, {"src", "data:image/png;base64," + draw::base64(played.frames.back().png)}});
+    return draw::element("figure", {{"class", "player"}},
+                         controls + picture + data + draw::element("figcaption", played.shown)) +
+           draw::Html::from_markup(kPlayerScript);
+}
+
 } // namespace
 
 draw::Html grinding_section(const RunFiles& run)
@@ -144,6 +200,7 @@ draw::Html grinding_section(const RunFiles& run)
             drawing_with_caption(trace_chart(*run.trace, run.job, run.units), "Force, layer and feed against time.");
         html += layer_table(run);
     }
+    if (run.frames) html += player(*run.frames);
     return section("grinding", "Grinding", html);
 }
 

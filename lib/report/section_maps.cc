@@ -30,8 +30,8 @@ draw::Html rotatable_view(const RunFiles& run, const draw::PictureOptions& optio
         const mesh::CloudMesh part{*run.errors, {}};
         layers.push_back({"errors", part, view::default_fields(part.points)});
     }
-    if (run.before) layers.push_back({"before", view::as_cloud_mesh(*run.before), {"z"}});
-    if (run.after) layers.push_back({"after", view::as_cloud_mesh(*run.after), {"z"}});
+    if (run.before) layers.push_back({"before", mesh::as_cloud_mesh(*run.before), {"z"}});
+    if (run.after) layers.push_back({"after", mesh::as_cloud_mesh(*run.after), {"z"}});
     if (layers.empty()) return {};
     view::ViewOptions view;
     view.picture = options;

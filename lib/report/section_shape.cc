@@ -1,6 +1,11 @@
 #include "draw/figures.h"
 #include "report/sections.h"
 
+#include <Eigen/Geometry>
+
+#include <cmath>
+#include <numbers>
+
 namespace fettle::report {
 
 namespace {
@@ -28,6 +33,53 @@ draw::Html other_place(const OtherPlace& place, const std::string& unit)
     const draw::Html matrix =
         matrix_table("alignment.next.transform", place.transform, "Its transform; fettle-align --start begins there");
     return draw::element("div", {{"class", "columns"}}, numbers + matrix);
+}
+
+constexpr double kDegrees = 180 / std::numbers::pi;
+
+/// Distance of a place from the nominal element: across its axis, along its normal, or from its centre.
+double distance_to_nominal(const FormReport& actual, const FormReport& nominal)
+{
+    const Eigen::Vector3d shift = actual.place - nominal.place;
+    if (nominal.direction.size() == 0) return shift.norm();
+    const Eigen::Vector3d along = nominal.direction.normalized();
+    const bool is_flat = nominal.form == "flatness";
+    return is_flat ? shift.dot(along) : (shift - along * shift.dot(along)).norm();
+}
+
+/// Nominal, actual and deviation of the element of least squares. Without a nominal element only the form error has
+/// a nominal value, 0.
+draw::Html element_table(const RunFiles& run)
+{
+    const FormReport& actual = *run.form;
+    const FormReport* nominal = run.nominal ? &*run.nominal : nullptr;
+    const std::string length = ", " + units::to_string(run.units.length);
+    std::vector<std::vector<draw::Html>> rows;
+    const auto add = [&](const std::string& name, const std::string& key, std::optional<double> wanted, double found) {
+        const draw::Html dash = "\u2013";
+        const std::string path = "form.elements." + key;
+        rows.push_back({name, wanted ? number_figure(path + ".nominal", *wanted) : dash,
+                        number_figure(path + ".actual", found),
+                        wanted ? number_figure(path + ".deviation", found - *wanted) : dash});
+    };
+    const auto of_nominal = [&](auto member) {
+        return nominal != nullptr ? std::optional<double>(member(*nominal)) : std::nullopt;
+    };
+    if (actual.radius)
+        add("Diameter" + length, "diameter", of_nominal([](const FormReport& f) { return 2 * f.radius.value_or(0); }),
+            2 * *actual.radius);
+    const bool is_centre = actual.form == "sphericity";
+    for (int axis = 0; is_centre && axis < 3 && actual.place.size() == 3; ++axis)
+        add(std::string("Centre ") + "xyz"[axis] + length, std::string("centre.") + "xyz"[axis],
+            of_nominal([axis](const FormReport& f) { return f.place[axis]; }), actual.place[axis]);
+    if (nominal != nullptr && !is_centre && actual.place.size() == 3 && nominal->place.size() == 3)
+        add("Distance from nominal" + length, "distance", 0, distance_to_nominal(actual, *nominal));
+    if (nominal != nullptr && actual.direction.size() == 3 && nominal->direction.size() == 3) {
+        const Eigen::Vector3d a = actual.direction, b = nominal->direction;
+        add("Angle to nominal, \u00B0", "angle", 0, kDegrees * std::atan2(a.cross(b).norm(), std::abs(a.dot(b))));
+    }
+    add("Form error (minimum zone)" + length, "form_error", 0, actual.numbers.at("minimum_zone"));
+    return table("Element of least squares", {"", "Nominal", "Actual", "Deviation"}, rows, 1);
 }
 
 } // namespace
@@ -68,7 +120,7 @@ draw::Html form_section(const RunFiles& run)
     const draw::Html right = property_table({{"Points", count("count")},
                                              {"Points without coordinates", count("dropped")},
                                              {"Outliers, left out", count("outliers")}});
-    return section("form", "Form", draw::element("div", {{"class", "columns"}}, left + right));
+    return section("form", "Form", draw::element("div", {{"class", "columns"}}, left + right) + element_table(run));
 }
 
 } // namespace fettle::report

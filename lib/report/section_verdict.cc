@@ -1,6 +1,7 @@
 #include "draw/figures.h"
 #include "report/charts.h"
 #include "report/sections.h"
+#include "report/verdict.h"
 
 #include <algorithm>
 #include <cmath>
@@ -25,27 +26,43 @@ std::string judged_area(const ComparisonReport& comparison)
     return comparison.judged == "inside" ? "inside the boundary B" : "on the whole part";
 }
 
-draw::Html judged_card(const ComparisonReport& c, const std::string& unit)
+/// What the part lacked before it was ground, and whether that counts.
+draw::Html lacking_text(const PageVerdict& verdict, const auto& length)
+{
+    const OverCut& cut = *verdict.over_cut;
+    draw::Html text = " " + draw::count_text(double(cut.lacking_points)) +
+                      (cut.lacking_points == 1 ? " point" : " points") +
+                      " lay below the reference before grinding, by up to ";
+    text += length("over_cut.lacked", cut.lacked);
+    return text + (verdict.by_wheel ? ": judged is what the wheel did, not what the part lacked already."
+                                    : ": that counts here, too.");
+}
+
+draw::Html judged_card(const ComparisonReport& c, const PageVerdict& verdict, const std::string& unit)
 {
     const NamedNumbers& numbers = c.region(c.judged);
-    const int decimals = draw::decimals_for(std::max(c.tolerance, c.worst));
+    const int decimals = draw::decimals_for(std::max(verdict.tolerance, verdict.worst));
     const auto length = [&](const char* key, double value) {
         return draw::number_element(key, value, draw::fixed_text(value, decimals)) + " " + unit;
     };
     if (!std::isfinite(c.worst) || numbers.at("count") == 0)
         return card("out", "\u2717", "Out of tolerance", "No point " + judged_area(c) + " has an error to judge.");
-    const std::string side = -numbers.at("min") > numbers.at("max") ? "over-cut" : "material left";
+    const bool is_over_cut =
+        verdict.by_wheel ? verdict.over_cut->by_wheel > verdict.over_cut->left : -numbers.at("min") > numbers.at("max");
+    const std::string side = !is_over_cut ? "material left" : verdict.by_wheel ? "over-cut by the wheel" : "over-cut";
     draw::Html text = "Largest error " + judged_area(c) + ": ";
-    text += length("comparison.worst", c.worst) + " (" + (c.reversed ? "of both directions" : side) +
-            "), allowed \u00B1" + length("comparison.tolerance", c.tolerance);
-    const double reserve = c.tolerance - c.worst;
-    text += (c.within ? "; to spare " : "; exceeded by ") +
+    text += length(verdict.by_wheel ? "judged.worst" : "comparison.worst", verdict.worst) + " (" +
+            (c.reversed ? "of both directions" : side) + "), allowed \u00B1" +
+            length("comparison.tolerance", c.tolerance);
+    const double reserve = c.tolerance - verdict.worst;
+    text += (verdict.within ? "; to spare " : "; exceeded by ") +
             draw::Html(draw::fixed_text(std::abs(reserve), decimals) + " " + unit) + ".";
-    return c.within ? card("within", "\u2713", "Within tolerance", text)
-                    : card("out", "\u2717", "Out of tolerance", text);
+    if (verdict.over_cut && verdict.over_cut->lacking_points > 0) text += lacking_text(verdict, length);
+    return verdict.within ? card("within", "\u2713", "Within tolerance", text)
+                          : card("out", "\u2717", "Out of tolerance", text);
 }
 
-draw::Html tiles(const RunFiles& run)
+draw::Html tiles(const RunFiles& run, const PageVerdict& verdict)
 {
     const std::string length = units::to_string(run.units.length);
     draw::Html items;
@@ -55,13 +72,18 @@ draw::Html tiles(const RunFiles& run)
         const std::string key = name == "all" ? "comparison." : "comparison.regions." + name + ".";
         const NamedNumbers& n = c.region(name);
         const int decimals = draw::decimals_for(std::max(-n.at("min"), n.at("max")));
-        for (const auto& [statistic, label] : {std::pair{"mean_abs", "mean absolute error"},
-                                               {"min", "deepest over-cut"},
-                                               {"max", "maximum material left"}})
-            items += tile(
-                draw::number_element(key + statistic, n.at(statistic), draw::fixed_text(n.at(statistic), decimals)) +
-                    " " + length,
-                label);
+        const auto error_tile = [&](const std::string& number_key, double value, const std::string& label) {
+            items +=
+                tile(draw::number_element(number_key, value, draw::fixed_text(value, decimals)) + " " + length, label);
+        };
+        error_tile(key + "mean_abs", n.at("mean_abs"), "mean absolute error");
+        if (verdict.over_cut) {
+            error_tile("over_cut.by_wheel", verdict.over_cut->by_wheel, "deepest over-cut by the wheel");
+            error_tile("over_cut.lacked", verdict.over_cut->lacked, "most that was lacking before grinding");
+        } else {
+            error_tile(key + "min", n.at("min"), "deepest over-cut");
+        }
+        error_tile(key + "max", n.at("max"), "maximum material left");
     }
     if (run.grinding) {
         const NamedNumbers& n = run.grinding->numbers;
@@ -97,10 +119,11 @@ draw::Html force_card(const RunFiles& run)
 draw::Html verdict_section(const RunFiles& run)
 {
     const std::string unit = units::to_string(run.units.length);
+    const PageVerdict verdict = judge_page(run);
     draw::Html html;
     if (run.comparison && !run.comparison->judged.empty()) {
         const ComparisonReport& c = *run.comparison;
-        html += judged_card(c, unit);
+        html += judged_card(c, verdict, unit);
         html += drawing_with_caption(
             error_gauge(c.region(c.judged), c.tolerance, unit),
             "Errors " + judged_area(c) +
@@ -112,7 +135,7 @@ draw::Html verdict_section(const RunFiles& run)
     if (run.grinding && !run.grinding->finished)
         html += card("out", "!", "Grinding not finished", "The machine stopped at a limit of the plan.");
     html += force_card(run);
-    return draw::element("section", {{"id", "verdict"}}, html + tiles(run)) + draw::Html::from_markup("\n");
+    return draw::element("section", {{"id", "verdict"}}, html + tiles(run, verdict)) + draw::Html::from_markup("\n");
 }
 
 } // namespace fettle::report

@@ -15,6 +15,9 @@ body { margin: 0 auto; max-width: 60rem; padding: 2.6rem 3rem 2rem; background: 
        font-variant-numeric: tabular-nums lining-nums; }
 header { border-bottom: 2px solid var(--ink); padding-bottom: .7rem; margin-bottom: 1.4rem; }
 h1 { font-size: 1.75rem; line-height: 1.2; margin: 0; font-weight: 650; overflow-wrap: anywhere; }
+header dl.head { display: flex; flex-wrap: wrap; gap: .3rem 2rem; margin: .7rem 0 0; }
+header dl.head dt { color: var(--soft); font-size: .8rem; }
+header dl.head dd { margin: 0; font-weight: 600; overflow-wrap: anywhere; }
 header p { margin: .3rem 0 0; color: var(--soft); overflow-wrap: anywhere; }
 h2 { font-size: 1.12rem; margin: 2.1rem 0 .7rem; padding-bottom: .25rem; border-bottom: 1px solid var(--rule); font-weight: 650; }
 h3 { font-size: .95rem; margin: 1.2rem 0 .4rem; font-weight: 650; }
@@ -57,6 +60,9 @@ td.bar i { display: block; height: .62rem; background: var(--blue); min-width: 1
 figure { margin: .8rem 0 1.1rem; }
 figure img, figure svg { display: block; width: 100%; height: auto; }
 figcaption { color: var(--soft); font-size: .88rem; margin-top: .3rem; }
+.player img { max-width: 50rem; }
+.player .controls { display: flex; gap: .8rem; align-items: center; margin-bottom: .4rem; } .player input { flex: 1 1 auto; }
+.player button { font: inherit; font-size: .85rem; padding: .2rem .7rem; border: 1px solid #b4bdc5; border-radius: 3px; background: #fff; cursor: pointer; }
 .view .stage { height: 30rem; flex: none; }
 .hash { font: .78rem "DejaVu Sans Mono", "Liberation Mono", Consolas, monospace; overflow-wrap: anywhere; color: var(--soft); }
 .name { overflow-wrap: anywhere; }
@@ -70,6 +76,7 @@ svg .grid { stroke: var(--rule); stroke-width: 1; } svg .axis { stroke: var(--so
 svg .limit { stroke: var(--orange); stroke-width: 1.2; stroke-dasharray: 5 3; }
 svg .force { fill: none; stroke: var(--blue); stroke-width: .9; stroke-linejoin: round; }
 svg .layer, svg .feed { fill: none; stroke: var(--ink); stroke-width: 1; }
+svg .time-axis { fill: none; } svg .cursor { stroke: var(--orange); stroke-width: 1.4; visibility: hidden; }
 svg .idle { fill: #e3e7eb; }
 svg .sign-blue { fill: var(--blue); } svg .sign-green { fill: var(--green); } svg .sign-orange { fill: #e69f00; }
 svg .sign-purple { fill: var(--purple); } svg .sign-cross { fill: none; stroke: var(--orange); stroke-width: 2; }

@@ -1,8 +1,12 @@
 #include "report/tool_reports.h"
 
 #include "core/constants.h"
+#include "core/error.h"
+#include "core/file.h"
+#include "core/text.h"
 
 #include <algorithm>
+#include <filesystem>
 
 namespace fettle::report {
 namespace {
@@ -83,7 +87,31 @@ FormReport read_form(json::Reader& reader)
     report.form = reader.text("form");
     report.parameter = reader.text_or("parameter", "");
     report.numbers = read_numbers(reader, {"count", "dropped", "outliers", "least_squares", "minimum_zone"});
+    std::optional<json::Reader> elements = reader.optional_object("elements");
+    if (!elements) return report; // straightness of several sections
+    json::Reader element = elements->object("least_squares");
+    for (const char* key : {"centre", "point"})
+        if (element.has(key)) report.place = element.vector(key, 3);
+    for (const char* key : {"normal", "axis"})
+        if (element.has(key)) report.direction = element.vector(key, 3);
+    if (element.has("radius")) report.radius = element.number("radius");
     return report;
+}
+
+PlayedFrames read_frames(json::Reader reader, const std::string& path)
+{
+    reader.expect_kind("frames");
+    PlayedFrames played{reader.text("shown"), {}};
+    for (json::Reader& frame : reader.objects("frames")) {
+        const std::string name = frame.text("picture");
+        if (name.find('/') != std::string::npos) frame.refuse("picture", "is not a file beside this one: " + name);
+        const std::string file = (std::filesystem::path(path).parent_path() / name).string();
+        std::string png = core::read_file(file, core::kMaxJsonBytes);
+        if (!png.starts_with("\x89PNG")) throw core::InputError(file, "is not a PNG");
+        played.frames.push_back({frame.number("t", core::Range::at_least(0)), std::move(png)});
+    }
+    if (played.frames.empty()) reader.refuse("frames", "is empty");
+    return played;
 }
 
 GrindReport read_grinding(json::Reader& reader)

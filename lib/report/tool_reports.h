@@ -55,12 +55,27 @@ struct AlignmentReport {
 struct FormReport {
     std::string form, parameter; ///< such as "flatness" and "FLTt"; the second may be empty
     NamedNumbers numbers;
+    Eigen::VectorXd place;     ///< of the element of least squares: its centre, or a point on it; empty: not stated
+    Eigen::VectorXd direction; ///< its normal or axis; empty: it has none
+    std::optional<double> radius;
 };
 
 /// Each reads the report of one tool. @throws InputError for keys that are missing or of another kind
 ComparisonReport read_comparison(json::Reader& reader);
 AlignmentReport read_alignment(json::Reader& reader);
 FormReport read_form(json::Reader& reader);
+
+/// Pictures of the stock during a run.
+struct PlayedFrames {
+    struct Frame {
+        double time = 0; ///< s
+        std::string png; ///< bytes
+    };
+    std::string shown; ///< what they show
+    std::vector<Frame> frames;
+};
+/// @param path  of the file, beside which the pictures are   @throws InputError
+PlayedFrames read_frames(json::Reader reader, const std::string& path);
 GrindReport read_grinding(json::Reader& reader);
 
 } // namespace fettle::report

@@ -1,4 +1,5 @@
 #include "core/constants.h"
+#include "core/text.h"
 #include "draw/figures.h"
 #include "draw/svg.h"
 #include "report/charts.h"
@@ -213,6 +214,14 @@ draw::Html trace_chart(const cloud::Cloud& trace, const std::optional<job::Job>&
                             "panel");
     html += draw::svg::path(steps(time, feed / units.mm(), x, feed_y), "feed");
     html += draw::svg::text({kRight + 6, bottom + 15}, unit > 1 ? "min" : "s");
+    // Where a page plays the run (section_grinding.cc), its script moves the cursor along this box.
+    html += draw::empty_element("rect", {{"class", "time-axis"},
+                                         {"x", coordinate(x.begin)},
+                                         {"y", coordinate(kForceTop)},
+                                         {"width", coordinate(x.end - x.begin)},
+                                         {"height", coordinate(bottom - kForceTop)},
+                                         {"data-seconds", core::to_text(x.max * unit)}});
+    html += draw::svg::line({x.begin, kForceTop}, {x.begin, bottom}, "cursor");
     html += signs(time, events, x, bottom + 38);
     return draw::svg::drawing(kWidth, bottom + 46, "force, layer and feed against time", html);
 }
