@@ -10,9 +10,11 @@ $(B)/bin/fettle-render:  LDLIBS = $(OPENCV) $(PNG)
 $(B)/bin/fettle-view:    LDLIBS = $(OPENCV) $(PNG)
 $(B)/bin/fettle-report:  LDLIBS = $(OPENCV) $(PNG) $(MD)
 $(B)/bin/fettle-station: LDLIBS = $(CERES) $(OPENCV) $(PNG) $(MD)
-$(B)/bin/fettle-grind $(B)/bin/fettle-manual $(B)/bin/fettle-plan $(B)/bin/fettle-teach: LDLIBS = $(MD)
+$(B)/bin/fettle-grind:   LDLIBS = $(OPENCV) $(PNG) $(MD)
+$(B)/bin/fettle-mill:    LDLIBS = $(OPENCV) $(PNG)
+$(B)/bin/fettle-manual $(B)/bin/fettle-plan $(B)/bin/fettle-teach: LDLIBS = $(MD)
 $(B)/bin/fettle-contact: LDLIBS = -lopencv_core
-$(B)/bin/fettle-belt:    LDLIBS = -lopencv_core $(MD)
+$(B)/bin/fettle-belt:    LDLIBS = $(OPENCV) $(PNG) $(MD)
 $(B)/bin/fettle-feed:    LDLIBS = -lopencv_core
 $(B)/bin/fettle-step:    LDLIBS = $(OCCT_LIBS)
 # LinuxCNC's libraries are under the GPL: so is this program as a whole.

@@ -1,0 +1,57 @@
+#include "draw/frames.h"
+
+#include "json/document.h"
+
+#include <algorithm>
+#include <filesystem>
+
+namespace fettle::draw {
+
+Frames::Frames(cli::Tool& tool)
+    : tool_(tool), count_(tool.count("--frames", 0, "Up to so many pictures of the stock during the run, PNG, at equal times; 0: none", 0, 500)),
+      folder_(tool.text("--frames-in", "frames", "FOLDER",
+                        "With --frames: where they go, and frames.json, which fettle-report --frames plays"))
+{
+}
+
+std::vector<std::size_t> Frames::steps(std::size_t steps) const
+{
+    std::vector<double> ends(steps);
+    for (std::size_t i = 0; i < steps; ++i) ends[i] = double(i + 1);
+    return this->steps(ends);
+}
+
+std::vector<std::size_t> Frames::steps(const std::vector<double>& ends) const
+{
+    std::vector<std::size_t> wanted;
+    if (ends.empty()) return wanted;
+    for (std::size_t k = 1; k <= count(); ++k) {
+        const double time = ends.back() * double(k) / double(count());
+        const auto at = std::min(std::ranges::lower_bound(ends, time), ends.end() - 1);
+        const auto step = static_cast<std::size_t>(at - ends.begin());
+        if (wanted.empty() || step > wanted.back()) wanted.push_back(step);
+    }
+    return wanted;
+}
+
+void Frames::add(double time, const std::string& png)
+{
+    if (names_.empty()) std::filesystem::create_directories(folder_);
+    const std::string number = std::to_string(names_.size() + 1);
+    constexpr std::size_t kDigits = 3;
+    names_.push_back(std::string(kDigits - std::min(kDigits, number.size()), '0') + number + ".png");
+    times_.push_back(time);
+    tool_.output_file(folder_ + "/" + names_.back()) << png;
+}
+
+void Frames::finish(const std::string& shown)
+{
+    if (names_.empty()) return;
+    std::vector<json::Value> frames;
+    for (std::size_t i = 0; i < names_.size(); ++i)
+        frames.push_back(json::Value().set("t", times_[i]).set("picture", names_[i]));
+    tool_.output_file(folder_ + "/frames.json")
+        << json::Value().set("kind", "frames").set("shown", shown).set("frames", frames);
+}
+
+} // namespace fettle::draw
