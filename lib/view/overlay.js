@@ -3,6 +3,7 @@
 const kInk = "#282828", kSoft = "#5a6672", kPaper = "rgba(255, 255, 255, 0.86)";
 const kFewPoints = 100;        // so few are drawn as dots
 const kNarrow = 600;           // pixels; a window below it has a small legend
+const kAxesHeight = 120;      // pixels, of the canvas with the axes and the scale bar
 const kLegendWidth = 158, kNarrowLegendWidth = 92;
 const kNoColours = new Uint8Array([128, 128, 128]);
 const kUndefinedColour = [128 / 255, 128 / 255, 128 / 255];
@@ -83,8 +84,9 @@ function drawLegend(context, width, height, field) {
     }
 }
 
+// On a canvas of this height in the lower left corner.
 function drawAxes(context, camera, unit) {
-    const width = camera.width, height = camera.height;
+    const width = camera.width, height = kAxesHeight;
     // Scale bar, lower left; the axes beside it.
     const length = roundDown(width / 4 * camera.scale), pixels = length / camera.scale;
     drawText(context, short(length) + " " + unit, 24 + pixels, height - 22, { ground: true });

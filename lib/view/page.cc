@@ -16,6 +16,8 @@ constexpr const char* kStyle = R"css(
 .fettle-view .stage canvas { position: absolute; left: 0; top: 0; width: 100%; height: 100%; }
 .fettle-view .stage canvas:first-child { cursor: grab; touch-action: none; outline-offset: -2px; }
 .fettle-view .over { pointer-events: none; }
+.fettle-view .stage canvas.legend { left: auto; right: 0; }
+.fettle-view .stage canvas.axes { top: auto; bottom: 0; }
 .fettle-view .tip { position: absolute; pointer-events: none; background: #1c2733e6; color: #fff; font-size: .8rem; line-height: 1.35; padding: .3rem .5rem; border-radius: 3px; }
 .fettle-view .tip[hidden], .fettle-view .tip:empty { display: none; }
 .fettle-view .tip span { display: block; white-space: nowrap; }

@@ -25,19 +25,41 @@ void main() {
     colour = rgb;
 }`;
 
+// Points: everything but the colour is done once a point, since a renderer without a GPU pays for each pixel.
+const kPointVertex = kPartVertex.replace("out vec3 seen, facing, colour;", "flat out vec3 colour;\nvec3 seen, facing;")
+    .replace("out float share;", "float share;")
+    .replace("uniform bool hasNormals;", `uniform bool hasNormals, hasColours;
+uniform sampler2D palette;
+uniform float shading;
+uniform vec3 undefinedColour;`)
+    .replace("    colour = rgb;\n}", `    vec3 c = hasColours ? rgb : share < -0.5 ? undefinedColour : texelFetch(palette, ivec2(int(clamp(share * 256.0, 0.0, 255.0)), 0), 0).rgb;
+    float size = length(facing);
+    if (size > 0.0) {
+        n = facing * ((facing.z < 0.0 ? -1.0 : 1.0) / size);
+        float light = min(1.0, dot(n, vec3(-0.406, 0.487, 0.773)) / 0.773);
+        c *= 1.0 - shading * (1.0 - max(light, 0.0));
+    }
+    colour = c;
+}`);
+const kPointFragment = `#version 300 es
+precision mediump float;
+flat in vec3 colour;
+out vec4 pixel;
+void main() { pixel = vec4(colour, 1); }`;
+
 // Light from the upper left; a surface that faces the eye has the legend's colour.
 const kPartFragment = `#version 300 es
 precision highp float;
 uniform sampler2D palette;
-uniform bool isMesh, hasColours;
+uniform bool hasColours;
 uniform float shading;
 uniform vec3 undefinedColour;
-in vec3 seen, facing, colour;
+in vec3 seen, colour;
 in float share;
 out vec4 pixel;
 void main() {
     vec3 c = hasColours ? colour : share < -0.5 ? undefinedColour : texture(palette, vec2(clamp(share, 0.001953125, 0.998046875), 0.5)).rgb;
-    vec3 n = isMesh ? cross(dFdx(seen), dFdy(seen)) : facing;
+    vec3 n = cross(dFdx(seen), dFdy(seen));
     float size = length(n);
     if (size > 0.0) {
         n *= (n.z < 0.0 ? -1.0 : 1.0) / size;
@@ -102,7 +124,8 @@ class Renderer {
         const gl = canvas.getContext("webgl2", { antialias: false, alpha: false, preserveDrawingBuffer: true });
         if (!gl) throw new Error("no WebGL 2");
         this.gl = gl;
-        this.part = compile(gl, kPartVertex, kPartFragment);
+        this.triangles = compile(gl, kPartVertex, kPartFragment);
+        this.points = compile(gl, kPointVertex, kPointFragment);
         this.line = compile(gl, kLineVertex, kLineFragment);
         this.textures = new Map();
     }
@@ -155,13 +178,13 @@ class Renderer {
     }
     // @param points  how many of the layer's points to draw; triangles are drawn as points then; 0: all, and triangles
     drawLayer(layer, field, points) {
-        const gl = this.gl, { program, uniforms } = this.part, camera = this.camera;
+        const gl = this.gl, camera = this.camera, asPoints = points > 0 || layer.triangles === 0;
+        const part = asPoints ? this.points : this.triangles, { program, uniforms } = part;
         layer.buffers ??= { position: this.buffer(layer.position), normal: layer.normal && this.buffer(layer.normal),
             corners: layer.triangles > 0 && this.buffer(layer.corners, gl.ELEMENT_ARRAY_BUFFER) };
         field.buffer ??= this.buffer(field.rgb ?? field.value);
         gl.useProgram(program);
         this.palette(field.colours ?? kNoColours);
-        const asPoints = points > 0 || layer.triangles === 0;
         const count = points > 0 ? Math.min(points, layer.count) : layer.count;
         const cell = layer.spacing * Math.sqrt(layer.count / Math.max(1, count));
         gl.uniform3fv(uniforms.origin, subtract(layer.origin, camera.centre));
@@ -172,14 +195,13 @@ class Renderer {
         gl.uniform1f(uniforms.low, field.step > 0 ? (field.low - field.origin) / field.step : 0);
         gl.uniform1f(uniforms.high, field.step > 0 ? (field.high - field.origin) / field.step : 1);
         gl.uniform1i(uniforms.hasNormals, layer.normal ? 1 : 0);
-        gl.uniform1i(uniforms.isMesh, asPoints ? 0 : 1);
         gl.uniform1i(uniforms.hasColours, field.rgb ? 1 : 0);
         gl.uniform1f(uniforms.shading, field.shading);
         gl.uniform3fv(uniforms.undefinedColour, kUndefinedColour);
-        this.attribute(this.part, "position", layer.buffers.position, 3, gl.UNSIGNED_SHORT);
-        this.attribute(this.part, "normal", layer.buffers.normal, 2, gl.BYTE, true);
-        this.attribute(this.part, "value", field.rgb ? null : field.buffer, 1, gl.UNSIGNED_SHORT);
-        this.attribute(this.part, "rgb", field.rgb ? field.buffer : null, 3, gl.UNSIGNED_BYTE, true);
+        this.attribute(part, "position", layer.buffers.position, 3, gl.UNSIGNED_SHORT);
+        this.attribute(part, "normal", layer.buffers.normal, 2, gl.BYTE, true);
+        this.attribute(part, "value", field.rgb ? null : field.buffer, 1, gl.UNSIGNED_SHORT);
+        this.attribute(part, "rgb", field.rgb ? field.buffer : null, 3, gl.UNSIGNED_BYTE, true);
         if (asPoints && layer.order) { // of a mesh
             layer.buffers.order ??= this.buffer(layer.order, gl.ELEMENT_ARRAY_BUFFER);
             gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, layer.buffers.order);

@@ -245,17 +245,4 @@ mesh::MeshOrCloud as_shape(const mesh::CloudMesh& part)
     return part.points;
 }
 
-mesh::CloudMesh as_cloud_mesh(const mesh::MeshOrCloud& shape)
-{
-    mesh::CloudMesh part;
-    if (const mesh::Mesh* mesh = std::get_if<mesh::Mesh>(&shape)) {
-        part.points.xyz = mesh->vertices;
-        part.points.frame = mesh->frame;
-        part.triangles = mesh->triangles;
-    } else {
-        part.points = std::get<cloud::Cloud>(shape);
-    }
-    return part;
-}
-
 } // namespace fettle::view

@@ -45,6 +45,5 @@ std::vector<std::string> default_fields(const cloud::Cloud& points);
 
 /// A part as the pictures take it.
 mesh::MeshOrCloud as_shape(const mesh::CloudMesh& part);
-mesh::CloudMesh as_cloud_mesh(const mesh::MeshOrCloud& shape);
 
 } // namespace fettle::view

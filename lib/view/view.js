@@ -84,9 +84,13 @@ class View {
             make("span", { class: "group" }, ...this.layerButtons), this.fieldButtons, make("span", { class: "group" }, ...Object.values(this.modeButtons)),
             make("span", { class: "group" }, look("Top", 0, Math.PI / 2), look("Front", 0, 0), look("Right", Math.PI / 2, 0), look("Oblique", 0.45, 0.7)));
         this.canvas = make("canvas", { tabindex: "0", role: "img", "aria-label": "Rotatable view of the part. " + kHelp });
-        this.overlay = make("canvas", { class: "over", "aria-hidden": "true" });
+        // Canvases over the part are as small as what they show: each is laid over it anew in every frame.
+        const over = name => make("canvas", { class: "over " + name, "aria-hidden": "true" });
+        this.legend = over("legend");
+        this.axes = over("axes");
+        this.overlay = over("labels");
         this.tip = make("div", { class: "tip", role: "status" });
-        this.stage = make("div", { class: "stage" }, this.canvas, this.overlay, this.tip);
+        this.stage = make("div", { class: "stage" }, this.canvas, this.legend, this.axes, this.overlay, this.tip);
         this.profile = make("canvas", { class: "profile", hidden: "" });
         this.root.prepend(bar, this.stage, this.profile, ...(this.scene.pick ? [this.buildPicks()] : []), make("p", { class: "help" }, kHelp));
     }
@@ -125,10 +129,14 @@ class View {
         const { width, height } = this.stage.getBoundingClientRect();
         if (width === 0 || height === 0) return;
         this.ratio = Math.min(2, window.devicePixelRatio || 1);
-        for (const canvas of [this.canvas, this.overlay]) {
-            canvas.width = Math.round(width * this.ratio);
-            canvas.height = Math.round(height * this.ratio);
+        const legend = width > kNarrow ? kLegendWidth : kNarrowLegendWidth;
+        for (const [canvas, w, h] of [[this.canvas, width, height], [this.overlay, width, height], [this.legend, legend, height], [this.axes, Math.min(width, width / 4 + 130), kAxesHeight]]) {
+            canvas.width = Math.round(w * this.ratio);
+            canvas.height = Math.round(h * this.ratio);
+            canvas.style.width = w + "px";
+            canvas.style.height = h + "px";
         }
+        this.legendOf = undefined;
         this.camera.resize(width, height);
         this.updateProfile();
         this.requestDraw();
@@ -195,7 +203,16 @@ class View {
         this.root.dataset.frames = ++this.frames;
     }
     drawOverlay() {
-        const { camera } = this, context = this.overlay.getContext("2d");
+        const { camera } = this;
+        this.drawLegendOnce();
+        const below = this.axes.getContext("2d", { willReadFrequently: true });
+        below.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
+        below.clearRect(0, 0, camera.width, kAxesHeight);
+        drawAxes(below, camera, this.scene.unit);
+        const hasLabels = !this.moving || this.line || Object.keys(this.scene.boundaries).length > 0 || this.picks.B.length + this.picks.S.length > 0;
+        this.overlay.style.display = hasLabels ? "" : "none";
+        if (!hasLabels) return;
+        const context = this.overlay.getContext("2d", { willReadFrequently: true });
         context.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
         context.clearRect(0, 0, camera.width, camera.height);
         for (const name of ["S", "B"]) {
@@ -219,10 +236,19 @@ class View {
             context.stroke();
         }
         drawPicks(context, camera, this.picks, this.mode === "pick" ? this.boundary : "");
-        drawLegend(context, camera.width, camera.height, this.field);
-        drawAxes(context, camera, this.scene.unit);
         if (this.field.summary && camera.width > kNarrow)
             drawText(context, this.field.summary, camera.width - 12, camera.height - 22, { align: "right", ground: true });
+    }
+    // The legend changes with the field and the window alone.
+    drawLegendOnce() {
+        if (this.legendOf === this.field) return;
+        this.legendOf = this.field;
+        const { camera } = this, context = this.legend.getContext("2d", { willReadFrequently: true });
+        const width = camera.width > kNarrow ? kLegendWidth : kNarrowLegendWidth;
+        context.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
+        context.clearRect(0, 0, width, camera.height);
+        context.translate(width - camera.width, 0);
+        drawLegend(context, camera.width, camera.height, this.field);
     }
     updateProfile() {
         this.profile.hidden = !this.plane;
