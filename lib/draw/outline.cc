@@ -63,6 +63,23 @@ void fill_heights(Eigen::Matrix3Xd& line)
     }
 }
 
+/// Makes heights unknown that lie far below those before and after: undersides, seen in a gap of sparse points.
+void drop_undersides(Eigen::Matrix3Xd& line, double across)
+{
+    constexpr Index kHalfWindow = 12; // longer gaps are holes
+    constexpr double kMinDropToSize = 0.04;
+    const Eigen::VectorXd z = line.row(2);
+    for (Index i = 0; i < z.size(); ++i) {
+        std::vector<double> around;
+        for (Index k = -kHalfWindow; k <= kHalfWindow; ++k)
+            if (const double other = z[(i + k + z.size() * kHalfWindow) % z.size()]; std::isfinite(other))
+                around.push_back(other);
+        if (around.empty()) continue;
+        std::ranges::nth_element(around, around.begin() + around.size() / 2);
+        if (z[i] < around[around.size() / 2] - kMinDropToSize * across) line(2, i) = std::nan("");
+    }
+}
+
 Outline outline_on(const mesh::MeshOrCloud& part, const Eigen::Matrix3Xd& polygon, const std::string& name)
 {
     constexpr double kPixelsAcross = 240, kStepPixels = 2;
@@ -82,12 +99,16 @@ Outline outline_on(const mesh::MeshOrCloud& part, const Eigen::Matrix3Xd& polygo
         for (int k = 0; k < steps; ++k) {
             Eigen::Vector3d p = from + double(k) / steps * (to - from);
             const double z = height_at(p.head<2>());
-            if (std::isfinite(z)) p.z() = z;
+            // A height farther off the edge than it can sink into a curved part is that of an underside, seen in a gap
+            // of sparse points.
+            constexpr double kMaxSagToSize = 0.15;
+            if (std::isfinite(z) && !(std::abs(z - p.z()) > kMaxSagToSize * across)) p.z() = z; // NaN: any height
             line.push_back(p);
         }
     }
     outline.line.resize(3, Index(line.size()));
     for (std::size_t i = 0; i < line.size(); ++i) outline.line.col(Index(i)) = line[i];
+    drop_undersides(outline.line, across);
     fill_heights(outline.line);
     for (Index i = 0; i < polygon.cols(); ++i)
         if (!std::isfinite(outline.corners(2, i))) outline.corners(2, i) = outline.line(2, corner_at[std::size_t(i)]);

@@ -4,6 +4,7 @@
 #include "core/text.h"
 #include "gantry/driver.h"
 #include "gantry/make_virtual.h"
+#include "job/safe_height.h"
 
 namespace fettle::gantry {
 namespace {
@@ -67,6 +68,12 @@ Stock stock_of_part(const sampling::Scan& part, const StockOptions& options, con
                                              core::to_short_text(job.wheel.width / job.units.mm()));
     return {removal::stock_from_scan(part, job, cell, source, extent), sampling::scan_warnings(part, job, source),
             part.repair().dropped_triangles};
+}
+
+job::Job with_safe_height_over(const removal::HeightField& stock, job::Job job)
+{
+    job::set_safe_height_over(job, stock.z.maxCoeff<Eigen::PropagateNumbers>());
+    return job;
 }
 
 void require_below_safe_height(const removal::HeightField& stock, const job::Job& job, const std::string& source)

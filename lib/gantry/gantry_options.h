@@ -61,6 +61,9 @@ struct Stock {
 /// @throws InputError as read_scan() and stock_from_scan(), or for cells wider than the wheel
 Stock read_stock(const StockOptions& options, const job::Job& job, removal::Extent extent);
 
+/// The job with a safe height: where its file gives none, over the stock's top.
+job::Job with_safe_height_over(const removal::HeightField& stock, job::Job job);
+
 /// @param source  the stock's name for the message
 /// @throws InputError if the stock stands as high as the job's safe height: the wheel would travel through it
 void require_below_safe_height(const removal::HeightField& stock, const job::Job& job, const std::string& source);

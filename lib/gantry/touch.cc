@@ -70,6 +70,10 @@ TouchedPart open_touched_part(const std::string& on, const job::Job& job, const 
     if (on.rfind(kGantry, 0) == 0) {
         if (options.unit || !options.noise.empty())
             throw core::InputError("--on-units, --noise: for a SURFACE, not for a gantry");
+        if (!job.is_safe_height_known)
+            throw core::InputError(job.source,
+                                   "gives neither safe_height nor the z of a boundary point: it is not known "
+                                   "how high the machine must travel");
         part.machine = std::make_shared<DriverGantry>(on.substr(kGantry.size()), job, options.timeout);
         part.touch = GantryProbe(*part.machine, job);
         return part;

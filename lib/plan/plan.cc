@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "core/text.h"
+#include "job/safe_height.h"
 #include "plan/wheel_fit.h"
 #include "json/units.h"
 
@@ -38,8 +39,7 @@ job::Job with_safe_height(job::Job job, const surface::Surface& surface, const j
     if (job.is_safe_height_known) return job;
     double highest = surface::heights(surface, pass_axes(job) * region).maxCoeff();
     for (const Eigen::Vector3d& touch : surface.touches.colwise()) highest = std::fmax(highest, touch.z());
-    job.safe_height = highest + job::kTravelClearance;
-    job.is_safe_height_known = true;
+    job::set_safe_height_over(job, highest);
     return job;
 }
 
