@@ -80,7 +80,7 @@ $(BUDGET)/%/scanned.pcd: $(BUDGET)/%/ground.pcd $(disturb)
 
 # Out of the job's tolerance (exit 1) is a result like another.
 $(BUDGET)/%/errors.json: $(BUDGET)/%/scanned.pcd $(BUDGET)/%/compared.stl $(B)/bin/fettle-compare
-	$(call step,$(B)/bin/fettle-compare $< --to $(@D)/compared.stl --mode z --within $(@D)/job.json --report $@.part -q -o $@.map || test $$? = 1; rm -f $@.map)
+	$(call step,$(B)/bin/fettle-compare $< --to $(@D)/compared.stl --mode z --within $(@D)/job.json --report $@.part -q -o $@.map.pcd || test $$? = 1; rm -f $@.map.pcd)
 
 $(BUDGET)/%/form.json: $(BUDGET)/%/scanned.pcd $(B)/bin/fettle-form
 	$(call step,$(B)/bin/fettle-form $(if $(filter wang1,$(call part,$*)),flatness,cylindricity) $< --within $(@D)/job.json > $@.part)

@@ -41,6 +41,6 @@ $(FORCES)/$(1)/%.job: $(JOB) $(MACHINE) $(CONSTANT) pipelines/jq/forces_job.jq
 
 $(FORCES)/$(1)/%.json: $(FORCES)/$(1)/%.job $(FORCES)/$(1)/machine.json $(FORCES)/desired.json $(addprefix $(B)/bin/fettle-,plan grind)
 	$$(call step,$(B)/bin/fettle-plan $$< $(FORCES)/desired.json > $$@.plan && $(B)/bin/fettle-grind $$@.plan --stock $(FORCES)/stock.stl \
-	    --gantry virtual:dynamic --machine $(FORCES)/$(1)/machine.json -q --report $$@.part -o $$@.ground || test $$$$? = 1; rm -f $$@.ground $$@.plan)
+	    --gantry virtual:dynamic --machine $(FORCES)/$(1)/machine.json -q --report $$@.part -o $$@.ground.pcd || test $$$$? = 1; rm -f $$@.ground.pcd $$@.plan)
 endef
 $(foreach w,$(WHEELS),$(eval $(call wheel_rules,$(w))))

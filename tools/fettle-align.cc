@@ -1,6 +1,7 @@
 #include "align/align_run.h"
 #include "cli/option.h"
 #include "cli/tool.h"
+#include "mesh/part_output.h"
 
 #include <algorithm>
 
@@ -21,16 +22,12 @@ align::HeldAxes held_axes(const std::string& text)
     return held;
 }
 
-/// A mesh is written as such where the suffix asks for STL or PLY; else, as ever, its vertices.
-void write_aligned(cli::Tool& t, const align::AlignRun& run, bool ascii)
+/// A mesh is written as such where STL or PLY is asked for; else its vertices.
+void write_aligned(const align::AlignRun& run, const mesh::PartOutput& out)
 {
-    const std::string& name = t.output_name();
     mesh::CloudMesh aligned = run.aligned;
-    if (!mesh::has_mesh_suffix(name)) aligned.triangles.resize(3, 0);
-    mesh::PartFormat format = mesh::part_format(name, "", aligned.is_mesh());
-    if (ascii && format != mesh::PartFormat::pcd) throw core::InputError("--ascii", "goes with PCD");
-    if (ascii) format = mesh::PartFormat::pcd_ascii;
-    mesh::write_cloud_mesh(t.output(), aligned, format, run.units);
+    if (out.format != "stl" && out.format != "ply") aligned.triangles.resize(3, 0);
+    out.write(aligned, run.units);
 }
 
 } // namespace
@@ -54,7 +51,7 @@ int main(int argc, char** argv)
         const auto& reference_unit = t.length_unit("--to-units", "Unit of the reference");
         const std::string& in =
             t.optional_file("--start,--transform-in", "FILE", "Begin with this 4 x 4 matrix, do not search");
-        const std::string& out = t.optional_output("--transform-out", "Write the 4 x 4 matrix, 17 digits");
+        const std::string& out = t.optional_output("--transform-out", "Write the 4 x 4 matrix, 17 digits", {});
         const bool& near = t.flag("--near", "The scan lies nearly right as it is: do not search");
         const std::string& hold =
             t.text("--hold", "", "AXES",
@@ -71,7 +68,7 @@ int main(int argc, char** argv)
         const int& iterations =
             t.count("--iterations", 200, "Max. number; 0: apply --transform-in as it is", 0, 100000);
         const bool& sure = t.flag("--sure", "Exit 1 also if the result is doubtful: see \"doubt\" in the report");
-        const bool& ascii = t.flag("--ascii", "Write text instead of binary");
+        const mesh::PartOutput written{t, {"pcd", "ply", "csv", "vtk", "stl"}};
         t.example("fettle-part parts/hammer.json | fettle-align --to scans/hammer.stl --max-distance 0.5 "
                   "--transform-out T.txt --report align.json -o aligned.pcd",
                   "put a part with a weld bead onto its scan; the bead does not disturb");
@@ -88,7 +85,7 @@ int main(int argc, char** argv)
         const align::AlignRun run = align::align_files(request);
 
         if (!out.empty()) align::write_transform(t.output_file(out), run.transform);
-        write_aligned(t, run, ascii);
+        write_aligned(run, written);
         t.report() = run.report;
         for (const std::string& warning : run.warnings) t.warn(warning);
         return run.converged && (run.sure || !sure) ? cli::Verdict::yes : cli::Verdict::no;

@@ -1,4 +1,5 @@
 #include "cli/tool.h"
+#include "cloud/cloud_output.h"
 #include "cloud/pcd.h"
 #include "cloud/poses.h"
 #include "core/constants.h"
@@ -56,7 +57,7 @@ struct Options {
         t.number("--turn-feed", 500, "DEG/S", "Maximum turn rate of the tool", core::Range::positive());
     const bool& all = t.flag("--all", "Write every solution of each pose: a point each, with pose and branch");
     program::ProgramArguments program{t};
-    const bool& ascii = t.flag("--ascii", "Text instead of binary");
+    const cloud::CloudOutput out{t};
 };
 
 void add_usage(cli::Tool& t)
@@ -84,7 +85,7 @@ cli::Verdict study_reach(const Options& o, const robot::Robot& robot)
     const Eigen::AlignedBox3d box = robot::parse_reach_box(o.box, units.mm());
     const robot::ReachStudy study = robot::compute_reach(robot, box, o.step * units.mm(), o.t.progress("reach"));
     o.t.report() = to_json(study);
-    cloud::write_pcd(o.t.output(), to_cloud(study), units, cloud::pcd_encoding(o.ascii));
+    o.out.write(to_cloud(study), units);
     return cli::Verdict::yes;
 }
 
@@ -124,9 +125,8 @@ int main(int argc, char** argv)
                               : robot::path_from_poses(robot, cloud, o.path.arguments(), mm);
         });
 
-        const cloud::PcdEncoding encoding = cloud::pcd_encoding(o.ascii);
         const cloud::Cloud given = cloud;
-        if (o.all) cloud::write_pcd(t.output(), robot::all_solutions(robot, cloud, solved), file.units, encoding);
+        if (o.all) o.out.write(robot::all_solutions(robot, cloud, solved), file.units);
         if (o.to_poses) cloud::set_poses(cloud, solved.poses);
         if (o.to_joints) robot::set_joints(cloud, robot, solved.path.joints);
         program::ProgramOptions options;
@@ -136,7 +136,7 @@ int main(int argc, char** argv)
             cloud::set_field(cloud, "t", robot::arrival_times(solved.poses, options.speeds, options.turn_rate), 8);
         }
         robot::set_states(cloud, solved.path);
-        if (!o.all) cloud::write_pcd(t.output(), cloud, file.units, encoding);
+        if (!o.all) o.out.write(cloud, file.units);
 
         if (o.to_joints) robot::add_report(t.report(), robot, solved.externals, file.units);
         const auto times = robot::pose_times(cloud);

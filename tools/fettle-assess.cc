@@ -2,6 +2,7 @@
 #include "belt/displaced_normals.h"
 #include "belt/surfel.h"
 #include "cli/tool.h"
+#include "cloud/cloud_output.h"
 #include "cloud/pcd.h"
 #include "core/file.h"
 #include "core/text.h"
@@ -44,7 +45,7 @@ int main(int argc, char** argv)
         const auto& upper = t.optional_number("--upper", "MM", "Displacements above are undercut; must be given");
         const bool& as_displaced =
             t.flag("--displaced", "The points are those of the stock, with its normals, not the design's");
-        const bool& ascii = t.flag("--ascii", "Text instead of binary");
+        const cloud::CloudOutput out{t};
         t.example("fettle-surfel parts/patch_saddle.json --stock <(fettle-part parts/patch_saddle_1x1.json) "
                   "--stock-units in --spacing 1 | fettle-assess --lower -0.1 --upper 0.1 -o errors.pcd; "
                   "fettle-render errors.pcd -o errors.png",
@@ -64,7 +65,7 @@ int main(int argc, char** argv)
         t.report() = belt::to_json(surfels, range);
         belt::set_assessment(cloud, surfels.displacement, range);
         if (as_displaced) displace(t, cloud, surfels, core::display_name(path));
-        cloud::write_pcd(t.output(), cloud, units::Units{}, cloud::pcd_encoding(ascii));
+        out.write(cloud, units::Units{});
         const belt::AssessmentCounts counts = belt::count_assessments(surfels.displacement, range);
         if (counts.undefined > 0)
             t.warn(core::display_name(path) + ": " + std::to_string(counts.undefined) + " of " +

@@ -2,8 +2,13 @@
 #include "belt/belt_options.h"
 #include "belt/belt_report.h"
 #include "belt/belt_watch.h"
+#include "belt/stock_frames.h"
 #include "cli/tool.h"
+#include "cloud/cloud_output.h"
 #include "core/file.h"
+#include "draw/figures.h"
+
+#include <algorithm>
 
 using namespace fettle;
 
@@ -19,6 +24,7 @@ struct Options {
     const std::optional<double>&lower, &upper;
     const std::string& journal;
     const double& journal_interval;
+    draw::Frames frames;
 };
 
 Options declare_options(cli::Tool& t)
@@ -29,7 +35,7 @@ Options declare_options(cli::Tool& t)
                 "--model", {{"local", local}, {"global", global}},
                 "The force acts as the contact's pressure, or evenly over the contact's rectangle (Hammann 1998)"),
             belt::ContactOptions(t, 32, 1e-4),
-            t.optional_output("--trace", "The path with what happened at each point, PCD"),
+            t.optional_output("--trace", "The path with what happened at each point", cloud::cloud_formats()),
             t.text("--watch", "", "FILE",
                    "The errors after each point, CSV, line by line as they come; with --lower and --upper"),
             t.optional_number("--lower", "LENGTH", "For --watch: less is left on gouged surfels"),
@@ -37,7 +43,8 @@ Options declare_options(cli::Tool& t)
             t.text("--journal", "", "FILE",
                    "Checkpoints of the run; where it is there already, from a run that was killed, the run goes on"),
             t.number("--journal-every", belt::BeltJournal{}.interval, "S", "Work that may be lost",
-                     core::Range::at_least(0))};
+                     core::Range::at_least(0)),
+            draw::Frames(t)};
 }
 
 void check(const Options& options)
@@ -49,7 +56,7 @@ void check(const Options& options)
     if (has_lower && !(*options.lower <= *options.upper)) throw core::InputError("--lower", "is more than --upper");
 }
 
-belt::BeltRun grind(cli::Tool& t, const Options& given, belt::Surfels& surfels, const belt::ContactWheel& wheel,
+belt::BeltRun grind(cli::Tool& t, Options& given, belt::Surfels& surfels, const belt::ContactWheel& wheel,
                     const std::vector<belt::BeltPoint>& path, double mm)
 {
     belt::BeltOptions options;
@@ -61,8 +68,17 @@ belt::BeltRun grind(cli::Tool& t, const Options& given, belt::Surfels& surfels, 
         options.range = {*given.lower * mm, *given.upper * mm};
         log.emplace(given.watch, mm);
     }
+    std::optional<belt::SurfelPictures> pictures;
+    if (given.frames.wanted()) pictures.emplace(surfels, options.range);
+    const std::vector<std::size_t> frame_steps = given.frames.steps(path.size());
     const auto listener = [&](const belt::BeltRun& run) {
         if (log) log->write(run);
+        const std::size_t point = run.trace.size() - 1;
+        if (pictures && std::ranges::binary_search(frame_steps, point))
+            given.frames.add(run.trace.back().time,
+                             pictures->picture(surfels, draw::duration_text(run.trace.back().time) + ", point " +
+                                                            std::to_string(point + 1) + " of " +
+                                                            std::to_string(path.size())));
     };
     return belt::grind(surfels, wheel, path, options, {given.journal, given.journal_interval}, listener,
                        t.progress("grinding"));
@@ -85,8 +101,8 @@ int main(int argc, char** argv)
             t.required_file_option("--path", "FILE", "Contact points with poses, PCD (fettle-path)");
         const std::string& wheel_file = t.required_file_option("--wheel", "FILE", "The wheel, JSON");
         const auto& unit = t.length_unit("--file-units", "Unit of SURFELS, and of lengths here [its header, or mm]");
-        const Options options = declare_options(t);
-        const bool& ascii = t.flag("--ascii", "Write PCDs as text");
+        Options options = declare_options(t);
+        const cloud::CloudOutput out{t};
         t.example(
             "fettle-part parts/keel.json -o keel.stl && fettle-surfel keel.stl --stock keel.stl --spacing 1 | "
             "fettle-belt --path paths/keel.pcd --wheel wheels/rubber.json --force 20 --report belt.json > ground.pcd",
@@ -114,14 +130,15 @@ int main(int argc, char** argv)
 
         if (!options.trace.empty()) {
             belt::set_trace(path.cloud, run.trace);
-            cloud::write_pcd(t.output_file(options.trace), path.cloud, path.units, cloud::pcd_encoding(ascii));
+            out.write(options.trace, path.cloud, path.units);
         }
         cloud::Cloud& cloud = ground.file.cloud;
         if (cloud::has_field(cloud, "removed")) run.removed += cloud::field(cloud, "removed");
         cloud::set_field(cloud, "displacement", ground.surfels.displacement, 8);
         cloud::set_field(cloud, "removed", run.removed, 8);
-        cloud::write_pcd(t.output(), cloud, units, cloud::pcd_encoding(ascii));
-        t.report() = belt::to_json(run, units);
+        out.write(cloud, units);
+        options.frames.finish("The surfels while they are ground.");
+        t.report() = belt::to_json(run, out.units(units));
         if (run.near_edge > 0)
             t.warn(std::to_string(run.near_edge) + " contacts are nearer to the wheel's edge than 1.5 thicknesses of "
                                                    "its layer, where it is softer than computed");

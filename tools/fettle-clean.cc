@@ -4,6 +4,7 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "job/shape_warnings.h"
+#include "mesh/part_output.h"
 #include "mesh/shape_file.h"
 
 using namespace fettle;
@@ -78,10 +79,7 @@ struct Options {
         t.text("--thin", "", "LENGTH",
                "Keep one point, as it was measured, of each cube with this edge: the one nearest to their mean; with "
                "spacing:LENGTH, points no nearer to each other than that");
-    const std::string& format =
-        t.choice("--format", "", {"pcd", "ply", "csv", "vtk", "stl"},
-                 "Format of the output; default: by the suffix of -o, else PCD, or STL for a mesh");
-    const bool& ascii = t.flag("--ascii", "Write PCD as text");
+    const mesh::PartOutput out{t};
 };
 
 clean::StatedRegion parse_crop(const std::string& text)
@@ -131,9 +129,7 @@ int main(int argc, char** argv)
 
         mesh::CloudMeshFile file = mesh::read_cloud_mesh(o.path, mesh::resolve_file_units(o.unit, job_units));
         const std::string name = core::display_name(o.path);
-        mesh::PartFormat format = mesh::part_format(t.output_name(), o.format, file.part.is_mesh());
-        if (o.ascii && format != mesh::PartFormat::pcd) throw core::InputError("--ascii", "goes with PCD");
-        if (o.ascii) format = mesh::PartFormat::pcd_ascii;
+        o.out.format_for(file.part.is_mesh());
         for (const std::string& warning : job::shape_warnings(file, name)) t.warn(warning);
 
         t.report().set("points", file.part.points.size()).set("triangles", file.part.triangles.cols());
@@ -141,7 +137,7 @@ int main(int argc, char** argv)
             name, [&] { return clean::clean_part(std::move(file.part), parse_request(o, file.units.mm())); });
         for (const clean::FilterCount& filter : result.filters) t.report().set(filter.name, filter.removed);
         t.report().set("points_left", result.part.points.size()).set("triangles_left", result.part.triangles.cols());
-        mesh::write_cloud_mesh(t.output(), result.part, format, file.units);
+        o.out.write(result.part, file.units);
         return cli::Verdict::yes;
     });
 }

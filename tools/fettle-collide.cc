@@ -1,4 +1,5 @@
 #include "cli/tool.h"
+#include "cloud/cloud_output.h"
 #include "cloud/pcd.h"
 #include "core/constants.h"
 #include "core/direction.h"
@@ -70,14 +71,14 @@ struct Options {
     const bool& exact = t.flag("--exact", "All triangles, everywhere: --method exact");
     const std::optional<double>& cell =
         t.optional_number("--cell", "LENGTH", "Side of a grid cell [1 mm]", core::Range::positive());
-    const std::string& picture =
-        t.optional_output("--picture", "Draw the cell at some poses, PNG; the workpiece as --method represents it");
+    const std::string& picture = t.optional_output(
+        "--picture", "Draw the cell at some poses, PNG; the workpiece as --method represents it", {"png"});
     const std::string& at =
         t.text("--at", "", "N,…", "Indices of these poses, from 0 [that with the minimum clearance]");
     const std::string& from =
         t.text("--from", "1,-1,0.8", "X,Y,Z", "Direction from the cell to the eye, for the picture");
-    const std::string& chart = t.optional_output("--chart", "Draw the clearances along the path, PNG");
-    const bool& ascii = t.flag("--ascii", "Text instead of binary");
+    const std::string& chart = t.optional_output("--chart", "Draw the clearances along the path, PNG", {"png"});
+    const cloud::CloudOutput out{t};
 };
 
 void add_usage(cli::Tool& t)
@@ -167,7 +168,7 @@ int main(int argc, char** argv)
         if (strokes) t.report().set("min_between_strokes", *strokes / units.mm());
         path.comment.clear();
         if (clear) stamp(t, robot, study, workpiece.has_value(), strokes, units.mm(), path);
-        cloud::write_pcd(t.output(), path, units, cloud::pcd_encoding(o.ascii));
+        o.out.write(path, units);
         return clear ? cli::Verdict::yes : cli::Verdict::no;
     });
 }

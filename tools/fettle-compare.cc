@@ -1,5 +1,7 @@
 #include "cli/option.h"
+#include "cli/output_format.h"
 #include "cli/tool.h"
+#include "cloud/cloud_output.h"
 #include "compare/comparison_report.h"
 #include "compare/comparison_run.h"
 #include "core/direction.h"
@@ -7,15 +9,6 @@
 using namespace fettle;
 
 namespace {
-
-cloud::CloudFormat format_of(const std::string& name, bool ascii)
-{
-    if (ascii && name != "pcd") throw core::InputError("--ascii", "goes with --format pcd, not with " + name);
-    if (name == "ply") return cloud::CloudFormat::ply;
-    if (name == "csv") return cloud::CloudFormat::csv;
-    if (name == "vtk") return cloud::CloudFormat::vtk;
-    return ascii ? cloud::CloudFormat::pcd_ascii : cloud::CloudFormat::pcd;
-}
 
 void set_fields(compare::ComparisonOptions& options, const std::string& list)
 {
@@ -75,16 +68,17 @@ Options parse_options(cli::Tool& t)
         "Facets of a mesh: flip those that disagree with the majority, and closed pieces that are inside out; keep "
         "all; "
         "or flip an open mesh");
-    const std::string& reverse =
-        t.optional_output("--reverse", "Also the error map of the reference's points against TEST; + is "
-                                       "material left, too");
+    const std::string& reverse = t.optional_output("--reverse",
+                                                   "Also the error map of the reference's points against TEST; + is "
+                                                   "material left, too",
+                                                   cloud::cloud_formats());
     const std::string& fields = t.text("--fields", "", "LIST",
                                        "More fields, of foot,facet,region,sigma: the nearest point, its facet "
                                        "(from 0), 0 inside 1 around 2 outside, of a cloud as reference");
-    const std::string& format = t.choice("--format", "pcd", {"pcd", "ply", "csv", "vtk"}, "Format of the error map");
-    const bool& ascii = t.flag("--ascii", "Write a PCD as text instead of binary");
-    const std::string& csv = t.optional_output("--csv", "Statistics, a row for all points and for each region");
-    const std::string& histogram = t.optional_output("--histogram", "Histogram, CSV: a row for each bin");
+    const cloud::CloudOutput out{t};
+    const std::string& csv =
+        t.optional_output("--csv", "Statistics, a row for all points and for each region", {"csv"});
+    const std::string& histogram = t.optional_output("--histogram", "Histogram, CSV: a row for each bin", {"csv"});
     const int& bins = t.count("--bins", 50, "Bins of the histogram", 1, 1000000);
     const int& memory =
         t.count("--max-memory", 1024, "MiB of points and errors to hold; more goes to $TMPDIR", 256, 1 << 24);
@@ -100,7 +94,10 @@ Options parse_options(cli::Tool& t)
     request.options.distance = distance_options(mode, direction, winding);
     request.options.bins = bins;
     request.options.max_memory = static_cast<std::size_t>(memory) << 20;
-    request.format = format_of(format, ascii);
+    if (out.ascii && out.format != "pcd") throw core::InputError("--ascii", "goes with PCD, not with " + out.format);
+    request.format = cloud::cloud_format(out.format, out.ascii);
+    request.reverse_format = cloud::cloud_format(cli::format_of_output(reverse, cloud::cloud_formats()), out.ascii);
+    request.output_unit = out.unit;
     return {request, reverse, csv, histogram};
 }
 

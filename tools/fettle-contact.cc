@@ -1,6 +1,7 @@
 #include "belt/belt_options.h"
 #include "belt/belt_report.h"
 #include "cli/tool.h"
+#include "cloud/cloud_output.h"
 #include "core/text.h"
 
 using namespace fettle;
@@ -44,7 +45,7 @@ int main(int argc, char** argv)
             "of the round layer with its free sides, of 256 --cells at most");
         const int& elements = t.count("--elements", 8, "From the surface to the hub, of --solver fem", 1, 64);
         const belt::ContactOptions contact(t, 64, 1e-6);
-        const bool& ascii = t.flag("--ascii", "Text instead of binary");
+        const cloud::CloudOutput out{t};
         t.example("fettle-part parts/keel.json -o keel.stl && fettle-surfel keel.stl --stock keel.stl --spacing 1 | "
                   "fettle-contact --wheel wheels/rubber.json --at 1000,1000,500,0.7071,0,0,0.7071 --force 20 --report "
                   "press.json > pressure.pcd",
@@ -67,12 +68,11 @@ int main(int argc, char** argv)
         belt::WheelContactSolver contact_solver(part.surfels, wheel, options);
         const belt::WheelContact& press =
             contact_solver.solve(pose, {force.has_value(), force ? *force : *depth * units.mm()});
-        t.report() = belt::to_json(press, units);
+        t.report() = belt::to_json(press, out.units(units));
         if (press.is_near_edge && solver == layer)
             t.warn("the contact is nearer to the wheel's edge than 1.5 thicknesses of its layer, where it is softer "
                    "than computed; --solver fem sees the edge");
-        cloud::write_pcd(t.output(), belt::to_cloud(press, contact_solver.residual_gap(), pose), units,
-                         cloud::pcd_encoding(ascii));
+        out.write(belt::to_cloud(press, contact_solver.residual_gap(), pose), units);
         return cli::Verdict::yes;
     });
 }

@@ -1,4 +1,5 @@
 #include "cli/tool.h"
+#include "cloud/cloud_output.h"
 #include "cloud/fields.h"
 #include "cloud/pcd.h"
 #include "core/file.h"
@@ -15,7 +16,7 @@ int main(int argc, char** argv)
             const std::string& job_file = t.positional_file("JOB", "The job, JSON");
             const std::string& input = t.main_input("SAMPLES", "touches of fettle-sample, PCD");
             const auto& file_unit = t.length_unit("--file-units", "Unit of the samples, if it is not the job's");
-            const bool& ascii = t.flag("--ascii", "Text instead of binary");
+            const cloud::CloudOutput out{t};
             t.example(
                 "fettle-sample jobs/hammer.json --on scans/hammer.stl | fettle-estimate jobs/hammer.json > points.pcd",
                 "touches and estimated points (role 3); those of a plane or a swept surface pass unchanged");
@@ -32,7 +33,7 @@ int main(int argc, char** argv)
             const cloud::Cloud points = cli::with_error_prefix(
                 core::display_name(input), [&] { return sampling::with_estimated_points(job, samples); });
             t.report().set("touches", samples.size()).set("estimated", points.size() - samples.size());
-            cloud::write_pcd(t.output(), job::in_job_frame(points, job), job.units, cloud::pcd_encoding(ascii));
+            out.write(job::in_job_frame(points, job), job.units);
             return cli::Verdict::yes;
         });
 }

@@ -1,6 +1,7 @@
 #include "belt/belt_options.h"
 #include "belt/belt_report.h"
 #include "cli/tool.h"
+#include "cloud/cloud_output.h"
 #include "core/file.h"
 
 using namespace fettle;
@@ -40,7 +41,7 @@ int main(int argc, char** argv)
             core::Range::between(0, kMaxLength));
         const int& rounds = t.count("--rounds", 8, "Max. number of simulations after that of the constant", 1, 1000);
         const belt::ContactOptions contact(t, 24, 1e-4);
-        const bool& ascii = t.flag("--ascii", "Text instead of binary");
+        const cloud::CloudOutput out{t};
         t.example("fettle-part parts/keel.json -o keel.stl && fettle-surfel keel.stl --stock keel.stl --spacing 1 "
                   "-o keel.pcd && fettle-feed paths/keel.pcd --on keel.pcd --wheel wheels/rubber.json --force 20 "
                   "--wanted -0.05 --report plan.json > planned.pcd",
@@ -69,7 +70,7 @@ int main(int argc, char** argv)
         });
         belt::set_plan(path.cloud, plan);
         t.report() = belt::to_json(plan, by_force, path.units);
-        cloud::write_pcd(t.output(), path.cloud, path.units, cloud::pcd_encoding(ascii));
+        out.write(path.cloud, path.units);
         return cli::Verdict::yes;
     });
 }

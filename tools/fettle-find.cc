@@ -1,6 +1,7 @@
 #include "align/rigid.h"
 #include "cli/option.h"
 #include "cli/tool.h"
+#include "cloud/cloud_output.h"
 #include "cloud/pcd.h"
 #include "core/file.h"
 #include "find/earlier.h"
@@ -8,6 +9,7 @@
 #include "find/jobs.h"
 #include "find/registration.h"
 #include "job/shape_warnings.h"
+#include "mesh/part_output.h"
 #include "mesh/shape_file.h"
 
 #include <filesystem>
@@ -47,7 +49,7 @@ struct Options {
     const std::string& transform_in = t.optional_file(
         "--transform-in", "FILE", "4 x 4 matrix that puts PART onto REF, as fettle-align writes it: do not register");
     const std::string& transform_out =
-        t.optional_output("--transform-out", "Write the 4 x 4 matrix that was applied, 17 digits");
+        t.optional_output("--transform-out", "Write the 4 x 4 matrix that was applied, 17 digits", {});
     const double& probability = t.number("--probability", find::FindOptions().min_probability, "SHARE",
                                          "Leave out what is less probable", core::Range{0, 1, true, true});
     const std::optional<double>& width = t.optional_number(
@@ -66,10 +68,7 @@ struct Options {
         t.optional_file("--template", "JOB",
                         "Job with the machine's values for --jobs: probe, tolerance, wheel, forces, feed, removal; "
                         "what stands no higher than its tolerance is left out");
-    const std::string& format = t.choice("--format", "", {"pcd", "ply", "csv", "vtk"},
-                                         "Format of the output; default: by the suffix of -o, else PCD. PLY keeps the "
-                                         "triangles of a mesh, the others have its vertices");
-    const bool& ascii = t.flag("--ascii", "Write PCD as text");
+    const mesh::PartOutput out{t, cloud::cloud_formats()}; // STL has no fields: what was found would be lost
 };
 
 /// Jobs to go by: those of an earlier casting, and one with the machine's values for all others.
@@ -123,16 +122,6 @@ find::FindOptions find_options(const Options& o, const Settings& settings, doubl
     if (settings.machine) options.bounds.min_height = settings.machine->tolerance;
     if (o.height) options.bounds.min_height = *o.height * mm;
     return options;
-}
-
-/// STL has no fields: what was found would be lost.
-mesh::PartFormat output_format(const Options& o, const std::string& name)
-{
-    if (o.format.empty() && name.ends_with(".stl"))
-        throw core::InputError(name, "an STL has no fields: write PLY, or the points as PCD");
-    const mesh::PartFormat format = mesh::part_format(name, o.format, false);
-    if (o.ascii && format != mesh::PartFormat::pcd) throw core::InputError("--ascii", "goes with PCD");
-    return o.ascii ? mesh::PartFormat::pcd_ascii : format;
 }
 
 /// The part registered to a reference, which is read for it.
@@ -238,20 +227,21 @@ int main(int argc, char** argv)
 
         mesh::CloudMeshFile file = mesh::read_cloud_mesh(o.path, mesh::resolve_file_units(o.unit));
         const std::string name = core::display_name(o.path);
-        const mesh::PartFormat format = output_format(o, t.output_name());
+        o.out.format_for(o.out.format == "ply" && file.part.is_mesh());
         for (const std::string& warning : job::shape_warnings(file, name)) t.warn(warning);
 
-        const find::FindOptions options = find_options(o, settings, file.units.mm());
+        const units::Units units = cloud::measured_units(file.units, std::nullopt);
+        const find::FindOptions options = find_options(o, settings, units.mm());
         find::FindResult result = search(o, options, settings, file, name);
         find::judge(result, keep, drop);
         const bool all_have_jobs =
             o.jobs.empty() ? result.anomalies.empty() : write_jobs(o, result, file.part, settings);
-        find::set_report(t.report(), result, file.units);
+        find::set_report(t.report(), result, o.out.units(units));
         for (const find::FoundAnomaly& anomaly : result.anomalies)
             if (!anomaly.doubt.empty()) t.note(std::to_string(anomaly.number) + ": " + anomaly.doubt);
         mesh::CloudMesh labelled = find::labelled(std::move(file.part), result);
-        if (format != mesh::PartFormat::ply) labelled.triangles.resize(3, 0);
-        mesh::write_cloud_mesh(t.output(), labelled, format, file.units);
+        if (o.out.format != "ply") labelled.triangles.resize(3, 0); // the others have its vertices
+        o.out.write(labelled, file.units);
         return all_have_jobs ? cli::Verdict::yes : cli::Verdict::no;
     });
 }

@@ -1,5 +1,5 @@
 #include "cli/tool.h"
-#include "cloud/pcd.h"
+#include "cloud/cloud_output.h"
 #include "core/direction.h"
 #include "machining/finishing_run.h"
 #include "machining/limits.h"
@@ -40,7 +40,7 @@ int main(int argc, char** argv)
         const double& allowance =
             t.number("--allowance", 0, "MM", "Stock to be left everywhere, along Z", machining::kLengthOrZeroRange);
         const bool& pcd = t.flag("--pcd", "Write points with field feed (0: rapid) instead of G-code");
-        const bool& ascii = t.flag("--ascii", "With --pcd: as text");
+        const cloud::CloudOutput out{t, {"nc", "ngc", "gcode", "tap"}};
         t.example("fettle-part --without-anomaly parts/wang3.json | fettle-finish --file-units in --cutter ball:12 "
                   "--scallop 0.05 > "
                   "finish.nc",
@@ -51,7 +51,7 @@ int main(int argc, char** argv)
 
         if (scallop.has_value() == step_over.has_value())
             throw core::InputError("give either --scallop or --step-over");
-        if (ascii && !pcd) throw core::InputError("--ascii", "belongs to --pcd");
+        out.require(pcd, "points are written with --pcd, G-code without it");
         machining::FinishingRequest request{path,    unit,      {},       core::parse_direction(axis_text, "--axis"),
                                             scallop, step_over, overhang, {}};
         request.cutter = machining::parse_cutter_option(cutter_text);
@@ -62,7 +62,7 @@ int main(int argc, char** argv)
         const machining::FinishingRun run = machining::plan_finishing(request);
         for (const std::string& warning : run.warnings) t.warn(warning);
         if (pcd)
-            cloud::write_pcd(t.output(), machining::to_cloud(run), units::Units{}, cloud::pcd_encoding(ascii));
+            out.write(machining::to_cloud(run), units::Units{});
         else
             machining::write_gcode(t.output(), run.path, "fettle-finish: " + cutter_text + ", tool tip");
         t.report()

@@ -56,6 +56,7 @@ int main(int argc, char** argv)
         t.example("fettle-sample jobs/hammer.json --on scans/hammer.stl | fettle-fit jobs/hammer.json > surface.json",
                   "touch a scanned hammer and fit a free-form surface");
         t.reference("Wang (2007), 4.2 to 4.4; Hoeting et al. (1999), Bayesian model averaging: auto");
+        t.output_formats({"json"});
         t.parse();
 
         const job::Job job = job::read_job(job_file);

@@ -1,5 +1,6 @@
 #include "cli/tool.h"
 #include "cloud/cloud.h"
+#include "cloud/cloud_output.h"
 #include "compare/form_run.h"
 #include "core/file.h"
 #include "core/text.h"
@@ -61,9 +62,12 @@ int main(int argc, char** argv)
         const double& direction =
             t.number("--direction", 0, "DEG", "Direction of the sections, counter-clockwise from X",
                      core::Range::between(-360, 360));
+        const auto& out_unit =
+            t.length_unit("--units", "Unit of the lengths reported; default: that of POINTS, mm for metres");
         t.example("fettle-form flatness scans/panel.pcd",
                   "how flat a scanned panel is, in the unit that the file states");
         t.reference("ISO 12781 (flatness), 12180 (cylindricity), 12780 (straightness), 1101; Wang 2007, 6.2");
+        t.output_formats({"json"});
         t.parse();
         check_sections(kind, spacing, width);
 
@@ -74,14 +78,16 @@ int main(int argc, char** argv)
         const std::optional<units::Units> job_units = request.job ? std::optional(request.job->units) : std::nullopt;
         mesh::ShapeFile file = mesh::read_shape(path, mesh::resolve_file_units(unit, job_units));
         if (request.job) job::move_to_job_frame(file.shape, *request.job);
-        const units::Units units = job_units.value_or(file.units);
+        units::Units units = cloud::measured_units(file.units, job_units);
+        if (out_unit && !job_units) units.length = *out_unit;
+        const units::Units written{out_unit.value_or(units.length), units.force};
         cloud::Cloud points;
         points.xyz = mesh::coordinates_of(file.shape);
         if (spacing)
             request.sections = {*spacing * units.mm(), width.value_or(*spacing) * units.mm(),
                                 direction * std::numbers::pi / 180};
         const compare::FormRun run = cli::with_error_prefix(
-            core::display_name(path) + ": " + kind, [&] { return compare::measure_form(points, request, units); });
+            core::display_name(path) + ": " + kind, [&] { return compare::measure_form(points, request, written); });
         for (const std::string& warning : job::shape_warnings(file, core::display_name(path), units)) t.warn(warning);
         if (run.dropped > 0)
             t.warn(core::display_name(path) + ": " + std::to_string(run.dropped) + " points without x y z dropped");

@@ -1,5 +1,5 @@
 #include "cli/tool.h"
-#include "cloud/pcd.h"
+#include "cloud/cloud_output.h"
 #include "core/descriptor.h"
 #include "gantry/gantry_options.h"
 #include "gantry/make_virtual.h"
@@ -22,7 +22,7 @@ struct Options {
     const std::string& machine = t.optional_file(
         "--machine", "FILE", "The machine, JSON; without it the gantry is always in equilibrium, without drives");
     const double& removal_factor = gantry::declare_removal_factor(t);
-    const std::string& ground = t.optional_output("--ground", "The ground part at the end, PCD");
+    const std::string& ground = t.optional_output("--ground", "The ground part at the end", cloud::cloud_formats());
 };
 
 } // namespace
@@ -38,17 +38,17 @@ int main(int argc, char** argv)
         t.disable_output();
         t.parse();
 
-        const auto [job, planned] = plan::read_job_or_plan(o.plan);
+        auto [job, planned] = plan::read_job_or_plan(o.plan);
         const removal::Extent extent = planned ? removal::Extent::anomaly : removal::Extent::sampling;
         const auto [stock, doubts, dropped] = gantry::read_stock(o.stock, job, extent);
         for (const std::string& doubt : doubts) t.warn(doubt);
-        std::ostream* out = o.ground.empty() ? nullptr : &t.output_file(o.ground);
+        job = gantry::with_safe_height_over(stock, std::move(job));
         const auto gantry = gantry::make_virtual_gantry(stock, job, {o.machine, o.removal_factor, t.seed()});
         gantry::serve(*gantry, gantry->limits(), job, core::FileDescriptor(::dup(STDIN_FILENO)),
                       core::FileDescriptor(::dup(STDOUT_FILENO)));
-        if (out != nullptr)
-            cloud::write_pcd(*out, job::in_job_frame(removal::to_cloud(stock, gantry->stock()), job), job.units,
-                             cloud::PcdEncoding::binary);
+        if (!o.ground.empty())
+            cloud::write_cloud(t, o.ground, job::in_job_frame(removal::to_cloud(stock, gantry->stock()), job),
+                               job.units);
         return cli::Verdict::yes;
     });
 }

@@ -1,4 +1,5 @@
 #include "cli/tool.h"
+#include "cloud/cloud_output.h"
 #include "cloud/pcd.h"
 #include "core/file.h"
 #include "gantry/gantry_options.h"
@@ -8,6 +9,7 @@
 #include "strategy/run.h"
 #include "strategy/run_identity.h"
 #include "strategy/run_json.h"
+#include "strategy/stock_frames.h"
 #include "strategy/trace.h"
 #include "strategy/trace_file.h"
 
@@ -38,10 +40,12 @@ struct Options {
         "Layer 1 at the job's feed, covering after covering; or pass after pass, with controlled feed or controlled "
         "force");
     const double& removal_factor = gantry::declare_removal_factor(t);
-    const std::string& trace = t.optional_output("--trace", "What the machine did and why, PCD, written ahead");
+    const std::string& trace =
+        t.optional_output("--trace", "What the machine did and why, PCD, written ahead", {"pcd"});
     const std::string& resume =
         t.text("--resume", "", "TRACE", "Continue the interrupted run that wrote this trace, and append to it");
-    const bool& ascii = t.flag("--ascii", "Write PCDs as text");
+    const cloud::CloudOutput out{t};
+    draw::Frames frames{t};
 };
 
 void add_usage(cli::Tool& t)
@@ -72,7 +76,7 @@ strategy::RunOptions run_options(const Options& o, const units::Units& units, co
 void save_trace(const Options& o, const std::vector<strategy::TraceRow>& trace, const strategy::TraceFile* journal,
                 const units::Units& units, const strategy::RunIdentity& identity)
 {
-    const cloud::PcdEncoding encoding = cloud::pcd_encoding(o.ascii);
+    const cloud::PcdEncoding encoding = cloud::pcd_encoding(o.out.ascii);
     if (journal == nullptr) {
         if (!o.trace.empty()) strategy::write_trace(o.t.output_file(o.trace), trace, units, encoding, identity);
         return;
@@ -103,7 +107,7 @@ void report_loops(cli::Tool& t, const std::vector<gantry::ControlLoop>& loops)
 int main(int argc, char** argv)
 {
     return cli::tool_main(argc, argv, "Grind a part to its desired surface, guided by the force.", [](cli::Tool& t) {
-        const Options o{t};
+        Options o{t};
         add_usage(t);
         t.parse();
         o.gantry.check();
@@ -119,7 +123,7 @@ int main(int argc, char** argv)
         const auto identity =
             trace_file.empty() ? strategy::RunIdentity{} : strategy::identity_of(plan, stock, o.layer_1);
         strategy::RunOptions options = run_options(o, units, identity);
-        const cloud::PcdEncoding encoding = cloud::pcd_encoding(o.ascii);
+        const cloud::PcdEncoding encoding = cloud::pcd_encoding(o.out.ascii);
         const auto journal = strategy::open_journal(trace_file, units, encoding, options.previous_trace, identity);
         options.journal = journal.get();
 
@@ -131,9 +135,13 @@ int main(int argc, char** argv)
         const removal::HeightField ground =
             simulated ? simulated->stock() : strategy::replay_removal(run.trace, plan.job, stock);
 
-        cloud::write_pcd(t.output(), job::in_job_frame(removal::to_cloud(stock, ground), plan.job), units, encoding);
+        o.out.write(job::in_job_frame(removal::to_cloud(stock, ground), plan.job), units);
+        if (o.frames.wanted()) {
+            strategy::add_frames(o.frames, run.trace, plan, stock);
+            o.frames.finish("The stock's height over the desired surface while it is ground.");
+        }
         save_trace(o, run.trace, journal.get(), units, identity);
-        t.report() = strategy::to_json(run, removal::volume_between(stock, ground), units);
+        t.report() = strategy::to_json(run, removal::volume_between(stock, ground), o.out.units(units));
         t.report().set("dropped_facets", dropped);
         if (simulated) gantry::add_report(t.report(), simulated->totals());
         if (const std::string& file = o.gantry.machine; simulated && !file.empty())

@@ -1,4 +1,5 @@
 #include "cli/tool.h"
+#include "cloud/cloud_output.h"
 #include "cloud/pcd.h"
 #include "core/file.h"
 #include "gantry/gantry_options.h"
@@ -31,8 +32,8 @@ struct Options {
         t.optional_number("--force", "FORCE", "Set force; default: the job's F_down", core::Range::positive());
     const std::optional<double>& lowest =
         t.optional_number("--lowest", "Z", "Lower bound of the drives' z; default: that of the machine");
-    const std::string& trace = t.optional_output("--trace", "What the machine did, PCD, written ahead");
-    const bool& ascii = t.flag("--ascii", "Write PCDs as text");
+    const std::string& trace = t.optional_output("--trace", "What the machine did, PCD, written ahead", {"pcd"});
+    const cloud::CloudOutput out{t};
 };
 
 void add_usage(cli::Tool& t)
@@ -62,13 +63,14 @@ int main(int argc, char** argv)
         t.parse();
         check(o.gantry);
 
-        const job::Job job = job::read_job(o.job);
+        job::Job job = job::read_job(o.job);
         const units::Units& units = job.units;
         const auto [stock, doubts, dropped] = gantry::read_stock(o.stock, job, removal::Extent::sampling);
+        job = gantry::with_safe_height_over(stock, std::move(job));
         gantry::require_below_safe_height(stock, job, core::display_name(o.stock.file));
         for (const std::string& doubt : doubts) t.warn(doubt);
         strategy::Steering steering(o.steering);
-        const cloud::PcdEncoding encoding = cloud::pcd_encoding(o.ascii);
+        const cloud::PcdEncoding encoding = cloud::pcd_encoding(o.out.ascii);
         const auto journal = strategy::open_journal(o.trace, units, encoding, {}, {{}, job.frame()});
 
         auto [machine, limits, simulated] = gantry::open_gantry(o.gantry, job, stock, t.seed());
@@ -81,10 +83,10 @@ int main(int argc, char** argv)
         const removal::HeightField ground =
             simulated ? simulated->stock() : strategy::replay_removal(run.trace, job, stock);
 
-        cloud::write_pcd(t.output(), job::in_job_frame(removal::to_cloud(stock, ground), job), units, encoding);
+        o.out.write(job::in_job_frame(removal::to_cloud(stock, ground), job), units);
         if (!o.trace.empty() && !(journal && journal->has_failed()))
             strategy::write_trace(t.output_file(o.trace), run.trace, units, encoding, {{}, job.frame()});
-        t.report() = strategy::to_json(run, removal::volume_between(stock, ground), units);
+        t.report() = strategy::to_json(run, removal::volume_between(stock, ground), o.out.units(units));
         t.report().set("dropped_facets", dropped);
         if (!run.failure.empty()) t.warn(run.failure);
         return run.failure.empty() ? cli::Verdict::yes : cli::Verdict::no;

@@ -28,6 +28,7 @@ int main(int argc, char** argv)
                       "fettle-margin jobs/hammer.json > desired.json",
                       "touch a scanned hammer, fit it, and raise the fit by its 99 % shift");
             t.reference("Wang 2007, eq. 4-1 (error band), eq. 4-6 (shift distance) and 4.5 (regressions)");
+            t.output_formats({"json"});
             t.parse();
 
             if (method != "wang" && plane_shift != margin::PlaneShift::worst_case)

@@ -1,6 +1,6 @@
 #include "cli/tool.h"
+#include "cloud/cloud_output.h"
 #include "merge/merge_run.h"
-#include "mesh/cloud_mesh.h"
 
 using namespace fettle;
 
@@ -19,23 +19,18 @@ int main(int argc, char** argv)
         const auto& unit = t.length_unit("--file-units", "Unit of the scans, if they state none");
         const std::string& poses =
             t.optional_file("--poses", "FILE", "Report of an earlier run: begin with its poses, do not search");
-        const std::string& format = t.choice("--format", "", {"pcd", "ply", "csv", "vtk"},
-                                             "Format of the output; default: by the suffix of -o, else PCD");
-        const bool& ascii = t.flag("--ascii", "Write PCD as text");
+        const cloud::CloudOutput out{t};
         t.example("fettle-merge scans/views/1.pcd scans/views/2.pcd scans/views/3.pcd --report poses.json -o part.pcd",
                   "three scans of a hammer's head");
         t.reference("Drost et al. 2010 (point pairs); Chen & Medioni 1992 (point to plane); Lu & Milios 1997 (pose "
                     "graph); Rusinkiewicz 2019 (symmetric normals)");
         t.parse();
 
-        mesh::PartFormat file_format = mesh::part_format(t.output_name(), format, false);
-        if (ascii && file_format != mesh::PartFormat::pcd) throw core::InputError("--ascii", "goes with PCD");
-        if (ascii) file_format = mesh::PartFormat::pcd_ascii;
-        merge::MergeRun run = merge::merge_files({scans, unit, poses, t.progress("registering")});
+        const merge::MergeRun run = merge::merge_files({scans, unit, poses, t.progress("registering")});
         for (const std::string& warning : run.warnings) t.warn(warning);
         if (!run.converged) t.warn("the poses still moved after the last step: see \"pairs\" in the report");
         t.report() = run.report;
-        mesh::write_cloud_mesh(t.output(), {std::move(run.merged), {}}, file_format, run.units);
+        out.write(run.merged, run.units);
         return run.all_placed && run.converged ? cli::Verdict::yes : cli::Verdict::no;
     });
 }

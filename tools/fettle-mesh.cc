@@ -1,7 +1,8 @@
 #include "cli/tool.h"
 #include "cloud/pcd.h"
 #include "core/file.h"
-#include "mesh/mesh_file.h"
+#include "mesh/part_output.h"
+#include "mesh/shape_file.h"
 #include "surface/surface_grid.h"
 
 #include <ostream>
@@ -56,7 +57,7 @@ int main(int argc, char** argv)
     return cli::tool_main(argc, argv, "Evaluate a surface at given points or on a grid.", [](cli::Tool& t) {
         const std::string& surface_file = t.main_input("SURFACE", "Fitted surface, JSON");
         const std::string& at =
-            t.optional_file("--at", "FILE", "Points, PCD: their x y get the surface's z, in their order");
+            t.optional_file("--at", "FILE", "Points: their x y get the surface's z, in their order");
         const std::optional<units::Units::Length>& at_units =
             t.length_unit("--at-units", "Unit of the points, if not the surface's");
         const std::optional<double>& step =
@@ -66,7 +67,8 @@ int main(int argc, char** argv)
                             "The grid covers the job's anomaly, along W, in the job's units; else the "
                             "touches' bounding box");
         const bool& with_sigma = t.flag("--sigma", "Add the height's standard deviation as field sigma");
-        const bool& stl = t.flag("--stl", "Write the grid as triangles, STL");
+        const bool& stl = t.flag("--stl", "Write the grid as triangles, STL or PLY");
+        const mesh::PartOutput out{t};
         t.example("fettle-sample jobs/hammer.json --on scans/hammer.stl | fettle-fit jobs/hammer.json | fettle-mesh "
                   "--step 1 --within jobs/hammer.json --sigma > grid.pcd",
                   "heights beneath the anomaly of a scanned hammer, every 1 mm");
@@ -91,7 +93,7 @@ int main(int argc, char** argv)
             const cloud::Cloud given = cloud::read_cloud(at, point_units).cloud;
             cloud::Cloud points = evaluate(surface, given.xyz.topRows(2), with_sigma);
             points.frame = given.frame;
-            cloud::write_pcd(t.output(), points, surface.units);
+            out.write({points, {}}, surface.units);
             return cli::Verdict::yes;
         }
         const auto [grid, units, frame] = make_grid(surface, core::display_name(surface_file), within, *step);
@@ -99,11 +101,11 @@ int main(int argc, char** argv)
         if (stl) {
             mesh::Mesh triangles = surface::mesh_of(surface, grid);
             triangles.frame = frame;
-            mesh::write_stl(t.output(), triangles, units.length);
+            out.write(mesh::as_cloud_mesh(triangles), units);
         } else {
             cloud::Cloud points = evaluate(surface, grid.xy, with_sigma);
             points.frame = frame;
-            cloud::write_pcd(t.output(), points, units);
+            out.write({points, {}}, units);
         }
         return cli::Verdict::yes;
     });

@@ -1,5 +1,5 @@
 #include "cli/tool.h"
-#include "cloud/pcd.h"
+#include "cloud/cloud_output.h"
 #include "core/file.h"
 #include "geometry/bounding_box.h"
 #include "machining/discretization.h"
@@ -9,6 +9,7 @@
 #include "machining/part_mesh.h"
 #include "machining/path_options.h"
 #include "machining/refinement.h"
+#include "machining/stock_frames.h"
 #include "machining/tilt.h"
 #include "machining/workpiece.h"
 
@@ -53,8 +54,10 @@ struct Options {
                 "Where the machined surface is steeper than 60 degrees: halve the grid's step this many times", 0, 5);
     const bool& pcd = t.flag("--pcd", "Write a point for each cell, field removed, instead of triangles");
     const std::string& trace = t.optional_output(
-        "--trace", "Every move, PCD: its end, time and engagement (fields t, feed, removed, volume, holder, place)");
-    const bool& ascii = t.flag("--ascii", "PCDs as text");
+        "--trace", "Every move: its end, time and engagement (fields t, feed, removed, volume, holder, place)",
+        cloud::cloud_formats());
+    const cloud::CloudOutput out{t, {"stl"}};
+    draw::Frames frames{t};
 };
 
 void add_usage(cli::Tool& t)
@@ -72,7 +75,7 @@ void check(const Options& o)
     if (o.step.has_value() == o.tolerance.has_value()) throw core::InputError("give either --step or --tolerance");
     if (o.step && (!o.design.empty() || o.published))
         throw core::InputError("--design and --as-published belong to --tolerance");
-    if (o.ascii && !o.pcd && o.trace.empty()) throw core::InputError("--ascii", "belongs to --pcd and --trace");
+    o.out.require(o.pcd, "points are written with --pcd, triangles as STL without it");
 }
 
 void warn_of_size(const Options& o, const std::string& name, const std::string& part, const Eigen::Vector3d& size,
@@ -120,7 +123,7 @@ void warn_of_path(const Options& o, const machining::MillingSummary& sum, const 
 int main(int argc, char** argv)
 {
     return cli::tool_main(argc, argv, kDescription, [](cli::Tool& t) {
-        const Options o{t};
+        Options o{t};
         add_usage(t);
         t.parse();
         check(o);
@@ -144,20 +147,24 @@ int main(int argc, char** argv)
         warn_of_size(o, o.stock, "the stock", piece.size, cutter);
 
         std::optional<removal::HeightField> before;
-        if (o.pcd) before = piece.stock;
+        if (o.pcd || o.frames.wanted()) before = piece.stock;
         const auto engagements = machining::mill(piece.stock, cutter, moves, options);
         const machining::MillingSummary sum = machining::summarise(moves, engagements, o.rapid);
 
-        const auto write_cloud = [&](std::ostream& out, cloud::Cloud cloud) {
-            cloud::write_pcd(out, machining::rotated(std::move(cloud), R_tilted_machine.transpose()), units::Units{},
-                             cloud::pcd_encoding(o.ascii));
+        const auto upright = [&](cloud::Cloud cloud) {
+            return machining::rotated(std::move(cloud), R_tilted_machine.transpose());
         };
         std::size_t refined = 0;
-        if (before)
-            write_cloud(t.output(), removal::to_cloud(*before, piece.stock));
+        if (o.pcd)
+            o.out.write(upright(removal::to_cloud(*before, piece.stock)), units::Units{});
         else
             refined = write_triangles(o, piece, cutter, moves, R_tilted_machine);
-        if (!o.trace.empty()) write_cloud(t.output_file(o.trace), machining::trace_of(moves, engagements, o.rapid));
+        const cloud::Cloud trace = machining::trace_of(moves, engagements, o.rapid);
+        if (!o.trace.empty()) o.out.write(o.trace, upright(trace), units::Units{});
+        if (o.frames.wanted()) {
+            machining::add_frames(o.frames, *before, cutter, moves, cloud::field(trace, "t"), options);
+            o.frames.finish("The stock while it is milled.");
+        }
         t.report() = machining::to_json(sum, path.program, piece.stock);
         t.report().set("refined_squares", refined);
         if (o.tolerance) t.report().set("discretization", machining::to_json(spacing, shape));

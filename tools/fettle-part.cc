@@ -1,6 +1,6 @@
 #include "cli/tool.h"
-#include "cloud/pcd.h"
-#include "mesh/mesh_file.h"
+#include "mesh/part_output.h"
+#include "mesh/shape_file.h"
 #include "part/part.h"
 
 using namespace fettle;
@@ -12,7 +12,8 @@ int main(int argc, char** argv)
             const std::string& path = t.main_input("SPEC", "what to make, JSON of kind \"part\"");
             const bool& bare = t.flag("--without-anomaly", "The desired surface alone: no anomalies, no noise");
             const bool& as_cloud =
-                t.flag("--cloud", "The corners of the triangles as points (PCD); a scanned cloud is always one");
+                t.flag("--cloud", "The corners of the triangles as points; a scanned cloud is always one");
+            const mesh::PartOutput out{t};
             t.example("fettle-part parts/wang1.json -o stock.stl", "a plate with a sloped H on it, as a triangle mesh");
             t.reference("Wang 2007, 6.2 (test parts) and figure 5-8");
             t.parse();
@@ -23,18 +24,10 @@ int main(int argc, char** argv)
                 spec.noise = {};
             }
             std::vector<std::string> warnings;
-            const mesh::MeshOrCloud part = part::make_part(spec, t.seed(), &warnings);
+            mesh::CloudMesh part = mesh::as_cloud_mesh(part::make_part(spec, t.seed(), &warnings));
             for (const std::string& warning : warnings) t.warn(warning);
-            const units::Units& units = spec.units;
-            if (const cloud::Cloud* scan = std::get_if<cloud::Cloud>(&part)) {
-                cloud::write_pcd(t.output(), *scan, units);
-            } else if (as_cloud) {
-                cloud::Cloud corners;
-                corners.xyz = std::get<mesh::Mesh>(part).vertices;
-                cloud::write_pcd(t.output(), corners, units);
-            } else {
-                mesh::write_stl(t.output(), std::get<mesh::Mesh>(part), units.length);
-            }
+            if (as_cloud) part.triangles.resize(3, 0);
+            out.write(part, spec.units);
             return cli::Verdict::yes;
         });
 }

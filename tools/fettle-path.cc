@@ -2,6 +2,7 @@
 #include "belt/path_links.h"
 #include "belt/path_report.h"
 #include "cli/tool.h"
+#include "cloud/cloud_output.h"
 #include "cloud/pcd.h"
 #include "cloud/poses.h"
 #include "core/file.h"
@@ -64,7 +65,7 @@ struct Options {
                  "point to --wheel; the part's frame is the tool frame of the robot's file");
     const std::string& wheel =
         t.text("--wheel", "", "X,Y,Z,QW,QX,QY,QZ", "The contact frame of the fixed wheel: +z into it, +x the feed");
-    const bool& ascii = t.flag("--ascii", "Text instead of binary");
+    const cloud::CloudOutput out{t};
 };
 
 void add_usage(cli::Tool& t)
@@ -141,7 +142,7 @@ int main(int argc, char** argv)
             cloud::set_poses(path, belt::held_part_path(cloud::read_poses(path), T_cell_wheel));
             path.comment = "frame: cell";
         }
-        cloud::write_pcd(t.output(), path, units::Units{}, cloud::pcd_encoding(o.ascii));
+        o.out.write(path, units::Units{});
         return path.size() > 0 ? cli::Verdict::yes : cli::Verdict::no;
     });
 }

@@ -5,6 +5,7 @@
 #include "core/file.h"
 #include "job/picked.h"
 #include "job/shape_warnings.h"
+#include "mesh/part_output.h"
 #include "mesh/shape_file.h"
 #include "place/place.h"
 
@@ -29,8 +30,6 @@ struct Options {
     const std::string& path = t.main_input("IN", "A cloud (PCD, PLY, XYZ) or a mesh (STL, PLY, OBJ, OFF)");
     const std::optional<units::Units::Length>& unit =
         t.length_unit("--file-units", "Unit of IN, if it states none; default: mm, or the unit of the job of --into");
-    const std::optional<units::Units::Length>& units =
-        t.length_unit("--units", "Unit of the output; default: that of IN");
     const std::string& matrix = t.optional_file(
         "--matrix", "FILE", "Move by this 4 x 4 matrix, as fettle-align writes it: lengths in the unit of IN");
     const std::string& turns =
@@ -48,11 +47,9 @@ struct Options {
     const bool& centre =
         t.flag("--centre", "Put the centre of what faces up, or of the part's bounding box, to the origin");
     const std::string& transform_out =
-        t.optional_output("--transform-out", "Write the 4 x 4 matrix that was applied, 17 digits");
-    const std::string& inverse = t.optional_output("--inverse", "Write the matrix that moves the part back");
-    const std::string& format =
-        t.choice("--format", "", {"pcd", "ply", "csv", "vtk", "stl"},
-                 "Format of the output; default: by the suffix of -o, else PCD, or STL for a mesh");
+        t.optional_output("--transform-out", "Write the 4 x 4 matrix that was applied, 17 digits", {});
+    const std::string& inverse = t.optional_output("--inverse", "Write the matrix that moves the part back", {});
+    const mesh::PartOutput out{t};
 };
 
 place::PlaceRequest parse_request(const Options& o)
@@ -97,7 +94,7 @@ int main(int argc, char** argv)
         mesh::CloudMeshFile file = mesh::read_cloud_mesh(
             o.path, mesh::resolve_file_units(o.unit, request.into ? std::optional(request.into->units) : std::nullopt));
         const std::string name = core::display_name(o.path);
-        const mesh::PartFormat format = mesh::part_format(t.output_name(), o.format, file.part.is_mesh());
+        o.out.format_for(file.part.is_mesh());
         const double mm = file.units.mm();
         if (request.picked) *request.picked *= mm;
         if (request.threshold = o.threshold; request.threshold) *request.threshold *= mm;
@@ -113,9 +110,7 @@ int main(int argc, char** argv)
             if (placed.region->radius > 0) t.report().set("radius", placed.region->radius / mm);
             if (placed.region->share > 0) t.report().set("share", placed.region->share);
         }
-        units::Units written = file.units;
-        written.length = o.units.value_or(file.units.length);
-        mesh::write_cloud_mesh(t.output(), placed.part, format, written);
+        o.out.write(placed.part, file.units);
         return cli::Verdict::yes;
     });
 }

@@ -1,5 +1,6 @@
+#include "cli/output_format.h"
 #include "cli/tool.h"
-#include "cloud/pcd.h"
+#include "cloud/cloud_output.h"
 #include "core/file.h"
 #include "gantry/gantry_options.h"
 #include "gantry/make_virtual.h"
@@ -23,9 +24,11 @@ struct Options {
     const std::string& surface = t.main_input("SURFACE", "the desired surface, JSON (fettle-margin)");
     const std::string& gcode = t.choice("--gcode", "", {"linuxcnc", "grbl"},
                                         "Write layer 1 alone as G-code for this controller, instead of the plan");
-    const std::string& path = t.optional_output(
-        "--path", "Write the passes as the tool path of a robot, too, PCD, in the part's frame: tip, wheel's plane, "
-                  "normal, layer, stroke, feed and limits of force");
+    const std::string& path =
+        t.optional_output("--path",
+                          "Write the passes as the tool path of a robot, too, in the part's frame: tip, wheel's plane, "
+                          "normal, layer, stroke, feed and limits of force",
+                          cloud::cloud_formats());
     const int& layers = t.count("--layers", 1, "Number of layers in --path, from the highest down", 1, 10000);
     const std::string& force_down =
         t.choice("--f-down", "job", {"job", "auto"},
@@ -34,11 +37,12 @@ struct Options {
     const double& removal_factor = gantry::declare_removal_factor(t);
 };
 
-/// Grinds the simulated part with several F_down.
-strategy::ForceDownChoice choose_force_down(const Options& o, const job::Job& job, const surface::Surface& surface)
+/// Grinds the simulated part with several F_down. Sets the job's safe height over that part, if it has none.
+strategy::ForceDownChoice choose_force_down(const Options& o, job::Job& job, const surface::Surface& surface)
 {
-    const job::Job complete = plan::make_plan(job, surface).job; // with a safe height
-    const auto [stock, doubts, dropped] = gantry::read_stock(o.stock, complete, removal::Extent::anomaly);
+    const auto [stock, doubts, dropped] = gantry::read_stock(o.stock, job, removal::Extent::anomaly);
+    job = gantry::with_safe_height_over(stock, std::move(job));
+    const job::Job complete = plan::make_plan(job, surface).job;
     gantry::require_below_safe_height(stock, complete, core::display_name(o.stock.file));
     for (const std::string& doubt : doubts) o.t.warn(doubt);
     return strategy::choose_force_down(job, surface, [&, &field = stock](const job::Job& tried) {
@@ -58,7 +62,10 @@ int main(int argc, char** argv)
                 "layers and passes for Wang's part 1, whose job holds the touches");
             t.reference(
                 "Wang 2007, 5.3: layers (eq. 5-1 to 5-3), start (5-4 to 5-6), staircase; 3.4: the wheel must fit");
+            const std::vector<std::string> programs = {"nc", "ngc", "gcode", "tap"};
+            t.output_formats({"json", "nc", "ngc", "gcode", "tap"});
             t.parse();
+            cli::format_of_output(t.output_name(), o.gcode.empty() ? std::vector<std::string>{"json"} : programs);
             const bool chooses = o.force_down == "auto";
             if (chooses == o.stock.file.empty())
                 throw core::InputError("--stock", "the part, and --f-down auto, which simulates it, go together");
@@ -74,7 +81,7 @@ int main(int argc, char** argv)
             const plan::Plan plan = plan::make_plan(job, surface);
             const auto tool_path = [&] { return plan::ToolPath(plan.job, plan.surface, plan.passes, plan.step); };
             if (!o.path.empty())
-                cloud::write_pcd(t.output_file(o.path), plan::pose_path(plan, tool_path(), o.layers), plan.job.units);
+                cloud::write_cloud(t, o.path, plan::pose_path(plan, tool_path(), o.layers), plan.job.units);
             if (o.gcode.empty())
                 t.output() << plan::to_json(plan);
             else

@@ -2,6 +2,7 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "job/shape_warnings.h"
+#include "mesh/part_output.h"
 #include "mesh/shape_file.h"
 #include "reconstruct/reconstruct.h"
 
@@ -31,9 +32,7 @@ struct Options {
     const std::string& facing = t.text("--facing", "", "X,Y,Z", "The surface faces this direction");
     const std::string& from =
         t.text("--from", "", "X,Y,Z", "The scanner stood here, in the unit of CLOUD: the surface faces it");
-    const std::string& format =
-        t.choice("--format", "", {"stl", "ply"},
-                 "Format of the output; default: by the suffix of -o, else STL. PLY keeps the points' fields");
+    const mesh::PartOutput out{t, {"stl", "ply"}};
 };
 
 reconstruct::ReconstructRequest parse_request(const Options& o)
@@ -67,7 +66,7 @@ int main(int argc, char** argv)
         mesh::CloudMeshFile file = mesh::read_cloud_mesh(o.path, mesh::resolve_file_units(o.unit));
         const std::string name = core::display_name(o.path);
         if (file.part.is_mesh()) throw core::InputError(name, "is a mesh already");
-        const mesh::PartFormat format = mesh::part_format(t.output_name(), o.format, true);
+        o.out.format_for(true);
         for (const std::string& warning : job::shape_warnings(file, name)) t.warn(warning);
         const double mm = file.units.mm();
         if (request.max_gap = o.max_gap; request.max_gap) *request.max_gap *= mm;
@@ -85,7 +84,7 @@ int main(int argc, char** argv)
             .set("outside_by", reconstruct::to_string(result.side))
             .set("filled_holes", result.filled_holes)
             .set("open_borders", result.borders);
-        mesh::write_cloud_mesh(t.output(), result.mesh, format, file.units);
+        o.out.write(result.mesh, file.units);
         return cli::Verdict::yes;
     });
 }

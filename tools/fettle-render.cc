@@ -1,4 +1,5 @@
 #include "cli/tool.h"
+#include "cloud/cloud_output.h"
 #include "core/direction.h"
 #include "core/file.h"
 #include "draw/picture.h"
@@ -34,9 +35,12 @@ int main(int argc, char** argv)
                 t.optional_file("--within", "JOB", "Draw this job's B and S; numbers are those inside B");
             const std::optional<units::Units::Length>& stated =
                 t.length_unit("--file-units", "Unit of POINTS: mm, in, m [as the file says, else the job's, else mm]");
+            const std::optional<units::Units::Length>& written =
+                t.length_unit("--units", "Unit of the picture's numbers [that of POINTS, mm for metres]");
             t.example("fettle-part parts/wang1.json | fettle-render --within jobs/wang1.json -o wang1.png",
                       "the plate with the sloped H, shaded");
             t.reference("Wang 2007, figures 5-10 and 6-12");
+            t.output_formats({"png"});
             t.parse();
 
             draw::PictureOptions options;
@@ -50,7 +54,9 @@ int main(int argc, char** argv)
                 mesh::resolve_file_units(stated, options.job ? std::optional(options.job->units) : std::nullopt);
             mesh::ShapeFile file = mesh::parse_shape(core::read_file(path), core::display_name(path), units);
             if (options.job) job::move_to_job_frame(file.shape, *options.job);
-            options.units = file.units;
+            options.units =
+                cloud::measured_units(file.units, options.job ? std::optional(options.job->units) : std::nullopt);
+            if (written) options.units.length = *written;
             const cloud::Cloud* cloud = std::get_if<cloud::Cloud>(&file.shape);
             if (cloud != nullptr && cloud::has_field(*cloud, "error")) options.field = "error";
             if (!shown.empty()) options.field = shown;

@@ -1,9 +1,10 @@
 #include "cli/tool.h"
-#include "cloud/pcd.h"
+#include "cloud/cloud_output.h"
 #include "core/file.h"
 #include "gantry/gantry_options.h"
 #include "gantry/touch_job.h"
 #include "job/frame.h"
+#include "job/safe_height.h"
 #include "sampling/freeform.h"
 #include "sampling/probe.h"
 
@@ -67,7 +68,7 @@ struct Options {
                           core::Range::at_least(0));
     const double& timeout = gantry::declare_timeout(t);
     const bool& plan_only = t.flag("--plan-only", "Choose only: x and y, no z but where the job gives it");
-    const bool& ascii = t.flag("--ascii", "Text instead of binary");
+    const cloud::CloudOutput out{t};
 };
 
 void add_usage(cli::Tool& t)
@@ -109,15 +110,15 @@ int main(int argc, char** argv)
         std::optional<gantry::TouchedPart> part;
         if (!o.on.empty() && (!o.plan_only || !by_layout))
             part = gantry::open_touched_part(o.on, job, {o.part_unit, o.noise, t.seed(), o.timeout});
+        if (part && part->scan) job::set_safe_height_over(job, part->scan->bounds().max().z());
         const gantry::JobTouches result = gantry::touch_job(job, part ? &*part : nullptr, request(o, mm));
         for (const std::string& warning : result.warnings) t.warn(warning);
 
         t.report() = gantry::to_json(result, job);
         t.note(std::to_string(result.plan.size()) + " touches" +
                (result.adaptive ? "" : " on " + std::to_string(result.plan.curve.maxCoeff() + 1) + " lines"));
-        cloud::write_pcd(t.output(),
-                         job::in_job_frame(sampling::sample_cloud(result.touches, result.plan, result.order), job),
-                         job.units, cloud::pcd_encoding(o.ascii));
+        o.out.write(job::in_job_frame(sampling::sample_cloud(result.touches, result.plan, result.order), job),
+                    job.units);
         return cli::Verdict::yes;
     });
 }

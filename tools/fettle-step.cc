@@ -43,8 +43,7 @@ int main(int argc, char** argv)
             "--units",
             {{"mm", units::Units::Length::mm}, {"in", units::Units::Length::in}, {"m", units::Units::Length::m}},
             "Unit of the output");
-        const std::string& format =
-            t.choice("--format", "", {"stl", "ply"}, "Format of the output; default: by the suffix of -o, else STL");
+        const std::string& format = t.output_format({"stl", "ply"});
         t.example("fettle-step designs/clamp.step --tolerance 0.1 --report faces.json -o clamp.ply",
                   "the design as triangles, none farther than 0.1 mm from it");
         t.reference("ISO 10303-21; IGES 5.3; OpenCASCADE reads and triangulates");

@@ -1,5 +1,5 @@
 #include "cli/tool.h"
-#include "cloud/pcd.h"
+#include "cloud/cloud_output.h"
 #include "core/file.h"
 #include "gantry/gantry_options.h"
 #include "gantry/simulated_head.h"
@@ -19,7 +19,7 @@ int main(int argc, char** argv)
             const gantry::StockOptions stock_options(t);
             const std::string& after = t.optional_file(
                 "--after", "FILE", "What the machine left (run/stock.ground): the part in the end, PCD");
-            const bool& ascii = t.flag("--ascii", "Text instead of binary");
+            const cloud::CloudOutput out{t};
             t.example("fettle-stock-linuxcnc jobs/wang3.json --stock <(fettle-part parts/wang3.json) > stock",
                       "part 3, to be touched by machines/linuxcnc/start DIR stock");
             t.reference("docs/linuxcnc.md");
@@ -37,8 +37,7 @@ int main(int argc, char** argv)
             if (ground.columns() != stock.columns() || ground.rows() != stock.rows() || ground.origin != stock.origin ||
                 ground.cell != stock.cell)
                 throw core::InputError(core::display_name(after), "is not the stock of this part, plan and cell");
-            cloud::write_pcd(t.output(), job::in_job_frame(removal::to_cloud(stock, ground), job), job.units,
-                             cloud::pcd_encoding(ascii));
+            out.write(job::in_job_frame(removal::to_cloud(stock, ground), job), job.units);
             return cli::Verdict::yes;
         });
 }

@@ -1,6 +1,6 @@
 #include "belt/design_file.h"
 #include "cli/tool.h"
-#include "cloud/pcd.h"
+#include "cloud/cloud_output.h"
 #include "core/file.h"
 #include "job/shape_warnings.h"
 #include "mesh/shape_file.h"
@@ -38,7 +38,7 @@ int main(int argc, char** argv)
                                        core::Range::strictly_between(0, 90));
         const double& reach =
             t.number("--reach", 5, "MM", "Length of the rays, to either side of the design", core::Range::positive());
-        const bool& ascii = t.flag("--ascii", "Text instead of binary");
+        const cloud::CloudOutput out{t};
         t.example("fettle-surfel parts/patch_saddle.json --stock <(fettle-part parts/patch_saddle_1x1.json) "
                   "--stock-units in --spacing 1 > work.pcd",
                   "a saddle with a stub on it, as surfels with a spacing of 1 mm");
@@ -56,7 +56,7 @@ int main(int argc, char** argv)
         for (const std::string& doubt : job::shape_warnings(stock, core::display_name(stock_path), stock.units))
             t.warn(doubt);
         const belt::StockRays rays = belt::cast_rays_on_stock(design.surfels, stock.shape, reach);
-        cloud::write_pcd(t.output(), belt::to_cloud(design.surfels), units::Units{}, cloud::pcd_encoding(ascii));
+        out.write(belt::to_cloud(design.surfels), units::Units{});
         t.report() = belt::to_json(design, rays);
 
         const std::string of_all = " of " + std::to_string(design.surfels.size()) + " surfels ";

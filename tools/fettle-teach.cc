@@ -183,6 +183,7 @@ int main(int argc, char** argv)
     return cli::tool_main(argc, argv, description, [](cli::Tool& t) {
         const Options o{t};
         add_usage(t);
+        t.output_formats({"json"});
         t.parse();
         check(o);
 

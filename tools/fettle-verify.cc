@@ -1,5 +1,5 @@
 #include "cli/tool.h"
-#include "cloud/pcd.h"
+#include "cloud/cloud_output.h"
 #include "core/file.h"
 #include "geometry/bounding_box.h"
 #include "job/plausible.h"
@@ -52,15 +52,16 @@ struct Options {
                                          "of the design; the report gives the distance of the two");
     const std::optional<double>& step = t.optional_number(
         "--step", "MM", "Sample the machined surface from above on a grid, too: its step", machining::kLengthRange);
-    const std::string& csv = t.optional_output("--csv", "Data sheet: triangle, centre, d, mu, class");
-    const std::string& z_errors = t.optional_output("--z-errors", "Errors along Z at the machined vertices, PCD");
+    const std::string& csv = t.optional_output("--csv", "Data sheet: triangle, centre, d, mu, class", {"csv"});
+    const std::string& z_errors =
+        t.optional_output("--z-errors", "Errors along Z at the machined vertices", cloud::cloud_formats());
     const std::string& path_file =
         t.optional_file("--correct", "PATH", "The path of fettle-mill: to be corrected by the errors");
     const std::string& corrected = t.optional_output(
-        "--corrected", "The corrected path: of a program a program, of points a PCD of the tips", &path_file);
+        "--corrected", "The corrected path: of a program a program, of points the tips", {}, &path_file);
     const std::string& cutter = t.text("--cutter", "", "CUTTER", "The cutter that machined along PATH");
     machining::ToolPathOptions path{t};
-    const bool& ascii = t.flag("--ascii", "Write PCDs as text");
+    const cloud::CloudOutput out{t};
 };
 
 void add_usage(cli::Tool& t)
@@ -84,11 +85,6 @@ machining::PatchVerdict judge(const Options& o, const mesh::Mesh& machined, cons
     return verdict;
 }
 
-void write_cloud(const Options& o, std::ostream& out, const cloud::Cloud& cloud)
-{
-    cloud::write_pcd(out, cloud, units::Units{}, cloud::pcd_encoding(o.ascii));
-}
-
 /// Corrects the path by the errors, and writes it. @param R_machine_tilted  from the frame of the meshes
 machining::CorrectedPath correct_path(const Options& o, const mesh::Mesh& machined, const mesh::Mesh& design,
                                       const machining::PatchVerdict& verdict, const Eigen::Matrix3d& R_machine_tilted)
@@ -99,13 +95,13 @@ machining::CorrectedPath correct_path(const Options& o, const mesh::Mesh& machin
         o.t.warn(core::display_name(o.path_file) + ": " + doubt);
     machining::CorrectedPath corrected =
         machining::correct(path.program.moves, cutter, machined, design, verdict.patches, verdict.tolerances.outer);
-    std::ostream& out = o.t.output_file(o.corrected);
     if (path.points)
-        write_cloud(
-            o, out,
-            machining::rotated(machining::corrected_points(path, corrected, o.path.contacts()), R_machine_tilted));
+        o.out.write(
+            o.corrected,
+            machining::rotated(machining::corrected_points(path, corrected, o.path.contacts()), R_machine_tilted),
+            units::Units{});
     else
-        machining::write_corrected(out, path, corrected);
+        machining::write_corrected(o.t.output_file(o.corrected), path, corrected);
     return corrected;
 }
 
@@ -146,12 +142,13 @@ int main(int argc, char** argv)
         if (!o.path_file.empty()) corrected = correct_path(o, machined, design, verdict, R_machine_tilted);
 
         if (!o.z_errors.empty())
-            write_cloud(
-                o, t.output_file(o.z_errors),
-                machining::rotated(machining::z_errors_to_cloud(machined, verdict.patches.z_error), R_machine_tilted));
+            o.out.write(
+                o.z_errors,
+                machining::rotated(machining::z_errors_to_cloud(machined, verdict.patches.z_error), R_machine_tilted),
+                units::Units{});
         verdict.patches = machining::rotated(std::move(verdict.patches), R_machine_tilted);
         if (!o.csv.empty()) machining::write_csv(t.output_file(o.csv), verdict);
-        write_cloud(o, t.output(), machining::to_cloud(verdict));
+        o.out.write(machining::to_cloud(verdict), units::Units{});
         t.report() = machining::to_json(verdict);
         if (corrected) t.report().set("correction", machining::to_json(*corrected));
         warn_of_meshes(o, machined_part, design_part);

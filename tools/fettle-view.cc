@@ -1,4 +1,5 @@
 #include "cli/tool.h"
+#include "cloud/cloud_output.h"
 #include "core/file.h"
 #include "job/frame.h"
 #include "job/job.h"
@@ -32,6 +33,8 @@ struct Options {
     const bool& pick = t.flag("--pick", "Clicks on the part set the corners of B and S, which fettle-teach reads");
     const std::optional<units::Units::Length>& file_units =
         t.length_unit("--file-units", "Unit of PART: mm, in, m [as the file says, else the job's, else mm]");
+    const std::optional<units::Units::Length>& units =
+        t.length_unit("--units", "Unit of the page's numbers [that of PART, mm for metres]");
 };
 
 /// The fields of a layer that are shown: of those that were asked for, the ones it has, or z.
@@ -56,15 +59,24 @@ std::vector<std::string> split_names(const std::string& list)
     return names;
 }
 
+std::optional<units::Units> stated_units(const Options& o, const view::ViewOptions& options)
+{
+    return mesh::resolve_file_units(o.file_units,
+                                    options.picture.job ? std::optional(options.picture.job->units) : std::nullopt);
+}
+
 std::vector<view::Layer> read_layers(const Options& o, view::ViewOptions& options)
 {
     const std::vector<std::string> wanted = split_names(o.fields);
-    std::optional<units::Units> units = mesh::resolve_file_units(
-        o.file_units, options.picture.job ? std::optional(options.picture.job->units) : std::nullopt);
+    const std::optional<units::Units> units = stated_units(o, options);
     std::vector<view::Layer> layers;
     for (const std::string& path : o.files) {
         mesh::CloudMeshFile file = mesh::read_cloud_mesh(path, units);
-        if (layers.empty()) options.picture.units = file.units;
+        if (layers.empty()) {
+            options.picture.units = cloud::measured_units(
+                file.units, options.picture.job ? std::optional(options.picture.job->units) : std::nullopt);
+            if (o.units) options.picture.units.length = *o.units;
+        }
         const std::string name = core::display_name(path);
         for (const std::string& warning : job::shape_warnings(file, name)) o.t.warn(warning);
         if (options.picture.job) job::move_to_job_frame(file.part.points, *options.picture.job);
@@ -90,6 +102,7 @@ int main(int argc, char** argv)
             t.example("fettle-part parts/wang1.json | fettle-view - --within jobs/wang1.json -o view.html",
                       "the plate with the sloped H and its boundaries, to be turned");
             t.reference("Wang 2007, 3.2: the operator marks the boundaries of an anomaly");
+            t.output_formats({"html"});
             t.parse();
             view::ViewOptions options;
             if (!o.within.empty()) options.picture.job = job::read_job(o.within);
@@ -99,7 +112,7 @@ int main(int argc, char** argv)
             options.pick = o.pick;
             const std::vector<view::Layer> layers = read_layers(o, options);
             if (!o.touches.empty()) {
-                mesh::CloudMeshFile file = mesh::read_cloud_mesh(o.touches, options.picture.units);
+                mesh::CloudMeshFile file = mesh::read_cloud_mesh(o.touches, stated_units(o, options));
                 if (options.picture.job) job::move_to_job_frame(file.part.points, *options.picture.job);
                 options.touches = file.part.points.xyz;
             }

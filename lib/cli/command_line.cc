@@ -54,7 +54,8 @@ void check_options(const CLI::App& app, int argc, char** argv)
         const CLI::Option* option = app.get_option_no_throw(name);
         if (option == nullptr) refuse_unknown(app, name);
         if (option == app.get_help_ptr()) return;
-        if (!seen.insert(option).second) throw core::InputError("option " + name + " is given twice");
+        if (!seen.insert(option).second && option->get_expected_max() <= 1)
+            throw core::InputError("option " + name + " is given twice");
         if (option->get_expected_max() == 0) continue;
         if (has_value_attached(words[i]) && !words[i].ends_with('=')) continue;
         const std::string next = has_value_attached(words[i]) || i + 1 == words.size() ? "" : words[i + 1];

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 namespace fettle::cli {
@@ -103,9 +104,10 @@ const std::string& Tool::required_file_option(const std::string& names, const st
 }
 
 const std::string& Tool::optional_output(const std::string& names, const std::string& help,
-                                         const std::string* may_replace)
+                                         const std::vector<std::string>& formats, const std::string* may_replace)
 {
     const std::string& value = text(names, "", "FILE", help);
+    state_->file_formats.push_back({&value, formats});
     state_->outputs.declare(value, may_replace);
     return value;
 }
@@ -156,6 +158,21 @@ const std::string& Tool::text(const std::string& names, const std::string& fallb
     CLI::Option* option = state_->app->add_option(names, value, help)->type_name(placeholder);
     if (!fallback.empty()) option->default_str(fallback);
     return value;
+}
+
+const std::vector<std::string>& Tool::repeated_text(const std::string& names, const std::string& placeholder,
+                                                    const std::string& help)
+{
+    std::vector<std::string>& values = state_->text_lists.emplace_back();
+    state_->app->add_option(names, values, help)->type_name(placeholder)->allow_extra_args(false);
+    return values;
+}
+
+const std::vector<std::string>& Tool::file_list(const std::string& names, const std::string& help)
+{
+    std::vector<std::string>& values = state_->file_lists.emplace_back();
+    state_->app->add_option(names, values, help)->type_name("FILE")->expected(1, std::numeric_limits<short>::max());
+    return values;
 }
 
 const std::string& Tool::required_text(const std::string& names, const std::string& placeholder,

@@ -2,6 +2,7 @@
 
 #include "cli/command_line.h"
 #include "cli/option.h"
+#include "cli/output_format.h"
 #include "cli/progress_bar.h"
 #include "cli/tool_state.h"
 #include "cli/version.h"
@@ -37,6 +38,19 @@ Tool::State::State(int count, char** values, const std::string& description)
 }
 Tool::State::~State() = default;
 
+void Tool::State::check_formats()
+{
+    if (!output_formats.empty()) {
+        const std::string by_suffix = format_of_output(output, output_formats);
+        if (!by_suffix.empty() && !format.empty() && format != by_suffix)
+            throw core::InputError(output, "'." + by_suffix + "' is not the suffix of --format " + format);
+        if (format.empty()) format = by_suffix.empty() ? default_format : by_suffix;
+    }
+    for (const auto& [path, formats] : file_formats)
+        if (!path->empty() && !formats.empty()) format_of_output(*path, formats);
+    if (!report_path.empty()) format_of_output(report_path, {"json"});
+}
+
 Tool::Tool(int argc, char** argv, const std::string& description)
     : state_(std::make_unique<State>(argc, argv, description))
 {
@@ -57,13 +71,29 @@ void Tool::example(const std::string& command, const std::string& meaning)
 
 void Tool::reference(const std::string& source) { state_->reference = "Reference: " + source; }
 
+void Tool::output_formats(const std::vector<std::string>& formats) { state_->output_formats = formats; }
+
+const std::string& Tool::output_format(const std::vector<std::string>& formats, const std::string& otherwise)
+{
+    output_formats(formats);
+    if (otherwise.empty()) state_->default_format = formats.front();
+    declare_choice("--format", "", formats,
+                   "Format of the output; default: by the suffix of -o, else " +
+                       (otherwise.empty() ? formats.front() : otherwise),
+                   [this](const std::string& word) { state_->format = word; });
+    return state_->format;
+}
+
 void Tool::disable_output() { state_->has_output = false; }
 
 void Tool::parse()
 {
     State& s = *state_;
     if (s.has_output)
-        s.app->add_option("-o,--output", s.output, "Output, written atomically")
+        s.app
+            ->add_option("-o,--output", s.output,
+                         "Output, written atomically" +
+                             (s.output_formats.empty() ? "" : ": ." + core::join(s.output_formats, ", .")))
             ->type_name("FILE")
             ->default_str("stdout");
     s.app->add_option("--report", s.report_path, "Numbers about the run, JSON")->type_name("FILE");
@@ -88,6 +118,7 @@ void Tool::parse()
     s.app->parse(static_cast<int>(argv.size()), argv.data());
     for (const std::vector<std::string>& files : s.file_lists)
         for (const std::string& file : files) s.outputs.add_input(file);
+    s.check_formats();
     s.outputs.declare(s.report_path, nullptr);
     s.outputs.open(s.has_output ? &s.output : nullptr, s.main_input);
     if (s.threads > 0)

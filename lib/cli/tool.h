@@ -46,8 +46,10 @@ class Tool {
 
     /// An output file named by an option, to be written with output_file(); empty if not given. parse() throws if it
     /// cannot be written.
+    /// @param formats  suffixes that its name may have (cli/output_format.h); none: any
     /// @param may_replace  the input that it is derived from and may replace, if there is one
     const std::string& optional_output(const std::string& names, const std::string& help,
+                                       const std::vector<std::string>& formats,
                                        const std::string* may_replace = nullptr);
 
     const bool& flag(const std::string& names, const std::string& help);
@@ -59,6 +61,11 @@ class Tool {
     /// Any text. @param placeholder  name of the value in the help
     const std::string& text(const std::string& names, const std::string& fallback, const std::string& placeholder,
                             const std::string& help);
+    /// Any texts, of an option that may be given several times.
+    const std::vector<std::string>& repeated_text(const std::string& names, const std::string& placeholder,
+                                                  const std::string& help);
+    /// Input files named by one option, one after the other.
+    const std::vector<std::string>& file_list(const std::string& names, const std::string& help);
     /// Any text, of a required option.
     const std::string& required_text(const std::string& names, const std::string& placeholder, const std::string& help);
     const std::string& choice(const std::string& names, const std::string& fallback,
@@ -88,6 +95,13 @@ class Tool {
     void example(const std::string& command, const std::string& meaning);
     /// Reference for the help: a paper and its section or equations.
     void reference(const std::string& source);
+
+    /// Formats of the main output, as suffixes in lower case. parse() throws if -o has another suffix.
+    void output_formats(const std::vector<std::string>& formats);
+    /// Declares --format, which takes one of these, too.
+    /// @param otherwise  help: what is written without that option and a suffix; empty: the first format
+    /// @return  the format, by that option or by the suffix of -o; without both the first, or with `otherwise` none
+    const std::string& output_format(const std::vector<std::string>& formats, const std::string& otherwise = "");
 
     /// Declares no option -o, for tools that use stdout for a protocol.
     void disable_output();

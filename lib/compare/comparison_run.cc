@@ -1,5 +1,6 @@
 #include "compare/comparison_run.h"
 
+#include "cloud/cloud_output.h"
 #include "compare/comparison_report.h"
 #include "compare/judgement.h"
 #include "core/error.h"
@@ -112,8 +113,10 @@ ComparisonRun compare_files(const ComparisonRequest& request, std::ostream& out,
     const TestPoints test = whole_test ? test_points(whole_test->shape, whole_test->units)
                                        : open_test_points(request.test, units_of(request.test_unit), job);
     ComparisonRun run;
-    run.units = job ? job->units : test.units;
+    run.units = cloud::measured_units(test.units, job ? std::optional(job->units) : std::nullopt);
+    if (request.output_unit && !job) run.units.length = *request.output_unit;
     ComparisonOptions options = options_in_mm(request, run.units);
+    if (request.output_unit) run.units.length = *request.output_unit;
 
     Survey survey = start_survey(test, options); // while the reference is read
     mesh::ShapeFile file = mesh::read_shape(request.reference, units_of(request.reference_unit));
@@ -126,23 +129,24 @@ ComparisonRun compare_files(const ComparisonRequest& request, std::ostream& out,
     const bool is_mesh = std::holds_alternative<mesh::Mesh>(file.shape);
     const Reference reference = make_reference(std::move(file.shape), options.distance);
 
-    const auto compare_points = [&](const TestPoints& points, Survey& of_points, const Reference& to,
-                                    std::ostream& map) -> const Comparison& {
-        cloud::CloudWriter writer(map, request.format, run.units, points.points.points);
+    const auto compare_points = [&](const TestPoints& points, Survey& of_points, const Reference& to, std::ostream& map,
+                                    cloud::CloudFormat format) -> const Comparison& {
+        cloud::CloudWriter writer(map, format, run.units, points.points.points);
         const auto write = [&](const cloud::Cloud& part) { writer.write(part); };
         run.comparisons.push_back(compare(points, of_points, to, options, write, progress()));
         writer.finish();
         return run.comparisons.back();
     };
-    run.report = to_json(compare_points(test, survey, reference, out), run.units);
+    run.report = to_json(compare_points(test, survey, reference, out, request.format), run.units);
     const ReferenceRepair& repair = reference.repair();
     if (is_mesh) run.report.set("reference", to_json(repair, file.repair, run.units));
     if (reverse_out) {
         options.reversed = true;
         Survey reverse_survey = start_survey(*reverse_test, options);
         const Reference test_reference = make_reference(std::move(whole_test->shape), options.distance);
-        run.report.set("reverse",
-                       to_json(compare_points(*reverse_test, reverse_survey, test_reference, *reverse_out), run.units));
+        run.report.set("reverse", to_json(compare_points(*reverse_test, reverse_survey, test_reference, *reverse_out,
+                                                         request.reverse_format),
+                                          run.units));
         warn_of_repair(run, core::display_name(request.test), test_reference.repair(), options.distance.winding);
     }
     const Comparison& first = run.comparisons.front();

@@ -17,13 +17,15 @@ namespace fettle::compare {
 /// A comparison of two files, each a mesh or a cloud. Lengths are in the unit of the run: the job's, without a job that
 /// of the test's file.
 struct ComparisonRequest {
-    std::string test, reference;                         ///< paths; "-": stdin
-    std::optional<units::Units::Length> test_unit;       ///< nothing: the job's, else as the file says
-    std::optional<units::Units::Length> reference_unit;  ///< nothing: the same
-    std::optional<double> tolerance;                     ///< nothing: the job's
-    std::optional<double> max_distance;                  ///< beyond it the error is undefined
-    cloud::CloudFormat format = cloud::CloudFormat::pcd; ///< of the error maps
-    ComparisonOptions options;                           ///< except for the tolerance and the maximum distance
+    std::string test, reference;                                 ///< paths; "-": stdin
+    std::optional<units::Units::Length> test_unit;               ///< nothing: the job's, else as the file says
+    std::optional<units::Units::Length> reference_unit;          ///< nothing: the same
+    std::optional<double> tolerance;                             ///< nothing: the job's
+    std::optional<double> max_distance;                          ///< beyond it the error is undefined
+    cloud::CloudFormat format = cloud::CloudFormat::pcd;         ///< of the error map
+    cloud::CloudFormat reverse_format = cloud::CloudFormat::pcd; ///< of the reverse one
+    std::optional<units::Units::Length> output_unit;             ///< of maps and report, instead of the job's
+    ComparisonOptions options;                                   ///< except for the tolerance and the maximum distance
 };
 
 struct ComparisonRun {

@@ -1,5 +1,6 @@
 #include "mesh/cloud_mesh.h"
 
+#include "cli/output_format.h"
 #include "cloud/cloud_encoder.h"
 #include "cloud/cloud_writer.h"
 #include "cloud/fields.h"
@@ -16,7 +17,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <ostream>
 #include <utility>
 
@@ -28,15 +28,6 @@ constexpr std::array<std::pair<const char*, PartFormat>, 5> kFormats = {{{"pcd",
                                                                          {"csv", PartFormat::csv},
                                                                          {"vtk", PartFormat::vtk},
                                                                          {"stl", PartFormat::stl}}};
-
-/// In lower case, without the dot; empty if there is none.
-std::string suffix_of(const std::string& path)
-{
-    const std::size_t dot = path.rfind('.');
-    std::string suffix = dot == std::string::npos ? "" : path.substr(dot + 1);
-    std::ranges::transform(suffix, suffix.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return suffix;
-}
 
 bool begins_as_ply(const core::InputFile& file, const std::string& source)
 {
@@ -87,6 +78,16 @@ CloudMesh select_triangles(const CloudMesh& part, const std::vector<Eigen::Index
     return result;
 }
 
+CloudMesh as_cloud_mesh(MeshOrCloud shape)
+{
+    Mesh* mesh = std::get_if<Mesh>(&shape);
+    if (mesh == nullptr) return {std::move(std::get<cloud::Cloud>(shape)), {}};
+    CloudMesh part{{}, std::move(mesh->triangles)};
+    part.points.xyz = std::move(mesh->vertices);
+    part.points.frame = mesh->frame;
+    return part;
+}
+
 CloudMesh select_points(const CloudMesh& part, const std::vector<Eigen::Index>& indices)
 {
     if (!part.is_mesh()) return {cloud::select_points(part.points, indices), {}};
@@ -109,29 +110,15 @@ CloudMeshFile read_cloud_mesh(const std::string& path, const std::optional<units
         if (cloud::ply_has_faces(bytes)) return parse_ply_part(bytes, source, units.value_or(units::Units{}));
     }
     ShapeFile shape = read_shape(file, source, units);
-    CloudMeshFile result{{}, shape.units, shape.repair};
-    if (Mesh* mesh = std::get_if<Mesh>(&shape.shape)) {
-        result.part.points.xyz = std::move(mesh->vertices);
-        result.part.triangles = std::move(mesh->triangles);
-        result.part.points.frame = mesh->frame;
-    } else {
-        result.part.points = std::move(std::get<cloud::Cloud>(shape.shape));
-    }
-    return result;
-}
-
-bool has_mesh_suffix(const std::string& path)
-{
-    const std::string suffix = suffix_of(path);
-    return suffix == "stl" || suffix == "ply";
+    return {as_cloud_mesh(std::move(shape.shape)), shape.units, shape.repair};
 }
 
 PartFormat part_format(const std::string& path, const std::string& stated, bool is_mesh)
 {
-    const std::string word = stated.empty() ? suffix_of(path) : stated;
+    const std::string suffix = cli::suffix_of(path), word = stated.empty() ? suffix : stated;
     const auto* found = std::ranges::find(kFormats, word, &std::pair<const char*, PartFormat>::first);
     if (found == kFormats.end()) return is_mesh ? PartFormat::stl : PartFormat::pcd;
-    const std::string asked_by = stated.empty() ? path : "--format";
+    const std::string asked_by = suffix == word ? path : "--format";
     const bool holds_triangles = found->second == PartFormat::stl || found->second == PartFormat::ply;
     if (is_mesh && !holds_triangles)
         throw core::InputError(asked_by, "a mesh is written as STL or PLY, not as " + word);

@@ -2,6 +2,7 @@
 
 #include "cloud/cloud.h"
 #include "mesh/mesh.h"
+#include "mesh/shape_file.h"
 #include "units/units.h"
 
 #include <Eigen/Core>
@@ -20,6 +21,8 @@ struct CloudMesh {
     Eigen::Matrix3Xi triangles; ///< 3xT, indices of columns of `points.xyz`; of a mesh at least one
     bool is_mesh() const { return triangles.cols() > 0; }
 };
+
+CloudMesh as_cloud_mesh(MeshOrCloud shape);
 
 struct CloudMeshFile {
     CloudMesh part;
@@ -41,8 +44,6 @@ CloudMesh select_triangles(const CloudMesh& part, const std::vector<Eigen::Index
 /// Formats in which a cloud or a mesh is written.
 enum class PartFormat { pcd, pcd_ascii, ply, csv, vtk, stl };
 
-/// True if the suffix of a file is that of a format with triangles: .stl or .ply.
-bool has_mesh_suffix(const std::string& path);
 /// The format of a file's suffix (.pcd, .ply, .csv, .vtk, .stl in either case), unless one is stated: that of stdout,
 /// and of other suffixes, is STL for a mesh and PCD for a cloud.
 /// @param stated  "pcd", "ply", "csv", "vtk" or "stl"; empty: by the suffix

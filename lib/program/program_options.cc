@@ -29,10 +29,11 @@ std::vector<std::string> zone_names()
 } // namespace
 
 ProgramArguments::ProgramArguments(cli::Tool& tool)
-    : rapid(tool.optional_output("--rapid", "Write an ABB RAPID module; like all programs it needs --feed")),
-      krl(tool.optional_output("--krl", "Write a KUKA KRL program, .src")),
-      fanuc(tool.optional_output("--ls", "Write a Fanuc LS program, and beside it NAME_1.ls, …, which it calls")),
-      urscript(tool.optional_output("--urscript", "Write a Universal Robots URScript program")),
+    : rapid(tool.optional_output("--rapid", "Write an ABB RAPID module; like all programs it needs --feed", {"mod"})),
+      krl(tool.optional_output("--krl", "Write a KUKA KRL program", {"src"})),
+      fanuc(
+          tool.optional_output("--ls", "Write a Fanuc LS program, and beside it NAME_1.ls, …, which it calls", {"ls"})),
+      urscript(tool.optional_output("--urscript", "Write a Universal Robots URScript program", {"script"})),
       unchecked(tool.flag("--unchecked", "Write programs of a path that fettle-collide has not checked, too; their "
                                          "first line says so")),
       zone(tool.choice("--zone", "z0", zone_names(),

@@ -21,8 +21,8 @@ for unit in in mm; do
     fettle-estimate $unit.json samples.pcd | fettle-fit $unit.json | fettle-margin $unit.json >desired.json
     fettle-plan $unit.json desired.json >plan.json
     fettle-grind plan.json --stock part.stl --stock-units in --gantry virtual --cell $cell >ground.pcd
-    fettle-compare ground.pcd --to truth.stl --to-units in --within $unit.json --report $unit.report -o /dev/null || test $? -eq 1
+    fettle-compare ground.pcd --to truth.stl --to-units in --within $unit.json --report $unit.report.json -o /dev/null || test $? -eq 1
 done
-jq '{count, mean, min, max, rms, p50} | (.mean, .min, .max, .rms, .p50) *= 25.4' in.report >a.json
-jq '{count, mean, min, max, rms, p50}' mm.report >b.json
+jq '{count, mean, min, max, rms, p50} | (.mean, .min, .max, .rms, .p50) *= 25.4' in.report.json >a.json
+jq '{count, mean, min, max, rms, p50}' mm.report.json >b.json
 fettle-diff --tol 1e-4 a.json b.json

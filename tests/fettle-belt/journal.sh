@@ -10,7 +10,7 @@ awk 'BEGIN {
     printf "WIDTH %d\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS %d\nDATA ascii\n", n, n
     for (i = 0; i < n; ++i) printf "%g %g 5.25 1 0 0 0 %g %d\n", (i % 80) / 8 - 5, int(i / 80) * 3 - 3, 8 + i % 7, int(i / 80) }' > path.pcd
 run() { # NAME OPTION...; replaces the shell
-    exec fettle-belt plate.pcd --wheel wheel.json --path path.pcd --feed 0.003 --trace "$1.trace" --report "$1.json" --watch "$1.csv" \
+    exec fettle-belt plate.pcd --wheel wheel.json --path path.pcd --feed 0.003 --trace "$1.trace.pcd" --report "$1.json" --watch "$1.csv" \
         --lower 0.1 --upper 0.2 --cells 64 -o "$1.pcd" "${@:2}"
 }
 (run whole)
@@ -25,7 +25,7 @@ for ((i = 0; i < 60 && kills < 8; ++i)); do
 done
 [ $kills -gt 0 ]
 (run killed --journal run.journal)
-for end in pcd trace json csv; do cmp whole.$end killed.$end; done
+for end in pcd trace.pcd json csv; do cmp whole.$end killed.$end; done
 # The journal of a run that is done gives the result again.
 (run again --journal run.journal)
 cmp whole.pcd again.pcd

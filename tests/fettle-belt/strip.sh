@@ -44,8 +44,8 @@ fettle-belt plate.pcd --wheel wheel.json --ascii --path fields.pcd | cmp - fine.
 sed 's/^FIELDS.*/& depth force feed/; s/^SIZE.*/& 4 4 4/; s/^TYPE.*/& F F F/; s/^COUNT.*/& 1 1 1/; /^-*[0-9].* 0 0 0$/s/$/ nan 10 5/' fine.pcd > both.pcd
 fettle-belt plate.pcd --wheel wheel.json --ascii --path both.pcd | cmp - fine.out
 sed '$s/nan 10/0.2 10/' both.pcd > last.pcd
-fettle-belt plate.pcd --wheel wheel.json --path last.pcd --ascii --trace last.trace > last.out
-sed '1,/^DATA/d' last.trace | awk 'NR < 21 && ($9 - 10) ^ 2 > 1e-9 || NR == 21 && ($12 - 0.2) ^ 2 > 1e-12 { exit 1 } END { exit NR != 21 }'
+fettle-belt plate.pcd --wheel wheel.json --path last.pcd --ascii --trace traced.pcd > last.out
+sed '1,/^DATA/d' traced.pcd | awk 'NR < 21 && ($9 - 10) ^ 2 > 1e-9 || NR == 21 && ($12 - 0.2) ^ 2 > 1e-12 { exit 1 } END { exit NR != 21 }'
 # A strip in inches gives the same.
 awk '/^VERSION/ { print "# units in N" } /^-*[0-9]/ { $1 /= 25.4; $2 /= 25.4; $3 /= 25.4; $10 /= 25.4 }
     /^-*[0-9]/ && $8 != "nan" { $8 /= 25.4 } { print }' last.pcd > inches.pcd

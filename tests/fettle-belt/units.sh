@@ -20,16 +20,16 @@ powers='{"x": 1, "y": 1, "z": 1, "normal_x": 0, "normal_y": 0, "normal_z": 0, "d
     "time": 0, "work": 0, "touched": null, "surfels": 0, "deepest": 1, "max_force": 0, "max_area": 2, "near_edge": 0, "coarse_grids": 0, "cell": 1,
     "iterations": 0, "gap": 1}'
 grind() { # UNIT FEED DEPTH...
-    fettle-belt "$1.surfels" --wheel wheel.json --path "$1.path" --depth "$3" --feed "$2" --cells 16 --ascii --trace "$1.trace" --report "$1.json" \
-        -o "$1.ground"
-    fettle-contact "$1.surfels" --wheel wheel.json --at "$4" --depth "$3" --cells 16 --ascii --report "$1.contact.json" -o "$1.contact"
+    fettle-belt "$1.surfels" --wheel wheel.json --path "$1.path" --depth "$3" --feed "$2" --cells 16 --ascii --trace "$1.trace.pcd" --report "$1.json" \
+        -o "$1.ground.pcd"
+    fettle-contact "$1.surfels" --wheel wheel.json --at "$4" --depth "$3" --cells 16 --ascii --report "$1.contact.json" -o "$1.contact.pcd"
 }
 grind mm 5 0.2 0,0,5.25,1,0,0,0
 convert in 0.0393700787
 convert m 0.001
 grind in 0.1968503937 0.00787401575 0,0,0.206692913,1,0,0,0
 grind m 0.005 0.0002 0,0,0.00525,1,0,0,0
-for file in ground trace json contact contact.json; do
+for file in ground.pcd trace.pcd json contact.pcd contact.json; do
     "$HERE/../scales" in "$powers" mm.$file in.$file
     "$HERE/../scales" m "$powers" mm.$file m.$file
 done

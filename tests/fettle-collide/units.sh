@@ -22,14 +22,14 @@ convert m 0.001
 } | jq -R 'split(" ") | {(.[0]): (.[1] | tonumber)}' | jq -s add > powers
 check() { # UNIT TRACK STEP FEED
     fettle-collide clamp.json "$1.pcd" --workpiece keel.stl --workpiece-units mm --track "$2" --avoid --max-tilt 10 --method grid --max-retreat "$3" \
-        --report "$1.json" -q --ascii -o "$1.checked" || [ $? = 1 ]
-    fettle-arm clamp.json --inverse "$1.pcd" --track "$2" --feed "$4" --report "$1.arm.json" -q --ascii -o "$1.arm" || [ $? = 1 ]
+        --report "$1.json" -q --ascii -o "$1.checked.pcd" || [ $? = 1 ]
+    fettle-arm clamp.json --inverse "$1.pcd" --track "$2" --feed "$4" --report "$1.arm.json" -q --ascii -o "$1.arm.pcd" || [ $? = 1 ]
 }
 check mm 350 30 50
 check in 13.7795276 1.18110236 1.96850394
 check m 0.35 0.03 0.05
 jq -e '.avoidance.max_retreat > 0 and (.avoidance.changes | length) > 0' mm.json > ok
-for file in checked json arm arm.json; do
+for file in checked.pcd json arm.pcd arm.json; do
     "$HERE/../scales" in "$(cat powers)" mm.$file in.$file
     "$HERE/../scales" m "$(cat powers)" mm.$file m.$file
 done

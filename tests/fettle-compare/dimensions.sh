@@ -17,7 +17,7 @@ for unit in mm in m; do
     jq -n --arg unit $unit --argjson mm "$mm" '{kind: "job", units: {length: $unit}, surface: {type: "freeform"}, tolerance: (0.25 / $mm),
         anomaly: [[8, 8], [20, 8], [20, 20], [8, 20]] | map(map(. / $mm)), sampling: [[5, 5], [25, 5], [25, 25], [5, 25]] | map(map(. / $mm))}' >$unit/job.json
     cd $unit
-    units="--file-units $unit --to-units $unit --ascii -q"
+    units="--file-units $unit --to-units $unit --units $unit --ascii -q"
     for case in cloud mesh within; do
         [ $unit.$case != m.within ] || continue # jobs are in mm or in inches
         case $case in

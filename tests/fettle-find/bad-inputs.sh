@@ -15,7 +15,7 @@ printf 'OFF\n3 1 0\n0 0 0\n9 0 0\n0 9 0\n3 0 1 2\n' > facet.off
 refuses '--drop: 1 is no row: 0 anomalies were found' facet.off --drop 1
 refuses "--keep: expected a number, got 'one'" facet.off --keep one
 refuses '--against: is needed by --transform-in' facet.off --transform-in T.txt
-refuses 'left.stl: an STL has no fields: write PLY, or the points as PCD' same.xyz -o left.stl
+refuses "left.stl: '.stl' is no format of this output: .pcd, .ply, .csv, .vtk" same.xyz -o left.stl
 [ ! -e left.stl ]
 
 awk 'BEGIN { for (x = 0; x < 500; ++x) print x / 10, 0, sin(x / 90) }' > profile.xyz

@@ -11,7 +11,7 @@ refused 'plane.off: a cutter without ball or corner' fettle-finish plane.off --c
 refused 'plane.off: a step-over of 1e-06 mm' fettle-finish plane.off --cutter flat:6 --step-over 1e-6
 refused 'down.off: no facet of the design faces up' fettle-finish down.off --cutter ball:6 --scallop 0.1
 refused 'empty.stl: empty' fettle-finish empty.stl --cutter ball:6 --scallop 0.1
-refused '--ascii: belongs to --pcd' fettle-finish plane.off --cutter ball:6 --scallop 0.1 --ascii
+refused '--ascii: points are written with --pcd' fettle-finish plane.off --cutter ball:6 --scallop 0.1 --ascii
 refused '--scallop' fettle-finish plane.off --cutter ball:6 --scallop 0
 refused '--allowance' fettle-finish plane.off --cutter ball:6 --scallop 0.1 --allowance -1
 for option in --scallop --step-over --overhang --feed --clearance --allowance --angle; do

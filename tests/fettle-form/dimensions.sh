@@ -10,9 +10,9 @@ for unit in mm in m; do
         printf "%.17g %.17g %.17g\n", r * cos(a) / mm, r * sin(a) / mm, 4 * j / mm >"'$unit'/cylindricity.xyz"
         printf "%.17g %.17g %.17g\n", r * cos(a) * cos(b) / mm, r * sin(a) * cos(b) / mm, r * sin(b) / mm >"'$unit'/sphericity.xyz" } }'
     for form in flatness cylindricity sphericity; do
-        fettle-form $form $unit/$form.xyz --file-units $unit --outliers 6 -q >$unit/$form.json
+        fettle-form $form $unit/$form.xyz --file-units $unit --units $unit --outliers 6 -q >$unit/$form.json
     done
-    fettle-form straightness $unit/flatness.xyz --file-units $unit -q >$unit/straightness.json \
+    fettle-form straightness $unit/flatness.xyz --file-units $unit --units $unit -q >$unit/straightness.json \
         --sections "$(awk -v mm="$(mm_per $unit)" 'BEGIN { printf "%.17g", 2 / mm }')" --section-width "$(awk -v mm="$(mm_per $unit)" 'BEGIN { printf "%.17g", 1 / mm }')"
 done
 for unit in in m; do

@@ -19,7 +19,7 @@ echo '{"kind": "poses", "units": {"length": "mm"}, "scans": [{"file": "1.pcd", "
 refuses 'poses.json: scans: none of them is 2.pcd' --poses poses.json 1.pcd 2.pcd
 echo '{"kind": "poses", "units": {"length": "mm"}, "scans": [{"file": "1.pcd", "matrix": [[2,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]}]}' >poses.json
 refuses 'is not a rotation and a translation' --poses poses.json 1.pcd 2.pcd
-refuses 'a cloud is written as PCD, PLY, CSV or VTK, not as stl' 1.pcd 2.pcd -o out.stl
+refuses "'.stl' is no format of this output: .pcd, .ply, .csv, .vtk" 1.pcd 2.pcd -o out.stl
 [ ! -e out.stl ]
 
 # NaN blocks in a scan are left out. Reference: the scan without them.

@@ -47,7 +47,7 @@ refused '--cutter: the diameter must be positive' path.xyz $box ball:0
 refused '--cutter: expected ball:D' path.xyz $box drill:3
 refused '--cutter: a corner of radius 4' path.xyz $box bull:6,4
 refused '--holder: both must be positive' path.xyz $box ball:6 --holder 20,-3
-refused '--ascii: belongs to --pcd' path.xyz $box ball:6 --ascii
+refused '--ascii: points are written with --pcd' path.xyz $box ball:6 --ascii
 refused '--feed' path.xyz $box ball:6 --feed 0
 refused 'a box is in mm' path.xyz $box ball:6 --stock-units in
 refused '--cutter: the diameter must be in' path.xyz $box ball:1e200

@@ -13,5 +13,5 @@ refuses '--max-gap: ' far.xyz --max-gap 0
 refuses '--facing: a direction is not 0,0,0' far.xyz --facing 0,0,0
 refuses '--facing: goes without --from' far.xyz --facing 0,0,1 --from 0,0,9
 refuses '--from: ' far.xyz --from 1,2
-refuses 'mesh.pcd: a mesh is written as STL or PLY, not as pcd' far.xyz -o mesh.pcd
+refuses "mesh.pcd: '.pcd' is no format of this output: .stl, .ply" far.xyz -o mesh.pcd
 [ ! -e mesh.pcd ]

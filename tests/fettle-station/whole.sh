@@ -18,12 +18,12 @@ for kind in virtual virtual:dynamic exec; do
     fettle-plan job.json surface.json | cmp - plan.json
     grep -q '<html' page.html
     if [ $kind = exec ]; then
-        fettle-grind plan.json --stock ../stock.stl --cell 0.2 --trace trace.ref --ascii > ground.ref \
+        fettle-grind plan.json --stock ../stock.stl --cell 0.2 --trace reference.pcd --ascii > ground.ref \
             --gantry 'exec:fettle-gantry-virtual ../wide.json --stock ../stock.stl --cell 0.2'
     else
-        fettle-grind plan.json --stock ../stock.stl --cell 0.2 "${options[@]}" --trace trace.ref --ascii > ground.ref
+        fettle-grind plan.json --stock ../stock.stl --cell 0.2 "${options[@]}" --trace reference.pcd --ascii > ground.ref
     fi
-    if [ $kind != exec ]; then cmp trace.ref trace.pcd; fi # a driver's clock and place are those after the touches
+    if [ $kind != exec ]; then cmp reference.pcd trace.pcd; fi # a driver's clock and place are those after the touches
     fettle-diff --tol 0.02 ground.ref ground.pcd
     is_flat "$(jq .prediction.shift surface.json)" ground.pcd
     cd ..

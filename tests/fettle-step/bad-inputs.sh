@@ -16,7 +16,7 @@ refuses 'none.stp: has no solid, and no face' none.stp
 first=$(grep -m 1 -o '^#[0-9]* = ADVANCED_FACE(' good.stp)
 sed "s/^$first/${first%% =*} = ADVANCED_FOCE(/" good.stp > broken.stp
 refuses 'cannot be built' broken.stp --tolerance 1
-refuses 'a mesh is written as STL or PLY, not as pcd' good.stp -o x.pcd
+refuses "'.pcd' is no format of this output: .stl, .ply" good.stp -o x.pcd
 refuses '--tolerance' good.stp --tolerance 0
 # A surface whose points are missing: OpenCASCADE follows the reference to nowhere, and crashes.
 point=$(grep -A 1 -m 1 ' B_SPLINE_SURFACE(' good.stp | grep -o '#[0-9]*' | tail -n 1)
