@@ -8,7 +8,9 @@
 namespace fettle::draw {
 
 Frames::Frames(cli::Tool& tool)
-    : tool_(tool), count_(tool.count("--frames", 0, "Up to so many pictures of the stock during the run, PNG, at equal times; 0: none", 0, 500)),
+    : tool_(tool),
+      count_(tool.count("--frames", 0,
+                        "Up to so many pictures of the stock during the run, PNG, at equal times; 0: none", 0, 500)),
       folder_(tool.text("--frames-in", "frames", "FOLDER",
                         "With --frames: where they go, and frames.json, which fettle-report --frames plays"))
 {

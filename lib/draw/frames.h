@@ -15,7 +15,8 @@ class Frames {
     explicit Frames(cli::Tool& tool);
 
     bool wanted() const { return count_ > 0; }
-    /// Pictures that are wanted, at the end of equal parts of the run; fewer where a step takes longer than one of them.
+    /// Pictures that are wanted, at the end of equal parts of the run; fewer where a step takes longer than one of
+    /// them.
     std::size_t count() const { return static_cast<std::size_t>(count_); }
     /// The steps of a run after which a picture is wanted, ascending: of `steps` equal ones, the last among them.
     std::vector<std::size_t> steps(std::size_t steps) const;

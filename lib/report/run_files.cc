@@ -205,8 +205,7 @@ class RunReader {
         if (run_.nominal && (!run_.form || run_.form->form != run_.nominal->form))
             throw core::InputError(names_.nominal,
                                    "is of the form " + run_.nominal->form + ", which --form does not measure");
-        if (!names_.frames.empty())
-            run_.frames = read_frames(files_.json("frames", names_.frames), names_.frames);
+        if (!names_.frames.empty()) run_.frames = read_frames(files_.json("frames", names_.frames), names_.frames);
         if (!names_.before.empty()) run_.before = part("part before", names_.before, names_.before_units);
         if (!names_.after.empty()) run_.after = part("part after", names_.after, std::nullopt);
     }

@@ -7,4 +7,4 @@ fettle-belt work.pcd --path path.xyz --wheel wheel.json --force 5 --feed 5 --cel
 jq -e '.kind == "frames" and (.frames | length) == 4' f/frames.json >/dev/null
 end=$(tail -n 1 trace.csv | cut -d , -f "$(head -n 1 trace.csv | tr , '\n' | grep -nx t | cut -d : -f 1)")
 jq -e --argjson last "$end" '(.frames[3].t - $last | fabs) < 1e-4' f/frames.json >/dev/null
-! cmp -s f/001.png f/004.png
+! cmp -s f/001.png f/004.png || exit 1

@@ -12,7 +12,7 @@ jq -e '.kind == "frames" and (.frames | length) == 3 and ([.frames[].t] == ([.fr
 jq -es '(.[0].frames[2].t - .[1].machine_time | fabs) < 1e-6' pictures/frames.json grind.json >/dev/null
 for n in 1 2 3; do head -c 4 pictures/00$n.png | tail -c 3 | grep -qx PNG; done
 [ "$(find pictures -name '*.png' | wc -l)" = 3 ]
-! cmp -s pictures/001.png pictures/003.png
+! cmp -s pictures/001.png pictures/003.png || exit 1
 fettle-report --plan plan.json --grinding grind.json --trace trace.pcd --frames pictures/frames.json -o page.html
 [ "$(grep -o 'data-t="' page.html | wc -l)" = 3 ]
 grep -q 'class="time-axis"' page.html

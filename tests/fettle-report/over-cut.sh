@@ -22,4 +22,4 @@ jq -e '.verdict == "out of tolerance" and (.worst - 0.3 | fabs) < 1e-6' page.jso
 fettle-compare <(cut -d ' ' -f 1-3 ground.xyz) --to plate.obj --tolerance 0.06 --report errors.json -o errors.pcd && exit 1
 page -o page.html
 grep -q 'data-verdict="Out of tolerance"' page.html
-! grep -q 'over_cut.by_wheel' page.html
+! grep -q 'over_cut.by_wheel' page.html || exit 1
