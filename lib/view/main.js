@@ -27,7 +27,7 @@ class SteeredView extends View {
         canvas.addEventListener("pointerdown", event => this.down(event));
         canvas.addEventListener("pointermove", event => this.moved(event));
         for (const name of ["pointerup", "pointercancel"]) canvas.addEventListener(name, event => this.up(event));
-        canvas.addEventListener("pointerleave", () => { this.tip.hidden = true; });
+        canvas.addEventListener("pointerleave", event => { if (event.pointerType !== "touch") this.tip.hidden = true; }); // a finger leaves as it is lifted
         canvas.addEventListener("contextmenu", event => event.preventDefault());
         canvas.addEventListener("wheel", event => {
             // In a page with more than the view the wheel scrolls until the view has been clicked.

@@ -11,14 +11,14 @@ import urllib.request
 
 
 class Page:
-    def __init__(self, path, width=1400, height=900):
+    def __init__(self, path, width=1400, height=900, switches=()):
         self.folder = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
         environment = dict(os.environ, HOME=self.folder.name)
         # No GPU: the software renderer. The missing proxy makes any request fail; none is to be made.
         self.process = subprocess.Popen(
             ["chromium", "--headless", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--proxy-server=127.0.0.1:9",
              "--remote-debugging-port=0", "--remote-allow-origins=*", "--no-first-run", "--disable-background-networking",
-             f"--user-data-dir={self.folder.name}", f"--window-size={width},{height}", "about:blank"],
+             f"--user-data-dir={self.folder.name}", f"--window-size={width},{height}", *switches, "about:blank"],
             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env=environment)
         self.errors, self.requests, self.number, self.pending = [], [], 0, b""
         port = self._port()
