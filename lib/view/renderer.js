@@ -32,15 +32,14 @@ const kPointVertex = kPartVertex.replace("out vec3 seen, facing, colour;", "flat
 uniform sampler2D palette;
 uniform float shading;
 uniform vec3 undefinedColour;`)
-    .replace("    colour = rgb;\n}", `    vec3 c = hasColours ? rgb : share < -0.5 ? undefinedColour : texelFetch(palette, ivec2(int(clamp(share * 256.0, 0.0, 255.0)), 0), 0).rgb;
+    .replace("colour = rgb;", `vec3 c = hasColours ? rgb : share < -0.5 ? undefinedColour : texelFetch(palette, ivec2(int(clamp(share * 256.0, 0.0, 255.0)), 0), 0).rgb;
     float size = length(facing);
     if (size > 0.0) {
         n = facing * ((facing.z < 0.0 ? -1.0 : 1.0) / size);
         float light = min(1.0, dot(n, vec3(-0.406, 0.487, 0.773)) / 0.773);
         c *= 1.0 - shading * (1.0 - max(light, 0.0));
     }
-    colour = c;
-}`);
+    colour = c;`);
 const kPointFragment = `#version 300 es
 precision mediump float;
 flat in vec3 colour;

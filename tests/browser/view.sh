@@ -41,6 +41,16 @@ try:
     page.wait("document.querySelector('.tip').textContent.includes('between B and S')")
     assert "error \u22120.1 mm" in page.value("document.querySelector('.tip').textContent")
 
+    # the colours are those of the legend: material left is blue, over-cut red
+    def colour(point):
+        x, y = page.value(f"{root}.fettleView.camera.project({json.dumps(point)}).slice(0, 2)")
+        return page.value("(c => { const d = c.getContext('2d'); c.width = c.height = 1;"
+                          f"d.drawImage(document.querySelector('.stage canvas'), -{round(x)}, -{round(y)}); return [...d.getImageData(0, 0, 1, 1).data].slice(0, 3) }})"
+                          "(document.createElement('canvas'))")
+    page.value("new Promise(r => setTimeout(r, 400))")
+    left, cut = colour([12.25, 12.25, 0.1]), colour([26.25, 12.25, -0.1])
+    assert left[2] > 80 and left[2] > 1.3 * left[0] and cut[0] > 80 and cut[0] > 1.3 * cut[2], (left, cut)
+
     # dragging turns it, and only while it is dragged
     before = picture()
     frames = int(page.value(f"{root}.dataset.frames"))
