@@ -1,6 +1,5 @@
 #include "find/registration.h"
 
-#include "align/icp.h"
 #include "compare/signed_distance.h"
 #include "core/constants.h"
 #include "core/error.h"
@@ -35,31 +34,56 @@ align::OrientedPoints oriented_points_of(const mesh::CloudMesh& part)
 // the mean square distances of the points that overlap.
 constexpr double kMaxBentMisfitRatio = 9;
 
-/// How far a part is from its reference once the slow field between both is taken off, mm².
+// Warp and anomalies leave this share of a part within this share of its diagonal of its reference.
+constexpr double kMinSameShare = 0.75, kMaxSameDistance = 0.01;
+
+double max_same_distance(const Eigen::Matrix3Xd& points)
+{
+    return kMaxSameDistance * geometry::bounding_box(points).diagonal().norm();
+}
+
+/// Mean square distance of a part from its reference once the slow field between both is taken off, mm². Distances
+/// count up to a bound, the same for all poses: what has no counterpart on the reference tells poses of a nearly
+/// symmetric part apart, and anomalies, which are far off in all of them, do not rule.
 double misfit_beyond_slow_field(const Eigen::Matrix3Xd& points, const compare::Reference& reference)
 {
     const SlowField field = fit_slow_field(points, reference);
     Eigen::Matrix3Xd unbent = points;
     for (auto point : unbent.colwise()) point -= field.at(point);
-    std::vector<double> distances;
-    for (const double error : reference(unbent).error)
-        if (std::isfinite(error)) distances.push_back(std::abs(error));
-    if (distances.empty()) return core::kInfinity;
-    return align::estimate_overlap(Eigen::Map<Eigen::VectorXd>(distances.data(), Eigen::Index(distances.size())), 0)
-        .misfit;
+    const double bound = max_same_distance(points);
+    double sum = 0;
+    for (const double error : reference(unbent).error) {
+        const double distance = std::isfinite(error) ? std::min(std::abs(error), bound) : bound;
+        sum += distance * distance;
+    }
+    return sum / double(points.cols());
 }
 
-/// Exchanges the two best poses if the second one fits better, the slow field taken off.
+/// Takes another pose if it fits better once the slow field is taken off: the second best of the search, or the one
+/// next to the part's own frame, which is often that of its design.
 void choose_bent_pose(align::Alignment& alignment, const align::OrientedPoints& points,
-                      const mesh::MeshOrCloud& reference)
+                      const align::AlignReference& target, const mesh::MeshOrCloud& reference)
 {
-    if (!alignment.second_best || alignment.second_best->misfit > kMaxBentMisfitRatio * alignment.fit.misfit) return;
+    std::vector<align::IcpFit> others;
+    if (alignment.second_best) others.push_back(*alignment.second_best);
+    align::AlignOptions near;
+    near.start = Eigen::Isometry3d::Identity();
+    others.push_back(align::align(points, target, near).fit);
+    std::erase_if(others, [&](const align::IcpFit& other) {
+        return !other.converged || other.misfit > kMaxBentMisfitRatio * alignment.fit.misfit;
+    });
+    if (others.empty()) return;
     const auto distances = std::visit([](const auto& shape) { return compare::Reference(shape, {}); }, reference);
     const Eigen::Matrix3Xd some = points.xyz(Eigen::all, scattered_indices(points.xyz.cols(), kFieldPoints));
     const auto misfit = [&](const align::IcpFit& fit) {
         return misfit_beyond_slow_field(fit.T_reference_scan * some, distances);
     };
-    if (misfit(*alignment.second_best) < misfit(alignment.fit)) std::swap(alignment.fit, *alignment.second_best);
+    double best = misfit(alignment.fit);
+    for (const align::IcpFit& other : others)
+        if (const double own = misfit(other); own < best) {
+            best = own;
+            alignment.second_best = std::exchange(alignment.fit, other);
+        }
 }
 
 } // namespace
@@ -83,20 +107,17 @@ Registration register_part(const mesh::CloudMesh& part, const mesh::MeshOrCloud&
     const align::OrientedPoints points = oriented_points_of(part);
     const align::AlignOptions options;
     align::Alignment alignment = align::align(points, *target, options);
-    choose_bent_pose(alignment, points, reference);
+    choose_bent_pose(alignment, points, *target, reference);
     return {alignment.fit.T_reference_scan, alignment.fit.converged, align::doubts(alignment, options.icp)};
 }
 
 namespace {
 
-// Warp and anomalies leave this share of a part within this share of its diagonal of its reference. A field could bend
-// any part onto any other.
-constexpr double kMinSameShare = 0.75, kMaxSameDistance = 0.01;
-
-/// @throws InputError if the part is not that of the reference
+/// The part is judged before the slow field is taken off, which could bend any part onto any other.
+/// @throws InputError if it is not that of the reference
 void check_same_part(const Eigen::Matrix3Xd& points, const compare::Reference& reference)
 {
-    const double limit = kMaxSameDistance * geometry::bounding_box(points).diagonal().norm();
+    const double limit = max_same_distance(points);
     const Eigen::VectorXd errors = reference(points).error;
     const auto near = std::ranges::count_if(errors, [&](double error) { return std::abs(error) <= limit; });
     if (double(near) >= kMinSameShare * double(errors.size())) return;
