@@ -77,6 +77,7 @@ void MachineWork::touch_and_plan(const Save& save)
 {
     teacher_.reset();
     plan_.reset();
+    place_.require_safe_height(session_.record().job);
     place_.open_to_touch(session_.record().job);
     arm(true);
     add_warnings(

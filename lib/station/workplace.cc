@@ -78,6 +78,13 @@ const removal::HeightField& Workplace::stock(const job::Job& job)
     return stock_.emplace(std::move(stock.field));
 }
 
+void Workplace::require_safe_height(const job::Job& job)
+{
+    if (options_.stock.file.empty() || !job.is_safe_height_known) return;
+    const gantry::Stock stock = gantry::stock_of_part(part(job), options_.stock, job, removal::Extent::sampling);
+    gantry::require_below_safe_height(stock.field, job, core::display_name(options_.stock.file));
+}
+
 removal::HeightField Workplace::ground(const job::Job& job, const std::vector<std::vector<strategy::TraceRow>>& traces)
 {
     if (machine_.simulated != nullptr && purpose_ == Purpose::grind) return machine_.simulated->stock();

@@ -48,6 +48,9 @@ class Workplace {
 
     /// The part's stock over the anomaly before anything was ground; empty if it is not known.
     const removal::HeightField& stock(const job::Job& job);
+    /// Before the probe travels over it: a part that is known stands below the job's safe height inside S.
+    /// @throws InputError if not
+    void require_safe_height(const job::Job& job);
     /// The stock after grinding, as far as it is known: a simulated machine's own.
     removal::HeightField ground(const job::Job& job, const std::vector<std::vector<strategy::TraceRow>>& traces);
     std::vector<std::string> warnings; ///< about the stock

@@ -40,10 +40,10 @@ station two two.txt --gantry virtual --report report.json 2> said || status=$?
 jq -e '.stage == "anomaly"' report.json > ok
 jq -e '.anomaly | length == 2' two/session.json > ok
 
-# The anomaly stands higher than the wheel travels: grinding does not begin, and why is said also where there is no screen.
+# The anomaly stands higher than probe and wheel travel: touching does not begin, and why is said also where there is no screen.
 make_job 0
 jq '.safe_height = 8' job.json > low.json
 { show; echo '3 start'; } > grind.txt
 ends_with 1 fettle-station low.json --session low --gantry virtual --stock stock.stl --cell 0.2 --lowest 0 --steer grind.txt --report report.json
 grep -q 'stock.stl: stands at z 9, not below safe_height 8' said
-jq -e '.stage == "review" and (.finished | not)' report.json > ok
+jq -e '.stage == "touch" and .touches == 0 and (.finished | not)' report.json > ok

@@ -20,7 +20,7 @@ NEWTON = {"N": 1.0, "lbf": 4.4482216152605}
 # What a key measures, where it has a dimension: exponents of length and force. A key is "TOOL PATH", the path of a member of a report or a
 # document, or the name of a field; rows of nested arrays have their columns as the last part. The first pattern that matches counts.
 DIMENSIONS = [
-    ((1, 0), """assess u, assess v"""),  # passed through: a plane's are lengths in the file's unit, a patch's have none
+    ((0, 0), """* u, * v"""),  # parameters, which no tool converts (docs/conventions.md)
     ((0, 0), """surfel *, path *, assess *, finish *, mill *, verify *"""),  # these write mm, whatever the unit of what they read
     ((0, 0), """* checked, * joints.*_at, align degrees_of_freedom.shift"""),
     ((0, 1), """*force, *force.min, *force.max, *force.down"""),
@@ -30,7 +30,7 @@ DIMENSIONS = [
     ((3, -1), """*removal.coefficient"""),
     ((3, 0), """*volume"""),
     ((2, 0), """*area"""),
-    ((1, 0), """* x, * y, * z, * error, * sigma, * removed, * displacement, * radius, * u, * v, * gap, * indentation, * deepest"""),
+    ((1, 0), """* x, * y, * z, * error, * sigma, * removed, * displacement, * radius, * gap, * indentation, * deepest"""),
     ((1, 0), """* clearance*, *.clearance, * foot_?, * joint7, * min, * min_between, * tolerance, * max_missed_depth, * beyond"""),
     ((1, 0), """* mean, * mean_abs, * rms, * sd, * min, * max, * band, * p??, * median, * misfit, * max_distance, * worst"""),
     ((1, 0), """*regions.*.mean, *regions.*.mean_abs, *regions.*.rms, *regions.*.sd, *regions.*.min, *regions.*.max"""),
