@@ -89,7 +89,7 @@ FindResult merge(const mesh::CloudMesh& part, const std::vector<SeenSide>& sides
 // Cells across: less is a line, and has no metal around an anomaly.
 constexpr double kMinSurfaceWidth = 3;
 
-/// @throws InputError if no side shows a surface
+/// @throws InputError if no side of a cloud shows a surface
 void check_surface(const std::vector<SeenSide>& sides)
 {
     double width = 0;
@@ -126,7 +126,7 @@ FindResult find_anomalies(const mesh::CloudMesh& part, const FindOptions& option
         side.searched = side.surface;
         sides.push_back(std::move(side));
     }
-    check_surface(sides);
+    if (!part.is_mesh()) check_surface(sides);
     for (SeenSide& side : sides) search(side, options);
     return merge(part, sides, options.bounds.min_height);
 }
