@@ -5,6 +5,7 @@
 #include "draw/picture.h"
 #include "job/frame.h"
 #include "job/shape_warnings.h"
+#include "mesh/cloud_mesh.h"
 #include "mesh/shape_file.h"
 
 #include <ostream>
@@ -52,17 +53,15 @@ int main(int argc, char** argv)
             if (!within.empty()) options.job = job::read_job(within);
             const std::optional<units::Units> units =
                 mesh::resolve_file_units(stated, options.job ? std::optional(options.job->units) : std::nullopt);
-            mesh::ShapeFile file = mesh::parse_shape(core::read_file(path), core::display_name(path), units);
-            if (options.job) job::move_to_job_frame(file.shape, *options.job);
+            mesh::CloudMeshFile file = mesh::read_cloud_mesh(path, units);
+            if (options.job) job::move_to_job_frame(file.part.points, *options.job);
             options.units =
                 cloud::measured_units(file.units, options.job ? std::optional(options.job->units) : std::nullopt);
             if (written) options.units.length = *written;
-            const cloud::Cloud* cloud = std::get_if<cloud::Cloud>(&file.shape);
-            if (cloud != nullptr && cloud::has_field(*cloud, "error")) options.field = "error";
+            if (cloud::has_field(file.part.points, "error")) options.field = "error";
             if (!shown.empty()) options.field = shown;
-            cli::with_error_prefix(core::display_name(path), [&] { t.output() << draw::picture(file.shape, options); });
-            for (const std::string& warning : job::shape_warnings(file, core::display_name(path), file.units))
-                t.warn(warning);
+            cli::with_error_prefix(core::display_name(path), [&] { t.output() << draw::picture(file.part, options); });
+            for (const std::string& warning : job::shape_warnings(file, core::display_name(path))) t.warn(warning);
             return cli::Verdict::yes;
         });
 }

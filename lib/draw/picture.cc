@@ -139,6 +139,49 @@ Drawing render(const mesh::Mesh& mesh, const PictureOptions& options)
     return d;
 }
 
+/// Values of a mesh's pixels by a field of its vertices. Classes have nothing between them: a pixel has that of the
+/// nearest corner, which is the class with the largest weight.
+Eigen::ArrayXXd field_pixels(const View& view, const mesh::Mesh& projected, const FieldValues& field)
+{
+    const auto weights = [&](const auto& of_vertex) {
+        Eigen::VectorXd values(field.numbers.size());
+        for (Index i = 0; i < values.size(); ++i) values[i] = of_vertex(field.numbers[i]);
+        return rasterise(view, projected, values).value;
+    };
+    if (field.scale.packed) { // channel by channel
+        Eigen::ArrayXXd pixels = Eigen::ArrayXXd::Zero(view.rows, view.columns);
+        for (const int shift : {16, 8, 0})
+            pixels += (1 << shift) * weights([shift](double c) { return double((long(c) >> shift) & 255); }).round();
+        return pixels;
+    }
+    if (field.scale.classes.empty()) return weights([](double value) { return value; });
+    Eigen::ArrayXXd pixels = Eigen::ArrayXXd::Constant(view.rows, view.columns, std::nan("")),
+                    largest = Eigen::ArrayXXd::Zero(view.rows, view.columns);
+    for (const FieldClass& one : field.scale.classes) {
+        const Eigen::ArrayXXd weight = weights([&](double value) { return value == one.value ? 1.0 : 0.0; });
+        pixels = (weight > largest).select(one.value, pixels);
+        largest = (weight > largest).select(weight, largest);
+    }
+    return pixels;
+}
+
+Drawing render(const mesh::CloudMesh& part, const PictureOptions& options)
+{
+    if (!part.is_mesh()) return render(part.points, options);
+    const mesh::Mesh mesh = {part.points.xyz, part.triangles, part.points.frame};
+    if (options.field == "z") return render(mesh, options);
+    const FieldValues field = field_values(part.points, options.field, options.units, options.job, options);
+    PictureOptions heights = options;
+    heights.field = "z";
+    Drawing d = render(mesh, heights); // what is seen, and where
+    const mesh::Mesh projected = {in_view(view_rotation(options.towards_eye), mesh.vertices), mesh.triangles};
+    d.raster.value = field_pixels(d.view, projected, field);
+    d.values.counted = "vertices";
+    d.values.numbers = numbers_inside(mesh.vertices, field.numbers, options.job);
+    d.scale = field.scale;
+    return d;
+}
+
 /// Strength of the hill shading. It is full for heights from above, as on a map. The colours of other fields are read
 /// as numbers, so they are shaded only where nothing else shows the shape of the part.
 double shading_strength(const PictureOptions& options)
@@ -187,10 +230,9 @@ std::vector<std::uint8_t> map_pixels(const Drawing& d, double shading)
 
 } // namespace
 
-void draw_picture(const mesh::MeshOrCloud& part, const PictureOptions& options,
-                  const std::function<Sheet&(int width, int height)>& make)
+static void draw_sheet(Drawing d, const PictureOptions& options,
+                       const std::function<Sheet&(int width, int height)>& make)
 {
-    Drawing d = std::visit([&](const auto& p) { return render(p, options); }, part);
     d.values.name = options.field;
     d.values.unit = unit_of_field(options.field, options.units);
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -211,6 +253,20 @@ void draw_picture(const mesh::MeshOrCloud& part, const PictureOptions& options,
     const bool has_statistics = !scale.packed && scale.classes.empty();
     if (has_statistics) draw_numbers(sheet, layout, d.values, options.job ? "inside B" : "");
     sheet.text(options.title, {kMapLeft, kMapTop + 4}, kTitleCapitals, Sheet::kInk, Sheet::Align::left, true);
+}
+
+void draw_picture(const mesh::MeshOrCloud& part, const PictureOptions& options,
+                  const std::function<Sheet&(int width, int height)>& make)
+{
+    draw_sheet(std::visit([&](const auto& p) { return render(p, options); }, part), options, make);
+}
+
+std::string picture(const mesh::CloudMesh& part, const PictureOptions& options)
+{
+    std::optional<Canvas> canvas;
+    draw_sheet(render(part, options), options,
+               [&](int width, int height) -> Sheet& { return canvas.emplace(width, height); });
+    return canvas->png();
 }
 
 std::string map_picture(const mesh::MeshOrCloud& part, const PictureOptions& options)

@@ -3,6 +3,7 @@
 #include "draw/field_scale.h"
 #include "draw/sheet.h"
 #include "job/job.h"
+#include "mesh/cloud_mesh.h"
 #include "mesh/shape_file.h"
 #include "units/units.h"
 
@@ -33,6 +34,10 @@ struct PictureOptions : ScaleOptions {
 /// @return the bytes of a PNG, the same for the same input
 /// @throws InputError if there is no such field, or no point with finite x and y
 std::string picture(const mesh::MeshOrCloud& part, const PictureOptions& options);
+
+/// As above, of a mesh with the fields of its vertices: between them values are interpolated, classes are those of the
+/// nearest corner.
+std::string picture(const mesh::CloudMesh& part, const PictureOptions& options);
 
 /// The map of picture() alone, without legend, frame and boundaries, as wide as options.width. @return  as picture()
 std::string map_picture(const mesh::MeshOrCloud& part, const PictureOptions& options);
