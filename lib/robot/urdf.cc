@@ -14,6 +14,7 @@
 #include <urdf_parser/urdf_parser.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -27,6 +28,14 @@ using Eigen::Isometry3d, Eigen::Vector3d;
 constexpr double kMmPerMetre = 1000;
 // A joint without limits that turns for ever, degrees either way: what cables stand.
 constexpr double kContinuousDegrees = 360;
+
+// Names and numbers of a file stand in messages, and may hold line ends.
+std::string in_one_line(std::string text)
+{
+    std::ranges::replace_if(
+        text, [](unsigned char c) { return std::iscntrl(c) != 0; }, ' ');
+    return text;
+}
 
 /// Keeps liburdfdom's messages from the screen, and the first one of them.
 class FirstMessage : public console_bridge::OutputHandler {
@@ -261,12 +270,12 @@ Robot parse_urdf(const std::string& text, const std::string& source, const UrdfO
     FirstMessage message;
     const urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(text);
     if (model == nullptr || model->getRoot() == nullptr)
-        throw core::InputError(source, message.text().empty() ? "is no URDF" : message.text());
+        throw core::InputError(source, message.text().empty() ? "is no URDF" : in_one_line(message.text()));
     try {
         return UrdfReader(*model, source, options).read();
     } catch (const core::InputError& error) {
         if (std::string(error.what()).starts_with("--") || std::string(error.what()).starts_with(source)) throw;
-        throw core::InputError(source, error.what());
+        throw core::InputError(source, in_one_line(error.what()));
     }
 }
 
