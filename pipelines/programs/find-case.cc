@@ -78,7 +78,7 @@ int main(int argc, char** argv)
         const int& count = t.count("--anomalies", 0, "how many", 0, 20);
         const bool& at_edge = t.flag("--edge", "they stand at edges");
         const double& warp = t.number("--bend", 0, "MM", "of slow form");
-        const std::string& design = t.optional_output("--design", "the base as it lies, STL");
+        const std::string& design = t.optional_output("--design", "the base as it lies", {"stl"});
         t.parse();
         const mesh::CloudMesh base = read_base(path, up, scale);
         find::HeightMap map = base.is_mesh() ? sampled(base, cell) : find::height_map(base, find::View::Identity());
