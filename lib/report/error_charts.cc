@@ -45,11 +45,16 @@ draw::Html error_gauge(const NamedNumbers& judged, double tolerance, const std::
     draw::Html html = draw::svg::box({x.begin, kTop}, {x.end - x.begin, kBar}, "gauge-out");
     html += draw::svg::box({x(-tolerance), kTop}, {x(tolerance) - x(-tolerance), kBar}, "gauge-in");
     html += draw::svg::line({x(0), kTop}, {x(0), bottom}, "grid");
+    constexpr double kLabelWidth = 110; // pixels; closer limits share a label
+    const bool are_close = x(tolerance) - x(-tolerance) < kLabelWidth;
     for (const double end : {-tolerance, tolerance}) {
         html += draw::svg::line({x(end), kTop - 6}, {x(end), bottom + 6}, "limit");
-        html += draw::svg::text({x(end), kTop - 11}, (end > 0 ? "+" : "") + draw::short_text(end) + " " + unit,
-                                Anchor::middle);
+        if (!are_close)
+            html += draw::svg::text({x(end), kTop - 11}, (end > 0 ? "+" : "") + draw::short_text(end) + " " + unit,
+                                    Anchor::middle);
     }
+    if (are_close)
+        html += draw::svg::text({x(0), kTop - 11}, "\u00B1" + draw::short_text(tolerance) + " " + unit, Anchor::middle);
     html += draw::svg::line({x(min), middle}, {x(max), middle}, "whisker");
     for (const double end : {min, max}) html += draw::svg::line({x(end), middle - 7}, {x(end), middle + 7}, "whisker");
     const double p01 = judged.at("p01"), p99 = judged.at("p99");
