@@ -5,6 +5,7 @@
 #include "core/text.h"
 #include "job/shape_warnings.h"
 #include "mesh/part_output.h"
+#include "mesh/read_formats.h"
 #include "mesh/shape_file.h"
 
 using namespace fettle;
@@ -60,7 +61,7 @@ Eigen::Vector3d parse_direction(const std::string& text)
 
 struct Options {
     cli::Tool& t;
-    const std::string& path = t.main_input("IN", "A cloud (PCD, PLY, XYZ) or a mesh (STL, PLY, OBJ, OFF)");
+    const std::string& path = t.main_input("IN", mesh::kReadFormats);
     const std::optional<units::Units::Length>& unit =
         t.length_unit("--file-units", "Unit of IN, if it states none; default: mm, or the unit of the job of --crop");
     const std::string& crop =

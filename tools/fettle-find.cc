@@ -10,6 +10,7 @@
 #include "find/registration.h"
 #include "job/shape_warnings.h"
 #include "mesh/part_output.h"
+#include "mesh/read_formats.h"
 #include "mesh/shape_file.h"
 
 #include <filesystem>
@@ -34,7 +35,7 @@ std::vector<int> parse_rows(const std::string& option, const std::string& text)
 
 struct Options {
     cli::Tool& t;
-    const std::string& path = t.main_input("PART", "A cloud (PCD, PLY, XYZ) or a mesh (STL, PLY, OBJ, OFF)");
+    const std::string& path = t.main_input("PART", mesh::kReadFormats);
     const std::optional<units::Units::Length>& unit = t.length_unit("--file-units", "Unit of PART, if it states none");
     const std::string& against =
         t.optional_file("--against", "REF",

@@ -1,6 +1,7 @@
 #include "cli/tool.h"
 #include "cloud/cloud_output.h"
 #include "merge/merge_run.h"
+#include "mesh/read_formats.h"
 
 using namespace fettle;
 
@@ -14,8 +15,7 @@ int main(int argc, char** argv)
         "them; field `scans` counts them, `disagreement` is the rms of their distances from the mean. What no scan "
         "sees stays open. Exit 1 if a scan fits nowhere; it is named, and the others are merged.";
     return cli::tool_main(argc, argv, description, [](cli::Tool& t) {
-        const auto& scans =
-            t.positional_files("SCAN", "Two or more: clouds (PCD, PLY, XYZ) or meshes (STL, PLY, OBJ, OFF)");
+        const auto& scans = t.positional_files("SCAN", std::string("Two or more. ") + mesh::kReadFormats);
         const auto& unit = t.length_unit("--file-units", "Unit of the scans, if they state none");
         const std::string& poses =
             t.optional_file("--poses", "FILE", "Report of an earlier run: begin with its poses, do not search");

@@ -6,6 +6,7 @@
 #include "job/picked.h"
 #include "job/shape_warnings.h"
 #include "mesh/part_output.h"
+#include "mesh/read_formats.h"
 #include "mesh/shape_file.h"
 #include "place/place.h"
 
@@ -27,7 +28,7 @@ std::vector<place::Turn> parse_turns(const std::string& text)
 
 struct Options {
     cli::Tool& t;
-    const std::string& path = t.main_input("IN", "A cloud (PCD, PLY, XYZ) or a mesh (STL, PLY, OBJ, OFF)");
+    const std::string& path = t.main_input("IN", mesh::kReadFormats);
     const std::optional<units::Units::Length>& unit =
         t.length_unit("--file-units", "Unit of IN, if it states none; default: mm, or the unit of the job of --into");
     const std::string& matrix = t.optional_file(
