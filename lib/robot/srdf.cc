@@ -1,5 +1,6 @@
 #include "robot/srdf.h"
 
+#include "core/content.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/xml.h"
@@ -12,6 +13,7 @@ void read_srdf(const std::string& path, const std::vector<std::string>& links, R
 {
     const std::string text = core::read_file(path, core::kMaxJsonBytes);
     const std::string source = core::display_name(path);
+    core::refuse_other_content(text, source, "an SRDF");
     core::require_plain_xml(text, source);
     TiXmlDocument document;
     document.Parse(text.c_str(), nullptr, TIXML_ENCODING_UTF8);

@@ -2,6 +2,7 @@
 
 #include "core/constants.h"
 #include "core/error.h"
+#include "core/file.h"
 #include "core/text.h"
 #include "core/xml.h"
 #include "robot/arm.h"
@@ -274,7 +275,9 @@ Robot parse_urdf(const std::string& text, const std::string& source, const UrdfO
     try {
         return UrdfReader(*model, source, options).read();
     } catch (const core::InputError& error) {
-        if (std::string(error.what()).starts_with("--") || std::string(error.what()).starts_with(source)) throw;
+        const std::string_view said = error.what(); // which may name the place already
+        if (said.starts_with("--") || said.starts_with(source)) throw;
+        if (!options.srdf.empty() && said.starts_with(core::display_name(options.srdf))) throw;
         throw core::InputError(source, in_one_line(error.what()));
     }
 }

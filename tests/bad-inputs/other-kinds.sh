@@ -4,6 +4,7 @@
 . "$HERE/probe.bash"
 good
 printf '\211PNG\r\n\032\n0123' >picture
+printf '1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n' >identity
 printf '%%PDF-1.4\n%%\342\343\317\323\n1 0 obj\n' >document
 cp "$(command -v fettle-diff)" program
 gzip -c good.pcd | gzip >packed
@@ -24,6 +25,15 @@ places() { # FILE WHAT
     is "$1" "$2, expected points or a program" fettle-mill "$1" --stock box:0,0,0,9,9,9 --cutter ball:6 --step 0.5
     is "$1" "$2, expected a transform" fettle-align good.pcd --to plate.stl --transform-in "$1"
     is "$1" "$2, expected picked points" fettle-teach --anomaly "$1" job.json
+    is "$1" "$2, expected points or a mesh" fettle-clean "$1"
+    is "$1" "$2, expected points or a mesh" fettle-find good.pcd --against "$1" --transform-in identity
+    is "$1" "$2, expected points or a mesh" fettle-merge "$1" good.pcd
+    is "$1" "$2, expected JSON" fettle-merge good.pcd good.pcd --poses "$1"
+    is "$1" "$2, expected points or a mesh" fettle-reconstruct "$1"
+    is "$1" "$2, expected points or a mesh" fettle-view "$1"
+    is "$1" "$2, expected picked points" fettle-place good.pcd --up "$1"
+    is "$1" "$2, expected JSON" fettle-place good.pcd --into "$1"
+    is "$1" "$2, expected an SRDF" fettle-arm "$SAMPLES/robots/urdf/ur5.urdf" --srdf "$1" --forward good.pcd
     [ "$1" = empty ] || is "$1" "$2, expected points, a mesh or JSON" fettle-diff "$1" good.pcd
 }
 places picture 'a PNG picture'
