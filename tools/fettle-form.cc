@@ -28,18 +28,19 @@ void check_sections(const std::string& kind, const std::optional<double>& spacin
                                "must be at most " + core::to_text(kMaxOverlap) + " times --sections");
 }
 
+const std::string kDescription =
+    "Form error of measured points: the width of the zone that holds them all, about the element of least squares "
+    "and at its narrowest (minimum zone). Out: JSON, with both elements, and the points that touch the minimum "
+    "zone.\n"
+    "No filter is applied, and every point counts: noise widens the zone by some five of its standard deviations "
+    "among a hundred points and ten among a million, an outlier by all that it is off. --outliers leaves out what "
+    "is no part of the surface.";
+
 } // namespace
 
 int main(int argc, char** argv)
 {
-    const std::string description =
-        "Form error of measured points: the width of the zone that holds them all, about the element of least squares "
-        "and at its narrowest (minimum zone). Out: JSON, with both elements, and the points that touch the minimum "
-        "zone.\n"
-        "No filter is applied, and every point counts: noise widens the zone by some five of its standard deviations "
-        "among a hundred points and ten among a million, an outlier by all that it is off. --outliers leaves out what "
-        "is no part of the surface.";
-    return cli::tool_main(argc, argv, description, [](cli::Tool& t) {
+    return cli::tool_main(argc, argv, kDescription, [](cli::Tool& t) {
         const std::string& kind = t.positional_choice("FORM", kKinds, "What is measured");
         const std::string& path =
             t.main_input("POINTS", "A cloud (PCD, PLY, XYZ), or a mesh (STL, PLY, OBJ, OFF): its vertices");

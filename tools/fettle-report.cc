@@ -41,17 +41,29 @@ void write_index(cli::Tool& t, const std::vector<std::string>& files, const std:
     t.output() << report::index_page(parts, links, title, FETTLE_VERSION);
 }
 
+const std::string kDescription =
+    "One page about a run: verdict, job, touches and fit, margin, plan, force trace, maps, statistics, form, "
+    "provenance. Self-contained HTML, for the screen and for A4. Sections without their files are left out. Where "
+    "the error map knows how much was removed (of a part that fettle-grind ground), the verdict is about the "
+    "wheel: "
+    "what the part lacked before grinding is stated and not counted. With --index: one page about many parts.";
+
+const std::string kExample =
+    "fettle-part parts/wang1.json | fettle-compare --to <(fettle-part parts/wang1.json --without-anomaly) "
+    "--within jobs/wang1.json --report errors.json -o errors.pcd; "
+    "fettle-report --job jobs/wang1.json --errors errors.pcd --comparison errors.json -o report.html";
+
+void require_none(const std::vector<std::string>& files_of_one_run)
+{
+    for (const std::string& file : files_of_one_run)
+        if (!file.empty()) throw core::InputError("--index", "goes without files of one run, such as " + file);
+}
+
 } // namespace
 
 int main(int argc, char** argv)
 {
-    const std::string description =
-        "One page about a run: verdict, job, touches and fit, margin, plan, force trace, maps, statistics, form, "
-        "provenance. Self-contained HTML, for the screen and for A4. Sections without their files are left out. Where "
-        "the error map knows how much was removed (of a part that fettle-grind ground), the verdict is about the "
-        "wheel: "
-        "what the part lacked before grinding is stated and not counted. With --index: one page about many parts.";
-    return cli::tool_main(argc, argv, description, [](cli::Tool& t) {
+    return cli::tool_main(argc, argv, kDescription, [](cli::Tool& t) {
         const std::string& title = t.text("--title", "", "TEXT", "Headline");
         const std::string& job = t.optional_file("--job", "FILE", "Job, JSON [the plan's]");
         const std::string& samples = t.optional_file("--samples", "FILE", "Touches, PCD [the surface's]");
@@ -78,18 +90,12 @@ int main(int argc, char** argv)
                      "Over-cut by the wheel alone, or also what the part lacked before grinding");
         const std::vector<std::string>& index = t.file_list(
             "--index", "One page about many: a row for each of these reports that --report of this tool wrote, JSON");
-        t.example(
-            "fettle-part parts/wang1.json | fettle-compare --to <(fettle-part parts/wang1.json --without-anomaly) "
-            "--within jobs/wang1.json --report errors.json -o errors.pcd; "
-            "fettle-report --job jobs/wang1.json --errors errors.pcd --comparison errors.json -o report.html",
-            "an anomaly that was not ground yet: out of tolerance");
+        t.example(kExample, "an anomaly that was not ground yet: out of tolerance");
         t.output_formats({"html"});
         t.parse();
         if (!index.empty()) {
-            for (const std::string* file : {&job, &samples, &surface, &plan, &grinding, &trace, &before, &after,
-                                            &errors, &comparison, &alignment, &form, &nominal, &frames})
-                if (!file->empty())
-                    throw core::InputError("--index", "goes without files of one run, such as " + *file);
+            require_none({job, samples, surface, plan, grinding, trace, before, after, errors, comparison, alignment,
+                          form, nominal, frames});
             write_index(t, index, title);
             return cli::Verdict::yes;
         }

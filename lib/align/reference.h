@@ -18,7 +18,7 @@ class AlignReference {
     AlignReference(AlignReference&& other) noexcept;
     ~AlignReference();
 
-    /// The same surface with fewer points, evenly spaced in their order: searches take less time. None for a mesh, and
+    /// This surface with fewer points, evenly spaced in their order: searches take less time. None for a mesh, and
     /// where there are no more than `count` points.
     std::optional<AlignReference> thinned(Eigen::Index count) const;
 

@@ -191,7 +191,7 @@ double Runner::max_force(std::vector<Eigen::Vector3d> way, int layer, double fee
     return bound_.max_force(way, radius(), feed, hardness);
 }
 
-/// Of a wheel that goes along the passes, and is lifted over to the next.
+/// Predicts the force on a wheel that goes along the passes, and is lifted over to the next.
 ForcePrediction Runner::force_on_passes(double hardness) const
 {
     return [this, hardness](const std::vector<PathIndex>& points, int layer) {
