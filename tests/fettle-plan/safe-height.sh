@@ -9,3 +9,5 @@ fettle-plan given.json surface.json | fettle-diff plan.json -
 jq '.safe_height = 4' job.json | fettle-plan - surface.json | jq -e '.job.safe_height == 4'
 jq '.safe_height = 2' job.json >low.json
 "$HERE/../refuses" 'safe_height: 2 is not above the surface, 3 at' fettle-plan low.json surface.json
+# A machine behind a driver is not moved at a height that is a guess.
+"$HERE/../refuses" 'gives neither safe_height nor the z of a boundary point' fettle-sample job.json --on gantry:exec:false
