@@ -63,8 +63,8 @@ by_surface          = $$(jq -r '{$1}[.surface.type] // empty' $<)
 sampling_of_wang     = --strategy wang $(call by_surface,freeform: "--sampling-boundary")
 sampling_of_adaptive = --strategy adaptive
 fit_of_wang          = --method $(call by_surface,plane: "plane"$(comma) swept: "swept"$(comma) freeform: "griddata")
-# The rough panel: more touches only show its roughness, and Wang's lines fit it worse than as many that are chosen freely.
-sampling_panel       = $(if $(filter default,$(METHOD)),--strategy adaptive --max-touches 24)
+# The rough panel is touched one by one up to the limit of 60: its band never meets the tolerance.
+sampling_panel       = $(if $(filter default,$(METHOD)),--strategy adaptive)
 margin_of_wang       = --method wang --plane-shift accuracy
 # With 99 % the rough panel's margin alone takes half of its limit, for the one facet in hundreds that may stand highest.
 margin_panel         = $(if $(filter wang,$(METHOD)),,--confidence 0.9)
