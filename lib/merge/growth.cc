@@ -18,6 +18,9 @@ namespace {
 // group have been searched; if its score is still lower, or if another pose of the pair has more than this share of it,
 // another scan must confirm it.
 constexpr double kEarlyScore = 0.3, kSureScore = 0.1, kMaxSecondShare = 0.5, kMinScore = 0.04;
+// A pair in which more than half of either scan agrees needs neither score nor tightness if no other pose comes near: a
+// scanner's warp loosens real pairs, a foreign scan has many poses alike.
+constexpr double kUnrivalledOverlap = 0.5, kUnrivalledAgreeing = 0.75, kUnrivalledShare = 0.05;
 // Pairs that refinement moves farther than this, in scan radii, from where the others say, do not confirm them.
 constexpr double kDuplicatePoseRadii = 0.05;
 
@@ -61,8 +64,13 @@ class Grower {
         const std::vector<Hypothesis>& found = hypotheses(scan, on);
         for (std::size_t k = 0; k < found.size(); ++k) {
             const double rival = found.size() < 2 ? 0 : found[k == 0 ? 1 : 0].score;
-            const bool is_sure = found[k].score >= kSureScore && rival <= kMaxSecondShare * found[k].score;
-            if (is_credible(found[k].agreement) && found[k].score >= kMinScore)
+            const Agreement& agreement = found[k].agreement;
+            const bool is_unrivalled = std::min(agreement.overlap_a, agreement.overlap_b) >= kUnrivalledOverlap &&
+                                       agreement.agreeing >= kUnrivalledAgreeing &&
+                                       rival <= kUnrivalledShare * found[k].score;
+            const bool is_sure =
+                is_unrivalled || (found[k].score >= kSureScore && rival <= kMaxSecondShare * found[k].score);
+            if ((is_unrivalled || is_credible(agreement)) && found[k].score >= kMinScore)
                 candidates_.push_back({scan, on, found[k], is_sure});
         }
     }
