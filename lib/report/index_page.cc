@@ -74,7 +74,7 @@ const char* dot_style(const PageSummary& part)
 draw::Html trend(const std::vector<PageSummary>& parts, const std::string& key, const std::string& label,
                  const units::Units& units, std::optional<double> limit)
 {
-    constexpr double kWidth = 520, kTop = 26, kBottom = 150, kLeft = 62, kRight = 508, kHeight = 186;
+    constexpr double kTrendWidth = 520, kTop = 26, kBottom = 150, kLeft = 62, kRight = 508, kHeight = 186;
     double low = 0, high = limit.value_or(0);
     for (const PageSummary& part : parts)
         if (const auto value = number_of(part, key, units)) {
@@ -99,7 +99,7 @@ draw::Html trend(const std::vector<PageSummary>& parts, const std::string& key, 
         line += (line.empty() ? "M" : "L") + draw::svg::coordinate(at.x()) + " " + draw::svg::coordinate(at.y());
         dots += draw::svg::circle(at, parts.size() > 100 ? 2 : 3.2, dot_style(parts[i]));
     }
-    return draw::element("figure", draw::svg::drawing(kWidth, kHeight, label + " of each part, in their order",
+    return draw::element("figure", draw::svg::drawing(kTrendWidth, kHeight, label + " of each part, in their order",
                                                       html + draw::svg::path(line, "series") + dots));
 }
 
