@@ -5,7 +5,7 @@
 #                                                                 job NAME.json beside it, that is ground, and nothing is searched
 #   make -f pipelines/parts.mk -j2 sample COUNT=50                parts made with seeds 1 to COUNT, judged against what they were made of
 #   make -f pipelines/parts.mk -j100 LAUNCH='srun -Q -n1 -c1 --quit-on-interrupt' sample     under Slurm
-#       PARTS=build/parts   where everything goes: NAME/part.json, NAME/ROW/report.html, table.csv
+#       PARTS=build/parts   where everything goes: NAME/part.json, NAME/ROW/report.html, table.csv, and index.html, which links the pages
 #       UNITS=mm            of the scans that state none
 #       LIMIT=0.4           the verdict: within ± this, mm; without it, the job's tolerance, of the sample 0.4
 #
@@ -31,12 +31,18 @@ MADE     := $(patsubst %,part-%,$(shell seq -w 1 $(COUNT)))
 .DELETE_ON_ERROR:
 .SECONDARY:
 .PHONY: all sample
-all: $(NAMES:%=$(PARTS)/%/part.json)
+all: $(NAMES:%=$(PARTS)/%/part.json) $(B)/bin/fettle-report
 	$(if $(NAMES),,$(error no scans in SCANS='$(SCANS)'))
-	@pipelines/parts-table $(PARTS) $(NAMES) > $(PARTS)/table.csv; status=$$?; cat $(PARTS)/table.csv; exit $$status
+	$(call judge,$(NAMES))
 
-sample: $(MADE:%=$(PARTS)/%/part.json)
-	@pipelines/parts-table $(PARTS) $(MADE) > $(PARTS)/table.csv; status=$$?; cat $(PARTS)/table.csv; exit $$status
+sample: $(MADE:%=$(PARTS)/%/part.json) $(B)/bin/fettle-report
+	$(call judge,$(MADE))
+
+# The index of the parts' pages, if any was ground, and the table, whose exit status is the verdict.
+define judge
+@pages=$$(ls $(1:%=$(PARTS)/%/[0-9]*/page.json) 2> /dev/null); [ -z "$$pages" ] || fettle-report --title Parts --index $$pages -o $(PARTS)/index.html
+@pipelines/parts-table $(PARTS) $(1) > $(PARTS)/table.csv; status=$$?; cat $(PARTS)/table.csv; exit $$status
+endef
 
 # A part of the sample, and what it was made of.
 $(PARTS)/made/part-%.stl: pipelines/parts-spec $(B)/bin/fettle-part

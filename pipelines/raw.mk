@@ -81,7 +81,7 @@ $D/%/errors.pcd: $D/jobs/%.json $D/%/ground.pcd $(or $(TRUTH),$D/%/wanted.stl) $
 $D/%/report.html: $D/jobs/%.json $D/%/errors.pcd $(B)/bin/fettle-report
 	fettle-report --title "$(NAME), row $*" --job $< --samples $(@D)/samples.pcd --surface $(@D)/desired.json --plan $(@D)/plan.json \
 	    --grinding $(@D)/grind.json --trace $(@D)/trace.pcd --before $(part_in) --after $(@D)/ground.pcd \
-	    --errors $(@D)/errors.pcd --comparison $(@D)/errors.json -o $@
+	    --errors $(@D)/errors.pcd --comparison $(@D)/errors.json --report $(@D)/page.json -o $@
 
 # --- the demonstration ----------------------------------------------------------------------------------------------------
 $(RAW)/hammer.stl: samples/parts/hammer.json $(B)/bin/fettle-part
