@@ -87,8 +87,13 @@ Options parse_options(cli::Tool& t)
     t.reference("Wang 2007, 4.3.2 (eq. 4-1) and 6.2; Bærentzen & Aanæs 2005 (sign at edges and vertices)");
     t.parse();
 
-    compare::ComparisonRequest request{test_path, reference_path, test_unit, reference_unit,
-                                       tolerance, max_distance,   {},        {}};
+    compare::ComparisonRequest request;
+    request.test = test_path;
+    request.reference = reference_path;
+    request.test_unit = test_unit;
+    request.reference_unit = reference_unit;
+    request.tolerance = tolerance;
+    request.max_distance = max_distance;
     if (!job_path.empty()) request.options.job = job::read_job(job_path);
     set_fields(request.options, fields);
     request.options.distance = distance_options(mode, direction, winding);

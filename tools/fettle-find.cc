@@ -231,13 +231,13 @@ int main(int argc, char** argv)
         o.out.format_for(o.out.format == "ply" && file.part.is_mesh());
         for (const std::string& warning : job::shape_warnings(file, name)) t.warn(warning);
 
-        const units::Units units = cloud::measured_units(file.units, std::nullopt);
+        const units::Units units = o.out.units(cloud::measured_units(file.units, std::nullopt));
         const find::FindOptions options = find_options(o, settings, units.mm());
         find::FindResult result = search(o, options, settings, file, name);
         find::judge(result, keep, drop);
         const bool all_have_jobs =
             o.jobs.empty() ? result.anomalies.empty() : write_jobs(o, result, file.part, settings);
-        find::set_report(t.report(), result, o.out.units(units));
+        find::set_report(t.report(), result, units);
         for (const find::FoundAnomaly& anomaly : result.anomalies)
             if (!anomaly.doubt.empty()) t.note(std::to_string(anomaly.number) + ": " + anomaly.doubt);
         mesh::CloudMesh labelled = find::labelled(std::move(file.part), result);

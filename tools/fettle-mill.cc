@@ -75,7 +75,7 @@ void check(const Options& o)
     if (o.step.has_value() == o.tolerance.has_value()) throw core::InputError("give either --step or --tolerance");
     if (o.step && (!o.design.empty() || o.published))
         throw core::InputError("--design and --as-published belong to --tolerance");
-    o.out.require(o.pcd, "points are written with --pcd, triangles as STL without it");
+    o.out.require(o.pcd, "points are written with --pcd, triangles as STL without it", !o.trace.empty());
 }
 
 void warn_of_size(const Options& o, const std::string& name, const std::string& part, const Eigen::Vector3d& size,

@@ -48,13 +48,13 @@ CloudOutput::CloudOutput(cli::Tool& tool, const std::vector<std::string>& others
 
 units::Units CloudOutput::units(const units::Units& own) const { return {unit.value_or(own.length), own.force}; }
 
-void CloudOutput::require(bool writes_cloud, const std::string& hint) const
+void CloudOutput::require(bool writes_cloud, const std::string& hint, bool writes_trace) const
 {
     const bool is_cloud = std::ranges::find(cloud_formats(), format) != cloud_formats().end();
     if (!format.empty() && is_cloud != writes_cloud)
         throw core::InputError(cli::suffix_of(tool_.output_name()) == format ? tool_.output_name() : "--format",
                                "is not written as " + format + ": " + hint);
-    if (ascii && !writes_cloud) throw core::InputError("--ascii", hint);
+    if (ascii && !writes_cloud && !writes_trace) throw core::InputError("--ascii", hint);
 }
 
 void CloudOutput::write(const Cloud& cloud, const units::Units& own) const

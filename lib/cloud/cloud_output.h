@@ -25,8 +25,9 @@ struct CloudOutput {
     /// Units of the numbers that are written, and of the report: --units, else `own`.
     units::Units units(const units::Units& own) const;
     /// For a tool that has others: checks the format. @param writes_cloud  what the tool's options say
-    /// @param hint  the options that write the other   @throws InputError
-    void require(bool writes_cloud, const std::string& hint) const;
+    /// @param hint  the options that write the other   @param writes_trace  whether another output is a cloud
+    /// @throws InputError
+    void require(bool writes_cloud, const std::string& hint, bool writes_trace = false) const;
     /// Writes the main output. @param own  units if --units is not given
     void write(const Cloud& cloud, const units::Units& own) const;
     /// Writes another output, by the suffix of its name.

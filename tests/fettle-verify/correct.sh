@@ -7,11 +7,13 @@ fettle-part --without-anomaly "$SAMPLES/parts/wang3.json" > design.stl
 cutter=ball:12
 finish() { fettle-finish design.stl --file-units in --cutter ball:12 --scallop 0.01 "$@"; }
 confirmed() { # NAME PATH CUTTER
+    local corrected=corrected.nc
+    [ "${2##*.}" = nc ] || corrected=corrected.pcd
     for round in before after; do
         fettle-mill "$2" --stock box:10,10,-20,50,50,26 --cutter "$3" --step 0.3 > part.stl
-        fettle-verify part.stl --design design.stl --design-units in --correct "$2" --cutter "$3" --corrected "corrected.${2##*.}" \
+        fettle-verify part.stl --design design.stl --design-units in --correct "$2" --cutter "$3" --corrected "$corrected" \
             --tolerance 0.15 --inner-tolerance 1 --report "$1-$round.json" > patches.pcd
-        set -- "$1" "corrected.${2##*.}" "$3"
+        set -- "$1" "$corrected" "$3"
         cp "$2" "$1-$round.${2##*.}"
     done
     jq -e --slurpfile before "$1-before.json" '.rms <= 0.2 * $before[0].rms and .min > -5e-3 and .undefined == 0' "$1-after.json" > ok

@@ -86,7 +86,9 @@ TEST(Place, PickedPointsFaceWhereThePartDoes)
     const Eigen::Matrix3Xd corners = (Eigen::Matrix3Xd(3, 3) << -20, 20, 0, -15, -15, 15, 0, 0, 0).finished();
     for (const bool reversed : {false, true}) { // their order does not matter
         place::PlaceRequest request;
-        request.picked = kAway * (reversed ? corners.rowwise().reverse().eval() : corners).colwise().homogeneous();
+        Eigen::Matrix3Xd picked = corners;
+        if (reversed) picked.rowwise().reverseInPlace();
+        request.picked = kAway * picked.colwise().homogeneous();
         const place::PlacedPart placed = place::place_part(slab(kAway), request, 1);
         EXPECT_TRUE((rotation(placed) * kAway.linear().col(2)).isApprox(Eigen::Vector3d::UnitZ(), 1e-12));
     }

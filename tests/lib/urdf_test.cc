@@ -150,7 +150,9 @@ TEST(Urdf, inverse_leads_back)
                 });
                 nearest = std::min(nearest, off.maxCoeff());
             }
-            if (arm.singularity(q).min() > 1e-3) EXPECT_LT(nearest, 1e-6) << sample.name << " " << i;
+            if (arm.singularity(q).min() > 1e-3) {
+                EXPECT_LT(nearest, 1e-6) << sample.name << " " << i;
+            }
         }
     }
 }

@@ -213,10 +213,10 @@ def scans(work):
     unit = work.length
     make_parts(work)
     for a, b in ("part.pcd", "truth.stl"), ("part.stl", "truth.stl"):
-        work.tool("compare", a, "--to", b, "--file-units", unit, "--to-units", unit, "--tolerance", 0.5, out="errors.pcd")
+        work.tool("compare", a, "--to", b, "--file-units", unit, "--to-units", unit, "--units", unit, "--tolerance", 0.5, out="errors.pcd")
     work.tool("align", "part.pcd", "--to", "truth.stl", "--near", "--file-units", unit, "--to-units", unit, out="aligned.pcd")
-    work.tool("form", "sphericity", "--file-units", unit, "part.pcd", out="form.json")
-    work.tool("form", "straightness", "--sections", 10.0, "--file-units", unit, "part.pcd", out="form.json")
+    work.tool("form", "sphericity", "--file-units", unit, "--units", unit, "part.pcd", out="form.json")
+    work.tool("form", "straightness", "--sections", 10.0, "--file-units", unit, "--units", unit, "part.pcd", out="form.json")
 
 
 def belt(work):
@@ -263,8 +263,8 @@ def raw(work):
     work.tool("place", "part.pcd", "--turn", "x,30", "--centre", out="turned.pcd")
     work.tool("reconstruct", "part.pcd", "--max-gap", 6.0, "--from", f"0,0,{300 * work.mm!r}", out="built.stl")
     work.tool("reconstruct", "clean.pcd", "--facing", "0,0,1", out="built.stl")
-    work.tool("find", "part.stl", "--file-units", unit, "--max-width", 20.0, "--min-height", 0.5, out="found.pcd")
-    work.tool("find", "part.pcd", "--against", "truth.stl", "--against-units", unit, "--transform-in", "identity.txt", out="found.pcd")
+    work.tool("find", "part.stl", "--file-units", unit, "--units", unit, "--max-width", 20.0, "--min-height", 0.5, out="found.pcd")
+    work.tool("find", "part.pcd", "--against", "truth.stl", "--against-units", unit, "--units", unit, "--transform-in", "identity.txt", out="found.pcd")
     for view in "2", "3":
         work.tool("place", f"{samples}/scans/views/{view}.pcd", "--units", unit, out=f"{view}.pcd")
     work.tool("merge", "2.pcd", "3.pcd", out="merged.pcd")
