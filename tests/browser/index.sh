@@ -17,11 +17,15 @@ PYTHON
 rm pages/0.json
 fettle-report --index pages/*.json -o index.html
 [ "$(stat -c %s index.html)" -le 5000000 ]
-echo '{"kind": "frames", "shown": "The stock.", "frames": [{"t": 1, "picture": "001.png"}, {"t": 2, "picture": "002.png"}, {"t": 4, "picture": "003.png"}]}' >frames.json
-for n in 1 2 3; do fettle-render part.xyz --scale 0.0$n -o 00$n.png; done
-fettle-report --errors errors.pcd --comparison errors.json --frames frames.json -o run.html
+echo '{"kind": "part", "units": {"length": "mm"}, "surface": {"type": "plane", "point": [0, 0, 0]}, "region": {"x": [-12, 12], "y": [-12, 12]},
+    "step": 1, "anomalies": [{"type": "hill", "centre": [0, 0], "semi_axes": [4, 3], "height": 1}]}' | fettle-part -o stock.stl
+echo '{"kind": "job", "units": {"length": "mm", "force": "N"}, "surface": {"type": "plane"}, "tolerance": 0.05, "safe_height": 20,
+    "anomaly": [[-5, -5, 0], [5, -5, 0], [5, 5, 0], [-5, 5, 0]], "sampling": [[-10, -10, 0], [10, -10, 0], [10, 10, 0], [-10, 10, 0]]}' >job.json
+echo '{"kind": "surface", "units": {"length": "mm"}, "shape": {"type": "plane", "origin": [0, 0], "z0": 0, "slope": [0, 0]}}' | fettle-plan job.json >plan.json
+fettle-grind plan.json --stock stock.stl --cell 0.5 --trace trace.pcd --frames 5 --frames-in pictures --report grind.json -o ground.pcd || [ $? = 1 ]
+fettle-report --plan plan.json --grinding grind.json --trace trace.pcd --frames pictures/frames.json -o run.html
 PYTHONPATH=$HERE python3 - <<'PYTHON'
-import os, sys, time
+import json, os, sys
 from browser import Page
 page = Page("index.html")
 try:
@@ -50,7 +54,15 @@ try:
     page.press("\u25b6 Play")
     page.wait("document.querySelector('.player').dataset.shown === '0' || document.querySelector('.player').dataset.shown === '1'")
     page.wait("document.querySelector('.player').dataset.shown === '2'")
-    assert page.value("document.querySelector('.player output').textContent") == "4.0 s"
+    ended = [frame["t"] for frame in json.load(open("pictures/frames.json"))["frames"]]
+    assert page.value("document.querySelector('.player output').textContent") == f"{ended[-1]:.1f} s"
+    # The cursor on the force trace stands where the frame's time does: at last at its end, at first before.
+    cursor = "Number(document.querySelector('line.cursor').getAttribute('x1'))"
+    x, width, seconds = (float(page.value(f"document.querySelector('rect.time-axis').{get}")) for get in
+                         ("getAttribute('x')", "getAttribute('width')", "dataset.seconds"))
+    assert abs(page.value(cursor) - (x + min(1, ended[-1] / seconds) * width)) < 1e-6
+    page.value("(range => { range.value = 0; range.dispatchEvent(new Event('input')); })(document.querySelector('.player input'))")
+    assert abs(page.value(cursor) - (x + ended[0] / seconds * width)) < 1e-6
     assert page.errors == [] and page.requests == [], (page.errors, page.requests)
 finally:
     page.close()

@@ -9,5 +9,9 @@ fettle-plan given.json surface.json | fettle-diff plan.json -
 jq '.safe_height = 4' job.json | fettle-plan - surface.json | jq -e '.job.safe_height == 4'
 jq '.safe_height = 2' job.json >low.json
 "$HERE/../refuses" 'safe_height: 2 is not above the surface, 3 at' fettle-plan low.json surface.json
+# With the part at hand it is 2 in over the part's top: a hill of 0.1 in on a plate at 3 in.
+echo '{"kind": "part", "units": {"length": "in"}, "surface": {"type": "plane", "point": [0, 0, 3]}, "region": {"x": [0, 3], "y": [0, 3]},
+    "step": 0.1, "anomalies": [{"type": "hill", "centre": [1.5, 1.5], "semi_axes": [0.3, 0.3], "height": 0.1}]}' | fettle-part -o hill.stl
+fettle-plan job.json surface.json --f-down auto --stock hill.stl --stock-units in | jq -e '(.job.safe_height - 5.1 | fabs) < 1e-3'
 # A machine behind a driver is not moved at a height that is a guess.
 "$HERE/../refuses" 'gives neither safe_height nor the z of a boundary point' fettle-sample job.json --on gantry:exec:false
