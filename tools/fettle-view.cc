@@ -17,7 +17,8 @@ namespace {
 struct Options {
     cli::Tool& t;
     const std::vector<std::string>& files = t.positional_files(
-        "PART", "Clouds with their fields (PCD, PLY, PTX, XYZ) and meshes (STL, PLY, OBJ, OFF): a layer each");
+        "PART",
+        "Clouds with their fields (PCD, PLY, E57, PTX, XYZ) and meshes (STL, PLY, OBJ, OFF, 3MF): a layer each");
     const std::string& fields =
         t.text("--field", "", "NAME,…",
                "What to show: error, z, class, rgb, sigma, … [error if there is one, else z; and class]");
