@@ -79,7 +79,8 @@ draw::Html tiles(const RunFiles& run, const PageVerdict& verdict)
         error_tile(key + "mean_abs", n.at("mean_abs"), "mean absolute error");
         if (verdict.over_cut) {
             error_tile("over_cut.by_wheel", verdict.over_cut->by_wheel, "deepest over-cut by the wheel");
-            error_tile("over_cut.lacked", verdict.over_cut->lacked, "most that was lacking before grinding");
+            if (verdict.over_cut->lacking_points > 0)
+                error_tile("over_cut.lacked", verdict.over_cut->lacked, "most that was lacking before grinding");
         } else {
             error_tile(key + "min", n.at("min"), "deepest over-cut");
         }

@@ -9,7 +9,7 @@
 
 namespace fettle::report {
 
-OverCut split_over_cut(const Eigen::VectorXd& errors, const Eigen::VectorXd& removed)
+OverCut split_over_cut(const Eigen::VectorXd& errors, const Eigen::VectorXd& removed, double rounding)
 {
     OverCut result;
     for (Eigen::Index i = 0; i < errors.size(); ++i) {
@@ -19,7 +19,7 @@ OverCut split_over_cut(const Eigen::VectorXd& errors, const Eigen::VectorXd& rem
         if (errors[i] >= 0) continue;
         const double depth = -errors[i], cut = std::isfinite(removed[i]) ? std::max(removed[i], 0.0) : depth;
         result.by_wheel = std::max(result.by_wheel, std::min(depth, cut));
-        if (depth <= cut) continue;
+        if (depth <= cut + rounding) continue;
         result.lacked = std::max(result.lacked, depth - cut);
         ++result.lacking_points;
     }
@@ -27,6 +27,15 @@ OverCut split_over_cut(const Eigen::VectorXd& errors, const Eigen::VectorXd& rem
 }
 
 namespace {
+
+/// Of an error between two files, whose coordinates are floats: half a unit in the last place for each.
+double file_rounding(const cloud::Cloud& errors, const units::Units& units)
+{
+    double max_coordinate = 0;
+    for (const double x : errors.xyz.reshaped())
+        if (std::isfinite(x)) max_coordinate = std::max(max_coordinate, std::abs(x) / units.mm());
+    return double(std::numeric_limits<float>::epsilon()) * max_coordinate;
+}
 
 /// That of the judged region; nothing if the error map does not know what was removed.
 std::optional<OverCut> over_cut_of(const RunFiles& run)
@@ -40,7 +49,8 @@ std::optional<OverCut> over_cut_of(const RunFiles& run)
             if (regions[std::size_t(i)] != job::Region::inside) errors[i] = std::nan("");
     }
     const double mm = run.units.mm();
-    return split_over_cut(errors / mm, cloud::field(*run.errors, "removed") / mm);
+    return split_over_cut(errors / mm, cloud::field(*run.errors, "removed") / mm,
+                          file_rounding(*run.errors, run.units));
 }
 
 } // namespace
@@ -60,11 +70,7 @@ PageVerdict judge_page(const RunFiles& run)
     verdict.by_wheel = !run.judges_all && !c.reversed && verdict.over_cut && verdict.over_cut->lacking_points > 0;
     if (!verdict.by_wheel) return verdict;
     verdict.worst = std::max(verdict.over_cut->by_wheel, verdict.over_cut->left);
-    // As fettle-compare judges: half a unit in the last place for each of two files.
-    double max_coordinate = 0;
-    for (const double x : run.errors->xyz.reshaped())
-        if (std::isfinite(x)) max_coordinate = std::max(max_coordinate, std::abs(x) / run.units.mm());
-    verdict.within = verdict.worst <= c.tolerance + double(std::numeric_limits<float>::epsilon()) * max_coordinate;
+    verdict.within = verdict.worst <= c.tolerance + file_rounding(*run.errors, run.units); // as fettle-compare judges
     return verdict;
 }
 

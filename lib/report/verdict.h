@@ -21,7 +21,8 @@ struct OverCut {
 };
 /// @param errors, removed  of the judged points; NaN errors are left out; where `removed` is not known, the wheel
 /// counts as the cause
-OverCut split_over_cut(const Eigen::VectorXd& errors, const Eigen::VectorXd& removed);
+/// @param rounding  of the errors: what lacks no more than that lacks nothing
+OverCut split_over_cut(const Eigen::VectorXd& errors, const Eigen::VectorXd& removed, double rounding);
 
 /// What a page says about the part.
 struct PageVerdict {
