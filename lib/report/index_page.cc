@@ -103,13 +103,16 @@ draw::Html trend(const std::vector<PageSummary>& parts, const std::string& key, 
                                                       html + draw::svg::path(line, "series") + dots));
 }
 
+// Relative: tolerances that differ by less are the same, converted from another unit.
+constexpr double kMaxUnitRounding = 1e-9;
+
 /// The tolerance, if all judged parts have the same.
 std::optional<double> common_tolerance(const std::vector<PageSummary>& parts, const units::Units& units)
 {
     std::optional<double> common;
     for (const PageSummary& part : parts)
         if (const auto tolerance = number_of(part, "tolerance", units)) {
-            if (common && std::abs(*common - *tolerance) > 1e-9 * *common) return std::nullopt;
+            if (common && std::abs(*common - *tolerance) > kMaxUnitRounding * *common) return std::nullopt;
             common = tolerance;
         }
     return common;
