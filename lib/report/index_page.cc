@@ -88,7 +88,7 @@ draw::Html trend(const std::vector<PageSummary>& parts, const std::string& key, 
     draw::Html html = draw::svg::ticks_left(y, kLeft, kRight, 4) + draw::svg::text({kLeft, kTop - 10}, label);
     for (const std::size_t n : {std::size_t{1}, parts.size()})
         html += draw::svg::text({x(double(n)), kBottom + 18}, std::to_string(n), Anchor::middle);
-    html += draw::svg::text({(kLeft + kRight) / 2, kBottom + 18}, "part", Anchor::middle);
+    html += draw::svg::text({(kLeft + kRight) / 2, kBottom + 18}, "page", Anchor::middle);
     if (limit) html += draw::svg::line({kLeft, y(*limit)}, {kRight, y(*limit)}, "limit");
     std::string line;
     draw::Html dots;
@@ -99,7 +99,7 @@ draw::Html trend(const std::vector<PageSummary>& parts, const std::string& key, 
         line += (line.empty() ? "M" : "L") + draw::svg::coordinate(at.x()) + " " + draw::svg::coordinate(at.y());
         dots += draw::svg::circle(at, parts.size() > 100 ? 2 : 3.2, dot_style(parts[i]));
     }
-    return draw::element("figure", draw::svg::drawing(kTrendWidth, kHeight, label + " of each part, in their order",
+    return draw::element("figure", draw::svg::drawing(kTrendWidth, kHeight, label + " of each page, in their order",
                                                       html + draw::svg::path(line, "series") + dots));
 }
 
@@ -204,7 +204,7 @@ draw::Html parts_table(const std::vector<PageSummary>& parts, const std::vector<
 std::string counts_text(const std::vector<PageSummary>& parts)
 {
     const auto count = [&](const char* verdict) { return std::ranges::count(parts, verdict, &PageSummary::verdict); };
-    std::string text = std::to_string(parts.size()) + (parts.size() == 1 ? " part: " : " parts: ") +
+    std::string text = std::to_string(parts.size()) + (parts.size() == 1 ? " page: " : " pages: ") +
                        std::to_string(count("within")) + " within tolerance, " +
                        std::to_string(count("out of tolerance")) + " out of tolerance";
     if (const auto others = count("not judged"); others > 0) text += ", " + std::to_string(others) + " not judged";
@@ -231,7 +231,7 @@ std::string index_page(const std::vector<PageSummary>& parts, const std::vector<
     const draw::Html body =
         draw::element("header", draw::element("h1", headline) + draw::element("p", counts_text(parts))) +
         section("trends", "The series", draw::element("div", {{"class", "trends"}}, trends)) +
-        section("parts", "Parts", parts_table(parts, links, units)) +
+        section("parts", "Pages", parts_table(parts, links, units)) +
         draw::element("footer", "Written by fettle-report " + version + ".") + draw::Html::from_markup(kIndexScript);
     return "<!DOCTYPE html>\n" +
            draw::element("html", {{"lang", "en"}}, draw::element("head", head) + draw::element("body", body)).bytes() +

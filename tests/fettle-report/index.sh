@@ -9,7 +9,7 @@ done
 fettle-report --index pages/*.json -o index.html
 xmllint --noout --nonet index.html 2>/dev/null || python3 -c "import xml.dom.minidom; xml.dom.minidom.parse('index.html')"
 [ "$(grep -o '<a href="pages/[123].html">Casting [123]</a>' index.html | wc -l)" = 3 ]
-grep -q '3 parts: 2 within tolerance, 1 out of tolerance' index.html
+grep -q '3 pages: 2 within tolerance, 1 out of tolerance' index.html
 grep -q 'data-sort="A2">A2' index.html
 grep -q 'data-sort="0.03[0-9]*"' index.html || grep -q 'data-sort="0.02999' index.html
 [ "$(grep -o 'src="data:image/png;base64,' index.html | wc -l)" = 3 ]
