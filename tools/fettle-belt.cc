@@ -50,6 +50,7 @@ Options declare_options(cli::Tool& t)
 void check(const Options& options)
 {
     options.grinding.check();
+    options.frames.check_folder();
     const bool has_lower = options.lower.has_value(), has_upper = options.upper.has_value();
     if (has_lower == options.watch.empty() || has_upper == options.watch.empty())
         throw core::InputError("--watch", "goes with --lower and --upper");

@@ -111,6 +111,7 @@ int main(int argc, char** argv)
         add_usage(t);
         t.parse();
         o.gantry.check();
+        o.frames.check_folder();
 
         const auto begun = Clock::now();
         const plan::Plan plan = plan::read_plan(o.plan);

@@ -76,6 +76,7 @@ void check(const Options& o)
     if (o.step && (!o.design.empty() || o.published))
         throw core::InputError("--design and --as-published belong to --tolerance");
     o.out.require(o.pcd, "points are written with --pcd, triangles as STL without it", !o.trace.empty());
+    o.frames.check_folder();
 }
 
 void warn_of_size(const Options& o, const std::string& name, const std::string& part, const Eigen::Vector3d& size,

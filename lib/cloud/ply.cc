@@ -6,6 +6,8 @@
 #include "core/error.h"
 
 #include <algorithm>
+#include <array>
+#include <iterator>
 
 namespace fettle::cloud {
 
@@ -90,6 +92,27 @@ Cloud read_vertices(Body& body, const Element& element, const std::string& sourc
     return cloud;
 }
 
+/// Joins red, green and blue of one byte each to the one field `rgb` that such properties are written for, in the place
+/// of the first of them.
+void join_colours(Cloud& cloud)
+{
+    std::array<std::vector<Field>::iterator, 3> channels;
+    constexpr std::array<const char*, 3> kChannels = {"red", "green", "blue"};
+    for (std::size_t k = 0; k < kChannels.size(); ++k) {
+        channels[k] = std::ranges::find(cloud.fields, kChannels[k], &Field::name);
+        if (channels[k] == cloud.fields.end() || channels[k]->size != 1 || channels[k]->type != 'U') return;
+    }
+    if (has_field(cloud, "rgb")) return;
+    Eigen::Matrix<std::uint8_t, 3, Eigen::Dynamic> rgb(3, cloud.size());
+    for (Eigen::Index i = 0; i < cloud.size(); ++i)
+        for (Eigen::Index k = 0; k < 3; ++k)
+            rgb(k, i) = std::to_integer<std::uint8_t>(channels[std::size_t(k)]->bytes[std::size_t(i)]);
+    const auto place = std::distance(cloud.fields.begin(), *std::ranges::min_element(channels));
+    std::erase_if(cloud.fields, [&](const Field& field) { return std::ranges::count(kChannels, field.name) > 0; });
+    set_colours(cloud, rgb);
+    std::rotate(cloud.fields.begin() + place, cloud.fields.end() - 1, cloud.fields.end());
+}
+
 bool is_corner_list(const Property& property)
 {
     return property.list && (property.name == "vertex_indices" || property.name == "vertex_index");
@@ -140,6 +163,7 @@ Ply read_body(Body body, const PlyHeader& header, const std::string& source)
         if (element.count > 0) body.check_room(element);
         if (element.name == "vertex") {
             ply.vertices = read_vertices(body, element, source);
+            join_colours(ply.vertices);
         } else if (element.name == "face") {
             if (element.count > 0) read_faces(body, element, vertices, ply, source);
         } else {

@@ -11,8 +11,8 @@ namespace fettle::cloud {
 
 /// Vertices and faces of a PLY file, in the units of the file.
 struct Ply {
-    Cloud
-        vertices; ///< scalar properties are fields: scalar_NAME (written by CloudCompare) is NAME, nx ny nz are normals
+    Cloud vertices; ///< scalar properties are fields: scalar_NAME (written by CloudCompare) is NAME, nx ny nz are
+                    ///< normals, red green blue of a byte each are rgb
     std::vector<std::uint32_t> corners; ///< of all faces, one after the other: indices of `vertices`, in range
     std::vector<std::size_t> ends;      ///< end of each face in `corners`
 };

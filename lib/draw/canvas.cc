@@ -4,6 +4,7 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -115,8 +116,10 @@ void Canvas::draw_text(const std::string& words, const Eigen::Vector2d& at, doub
 
 void Canvas::box(const Eigen::Vector2d& corner, const Eigen::Vector2d& size, const Rgb& colour)
 {
-    const cv::Rect rectangle(rounded(corner), rounded(corner + size));
-    if (!rectangle.empty()) cv::rectangle(state_->sheet, rectangle, scalar(colour), cv::FILLED);
+    cv::Rect rectangle(rounded(corner), rounded(corner + size));
+    rectangle.width = std::max(rectangle.width, 1); // as on an SvgSheet, a box without width is a line
+    rectangle.height = std::max(rectangle.height, 1);
+    cv::rectangle(state_->sheet, rectangle, scalar(colour), cv::FILLED);
 }
 
 void Canvas::line(const Eigen::Matrix2Xd& points, const Rgb& colour, double width, bool closed)

@@ -1,9 +1,14 @@
 #include "draw/frames.h"
 
+#include "core/error.h"
 #include "json/document.h"
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
+#include <sys/stat.h>
+#include <unistd.h>
 
 namespace fettle::draw {
 
@@ -14,6 +19,19 @@ Frames::Frames(cli::Tool& tool)
       folder_(tool.text("--frames-in", "frames", "FOLDER",
                         "With --frames: where they go, and frames.json, which fettle-report --frames plays"))
 {
+}
+
+void Frames::check_folder() const
+{
+    if (!wanted()) return;
+    const std::filesystem::path folder(folder_);
+    const bool exists = std::filesystem::exists(folder);
+    const std::filesystem::path parent = folder.has_parent_path() ? folder.parent_path() : ".";
+    const auto refuse = [&](int error) {
+        throw core::InputError(folder_, std::string("no folder for pictures: ") + std::strerror(error));
+    };
+    if (exists && !std::filesystem::is_directory(folder)) refuse(ENOTDIR);
+    if (::access((exists ? folder : parent).c_str(), W_OK | X_OK) != 0) refuse(errno);
 }
 
 std::vector<std::size_t> Frames::steps(std::size_t steps) const
@@ -38,7 +56,8 @@ std::vector<std::size_t> Frames::steps(const std::vector<double>& ends) const
 
 void Frames::add(double time, const std::string& png)
 {
-    if (names_.empty()) std::filesystem::create_directories(folder_);
+    if (names_.empty() && ::mkdir(folder_.c_str(), 0777) != 0 && errno != EEXIST)
+        throw core::InputError(folder_, std::string("no folder for pictures: ") + std::strerror(errno));
     const std::string number = std::to_string(names_.size() + 1);
     constexpr std::size_t kDigits = 3;
     names_.push_back(std::string(kDigits - std::min(kDigits, number.size()), '0') + number + ".png");

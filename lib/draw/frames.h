@@ -15,6 +15,8 @@ class Frames {
     explicit Frames(cli::Tool& tool);
 
     bool wanted() const { return count_ > 0; }
+    /// Checks before any work, after parse(), that the folder is there or can be made. @throws InputError
+    void check_folder() const;
     /// Pictures that are wanted, at the end of equal parts of the run; fewer where a step takes longer than one of
     /// them.
     std::size_t count() const { return static_cast<std::size_t>(count_); }

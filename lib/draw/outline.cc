@@ -1,5 +1,6 @@
 #include "draw/outline.h"
 
+#include "core/constants.h"
 #include "draw/raster.h"
 #include "geometry/point_index.h"
 
@@ -7,6 +8,7 @@
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <numbers>
 
 namespace fettle::draw {
 namespace {
@@ -17,15 +19,53 @@ using Eigen::Vector2d;
 /// Height of a part at x, y as seen from above; NaN: no part there.
 using Heights = std::function<double(const Vector2d&)>;
 
+/// Do points lie in all directions from `xy`, so that no half-plane without one begins there?
+bool are_around(const Eigen::Matrix3Xd& points, const Vector2d& xy)
+{
+    std::vector<double> angles;
+    for (const Eigen::Vector3d& p : points.colwise()) angles.push_back(std::atan2(p.y() - xy.y(), p.x() - xy.x()));
+    std::ranges::sort(angles);
+    double widest = angles.front() + 2 * std::numbers::pi - angles.back();
+    for (std::size_t k = 1; k < angles.size(); ++k) widest = std::max(widest, angles[k] - angles[k - 1]);
+    return widest < std::numbers::pi;
+}
+
+/// Of points around a place, nearest first, those of the part's top, if an underside shows between them: their heights
+/// then lie in two groups, and the upper ones surround the place. Else none.
+Eigen::Matrix3Xd over_an_underside(const Eigen::Matrix3Xd& near, const Vector2d& xy)
+{
+    constexpr double kMinGapToRange = 0.5; // on one surface, also a steep one, heights are spread over their range
+    std::vector<double> z(near.row(2).begin(), near.row(2).end());
+    std::ranges::sort(z);
+    std::size_t above = 0; // the first of the upper group
+    double gap = 0;
+    for (std::size_t k = 1; k < z.size(); ++k)
+        if (z[k] - z[k - 1] > gap) {
+            gap = z[k] - z[k - 1];
+            above = k;
+        }
+    if (above == 0 || gap < kMinGapToRange * (z.back() - z.front())) return {};
+    std::vector<Index> upper;
+    for (Index i = 0; i < near.cols(); ++i)
+        if (near(2, i) >= z[above]) upper.push_back(i);
+    const Eigen::Matrix3Xd top = near(Eigen::all, upper);
+    return are_around(top, xy) ? top : Eigen::Matrix3Xd();
+}
+
 Heights heights_of(const cloud::Cloud& cloud)
 {
-    // The highest of the points around: where points are sparse, those of the underside lie among them.
-    constexpr Index kNeighbours = 8;
-    auto index = std::make_shared<geometry::PointIndex<2>>(cloud.xyz.topRows<2>());
+    // The highest of the points around, in a wider circle where an underside shows through a sparse top.
+    static constexpr Index kNeighbours = 8, kWideNeighbours = 64;
+    Eigen::Matrix2Xd plan = cloud.xyz.topRows<2>();
+    for (Index i = 0; i < plan.cols(); ++i)
+        if (!std::isfinite(cloud.xyz(2, i))) plan.col(i).setConstant(core::kNaN);
+    auto index = std::make_shared<geometry::PointIndex<2>>(plan);
     return [index, &cloud](const Vector2d& xy) {
-        double height = std::nan("");
-        for (const Index i : index->nearest(xy, kNeighbours)) height = std::fmax(height, cloud.xyz(2, i));
-        return height;
+        const std::vector<Index> found = index->nearest(xy, kWideNeighbours);
+        if (found.empty()) return std::nan("");
+        const Eigen::Matrix3Xd near = cloud.xyz(Eigen::all, found);
+        if (const Eigen::Matrix3Xd top = over_an_underside(near, xy); top.cols() > 0) return top(2, 0);
+        return near.row(2).head(std::min<Index>(kNeighbours, near.cols())).maxCoeff();
     };
 }
 
@@ -91,6 +131,7 @@ Outline outline_on(const mesh::MeshOrCloud& part, const Eigen::Matrix3Xd& polygo
         mesh != nullptr ? heights_of(*mesh, polygon, pixel) : heights_of(std::get<cloud::Cloud>(part));
     Outline outline = {name, polygon, {}};
     std::vector<Eigen::Vector3d> line;
+    std::vector<double> taught; // heights of the job's own edges
     std::vector<Index> corner_at;
     for (Index i = 0; i < polygon.cols(); ++i) {
         const Eigen::Vector3d from = polygon.col(i), to = polygon.col((i + 1) % polygon.cols());
@@ -102,13 +143,16 @@ Outline outline_on(const mesh::MeshOrCloud& part, const Eigen::Matrix3Xd& polygo
             // A height farther off the edge than it can sink into a curved part is that of an underside, seen in a gap
             // of sparse points.
             constexpr double kMaxSagToSize = 0.15;
-            if (std::isfinite(z) && !(std::abs(z - p.z()) > kMaxSagToSize * across)) p.z() = z; // NaN: any height
+            taught.push_back(p.z());
+            if (std::isfinite(z)) p.z() = std::abs(z - p.z()) > kMaxSagToSize * across ? core::kNaN : z;
             line.push_back(p);
         }
     }
     outline.line.resize(3, Index(line.size()));
     for (std::size_t i = 0; i < line.size(); ++i) outline.line.col(Index(i)) = line[i];
     drop_undersides(outline.line, across);
+    if (!outline.line.row(2).array().isFinite().any())
+        for (std::size_t i = 0; i < taught.size(); ++i) outline.line(2, Index(i)) = taught[i];
     fill_heights(outline.line);
     for (Index i = 0; i < polygon.cols(); ++i)
         if (!std::isfinite(outline.corners(2, i))) outline.corners(2, i) = outline.line(2, corner_at[std::size_t(i)]);

@@ -112,13 +112,15 @@ Html circle(const Vector2d& centre, double radius, const std::string& style)
         {{"cx", coordinate(centre.x())}, {"cy", coordinate(centre.y())}, {"r", coordinate(radius)}, {"class", style}});
 }
 
+Html text_element(const Attributes& attributes, const Html& words) { return element("text", attributes, words) + "\n"; }
+
 Html text(const Vector2d& at, const std::string& words, Anchor anchor, const std::string& style)
 {
     static constexpr const char* kAnchors[] = {"start", "middle", "end"};
     Attributes attributes = {
         {"x", coordinate(at.x())}, {"y", coordinate(at.y())}, {"text-anchor", kAnchors[static_cast<int>(anchor)]}};
     if (!style.empty()) attributes.emplace_back("class", style);
-    return element("text", attributes, with_subscript(words));
+    return text_element(attributes, with_subscript(words));
 }
 
 Html ticks_below(const Axis& x, double top, double bottom, int count)

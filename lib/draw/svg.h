@@ -28,6 +28,9 @@ Html path(const std::string& commands, const std::string& style);
 Html polygon(const Eigen::Matrix2Xd& corners, const std::string& style);
 Html circle(const Eigen::Vector2d& centre, double radius, const std::string& style);
 
+/// A text with a line break after it, without which neighbours run together where they are copied or extracted.
+Html text_element(const Attributes& attributes, const Html& words);
+
 enum class Anchor { start, middle, end };
 /// @param words  an underscore makes what follows, up to the next blank, a subscript: "F_max"
 Html text(const Eigen::Vector2d& at, const std::string& words, Anchor anchor = Anchor::start,

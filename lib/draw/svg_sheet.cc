@@ -77,12 +77,11 @@ void SvgSheet::draw_text(const std::string& words, const Vector2d& at, double ca
     static constexpr std::array<const char*, 3> kAnchors = {"start", "middle", "end"};
     const std::string style = "font-size:" + svg::coordinate(1000 * capital_height / kCapitalHeight) +
                               "px;fill:" + svg::colour(colour) + (bold ? ";font-weight:600" : "");
-    drawn_ += element("text",
-                      {{"x", svg::coordinate(at.x())},
-                       {"y", svg::coordinate(at.y() + capital_height / 2)},
-                       {"text-anchor", kAnchors[static_cast<std::size_t>(align)]},
-                       {"style", style}},
-                      typeset(words));
+    drawn_ += svg::text_element({{"x", svg::coordinate(at.x())},
+                                 {"y", svg::coordinate(at.y() + capital_height / 2)},
+                                 {"text-anchor", kAnchors[static_cast<std::size_t>(align)]},
+                                 {"style", style}},
+                                typeset(words));
 }
 
 void SvgSheet::line(const Eigen::Matrix2Xd& points, const Rgb& colour, double width, bool closed)

@@ -17,9 +17,19 @@ double tick_step(double span, int count)
 
 std::string tick_text(double value, double step)
 {
-    const int decimals = std::max(0, static_cast<int>(std::ceil(-std::log10(step) - 1e-9)));
+    constexpr int kMaxDecimals = 6; // smaller steps are written with an exponent
+    constexpr double kRounding = 1e-9;
+    const double shown = std::abs(value) < step / 1e6 ? 0.0 : value;
+    const int decimals = std::max(0, static_cast<int>(std::ceil(-std::log10(step) - kRounding)));
     char buffer[64];
-    std::snprintf(buffer, sizeof buffer, "%.*f", std::min(decimals, 9), std::abs(value) < step / 1e6 ? 0.0 : value);
+    if (decimals <= kMaxDecimals) {
+        std::snprintf(buffer, sizeof buffer, "%.*f", decimals, shown);
+        return buffer;
+    }
+    if (shown == 0) return "0";
+    // The digits from the value's first to the step's.
+    const int digits = decimals + 1 + static_cast<int>(std::floor(std::log10(std::abs(shown)) + kRounding));
+    std::snprintf(buffer, sizeof buffer, "%.*g", std::max(1, digits), shown);
     return buffer;
 }
 

@@ -3,17 +3,20 @@
 #include "report/run_files.h"
 #include "json/document.h"
 
+#include <array>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace fettle::report {
 
+inline constexpr std::array<const char*, 3> kPageVerdicts = {"within", "out of tolerance", "not judged"};
+
 /// What an index of many pages says of one of them.
 struct PageSummary {
     std::string title, page; ///< headline; file of the page, relative to the summary's folder
     std::vector<std::pair<std::string, std::string>> head;
-    std::string verdict; ///< "within", "out of tolerance" or "not judged"
+    std::string verdict; ///< one of kPageVerdicts
     units::Units units;
     NamedNumbers numbers;  ///< worst, mean, tolerance, machine_time, peak_force: those that are known; in `units`
     std::string thumbnail; ///< PNG in base64; empty: none

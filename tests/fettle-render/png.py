@@ -23,13 +23,20 @@ def pixels(data):
     for row in range(height):
         method = raw[row * (stride + 1)]
         line = bytearray(raw[row * (stride + 1) + 1:(row + 1) * (stride + 1)])
-        for i in range(stride):
-            left = line[i - channels] if i >= channels else 0
-            above = before[i]
-            corner = before[i - channels] if i >= channels else 0
-            p = left + above - corner
-            nearest = min((abs(p - left), 0, left), (abs(p - above), 1, above), (abs(p - corner), 2, corner))[2]
-            line[i] = (line[i] + (0, left, above, (left + above) // 2, nearest)[method]) & 255
-        rows.append([tuple(line[k:k + 3]) for k in range(0, stride, channels)])
+        if method == 1:
+            for i in range(channels, stride):
+                line[i] = (line[i] + line[i - channels]) & 255
+        elif method == 2:
+            line = bytearray([(x + above) & 255 for x, above in zip(line, before)])
+        elif method == 3:
+            for i in range(stride):
+                line[i] = (line[i] + ((line[i - channels] if i >= channels else 0) + before[i]) // 2) & 255
+        elif method == 4:
+            for i in range(stride):
+                left, corner = (line[i - channels], before[i - channels]) if i >= channels else (0, 0)
+                above = before[i]
+                a, b, c = abs(above - corner), abs(left - corner), abs(left + above - 2 * corner)
+                line[i] = (line[i] + (left if a <= b and a <= c else above if b <= c else corner)) & 255
+        rows.append(list(zip(line[0::channels], line[1::channels], line[2::channels])))
         before = line
     return rows

@@ -5,6 +5,7 @@
 #include "gantry/machine.h"
 #include "memory_file.h"
 #include "part/part.h"
+#include "report/summary.h"
 #include "robot/robot.h"
 #include "same_document.h"
 #include "surface/patches.h"
@@ -35,6 +36,10 @@ void read_kind(const std::string& kind, std::string_view text)
         gantry::read_machine(memory.with(text));
     } else if (kind == "robot") {
         robot::read_robot(memory.with(text));
+    } else if (kind == "page") {
+        report::read_page_summary(memory.with(text));
+    } else if (kind == "frames") {
+        report::read_frames(json::Reader::parse(text, "file"), "frames.json"); // there are no pictures beside it
     } else {
         part::read_part(memory.with(text));
     }
@@ -51,7 +56,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     std::string kind;
     const bool has_kind = fuzz::is_read([&] {
         kind = json::Reader::parse(text, "file")
-                   .choice("kind", {"surface", "patches", "wheel", "machine", "robot", "part"});
+                   .choice("kind", {"surface", "patches", "wheel", "machine", "robot", "part", "page", "frames"});
     });
     fuzz::require(is_json || !has_kind, "what has a kind is JSON");
     if (has_kind) fuzz::is_read([&] { read_kind(kind, text); });

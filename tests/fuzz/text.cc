@@ -33,6 +33,19 @@ void check_steering(const std::string& path)
     });
 }
 
+/// In the list of a page of fettle-view --pick, each corner is one of B or of S; without such a label, of both.
+void check_corners(std::string_view text)
+{
+    const auto count = [&](char boundary) {
+        Eigen::Index points = 0;
+        fuzz::is_read([&] { points = job::parse_picked_points(text, "file", {boundary, true}).cols(); });
+        return points;
+    };
+    const Eigen::Index all = count(0), of_B = count('B'), of_S = count('S');
+    fuzz::require(of_B <= all && of_S <= all && of_B + of_S >= all, "each corner belongs to a boundary");
+    if (all > 0 && job::holds_both_boundaries(text)) fuzz::require(of_B > 0 && of_S > 0, "both have corners");
+}
+
 } // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
@@ -42,6 +55,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     fuzz::is_read([&] { cloud::parse_xyz(text, "file"); });
     fuzz::is_read([&] { cloud::parse_ptx(text, "file"); });
     fuzz::is_read([&] { job::parse_picked_points(text, "file"); });
+    check_corners(text);
     const std::string& path = memory.with(text);
     check_transform(path);
     check_steering(path);

@@ -2,6 +2,7 @@
 #include "draw/chart.h"
 
 #include "draw/canvas.h"
+#include "draw/ticks.h"
 
 #include <gtest/gtest.h>
 #include <png.h>
@@ -84,6 +85,23 @@ TEST(Chart, LinesBreakWhereThereIsNoNumber)
     // nor has 0 a logarithm
     whole.logarithmic = true;
     EXPECT_TRUE(red_pixels(whole).empty());
+}
+
+TEST(Ticks, EachLabelIsItsValue)
+{
+    for (const double span : {3e-12, 7e-9, 2e-6, 4e-4, 0.3, 1.0, 40.0, 9e5})
+        for (const double offset : {0.0, 1.0, 100.0}) {
+            const double step = draw::tick_step(span, 8);
+            if (step < 1e-9 * offset) continue;
+            for (int k = -8; k <= 8; ++k) {
+                const double value = std::round(offset / step) * step + k * step;
+                EXPECT_NEAR(std::stod(draw::tick_text(value, step)), value, 1e-6 * step) << step;
+            }
+        }
+    EXPECT_EQ(draw::tick_text(1.5e-12, 5e-13), "1.5e-12");
+    EXPECT_EQ(draw::tick_text(-1e-20, 5e-13), "0");
+    EXPECT_EQ(draw::tick_text(-1e-20, 0.05), "0.00");
+    EXPECT_EQ(draw::tick_text(0.000002, 0.000001), "0.000002");
 }
 
 } // namespace

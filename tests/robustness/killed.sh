@@ -16,7 +16,7 @@ for name in $names; do
     for moment in '3 KILL' '6 TERM' '8 INT' '9 KILL'; do
         read -r tenths signal <<<"$moment"
         rm -rf place/* place/.[!.]*
-        for option in "${bulk[@]}" --report "${writes[@]}"; do [[ "$option" == --journal || "$option" == --session ]] || echo 'what was there' >"place/$option"; done
+        for option in "${bulk[@]}" --report "${writes[@]}"; do [[ " --journal --session --frames-in " == *" $option "* ]] || echo 'what was there' >"place/$option"; done
         status=0
         after=$(awk -v t=$((took * tenths / 10)) 'BEGIN { printf "%.6f", t / 1e6 }')
         { timeout -s $signal "$after" "fettle-$name" "${command[@]}" "${named[@]}" -q >out 2>err <<<"$lines"; } 2>said || status=$?
@@ -25,6 +25,12 @@ for name in $names; do
         [ ! -s err ] || say "said $(cat err)" "$name $moment"
         for option in "${bulk[@]}" --report "${writes[@]}"; do
             case "$name $option" in 'belt --watch' | 'belt --journal' | 'grind --trace' | 'manual --trace' | 'station --session') continue ;; esac
+            if [ "$option" = --frames-in ]; then
+                for picture in place/--frames-in/*; do
+                    [ ! -e "$picture" ] || cmp -s "$picture" "once/--frames-in/${picture##*/}" || say "$picture is half-written" "$name $moment"
+                done
+                continue
+            fi
             # Asked to end, a session stops its machine and reports how far it came.
             [ "$name $option" != 'station --report' ] || { jq -e '.kind == "station" and .stage != null' "place/$option" >/dev/null 2>&1 && continue; }
             cmp -s "place/$option" "once/$option" || grep -qx 'what was there' "place/$option" || say "$option is half-written" "$name $moment"

@@ -24,7 +24,7 @@ for name in $names; do
     command_of "$name"
     for option in "${bulk[@]}" --report "${writes[@]}"; do
         refused "$option" missing/out
-        [ "$option" = --session ] || refused "$option" folder # a session is kept in a folder
+        [ "$option" = --session ] || [ "$option" = --frames-in ] || refused "$option" folder # these are kept in a folder
         [ "${nobody[*]}" = false ] || refused "$option" locked/out "${nobody[@]}"
     done
     bulk_input=

@@ -5,7 +5,7 @@
 #   for name in $names; do command_of NAME; …
 #                    command   its words, without outputs; the last is the input that may come from stdin, if it has one
 #                    bulk      -o; nothing if stdout is a conversation
-#                    writes    options that name an output each, besides -o and --report; --session names a folder
+#                    writes    options that name an output each, besides -o and --report; --session and --frames-in name a folder
 #                    lines     lines on its stdin
 # shellcheck source=tests/bad-inputs/probe.bash
 . "$HERE/../bad-inputs/probe.bash"
@@ -36,7 +36,7 @@ command_of() { # NAME
     align) command=(--to plate.stl --near good.pcd) writes=(--transform-out) ;;
     arm) command=(robot.json --inverse --feed 50 --unchecked tips.pcd) writes=(--rapid --krl --ls --urscript) ;;
     assess) command=(--lower -1 --upper 1 good.pcd) ;;
-    belt) command=(--path rows.pcd --wheel wheel.json --force 5 --lower -1 --upper 1 work.pcd) writes=(--trace --watch --journal) ;;
+    belt) command=(--path rows.pcd --wheel wheel.json --force 5 --lower -1 --upper 1 work.pcd) writes=(--trace --watch --journal --frames-in) ;;
     clean) command=(--outliers statistical:4,3 --thin 1 good.pcd) ;;
     find) command=(--against plate.stl --transform-in identity.txt good.pcd) writes=(--transform-out) ;;
     collide) command=(robot.json --workpiece plate.stl tips.pcd) writes=(--picture --chart) ;;
@@ -49,12 +49,12 @@ command_of() { # NAME
     fit) command=(job.json samples.pcd) ;;
     form) command=(flatness good.pcd) ;;
     gantry-virtual) command=(--stock good.pcd --cell 0.5 --machine machine.json plan.json) bulk=() writes=(--ground) lines='1 status' ;;
-    grind) command=(--stock good.pcd --cell 0.5 --gantry virtual:dynamic --machine machine.json plan.json) writes=(--trace) ;;
+    grind) command=(--stock good.pcd --cell 0.5 --gantry virtual:dynamic --machine machine.json plan.json) writes=(--trace --frames-in) ;;
     manual) command=(--stock good.pcd --cell 0.5 --machine machine.json --steer steer.txt job.json) writes=(--trace) ;;
     margin) command=(job.json fit.json) ;;
     merge) command=(--file-units mm "$SAMPLES/scans/views/2.pcd" "$SAMPLES/scans/views/3.pcd") ;;
     mesh) command=(--at good.pcd surface.json) ;;
-    mill) command=(--stock box:0,0,0,9,9,9 --cutter ball:6 --step 0.5 path.nc) writes=(--trace) ;;
+    mill) command=(--stock box:0,0,0,9,9,9 --cutter ball:6 --step 0.5 path.nc) writes=(--trace --frames-in) ;;
     part) command=(part.json) ;;
     path) command=(work.pcd) ;;
     place) command=(--up plane --centre good.pcd) writes=(--transform-out --inverse) ;;
@@ -79,17 +79,22 @@ outputs() { # FOLDER: into `named`
     local option
     mkdir -p "$1"
     named=()
-    for option in "${bulk[@]}" --report "${writes[@]}"; do named+=("$option" "$1/$option"); done
+    for option in "${bulk[@]}" --report "${writes[@]}"; do
+        [ "$option" != --frames-in ] || named+=(--frames 3)
+        named+=("$option" "$1/$option")
+    done
 }
 
-# All outputs to nowhere, but for one that goes to PLACE; without a journal, which would be read.
+# All outputs to nowhere, but for one that goes to PLACE; without a journal, which would be read, and pictures.
 elsewhere() { # OPTION PLACE: into `named`
     local option
     named=()
     for option in "${bulk[@]}" --report "${writes[@]}"; do
-        if [ "$option" = "$1" ]; then named+=("$option" "$2")
+        if [ "$option" = "$1" ]; then
+            [ "$option" != --frames-in ] || named+=(--frames 3)
+            named+=("$option" "$2")
         elif [ "$option" = --session ]; then named+=("$option" "$(mktemp -d -p .)")
-        elif [ "$option" != --journal ]; then named+=("$option" /dev/null); fi
+        elif [ "$option" != --journal ] && [ "$option" != --frames-in ]; then named+=("$option" /dev/null); fi
     done
 }
 
