@@ -70,6 +70,23 @@ BeltLaw read_law(Reader reader, double mm)
     return law;
 }
 
+json::Value to_json(const BeltLaw& law, const std::string& source)
+{
+    json::Value value;
+    const bool is_preston = law.pressure_exponent == 1 && law.speed_exponent == 1 && law.feed_exponent == 0 &&
+                            law.dwell_exponent == 1 && law.threshold == 0;
+    value.set("type", is_preston ? "preston" : "power").set("coefficient", law.coefficient);
+    if (!is_preston)
+        value.set("pressure_exponent", law.pressure_exponent)
+            .set("speed_exponent", law.speed_exponent)
+            .set("feed_exponent", law.feed_exponent)
+            .set("dwell_exponent", law.dwell_exponent)
+            .set("threshold", law.threshold);
+    value.set("wear_work", law.wear_work / kNewtonMmPerJoule);
+    if (!source.empty()) value.set("source", source);
+    return value;
+}
+
 } // namespace
 
 double young_from_shore_a(double shore_a)
@@ -101,9 +118,33 @@ ContactWheel read_contact_wheel(const std::string& path)
                                              core::to_short_text(wheel.layer.thickness / mm));
     if (auto serration = reader.optional_object("serration")) wheel.serration = read_serration(*serration, mm);
     wheel.belt_speed = mm * reader.number("belt_speed", core::Range::positive());
-    wheel.law = read_law(reader.object("law"), mm);
+    Reader law = reader.object("law");
+    wheel.law_source = law.text_or("source", "");
+    wheel.law = read_law(law, mm);
+    reader.optional_object("learnt"); // what the law was learnt from (calibrate/law_file.h)
     reader.reject_unknown_keys();
     return wheel;
+}
+
+json::Value to_json(const ContactWheel& wheel)
+{
+    json::Value value;
+    value.set("kind", "wheel")
+        .set("units", json::Value().set("length", "mm").set("stress", "MPa"))
+        .set("radius", wheel.radius)
+        .set("width", wheel.width)
+        .set("crown_radius", wheel.crown_radius)
+        .set("layer", json::Value()
+                          .set("thickness", wheel.layer.thickness)
+                          .set("young", wheel.layer.young)
+                          .set("poisson", wheel.layer.poisson));
+    if (const ContactWheel::Serration& grooves = wheel.serration; grooves.pitch > 0)
+        value.set("serration", json::Value()
+                                   .set("pitch", grooves.pitch)
+                                   .set("land", grooves.land)
+                                   .set("depth", grooves.depth)
+                                   .set("angle_deg", grooves.angle * 180 / std::numbers::pi));
+    return value.set("belt_speed", wheel.belt_speed).set("law", to_json(wheel.law, wheel.law_source));
 }
 
 double wheel_profile(const ContactWheel& wheel, double x, double y)

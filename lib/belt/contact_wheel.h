@@ -2,6 +2,7 @@
 
 #include "belt/belt_law.h"
 #include "belt/layer_compliance.h"
+#include "json/document.h"
 
 #include <Eigen/Core>
 
@@ -27,6 +28,7 @@ struct ContactWheel {
     } serration;
     double belt_speed = 0; ///< V_b, mm/s
     BeltLaw law;
+    std::string law_source; ///< where the law comes from; may be empty
 };
 
 /// Young's modulus of a rubber from its Shore A hardness (Gent 1958), MPa: within 10 % from 30 to 70.
@@ -35,6 +37,10 @@ double young_from_shore_a(double shore_a);
 /// Reads a file of kind "wheel" (docs/formats.md).
 /// @throws InputError naming the key if the file is not a valid wheel
 ContactWheel read_contact_wheel(const std::string& path);
+
+/// As the file that read_contact_wheel() reads, in mm; the layer with its modulus, the law as a power law unless it is
+/// Preston's.
+json::Value to_json(const ContactWheel& wheel);
 
 /// Height of the undeformed wheel over the tangent plane at its lowest point, mm; infinite beyond its width or radius.
 /// An edge of a land passes through the origin.

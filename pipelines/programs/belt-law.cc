@@ -2,15 +2,13 @@
 
 #include "belt/contact_wheel.h"
 #include "belt/removal_fit.h"
+#include "calibrate/trials_csv.h"
 #include "cli/tool.h"
-#include "core/error.h"
 #include "core/file.h"
-#include "core/lines.h"
 #include "core/text.h"
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -18,52 +16,6 @@
 using namespace fettle;
 
 namespace {
-
-using Row = std::map<std::string, double>; ///< by column; words are NaN
-
-std::vector<std::string> cells_of(std::string_view line)
-{
-    std::vector<std::string> cells(1);
-    for (const char c : line)
-        if (c == ',')
-            cells.emplace_back();
-        else
-            cells.back() += c;
-    return cells;
-}
-
-std::vector<Row> rows_of(const std::string& text, const std::string& source)
-{
-    std::vector<Row> rows;
-    std::vector<std::string> names;
-    for (core::Lines lines(text); lines.next();) {
-        if (lines.line().empty() || lines.line().front() == '#') continue;
-        const std::vector<std::string> cells = cells_of(lines.line());
-        if (names.empty()) {
-            names = cells;
-            continue;
-        }
-        if (cells.size() != names.size())
-            throw core::InputError(source, lines.location() + ": " + std::to_string(cells.size()) + " values, not " +
-                                               std::to_string(names.size()));
-        Row& row = rows.emplace_back();
-        for (std::size_t i = 0; i < names.size(); ++i) row[names[i]] = core::parse_number(cells[i]).value_or(NAN);
-    }
-    return rows;
-}
-
-double value_or_nan(const Row& row, const std::string& name)
-{
-    const auto found = row.find(name);
-    return found == row.end() ? NAN : found->second;
-}
-
-belt::RemovalTrial trial_of(const Row& row)
-{
-    return {value_or_nan(row, "avg_force_N"),        value_or_nan(row, "avg_rpm"),
-            value_or_nan(row, "feed_rate_setpoint"), value_or_nan(row, "grind_time_s"),
-            value_or_nan(row, "initial_wear"),       value_or_nan(row, "removed_mm3")};
-}
 
 /// Is the recorded work a state that trials hand on? How many trials there are with one that begins where they end,
 /// within `kShareTolerance` of their own work, and how many by chance: where no belt ever ends.
@@ -132,12 +84,7 @@ int main(int argc, char** argv)
         const double& travel = t.number("--travel", 100, "MM", "Of the belt in a revolution", core::Range::positive());
         t.parse();
         const std::string name = core::display_name(path);
-        std::vector<belt::RemovalTrial> exact, all;
-        for (const Row& row : rows_of(core::read_file(path), name)) {
-            all.push_back(trial_of(row));
-            const double is_exact = value_or_nan(row, "exact");
-            if (std::isnan(is_exact) || is_exact == 1) exact.push_back(all.back());
-        }
+        const auto [exact, all] = calibrate::read_trials(core::read_file(path), name);
         const std::vector<json::Value> laws = cli::with_error_prefix(name, [&] {
             return std::vector<json::Value>{score_of("Preston", exact, {false, false, false}),
                                             score_of("Preston, wear", exact, {false, true, false}),

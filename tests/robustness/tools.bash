@@ -11,7 +11,7 @@
 . "$HERE/../bad-inputs/probe.bash"
 
 # fettle-gantry-linuxcnc is for a machine that runs: tests/linuxcnc.
-names='align arm assess belt clean collide compare contact diff estimate feed find finish fit form gantry-virtual grind manual margin merge mesh mill part path place
+names='align arm assess belt calibrate clean collide compare contact diff estimate feed find finish fit form gantry-virtual grind manual margin merge mesh mill part path place
     plan reconstruct render report sample station stock-linuxcnc surfel teach verify view'
 if command -v fettle-step > /dev/null; then names+=' step'; fi # built where OpenCASCADE is
 
@@ -37,6 +37,7 @@ command_of() { # NAME
     arm) command=(robot.json --inverse --feed 50 --unchecked tips.pcd) writes=(--rapid --krl --ls --urscript) ;;
     assess) command=(--lower -1 --upper 1 good.pcd) ;;
     belt) command=(--path rows.pcd --wheel wheel.json --force 5 --lower -1 --upper 1 work.pcd) writes=(--trace --watch --journal --frames-in) ;;
+    calibrate) command=("$SAMPLES/removal/static.csv") ;;
     clean) command=(--outliers statistical:4,3 --thin 1 good.pcd) ;;
     find) command=(--against plate.stl --transform-in identity.txt good.pcd) writes=(--transform-out) ;;
     collide) command=(robot.json --workpiece plate.stl tips.pcd) writes=(--picture --chart) ;;

@@ -1,0 +1,237 @@
+#include "calibrate/gantry_passes.h"
+
+#include "core/error.h"
+#include "geometry/quantiles.h"
+#include "removal/wheel.h"
+
+#include <Eigen/Cholesky>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace fettle::calibrate {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using strategy::TraceRow;
+
+/// Distance of two positions of the wheel, as of strategy::replay_removal: a ridge of step² / 8R between them.
+constexpr double kReplayStepCells = 2;
+
+/// A stroke: the wheel grinds along a pass without being lifted.
+struct Stroke {
+    double impulse = 0, duration = 0, volume = 0; ///< N s, s, mm³
+    double radius = 0;                            ///< of the wheel, as measured before, mm
+};
+
+struct Replay {
+    removal::HeightField left;
+    std::vector<Stroke> strokes;
+};
+
+bool is_grinding(const TraceRow& row) { return row.feed > 0; }
+
+double rim_radius(const TraceRow& row, const job::Job& job) { return row.radius > 0 ? row.radius : job.wheel.radius; }
+
+/// @param compliance  of the machine: its rim is higher by that times the force, mm/N
+Replay replay(const std::vector<TraceRow>& trace, const job::Job& job, const removal::HeightField& stock,
+              double compliance)
+{
+    Replay result{stock, {}};
+    removal::WheelInStock wheel(result.left, job.wheel.width);
+    const Eigen::Matrix2d R_working_machine = job::rotation_working_machine(job.theta);
+    for (std::size_t i = 1; i < trace.size(); ++i) {
+        const TraceRow &row = trace[i], &last = trace[i - 1];
+        if (!is_grinding(row)) { // lowered, or lifted, in place: what it cuts there is no stroke's
+            if (!(row.force > 0)) continue;
+            const double z = row.tool.z() + compliance * row.force;
+            wheel.place(R_working_machine * row.tool.head<2>(), rim_radius(row, job), z);
+            wheel.cut(z);
+            continue;
+        }
+        if (!is_grinding(last) || last.pass != row.pass || result.strokes.empty()) result.strokes.emplace_back();
+        Stroke& stroke = result.strokes.back();
+        const Eigen::Vector3d motion = row.tool - last.tool;
+        const int steps = std::max(1, int(std::ceil(motion.norm() / (kReplayStepCells * stock.cell))));
+        double volume = 0;
+        for (int n = 1; n <= steps; ++n) {
+            const double share = double(n) / steps;
+            const double force = last.force + (row.force - last.force) * share;
+            const Eigen::Vector3d at = last.tool + motion * share;
+            const double z = at.z() + compliance * force;
+            wheel.place(R_working_machine * at.head<2>(), rim_radius(row, job), z);
+            volume += wheel.overlap(z).volume;
+            wheel.cut(z);
+        }
+        const double force = (row.force + last.force) / 2, time = row.time - last.time;
+        if (!(force > 0)) continue;
+        stroke.impulse += force * time;
+        stroke.duration += time;
+        stroke.volume += volume;
+        stroke.radius = rim_radius(row, job);
+    }
+    return result;
+}
+
+/// Unknowns of a linear least-squares problem with their covariance.
+struct LinearFit {
+    VectorXd x;
+    MatrixXd covariance;
+    double sigma = 0; ///< of the residuals
+};
+
+LinearFit fit_linear(const MatrixXd& A, const VectorXd& b)
+{
+    const Eigen::LDLT<MatrixXd> normal(A.transpose() * A); // a few columns of like size
+    LinearFit fit;
+    fit.x = normal.solve(A.transpose() * b);
+    const double freedom = std::max<double>(A.rows() - A.cols(), 1);
+    fit.sigma = std::sqrt((A * fit.x - b).squaredNorm() / freedom);
+    fit.covariance = fit.sigma * fit.sigma * normal.solve(MatrixXd::Identity(A.cols(), A.cols()));
+    return fit;
+}
+
+Measured measured(const LinearFit& fit, Index k) { return {fit.x[k], std::sqrt(fit.covariance(k, k))}; }
+
+/// Fits the machine's yielding to the stock after the run, by least squares over the cells that the wheel ground. How
+/// much a cell's height depends on it is the difference of two replays.
+void fit_compliance(const std::vector<TraceRow>& trace, const job::Job& job, const removal::HeightField& before,
+                    const removal::HeightField& after, GantryLaw& law)
+{
+    constexpr double kStep = 0.01; // mm that the difference moves the rim by at the largest force: far below a layer
+    constexpr double kOutlierSigmas = 4; // walls and burrs, where a cell's height says nothing of the rim
+    double max_force = 0;
+    for (const TraceRow& row : trace) max_force = std::max(max_force, is_grinding(row) ? row.force : 0);
+    const double step = kStep / max_force;
+    const removal::HeightField left = replay(trace, job, before, 0).left,
+                               stepped = replay(trace, job, before, step).left;
+    std::vector<Index> ground;
+    std::vector<double> residuals;
+    for (Index k = 0; k < left.z.size(); ++k)
+        if (stepped.z(k) < before.z(k) && std::isfinite(after.z(k))) {
+            ground.push_back(k);
+            residuals.push_back(after.z(k) - left.z(k));
+        }
+    if (ground.size() < 3) throw core::InputError("the trace ground nothing of the stock after");
+    const VectorXd all = VectorXd::Map(residuals.data(), residuals.size());
+    const VectorXd offsets = all.array() - geometry::median(residuals);
+    const double limit = kOutlierSigmas * geometry::kMedianToSigma * geometry::median_absolute(offsets);
+    std::erase_if(ground, [&, k = 0](Index) mutable { return std::abs(offsets[k++]) > limit; });
+    MatrixXd A(ground.size(), 2);
+    VectorXd b(ground.size());
+    for (Index row = 0; row < A.rows(); ++row) {
+        const Index k = ground[row];
+        A.row(row) << 1, (stepped.z(k) - left.z(k)) / kStep;
+        b[row] = after.z(k) - left.z(k);
+    }
+    const LinearFit fit = fit_linear(A, b);
+    // The cells of a line across the wheel were left by one position of it.
+    const double alike = std::max(job.wheel.width / before.cell, 1.0);
+    law.height_offset = fit.x[0];
+    law.compliance = {fit.x[1] / max_force, measured(fit, 1).sigma / max_force * std::sqrt(alike)};
+    law.height_error = fit.sigma;
+    law.cells = A.rows();
+}
+
+/// Lost volume of the wheel over the removed volume, of the intervals between two measurements of the radius.
+void fit_grinding_ratio(const std::vector<Stroke>& strokes, const job::Job& job, GantryLaw& law)
+{
+    std::vector<double> removed, lost;
+    double volume = 0;
+    for (std::size_t k = 0; k < strokes.size(); ++k) {
+        const double radius = strokes[k].radius, last = strokes[k > 0 ? k - 1 : 0].radius;
+        if (radius != last) {
+            if (radius < last) { // otherwise it is a new wheel
+                removed.push_back(volume);
+                lost.push_back(std::numbers::pi * (last * last - radius * radius) * job.wheel.width);
+            }
+            volume = 0;
+        }
+        volume += strokes[k].volume;
+    }
+    if (removed.size() < 2) return;
+    const LinearFit fit =
+        fit_linear(VectorXd::Map(removed.data(), removed.size()), VectorXd::Map(lost.data(), lost.size()));
+    const Measured inverse = measured(fit, 0);
+    if (inverse.value > 0) law.grinding_ratio = {1 / inverse.value, inverse.sigma / (inverse.value * inverse.value)};
+}
+
+void fit_spring(const std::vector<TraceRow>& trace, GantryLaw& law)
+{
+    std::vector<const TraceRow*> pressed;
+    for (const TraceRow& row : trace)
+        if (is_grinding(row) && row.deflection > 0) pressed.push_back(&row);
+    if (pressed.size() < 3) return;
+    const auto [min, max] = std::ranges::minmax(pressed, {}, &TraceRow::deflection);
+    if (!(max->deflection > min->deflection)) return;
+    MatrixXd A(pressed.size(), 2);
+    VectorXd b(pressed.size());
+    for (Index k = 0; k < A.rows(); ++k) {
+        A.row(k) << 1, pressed[k]->deflection;
+        b[k] = pressed[k]->force;
+    }
+    const LinearFit fit = fit_linear(A, b);
+    law.preload = measured(fit, 0);
+    law.stiffness = measured(fit, 1);
+}
+
+/// Weighted median of volume over impulse, whose standard deviation is that of a mean of as many, times √(π/2).
+void fit_coefficient(std::vector<Stroke> strokes, GantryLaw& law)
+{
+    const auto ratio = [](const Stroke& stroke) { return stroke.volume / stroke.impulse; };
+    std::ranges::sort(strokes, {}, ratio);
+    double total = 0, half = 0, squares = 0;
+    for (const Stroke& stroke : strokes) {
+        total += stroke.impulse;
+        squares += stroke.impulse * stroke.impulse;
+    }
+    std::size_t middle = 0;
+    while ((half += strokes[middle].impulse) < total / 2) ++middle;
+    const double coefficient = ratio(strokes[middle]);
+    VectorXd deviations(strokes.size());
+    for (Index k = 0; k < deviations.size(); ++k) deviations[k] = ratio(strokes[k]) - coefficient;
+    const double sigma = geometry::kMedianToSigma * geometry::median_absolute(deviations);
+    law.coefficient = {coefficient, sigma * std::sqrt(std::numbers::pi / 2 * squares) / total};
+}
+
+} // namespace
+
+GantryLaw measure_gantry(const std::vector<TraceRow>& trace, const job::Job& job, const removal::HeightField& before,
+                         const std::optional<removal::HeightField>& after)
+{
+    GantryLaw law;
+    if (after) fit_compliance(trace, job, before, *after, law);
+    constexpr double kSignificantSigmas = 3;
+    const bool yields = law.compliance && law.compliance->value > kSignificantSigmas * law.compliance->sigma;
+    std::vector<Stroke> strokes = replay(trace, job, before, yields ? law.compliance->value : 0).strokes;
+    fit_grinding_ratio(strokes, job, law);
+    double mean_impulse = 0;
+    for (const Stroke& stroke : strokes) mean_impulse += stroke.impulse / strokes.size();
+    // A stroke that hardly touches says nothing: its volume is a difference of small numbers.
+    constexpr double kMinImpulseShare = 0.5; // of the mean
+    std::erase_if(strokes, [&](const Stroke& stroke) {
+        return !(stroke.impulse > kMinImpulseShare * mean_impulse && stroke.volume > 0);
+    });
+    if (strokes.empty()) throw core::InputError("the wheel ground nothing");
+    double work = 0;
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    for (const Stroke& stroke : strokes) {
+        law.passes.push_back({.force = stroke.impulse / stroke.duration,
+                              .speed = kNone,
+                              .feed = kNone,
+                              .duration = kNone,
+                              .prior_work = work,
+                              .volume = stroke.volume / stroke.duration});
+        work += stroke.impulse;
+    }
+    law.pass_work = work / strokes.size();
+    fit_coefficient(strokes, law);
+    fit_spring(trace, law);
+    return law;
+}
+
+} // namespace fettle::calibrate

@@ -1,0 +1,45 @@
+#pragma once
+
+#include "belt/removal_fit.h"
+#include "job/job.h"
+#include "removal/height_field.h"
+#include "strategy/run.h"
+
+#include <optional>
+#include <vector>
+
+namespace fettle::calibrate {
+
+/// A measured number with its standard deviation.
+struct Measured {
+    double value = 0, sigma = 0;
+};
+
+/// What the machine's own records and the stock before and after say, beside the passes.
+struct GantryLaw {
+    /// A pass for each stroke of the wheel: mean force; the volume of a second of contact, since volumes add up along a
+    /// stroke; the prior work is ∫F dt of the strokes before.
+    std::vector<belt::RemovalTrial> passes;
+    double pass_work = 0;                       ///< mean ∫F dt of a pass, N s
+    std::optional<Measured> coefficient;        ///< Preston's: volume per ∫F dt, mm³/(N s)
+    std::optional<Measured> preload, stiffness; ///< of the spring: N, N/mm; none if the deflection was always the same
+    /// Volume of stock per volume of wheel, from the radii that were measured; none if less than two intervals between
+    /// measurements ground anything.
+    std::optional<Measured> grinding_ratio;
+    /// The machine's yielding, mm/N: by how much more the stock stands over the wheel's recorded places where it was
+    /// ground with more force. None without the stock after.
+    std::optional<Measured> compliance;
+    double height_offset = 0; ///< mean of stock minus recorded place, mm: of the touch-offs and the wear since
+    double height_error = 0;  ///< standard deviation of what offset and yielding leave, mm
+    Eigen::Index cells = 0;   ///< ground cells that were compared
+};
+
+/// Measures a gantry from the trace of a run. The volumes are those that the wheel swept through the stock where the
+/// trace says that it was. The coefficient is their median over ∫F dt, weighted with that: a stroke that begins in the
+/// material has more volume than its readings of the force explain.
+/// @param after  on the grid of `before`
+/// @throws InputError if the wheel ground nothing
+GantryLaw measure_gantry(const std::vector<strategy::TraceRow>& trace, const job::Job& job,
+                         const removal::HeightField& before, const std::optional<removal::HeightField>& after);
+
+} // namespace fettle::calibrate

@@ -1,0 +1,93 @@
+#include "calibrate/law_record.h"
+
+#include "core/error.h"
+#include "core/text.h"
+
+#include <cmath>
+#include <limits>
+
+namespace fettle::calibrate {
+namespace {
+
+using belt::RemovalTrial;
+
+/// Passes with a smaller two-sided probability of tail have a change. One false alarm in 200 passes is allowed; some
+/// law in five has heavier tails than any model here.
+constexpr double kMaxChangeProbability = 1.0 / 300;
+
+struct RecordColumn {
+    const char* name;
+    double RemovalTrial::*value;
+    bool may_be_unrecorded;
+};
+constexpr RecordColumn kRecordColumns[] = {
+    {"force", &RemovalTrial::force, false},     {"speed", &RemovalTrial::speed, true},
+    {"feed", &RemovalTrial::feed, true},        {"duration", &RemovalTrial::duration, true},
+    {"work", &RemovalTrial::prior_work, false}, {"volume", &RemovalTrial::volume, false}};
+
+} // namespace
+
+LearntLaw learn(const LawRecord& record)
+{
+    if (record.passes.empty()) throw core::InputError("there is no pass to learn from");
+    LearntLaw law{LawBelief(record.passes.front(), record.pass_work), {}};
+    for (std::size_t k = 0; k < record.passes.size(); ++k) {
+        try {
+            JudgedPass judged{record.passes[k], {}, k >= kFirstJudged, false};
+            if (judged.is_judged) {
+                judged.predicted = law.belief.predict(judged.pass);
+                judged.has_change = judged.predicted.tail_probability < kMaxChangeProbability;
+                if (judged.has_change) law.belief.loosen_level();
+            }
+            law.belief.update(judged.pass);
+            law.passes.push_back(judged);
+        } catch (const core::InputError& error) {
+            throw core::InputError("pass " + std::to_string(k + 1), error.what());
+        }
+    }
+    return law;
+}
+
+std::string change_message(const JudgedPass& pass, std::size_t number)
+{
+    const Prediction& predicted = pass.predicted;
+    const bool is_less = pass.pass.volume < predicted.volume;
+    return "pass " + std::to_string(number) + " took " + core::to_short_text(pass.pass.volume) + " mm³, where " +
+           core::to_short_text(predicted.lower) + " to " + core::to_short_text(predicted.upper) + " were expected: " +
+           (is_less ? "the wheel is blunt or loaded, or the material is harder"
+                    : "the wheel is sharper, or the material is softer");
+}
+
+json::Value to_json(const LawRecord& record)
+{
+    Eigen::MatrixXd rows(record.passes.size(), std::size(kRecordColumns));
+    for (Eigen::Index i = 0; i < rows.rows(); ++i)
+        for (std::size_t k = 0; k < std::size(kRecordColumns); ++k) {
+            const double value = record.passes[i].*kRecordColumns[k].value;
+            rows(i, k) = std::isnan(value) ? 0 : value;
+        }
+    return json::Value().set("pass_work", record.pass_work).set("passes", rows);
+}
+
+LawRecord read_record(json::Reader reader)
+{
+    LawRecord record;
+    record.pass_work = reader.number("pass_work", core::Range::positive());
+    const Eigen::MatrixXd rows = reader.matrix("passes", std::size(kRecordColumns));
+    for (const auto& row : rows.rowwise()) {
+        RemovalTrial& pass = record.passes.emplace_back();
+        for (std::size_t k = 0; k < std::size(kRecordColumns); ++k) {
+            const RecordColumn& column = kRecordColumns[k];
+            const bool is_work = column.value == &RemovalTrial::prior_work;
+            if (!(row[k] > 0 || (row[k] == 0 && (is_work || column.may_be_unrecorded))))
+                reader.refuse("passes", "pass " + std::to_string(record.passes.size()) + ": the " + column.name +
+                                            " is not positive, got " + core::to_short_text(row[k]));
+            pass.*column.value = row[k] > 0 || is_work ? row[k] : std::numeric_limits<double>::quiet_NaN();
+        }
+    }
+    if (record.passes.empty()) reader.refuse("passes", "is empty");
+    reader.reject_unknown_keys();
+    return record;
+}
+
+} // namespace fettle::calibrate

@@ -1,0 +1,49 @@
+#pragma once
+
+#include "calibrate/law_belief.h"
+#include "json/document.h"
+
+#include <string>
+#include <vector>
+
+namespace fettle::calibrate {
+
+/// The passes from which a law is learned, in their order: what is known follows from them alone, so that a belief is
+/// handed from part to part as the list of its passes. Later passes must record what the first one does.
+struct LawRecord {
+    double pass_work = 0; ///< as in LawBelief
+    std::vector<belt::RemovalTrial> passes;
+};
+
+/// A pass beside what was expected of it.
+struct JudgedPass {
+    belt::RemovalTrial pass;
+    Prediction predicted;
+    bool is_judged = false;  ///< enough passes were known before
+    bool has_change = false; ///< the law does not explain the pass
+};
+
+/// A law as the passes of a record teach it.
+struct LearntLaw {
+    LawBelief belief;
+    std::vector<JudgedPass> passes;
+};
+
+/// Passes that are learned from before the first one is judged.
+inline constexpr std::size_t kFirstJudged = 5;
+
+/// Learns pass by pass: predicts, compares, updates. A pass whose volume has a two-sided probability of tail below
+/// 1/300 has a change; then the level is loosened
+/// (LawBelief::loosen_level).
+/// @throws InputError for no pass, and naming the pass that has a wrong value
+LearntLaw learn(const LawRecord& record);
+
+/// What a pass removed of what was expected, for a message: "pass 12 took 3.1 mm³, expected 5.9 to 6.6: …".
+std::string change_message(const JudgedPass& pass, std::size_t number);
+
+/// The members pass_work, columns and passes. 0 stands for what was not recorded.
+json::Value to_json(const LawRecord& record);
+/// @throws InputError naming the key
+LawRecord read_record(json::Reader reader);
+
+} // namespace fettle::calibrate

@@ -1,0 +1,45 @@
+# Removal laws that are learnt: how well the next pass is predicted, how honestly, and whether a hidden law is found.
+#
+#   make -f pipelines/calibrate.mk -j2                     the table; exit 1 if a figure is missed
+#   make -f pipelines/calibrate.mk -j2 SERIES=20 RUNS=2    fewer series of each hidden law, fewer noisy runs of part 1
+#
+# CALIBRATE/LAW.csv has a line a series drawn from a hidden law (pipelines/programs/law-series.cc); static.json and moving.json are the reports on the
+# measured rows; part1/N.json those of Wang's part 1, ground on a gantry that removes HIDDEN of what its job says, from the first covering of
+# its trace, with forces 5 % and heights 0.02 mm (a standard deviation each) off.
+
+B         ?= build
+SERIES    ?= 200
+RUNS      ?= 20
+SEED      ?= 1
+HIDDEN    ?= 0.7
+CALIBRATE ?= $(B)/calibrate/$(SERIES)-$(RUNS)/$(SEED)
+TRIALS    ?= samples/removal
+LAWS      := preston power tails threshold wearing
+PART      := $(CALIBRATE)/part1
+
+.PHONY: calibrate
+calibrate: $(LAWS:%=$(CALIBRATE)/%.csv) $(CALIBRATE)/static.json $(CALIBRATE)/moving.json $(patsubst %,$(PART)/%.json,$(shell seq $(RUNS)))
+	@SERIES=$(SERIES) RUNS=$(RUNS) HIDDEN=$(HIDDEN) pipelines/calibrate-table $(CALIBRATE) "$(LAWS)"
+
+include pipelines/step.mk
+
+$(LAWS:%=$(CALIBRATE)/%.csv): $(CALIBRATE)/%.csv: $(B)/study/law-series
+	$(call step,$< $* $(SERIES) $(SEED) > $@.part)
+
+$(CALIBRATE)/static.json $(CALIBRATE)/moving.json: $(CALIBRATE)/%.json: $(TRIALS)/%.csv $(B)/bin/fettle-calibrate
+	@mkdir -p $(@D)
+	$(B)/bin/fettle-calibrate $< -q --report $@ -o $(@D)/$*-law.json
+
+JOB := samples/jobs/wang1.json
+$(PART)/stock.stl: samples/parts/wang1.json $(B)/bin/fettle-part
+	@mkdir -p $(@D)
+	$(B)/bin/fettle-part $< -o $@
+$(PART)/plan.json: $(PART)/stock.stl $(JOB) $(B)/bin/fettle-sample $(B)/bin/fettle-fit $(B)/bin/fettle-plan
+	$(B)/bin/fettle-sample $(JOB) --on $< -q | $(B)/bin/fettle-fit $(JOB) -q | $(B)/bin/fettle-plan $(JOB) -q -o $@
+$(PART)/trace.pcd: $(PART)/plan.json $(PART)/stock.stl $(B)/bin/fettle-grind
+	$(B)/bin/fettle-grind $< --stock $(PART)/stock.stl --gantry virtual --removal-factor $(HIDDEN) --ascii -q --trace $@ -o $(PART)/ground.pcd
+
+$(PART)/%.json: $(PART)/trace.pcd $(PART)/stock.stl pipelines/calibrate-noise $(B)/bin/fettle-calibrate $(B)/bin/fettle-part
+	pipelines/calibrate-noise $* < $< > $(PART)/$*.pcd
+	jq '.noise = "normal:0.00203"' samples/parts/wang1.json | $(B)/bin/fettle-part - --seed $* -o $(PART)/$*.stl
+	$(B)/bin/fettle-calibrate $(PART)/$*.pcd --job $(JOB) --before $(PART)/$*.stl -q --report $@ -o $(PART)/$*-law.json

@@ -1,0 +1,15 @@
+# A gantry whose material is removed .7 times as easily as its job says: from the trace of one run and the part before and after come the
+# coefficient within 5 %, the exponent of the force within .1 of Preston's, the spring, the grinding ratio. References: the law, spring and
+# grinding ratio of the simulated machine.
+# shellcheck source=tests/fettle-grind/stock.bash
+. "$HERE/../fettle-grind/stock.bash"
+make_job 0
+make_stock 4
+fettle-grind plan.json --stock stock.stl --cell 0.1 --removal-factor 0.7 --trace trace.pcd > ground.pcd
+fettle-calibrate trace.pcd --job job.json --cell 0.1 --before stock.stl --after ground.pcd --report law.json > learnt.json
+jq -e '.gantry | (.coefficient / 0.7 - 1 | fabs) < 0.05 and (.stiffness / 10 - 1 | fabs) < 1e-3 and (.preload | fabs) < 1e-3 and
+    (.compliance | fabs) < 1e-3 and .height_error < 0.01' law.json > ok
+jq -e '.parameters[] | select(.name == "force") | (.mean - 1 | fabs) < 0.1 and .determined == "measured"' law.json > ok
+# Without the part after, the same passes.
+fettle-calibrate trace.pcd --job job.json --cell 0.1 --before stock.stl --report before.json > ok
+jq -e --slurpfile law law.json '.gantry.coefficient == $law[0].gantry.coefficient and (.gantry | has("compliance") | not)' before.json > ok
