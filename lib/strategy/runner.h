@@ -48,8 +48,11 @@ class Runner {
     void grind_at(const Action& action, double feed);
     void grind_controlled(const Action& action, const Eigen::Vector3d& reference);
     std::vector<Eigen::Vector3d> way_across(const PathIndex& to) const;
+    static std::vector<Eigen::Vector3d> beyond(std::vector<Eigen::Vector3d> way, double feed);
+    Eigen::Vector3d off_the_way() const;
     double feed_to(const Action& action, const Eigen::Vector3d& reference);
     bool is_wall_ahead(double feed) const;
+    double wall_slope() const;
     double force_after_step(double feed, double slope) const;
     double decisive_force() const;
     double max_force(std::vector<Eigen::Vector3d> way, int layer, double feed,

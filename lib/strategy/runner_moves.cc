@@ -15,6 +15,8 @@ constexpr double kMinFeedShare = 0.5, kMaxFeedShare = 2;
 constexpr double kMaxCrossingShare = 0.95;
 /// It crosses fast where the stock takes no more than this share: much harder stock then stays below F_max, too.
 constexpr double kMaxFastCrossingShare = 0.8;
+/// A way is judged anew where the drives are farther off it than this share of a step.
+constexpr double kMaxOffShare = 0.2;
 /// What just exceeds a limit, relative to it.
 constexpr double kJustAbove = 1e-6;
 /// Share of F_max above which the wheel goes slower, and of F_min below which it goes faster.
@@ -32,8 +34,8 @@ constexpr double kClimbMemory = 0.85;
 constexpr double kAcceleration = 1000;
 /// Slope that metal ahead may have where the wheel was set down on it.
 constexpr double kUnknownSlope = 0.7;
-/// A flatter slope is no wall.
-constexpr double kWallSlope = 0.2;
+/// A flatter slope is no wall, nor is one that adds less than this share of F_max over a step and the way to stop.
+constexpr double kWallSlope = 0.2, kMinWallShare = 0.12;
 
 /// @param feed  mm/s   @return  mm
 double braking_distance(double feed) { return feed * feed / (2 * kAcceleration); }
@@ -95,7 +97,14 @@ double Runner::feed_to(const Action& action, const Eigen::Vector3d& reference)
 /// Whether the next step could climb above F_max on a wall somewhat steeper than what was met lately.
 bool Runner::is_wall_ahead(double feed) const
 {
-    return climb_ > kWallSlope && force_after_step(feed, kSteeper * climb_) > kSlowClimbShare * plan_.job.force.max;
+    return climb_ > wall_slope() && force_after_step(feed, kSteeper * climb_) > kSlowClimbShare * plan_.job.force.max;
+}
+
+/// The flattest slope that is a wall.
+double Runner::wall_slope() const
+{
+    const double flat = force_after_step(plan_.job.feed.rate, 0), steep = force_after_step(plan_.job.feed.rate, 1);
+    return std::min(kWallSlope, kMinWallShare * plan_.job.force.max / (steep - flat));
 }
 
 /// The force when the drives stand after another step, if the wheel climbs at this slope, N.
@@ -111,7 +120,7 @@ double Runner::decisive_force() const
 {
     const job::ForceRange& limits = plan_.job.force;
     const double force = machine_.status().force + limits.stiffness * height_error_;
-    const bool climbs = is_climbing_ && climb_ > kWallSlope &&
+    const bool climbs = is_climbing_ && climb_ > wall_slope() &&
                         force_after_step(kMinFeedShare * plan_.job.feed.rate, climb_) > kMaxClimbShare * limits.max;
     return climbs ? std::max(force, limits.max * (1 + kJustAbove)) : force;
 }
@@ -146,22 +155,47 @@ void Runner::grind_controlled(const Action& action, const Eigen::Vector3d& refer
 /// Crosses to the next pass in pieces of a step, along the surface between the two. Ends early if the wheel climbs
 /// on something that is too high: the strategy goes up a layer at this position, and then on. Where the wheel's side
 /// face could meet a wall that takes more than F_max, it is lifted over, and lowered, guarded, beside it. Above layer 1
-/// it crosses as fast as it may, but for the end, beyond which the drives would come: nothing is to be ground between
-/// the passes.
+/// it crosses as fast as it may, but for the end, beyond which the drives come before they turn into the pass: nothing
+/// is to be ground between the passes. Where a wall stands beyond the end the last step is slow.
 void Runner::cross(const Action& action)
 {
     force_offset_ = 0;
     force_control_.begin_pass(path_.passes()[action.to.pass].along);
     const std::vector<Eigen::Vector3d> way = way_across(action.to);
-    const double force_max = plan_.job.force.max, rate = plan_.job.feed.rate;
-    if (max_force(way, action.layer, rate) > kMaxCrossingShare * force_max) return travel(action, way.back());
-    const double fast = kMaxFeedShare * rate;
-    const bool is_free = max_force(way, action.layer, fast) <= kMaxFastCrossingShare * force_max;
+    const double force_max = plan_.job.force.max, rate = plan_.job.feed.rate, fast = kMaxFeedShare * rate;
+    const auto meets = [&](const std::vector<Eigen::Vector3d>& points, double feed, double share) {
+        return max_force(points, action.layer, feed) > share * force_max;
+    };
+    if (meets(beyond(way, kMinFeedShare * rate), rate, kMaxCrossingShare)) return travel(action, way.back());
+    const bool ends_at_wall = meets(beyond(way, rate), rate, kMaxCrossingShare);
+    bool is_free = !meets(way, fast, kMaxFastCrossingShare);
     for (std::size_t i = 1; i < way.size() && (i == 1 || machine_.status().force <= force_max); ++i) {
+        if (const Eigen::Vector3d off = off_the_way(); i > 1 && off.norm() > kMaxOffShare * plan_.step) {
+            std::vector<Eigen::Vector3d> rest(way.begin() + std::ptrdiff_t(i) - 1, way.end());
+            for (Eigen::Vector3d& at : rest) at += off;
+            if (meets(rest, rate, kMaxCrossingShare)) return travel(action, way.back());
+            is_free = is_free && !meets(rest, fast, kMaxFastCrossingShare);
+        }
         const double left = (way.back() - way[i]).norm();
         crossing_share_ = is_free && left > braking_distance(fast) ? kMaxFeedShare : 1;
+        if (ends_at_wall && i + 1 == way.size()) crossing_share_ = kMinFeedShare;
         grind(action, way[i]);
     }
+}
+
+/// How far the drives are beside the end of their last step: they round the corners of their path.
+Eigen::Vector3d Runner::off_the_way() const
+{
+    const Eigen::Vector3d off = machine_.status().commanded - reference_point_;
+    return {off.x(), off.y(), 0};
+}
+
+/// A way, and how far the drives come beyond its end at this feed.
+std::vector<Eigen::Vector3d> Runner::beyond(std::vector<Eigen::Vector3d> way, double feed)
+{
+    const Eigen::Vector3d last = way.back() - way[way.size() - 2];
+    way.push_back(way.back() + last.normalized() * braking_distance(feed));
+    return way;
 }
 
 /// Reference points from here to the next pass.
@@ -230,7 +264,10 @@ void Runner::lower_bound(const gantry::GantryStatus& status, double feed)
     const Eigen::Vector3d from = tip_;
     tip_ = status.commanded + (status.deflection + wear_model_.expected_loss()) * Eigen::Vector3d::UnitZ();
     const double along = (tip_ - from).head<2>().norm(), slope = along > 0 ? (tip_.z() - from.z()) / along : 0;
-    is_climbing_ = feed > 0 && slope > kWallSlope;
+    if (feed > 0)
+        is_climbing_ = slope > wall_slope();
+    else // where it climbs, a layer up may not be enough
+        is_climbing_ = is_climbing_ && event_ == Event::up && status.force > plan_.job.force.down;
     if (feed > 0)
         climb_ = std::max(slope, kClimbMemory * climb_);
     else if (status.force > plan_.job.force.min) // set down on metal, which may rise ahead

@@ -25,9 +25,9 @@ for n in {1..24}; do
     jq -e --argjson at "$at" --argjson begun "$begun" '.stage == "stopped" and (.stops | length) == 1 and
         (.stops[0] | (.asked - ($at - $begun) | . > -0.002 and . < 0.06) and .free - .asked <= 0.25 and .lifted >= .free)' report.json > ok
     # Two rows of the trace: the wheel is above where it was in the cut, though the damped head's spring still relaxes, or it has not touched
-    # the part on its way down; and at the safe height.
+    # the part on its way down, where the spring shows no more force than on the way up through the air; and at the safe height.
     rows "$n/trace.pcd" | awk -v free="$(jq '.stops[0].free' report.json)" '{ event = $7; z[NR] = $3; time[NR] = $4; peak[NR] = $10 }
-        END { off = z[NR - 1] >= z[NR - 2] + 1.5 || z[NR - 1] > 19.99 || peak[NR - 1] < 0.2
+        END { off = z[NR - 1] >= z[NR - 2] + 1.5 || z[NR - 1] > 19.99 || peak[NR - 1] < 0.2 || (z[NR - 2] > 19.99 && peak[NR - 1] <= peak[NR])
             exit !(event == 14 && z[NR] > 19.99 && off && time[NR - 1] - free < 1e-6 && free - time[NR - 1] < 1e-6) }'
     { echo '0 start'; } > on.txt
     station "$n" on.txt --gantry virtual:dynamic --machine "$machine" --resume --report report.json
