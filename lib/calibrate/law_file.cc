@@ -69,4 +69,21 @@ json::Value to_json(const GantryLaw& law)
     return value;
 }
 
+json::Value to_json(const BeltRunLaw& law)
+{
+    std::vector<json::Value> parameters;
+    for (Eigen::Index k = 0; k < law.mean.size(); ++k)
+        parameters.push_back(json::Value()
+                                 .set("name", law.names[k])
+                                 .set("mean", law.mean[k])
+                                 .set("sigma", std::sqrt(law.covariance(k, k))));
+    return json::Value()
+        .set("parameters", parameters)
+        .set("covariance", law.covariance)
+        .set("reference_pressure", law.reference_pressure)
+        .set("reference_feed", law.reference_feed)
+        .set("depth_error", law.depth_error)
+        .set("surfels", law.surfels);
+}
+
 } // namespace fettle::calibrate

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "belt/contact_wheel.h"
+#include "calibrate/belt_run.h"
 #include "calibrate/gantry_passes.h"
 #include "calibrate/law_record.h"
 
@@ -26,5 +27,7 @@ belt::BeltLaw belt_law(const LearntLaw& law, const belt::ContactWheel& wheel, do
 
 /// The members coefficient, preload, stiffness, grinding_ratio, compliance, each with its sigma, and what was left.
 json::Value to_json(const GantryLaw& law);
+/// The members parameters, covariance, reference_pressure, reference_feed, depth_error, surfels.
+json::Value to_json(const BeltRunLaw& law);
 
 } // namespace fettle::calibrate

@@ -14,9 +14,11 @@ printf '%s\nx,0,3\n' $head > word.csv
 refuses 'word.csv: line 2: avg_force_N is not a positive number, got x' word.csv
 printf '%s\n5,0,nan\n' $head > nan.csv
 refuses 'nan.csv: line 2: removed_mm3' nan.csv
-refuses '--job' --before "$SAMPLES/scans/panel.pcd" "$SAMPLES/removal/static.csv"
+refuses '--before: goes with --job or --wheel' --before "$SAMPLES/scans/panel.pcd" "$SAMPLES/removal/static.csv"
 refuses '--after: goes with' --after "$SAMPLES/scans/panel.pcd" "$SAMPLES/removal/static.csv"
 refuses '--cell: goes with' --cell 1 "$SAMPLES/removal/static.csv"
+refuses '--job: goes with --before' --job "$SAMPLES/jobs/wang1.json" "$SAMPLES/removal/static.csv"
+refuses 'need --after' --wheel "$SAMPLES/wheels/rubber.json" --before "$SAMPLES/scans/panel.pcd" "$SAMPLES/removal/static.csv"
 refuses 'needs trials at rest' --wheel "$SAMPLES/wheels/rubber.json" "$SAMPLES/removal/moving.csv"
 refuses 'was not learnt' --known "$SAMPLES/wheels/rubber.json" "$SAMPLES/removal/static.csv"
 fettle-calibrate "$SAMPLES/removal/static.csv" -o law.json

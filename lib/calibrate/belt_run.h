@@ -1,0 +1,41 @@
+#pragma once
+
+#include "belt/belt_grinding.h"
+#include "belt/removal_fit.h"
+#include "cloud/cloud.h"
+#include "core/progress.h"
+
+#include <Eigen/Core>
+
+#include <string>
+#include <vector>
+
+namespace fettle::calibrate {
+
+/// What a run of a belt says of its wheel's law.
+struct BeltRunLaw {
+    belt::BeltLaw law; ///< as given, with coefficient, pressure exponent and, if the feed varied, its exponent
+    /// Names, means and covariance of what was fitted: level, the logarithm of the depth per second at the reference
+    /// pressure and feed; pressure; feed.
+    std::vector<std::string> names;
+    Eigen::VectorXd mean;
+    Eigen::MatrixXd covariance;
+    double reference_pressure = 0, reference_feed = 0; ///< MPa, mm/s
+    double depth_error = 0;                            ///< standard deviation of measured minus fitted depth, mm
+    Eigen::Index surfels = 0;                          ///< that were compared
+    /// A pass for each run of the path that has a length: mean force and feed, and the volume of a millimetre of way.
+    /// Measured depths are shared among the passes as the fitted law shares them.
+    std::vector<belt::RemovalTrial> passes;
+    double pass_work = 0; ///< mean work of a pass, N mm
+};
+
+/// Fits the law of a wheel to the depths that surfels lost on a path: Gauss-Newton with differences of simulations
+/// (belt::grind), prior standard deviations as in LawBelief, and Tukey's weights against outliers.
+/// @param trace  of fettle-belt: poses with the fields t and force
+/// @param wheel  whose law is the first guess
+/// @param before, after  the same surfels
+/// @throws InputError if the surfels are not the same, a field is missing, or nothing was removed
+BeltRunLaw measure_belt(const cloud::Cloud& trace, const belt::ContactWheel& wheel, const belt::Surfels& before,
+                        const belt::Surfels& after, const core::Progress& progress = {});
+
+} // namespace fettle::calibrate
