@@ -16,6 +16,8 @@ using Eigen::Vector2d;
 // Metrics of Helvetica as published by Adobe, in thousandths of the font size: height of capital letters and widths of
 // the ASCII characters from the blank on. Bold letters are somewhat wider.
 constexpr double kCapitalHeight = 718, kBoldFactor = 1.07;
+// Sans-serif letters of a machine without Helvetica are wider: DejaVu Sans by so much.
+constexpr double kWideFontFactor = 1.16;
 constexpr std::array<int, 95> kWidths = {
     278, 278, 355, 556, 556, 889, 667, 191, 333, 333, 389, 584, 278, 333,  278, 278, 556, 556, 556,
     556, 556, 556, 556, 556, 556, 556, 278, 278, 584, 584, 584, 556, 1015, 667, 667, 722, 722, 667,
@@ -46,7 +48,7 @@ double SvgSheet::text_width(const std::string& words, double capital_height, boo
             width += kWidths[byte - 0x20U];
         else if ((byte & 0xC0U) != 0x80) // once for each UTF-8 character
             width += kOtherWidth;
-    return width * (bold ? kBoldFactor : 1) * capital_height / kCapitalHeight;
+    return kWideFontFactor * width * (bold ? kBoldFactor : 1) * capital_height / kCapitalHeight;
 }
 
 void SvgSheet::box(const Vector2d& corner, const Vector2d& size, const Rgb& colour)

@@ -24,6 +24,7 @@ table.parts th button { font: inherit; font-weight: 600; color: inherit; backgro
 table.parts th[aria-sort="ascending"] button::after { content: " \25B2"; }
 table.parts th[aria-sort="descending"] button::after { content: " \25BC"; }
 table.parts a { color: var(--blue); overflow-wrap: anywhere; }
+@media (max-width: 40rem) { table.parts img { width: 84px; } table.parts td:nth-child(3) { min-width: 6rem; } }
 .verdict-within { color: var(--green); } .verdict-out { color: #b34700; font-weight: 650; }
 svg .dot { fill: var(--green); } svg .dot-out { fill: var(--orange); stroke: var(--ink); stroke-width: .6; } svg .dot-none { fill: var(--soft); }
 svg .series { fill: none; stroke: #b4bdc5; stroke-width: 1; }

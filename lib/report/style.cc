@@ -40,7 +40,7 @@ p { margin: .5rem 0; max-width: 46rem; }
 .tiles span.label { color: var(--soft); font-size: .82rem; line-height: 1.3; display: block; }
 .columns { display: grid; grid-template-columns: 1fr 1fr; gap: 0 2.2rem; align-items: start; }
 table { border-collapse: collapse; width: 100%; margin: .4rem 0 .9rem; font-size: .92rem; }
-caption { text-align: left; color: var(--soft); font-size: .85rem; padding-bottom: .2rem; }
+caption { max-width: calc(100vw - 3.2rem); text-align: left; color: var(--soft); font-size: .85rem; padding-bottom: .2rem; }
 th, td { padding: .22rem .6rem .22rem 0; text-align: left; vertical-align: baseline; border-bottom: 1px solid var(--rule); }
 thead th { border-bottom: 1px solid var(--ink); font-weight: 600; font-size: .85rem; vertical-align: bottom; }
 tbody th { font-weight: 400; color: var(--soft); }

@@ -6,9 +6,10 @@ function subtract(a, b) { return [a[0] - b[0], a[1] - b[1], a[2] - b[2]]; }
 function along(p, t, d) { return [p[0] + t * d[0], p[1] + t * d[1], p[2] + t * d[2]]; }
 
 class Camera {
-    // box: { min, max } of all layers.
-    constructor(box) {
+    // box: { min, max } of all layers   focus: of what fills the window at first
+    constructor(box, focus) {
         this.box = box;
+        this.focus = focus;
         this.radius = Math.max(1e-9, Math.hypot(...subtract(box.max, box.min)) / 2);
         this.width = this.height = 1;
         this.look(0.5, 0.75);
@@ -17,7 +18,7 @@ class Camera {
         const fitted = this.scale === undefined || this.isFitted;
         this.width = width;
         this.height = height;
-        if (fitted) this.fit();
+        if (fitted) this.fit(this.fitted);
     }
     // Angles in radians: azimuth turns about z, elevation is pi / 2 from above.
     look(azimuth, elevation) {
@@ -37,9 +38,10 @@ class Camera {
         this.eye = [sa * ce, -ca * ce, se]; // towards the eye
         this.up = cross(this.eye, this.right);
     }
-    // The whole part fills the window but for a margin, whose right side is the legend's.
-    fit() {
-        const { min, max } = this.box;
+    // What is in the box fills the window but for a margin, whose right side is the legend's.
+    fit(box = this.focus) {
+        this.fitted = box;
+        const { min, max } = box;
         const half = direction => [0, 1, 2].reduce((sum, k) => sum + Math.abs(direction[k]) * (max[k] - min[k]) / 2, 0);
         const legend = this.width > kNarrow ? kLegendWidth : kNarrowLegendWidth;
         this.scale = Math.max(half(this.right) / Math.max(20, (this.width - legend) / 2 - 16), half(this.up) / Math.max(20, this.height / 2 - 56), 1e-9 * this.radius);

@@ -109,9 +109,10 @@ class SteeredView extends View {
         const turn = (a, e) => () => { pan ? camera.pan(-pan * Math.sign(a), -pan * Math.sign(e)) : camera.turn(a, e); this.move(); };
         const look = (a, e) => () => { camera.look(a, e); this.requestDraw(); };
         const zoom = factor => () => { camera.zoom(factor, camera.width / 2, camera.height / 2); this.move(); };
+        const all = () => { camera.fit(camera.box); this.requestDraw(); };
         const actions = {
             ArrowLeft: turn(step, 0), ArrowRight: turn(-step, 0), ArrowUp: turn(0, step), ArrowDown: turn(0, -step),
-            "+": zoom(0.8), "=": zoom(0.8), "-": zoom(1.25), "0": () => { camera.fit(); this.requestDraw(); }, Home: () => { camera.fit(); this.requestDraw(); },
+            "+": zoom(0.8), "=": zoom(0.8), "-": zoom(1.25), "0": all, Home: all,
             t: look(0, Math.PI / 2), f: look(0, 0), r: look(Math.PI / 2, 0), s: () => this.setMode("section"), p: () => this.scene.pick && this.setMode("pick"),
             Escape: () => { this.line = this.plane = undefined; this.updateProfile(); this.setMode("turn"); },
         };

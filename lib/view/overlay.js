@@ -70,7 +70,7 @@ function drawLegend(context, width, height, field) {
             const tick = top + bar * (field.high - value) / (field.high - field.low);
             context.fillStyle = kSoft;
             context.fillRect(left + 16, tick - 0.5, 5, 1);
-            drawText(context, text, left + 25, tick);
+            drawText(context, text.replace("-", "\u2212"), left + 25, tick);
         }
         y = top + bar + 16;
         if (field.diverging) drawText(context, "over-cut", left, y, { colour: kSoft });
@@ -111,18 +111,24 @@ function drawAxes(context, camera, unit) {
     }
 }
 
-// A label with a leader to a place of the part.
-function drawLabel(context, camera, point, text, colour = kInk) {
-    const [x, y] = camera.project(point);
+// A label with a leader to a place of the part, on the side where it covers neither one of `others` nor the legend.
+function drawLabel(context, camera, point, text, others, colour = kInk) {
+    const [x, y] = camera.project(point), end = camera.width - (camera.width > kNarrow ? kLegendWidth : kNarrowLegendWidth);
+    context.font = "600 12px sans-serif";
+    const width = context.measureText(text).width + 6;
+    const boxes = [[1, -1], [-1, -1], [1, 1], [-1, 1]].map(([right, down]) => ({ right, down, left: right > 0 ? x + 16 : x - 16 - width, top: y + 22 * down - 8 }));
+    const isFree = box => box.left >= 0 && box.left + width <= end && others.every(other =>
+        box.left + width < other.left || other.left + other.width < box.left || Math.abs(box.top - other.top) > 17);
+    const box = boxes.find(isFree) ?? boxes[0];
+    others.push({ ...box, width });
     context.strokeStyle = colour;
     context.lineWidth = 1.5;
     context.beginPath();
     context.arc(x, y, 4, 0, 2 * Math.PI);
-    context.moveTo(x + 3, y - 3);
-    context.lineTo(x + 16, y - 16);
+    context.moveTo(x + 3 * box.right, y + 3 * box.down);
+    context.lineTo(x + 16 * box.right, y + 16 * box.down);
     context.stroke();
-    const right = x + 130 > camera.width;
-    drawText(context, text, right ? x + 14 : x + 19, y - 22, { ground: true, bold: true, colour, align: right ? "right" : "left" });
+    drawText(context, text, box.left + 3, box.top + 8, { ground: true, bold: true, colour });
 }
 
 function drawPicks(context, camera, picks, current) {

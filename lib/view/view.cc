@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <span>
 
 namespace fettle::view {
 namespace {
@@ -176,12 +177,14 @@ json::Value described_boundaries(const std::vector<Layer>& layers, const ViewOpt
     return boundaries;
 }
 
-json::Value described_box(const std::vector<Layer>& layers, double mm)
+/// @param count  of the layers that are in it, from the first on
+json::Value described_box(const std::vector<Layer>& layers, std::size_t count, double mm)
 {
     Eigen::AlignedBox3d box;
-    for (const Layer& layer : layers)
+    for (const Layer& layer : std::span(layers).first(count))
         for (const Eigen::Vector3d& p : layer.part.points.xyz.colwise())
             if (p.allFinite()) box.extend(p);
+    if (box.isEmpty() && count < layers.size()) return described_box(layers, layers.size(), mm);
     if (box.isEmpty()) throw core::InputError("no point has a finite x, y and z: there is nothing to draw");
     return json::Value().set("min", Eigen::VectorXd(box.min() / mm)).set("max", Eigen::VectorXd(box.max() / mm));
 }
@@ -204,7 +207,9 @@ draw::Html view_element(const std::vector<Layer>& layers, const ViewOptions& opt
 {
     const double mm = options.picture.units.mm();
     json::Value scene;
-    scene.set("unit", units::to_string(options.picture.units.length)).set("box", described_box(layers, mm));
+    scene.set("unit", units::to_string(options.picture.units.length))
+        .set("box", described_box(layers, layers.size(), mm))
+        .set("focus", described_box(layers, 1, mm));
     const std::map<std::string, draw::PictureScale> scales = shared_scales(layers, options);
     draw::Html blocks;
     std::vector<json::Value> described;

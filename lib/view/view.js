@@ -22,7 +22,7 @@ class View {
         this.blocks = [...root.querySelectorAll(".block")];
         for (const layer of this.layers)
             for (const field of layer.fields) if (field.colours) field.colours = Uint8Array.from(atob(field.colours), c => c.charCodeAt(0));
-        this.camera = new Camera(this.scene.box);
+        this.camera = new Camera(this.scene.box, this.scene.focus);
         this.camera.look(...(this.scene.pick ? [0, Math.PI / 2] : [0.45, 0.7]));
         this.pointers = new Map();
         this.mode = "turn";
@@ -221,11 +221,12 @@ class View {
             const top = boundary.line.map(p => camera.project(p)).reduce((a, b) => b[1] < a[1] ? b : a);
             drawText(context, name, top[0], top[1] - 12, { bold: true, align: "center", colour: cssColour(kBoundaryInks[name]), ground: true });
         }
+        const labels = [];
         if (!this.moving)
             for (const { point, text } of this.field.extremes ?? []) {
                 const [x, y, depth] = camera.project(point), front = pickAt(camera, this.layer, x, y);
                 const hidden = front && front.depth > depth + 0.02 * camera.radius;
-                drawLabel(context, camera, point, text + (hidden ? " (behind)" : ""), hidden ? "#8a8a8a" : kInk);
+                drawLabel(context, camera, point, text + (hidden ? " (behind)" : ""), labels, hidden ? "#8a8a8a" : kInk);
             }
         if (this.line) {
             context.strokeStyle = "#d55e00";
