@@ -77,11 +77,11 @@ int main(int argc, char** argv)
 {
     const std::string description =
         "Moves a part: by a matrix, by turns, or so that a face of it is up; converts its unit.\n"
-        "Out: the cloud or mesh with all its triangles and fields; normals and viewpoint are turned with it. The "
-        "matrix "
-        "is applied first, then the turns, then --up, then --centre. A face's upper side is where the normals of mesh "
-        "or "
-        "cloud point; of a cloud without normals, the side of its viewpoint.";
+        "Out: the cloud or mesh with all its triangles and fields; normals, poses and viewpoint are turned with it. "
+        "The "
+        "matrix is applied first, then the turns, then --up, then --centre. A face's upper side is where the normals "
+        "of "
+        "mesh or cloud point; of a cloud without normals, the side of its viewpoint.";
     return cli::tool_main(argc, argv, description, [](cli::Tool& t) {
         const Options o{t};
         t.example("fettle-place scans/hammer.stl --up plane --centre --inverse back.txt -o lying.stl",
@@ -95,6 +95,8 @@ int main(int argc, char** argv)
         mesh::CloudMeshFile file = mesh::read_cloud_mesh(
             o.path, mesh::resolve_file_units(o.unit, request.into ? std::optional(request.into->units) : std::nullopt));
         const std::string name = core::display_name(o.path);
+        if (cloud::has_field(file.part.points, "joint1"))
+            throw core::InputError(name, "has joints, which do not move with it: place a path before fettle-collide");
         o.out.format_for(file.part.is_mesh());
         const double mm = file.units.mm();
         if (request.picked) *request.picked *= mm;

@@ -67,6 +67,11 @@ void set_field(Cloud& cloud, const std::string& name, const Eigen::VectorXd& val
     });
 }
 
+bool has_poses(const Cloud& cloud)
+{
+    return std::ranges::all_of(kQuaternion, [&](const char* name) { return has_field(cloud, name); });
+}
+
 bool has_normals(const Cloud& cloud)
 {
     return std::ranges::all_of(kNormals, [&](const std::string& name) { return has_field(cloud, name); });
@@ -94,6 +99,23 @@ void set_colours(Cloud& cloud, const Eigen::Matrix<std::uint8_t, 3, Eigen::Dynam
     }
 }
 
+namespace {
+
+/// Turns the quaternions qw qx qy qz, whatever their lengths.
+void turn_poses(Cloud& cloud, const Eigen::Quaterniond& turn)
+{
+    Eigen::Matrix4Xd q(4, cloud.size());
+    for (Eigen::Index k = 0; k < 4; ++k) q.row(k) = field(cloud, kQuaternion[k]);
+    for (auto old : q.colwise()) {
+        const Eigen::Quaterniond turned = turn * Eigen::Quaterniond(old[0], old[1], old[2], old[3]);
+        old << turned.w(), turned.x(), turned.y(), turned.z();
+        if (turned.w() < 0) old = -old; // q and -q are the same rotation
+    }
+    for (Eigen::Index k = 0; k < 4; ++k) set_field(cloud, kQuaternion[k], q.row(k), 8);
+}
+
+} // namespace
+
 Cloud transformed(Cloud cloud, const Eigen::Matrix4d& matrix, double mm)
 {
     const auto apply = [&](const Eigen::Vector3d& p) {
@@ -105,6 +127,7 @@ Cloud transformed(Cloud cloud, const Eigen::Matrix4d& matrix, double mm)
     for (Eigen::Index i = 0; i < cloud.size(); ++i) cloud.xyz.col(i) = mm * apply(cloud.xyz.col(i) / mm);
     const Eigen::Matrix3d R = matrix.topLeftCorner<3, 3>();
     if (has_normals(cloud)) set_normals(cloud, R * normals(cloud));
+    if (has_poses(cloud)) turn_poses(cloud, Eigen::Quaterniond(R));
     cloud.view_origin = mm * apply(cloud.view_origin / mm);
     const Eigen::Quaterniond q = (Eigen::Quaterniond(R) * cloud.view_orientation).normalized();
     cloud.view_orientation = q.w() < 0 ? Eigen::Quaterniond(-q.coeffs()) : q; // q and -q are the same rotation

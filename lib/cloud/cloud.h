@@ -54,8 +54,13 @@ void set_normals(Cloud& cloud, const Eigen::Matrix3Xd& unit_normals);
 /// Sets the field rgb, packed as in PCL, so that pcl_viewer and CloudCompare show it. @param rgb  3xN, 0 to 255
 void set_colours(Cloud& cloud, const Eigen::Matrix<std::uint8_t, 3, Eigen::Dynamic>& rgb);
 
-/// Moves points, normals and viewpoint of a cloud. Row by row x' = ((m00 x + m01 y) + m02 z) + m03 in double, so that
-/// any program that applies the matrix gets the same bits; the order of the sums in
+/// Names of the fields that hold the orientation of a pose at each point, a quaternion (cloud/poses.h).
+inline constexpr const char* kQuaternion[] = {"qw", "qx", "qy", "qz"};
+/// True if the cloud has these four fields.
+bool has_poses(const Cloud& cloud);
+
+/// Moves points, normals, poses and viewpoint of a cloud. Row by row x' = ((m00 x + m01 y) + m02 z) + m03 in double, so
+/// that any program that applies the matrix gets the same bits; the order of the sums in
 /// pcl::transformPointCloudWithNormals depends on the vector instructions that it is compiled for.
 /// @param matrix  rigid, in units of `mm` millimetres
 Cloud transformed(Cloud cloud, const Eigen::Matrix4d& matrix, double mm);

@@ -10,17 +10,6 @@
 
 namespace fettle::cloud {
 
-namespace {
-
-const char* const kQuaternion[] = {"qw", "qx", "qy", "qz"};
-
-} // namespace
-
-bool has_poses(const Cloud& cloud)
-{
-    return std::ranges::all_of(kQuaternion, [&](const char* name) { return has_field(cloud, name); });
-}
-
 PosePath read_poses(const Cloud& cloud)
 {
     Eigen::Matrix4Xd q(4, cloud.size());

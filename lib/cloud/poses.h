@@ -12,9 +12,6 @@ namespace fettle::cloud {
 /// Poses of the tool frame in the part frame along a path; a NaN translation means that a pose is missing.
 using PosePath = std::vector<Eigen::Isometry3d>;
 
-/// True if the cloud has the fields qw qx qy qz.
-bool has_poses(const Cloud& cloud);
-
 /// Reads the poses of a path from x y z (mm) and the quaternion qw qx qy qz, of any length but 0; NaN: a missing pose.
 /// @throws InputError if a field is missing, or a quaternion is 0
 PosePath read_poses(const Cloud& cloud);

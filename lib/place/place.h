@@ -37,7 +37,7 @@ struct PlacedPart {
     std::optional<FoundRegion> region; ///< what faces up, before it was turned
 };
 
-/// Moves a part: points, normals and viewpoint; triangles and all other fields stay as they are.
+/// Moves a part: points, normals, poses and viewpoint; triangles and all other fields stay as they are.
 /// @param mm  millimetres in the unit of the part's file
 /// @throws InputError as find_region(), and for picked points on a line
 PlacedPart place_part(mesh::CloudMesh part, const PlaceRequest& request, double mm);

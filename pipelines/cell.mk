@@ -1,0 +1,60 @@
+# From a scan to checked robot programs: the anomalies of a part are found, each is fitted and planned as on the gantry (raw.mk), the passes
+# become one path, and an IRB 1400 with a grinding wheel grinds the part where it lies in the cell.
+#
+#   make -f pipelines/cell.mk                 the scanned hammer with its bead and burr
+#       PART=SCAN TEMPLATE=JOB                a scan of yours, in mm; JOB has the machine's values
+#       ROBOT=FILE PLACE=MATRIX               the cell, its tool the job's wheel, and where the part lies in it: 4 x 4
+#       CLEARANCE=15                          from stroke to stroke, mm
+#       DIALECT=rapid                         or krl, ls, urscript
+#
+# In $(CELL): found.json and jobs/ROW.json, path.pcd in the part's frame, checked.pcd with joints and clearances, cell.png, program.mod (.src, .ls, .script), report.json.
+
+B         ?= build
+CELL      ?= $(B)/cell
+PART      ?= $(CELL)/part.stl
+TEMPLATE  ?= samples/jobs/hammer.json
+ROBOT     ?= samples/robots/irb1400_wheel.json
+PLACE     ?= samples/robots/hammer_place.txt
+CLEARANCE ?= 15
+DIALECT   ?= rapid
+SUFFIX    := $(patsubst $(DIALECT):%,%,$(filter $(DIALECT):%,rapid:mod krl:src ls:ls urscript:script))
+PROGRAM   := $(CELL)/program.$(or $(SUFFIX),$(error DIALECT=$(DIALECT): rapid, krl, ls or urscript))
+export PATH := $(abspath $(B)/bin):$(PATH)
+RAW_STEP  = $(MAKE) --no-print-directory -s -f pipelines/raw.mk B=$(B) RAW=$(patsubst %/,%,$(dir $(CELL))) NAME=$(notdir $(CELL)) PART=$(PART) CLEAN=no TEMPLATE=$(TEMPLATE)
+
+.DELETE_ON_ERROR:
+.SECONDARY:
+.PHONY: cell
+cell: $(PROGRAM) $(CELL)/cell.png
+	@pipelines/cell-table $(CELL)
+
+$(CELL)/part.stl: samples/parts/hammer.json $(B)/bin/fettle-part
+	@mkdir -p $(@D)
+	fettle-part $< -o $@
+
+$(CELL)/found.json: $(PART) $(TEMPLATE) $(B)/bin/fettle-find
+	@$(RAW_STEP) $@
+
+# The rows that have a job are known now.
+$(CELL)/path.csv: $(CELL)/found.json pipelines/cell-path $(B)/bin/fettle-plan
+	@$(RAW_STEP) $$(cd $(CELL)/jobs && printf '$(CELL)/%s/plan.json ' $$(ls | sed -n 's/\.json$$//p'))
+	pipelines/cell-path $(CELL) > $@
+
+$(CELL)/path.pcd: $(CELL)/path.csv $(PART) $(B)/bin/fettle-path
+	fettle-path $< --part $(PART) --clearance $(CLEARANCE) --spacing 2 -o $@
+
+# Path and part to where they lie in the cell.
+$(CELL)/placed.pcd: $(CELL)/path.pcd $(PLACE) $(B)/bin/fettle-place
+	fettle-place $< --matrix $(PLACE) -q -o $@
+$(CELL)/placed.stl: $(PART) $(PLACE) $(B)/bin/fettle-place
+	fettle-place $< --matrix $(PLACE) -q -o $@
+
+# Exit 1 is an answer, which the report and the table tell; a path that is not clear makes no program.
+$(CELL)/checked.pcd: $(CELL)/placed.pcd $(CELL)/placed.stl $(ROBOT) $(B)/bin/fettle-collide
+	fettle-collide $(ROBOT) $< --workpiece $(CELL)/placed.stl --report $(@D)/report.json --chart $(@D)/clearance.png -o $@ || test $$? -eq 1
+
+$(CELL)/cell.png: $(CELL)/checked.pcd
+	fettle-collide $(ROBOT) $< --workpiece $(CELL)/placed.stl --picture $@ -q -o /dev/null || test $$? -eq 1
+
+$(PROGRAM): $(CELL)/checked.pcd $(B)/bin/fettle-arm
+	fettle-arm $(ROBOT) --forward $< --feed 20 --$(DIALECT) $@ -q -o /dev/null
