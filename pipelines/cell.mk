@@ -37,7 +37,7 @@ $(CELL)/found.json: $(PART) $(TEMPLATE) $(B)/bin/fettle-find
 
 # The rows that have a job are known now.
 $(CELL)/path.csv: $(CELL)/found.json pipelines/cell-path $(B)/bin/fettle-plan
-	@$(RAW_STEP) $$(cd $(CELL)/jobs && printf '$(CELL)/%s/plan.json ' $$(ls | sed -n 's/\.json$$//p'))
+	@$(RAW_STEP) $$(jq '.anomalies[] | select(.job != "").anomaly' $< | sed 's|.*|$(CELL)/&/plan.json|')
 	pipelines/cell-path $(CELL) > $@
 
 $(CELL)/path.pcd: $(CELL)/path.csv $(PART) $(B)/bin/fettle-path
