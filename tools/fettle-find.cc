@@ -8,6 +8,7 @@
 #include "find/find.h"
 #include "find/jobs.h"
 #include "find/registration.h"
+#include "job/plausible.h"
 #include "job/shape_warnings.h"
 #include "mesh/part_output.h"
 #include "mesh/read_formats.h"
@@ -131,6 +132,8 @@ std::pair<find::Registration, mesh::MeshOrCloud> registered(const Options& o, co
 {
     const std::string reference_name = core::display_name(reference_path);
     mesh::ShapeFile reference = mesh::read_shape(reference_path, mesh::resolve_file_units(o.against_unit));
+    if (o.transform_in.empty())
+        job::require_no_stray_point(mesh::coordinates_of(reference.shape), reference.units, reference_name);
     for (const std::string& warning : job::shape_warnings(reference, reference_name, reference.units))
         o.t.warn(warning);
     const double mm = part.units.mm();
@@ -229,6 +232,8 @@ int main(int argc, char** argv)
         mesh::CloudMeshFile file = mesh::read_cloud_mesh(o.path, mesh::resolve_file_units(o.unit));
         const std::string name = core::display_name(o.path);
         o.out.format_for(o.out.format == "ply" && file.part.is_mesh());
+        const bool registers = o.transform_in.empty() && !(o.against.empty() && o.like.empty());
+        if (registers) job::require_no_stray_point(file.part.points.xyz, file.units, name);
         for (const std::string& warning : job::shape_warnings(file, name)) t.warn(warning);
 
         const units::Units units = o.out.units(cloud::measured_units(file.units, std::nullopt));

@@ -4,6 +4,7 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "geometry/bounding_box.h"
+#include "job/plausible.h"
 #include "job/shape_warnings.h"
 #include "mesh/shape_file.h"
 
@@ -65,6 +66,11 @@ AlignRun align_files(const AlignRequest& request)
     const bool applies_start = options.icp.max_iterations == 0;
     if (!request.start.empty() || !request.search || applies_start) options.start = to_isometry(run.transform, mm);
 
+    if (!applies_start) {
+        job::require_no_stray_point(scan.part.points.xyz, scan.units, scan_name);
+        job::require_no_stray_point(mesh::coordinates_of(target.shape), target.units,
+                                    core::display_name(request.reference));
+    }
     const auto reference = core::with_error_prefix(core::display_name(request.reference), [&] {
         return std::visit([](const auto& shape) { return std::make_unique<AlignReference>(shape); }, target.shape);
     });

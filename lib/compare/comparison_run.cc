@@ -44,7 +44,10 @@ void check_reference(ComparisonRun& run, const std::string& name, const mesh::Sh
     const Eigen::Matrix3Xd& points = mesh::coordinates_of(file.shape);
     const Eigen::AlignedBox3d box = geometry::finite_bounding_box(points);
     warn(run, name, mesh::repair_warning(file.repair));
-    warn(run, name, job ? job::part_box_warning(box, *job) : job::size_warning(box, points.cols(), run.units));
+    std::string doubt = job::stray_point_warning(points, run.units);
+    if (doubt.empty())
+        doubt = job ? job::part_box_warning(box, *job) : job::size_warning(box, points.cols(), run.units);
+    warn(run, name, doubt);
 }
 
 /// @throws InputError if one of two files is in the frame of a job and the other is not

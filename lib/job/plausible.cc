@@ -4,10 +4,12 @@
 #include "core/text.h"
 #include "geometry/bounding_box.h"
 #include "geometry/quantiles.h"
+#include "geometry/stray_point.h"
 #include "job/boundary.h"
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 namespace fettle::job {
@@ -56,6 +58,22 @@ std::string in_job_unit(double length, const Job& job)
     return core::to_short_text(length / job.units.mm()) + " " + units::to_string(job.units.length);
 }
 } // namespace
+
+std::string stray_point_warning(const Eigen::Matrix3Xd& points, const units::Units& units)
+{
+    const std::optional<geometry::StrayPoint> stray = geometry::find_stray_point(points);
+    if (!stray) return {};
+    const auto text = [&](int axis) { return core::to_short_text(points(axis, stray->index) / units.mm()); };
+    return "a point at (" + text(0) + ", " + text(1) + ", " + text(2) + ") " + units::to_string(units.length) +
+           " lies " + core::to_short_text(stray->ratio) +
+           " times as far from the middle as half of them: is the file damaged?";
+}
+
+void require_no_stray_point(const Eigen::Matrix3Xd& points, const units::Units& units, const std::string& source)
+{
+    const std::string stray = stray_point_warning(points, units);
+    if (!stray.empty()) throw core::InputError(source, stray);
+}
 
 std::string size_warning(const Eigen::AlignedBox3d& box, Eigen::Index points, const units::Units& units)
 {

@@ -23,6 +23,14 @@ std::string part_box_warning(const Eigen::AlignedBox3d& box, const Job& job);
 /// @return a sentence for a warning, empty if the size is plausible
 std::string size_warning(const Eigen::AlignedBox3d& box, Eigen::Index points, const units::Units& units);
 
+/// Checks for a point far from all others (geometry/stray_point.h), as damaged files have it.
+/// @param points  3xN, mm   @return a sentence that names it, empty if there is none
+std::string stray_point_warning(const Eigen::Matrix3Xd& points, const units::Units& units);
+
+/// Refuses points with a stray one, for what depends on how far they extend.
+/// @param source  of the points, for messages   @throws InputError with stray_point_warning()
+void require_no_stray_point(const Eigen::Matrix3Xd& points, const units::Units& units, const std::string& source);
+
 /// A length that parts go with, and how much longer or shorter than it a part plausibly is.
 struct LengthScale {
     std::string name;  ///< "the cutter's diameter"

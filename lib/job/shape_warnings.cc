@@ -11,8 +11,9 @@ std::vector<std::string> warnings_of(const mesh::MeshRepair& repair, const Eigen
                                      const std::string& name, const units::Units& units)
 {
     std::vector<std::string> warnings;
-    for (const std::string& warning :
-         {mesh::repair_warning(repair), size_warning(geometry::finite_bounding_box(points), points.cols(), units)})
+    std::string size = stray_point_warning(points, units);
+    if (size.empty()) size = size_warning(geometry::finite_bounding_box(points), points.cols(), units);
+    for (const std::string& warning : {mesh::repair_warning(repair), size})
         if (!warning.empty()) warnings.push_back(name + ": " + warning);
     return warnings;
 }

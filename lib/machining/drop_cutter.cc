@@ -94,16 +94,19 @@ struct HighestTouch {
 /// A cutter in the coordinates of a box tree.
 struct CutterQuery {
     float x, y;     ///< of the axis
-    float rounding; ///< bound of the rounding of a coordinate and of a height
+    float rounding; ///< bound of the rounding of the axis and of a rise
     float radius, flat, corner, cone_from, cone_slope;
 };
+
+// Bound on the number of float operations that the tip's height on a box takes.
+constexpr double kMaxHeightRoundings = 16;
 
 CutterQuery make_query(const Cutter& c, const Vector2d& xy, const mesh::BoxTree& tree)
 {
     const Vector2d axis = xy - tree.centre.head<2>();
-    const double size = std::max(axis.cwiseAbs().maxCoeff(), tree.box.sizes().maxCoeff()) + rise(c, c.radius);
+    const double size = axis.cwiseAbs().maxCoeff() + rise(c, c.radius);
     const auto narrow = [](double value) { return static_cast<float>(value); };
-    return {narrow(axis.x()),    narrow(axis.y()),    narrow(8 * (tree.rounding + mesh::kFloatRoundoff * size)),
+    return {narrow(axis.x()),    narrow(axis.y()),    narrow(kMaxHeightRoundings * mesh::kFloatRoundoff * size),
             narrow(c.radius),    narrow(c.flat),      narrow(c.corner),
             narrow(c.cone_from), narrow(c.cone_slope)};
 }
@@ -139,17 +142,11 @@ FETTLE_CLONES unsigned candidates(const mesh::Boxes8& boxes, const CutterQuery& 
     tips = tip_upper_bounds(boxes.min, boxes.max, query);
     return mesh::lane_bits(tips > found);
 }
-FETTLE_CLONES unsigned candidates(const mesh::Triangles8& triangles, const CutterQuery& query, float found,
-                                  mesh::Float8& tips)
+FETTLE_CLONES unsigned candidates(const mesh::Triangles8& triangles, float margin, const CutterQuery& query,
+                                  float found, mesh::Float8& tips)
 {
-    const auto& [a, b, c] = triangles.corner;
-    mesh::Float8 min[3], max[3];
-#pragma GCC unroll 3
-    for (int axis = 0; axis < 3; ++axis) {
-        min[axis] = mesh::cwise_min(a[axis], mesh::cwise_min(b[axis], c[axis]));
-        max[axis] = mesh::cwise_max(a[axis], mesh::cwise_max(b[axis], c[axis]));
-    }
-    tips = tip_upper_bounds(min, max, query);
+    const mesh::Boxes8 boxes = mesh::enlarged(mesh::boxes_of(triangles), margin);
+    tips = tip_upper_bounds(boxes.min, boxes.max, query);
     return mesh::lane_bits(tips > found);
 }
 
@@ -174,7 +171,10 @@ Touch highest_touch(const mesh::BoxTree& tree, const mesh::Mesh& mesh, const std
 {
     HighestTouch<Side> touch(cutter, xy);
     const CutterQuery query = make_query(cutter, xy, tree);
-    const auto found = [&] { return static_cast<float>(touch.highest.z - tree.centre.z()) - query.rounding; };
+    const auto found = [&] {
+        const auto z = static_cast<float>(touch.highest.z - tree.centre.z());
+        return z - std::abs(z) * mesh::kBoundRoundingError - query.rounding;
+    };
     mesh::NodeStack stack;
     stack.push({-std::numeric_limits<float>::infinity(), static_cast<std::int32_t>(tree.levels.size()) - 1, 0});
     while (stack.any()) {
@@ -187,8 +187,8 @@ Touch highest_touch(const mesh::BoxTree& tree, const mesh::Mesh& mesh, const std
             stack.push(lanes, -tips, next.level - 1, next.index);
             continue;
         }
-        for (mesh::LaneIterator left{candidates(tree.leaves[next.index], query, found(), tips)}; left.any();
-             left.next()) {
+        const unsigned lanes = candidates(tree.leaves[next.index], tree.leaf_margins[next.index], query, found(), tips);
+        for (mesh::LaneIterator left{lanes}; left.any(); left.next()) {
             const Eigen::Index t = tree.triangle(next.index, left.first());
             if (tips[left.first()] > found()) test_triangle(touch, mesh, t, owned[t]);
         }

@@ -40,7 +40,7 @@ FETTLE_INLINE Float8 squared_distance(const Discs8& discs, const float (&point)[
     const auto& [nx, ny, nz] = discs.normal;
     const Point8 to_centre = Point8{x, y, z} - broadcast(point);
     const Float8 axial = dot(to_centre, {nx, ny, nz});
-    const Float8 radial2 = dot(to_centre, to_centre) * (1 - kDiscRoundingError) - axial * axial;
+    const Float8 radial2 = dot(to_centre, to_centre) * (1 - kBoundRoundingError) - axial * axial;
     const Float8 above = cwise_max(cwise_max(axial, -axial) - discs.half_thickness, Float8{});
     const Float8 beyond = cwise_max(cwise_sqrt(cwise_max(radial2, Float8{})) - discs.radius, Float8{});
     return above * above + beyond * beyond;

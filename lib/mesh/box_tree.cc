@@ -2,6 +2,7 @@
 
 #include "core/parallel_box.h"
 #include "core/simd.h"
+#include "geometry/stray_point.h"
 
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
@@ -57,6 +58,18 @@ Box box_of(const Boxes8& boxes, std::size_t k)
     return box;
 }
 
+float max_coordinate(const Box& box) { return box.min.abs().max(box.max.abs()).maxCoeff(); }
+
+/// The box enlarged by the margin that kBoundRoundingError asks for. An empty box stays empty.
+Box enlarged(Box box)
+{
+    if (!(box.min[0] <= box.max[0])) return box;
+    const float margin = kBoundRoundingError * max_coordinate(box);
+    box.min -= margin;
+    box.max += margin;
+    return box;
+}
+
 struct Disc {
     Eigen::Vector3f centre, normal;
     float radius, half;
@@ -93,10 +106,10 @@ FETTLE_CLONES Disc bounding_disc(std::span<const Triangles8> leaves, const Box& 
             const Float8 axial = dot(from_middle, normal);
             lowest = cwise_min(lowest, axial);
             highest = cwise_max(highest, axial);
-            radial2 = cwise_max(radial2, dot(from_middle, from_middle) * (1 + kDiscRoundingError) - axial * axial);
+            radial2 = cwise_max(radial2, dot(from_middle, from_middle) * (1 + kBoundRoundingError) - axial * axial);
         }
     const float low = min_lane(lowest), high = max_lane(highest);
-    const float rounding = kDiscRoundingError * box.min.abs().max(box.max.abs()).maxCoeff();
+    const float rounding = kBoundRoundingError * max_coordinate(box);
     disc.centre = middle + disc.normal * ((low + high) / 2);
     disc.radius = std::sqrt(max_lane(radial2)) + rounding;
     disc.half = (high - low) / 2 + rounding;
@@ -118,7 +131,8 @@ TreeLevel level_over(const std::vector<Child>& children)
     level.boxes.resize((children.size() + kBranching - 1) / kBranching);
     tbb::parallel_for(std::size_t{0}, level.boxes.size(), [&](std::size_t i) {
         for (std::size_t k = 0; k < kBranching; ++k)
-            set(level.boxes[i], k, kBranching * i + k < children.size() ? box_of(children[kBranching * i + k]) : Box{});
+            set(level.boxes[i], k,
+                kBranching * i + k < children.size() ? enlarged(box_of(children[kBranching * i + k])) : Box{});
     });
     return level;
 }
@@ -251,10 +265,10 @@ BoxTree::BoxTree(const Mesh& mesh) : box(box_of(mesh))
 {
     const auto count = static_cast<std::size_t>(mesh.triangles.cols());
     if (count == 0) return;
-    centre = box.center();
-    rounding = std::numeric_limits<float>::epsilon() * box.sizes().maxCoeff() / 2;
+    centre = geometry::sampled_median(mesh.vertices);
     triangle_order = leaf_order(mesh, centre);
     leaves.resize((count + kBranching - 1) / kBranching);
+    leaf_margins.resize(leaves.size());
     tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t l) {
         for (std::size_t k = 0; k < kBranching; ++k) {
             const std::uint32_t t = triangle_order[std::min(kBranching * l + k, count - 1)];
@@ -263,6 +277,7 @@ BoxTree::BoxTree(const Mesh& mesh) : box(box_of(mesh))
                 for (int axis = 0; axis < 3; ++axis) leaves[l].corner[c][axis][k] = position[axis];
             }
         }
+        leaf_margins[l] = kBoundRoundingError * max_coordinate(box_of(leaves[l]));
     });
     levels.push_back(level_over(leaves));
     while (levels.back().boxes.size() > 1) levels.push_back(level_over(levels.back().boxes));

@@ -16,8 +16,9 @@ namespace fettle::mesh {
 // Bound on the number of float operations in a distance or a ray-box intersection. Each adds a rounding error of at
 // most kFloatRoundoff times the distance.
 inline constexpr double kMaxRoundings = 16;
-// Relative error of a distance to a disc. Fitting the disc to its triangles adds rounding errors of their coordinates.
-inline constexpr float kDiscRoundingError = static_cast<float>(4 * kMaxRoundings * kFloatRoundoff);
+// Relative error of a distance to a box or disc. Boxes and discs are enlarged by this share of their largest
+// coordinate, which covers the rounding of their triangles' coordinates, too.
+inline constexpr float kBoundRoundingError = static_cast<float>(4 * kMaxRoundings * kFloatRoundoff);
 
 /// Eight axis-aligned boxes. An empty box has its minimum at +infinity, at infinite distance from every point.
 struct Boxes8 {
@@ -54,11 +55,21 @@ FETTLE_INLINE Boxes8 boxes_of(const Triangles8& triangles)
     return boxes;
 }
 
+/// The boxes enlarged by `margin` on all sides.
+FETTLE_INLINE Boxes8 enlarged(Boxes8 boxes, float margin)
+{
+    for (int axis = 0; axis < 3; ++axis) {
+        boxes.min[axis] -= margin;
+        boxes.max[axis] += margin;
+    }
+    return boxes;
+}
+
 /// Bounding volume hierarchy over the triangles of a mesh, eight triangles to a leaf and eight children to a node: a
 /// packed tree without pointers (Kamel & Faloutsos, On packing R-trees, 1993), in the order of a k-d tree. Node i of
 /// level l holds the bounds of its children, nodes 8 i to 8 i + 7 of level l - 1, or leaves for level 0; the last level
-/// is the root alone. Coordinates are floats relative to `centre`, where floats are finest; the rounding error of each
-/// is at most `rounding`.
+/// is the root alone. Coordinates are floats relative to `centre`, where floats are finest. Each is rounded by
+/// kFloatRoundoff of itself, so that a few triangles far off are rough and the others are not.
 struct BoxTree {
     explicit BoxTree(const Mesh& mesh);
 
@@ -69,10 +80,10 @@ struct BoxTree {
     }
 
     Eigen::AlignedBox3d box;                          ///< bounding box of the mesh, mm
-    Eigen::Vector3d centre = Eigen::Vector3d::Zero(); ///< centre of `box`
-    double rounding = 0;                              ///< largest rounding error of a coordinate, mm
+    Eigen::Vector3d centre = Eigen::Vector3d::Zero(); ///< median of the vertices by axis, of a sample of them
     std::vector<std::uint32_t> triangle_order;        ///< order[8 l + k] is the mesh's index of triangle k of leaf l
     std::vector<Triangles8> leaves;                   ///< the last leaf is filled up with copies of the last triangle
+    std::vector<float> leaf_margins;                  ///< kBoundRoundingError of a leaf's largest coordinate, mm
     std::vector<TreeLevel> levels;
 };
 

@@ -130,10 +130,11 @@ FETTLE_CLONES void find_closest(ClosestQuery& query, std::uint32_t leaf, const B
 /// A ray casting query: the ray in double and in float, and the first hit so far.
 struct RayQuery {
     WatertightRay ray;
-    float origin[3];            ///< where the ray enters the mesh's bounding box, relative to the tree's centre
+    double reference; ///< distance along the ray to `origin`, mm
+    float origin[3];  ///< point of the ray nearest to the tree's centre, relative to it: floats are finest there
     float inverse_direction[3]; ///< componentwise
-    double entry;               ///< distance along the ray to `origin`, mm
-    float padding;              ///< by which boxes are enlarged to allow for rounding errors, mm
+    float entry;                ///< distance from `origin` to where the ray enters the mesh's bounding box, mm, <= 0
+    float padding;              ///< by which boxes are enlarged to allow for the rounding of `origin`, mm
     double distance = std::numeric_limits<double>::infinity();
     Eigen::Index triangle = kNoTriangle;
     float bound = std::numeric_limits<float>::infinity(); ///< of the distance from `origin`, mm
@@ -145,14 +146,15 @@ struct RayQuery {
         if (!hit || *hit > distance || (*hit == distance && index >= triangle)) return;
         distance = *hit;
         triangle = index;
-        bound = static_cast<float>((distance - entry) * (1 + kMaxRoundings * kFloatRoundoff)) + padding;
+        const double offset = distance - reference;
+        bound = static_cast<float>(offset + kMaxRoundings * kFloatRoundoff * std::abs(offset)) + padding;
     }
 };
 
 /// Distances from `origin` at which a ray enters eight boxes; infinite for boxes that it misses (slab method).
 FETTLE_INLINE Float8 entry_distances(const Boxes8& boxes, const RayQuery& query)
 {
-    Float8 near = {}, far = broadcast(query.bound);
+    Float8 near = broadcast(query.entry), far = broadcast(query.bound);
     for (int axis = 0; axis < 3; ++axis) {
         const Float8 to_min = (boxes.min[axis] - query.padding - query.origin[axis]) * query.inverse_direction[axis];
         const Float8 to_max = (boxes.max[axis] + query.padding - query.origin[axis]) * query.inverse_direction[axis];
@@ -170,7 +172,7 @@ FETTLE_CLONES void find_first_hit(RayQuery& query, const BoxTree& tree, const Me
         return lane_bits(distances < std::numeric_limits<float>::infinity());
     };
     NodeStack stack;
-    stack.push({0, static_cast<std::int32_t>(tree.levels.size()) - 1, 0});
+    stack.push({query.entry, static_cast<std::int32_t>(tree.levels.size()) - 1, 0});
     while (stack.any()) {
         const StackEntry node = stack.pop();
         if (node.distance > query.bound) continue;
@@ -179,7 +181,8 @@ FETTLE_CLONES void find_first_hit(RayQuery& query, const BoxTree& tree, const Me
             stack.push(hit_lanes(entries), entries, node.level - 1, node.index);
             continue;
         }
-        const Float8 entries = entry_distances(boxes_of(tree.leaves[node.index]), query);
+        const Float8 entries =
+            entry_distances(enlarged(boxes_of(tree.leaves[node.index]), tree.leaf_margins[node.index]), query);
         for (LaneIterator lanes{hit_lanes(entries)}; lanes.any(); lanes.next()) {
             const Eigen::Index t = tree.triangle(node.index, lanes.first());
             query.update(triangle_of(mesh, t), t);
@@ -228,14 +231,21 @@ std::optional<MeshIndex::Hit> MeshIndex::cast(const Eigen::Vector3d& origin,
 {
     const BoxTree& tree = state_->tree;
     if (tree.levels.empty() || !origin.allFinite() || !unit_direction.allFinite()) return std::nullopt;
-    const double padding = kMaxRoundings * (tree.rounding + kFloatRoundoff * tree.box.sizes().maxCoeff());
     Eigen::AlignedBox3d box = tree.box;
-    box.min().array() -= padding;
-    box.max().array() += padding;
+    const double margin = kBoundRoundingError * box.sizes().maxCoeff();
+    box.min().array() -= margin;
+    box.max().array() += margin;
     const std::optional<double> entry = entry_distance(box, origin, unit_direction);
     if (!entry) return std::nullopt;
-    RayQuery query{WatertightRay(origin, unit_direction), {}, {}, *entry, static_cast<float>(padding)};
-    const Eigen::Vector3d start = origin + *entry * unit_direction - tree.centre;
+    const double reference = std::max(*entry, (tree.centre - origin).dot(unit_direction));
+    const Eigen::Vector3d start = origin + reference * unit_direction - tree.centre;
+    const double padding = 2 * kMaxRoundings * kFloatRoundoff * start.cwiseAbs().maxCoeff();
+    RayQuery query{WatertightRay(origin, unit_direction),
+                   reference,
+                   {},
+                   {},
+                   static_cast<float>(*entry - reference),
+                   static_cast<float>(padding)};
     for (int axis = 0; axis < 3; ++axis) {
         constexpr double kMinComponent = 1e-30; // in place of 0: the inverse of 0 times 0 would be NaN
         const double component = unit_direction[axis];
@@ -260,8 +270,10 @@ std::optional<MeshIndex::Closest> MeshIndex::closest(const Eigen::Vector3d& poin
     const BoxTree& tree = state_->tree;
     if (tree.levels.empty() || !point.allFinite() || !(radius >= 0)) return std::nullopt;
     const Eigen::Vector3d centred = point - tree.centre;
+    // Besides the point's coordinates a triangle's are rounded: by no more than the point's are, and by a share of
+    // their difference that the relative errors of all distances cover.
     constexpr double kMaxNormPerComponent = 2; // > √3, the norm of a vector over its largest component
-    const double float_error = kMaxNormPerComponent * (tree.rounding + kFloatRoundoff * centred.cwiseAbs().maxCoeff());
+    const double float_error = 2 * kMaxNormPerComponent * kFloatRoundoff * centred.cwiseAbs().maxCoeff();
     ClosestQuery query(point, centred, radius, float_error);
     const auto last_leaf = static_cast<std::uint32_t>(tree.leaves.size()) - 1;
     find_closest(query, std::min(leaf, last_leaf), tree, state_->mesh);

@@ -158,7 +158,7 @@ FETTLE_INLINE mesh::Float8 lower_bound(const Wide& solid, const mesh::Discs8& di
     const mesh::Float8 along =
         mesh::dot(centre.gradient, mesh::Point8{discs.normal[0], discs.normal[1], discs.normal[2]});
     const mesh::Float8 across = mesh::cwise_sqrt(
-        mesh::cwise_max(mesh::broadcast(1 + mesh::kDiscRoundingError) - along * along, mesh::Float8{}));
+        mesh::cwise_max(mesh::broadcast(1 + mesh::kBoundRoundingError) - along * along, mesh::Float8{}));
     return centre.value - magnitude(along) * discs.half_thickness - across * discs.radius;
 }
 

@@ -98,9 +98,8 @@ struct TreeSearch {
     const bool bounds_only; ///< the result is the smallest lower bound, no triangle is measured
     Workpiece::Nearest& best;
     const Wide wide = Wide(outline, tree.centre);
-    /// Error bound of distances in float, mm.
-    const double rounding =
-        mesh::kMaxRoundings * (tree.rounding + mesh::kFloatRoundoff * (wide.size + tree.box.diagonal().norm()));
+    /// Error bound of distances in float, mm, but for the margins of boxes and leaves.
+    const double rounding = 2 * mesh::kMaxRoundings * mesh::kFloatRoundoff * wide.size;
     /// Upper bound of the minimum distance in float, mm: triangles above it are not nearest in double either.
     float upper_bound = std::min(std::numeric_limits<float>::max(), float(best.clearance.distance + 2 * rounding));
     std::array<Candidate, 64> candidates; ///< rarely more than ten at a time
@@ -127,7 +126,9 @@ struct TreeSearch {
 
     FETTLE_INLINE void scan_leaf(std::uint32_t leaf)
     {
-        const MinDistance8 distances = min_distances(wide, tree.leaves[leaf]);
+        MinDistance8 distances = min_distances(wide, tree.leaves[leaf]);
+        distances.lower -= tree.leaf_margins[leaf];
+        distances.upper += tree.leaf_margins[leaf];
         if (bounds_only) {
             for (mesh::LaneIterator lanes{mesh::lane_bits(distances.lower < upper_bound)}; lanes.any(); lanes.next()) {
                 const float lower = distances.lower[lanes.first()];

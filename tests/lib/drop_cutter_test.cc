@@ -138,6 +138,7 @@ TEST(DropCutter, OfManyTrianglesIsTheHighestOfEach)
             triangles.emplace_back(a, a + 1, a + kCells + 2);
             triangles.emplace_back(a, a + kCells + 2, a + kCells + 1);
         }
+    mesh.vertices.col(5) << 700 + 5, 900 - 3.84e8, 300 - 1e7; // of a damaged file
     mesh.triangles.resize(3, static_cast<Eigen::Index>(triangles.size()));
     for (std::size_t t = 0; t < triangles.size(); ++t) mesh.triangles.col(static_cast<Eigen::Index>(t)) = triangles[t];
     std::mt19937 random(5);

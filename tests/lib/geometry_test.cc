@@ -1,6 +1,7 @@
 #include "geometry/bounding_box.h"
 #include "geometry/clipping.h"
 #include "geometry/quantiles.h"
+#include "geometry/stray_point.h"
 #include "geometry/uniform_draws.h"
 #include "geometry/union_find.h"
 
@@ -111,6 +112,26 @@ TEST(Clipping, ToleranceEnlargesTheRectangle)
     const geometry::ClippedTriangle<2> outside(beside, cell), inside(beside, cell, 0.1);
     EXPECT_TRUE(outside.corners().empty());
     EXPECT_FALSE(inside.corners().empty());
+}
+
+// A ring of radius 10, one point of which is moved away.
+TEST(StrayPoint, IsAThousandTimesAsFarAsHalf)
+{
+    Eigen::Matrix3Xd points(3, 5000);
+    for (int i = 0; i < 5000; ++i) points.col(i) << 100 + 10 * std::cos(i), 200 + 10 * std::sin(i), 5;
+    EXPECT_FALSE(geometry::find_stray_point(points));
+    EXPECT_LT((geometry::sampled_median(points) - Eigen::Vector3d(100, 200, 5)).norm(), 1);
+    points.col(7).setConstant(std::nan(""));
+    points.col(4321) << 100, 200, 5 + 9000;
+    EXPECT_FALSE(geometry::find_stray_point(points));
+    points.col(4321) << 100, 200, 5 - 12000;
+    const auto stray = geometry::find_stray_point(points);
+    ASSERT_TRUE(stray);
+    EXPECT_EQ(stray->index, 4321);
+    EXPECT_NEAR(stray->ratio, 1200, 100);
+    EXPECT_FALSE(geometry::find_stray_point(Eigen::Matrix3Xd(3, 0)));
+    EXPECT_FALSE(geometry::find_stray_point(Eigen::Matrix3Xd::Constant(3, 9, std::nan(""))));
+    EXPECT_FALSE(geometry::find_stray_point(Eigen::Matrix3Xd::Constant(3, 9, 4)));
 }
 
 TEST(BoundingBox, OfPoints)

@@ -105,6 +105,29 @@ TEST(Workpiece, NearestAsByBruteForce)
     EXPECT_LT(max_slack, 4); // mm, the side of a triangle: a cylinder's rim may bend as sharply
 }
 
+// A damaged file, of which one corner is as far as the moon. Reference: all triangles, in double.
+TEST(Workpiece, ACornerFarOffDisturbsNoBall)
+{
+    mesh::Mesh mesh = sheet(24, 100);
+    mesh.vertices.col(24) << 3.84e8, -1e8, -2e8;
+    const robot::Workpiece workpiece(mesh);
+    std::mt19937 random(12);
+    std::uniform_real_distribution<double> place(-60, 60);
+    for (int k = 0; k < 200; ++k) {
+        const Vector3d at(place(random), place(random), place(random) / 3);
+        const robot::PlacedSolid ball(robot::solid::Sphere{at, 2}, Isometry3d::Identity());
+        double min = INFINITY, min_near = INFINITY; // of all, and of those without that corner
+        for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
+            const double squared = mesh::closest_on_triangle(mesh::triangle_of(mesh, t), at).squared_distance;
+            min = std::min(min, squared);
+            if ((mesh.triangles.col(t).array() != 24).all()) min_near = std::min(min_near, squared);
+        }
+        EXPECT_LE(workpiece.lower_bound(ball, 50, 0).distance, std::sqrt(min) - 2);
+        if (min < min_near) continue; // the far triangles themselves are rough, in double too
+        EXPECT_NEAR(workpiece.nearest(ball).clearance.distance, std::sqrt(min) - 2, 1e-9);
+    }
+}
+
 // A box by its corners. Reference: the box.
 TEST(Workpiece, AHullIsMetAsItsBox)
 {
