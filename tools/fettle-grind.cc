@@ -1,3 +1,4 @@
+#include "calibrate/run_learning.h"
 #include "cli/tool.h"
 #include "cloud/cloud_output.h"
 #include "cloud/pcd.h"
@@ -14,6 +15,8 @@
 #include "strategy/trace_file.h"
 
 #include <chrono>
+#include <optional>
+#include <ostream>
 #include <utility>
 #include <vector>
 
@@ -44,6 +47,8 @@ struct Options {
         t.optional_output("--trace", "What the machine did and why, PCD, written ahead", {"pcd"});
     const std::string& resume =
         t.text("--resume", "", "TRACE", "Continue the interrupted run that wrote this trace, and append to it");
+    const std::string& learn =
+        t.text("--learn", "", "LAW", "Removal law, learnt from run to run: read if it is there, and written anew");
     const cloud::CloudOutput out{t};
     draw::Frames frames{t};
 };
@@ -91,6 +96,32 @@ void save_trace(const Options& o, const std::vector<strategy::TraceRow>& trace, 
     }
 }
 
+/// The plan with the removal coefficient that was learnt in former runs.
+plan::Plan informed(const plan::Plan& plan, const std::optional<calibrate::RunLearning>& learning)
+{
+    plan::Plan result = plan;
+    if (learning) result.job = learning->informed(plan.job);
+    return result;
+}
+
+/// Learns from the run, warns of strokes that the law does not explain, and hands the law on.
+void learn_from(const Options& o, const strategy::GrindRun& run, const job::Job& job, const removal::HeightField& stock,
+                calibrate::RunLearning& learning)
+{
+    learning.learn_from(run.trace, job, stock);
+    for (const std::string& line : learning.warnings()) o.t.warn(core::display_name(o.plan) + ": " + line);
+    o.t.report().set("learnt", learning.report());
+    if (learning.is_informed()) o.t.output_file(o.learn) << learning.file();
+}
+
+/// Machine time beside the time that computing took.
+void note_times(const cli::Tool& t, double time, Clock::time_point begun)
+{
+    const double computing = std::chrono::duration<double>(Clock::now() - begun).count();
+    t.note("machine time " + std::to_string(time) + " s, computing time " + std::to_string(computing) + " s, ratio " +
+           std::to_string(time / computing));
+}
+
 /// How the machine's controllers were tuned: on stderr with -v, and in the report.
 void report_loops(cli::Tool& t, const std::vector<gantry::ControlLoop>& loops)
 {
@@ -114,7 +145,9 @@ int main(int argc, char** argv)
         o.frames.check_folder();
 
         const auto begun = Clock::now();
-        const plan::Plan plan = plan::read_plan(o.plan);
+        std::optional<calibrate::RunLearning> learning;
+        if (!o.learn.empty()) learning.emplace(o.learn);
+        const plan::Plan given = plan::read_plan(o.plan), plan = informed(given, learning);
         const units::Units& units = plan.job.units;
         const auto [stock, doubts, dropped] = gantry::read_stock(o.stock, plan.job, removal::Extent::anomaly);
         gantry::require_below_safe_height(stock, plan.job, core::display_name(o.stock.file));
@@ -129,7 +162,7 @@ int main(int argc, char** argv)
         options.journal = journal.get();
 
         const removal::HeightField left = strategy::replay_removal(options.previous_trace, plan.job, stock);
-        auto [machine, limits, simulated] = gantry::open_gantry(o.gantry, plan.job, left, t.seed(), o.removal_factor);
+        auto [machine, limits, simulated] = gantry::open_gantry(o.gantry, given.job, left, t.seed(), o.removal_factor);
         if (simulated == nullptr) options.known_stock = &left;
         const strategy::GrindRun run = strategy::run(plan, *machine, options, t.progress("grinding"));
         if (simulated == nullptr) machine.reset(); // it lifts now, not after what is computed below
@@ -147,10 +180,8 @@ int main(int argc, char** argv)
         if (simulated) gantry::add_report(t.report(), simulated->totals());
         if (const std::string& file = o.gantry.machine; simulated && !file.empty())
             report_loops(t, gantry::tune_loops(gantry::read_machine(file), plan.job));
-        const double time = run.trace.back().time,
-                     computing = std::chrono::duration<double>(Clock::now() - begun).count();
-        t.note("machine time " + std::to_string(time) + " s, computing time " + std::to_string(computing) +
-               " s, ratio " + std::to_string(time / computing));
+        if (learning) learn_from(o, run, plan.job, stock, *learning);
+        note_times(t, run.trace.back().time, begun);
         if (const std::string doubt = strategy::peak_warning(run.force, plan.job); !doubt.empty())
             t.warn(core::display_name(o.plan) + ": " + doubt);
         if (!run.finished) t.warn(core::display_name(o.plan) + ": " + run.failure);

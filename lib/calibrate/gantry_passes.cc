@@ -198,6 +198,34 @@ void fit_coefficient(std::vector<Stroke> strokes, GantryLaw& law)
     law.coefficient = {coefficient, sigma * std::sqrt(std::numbers::pi / 2 * squares) / total};
 }
 
+/// Adds up consecutive strokes to passes of about the same work, so that all are known about as well: the force is read
+/// a few times in a short stroke, and many times in a long one.
+void add_passes(const std::vector<Stroke>& strokes, GantryLaw& law)
+{
+    constexpr double kStrokes = 3; // mean ones in a pass
+    double mean_impulse = 0;
+    for (const Stroke& stroke : strokes) mean_impulse += stroke.impulse / strokes.size();
+    law.pass_work = kStrokes * mean_impulse;
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    Stroke sum;
+    double work = 0;
+    for (std::size_t k = 0; k < strokes.size(); ++k) {
+        sum.impulse += strokes[k].impulse;
+        sum.duration += strokes[k].duration;
+        sum.volume += strokes[k].volume;
+        const bool is_last_of_few = k + 1 == strokes.size() && law.passes.empty();
+        if (sum.impulse < law.pass_work && !is_last_of_few) continue;
+        law.passes.push_back({.force = sum.impulse / sum.duration,
+                              .speed = kNone,
+                              .feed = kNone,
+                              .duration = kNone,
+                              .prior_work = work,
+                              .volume = sum.volume / sum.duration});
+        work += sum.impulse;
+        sum = {};
+    }
+}
+
 } // namespace
 
 GantryLaw measure_gantry(const std::vector<TraceRow>& trace, const job::Job& job, const removal::HeightField& before,
@@ -209,26 +237,13 @@ GantryLaw measure_gantry(const std::vector<TraceRow>& trace, const job::Job& job
     const bool yields = law.compliance && law.compliance->value > kSignificantSigmas * law.compliance->sigma;
     std::vector<Stroke> strokes = replay(trace, job, before, yields ? law.compliance->value : 0).strokes;
     fit_grinding_ratio(strokes, job, law);
-    double mean_impulse = 0;
-    for (const Stroke& stroke : strokes) mean_impulse += stroke.impulse / strokes.size();
-    // A stroke that hardly touches says nothing: its volume is a difference of small numbers.
-    constexpr double kMinImpulseShare = 0.5; // of the mean
+    // With less force the wheel rides on ridges, and meets them between the readings.
+    constexpr double kMinForceShare = 0.5; // of F_min
     std::erase_if(strokes, [&](const Stroke& stroke) {
-        return !(stroke.impulse > kMinImpulseShare * mean_impulse && stroke.volume > 0);
+        return !(stroke.volume > 0 && stroke.impulse > kMinForceShare * job.force.min * stroke.duration);
     });
-    if (strokes.empty()) throw core::InputError("the wheel ground nothing");
-    double work = 0;
-    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-    for (const Stroke& stroke : strokes) {
-        law.passes.push_back({.force = stroke.impulse / stroke.duration,
-                              .speed = kNone,
-                              .feed = kNone,
-                              .duration = kNone,
-                              .prior_work = work,
-                              .volume = stroke.volume / stroke.duration});
-        work += stroke.impulse;
-    }
-    law.pass_work = work / strokes.size();
+    if (strokes.empty()) return law;
+    add_passes(strokes, law);
     fit_coefficient(strokes, law);
     fit_spring(trace, law);
     return law;

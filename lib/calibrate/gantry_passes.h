@@ -17,10 +17,10 @@ struct Measured {
 
 /// What the machine's own records and the stock before and after say, beside the passes.
 struct GantryLaw {
-    /// A pass for each stroke of the wheel: mean force; the volume of a second of contact, since volumes add up along a
-    /// stroke; the prior work is ∫F dt of the strokes before.
+    /// A pass is some consecutive strokes of the wheel: mean force; the volume of a second of contact, since volumes
+    /// add up along a stroke; the prior work is ∫F dt of the passes before.
     std::vector<belt::RemovalTrial> passes;
-    double pass_work = 0;                       ///< mean ∫F dt of a pass, N s
+    double pass_work = 0;                       ///< ∫F dt of a pass, about, N s
     std::optional<Measured> coefficient;        ///< Preston's: volume per ∫F dt, mm³/(N s)
     std::optional<Measured> preload, stiffness; ///< of the spring: N, N/mm; none if the deflection was always the same
     /// Volume of stock per volume of wheel, from the radii that were measured; none if less than two intervals between
@@ -38,7 +38,7 @@ struct GantryLaw {
 /// trace says that it was. The coefficient is their median over ∫F dt, weighted with that: a stroke that begins in the
 /// material has more volume than its readings of the force explain.
 /// @param after  on the grid of `before`
-/// @throws InputError if the wheel ground nothing
+/// @throws InputError if the wheel ground nothing of the stock after; without that, there are no passes then
 GantryLaw measure_gantry(const std::vector<strategy::TraceRow>& trace, const job::Job& job,
                          const removal::HeightField& before, const std::optional<removal::HeightField>& after);
 

@@ -1,0 +1,102 @@
+#include "calibrate/run_learning.h"
+
+#include "calibrate/gantry_passes.h"
+#include "calibrate/law_file.h"
+#include "calibrate/law_report.h"
+#include "core/error.h"
+#include "core/file.h"
+
+#include <cmath>
+#include <filesystem>
+
+namespace fettle::calibrate {
+namespace {
+
+using belt::RemovalTrial;
+
+/// The pass that comes next, at the mean force.
+RemovalTrial next_pass(const LawRecord& record)
+{
+    RemovalTrial next = record.passes.back();
+    next.volume = 0;
+    next.prior_work += record.pass_work;
+    double force = 0;
+    for (const RemovalTrial& pass : record.passes) force += pass.force / record.passes.size();
+    next.force = force;
+    return next;
+}
+
+} // namespace
+
+RunLearning::RunLearning(const std::string& path)
+{
+    if (!std::filesystem::exists(path)) return;
+    record_ = read_law(path);
+    const RemovalTrial& first = record_.passes.front();
+    if (!std::isnan(first.speed) || !std::isnan(first.feed) || !std::isnan(first.duration))
+        throw core::InputError(core::display_name(path), "is the law of a belt, not of a gantry");
+    known_passes_ = record_.passes.size();
+}
+
+double RunLearning::coefficient(const LearntLaw& law) const
+{
+    const RemovalTrial next = next_pass(record_);
+    return law.belief.predict(next).volume / next.force;
+}
+
+job::Job RunLearning::informed(job::Job job) const
+{
+    if (is_informed()) job.removal_coefficient = coefficient(learn(record_));
+    return job;
+}
+
+void RunLearning::learn_from(const std::vector<strategy::TraceRow>& trace, const job::Job& job,
+                             const removal::HeightField& before)
+{
+    const GantryLaw run = measure_gantry(trace, job, before, std::nullopt);
+    known_passes_ = record_.passes.size();
+    if (run.passes.empty()) return;
+    if (known_passes_ == 0) record_.pass_work = run.pass_work;
+    const double work = known_passes_ > 0 ? next_pass(record_).prior_work : 0;
+    for (RemovalTrial pass : run.passes) {
+        pass.prior_work += work;
+        record_.passes.push_back(pass);
+    }
+}
+
+std::vector<std::string> RunLearning::warnings() const
+{
+    std::vector<std::string> lines;
+    if (!is_informed()) return lines;
+    const LearntLaw law = learn(record_);
+    for (std::size_t k = known_passes_; k < law.passes.size(); ++k)
+        if (law.passes[k].has_change) lines.push_back(change_message(law.passes[k], k - known_passes_ + 1));
+    return lines;
+}
+
+json::Value RunLearning::report() const
+{
+    if (!is_informed()) return json::Value().set("passes", 0);
+    LearntLaw law = learn(record_);
+    const Prediction next = law.belief.predict(next_pass(record_), std::erf(std::sqrt(0.5))); // one standard deviation
+    const double expected = coefficient(law);
+    law.passes.erase(law.passes.begin(), law.passes.begin() + known_passes_);
+    const PredictionQuality quality = prediction_quality(law);
+    return json::Value()
+        .set("passes", law.passes.size())
+        .set("known", known_passes_)
+        .set("judged", quality.judged)
+        .set("covered", quality.covered)
+        .set("changes", quality.changes)
+        .set("median_error", quality.median_error)
+        .set("coefficient", expected)
+        .set("spread", (next.upper - next.lower) / (2 * next.volume));
+}
+
+json::Value RunLearning::file() const
+{
+    if (!is_informed()) return {};
+    return law_file(to_json(learn(record_)).set("record", to_json(record_)));
+}
+
+} // namespace fettle::calibrate
