@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace fettle::robot {
@@ -14,9 +15,9 @@ constexpr double kFewTurns = 8 * kPi;
 double wrap_about(double angle, double middle)
 {
     if (std::abs(angle - middle) > kFewTurns) return middle + std::remainder(angle - middle, 2 * kPi);
-    while (angle - middle > kPi) angle -= 2 * kPi;
-    while (middle - angle > kPi) angle += 2 * kPi;
-    return angle;
+    // Adding this and taking it off rounds to an integer, without a branch that cannot be foreseen.
+    constexpr double kRounding = 1.5 / std::numeric_limits<double>::epsilon();
+    return angle - 2 * kPi * ((angle - middle) / (2 * kPi) + kRounding - kRounding);
 }
 
 } // namespace

@@ -39,20 +39,21 @@ void Arm::add_parallel_wrist(const Target& target, int branch, ArmSolutions& fou
     Joints joints;
     joints[0] = dh_[0].sign * (std::atan2(sn1, c1) - dh_[0].offset);
     const bool is_in_range = wrap(joints, 0, target.ranges);
-    Eigen::Matrix3d R_base_1; // R_z(theta1) R_x(alpha1)
-    R_base_1 << c1, 0, sn1 * s1, sn1, 0, -c1 * s1, 0, s1, 0;
-    const Eigen::Matrix3d M =
-        R_base_1.transpose() * target.R; // R_z(psi) R_x(alpha4) R_z(theta5) R_x(alpha5) R_z(theta6)
-    const double sine5 = std::hypot(M(0, 2), M(1, 2)), cosine5 = -s4 * s5 * M(2, 2);
+    Eigen::Matrix3d M; // R_z(psi) R_x(alpha4) R_z(theta5) R_x(alpha5) R_z(theta6): that of 6, less theta1 and alpha1
+    M.row(0) = c1 * target.R.row(0) + sn1 * target.R.row(1);
+    M.row(1) = s1 * target.R.row(2);
+    M.row(2) = s1 * (sn1 * target.R.row(0) - c1 * target.R.row(1));
+    const double sine5 = std::sqrt(M(0, 2) * M(0, 2) + M(1, 2) * M(1, 2)), cosine5 = -s4 * s5 * M(2, 2);
     const double angle5 = std::atan2(sine5, cosine5);
+    // M' R_z(psi)'s third row, n in frame 6 before its turn: (s4 sn5, ., .) turned by theta6. The other sign of theta5
+    // turns it and psi by half a turn.
+    const double turned6 = std::atan2(-s4 * M(2, 1), s4 * M(2, 0)), turned = std::atan2(s5 * M(1, 2), s5 * M(0, 2));
     for (int wrist = 0; wrist < 2; ++wrist) {
         const double sign = wrist == 0 ? 1 : -1;
-        double c, s, theta6;
+        double c, s, theta6 = turned6 + wrist * kPi, total_turn = turned + wrist * kPi;
         if (sine5 > kMinWristSine) {
             c = sign * s5 * M(0, 2) / sine5;
             s = sign * s5 * M(1, 2) / sine5;
-            // M' R_z(psi)'s third row, n in frame 6 before its turn: (s4 sn5, ., .) turned by theta6.
-            theta6 = std::atan2(-s4 * sign * M(2, 1), s4 * sign * M(2, 0));
         } else {
             if (wrist == 1) return; // both coincide
             theta6 = dh_[5].sign * target.seed[5] + dh_[5].offset;
@@ -61,6 +62,7 @@ void Arm::add_parallel_wrist(const Target& target, int branch, ArmSolutions& fou
                          y = std::cos(theta6) * M(1, 0) - std::sin(theta6) * M(1, 1);
             c = x * cosine5;
             s = y * cosine5;
+            total_turn = std::atan2(s, c);
         }
         joints[4] = dh_[4].sign * (sign * angle5 - dh_[4].offset);
         joints[5] = dh_[5].sign * (theta6 - dh_[5].offset);
@@ -69,7 +71,7 @@ void Arm::add_parallel_wrist(const Target& target, int branch, ArmSolutions& fou
         const Eigen::Vector2d o4(target.across - dh_[4].d * s4 * s, height + dh_[4].d * s4 * c);
         const bool ok5 = wrap(joints, 4, target.ranges), ok6 = wrap(joints, 5, target.ranges);
         if (is_in_range && ok5 && ok6)
-            add_parallel_elbows(target, o4, std::atan2(s, c), joints, branch + wrist, found);
+            add_parallel_elbows(target, o4, total_turn, joints, branch + wrist, found);
         else
             found.reachable = found.reachable || o4.norm() <= std::abs(dh_[1].a) + std::abs(dh_[2].a);
     }

@@ -1,5 +1,5 @@
-// Forward and closed-form inverse kinematics of the IRB 1400, one core: poses a second. `all branches`: whatever the
-// ranges.
+// Forward and closed-form inverse kinematics of the IRB 1400, and the inverse of a UR5, whose axes 2, 3 and 4 are
+// parallel, one core: poses a second. `all branches`: whatever the ranges.
 
 #include "robot/arm.h"
 
@@ -7,6 +7,7 @@
 
 #include <benchmark/benchmark.h>
 
+#include <numbers>
 #include <random>
 #include <vector>
 
@@ -37,9 +38,26 @@ void forward(benchmark::State& state)
 }
 BENCHMARK(forward)->Unit(benchmark::kMillisecond);
 
-void inverse(benchmark::State& state, robot::Ranges ranges)
+/// By the table that Universal Robots publish.
+robot::Robot ur5()
 {
-    const robot::Robot robot = irb1400();
+    constexpr double kRight = std::numbers::pi / 2;
+    robot::Robot robot;
+    robot.arm_kind = robot::ArmKind::parallel_axes;
+    robot.coupling = robot::Coupling::serial;
+    const double rows[6][3] = {{0, 89.159, kRight}, {-425, 0, 0},        {-392.25, 0, 0},
+                               {0, 109.15, kRight}, {0, 94.65, -kRight}, {0, 82.3, 0}}; // a, d, alpha
+    for (std::size_t i = 0; i < 6; ++i) {
+        robot.dh[i].a = rows[i][0];
+        robot.dh[i].d = rows[i][1];
+        robot.dh[i].alpha = rows[i][2];
+        robot.dh[i].range = {-2 * std::numbers::pi, 2 * std::numbers::pi};
+    }
+    return robot;
+}
+
+void inverse(benchmark::State& state, const robot::Robot& robot, robot::Ranges ranges)
+{
     const robot::Arm arm(robot);
     std::vector<Eigen::Isometry3d> flanges;
     for (const robot::Joints& q : random_joints(robot)) flanges.push_back(arm.flange(q));
@@ -50,7 +68,8 @@ void inverse(benchmark::State& state, robot::Ranges ranges)
     state.counters["poses/s"] = benchmark::Counter(poses, benchmark::Counter::kIsRate);
     state.counters["branches/pose"] = static_cast<double>(solutions) / poses;
 }
-BENCHMARK_CAPTURE(inverse, in range, robot::Ranges::respect)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(inverse, all branches, robot::Ranges::ignore)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(inverse, in range, irb1400(), robot::Ranges::respect)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(inverse, all branches, irb1400(), robot::Ranges::ignore)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(inverse, UR5 all branches, ur5(), robot::Ranges::ignore)->Unit(benchmark::kMillisecond);
 
 } // namespace
