@@ -24,7 +24,7 @@ UPPER   ?= 0.05
 # N, mm/s
 PRESS   ?= 10
 FEED    ?= 6
-WHEEL   ?= samples/wheels/crowned.json
+WHEEL   ?= samples/wheels/crowned_preston.json
 
 PICTURES := contact pressure removal three whole errors left cell
 .PHONY: belt

@@ -75,7 +75,7 @@ rows() { # < x y z a line: with values for the other fields
 good() { # STEP: mm between points [3]
     cp -r "$SAMPLES/robots/irb1400.json" robot.json
     cp "$SAMPLES/machines/full_scale.json" machine.json
-    cp "$SAMPLES/wheels/rubber.json" wheel.json
+    cp "$SAMPLES/wheels/rubber_preston.json" wheel.json
     echo '{"kind": "job", "units": {"length": "mm", "force": "N"}, "surface": {"type": "freeform"}, "safe_height": 30,
         "anomaly": [[10, 10, 5], [20, 10, 5], [20, 20, 5], [10, 20, 5]], "sampling": [[2, 2, 5], [28, 2, 5], [28, 28, 5], [2, 28, 5]],
         "wheel": {"radius": 10, "width": 5, "min_radius": 5}, "feed": {"rate": 20, "step_over": 4}, "force": {"min": 20, "max": 60, "stiffness": 35}}' >job.json

@@ -13,7 +13,7 @@ constant() { # FACTOR WHEEL OPTION…
     fettle-feed rows.pcd --on plate.pcd --wheel "$2" --cells 16 --rounds 1 --min 0.01 --max 10000 --feed 5 --report feed.json "${@:3}" > feed.pcd
     jq -c --argjson by "$1" '{constant: (.constant / $by)}' feed.json
 }
-wheel=$SAMPLES/wheels/crowned.json
+wheel=$SAMPLES/wheels/crowned_preston.json
 jq '.belt_speed *= 2' "$wheel" > fast.json
 constant 1 "$wheel" --force 5 > once.json
 constant 2 "$wheel" --force 10 | fettle-diff - once.json --rel 0.03

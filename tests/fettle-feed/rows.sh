@@ -9,15 +9,15 @@ awk 'BEGIN {
     printf "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z qw qx qy qz pass\nSIZE 4 4 4 4 4 4 4 4\nTYPE F F F F F F F F\nCOUNT 1 1 1 1 1 1 1 1\n"
     printf "WIDTH %d\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS %d\nDATA ascii\n", n, n
     for (j = 0; j < 21; ++j) for (i = 0; i < 21; ++i) printf "%g %g 5 1 0 0 0 %d\n", 2 * i - 20, 2 * j - 20, j }' > rows.pcd
-how=(--on plate.pcd --wheel "$SAMPLES/wheels/crowned.json" --cells 16)
+how=(--on plate.pcd --wheel "$SAMPLES/wheels/crowned_preston.json" --cells 16)
 rms() { sed '1,/^DATA/d' "$1" | awk '{ s += $7 ^ 2 } END { print sqrt(s / NR) }'; }
 fettle-feed rows.pcd "${how[@]}" --force 5 --feed 5 --report feed.json > feed.pcd
 jq -e '.points == 441 and .touched == 6561 and .reached == 6561 and .ratio < 0.3 and .converged and .rms_before > .rms_constant and
        (.constant / (3e-5 * 15000 * 5 / 2 / 0.2) - 1 | fabs) < 0.1' feed.json > ok
-fettle-belt plate.pcd --path feed.pcd --wheel "$SAMPLES/wheels/crowned.json" --cells 16 --ascii --report belt.json > planned.pcd
+fettle-belt plate.pcd --path feed.pcd --wheel "$SAMPLES/wheels/crowned_preston.json" --cells 16 --ascii --report belt.json > planned.pcd
 jq -e --argjson rms "$(rms planned.pcd)" --slurpfile belt belt.json \
     '(.rms_planned / $rms - 1 | fabs) < 1e-3 and (.time_planned / $belt[0].time - 1 | fabs) < 1e-9' feed.json > ok
-fettle-belt plate.pcd --path rows.pcd --force 5 --feed "$(jq .constant feed.json)" --wheel "$SAMPLES/wheels/crowned.json" --cells 16 --ascii > constant.pcd
+fettle-belt plate.pcd --path rows.pcd --force 5 --feed "$(jq .constant feed.json)" --wheel "$SAMPLES/wheels/crowned_preston.json" --cells 16 --ascii > constant.pcd
 jq -e --argjson rms "$(rms constant.pcd)" '.rms_constant / $rms - 1 | fabs < 0.01' feed.json > ok
 fettle-feed rows.pcd "${how[@]}" --vary force --force 5 --feed 5 --min 2 --max 12 --ascii --report force.json > force.pcd
 jq -e '.ratio < 0.3 and .at_min + .at_max < 100' force.json > ok

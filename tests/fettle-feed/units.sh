@@ -13,7 +13,7 @@ scaled() { # FILE MM UNITS: its lengths in another unit
         /^FIELDS/ { plate = /displacement/ } /^DATA/ { body = 1 } { print }' "$1"
 }
 plan() { # NAME OPTION…
-    fettle-feed "path-$1.pcd" --on "plate-$1.pcd" --wheel "$SAMPLES/wheels/crowned.json" --cells 12 --rounds 2 --ascii --report "$1.json" "${@:2}" > "$1.pcd"
+    fettle-feed "path-$1.pcd" --on "plate-$1.pcd" --wheel "$SAMPLES/wheels/crowned_preston.json" --cells 12 --rounds 2 --ascii --report "$1.json" "${@:2}" > "$1.pcd"
     grep '^FIELDS' "$1.pcd" > "$1.fields"
 }
 report='{"points": 0, "touched": 0, "reached": 0, "rms_before": 1, "rms_constant": 1, "rms_planned": 1, "ratio": 0, "time_constant": 0,
@@ -39,7 +39,7 @@ plan mm --force 5 --vary force --feed 5
 plan lbf --force 5 --vary force --feed 5
 "$HERE/../scales" lbf "$(jq 'map_values(0) + {constant: 1}' <<<"$report")" mm.json lbf.json 0.02
 "$HERE/../scales" lbf "$(jq 'map_values(0) + {force: 1}' <<<"$fields")" mm.pcd lbf.pcd 0.02
-"$HERE/../refuses" '--min: is above --max' fettle-feed path-m.pcd --on plate-m.pcd --wheel "$SAMPLES/wheels/crowned.json" --force 5 --min 0.2
+"$HERE/../refuses" '--min: is above --max' fettle-feed path-m.pcd --on plate-m.pcd --wheel "$SAMPLES/wheels/crowned_preston.json" --force 5 --min 0.2
 for option in --min --max --wanted; do
-    "$HERE/../refuses" "$option" fettle-feed path-mm.pcd --on plate-mm.pcd --wheel "$SAMPLES/wheels/crowned.json" --force 5 $option 1e300
+    "$HERE/../refuses" "$option" fettle-feed path-mm.pcd --on plate-mm.pcd --wheel "$SAMPLES/wheels/crowned_preston.json" --force 5 $option 1e300
 done
