@@ -150,6 +150,12 @@ surface::Surface fit_touches(const job::Job& job, const sampling::TouchPlan& pla
     return fit::fit_surface(input, "auto").surface;
 }
 
+/// The band by which touching goes on or stops. At 95 % the tails of a process matter by half a percent.
+double predicted_band(const surface::Surface& surface, const job::Job& job, double confidence)
+{
+    return predict_by_posterior(surface, job, confidence, 1, "surface", Tails::normal).band;
+}
+
 /// The search for touches of one job: those made so far, and what their fit predicts.
 class AdaptiveSearch {
   public:
@@ -222,7 +228,7 @@ class AdaptiveSearch {
         bands_.push_back(core::kNaN);
         if (result_.plan.size() < kInitialTouches) return;
         surface_ = fit_touches(job_, result_.plan, result_.touches);
-        bands_.back() = predict_by_posterior(surface_, job_, limits_.confidence, 1).band;
+        bands_.back() = predicted_band(surface_, job_, limits_.confidence);
         confirmed_ = bands_.back() <= limits_.max_band ? confirmed_ + 1 : 0;
         result_.band_reached = confirmed_ > kConfirmations && !may_be_chance(surface_, result_.plan.size());
     }
@@ -251,7 +257,7 @@ AdaptiveTouches extend_layout(const job::Job& job, const sampling::TouchPlan& la
                               const AdaptiveLimits& limits, const ProbeFunction& probe)
 {
     const surface::Surface surface = fit_touches(job, layout, touches);
-    const double band = predict_by_posterior(surface, job, limits.confidence, 1).band;
+    const double band = predicted_band(surface, job, limits.confidence);
     const bool is_enough = band <= limits.max_band && !may_be_chance(surface, layout.size());
     if (!is_enough && layout.size() < limits.max_touches && job.sampling.cols() > 0) {
         AdaptiveSearch search(job, limits, probe);

@@ -4,8 +4,10 @@
 #include "core/error.h"
 #include "surface/precision.h"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
+#include <variant>
 #include <vector>
 
 namespace fettle::margin {
@@ -47,8 +49,20 @@ Eigen::MatrixXd field_root(const Eigen::MatrixXd& gradients, const Eigen::Matrix
     return field;
 }
 
-/// Random factor of mean square 1 that gives heights Student's t distribution if the touches' noise was estimated with
-/// these degrees of freedom: a possible noise over the root mean square one that the covariance was inflated to.
+/// Parameters of a process's trend, a quadratic.
+constexpr Eigen::Index kTrendParameters = 6;
+/// Fewer degrees of freedom would leave Student's t without a fourth moment, as few touches leave no process.
+constexpr Eigen::Index kMinFreedom = 5;
+
+/// Degrees of freedom that the touches have left over the trend of a process.
+double process_freedom(const surface::Surface& surface)
+{
+    const Eigen::Index used = surface.touches.cols() - Eigen::Index(surface.outliers.size());
+    return double(std::max(used - kTrendParameters, kMinFreedom));
+}
+
+/// Random factor of mean square 1 that gives heights Student's t distribution if the size of the errors was estimated
+/// with these degrees of freedom: a possible size over the root mean square one that the covariance has.
 double draw_noise_factor(double freedom, std::mt19937_64& random)
 {
     if (!std::isfinite(freedom)) return 1;
@@ -61,11 +75,13 @@ struct Component {
     double weight;
     Eigen::VectorXd offset; ///< its mean minus the mixture's
     Eigen::MatrixXd root;   ///< F with F Fᵀ its covariance
+    double freedom;         ///< degrees of freedom of its size
 };
 
 } // namespace
 
-Eigen::MatrixXd draw_fields(const surface::Surface& surface, const Eigen::Matrix2Xd& xy, int draws, std::uint64_t seed)
+Eigen::MatrixXd draw_fields(const surface::Surface& surface, const Eigen::Matrix2Xd& xy, int draws, std::uint64_t seed,
+                            Tails tails)
 {
     const Eigen::VectorXd mean = surface::heights(surface, xy).array() - surface.shift;
     std::vector<Component> all;
@@ -73,7 +89,7 @@ Eigen::MatrixXd draw_fields(const surface::Surface& surface, const Eigen::Matrix
     if (surface.precision) {
         const Eigen::MatrixXd covariance =
             surface::height_covariance(std::get<surface::Bspline>(surface.shape), *surface.precision, xy);
-        all.push_back({1, Eigen::VectorXd::Zero(xy.cols()), covariance_root(covariance)});
+        all.push_back({1, Eigen::VectorXd::Zero(xy.cols()), covariance_root(covariance), surface.touch_sigma_dof});
         sum = 1;
     }
     for (const surface::WeightedShape& member : surface::weighted_shapes(surface)) {
@@ -81,7 +97,11 @@ Eigen::MatrixXd draw_fields(const surface::Surface& surface, const Eigen::Matrix
         const Eigen::MatrixXd gradients = surface::height_gradients(member.shape, xy);
         const Eigen::VectorXd offset = surface::heights(member.shape, xy) - mean;
         if (!gradients.allFinite() || !offset.allFinite()) continue;
-        all.push_back({member.weight, offset, field_root(gradients, member.covariance)});
+        const bool is_process = std::holds_alternative<surface::Bspline>(member.shape);
+        all.push_back({member.weight, offset, field_root(gradients, member.covariance),
+                       is_process && tails == Tails::student
+                           ? std::min(surface.touch_sigma_dof, process_freedom(surface))
+                           : surface.touch_sigma_dof});
         sum += member.weight;
     }
     if (!(sum > 0) || !std::isfinite(sum)) // heights whose squares no number holds
@@ -99,7 +119,7 @@ Eigen::MatrixXd draw_fields(const surface::Surface& surface, const Eigen::Matrix
         for (double& number : unit.reshaped()) number = normal(random);
         const Eigen::MatrixXd about = one.root * unit;
         for (Eigen::Index k = 0; k < count; ++k) {
-            const double noise = draw_noise_factor(surface.touch_sigma_dof, random);
+            const double noise = draw_noise_factor(one.freedom, random);
             fields.col(column++) = one.offset + noise * about.col(k);
             fields.col(column++) = one.offset - noise * about.col(k);
         }

@@ -46,7 +46,7 @@ void check_determined(const surface::Prediction& prediction, const job::Job& job
 }
 
 surface::Prediction predict_by_posterior(const surface::Surface& surface, const job::Job& job, double confidence,
-                                         std::uint64_t seed, const std::string& source)
+                                         std::uint64_t seed, const std::string& source, Tails tails)
 {
     if (!surface::has_sigma(surface) && !surface::has_touch_noise_only(surface))
         throw core::InputError(source,
@@ -57,7 +57,7 @@ surface::Prediction predict_by_posterior(const surface::Surface& surface, const 
         throw core::InputError(source, "the covariance of an interpolant (" + surface.method +
                                            ") holds the touches' noise, not what it misses between them, so its error "
                                            "cannot be predicted; use the method wang");
-    const Eigen::MatrixXd fields = draw_fields(surface, grid, kDraws, seed);
+    const Eigen::MatrixXd fields = draw_fields(surface, grid, kDraws, seed, tails);
     std::vector<double> shifts, bands;
     for (const auto& field : fields.colwise()) {
         shifts.push_back(field.maxCoeff()); // the fitted surface's error is the negative field

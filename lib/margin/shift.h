@@ -1,6 +1,7 @@
 #pragma once
 
 #include "job/job.h"
+#include "margin/field_draws.h"
 #include "surface/surface.h"
 
 #include <cstdint>
@@ -20,7 +21,8 @@ namespace fettle::margin {
 /// not
 ///         cover B
 surface::Prediction predict_by_posterior(const surface::Surface& surface, const job::Job& job, double confidence,
-                                         std::uint64_t seed, const std::string& source = "surface");
+                                         std::uint64_t seed, const std::string& source = "surface",
+                                         Tails tails = Tails::student);
 
 /// @throws InputError if the predicted shift or band exceeds the length of B, or is none: the touches, on a line or far
 ///         beside B, do not determine the surface

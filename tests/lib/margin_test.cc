@@ -214,6 +214,27 @@ TEST(Posterior, of_one_number_with_estimated_noise_has_students_quantiles)
     EXPECT_NEAR(prediction.band, 0.2 * 2.7764, 0.2 * 0.22);
 }
 
+// A process through 11 touches, of which 5 are left over its trend of 6 parameters: Student's quantiles with 5 degrees
+// of freedom, scaled to the variance of the process by √(3/5). All control heights are wrong by the same.
+TEST(Posterior, of_a_process_has_students_quantiles)
+{
+    const job::Job job = square_job(job::SurfaceType::freeform);
+    surface::Surface surface;
+    surface::Bspline level;
+    level.origin = {-100, -100};
+    level.cell = {200, 200};
+    level.heights.setZero(4, 4);
+    surface.shape = level;
+    surface.covariance = Eigen::MatrixXd::Constant(16, 16, 0.04);
+    surface.touches.setZero(3, 11);
+    const surface::Prediction prediction = margin::predict_by_posterior(surface, job, 0.99, 1);
+    EXPECT_NEAR(prediction.shift, 0.2 * std::sqrt(0.6) * 3.3649, 0.2 * 0.2);
+    EXPECT_NEAR(margin::predict_by_posterior(surface, job, 0.99, 1, "surface", margin::Tails::normal).shift,
+                0.2 * 2.3263, 0.2 * 0.07);
+    surface.touches.setZero(3, 1000);
+    EXPECT_NEAR(margin::predict_by_posterior(surface, job, 0.99, 1).shift, 0.2 * 2.3263, 0.2 * 0.07);
+}
+
 TEST(Posterior, refuses_surfaces_that_cannot_be_predicted)
 {
     const job::Job job = square_job(job::SurfaceType::freeform);
