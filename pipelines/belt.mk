@@ -4,6 +4,7 @@
 #   make -f pipelines/belt.mk PARTS='blade nasa handle edge' DATA=DIR
 #       and DIR/nasa_blade_a.stl, DIR/handle.off, and of EDGE=DIR/../before_after a leading edge before and after, LE_mesh.ply and LE_mesh_grinded.ply
 #   make -f pipelines/belt.mk plan                                 feeds, and forces, that meet the blade's allowance
+#   make -f pipelines/belt.mk held                                 the robot holds the blade and leads it along a fixed belt; exit 1 if something collides
 #   make -f pipelines/belt.mk law                                  the removal law from measured trials; exit 1 if a figure is missed
 #
 # BELT/PART/stock.stl is the design with an allowance of 0.2 to 0.6 mm that varies over it, work.pcd the surfels, errors.pcd what
@@ -145,6 +146,31 @@ $(BELT)/%/cell.png: $(BELT)/%/placed.stl $(BELT)/cell.json $(BELT)/spot.pcd $(B)
 
 $(BELT)/%/report.html: $(BELT)/%/ground.pcd $(BELT)/%/left.pcd $(BELT)/%/errors.pcd $(BELT)/%/surface.pcd pipelines/belt-page
 	pipelines/belt-page $(@D) > $@
+
+# --- the robot holds the part: a belt over a wheel on a stand, whose contact point is at AT with the part above it ---------------
+# BELT/held: path.pcd are the strokes joined off the part, as the tool's poses in the cell; checked.pcd their joints and clearances: of the
+# part's own triangles and of the arm from wheel, belt and stand. cell.png shows a contact point of
+# the first, a middle and the last stroke, with the wheel where it is.
+AT      ?= 900,1000,900,0,0,1,0
+# The rigid wheel of the check stands for an elastic one that gives way, mm.
+PRESSED ?= 0.5
+HELD    := $(BELT)/held
+
+.PHONY: held
+held: $(HELD)/checked.pcd
+	@jq -r '"\(.reached) of \(.count) poses reached, \(.jumps | length) jumps; \(.collisions) collide, \(.collisions_between) ways between them; least clearance \(1000 * .min.clearance | round / 1000) mm, \(.min.pair | join(" and "))"' $(HELD)/report.json
+	@jq -e '.collisions + .collisions_between + (.count - .reached) + (.jumps | length) == 0' $(HELD)/report.json > /dev/null
+
+$(HELD)/part.stl: $(BELT)/blade/design $(B)/study/stock
+	@mkdir -p $(@D)
+	$(B)/study/stock $< --min 0 --max 0 -o $@
+$(HELD)/path.pcd: $(BELT)/blade/work.pcd $(B)/bin/fettle-path
+	@mkdir -p $(@D)
+	$(B)/bin/fettle-path $< --step-over 4 --spacing 0.2 --clearance 20 --held part --wheel $(AT) --ascii -o $@
+# Around the leading edge the part turns by 90 degrees nearly on the spot.
+$(HELD)/checked.pcd: $(HELD)/path.pcd $(HELD)/part.stl samples/robots/irb1400_belt.json pipelines/belt-points $(B)/bin/fettle-collide
+	$(B)/bin/fettle-collide samples/robots/irb1400_belt.json $< --workpiece $(HELD)/part.stl --held --tolerance $(PRESSED) --jump 90 -q \
+	    --report $(HELD)/report.json --picture $(HELD)/cell.png --from 1,-0.6,0.5 --at "$$(pipelines/belt-points contacts < $<)" -o $@ || test $$? = 1
 
 # --- plans for the blade: feeds of each contact point, or forces, beside the best constant -------------------------------------
 # Its flat trailing edge is not ground with its sides. Planned on surfels SPACING apart; ground, to be judged, on others that are

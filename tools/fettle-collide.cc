@@ -44,6 +44,7 @@ struct Options {
     robot::RobotOptions robot{t};
     const std::string& points = t.main_input("PATH", "path or joints, PCD");
     const std::string& part = t.optional_file("--workpiece", "MESH", "STL, PLY, OBJ, OFF, in the part's frame [none]");
+    const bool& held = t.flag("--held", "The robot holds the workpiece; PATH is of fettle-path --held part");
     const std::optional<units::Units::Length>& part_unit =
         t.length_unit("--workpiece-units", "Unit of that file, if it is not the path's");
     const std::optional<units::Units::Length>& unit =
@@ -92,6 +93,8 @@ void add_usage(cli::Tool& t)
 robot::CollisionRequest request(const Options& o, double mm)
 {
     if (o.exact && o.method != "exact") throw core::InputError("--exact: and --method " + o.method + ": one of them");
+    if (o.held && (o.part.empty() || !o.avoid.empty() || o.method != "exact"))
+        throw core::InputError("--held", "goes with --workpiece, and neither with --avoid nor with --method");
     robot::CollisionRequest r;
     r.path = o.path.arguments();
     if (o.tolerance) r.collision.tolerance = *o.tolerance * mm;
@@ -142,7 +145,9 @@ int main(int argc, char** argv)
         add_usage(t);
         t.parse();
 
-        const robot::Robot robot = o.robot.read();
+        robot::Robot robot = o.robot.read();
+        robot.holds_workpiece = o.held;
+        if (o.held && robot.table) throw core::InputError("--held", "a robot with a table does not hold the workpiece");
         auto [path, units] = cloud::read_cloud(o.points, mesh::resolve_file_units(o.unit));
         const robot::CollisionRequest wanted = request(o, units.mm());
         std::optional<mesh::Mesh> mesh;

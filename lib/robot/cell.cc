@@ -31,14 +31,25 @@ double margin_of(const Robot& robot, const BodyPair& pair)
 
 } // namespace
 
+int workpiece_link(const Robot& robot)
+{
+    if (robot.holds_workpiece) return link::kTool;
+    return robot.table ? link::kTable : link::kCell;
+}
+
+Isometry3d workpiece_frame(const Robot& robot, const std::array<Isometry3d, 10>& frames)
+{
+    const Eigen::AngleAxisd half_turn(std::numbers::pi, Vector3d::UnitX());
+    return robot.holds_workpiece ? Isometry3d(frames[link::kTool + 1] * half_turn) : frames[link::kTable + 1];
+}
+
 std::vector<CellPair> checked_pairs(const Robot& robot)
 {
     std::vector<CellPair> pairs;
     const std::size_t count = robot.bodies.size();
     for (std::size_t a = 0; a < count; ++a)
         for (std::size_t b = a + 1; b <= count; ++b) {
-            const int workpiece_link = robot.table ? link::kTable : link::kCell;
-            const int link_b = b == count ? workpiece_link : robot.bodies[b].link;
+            const int link_b = b == count ? workpiece_link(robot) : robot.bodies[b].link;
             const BodyPair pair(a, b);
             const bool allowed = std::ranges::find(robot.allowed, pair) != robot.allowed.end();
             if (!allowed && !never_collide(robot, robot.bodies[a].link, link_b))
@@ -96,7 +107,7 @@ Cell::Cell(const Robot& robot, const Workpiece* workpiece, const CollisionOption
 int Cell::link_of(std::size_t body) const
 {
     if (body < robot_.bodies.size()) return robot_.bodies[body].link;
-    return robot_.table ? link::kTable : link::kCell;
+    return workpiece_link(robot_);
 }
 
 // The links behind an axis, stretched, and the body. Its own link's offset along the axis does not count.
@@ -127,7 +138,7 @@ void Cell::place_bodies(const CellJoints& joints, CellState& state) const
     const std::array<Isometry3d, 10> frames = link_frames(robot_, arm_, joints);
     state.T_cell_body.resize(body_count());
     for (std::size_t b = 0; b < robot_.bodies.size(); ++b) state.T_cell_body[b] = frames[robot_.bodies[b].link + 1];
-    if (workpiece_ != nullptr) state.T_cell_body.back() = frames[9];
+    if (workpiece_ != nullptr) state.T_cell_body.back() = workpiece_frame(robot_, frames);
     state.clearances.resize(pairs_.size());
     state.start_leaf.resize(pairs_.size());
     if (workpiece_ != nullptr && options_.model != nullptr)
@@ -284,7 +295,8 @@ std::optional<double> Cell::swept_ball_clearance(std::size_t index, const CellJo
     constexpr double kSlackTolerances = 0.1;
     const CellPair& pair = pairs_[index];
     const CellJoints change = q1 - q0;
-    if (!is_of_workpiece(index) || options_.model != nullptr || change[7] != 0) return std::nullopt;
+    if (!is_of_workpiece(index) || options_.model != nullptr || change[7] != 0 || robot_.holds_workpiece)
+        return std::nullopt;
     const auto* ball = std::get_if<solid::Sphere>(&robot_.bodies[pair.a].solid);
     if (ball == nullptr) return std::nullopt;
     const auto centre = [&](const CellState& state) {

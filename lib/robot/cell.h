@@ -25,8 +25,11 @@ struct CellPair {
 };
 
 /// All pairs except those of bodies on one link or on neighbouring links, those that never move against each other, and
-/// those that the robot file allows to touch. The workpiece is on the table, or fixed in the cell if there is none.
+/// those that the robot file allows to touch. The workpiece is on workpiece_link().
 std::vector<CellPair> checked_pairs(const Robot& robot);
+
+/// The link that carries the workpiece: the tool, if the robot holds it; else the table, or the cell if there is none.
+int workpiece_link(const Robot& robot);
 
 struct CollisionOptions {
     /// An overlap no deeper is a contact and no collision, mm (Chen & Wei: the accuracy of machining).
@@ -48,6 +51,9 @@ struct CellClearance {
 
 /// The frame of each link in the cell frame, by link + 1 (robot.h: cell, base, 1 to 6, tool, table).
 std::array<Eigen::Isometry3d, 10> link_frames(const Robot& robot, const Arm& arm, const CellJoints& joints);
+
+/// The part's frame in the cell frame. @param frames  link_frames()
+Eigen::Isometry3d workpiece_frame(const Robot& robot, const std::array<Eigen::Isometry3d, 10>& frames);
 
 /// The placements of all bodies for some joints, and the clearances measured there.
 struct CellState {

@@ -96,7 +96,7 @@ CellScene make_cell_scene(const Robot& robot, const mesh::Mesh* workpiece, const
         const Body& body = robot.bodies[i];
         soup.add(solid_mesh(body.solid), frames[body.link + 1], i);
     }
-    if (workpiece != nullptr) soup.add(*workpiece, frames.back(), robot.bodies.size());
+    if (workpiece != nullptr) soup.add(*workpiece, workpiece_frame(robot, frames), robot.bodies.size());
     if (cuboids != nullptr) soup.add(*cuboids, frames.back(), cuboids_body(robot));
     if (floor > 0) add_floor(soup, floor, floor_body(robot));
     return make_scene(soup);

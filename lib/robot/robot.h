@@ -110,7 +110,10 @@ struct Robot {
         BodyPair pair;
         double distance; ///< mm
     };
-    std::vector<Margin> margins;    ///< 0 for pairs that are not listed
+    std::vector<Margin> margins; ///< 0 for pairs that are not listed
+    /// The robot holds the workpiece: the part's frame is the tool's D-H frame, the tool frame of a path after half a
+    /// turn about its x, as belt::held_part_path() has it.
+    bool holds_workpiece = false;
     std::vector<std::string> notes; ///< what a user should know of how the file was read
     std::string digest; ///< SHA-256 of the file and the points of its meshes: by it a checked path knows its robot
 };
