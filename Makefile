@@ -59,8 +59,8 @@ override LDFLAGS  += -Wl,--as-needed,--gc-sections -fuse-ld=gold
 # What most files include is read once: a third of the compile time. `make PRECOMPILED=` builds without, each file from
 # its own includes alone.
 PRECOMPILED ?= $(B)/lib/precompiled.h.gch $(B)/tests/lib/precompiled.h.gch
-# So many files of a module are compiled as one: a third of the compile time. Who works on the library says BUNDLE=1, and
-# waits for the one file alone.
+# So many files of a module, and of its tests, are compiled as one: a third of the compile time. Who works on the library says
+# BUNDLE=1, and waits for the one file alone.
 BUNDLE ?= 8
 
 .DELETE_ON_ERROR:
@@ -90,10 +90,12 @@ OCCT_LIBS := $(addprefix -lTK,XDESTEP XDEIGES XCAF IGES STEP STEPBase STEPAttr X
 LDLIBS_ALL := -llzf -ltbb -lminizip -lexpat -lz
 
 # The files that see OpenCV. Private: what a file needs before it, the precompiled header, is compiled as ever.
-$(B)/lib/draw/canvas.o $(B)/lib/belt/convolution.o $(B)/lib/cli/version.o $(B)/lib/find/%.o $(B)/tests/lib/find_test.o $(patsubst %,$(B)/pipelines/programs/find-%.o,case evidence score): private override CPPFLAGS += $(addprefix -isystem ,$(wildcard /usr/include/opencv4))
+$(B)/lib/draw/canvas.o $(B)/lib/belt/convolution.o $(B)/lib/cli/version.o $(B)/lib/find/%.o $(B)/tests/lib/%.o $(patsubst %,$(B)/pipelines/programs/find-%.o,case evidence score): private override CPPFLAGS += $(addprefix -isystem ,$(wildcard /usr/include/opencv4))
 
 # Those that see OpenCASCADE.
-$(B)/lib/cad/%.o $(B)/tests/lib/cad_test.o: private override CPPFLAGS += -isystem /usr/include/opencascade
+$(B)/lib/cad/%.o $(B)/tests/lib/%.o: private override CPPFLAGS += -isystem /usr/include/opencascade
+
+$(B)/tests/lib/bundle-%.o: private override CPPFLAGS += -Itests/lib
 
 # Square roots of eight numbers at once are one instruction where nobody reads errno.
 $(B)/lib/mesh/mesh_index.o $(B)/lib/robot/workpiece.o: private override CXXFLAGS += -fno-math-errno
@@ -137,9 +139,9 @@ $(OBJECTS_view): private override CPPFLAGS += -I$(B)/generated
 $(OBJECTS_view): | $(VIEW_HEADER)
 
 # --- rules ----------------------------------------------------------------------------------------------------------
-precompiled = $(filter $(B)/$(if $(filter tests/lib/%,$(1)),tests/)lib/%,$(PRECOMPILED))
+precompiled = $(filter $(B)/$(if $(findstring tests/lib/,$(1)),tests/)lib/%,$(PRECOMPILED))
 
-$(TESTS:$(B)/tests/%=$(B)/tests/lib/%.o): | $(filter $(B)/tests/%,$(PRECOMPILED))
+$(patsubst %,$(B)/tests/lib/%.o,main $(foreach test,$(TESTS:$(B)/tests/%=%),$(PROGRAM_$(test)))): | $(filter $(B)/tests/%,$(PRECOMPILED))
 define compile
 	@mkdir -p $(@D)
 	$(CXX) $(CPPFLAGS) $(CXXFLAGS) $(addprefix -include ,$(basename $(call precompiled,$<))) -MMD -MP -c $< -o $@
@@ -177,14 +179,11 @@ $(B)/study/%: $(B)/pipelines/programs/%.o $$(call archives,pipelines/programs/$$
 	@mkdir -p $(@D)
 	$(CXX) $(LDFLAGS) -o $@ $^ $(LDLIBS) $(LDLIBS_ALL)
 
-$(B)/tests/%: LDLIBS = $(CERES) $(OPENCV) $(PNG) $(MD) $(URDF) -lgtest_main -lgtest
-$(B)/tests/cloud_test: LDLIBS += -lpcl_io -lpcl_common
-$(B)/tests/clean_test: LDLIBS += $(PCL) -lpcl_filters -lpcl_search
-$(B)/tests/place_test: LDLIBS += $(PLACE)
-$(B)/tests/fcl_test: LDLIBS += $(FCL)
-$(B)/tests/urdf_test: LDLIBS += -lorocos-kdl
-$(B)/tests/cad_test: LDLIBS += $(OCCT_LIBS) -lTKPrim
-$(B)/tests/%: $(B)/tests/lib/%.o $$(call archives,tests/lib/$$*)
+# A test program is run by the name of each of its files, and then runs that file's tests alone (tests/lib/main.cc).
+$(TESTS): $(B)/tests/%: $$(B)/tests/programs/$$(PROGRAM_$$*)
+	@ln -f $< $@
+$(B)/tests/programs/%: LDLIBS = $(CERES) $(OPENCV) $(PNG) $(MD) $(URDF) -lpcl_io -lpcl_filters $(PLACE) $(FCL) -lorocos-kdl $(if $(OCCT),$(OCCT_LIBS) -lTKPrim) -lgtest
+$(B)/tests/programs/%: $(B)/tests/lib/%.o $(B)/tests/lib/main.o $$(call archives,tests/$$*)
 	@mkdir -p $(@D)
 	$(CXX) $(LDFLAGS) -o $@ $^ $(LDLIBS) $(LDLIBS_ALL)
 

@@ -18,7 +18,7 @@
 #include <limits>
 
 namespace fettle {
-namespace {
+namespace adaptive_test {
 
 using Truth = double (*)(double, double);
 
@@ -179,5 +179,5 @@ TEST(FieldDraws, HaveTheSurfacesVariance)
     EXPECT_NEAR(std::sqrt(draws.squaredNorm() / 40000) / surface::sigma(surface, xy), 1, 0.02);
 }
 
-} // namespace
+} // namespace adaptive_test
 } // namespace fettle

@@ -14,7 +14,7 @@
 #include <random>
 
 namespace fettle {
-namespace {
+namespace align_test {
 
 struct Box {
     Eigen::Vector3d min, max;
@@ -377,5 +377,5 @@ TEST(Align, Refuses)
     EXPECT_THROW(align::AlignReference(cloud::Cloud{}), core::InputError);
 }
 
-} // namespace
+} // namespace align_test
 } // namespace fettle

@@ -14,7 +14,7 @@
 #include <sstream>
 
 namespace fettle {
-namespace {
+namespace arm_path_test {
 
 const robot::Track kTrack = {Eigen::Vector3d::UnitY(), {0, 2000}, {}};
 const robot::Table kTable = {{1000, 0, 400}, Eigen::Vector3d::UnitZ(), {-360 * kDegree, 360 * kDegree}, {}, ""};
@@ -285,5 +285,5 @@ TEST(PathCloud, GoesThereAndBack)
     EXPECT_THROW(cloud::read_poses(cloud), core::InputError);
 }
 
-} // namespace
+} // namespace arm_path_test
 } // namespace fettle

@@ -11,7 +11,7 @@
 #include <vector>
 
 namespace fettle {
-namespace {
+namespace arm_test {
 
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
@@ -274,5 +274,5 @@ TEST(Arm, ReportsJointRanges)
     for (const robot::ArmSolution& s : none) EXPECT_GT(difference(s.joints, beyond), 1e-3);
 }
 
-} // namespace
+} // namespace arm_test
 } // namespace fettle

@@ -14,7 +14,7 @@
 
 namespace fettle {
 
-namespace {
+namespace avoid_test {
 
 using Eigen::Isometry3d, Eigen::Vector2d, Eigen::Vector3d;
 
@@ -355,6 +355,6 @@ TEST(Avoid, RetreatsAlongNormals)
     EXPECT_LT((robot::retreat_directions(cloud, poses) - expected).norm(), 1e-6);
 }
 
-} // namespace
+} // namespace avoid_test
 
 } // namespace fettle

@@ -12,7 +12,7 @@
 #include <random>
 
 namespace fettle {
-namespace {
+namespace band_test {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -125,5 +125,5 @@ TEST(SplineEnergy, UniformPoints)
     EXPECT_LT((dense(sum) - expected).cwiseAbs().maxCoeff(), 1e-14);
 }
 
-} // namespace
+} // namespace band_test
 } // namespace fettle

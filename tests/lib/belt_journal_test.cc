@@ -10,7 +10,7 @@
 
 using namespace fettle;
 
-namespace {
+namespace belt_journal_test {
 
 constexpr Eigen::Index kSurfels = 3, kCells = 2;
 constexpr std::size_t kPathLength = 5;
@@ -116,4 +116,4 @@ TEST(BeltJournal, TellsAMirroredPartFromThePart)
     EXPECT_NE(digest, belt::run_digest(surfels, {}, {}, {}));
 }
 
-} // namespace
+} // namespace belt_journal_test

@@ -10,7 +10,7 @@
 
 using namespace fettle;
 
-namespace {
+namespace belt_plan_test {
 
 using Eigen::Index;
 
@@ -209,4 +209,4 @@ TEST(BeltPlan, RefusesForcesWhereDepthsAreGiven)
     EXPECT_THROW(belt::plan_belt(plate(), crowned(), path, options), core::InputError);
 }
 
-} // namespace
+} // namespace belt_plan_test

@@ -11,7 +11,7 @@
 
 using namespace fettle;
 
-namespace {
+namespace belt_test {
 
 using Eigen::Index;
 
@@ -361,4 +361,4 @@ TEST(Belt, KeepsTheErrorsUpToDate)
     EXPECT_EQ(last.min, all.min);
 }
 
-} // namespace
+} // namespace belt_test

@@ -10,7 +10,7 @@
 #include <random>
 
 namespace fettle {
-namespace {
+namespace boundary_test {
 
 using Intervals = std::vector<job::Interval>;
 
@@ -219,5 +219,5 @@ TEST(Boundaries, PlaneNeedsNoSamplingBoundary)
     EXPECT_EQ(job::working_boundaries(job_of(kSquare, job::Polygon(2, 0), job::SurfaceType::plane)).sampling.cols(), 0);
 }
 
-} // namespace
+} // namespace boundary_test
 } // namespace fettle

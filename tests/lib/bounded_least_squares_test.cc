@@ -11,7 +11,7 @@
 
 using namespace fettle;
 
-namespace {
+namespace bounded_least_squares_test {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -100,4 +100,4 @@ TEST(BoundedLeastSquares, FixesVariablesWithoutEffect)
                  core::InputError);
 }
 
-} // namespace
+} // namespace bounded_least_squares_test

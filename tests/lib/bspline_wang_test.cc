@@ -10,7 +10,7 @@
 #include <random>
 
 namespace fettle {
-namespace {
+namespace bspline_wang_test {
 
 constexpr double kTurn = 0.3;
 
@@ -196,5 +196,5 @@ TEST(BsplineWang, SurvivesTheFile)
     }
 }
 
-} // namespace
+} // namespace bspline_wang_test
 } // namespace fettle

@@ -36,7 +36,7 @@
 
 using namespace fettle;
 
-namespace {
+namespace cad_test {
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kTolerance = 0.05; // mm
@@ -204,4 +204,4 @@ TEST(Cad, AToleranceBelowTheRoundingOfTheFileIsRefused)
     EXPECT_THROW(cad::triangulate(design, 1e-6), core::InputError);
 }
 
-} // namespace
+} // namespace cad_test

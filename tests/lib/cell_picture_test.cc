@@ -16,7 +16,7 @@
 
 namespace fettle {
 
-namespace {
+namespace cell_picture_test {
 
 using Eigen::Isometry3d, Eigen::Vector3d;
 
@@ -175,6 +175,6 @@ TEST(CellPicture, RefusesPosesThatAreNotThere)
     EXPECT_THROW(robot::draw_cell_picture(robot, nullptr, joints, checked, options), core::InputError);
 }
 
-} // namespace
+} // namespace cell_picture_test
 
 } // namespace fettle

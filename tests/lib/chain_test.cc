@@ -17,7 +17,7 @@
 #include <numbers>
 
 namespace fettle {
-namespace {
+namespace chain_test {
 
 struct Case {
     job::Job job;
@@ -149,5 +149,5 @@ TEST(Chain, NothingIsGroundBelowTheTruth)
     EXPECT_GT(result.error.minCoeff<Eigen::PropagateNumbers>(), -0.03);
 }
 
-} // namespace
+} // namespace chain_test
 } // namespace fettle

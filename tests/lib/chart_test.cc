@@ -12,7 +12,7 @@
 #include <vector>
 
 namespace fettle {
-namespace {
+namespace chart_test {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr int kWidth = 600, kHeight = 400;
@@ -104,5 +104,5 @@ TEST(Ticks, EachLabelIsItsValue)
     EXPECT_EQ(draw::tick_text(0.000002, 0.000001), "0.000002");
 }
 
-} // namespace
+} // namespace chart_test
 } // namespace fettle

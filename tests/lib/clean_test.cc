@@ -13,7 +13,7 @@
 #include <tuple>
 
 namespace fettle {
-namespace {
+namespace clean_test {
 
 /// A wavy sheet with noise, some points far off it, and a dense corner; far from the origin, where floats would be
 /// coarse.
@@ -166,5 +166,5 @@ TEST(Region, HoldsItsBorder)
     EXPECT_FALSE(clean::contains(prism, {1, 1, 1.01}));
 }
 
-} // namespace
+} // namespace clean_test
 } // namespace fettle

@@ -8,7 +8,7 @@
 #include <vector>
 
 namespace fettle {
-namespace {
+namespace clearance_test {
 
 using Eigen::Isometry3d, Eigen::Vector3d;
 
@@ -390,5 +390,5 @@ TEST(Clearance, BoxesHoldTheirSolids)
     }
 }
 
-} // namespace
+} // namespace clearance_test
 } // namespace fettle

@@ -17,7 +17,7 @@
 #include <thread>
 
 namespace fettle {
-namespace {
+namespace cli_test {
 
 /// Exit status and stderr of a tool that does this.
 std::pair<int, std::string> run(const std::function<cli::Verdict(cli::Tool&)>& body,
@@ -92,5 +92,5 @@ TEST(ProgressBar, IsShownWhereWorkIsLong)
     EXPECT_LT(std::count(printed.begin(), printed.end(), '\r'), 20);
 }
 
-} // namespace
+} // namespace cli_test
 } // namespace fettle

@@ -20,7 +20,7 @@
 #include <sstream>
 
 namespace fettle {
-namespace {
+namespace cloud_test {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
@@ -653,5 +653,5 @@ TEST(CloudStream, RefusesWhatReadCloudRefuses)
     EXPECT_THROW(streamed(good, units::Units{units::Units::Length::in, units::Units::Force::N}), core::InputError);
 }
 
-} // namespace
+} // namespace cloud_test
 } // namespace fettle

@@ -9,7 +9,7 @@
 #include <random>
 
 namespace fettle {
-namespace {
+namespace collision_test {
 
 using Eigen::Isometry3d, Eigen::Vector3d;
 
@@ -276,5 +276,5 @@ TEST(Collision, WorkpieceLiesOnTheTable)
     EXPECT_NEAR(checked.at_poses[1].clearance, (-15 * 100 + 45 * 50) / side, 1e-5);
 }
 
-} // namespace
+} // namespace collision_test
 } // namespace fettle

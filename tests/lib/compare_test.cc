@@ -15,7 +15,7 @@
 #include <vector>
 
 namespace fettle {
-namespace {
+namespace compare_test {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
@@ -493,5 +493,5 @@ TEST(Colours, SignsHaveDifferentColours)
     EXPECT_EQ(draw::colour_scale(Eigen::Vector3d(kNaN, kNaN, kNaN), 0).limit, 1);
 }
 
-} // namespace
+} // namespace compare_test
 } // namespace fettle

@@ -9,7 +9,7 @@
 #include <numbers>
 
 namespace fettle {
-namespace {
+namespace contact_path_test {
 
 constexpr double kPi = std::numbers::pi;
 
@@ -199,5 +199,5 @@ TEST(HeldPart, is_where_its_contact_point_meets_the_wheel)
     EXPECT_LT(((T_cell_part * contact[0]).matrix() - wheel.matrix()).norm(), 1e-9);
 }
 
-} // namespace
+} // namespace contact_path_test
 } // namespace fettle

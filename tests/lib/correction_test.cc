@@ -15,7 +15,7 @@
 
 using namespace fettle;
 
-namespace {
+namespace correction_test {
 
 const Eigen::Vector3d kNormal(-0.6, 0, 0.8);
 
@@ -190,4 +190,4 @@ TEST(Correction, KeepsTheFieldsOfPoints)
     EXPECT_FALSE(cloud::has_field(machining::corrected_points(path, split, true), "tool"));
 }
 
-} // namespace
+} // namespace correction_test

@@ -20,7 +20,7 @@
 #include <random>
 
 namespace fettle {
-namespace {
+namespace dense_test {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -499,5 +499,5 @@ TEST(Dense, IsPartOfTheMethod)
     EXPECT_EQ(surface.covariance.size(), 0);
 }
 
-} // namespace
+} // namespace dense_test
 } // namespace fettle

@@ -6,7 +6,7 @@
 #include <limits>
 
 namespace fettle {
-namespace {
+namespace diff_test {
 
 std::string points(const std::string& fields, const std::string& types, const std::string& row)
 {
@@ -62,5 +62,5 @@ TEST(Diff, UnreadableIsNotDifferent)
     EXPECT_FALSE(of("{\"a\": 1}", points("a", "F", "1 2 3 7")).equal());
 }
 
-} // namespace
+} // namespace diff_test
 } // namespace fettle

@@ -17,7 +17,7 @@
 
 using namespace fettle;
 
-namespace {
+namespace discretization_test {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
@@ -181,4 +181,4 @@ TEST(Spacing, TrueErrorsAreNoGreaterThanPredicted)
     RecordProperty("least", std::to_string(ratios.front()));
 }
 
-} // namespace
+} // namespace discretization_test

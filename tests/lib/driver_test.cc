@@ -13,7 +13,7 @@
 #include <thread>
 
 namespace fettle {
-namespace {
+namespace driver_test {
 
 using Eigen::Vector3d;
 
@@ -293,5 +293,5 @@ TEST(Driver, MayNotKnowHowToTravelLow)
     EXPECT_NE(read.find("4 travel_low 5 6 7 12 8\n5 travel 5 6 7\n6 travel 6 6 7\n"), std::string::npos) << read;
 }
 
-} // namespace
+} // namespace driver_test
 } // namespace fettle

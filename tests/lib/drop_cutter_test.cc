@@ -12,7 +12,7 @@
 
 using namespace fettle;
 
-namespace {
+namespace drop_cutter_test {
 
 const std::vector<std::string> kCutters = {"ball:3",     "flat:3",         "bull:3,0.5",
                                            "bull:3,1.4", "taper:3,20,0.4", "taper:3,50,0"};
@@ -200,4 +200,4 @@ TEST(DropCutter, OnCornersAndEdges)
     EXPECT_NEAR(machining::DropCutter(roof, machining::parse_cutter("flat:3"))({2, 0})->z, -0.5, 1e-12);
 }
 
-} // namespace
+} // namespace drop_cutter_test

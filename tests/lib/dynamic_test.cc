@@ -16,7 +16,7 @@
 
 using namespace fettle;
 
-namespace {
+namespace dynamic_test {
 
 gantry::Drive drive() { return drive_of_80_kg(1); }
 
@@ -465,4 +465,4 @@ TEST(Dynamic, StopsForGood)
     EXPECT_THROW(fault_of(small), core::InputError);
 }
 
-} // namespace
+} // namespace dynamic_test

@@ -11,7 +11,7 @@
 #include <numbers>
 
 namespace fettle {
-namespace {
+namespace estimate_test {
 
 using Eigen::Vector2d;
 
@@ -169,5 +169,5 @@ TEST(Estimate, RefusesLinesItCannotUse)
     EXPECT_EQ(problem(samples), "the points have no field 'curve'");
 }
 
-} // namespace
+} // namespace estimate_test
 } // namespace fettle

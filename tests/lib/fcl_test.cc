@@ -17,7 +17,7 @@
 #include <vector>
 
 namespace fettle {
-namespace {
+namespace fcl_test {
 
 using Eigen::Isometry3d, Eigen::Vector3d;
 
@@ -190,5 +190,5 @@ TEST(Fcl, APianoInAFlat)
     EXPECT_GT(overlapping, 300);
 }
 
-} // namespace
+} // namespace fcl_test
 } // namespace fettle

@@ -13,7 +13,7 @@
 
 using namespace fettle;
 
-namespace {
+namespace feed_control_test {
 
 constexpr double kRemaining = 0.1;
 
@@ -236,4 +236,4 @@ TEST(WheelWear, LearnsAndStaysCautious)
     EXPECT_NEAR(wear.loss(), 0.7 * 0.01, 1e-9);
 }
 
-} // namespace
+} // namespace feed_control_test

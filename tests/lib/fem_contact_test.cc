@@ -17,7 +17,7 @@
 
 using namespace fettle;
 
-namespace {
+namespace fem_contact_test {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -286,4 +286,4 @@ TEST(FemContact, DoesNotDependOnTheThreads)
     EXPECT_EQ(displacements[0], displacements[1]);
 }
 
-} // namespace
+} // namespace fem_contact_test

@@ -15,7 +15,7 @@
 
 using namespace fettle;
 
-namespace {
+namespace fem_layer_test {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -254,4 +254,4 @@ TEST(FemLayer, RefusesWhatItCannotMesh)
     EXPECT_THROW(belt::layer_mesh({10, 5, 0.4}, 100, 30, {1, 1}, 32, 8), core::InputError);
 }
 
-} // namespace
+} // namespace fem_layer_test

@@ -12,7 +12,7 @@
 #include <thread>
 
 namespace fettle {
-namespace {
+namespace file_test {
 
 namespace fs = std::filesystem;
 
@@ -238,5 +238,5 @@ TEST(Content, IsNamed)
     EXPECT_THROW(core::refuse_other_content("%PDF-", "a", "points"), core::WrongFileType);
 }
 
-} // namespace
+} // namespace file_test
 } // namespace fettle

@@ -11,7 +11,7 @@
 #include <cmath>
 
 namespace fettle::find {
-namespace {
+namespace find_test {
 
 Image quadratic(int rows, int columns)
 {
@@ -144,5 +144,5 @@ TEST(SlowField, TakesABendOff)
     EXPECT_LT(reference(back).error.cwiseAbs().maxCoeff(), 0.02);
 }
 
-} // namespace
+} // namespace find_test
 } // namespace fettle::find

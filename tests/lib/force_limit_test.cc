@@ -23,7 +23,7 @@
 #include <tuple>
 
 namespace fettle {
-namespace {
+namespace force_limit_test {
 
 constexpr double kMaxPeakShare = 1.15; // of F_max; a warning above it
 
@@ -164,5 +164,5 @@ TEST(StockBound, KnowsWhereTheWheelHasBeen)
     EXPECT_NEAR(bound.max_force(path, radius, 25.4), met, 0.1 * met);
 }
 
-} // namespace
+} // namespace force_limit_test
 } // namespace fettle

@@ -12,7 +12,7 @@
 #include <random>
 
 namespace fettle {
-namespace {
+namespace form_test {
 
 Eigen::Matrix3Xd five_points()
 {
@@ -194,5 +194,5 @@ TEST(Form, RefusesWhatDoesNotDetermineIt)
     }
 }
 
-} // namespace
+} // namespace form_test
 } // namespace fettle

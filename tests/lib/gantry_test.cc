@@ -12,7 +12,7 @@
 
 using namespace fettle;
 
-namespace {
+namespace gantry_test {
 
 gantry::QuasiStaticOptions no_wear()
 {
@@ -343,4 +343,4 @@ TEST(QuasiStatic, TheWayDownIsGuarded)
     EXPECT_EQ(gantry.lift(kTop + 2).peak_force, 0);
 }
 
-} // namespace
+} // namespace gantry_test

@@ -13,7 +13,7 @@
 
 namespace fettle {
 
-namespace {
+namespace geometry_test {
 
 // Against sorting.
 TEST(Quantiles, AreOrderStatistics)
@@ -144,6 +144,6 @@ TEST(BoundingBox, OfPoints)
     EXPECT_TRUE(geometry::finite_bounding_box(points.rightCols(1)).min().array().isNaN().all());
 }
 
-} // namespace
+} // namespace geometry_test
 
 } // namespace fettle

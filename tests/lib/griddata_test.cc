@@ -15,7 +15,7 @@
 #include <vector>
 
 namespace fettle {
-namespace {
+namespace griddata_test {
 
 Eigen::MatrixXd table(const std::string& name, int columns)
 {
@@ -392,5 +392,5 @@ TEST(GriddataFit, names_the_source)
     }
 }
 
-} // namespace
+} // namespace griddata_test
 } // namespace fettle

@@ -14,7 +14,7 @@
 #include <random>
 
 namespace fettle {
-namespace {
+namespace height_grid_test {
 
 using Eigen::Isometry3d, Eigen::Vector2d, Eigen::Vector3d;
 
@@ -260,5 +260,5 @@ TEST(Heterogeneous, AgreesWithTheTriangles)
     EXPECT_GT(deep, 20);
 }
 
-} // namespace
+} // namespace height_grid_test
 } // namespace fettle

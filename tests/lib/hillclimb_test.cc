@@ -16,7 +16,7 @@
 #include <random>
 
 namespace fettle {
-namespace {
+namespace hillclimb_test {
 
 double truth(double x, double y) { return 0.01 * x * x - 0.006 * x * y + 4 * std::sin(y / 25) + 0.3 * x; }
 
@@ -213,5 +213,5 @@ TEST(HillClimb, RolesFollowTheNearerBoundary)
     EXPECT_EQ(plan.curve[0], -1);
 }
 
-} // namespace
+} // namespace hillclimb_test
 } // namespace fettle

@@ -10,7 +10,7 @@
 #include <numbers>
 
 namespace fettle {
-namespace {
+namespace job_test {
 
 job::Job parse(const std::string& text) { return job::parse_job(json::Reader::parse(text, "job.json")); }
 
@@ -191,5 +191,5 @@ TEST(Job, WorkingFrameIsTurnedCounterClockwise)
     EXPECT_NEAR(w.y(), 0, 1e-15);
 }
 
-} // namespace
+} // namespace job_test
 } // namespace fettle

@@ -10,7 +10,7 @@
 #include <sstream>
 
 namespace fettle::json {
-namespace {
+namespace json_test {
 
 using Read = std::function<void(Reader&)>;
 
@@ -144,5 +144,5 @@ TEST(Json, LeavesCarryTheirPaths)
     EXPECT_EQ(list, "a[0]=1;a[1].b=null;c={};d=\"x\";e=false;");
 }
 
-} // namespace
+} // namespace json_test
 } // namespace fettle::json

@@ -12,7 +12,7 @@
 using namespace fettle;
 using calibrate::LawRecord;
 
-namespace {
+namespace law_belief_test {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
@@ -94,4 +94,4 @@ TEST(LawBelief, RejectsWhatIsNotPositive)
     EXPECT_THROW(calibrate::learn({1, {}}), core::InputError);
 }
 
-} // namespace
+} // namespace law_belief_test

@@ -14,7 +14,7 @@
 
 using namespace fettle;
 
-namespace {
+namespace layer_contact_test {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -208,4 +208,4 @@ TEST(LayerContact, KnowsWhenNothingTouches)
     EXPECT_THROW(belt::influence_coefficients({10, 5, 0.6}, {1, 1}, 4, 4), core::InputError);
 }
 
-} // namespace
+} // namespace layer_contact_test

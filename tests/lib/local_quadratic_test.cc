@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace fettle {
-namespace {
+namespace local_quadratic_test {
 
 using geometry::QuadraticTerms;
 
@@ -42,5 +42,5 @@ TEST(LocalQuadratic, WidestGapBetweenDirections)
     EXPECT_NEAR(geometry::widest_gap({1, -1}), 2 * std::numbers::pi - 2, 1e-14); // across the cut at π
 }
 
-} // namespace
+} // namespace local_quadratic_test
 } // namespace fettle

@@ -18,7 +18,7 @@
 
 using namespace fettle;
 
-namespace {
+namespace machining_test {
 
 constexpr double kNoContact = std::numeric_limits<double>::infinity();
 constexpr double kPi = std::numbers::pi;
@@ -448,4 +448,4 @@ TEST(CutterPath, GoesThroughThePoints)
     EXPECT_NEAR(machining::length(arc({0, 0}, 2, 1, -3, 0)), 6, 1e-14);
 }
 
-} // namespace
+} // namespace machining_test

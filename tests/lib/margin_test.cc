@@ -1,4 +1,5 @@
 #include "core/error.h"
+#include "draws.h"
 #include "fit/bspline.h"
 #include "fit/family.h"
 #include "fit/plane.h"
@@ -7,6 +8,7 @@
 #include "margin/round_fit.h"
 #include "margin/shift.h"
 
+#include <boost/math/distributions/binomial.hpp>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,7 +17,7 @@
 #include <random>
 
 namespace fettle {
-namespace {
+namespace margin_test {
 
 fit::Fit fit_sphere(const fit::FitInput& input) { return fit::fit_family_by_name(input, "sphere"); }
 
@@ -269,37 +271,45 @@ int over_ground(const job::Job& job, const HeightOver& truth, fit::Fit (*fit)(co
     return count;
 }
 
-// 95 % shift, 300 refits: 15 over-grind on average, with a standard deviation of 3.8. 4 to 28 leave out one run in
-// 1000.
+// The number of runs that a 95 % shift over-grinds.
+boost::math::binomial over_grinding(int runs) { return boost::math::binomial(runs, 0.05); }
+
+// Leaves out one run in 1000 on either side: of 300, whose mean is 15, fewer than 4 or more than 28.
+void expect_calibrated(int count, int runs)
+{
+    EXPECT_GE(count, quantile(over_grinding(runs), 0.001));
+    EXPECT_LE(count, quantile(complement(over_grinding(runs), 0.001)));
+}
+
 TEST(Posterior, is_calibrated_for_planes)
 {
     const job::Job job = square_job(job::SurfaceType::plane);
+    const int runs = draws(300);
     const int count = over_ground(
-        job, [](const Eigen::Vector2d& p) { return 3 + 0.1 * p.x() - 0.05 * p.y(); }, fit::fit_plane, 300);
-    EXPECT_GE(count, 4);
-    EXPECT_LE(count, 28);
+        job, [](const Eigen::Vector2d& p) { return 3 + 0.1 * p.x() - 0.05 * p.y(); }, fit::fit_plane, runs);
+    expect_calibrated(count, runs);
 }
 
 TEST(Posterior, is_calibrated_for_spheres)
 {
     const job::Job job = square_job(job::SurfaceType::freeform);
     const double radius = 8 * kInch;
+    const int runs = draws(300);
     const int count = over_ground(
-        job, [=](const Eigen::Vector2d& p) { return std::sqrt(radius * radius - p.squaredNorm()); }, fit_sphere, 300);
-    EXPECT_GE(count, 4);
-    EXPECT_LE(count, 28);
+        job, [=](const Eigen::Vector2d& p) { return std::sqrt(radius * radius - p.squaredNorm()); }, fit_sphere, runs);
+    expect_calibrated(count, runs);
 }
 
-// The spline allows for more than the quadratic that is there, so it may only be on the safe side. 100 refits: 5 on
-// average, 2.2 standard deviation.
+// The spline allows for more than the quadratic that is there, so it may only be on the safe side.
 TEST(Posterior, is_safe_for_a_spline_over_a_quadratic)
 {
     const job::Job job = square_job(job::SurfaceType::freeform);
     const auto truth = [](const Eigen::Vector2d& p) {
         return (p.x() * p.x() + 0.5 * p.y() * p.y() + 0.3 * p.x() * p.y()) / (8 * kInch);
     };
-    EXPECT_LE(over_ground(job, truth, fit::fit_bspline, 100), 12);
+    const int runs = draws(100);
+    EXPECT_LE(over_ground(job, truth, fit::fit_bspline, runs), quantile(complement(over_grinding(runs), 0.002)));
 }
 
-} // namespace
+} // namespace margin_test
 } // namespace fettle

@@ -10,7 +10,7 @@
 #include <random>
 
 namespace fettle {
-namespace {
+namespace mesh_index_test {
 
 mesh::Mesh soup(int triangles, double size, std::mt19937& random,
                 const Eigen::Vector3d& centre = Eigen::Vector3d::Zero())
@@ -349,5 +349,5 @@ TEST(MeshIndex, FarFromTheOrigin)
     EXPECT_NEAR(found->point.z(), 1e7 + 1e-4, 1.5e-4);
 }
 
-} // namespace
+} // namespace mesh_index_test
 } // namespace fettle

@@ -22,7 +22,7 @@
 #include <sstream>
 
 namespace fettle {
-namespace {
+namespace mesh_test {
 
 // tests/run names the folder of the samples; by hand the tests are run in the root.
 std::string data(const std::string& name)
@@ -475,5 +475,5 @@ TEST(Mesh, BoxHoldsFinitePoints)
     EXPECT_TRUE(geometry::finite_bounding_box(Eigen::Matrix3Xd(3, 0)).max().array().isNaN().all());
 }
 
-} // namespace
+} // namespace mesh_test
 } // namespace fettle

@@ -8,7 +8,7 @@
 #include <set>
 
 namespace fettle {
-namespace {
+namespace morton_test {
 
 // The curve visits all cells of an octant before those of the next: x alternates fastest, z slowest.
 TEST(Morton, GoesThroughOctantsInTurn)
@@ -40,5 +40,5 @@ TEST(Morton, OrdersAllPlacesByCurve)
     EXPECT_TRUE(core::morton_order(Eigen::Matrix3Xd(3, 0)).empty());
 }
 
-} // namespace
+} // namespace morton_test
 } // namespace fettle

@@ -13,7 +13,7 @@
 
 using namespace fettle;
 
-namespace {
+namespace nc_program_test {
 
 constexpr double kPi = std::numbers::pi;
 
@@ -333,4 +333,4 @@ TEST(NcProgram, IsDistinguishedFromPoints)
         EXPECT_FALSE(machining::looks_like_nc_program(text)) << text;
 }
 
-} // namespace
+} // namespace nc_program_test

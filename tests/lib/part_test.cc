@@ -16,7 +16,7 @@
 #include <numbers>
 
 namespace fettle {
-namespace {
+namespace part_test {
 
 constexpr double pi = std::numbers::pi;
 
@@ -285,5 +285,5 @@ TEST(Scan, CloudIsLiftedAndDensified)
         EXPECT_NEAR(p.z(), 0.1 * p.x() + part::height(spec.anomalies, p.head<2>()), 1e-6) << p.transpose();
 }
 
-} // namespace
+} // namespace part_test
 } // namespace fettle

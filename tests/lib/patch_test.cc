@@ -13,7 +13,7 @@
 
 using namespace fettle;
 
-namespace {
+namespace patch_test {
 
 TEST(Patch, ByHand)
 {
@@ -158,4 +158,4 @@ TEST(Walls, AreFoundInPlanView)
                      .intersects(mesh.vertices.topRows<2>()));
 }
 
-} // namespace
+} // namespace patch_test

@@ -11,7 +11,7 @@
 #include <string>
 
 namespace fettle {
-namespace {
+namespace patches_test {
 
 std::string sample(const std::string& name)
 {
@@ -142,5 +142,5 @@ TEST(Patch, refuses_bad_files_with_the_place)
     expect_message(refusal("\"weights\"", "\"wieghts\""), "wieghts");
 }
 
-} // namespace
+} // namespace patches_test
 } // namespace fettle

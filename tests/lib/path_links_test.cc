@@ -11,7 +11,7 @@
 #include <random>
 
 namespace fettle {
-namespace {
+namespace path_links_test {
 
 // Strokes of a few points at random places around a part, each with the outward direction of the place.
 cloud::Cloud strokes_on(const Eigen::Matrix3Xd& part, int count)
@@ -106,5 +106,5 @@ TEST(PathLinks, LeadsAreAlongTheAxis)
     EXPECT_EQ(belt::interpolate_path(linked, 100).size(), linked.size());
 }
 
-} // namespace
+} // namespace path_links_test
 } // namespace fettle

@@ -17,7 +17,7 @@
 #include <random>
 
 namespace fettle {
-namespace {
+namespace picture_test {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 const draw::ColourScale kUnit{1};
@@ -329,5 +329,5 @@ TEST(Raster, SpacingOfAGridIsItsCell)
     EXPECT_LE(draw::point_spacing(line), 6);
 }
 
-} // namespace
+} // namespace picture_test
 } // namespace fettle

@@ -11,7 +11,7 @@
 #include <random>
 
 namespace fettle {
-namespace {
+namespace place_test {
 
 const Eigen::Isometry3d kAway =
     Eigen::Translation3d(300, -50, 7.5) * Eigen::AngleAxisd(2.1, Eigen::Vector3d(1, -2, 0.5).normalized());
@@ -114,5 +114,5 @@ TEST(Place, TurnsFollowTheMatrixAndTheInverseLeadsBack)
     EXPECT_LT((back.xyz - part.points.xyz).cwiseAbs().maxCoeff(), 1e-9);
 }
 
-} // namespace
+} // namespace place_test
 } // namespace fettle

@@ -15,7 +15,7 @@
 #include <sstream>
 
 namespace fettle {
-namespace {
+namespace plan_test {
 
 constexpr double kInch = 25.4;
 
@@ -425,5 +425,5 @@ TEST(Gcode, KeepsTheChordError)
     EXPECT_LT(max, 0.0105); // along z instead of across the chord; rounding of the digits
 }
 
-} // namespace
+} // namespace plan_test
 } // namespace fettle

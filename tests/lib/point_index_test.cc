@@ -9,7 +9,7 @@
 #include <random>
 
 namespace fettle {
-namespace {
+namespace point_index_test {
 
 std::vector<Eigen::Index> by_brute_force(const Eigen::Matrix3Xd& points, const Eigen::Vector3d& query,
                                          std::size_t count)
@@ -111,5 +111,5 @@ TEST(PointIndex, FewPoints)
               (std::vector<Eigen::Index>{0, 1, 2}));
 }
 
-} // namespace
+} // namespace point_index_test
 } // namespace fettle

@@ -14,7 +14,7 @@
 
 using namespace fettle;
 
-namespace {
+namespace press_test {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -251,4 +251,4 @@ TEST(ContactWheel, HasItsProfile)
     EXPECT_NEAR(belt::young_from_shore_a(60), 3.6, 0.1);
 }
 
-} // namespace
+} // namespace press_test

@@ -10,7 +10,7 @@
 #include <functional>
 
 namespace fettle {
-namespace {
+namespace probe_test {
 
 using Eigen::Vector2d;
 
@@ -154,5 +154,5 @@ TEST(Probe, NoSurfaceIsNaN)
     for (Eigen::Index i = 0; i < plan.size(); ++i) EXPECT_EQ(std::isnan(touches(2, i)), plan.xy.col(i).sum() > 90) << i;
 }
 
-} // namespace
+} // namespace probe_test
 } // namespace fettle

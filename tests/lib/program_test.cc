@@ -14,7 +14,7 @@
 #include <vector>
 
 namespace fettle {
-namespace {
+namespace program_test {
 
 using program::StepKind;
 
@@ -245,5 +245,5 @@ TEST(Program, Angles)
     EXPECT_EQ(program::program_name("out/2 parts-of.mod"), "p2_parts_of");
 }
 
-} // namespace
+} // namespace program_test
 } // namespace fettle

@@ -15,7 +15,7 @@
 #include <random>
 
 namespace fettle {
-namespace {
+namespace reconstruct_test {
 
 using reconstruct::Reconstruction;
 
@@ -294,5 +294,5 @@ TEST(Reconstruct, TooFewPointsAreRefused)
     EXPECT_THROW(reconstruct::reconstruct(cloud, request), core::InputError);
 }
 
-} // namespace
+} // namespace reconstruct_test
 } // namespace fettle

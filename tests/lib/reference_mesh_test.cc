@@ -11,7 +11,7 @@
 #include <random>
 
 namespace fettle {
-namespace {
+namespace reference_mesh_test {
 
 mesh::Mesh joined(const mesh::Mesh& one, const mesh::Mesh& other)
 {
@@ -174,5 +174,5 @@ TEST(ReferenceMesh, RepeatedFacetsKeepTheFirstNumber)
     EXPECT_EQ(compare::signed_distance(Eigen::Vector3d(2, 0.5, -0.25), mesh).facet[0], 2 + 10);
 }
 
-} // namespace
+} // namespace reference_mesh_test
 } // namespace fettle

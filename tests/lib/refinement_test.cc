@@ -14,7 +14,7 @@
 
 using namespace fettle;
 
-namespace {
+namespace refinement_test {
 
 std::vector<machining::CutterMove> moves_through(const std::vector<Eigen::Vector3d>& tips)
 {
@@ -160,4 +160,4 @@ TEST(Refinement, LeavesNoGapsAndAgreesWithFinerMaps)
     EXPECT_EQ(out.str().size(), 84 + 50 * static_cast<std::size_t>(mesh.triangles.cols()));
 }
 
-} // namespace
+} // namespace refinement_test

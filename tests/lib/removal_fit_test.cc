@@ -10,7 +10,7 @@
 
 using namespace fettle;
 
-namespace {
+namespace removal_fit_test {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
@@ -74,4 +74,4 @@ TEST(RemovalFit, Refuses)
     EXPECT_THROW(belt::fit_removal(bad, {true, false, false}), core::InputError);
 }
 
-} // namespace
+} // namespace removal_fit_test

@@ -15,7 +15,7 @@
 
 using namespace fettle;
 
-namespace {
+namespace removal_test {
 
 constexpr double kRadius = 25.4;
 constexpr double kWidth = 6.4; // 64 cells of 0.1 mm
@@ -385,4 +385,4 @@ TEST(HeightField, TakesTheUpperSideOfABodyWithNeedlesAndWalls)
     EXPECT_GT(removal::stock_from_scan(sampling::Scan(body), job, 0.5).z.minCoeff(), 4);
 }
 
-} // namespace
+} // namespace removal_test

@@ -11,7 +11,7 @@
 #include <limits>
 
 namespace fettle {
-namespace {
+namespace report_test {
 
 TEST(Html, TextIsNeverMarkup)
 {
@@ -116,5 +116,5 @@ TEST(Svg, TicksAreRoundAndInside)
         "15</tspan></text>");
 }
 
-} // namespace
+} // namespace report_test
 } // namespace fettle

@@ -28,7 +28,7 @@
 #include <sstream>
 
 namespace fettle {
-namespace {
+namespace round_trip_test {
 
 constexpr int kRounds = 40;
 
@@ -590,5 +590,5 @@ TEST(RoundTrip, Trace)
     }
 }
 
-} // namespace
+} // namespace round_trip_test
 } // namespace fettle

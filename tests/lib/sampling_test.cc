@@ -13,7 +13,7 @@
 #include <set>
 
 namespace fettle {
-namespace {
+namespace sampling_test {
 
 constexpr double kInch = 25.4;
 
@@ -530,5 +530,5 @@ TEST(ProbingTime, OfTwoTouchesByHand)
     EXPECT_DOUBLE_EQ(sampling::probing_time(touches, {0, 1}, 70, machine), expected);
 }
 
-} // namespace
+} // namespace sampling_test
 } // namespace fettle

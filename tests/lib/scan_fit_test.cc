@@ -1,6 +1,7 @@
 #include "fit/scan_fit.h"
 
 #include "core/error.h"
+#include "draws.h"
 #include "fit/representatives.h"
 #include "margin/anomaly_grid.h"
 #include "margin/shift.h"
@@ -15,7 +16,7 @@
 #include <string>
 
 namespace fettle {
-namespace {
+namespace scan_fit_test {
 
 using Eigen::Index;
 using Eigen::VectorXd;
@@ -106,8 +107,8 @@ Outcome judge(const surface::Surface& surface)
 // points, enough for the sphere beneath.
 TEST(ScanFit, margin_rests_on_the_waves_not_on_the_number_of_points)
 {
-    for (const unsigned seed : {1u, 2u, 3u}) {
-        const ScannerWaves waves(0.05, 8, seed);
+    for (int seed = 1; seed <= draws(3); ++seed) {
+        const ScannerWaves waves(0.05, 8, static_cast<unsigned>(seed));
         double few = 0;
         for (const Index points : {1000, 10000, 100000}) {
             const Outcome outcome = judge(fit(scan(points, waves, 0.02)).fit.surface);
@@ -181,5 +182,5 @@ TEST(ScanFit, threads_do_not_matter)
     EXPECT_EQ(text(2), text(1));
 }
 
-} // namespace
+} // namespace scan_fit_test
 } // namespace fettle

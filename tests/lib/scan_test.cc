@@ -10,7 +10,7 @@
 #include <random>
 
 namespace fettle {
-namespace {
+namespace scan_test {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
@@ -289,5 +289,5 @@ TEST(CloudScan, BallOnASphere)
     }
 }
 
-} // namespace
+} // namespace scan_test
 } // namespace fettle

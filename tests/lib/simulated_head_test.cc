@@ -14,7 +14,7 @@
 
 using namespace fettle;
 
-namespace {
+namespace simulated_head_test {
 
 constexpr double kPeriod = 1e-3; // of the controller, s
 
@@ -53,8 +53,6 @@ double largest_difference(const removal::HeightField& a, const removal::HeightFi
 {
     return (a.z - b.z).abs().maxCoeff();
 }
-
-} // namespace
 
 TEST(SimulatedHead, GrindsWhatTheQuasiStaticGantryGrinds)
 {
@@ -120,3 +118,5 @@ TEST(SimulatedHead, IsTheSameFromAFile)
     EXPECT_EQ(again.grinding_ratio, head.grinding_ratio);
     EXPECT_THROW(gantry::read_head("nowhere"), core::InputError);
 }
+
+} // namespace simulated_head_test

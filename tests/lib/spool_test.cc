@@ -8,7 +8,7 @@
 #include <random>
 
 namespace fettle {
-namespace {
+namespace spool_test {
 
 // Whatever goes in comes out, from memory, from the file and across the border between them.
 TEST(Spool, GivesBackWhatItTook)
@@ -50,5 +50,5 @@ TEST(Spool, NamesTheFileThatItCannotWrite)
     EXPECT_EQ(message, "/no/where/scratch: cannot make a temporary file: No such file or directory");
 }
 
-} // namespace
+} // namespace spool_test
 } // namespace fettle

@@ -19,7 +19,7 @@
 #include <ostream>
 
 namespace fettle {
-namespace {
+namespace station_test {
 
 using station::Command;
 using station::Mode;
@@ -344,5 +344,5 @@ TEST(Checkpoint, KeepsWhatIsOnTheDisk)
     EXPECT_THROW(station::read_trace_or_checkpoint("trace.pcd", units), core::InputError);
 }
 
-} // namespace
+} // namespace station_test
 } // namespace fettle

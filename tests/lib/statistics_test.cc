@@ -11,7 +11,7 @@
 #include <vector>
 
 namespace fettle {
-namespace {
+namespace statistics_test {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
@@ -151,5 +151,5 @@ TEST(Statistics, Regions)
                                                job::Region::outside}));
 }
 
-} // namespace
+} // namespace statistics_test
 } // namespace fettle

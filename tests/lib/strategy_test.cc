@@ -22,7 +22,7 @@
 #include <vector>
 
 namespace fettle {
-namespace {
+namespace strategy_test {
 
 using Kind = strategy::Action::Kind;
 
@@ -858,5 +858,5 @@ TEST(TraceFile, CountsNoRowThatIsWrittenInPart)
     }
 }
 
-} // namespace
+} // namespace strategy_test
 } // namespace fettle

@@ -14,7 +14,7 @@
 #include <functional>
 
 namespace fettle {
-namespace {
+namespace surface_test {
 
 constexpr double kInch = 25.4;
 
@@ -534,5 +534,5 @@ TEST(Precision, IsWrittenAndRead)
                  core::InputError);
 }
 
-} // namespace
+} // namespace surface_test
 } // namespace fettle

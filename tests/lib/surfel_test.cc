@@ -12,7 +12,7 @@
 #include <numbers>
 
 namespace fettle {
-namespace {
+namespace surfel_test {
 
 constexpr double kPi = std::numbers::pi;
 
@@ -500,5 +500,5 @@ TEST(DisplacedNormals, warn_where_displacements_are_no_longer_small)
     }
 }
 
-} // namespace
+} // namespace surfel_test
 } // namespace fettle

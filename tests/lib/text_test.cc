@@ -11,7 +11,7 @@
 #include <random>
 
 namespace fettle {
-namespace {
+namespace text_test {
 
 TEST(Text, NumbersReadBackToTheSame)
 {
@@ -94,5 +94,5 @@ TEST(Range, ContainsWhatItSays)
     EXPECT_FALSE(core::Range::strictly_between(0, 1).contains(1));
 }
 
-} // namespace
+} // namespace text_test
 } // namespace fettle

@@ -17,7 +17,7 @@
 #include <vector>
 
 namespace fettle {
-namespace {
+namespace urdf_test {
 
 using robot::ArmKind;
 
@@ -281,5 +281,5 @@ TEST(Urdf, refusals)
     EXPECT_NE(refusal(text_of("ur5"), {{}, "", "finger"}).find("--tip: no link is called 'finger'"), std::string::npos);
 }
 
-} // namespace
+} // namespace urdf_test
 } // namespace fettle

@@ -8,7 +8,7 @@
 #include <random>
 
 namespace fettle {
-namespace {
+namespace workpiece_test {
 
 using Eigen::Isometry3d, Eigen::Vector3d;
 
@@ -242,5 +242,5 @@ TEST(Workpiece, NeedlesAreNotMissed)
     EXPECT_NEAR(workpiece.nearest(robot::PlacedSolid(ball, Isometry3d::Identity())).clearance.distance, 1, 1e-8);
 }
 
-} // namespace
+} // namespace workpiece_test
 } // namespace fettle
