@@ -35,7 +35,7 @@ void write_aligned(const align::AlignRun& run, const mesh::PartOutput& out)
 int main(int argc, char** argv)
 {
     const std::string description =
-        "Registers a scan: finds the rigid motion that puts it onto a reference, wherever it lies.\n"
+        "Register a scan: find the rigid motion that puts it onto a reference, wherever it lies.\n"
         "Either is a cloud (PCD, PLY, XYZ) or a mesh (STL, PLY, OBJ, OFF). A coarse search tries turns that cover all "
         "rotations, those that lay principal axes on each other among them, and the poses for which pairs of points "
         "vote; then iterative closest points, point to plane, trimmed and robust, minimises the distances. Without "

@@ -18,7 +18,8 @@ using namespace fettle;
 namespace {
 
 const std::string kDescription =
-    "Kinematics of a robot along a path: joints to tool poses (--forward), or tool poses to joints (--inverse), in "
+    "Compute the kinematics of a robot along a path: joints to tool poses (--forward), or tool poses to joints "
+    "(--inverse), in "
     "closed form; or the reach of a robot (--reach).\n"
     "Of all solutions in range, whole turns included, --inverse takes those with the fewest jumps and, of these, the "
     "least motion. Points: x y z is the tip, qw qx qy qz turns the tool's frame (+z from the tip to the holder, +x "

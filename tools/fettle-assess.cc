@@ -35,7 +35,7 @@ void displace(cli::Tool& t, cloud::Cloud& cloud, const belt::Surfels& surfels, c
 int main(int argc, char** argv)
 {
     const std::string description =
-        "Judges a workpiece of surfels: gouge, within or undercut by their displacements.\n"
+        "Judge a workpiece of surfels: gouge, within or undercut by their displacements.\n"
         "Out: the surfels with error (the displacement, + material left), class (-1 gouge, 0 within, 1 undercut; NaN: "
         "no displacement) and rgb: bright and dark red, pale green, violet and dark blue, a step for each width of the "
         "range. Lengths in mm. Exit 1 if a surfel is gouged or undercut, or none has a displacement.";

@@ -112,7 +112,7 @@ clean::CleanRequest parse_request(const Options& o, double mm)
 int main(int argc, char** argv)
 {
     const std::string description =
-        "Cleans a raw scan: takes away what is no part, and changes nothing that stays.\n"
+        "Clean a raw scan: take away what is no part, and change nothing that stays.\n"
         "Points that are not finite, several points at exactly (0, 0, 0), points where another one is, and triangles "
         "drawn "
         "twice always go; then what the options name, in the order crop, facing, outliers, thin. Points keep their "

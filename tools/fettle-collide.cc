@@ -21,7 +21,7 @@ using namespace fettle;
 namespace {
 
 const std::string kDescription =
-    "Collisions of a robot along a path: arm, tool, fixtures and workpiece, at the poses and between them.\n"
+    "Find the collisions of a robot along a path: arm, tool, fixtures and workpiece, at the poses and between them.\n"
     "Signed clearances of the solids of the robot file among each other and against every triangle of the workpiece: "
     "negative is the penetration depth, the shortest translation that separates two solids, or how deep the workpiece "
     "lies in one. Bodies on one link or on neighbouring links and allowed pairs are left out. A contact no deeper than "

@@ -107,7 +107,7 @@ Options parse_options(cli::Tool& t)
 }
 
 const std::string kDescription =
-    "Signed error map of a part against its reference: + material left (under-cut), - over-cut.\n"
+    "Compare a part with its reference, as a signed error map: + material left (under-cut), - over-cut.\n"
     "Either is a mesh (STL, PLY, OBJ, OFF) or a cloud (PCD, PLY, XYZ). Out: the points of the test (vertices, if "
     "it is a mesh) with all their fields, the reference's normal, error and rgb. Beyond an open border of the "
     "reference the error is NaN. Exit 1 if an error (with a job: one inside the anomaly's boundary) exceeds the "

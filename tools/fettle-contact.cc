@@ -25,7 +25,7 @@ Eigen::Isometry3d parse_pose(const std::string& text, double mm)
 int main(int argc, char** argv)
 {
     const std::string description =
-        "The pressure of an elastic contact wheel on a workpiece, at one contact point.\n"
+        "Compute the pressure of an elastic contact wheel on a workpiece, at one contact point.\n"
         "The surfels under the wheel that face it become heights on a regular grid; the wheel's layer, bonded to a "
         "rigid hub, is pressed on them without friction. The pose's x y z is the contact point, its z axis the outward "
         "normal, its x axis along the feed; the wheel's axis is y. Indentation: how far the wheel's lowest point would "

@@ -203,7 +203,7 @@ void check(const Options& o)
 }
 
 const std::string kDescription =
-    "Finds anomalies of a part: excess material that stands over the surface around it.\n"
+    "Find the anomalies of a part: excess material that stands over the surface around it.\n"
     "Out: the part with all its fields and triangles, and the fields anomaly (0 none, else the row of the report) and "
     "height over the surface beneath. Without --against the part itself says what belongs to it: smooth metal around a "
     "region is continued beneath it, and the region judged by how far and how plainly it stands over that. The report "

@@ -11,7 +11,7 @@ using namespace fettle;
 
 int main(int argc, char** argv)
 {
-    const std::string description = "Plans a zig-zag finishing path over a design, as G-code.\n"
+    const std::string description = "Plan a zig-zag finishing path over a design, as G-code.\n"
                                     "At every point the cutter comes down upright until it touches the design, a "
                                     "facet, an edge or a vertex. Lengths "
                                     "in mm, feeds in mm/s; the program is in mm, places are those of the tool tip.";

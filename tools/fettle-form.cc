@@ -29,7 +29,7 @@ void check_sections(const std::string& kind, const std::optional<double>& spacin
 }
 
 const std::string kDescription =
-    "Form error of measured points: the width of the zone that holds them all, about the element of least squares "
+    "Measure the form error of points: the width of the zone that holds them all, about the element of least squares "
     "and at its narrowest (minimum zone). Out: JSON, with both elements, and the points that touch the minimum "
     "zone.\n"
     "No filter is applied, and every point counts: noise widens the zone by some five of its standard deviations "

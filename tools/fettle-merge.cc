@@ -8,7 +8,7 @@ using namespace fettle;
 int main(int argc, char** argv)
 {
     const std::string description =
-        "Merges scans of one part: finds where each lies in the frame of the first, and makes one cloud of them.\n"
+        "Merge scans of one part: find where each lies in the frame of the first, and make one cloud of them.\n"
         "Order, start and overlap are unknown: pairs of points vote for the poses of a pair, further scans must not "
         "contradict them, and then all that overlap are fitted to each other at once, weighted by their noise. The "
         "report has each scan's pose with its covariance. Points that several scans see lie on the weighted mean of "

@@ -21,7 +21,7 @@ using namespace fettle;
 namespace {
 
 const std::string kDescription =
-    "Machines a stock virtually: cuts a map of heights with a cutter along a path of three axes, upright or tilted.\n"
+    "Machine a stock virtually: cut a map of heights with a cutter along a path of three axes, upright or tilted.\n"
     "Every cell's centre comes to the lowest height at which the cutter passes over it, computed from whole moves. "
     "Lengths in mm, feeds in mm/s; a program states its own (F in length a minute). Exit 1 if a rapid move went "
     "through material or the holder collides.";

@@ -16,7 +16,7 @@ using namespace fettle;
 namespace {
 
 const std::string kDescription =
-    "Contact paths over a patch of surfels, and paths made denser.\n"
+    "Plan contact paths over a patch of surfels, or make a path denser.\n"
     "From surfels: rows or a spiral over each patch; points with position and quaternion (+z the outward normal), pass "
     "and stroke. From a path: points inserted where the distance of two exceeds --spacing, positions by lerp, "
     "orientations by slerp along the shorter arc. With --clearance the strokes are joined off the part: along the "

@@ -76,12 +76,10 @@ place::PlaceRequest parse_request(const Options& o)
 int main(int argc, char** argv)
 {
     const std::string description =
-        "Moves a part: by a matrix, by turns, or so that a face of it is up; converts its unit.\n"
+        "Move a part: by a matrix, by turns, or so that a face of it is up; convert its unit.\n"
         "Out: the cloud or mesh with all its triangles and fields; normals, poses and viewpoint are turned with it. "
-        "The "
-        "matrix is applied first, then the turns, then --up, then --centre. A face's upper side is where the normals "
-        "of "
-        "mesh or cloud point; of a cloud without normals, the side of its viewpoint.";
+        "The matrix is applied first, then the turns, then --up, then --centre. A face's upper side is where the "
+        "normals of mesh or cloud point; of a cloud without normals, the side of its viewpoint.";
     return cli::tool_main(argc, argv, description, [](cli::Tool& t) {
         const Options o{t};
         t.example("fettle-place scans/hammer.stl --up plane --centre --inverse back.txt -o lying.stl",

@@ -50,7 +50,7 @@ reconstruct::ReconstructRequest parse_request(const Options& o)
 int main(int argc, char** argv)
 {
     const std::string description =
-        "Makes a mesh of a scan: its points become the vertices of triangles, and holes stay open.\n"
+        "Make a mesh of a scan: its points become the vertices of triangles, and holes stay open.\n"
         "No point is moved, added or smoothed, and no triangle spans a gap wider than --max-gap. Organised clouds, and "
         "profiles in the order in which a profiler measured them, are joined along that order; other points by their "
         "nearness. Outside is where the cloud's normals point, else where its viewpoint lies; where a file has "

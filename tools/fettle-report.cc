@@ -42,7 +42,7 @@ void write_index(cli::Tool& t, const std::vector<std::string>& files, const std:
 }
 
 const std::string kDescription =
-    "One page about a run: verdict, job, touches and fit, margin, plan, force trace, maps, statistics, form, "
+    "Make one page about a run: verdict, job, touches and fit, margin, plan, force trace, maps, statistics, form, "
     "provenance. Self-contained HTML, for the screen and for A4. Sections without their files are left out. Where "
     "the error map knows how much was removed (of a part that fettle-grind ground), the verdict is about the "
     "wheel: "

@@ -28,7 +28,7 @@ json::Value face_report(const cad::Face& face, Eigen::Index triangles, double de
 int main(int argc, char** argv)
 {
     const std::string description =
-        "Turns a design as CAD writes it into triangles with a stated deviation.\n"
+        "Turn a design as CAD writes it into triangles with a stated deviation.\n"
         "Reads STEP (AP203, AP214, AP242) and IGES, with the unit that the file states; assemblies are placed. Every "
         "face "
         "is triangulated so that its triangles, surface and edges are nowhere farther apart than the tolerance, which "

@@ -13,7 +13,7 @@ using namespace fettle;
 int main(int argc, char** argv)
 {
     return cli::tool_main(
-        argc, argv, "The stock under the simulated head of LinuxCNC: before and after.", [](cli::Tool& t) {
+        argc, argv, "Read the stock under the simulated head of LinuxCNC, before and after.", [](cli::Tool& t) {
             const std::string& plan_file = t.positional_file(
                 "PLAN", "The plan whose job the machine is set up for, or a job without a plan, to be probed, JSON");
             const gantry::StockOptions stock_options(t);

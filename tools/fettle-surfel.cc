@@ -12,7 +12,7 @@ using namespace fettle;
 int main(int argc, char** argv)
 {
     const std::string description =
-        "A workpiece as surfels: discs on the design, and how far the stock stands over each of them.\n"
+        "Make a workpiece of surfels: discs on the design, and how far the stock stands over each of them.\n"
         "The design is sampled patch by patch: B-spline patches (JSON) on a u-v lattice, a mesh on lattices over "
         "pieces between its edges, a scan by thinning. Along edges and borders boundary re-sampling puts small "
         "surfels; "

@@ -19,7 +19,7 @@ using namespace fettle;
 namespace {
 
 const std::string kDescription =
-    "Verifies a machined surface against its design by triangle patches.\n"
+    "Verify a machined surface against its design by triangle patches.\n"
     "The design is re-sampled at the x, y of the machined vertices; of each pair of triangles d is the mean of the "
     "three differences along Z (the tool axis), and the error is d along the normal of the design's triangle: + "
     "material left. Where "

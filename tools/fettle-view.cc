@@ -97,7 +97,7 @@ int main(int argc, char** argv)
 {
     return cli::tool_main(
         argc, argv,
-        "One page with a view that can be turned: parts, error maps and other fields, sections; or to pick corners.",
+        "Make a page with a view that turns: parts, error maps and other fields, sections; or to pick corners.",
         [](cli::Tool& t) {
             const Options o{t};
             t.example("fettle-part parts/wang1.json | fettle-view - --within jobs/wang1.json -o view.html",
