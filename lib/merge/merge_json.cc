@@ -31,7 +31,10 @@ json::Value scan_json(const Scan& scan, const std::optional<ScanPose>& pose, dou
     const Eigen::Vector3d centre = pose->T_world_scan * scan.frame.centre / mm;
     const align::TwistMatrix& C = pose->covariance;
     value.set("matrix", Eigen::MatrixXd(matrix)).set("centre", Eigen::VectorXd(centre));
-    value.set("covariance", covariance_in(C, mm));
+    if (C.allFinite()) // else the scans that it overlaps do not determine its pose
+        value.set("covariance", covariance_in(C, mm));
+    else
+        value.set("covariance", core::kNaN);
     value.set("sd_shift", std::sqrt(C.topLeftCorner<3, 3>().trace()) / mm);
     return value.set("sd_turn_deg", std::sqrt(C.bottomRightCorner<3, 3>().trace()) * kDegreesPerRadian);
 }
