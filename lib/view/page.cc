@@ -1,3 +1,4 @@
+#include "core/error.h"
 #include "draw/base64.h"
 #include "view/view.h"
 #include "view/view_script.h"
@@ -57,7 +58,8 @@ std::string view_page(const std::vector<Layer>& layers, const ViewOptions& optio
     draw::PictureOptions picture = options.picture;
     picture.field = layers.front().part.is_mesh() ? "z" : layers.front().fields.front();
     picture.towards_eye = Eigen::Vector3d(1, -2, 1.5).normalized();
-    const std::string png = draw::picture(as_shape(layers.front().part), picture);
+    const std::string png = core::with_error_prefix(
+        layers.front().name, [&] { return draw::picture(as_shape(layers.front().part), picture); });
     const draw::Html fallback =
         draw::element("p", "This browser has no WebGL 2: a picture instead of the view.") +
         draw::empty_element("img", {{"alt", headline}, {"src", "data:image/png;base64," + draw::base64(png)}});

@@ -185,7 +185,8 @@ json::Value described_box(const std::vector<Layer>& layers, std::size_t count, d
         for (const Eigen::Vector3d& p : layer.part.points.xyz.colwise())
             if (p.allFinite()) box.extend(p);
     if (box.isEmpty() && count < layers.size()) return described_box(layers, layers.size(), mm);
-    if (box.isEmpty()) throw core::InputError("no point has a finite x, y and z: there is nothing to draw");
+    if (box.isEmpty())
+        throw core::InputError(layers.front().name, "no point has a finite x, y and z: there is nothing to draw");
     return json::Value().set("min", Eigen::VectorXd(box.min() / mm)).set("max", Eigen::VectorXd(box.max() / mm));
 }
 

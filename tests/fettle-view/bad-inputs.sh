@@ -6,6 +6,6 @@ refuses '--field: no file has a field' three.xyz --field sigma
 refuses '--scale' three.xyz --scale 0
 refuses 'kind' three.xyz --within "$SAMPLES/parts/wang1.json"
 printf 'nan nan nan\nnan nan nan\n' >nan.xyz
-refuses 'nothing to draw' nan.xyz
+refuses 'nan.xyz: no point has a finite x, y and z: there is nothing to draw' nan.xyz
 fettle-view three.xyz -o three.html
 test -s three.html
