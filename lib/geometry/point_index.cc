@@ -54,6 +54,26 @@ class NearestSet {
     double worst_ = std::numeric_limits<double>::infinity();
 };
 
+/// The nearest point no farther than a radius.
+struct NearestWithin {
+    double worst;                            ///< the smallest number above the squared distance
+    const std::vector<Eigen::Index>& column; ///< by number of the point in the tree
+
+    bool full() const { return true; }
+    double worstDist() const { return worst; }
+    bool addPoint(double squared, std::uint32_t number)
+    {
+        const Candidate candidate{squared, column[number]};
+        if (!found || candidate < *found) {
+            found = candidate;
+            worst = next_above(squared);
+        }
+        return true;
+    }
+
+    std::optional<Candidate> found;
+};
+
 /// The points no farther than a radius.
 struct RadiusSet {
     double worst;                            ///< the smallest number above the squared radius
@@ -136,6 +156,15 @@ std::vector<Eigen::Index> PointIndex<Dim>::nearest(const Point& query, Eigen::In
     columns.reserve(nearest.found.size());
     for (const Candidate& candidate : nearest.found) columns.push_back(candidate.second);
     return columns;
+}
+
+template <int Dim>
+std::optional<Eigen::Index> PointIndex<Dim>::nearest_within(const Point& query, double radius) const
+{
+    NearestWithin within{next_above(radius * radius), tree_->column, {}};
+    tree_->search(query, within);
+    if (!within.found) return std::nullopt;
+    return within.found->second;
 }
 
 template <int Dim>

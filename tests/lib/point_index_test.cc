@@ -36,6 +36,19 @@ TEST(PointIndex, AgreeWithBruteForce)
 }
 
 // On a lattice most distances are ties; a NaN point is none.
+TEST(PointIndex, NearestWithinIsTheNearestIfItIsNear)
+{
+    const Eigen::Matrix3Xd points = Eigen::Matrix3Xd::Random(3, 500);
+    const geometry::PointIndex<3> neighbours(points);
+    for (int k = 0; k < 200; ++k) {
+        const Eigen::Vector3d query = 2 * Eigen::Vector3d::Random();
+        const Eigen::Index nearest = neighbours.nearest(query, 1).front();
+        const double distance = (points.col(nearest) - query).norm();
+        EXPECT_EQ(neighbours.nearest_within(query, distance * (1 + 1e-12)), nearest);
+        EXPECT_EQ(neighbours.nearest_within(query, distance * (1 - 1e-12)), std::nullopt);
+    }
+}
+
 TEST(PointIndex, BreaksTiesByColumn)
 {
     Eigen::Matrix3Xd points(3, 1000);
