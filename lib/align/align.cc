@@ -62,7 +62,7 @@ std::vector<IcpFit> find_starts(const OrientedPoints& points, const TwistFrame& 
     const AlignReference& ranking = thinned ? *thinned : reference;
     starts = refine_all(starts, few, frame, ranking, at_most(kScreeningIterations), kMaxScreened);
     starts = refine_all(starts, few, frame, ranking, at_most(kRankingIterations), kMaxFinalists);
-    return refine_all(starts, scan(Eigen::all, evenly_spaced_indices(scan.cols(), kComparisonPoints)), frame, reference,
+    return refine_all(starts, scan(Eigen::all, scattered_indices(scan.cols(), kComparisonPoints)), frame, reference,
                       at_most(kComparisonIterations), kMaxFinalists);
 }
 
@@ -96,7 +96,7 @@ Alignment align(const OrientedPoints& scan, const AlignReference& reference, con
         throw core::InputError("needs at least 6 points, got " + std::to_string(count));
     const TwistFrame frame = twist_frame(scan.xyz);
     if (!(frame.radius > 0)) throw core::InputError("all points coincide");
-    const std::vector<Eigen::Index> chosen = evenly_spaced_indices(count, kFinalPoints);
+    const std::vector<Eigen::Index> chosen = scattered_indices(count, kFinalPoints);
     const OrientedPoints points{scan.xyz(Eigen::all, chosen), scan.normals(Eigen::all, chosen), scan.outward};
     const std::vector<IcpFit> starts = find_starts(points, frame, reference, options);
     Alignment alignment;

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
 #include <span>
 
@@ -159,11 +160,15 @@ std::vector<Eigen::Index> farthest_point_sample(const Eigen::Matrix3Xd& points, 
     return chosen;
 }
 
-std::vector<Eigen::Index> evenly_spaced_indices(Eigen::Index size, Eigen::Index count)
+std::vector<Eigen::Index> scattered_indices(Eigen::Index size, Eigen::Index count)
 {
     const Eigen::Index n = std::min(size, count);
     std::vector<Eigen::Index> indices(n);
-    for (Eigen::Index i = 0; i < n; ++i) indices[i] = i * size / n;
+    for (Eigen::Index i = 0; i < n; ++i) {
+        const Eigen::Index begin = i * size / n, end = (i + 1) * size / n;
+        const double share = std::fmod(static_cast<double>(i) * std::numbers::phi, 1.0);
+        indices[i] = begin + static_cast<Eigen::Index>(share * static_cast<double>(end - begin));
+    }
     return indices;
 }
 

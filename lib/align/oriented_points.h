@@ -29,7 +29,8 @@ OrientedPoints oriented_points(const mesh::Mesh& mesh, Eigen::Index count = 2000
 /// @param points  3xN, finite   @return  columns of min(count, N) points
 std::vector<Eigen::Index> farthest_point_sample(const Eigen::Matrix3Xd& points, Eigen::Index count);
 
-/// min(size, count) indices at equal steps through 0 … size - 1.
-std::vector<Eigen::Index> evenly_spaced_indices(Eigen::Index size, Eigen::Index count);
+/// min(size, count) ascending indices, one from each of equal parts of 0 … size - 1, at a place in it by the golden
+/// ratio: equal steps would choose the same few columns of an organised scan.
+std::vector<Eigen::Index> scattered_indices(Eigen::Index size, Eigen::Index count);
 
 } // namespace fettle::align

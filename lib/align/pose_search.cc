@@ -267,7 +267,7 @@ std::vector<PoseCandidate> search_poses(const OrientedPoints& all_scan, const Tw
                                         const OrientedPoints& all_reference, const IcpOptions& options)
 {
     const OrientedPoints reference_points =
-        selected(all_reference, evenly_spaced_indices(all_reference.xyz.cols(), kMaxReferencePoints));
+        selected(all_reference, scattered_indices(all_reference.xyz.cols(), kMaxReferencePoints));
     const Eigen::Matrix3Xd scan = all_scan.xyz(Eigen::all, farthest_point_sample(all_scan.xyz, kScanSamples));
     const OrientedPoints reference =
         selected(reference_points, farthest_point_sample(reference_points.xyz, kReferenceSamples));

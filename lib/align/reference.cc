@@ -96,7 +96,7 @@ std::optional<AlignReference> AlignReference::thinned(Eigen::Index count) const
 {
     const OrientedPoints& all = state_->points;
     if (state_->index || all.xyz.cols() <= count) return std::nullopt;
-    const std::vector<Eigen::Index> chosen = evenly_spaced_indices(all.xyz.cols(), count);
+    const std::vector<Eigen::Index> chosen = scattered_indices(all.xyz.cols(), count);
     return AlignReference(OrientedPoints{all.xyz(Eigen::all, chosen), all.normals(Eigen::all, chosen), all.outward});
 }
 

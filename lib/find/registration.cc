@@ -74,7 +74,7 @@ void choose_bent_pose(align::Alignment& alignment, const align::OrientedPoints& 
     });
     if (others.empty()) return;
     const auto distances = std::visit([](const auto& shape) { return compare::Reference(shape, {}); }, reference);
-    const Eigen::Matrix3Xd some = points.xyz(Eigen::all, scattered_indices(points.xyz.cols(), kFieldPoints));
+    const Eigen::Matrix3Xd some = points.xyz(Eigen::all, align::scattered_indices(points.xyz.cols(), kFieldPoints));
     const auto misfit = [&](const align::IcpFit& fit) {
         return misfit_beyond_slow_field(fit.T_reference_scan * some, distances);
     };
@@ -91,7 +91,7 @@ void choose_bent_pose(align::Alignment& alignment, const align::OrientedPoints& 
 cloud::Cloud registration_points(const mesh::CloudMesh& part)
 {
     const align::OrientedPoints points = oriented_points_of(part);
-    const std::vector<Eigen::Index> chosen = align::evenly_spaced_indices(points.xyz.cols(), kRegistrationPoints);
+    const std::vector<Eigen::Index> chosen = align::scattered_indices(points.xyz.cols(), kRegistrationPoints);
     cloud::Cloud result;
     result.xyz = points.xyz(Eigen::all, chosen);
     cloud::set_normals(result, points.normals(Eigen::all, chosen));
@@ -138,8 +138,8 @@ SignedDistances signed_distances(const mesh::CloudMesh& part, const mesh::MeshOr
         reference);
     const align::OrientedPoints samples =
         part.is_mesh() ? align::oriented_points(mesh::Mesh{part.points.xyz, part.triangles}, kFieldPoints)
-                       : align::oriented_points(
-                             cloud::select_points(part.points, scattered_indices(part.points.size(), kFieldPoints)));
+                       : align::oriented_points(cloud::select_points(
+                             part.points, align::scattered_indices(part.points.size(), kFieldPoints)));
     const Eigen::Matrix3Xd placed_samples = T_reference_part * samples.xyz;
     check_same_part(placed_samples, *distances);
     const SlowField field = fit_slow_field(placed_samples, *distances);

@@ -37,7 +37,7 @@ Samples samples_of(const mesh::CloudMesh& part)
         samples.is_outward = true;
     } else {
         const cloud::Cloud some =
-            cloud::select_points(part.points, scattered_indices(part.points.size(), kMaxViewPoints));
+            cloud::select_points(part.points, align::scattered_indices(part.points.size(), kMaxViewPoints));
         samples.points = align::oriented_points(some);
         samples.is_outward = cloud::has_normals(part.points);
     }
@@ -107,18 +107,6 @@ Eigen::Vector3d towards_face(const Samples& samples, Eigen::Vector3d direction, 
 }
 
 } // namespace
-
-std::vector<Index> scattered_indices(Index size, Index count)
-{
-    const Index n = std::min(size, count);
-    std::vector<Index> indices(static_cast<std::size_t>(n));
-    for (Index i = 0; i < n; ++i) {
-        const Index begin = i * size / n, end = (i + 1) * size / n;
-        const double share = std::fmod(double(i) * std::numbers::phi, 1.0);
-        indices[std::size_t(i)] = begin + Index(share * double(end - begin));
-    }
-    return indices;
-}
 
 std::vector<View> choose_views(const mesh::CloudMesh& part)
 {

@@ -18,10 +18,6 @@ using View = Eigen::Isometry3d; // T_view_part
 /// @throws InputError if the part has no surface: fewer than three finite points, or all on a line
 std::vector<View> choose_views(const mesh::CloudMesh& part);
 
-/// min(size, count) ascending indices, one from each of equal parts of 0 … size - 1, at a place in it by the golden
-/// ratio: equal steps would choose the same few columns of an organised scan.
-std::vector<Eigen::Index> scattered_indices(Eigen::Index size, Eigen::Index count);
-
 /// The heights of what is seen from a view, uncleaned. Of a cloud each cell has the median of its uppermost points; a
 /// mesh is sampled at the cells' centres. The cell follows from the spacing of the points in the view's plane.
 HeightMap height_map(const mesh::CloudMesh& part, const View& view);

@@ -25,7 +25,7 @@ align::OrientedPoints searched_points(const mesh::CloudMesh& part)
 {
     if (part.is_mesh()) return align::oriented_points({part.points.xyz, part.triangles}, kMaxSearchedPoints);
     return align::oriented_points(
-        cloud::select_points(part.points, align::evenly_spaced_indices(part.points.size(), kMaxSearchedPoints)));
+        cloud::select_points(part.points, align::scattered_indices(part.points.size(), kMaxSearchedPoints)));
 }
 
 /// The plane through picked points; it faces where the part does, next to them.
