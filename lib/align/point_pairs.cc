@@ -7,6 +7,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -17,7 +18,7 @@ namespace fettle::align {
 namespace {
 
 // Points of the smaller cloud, whose pairs are tabulated: some twenty along it.
-constexpr Eigen::Index kModelPoints = 500;
+constexpr Eigen::Index kModelPoints = 500; // fewer than 2^16, which number them
 // Points of the larger one: as dense, up to so many, which bounds the time.
 constexpr Eigen::Index kMinScenePoints = 1000, kMaxScenePoints = 4000;
 constexpr double kSceneDensity =
@@ -47,21 +48,36 @@ Eigen::Isometry3d to_origin(const Eigen::Vector3d& point, const Eigen::Vector3d&
     return motion;
 }
 
-/// Turn about x, from y, of a point in that frame.
-double turn_about_x(const Eigen::Vector3d& point) { return std::atan2(point.z(), point.y()); }
+/// Turns in 1/65536 of a full one: sums and differences wrap by themselves.
+using Turn = std::uint16_t;
+constexpr int kTurnBits = 16;
 
+/// Turn about x, from y, of a point in that frame.
+Turn turn_about_x(const Eigen::Vector3d& point)
+{
+    const double turns = std::atan2(point.z(), point.y()) / (2 * std::numbers::pi);
+    return static_cast<Turn>(static_cast<std::int32_t>(std::floor(turns * (1 << kTurnBits))));
+}
+
+/// The bin of an angle by its cosine: comparisons take a tenth of an arc cosine's time.
 int angle_bin(double cosine)
 {
-    const double angle = std::acos(std::clamp(cosine, -1.0, 1.0));
-    return std::min(kAngleBins - 1, static_cast<int>(angle / std::numbers::pi * kAngleBins));
+    static const auto bounds = [] {
+        std::array<double, kAngleBins - 1> cosines{};
+        for (int k = 1; k < kAngleBins; ++k) cosines[std::size_t(k) - 1] = std::cos(k * std::numbers::pi / kAngleBins);
+        return cosines;
+    }();
+    int bin = 0;
+    for (const double bound : bounds) bin += cosine <= bound;
+    return bin;
 }
 
 /// Pairs of points with equal features, by the bin of their features.
 class PairTable {
   public:
     struct Entry {
-        std::uint32_t point; ///< first of the pair
-        float turn;          ///< turn_about_x() of the second in the first's frame
+        std::uint16_t point; ///< first of the pair
+        Turn turn;           ///< turn_about_x() of the second in the first's frame
     };
 
     explicit PairTable(const OrientedPoints& model)
@@ -82,8 +98,8 @@ class PairTable {
             const Eigen::Isometry3d frame = to_origin(model.xyz.col(i), model.normals.col(i));
             for (Eigen::Index j = 0; j < n; ++j)
                 if (i != j)
-                    entries_[next[bins[i * n + j]]++] = {static_cast<std::uint32_t>(i),
-                                                         static_cast<float>(turn_about_x(frame * model.xyz.col(j)))};
+                    entries_[next[bins[i * n + j]]++] = {static_cast<std::uint16_t>(i),
+                                                         turn_about_x(frame * model.xyz.col(j))};
         }
     }
 
@@ -119,23 +135,23 @@ Pose best_pose(const PairTable& table, const OrientedPoints& model, const Orient
                const std::vector<Eigen::Index>& neighbours)
 {
     const Eigen::Isometry3d frame = to_origin(scene.xyz.col(point), scene.normals.col(point));
-    Eigen::ArrayXXd votes = Eigen::ArrayXXd::Zero(kTurnBins, model.xyz.cols());
+    // Single precision, so that the votes stay near the processor: this loop is most of the search's time.
+    Eigen::ArrayXXf votes = Eigen::ArrayXXf::Zero(kTurnBins, model.xyz.cols());
     for (const Eigen::Index other : neighbours) {
         if (other == point) continue;
         const std::span<const PairTable::Entry> pairs = table.equal_pairs(scene, point, other);
         if (pairs.empty() || pairs.size() > kMaxEqualPairs) continue;
-        const double turn = turn_about_x(frame * scene.xyz.col(other));
-        for (const PairTable::Entry& pair : pairs) { // they share one vote: what is frequent in the model says little
-            const double turns = (turn - pair.turn) / (2 * std::numbers::pi);
-            const int bin = static_cast<int>((turns - std::floor(turns)) * kTurnBins);
-            votes(std::min(bin, kTurnBins - 1), pair.point) += 1.0 / pairs.size();
-        }
+        const Turn turn = turn_about_x(frame * scene.xyz.col(other));
+        // They share one vote: what is frequent in the model says little.
+        const float vote = 1.F / static_cast<float>(pairs.size());
+        for (const PairTable::Entry& pair : pairs)
+            votes(static_cast<Turn>(turn - pair.turn) * kTurnBins >> kTurnBits, pair.point) += vote;
     }
     Eigen::Index best = 0, best_bin = 0;
-    double max_sum = -1;
+    float max_sum = -1;
     for (Eigen::Index m = 0; m < votes.cols(); ++m)
         for (Eigen::Index b = 0; b < kTurnBins; ++b) { // with its neighbours: a turn may lie between two bins
-            const double sum =
+            const float sum =
                 votes(b, m) + (votes((b + 1) % kTurnBins, m) + votes((b + kTurnBins - 1) % kTurnBins, m)) / 2;
             if (sum <= max_sum) continue;
             max_sum = sum;
@@ -198,20 +214,20 @@ OrientedPoints thinned(const OrientedPoints& points, Eigen::Index count)
     return thin;
 }
 
-std::vector<Eigen::Isometry3d> match(const OrientedPoints& model, OrientedPoints scene)
+std::vector<Eigen::Isometry3d> match(const OrientedPoints& model, const OrientedPoints& scene)
 {
     const PairTable table(model);
     const geometry::PointIndex<3> index(scene.xyz);
-    std::vector<Pose> poses;
     // Without known outer sides the normals of a scan may all point the other way.
-    for (int side = 0; side < (model.outward && scene.outward ? 1 : 2); ++side) {
-        std::vector<Pose> found(scene.xyz.cols());
-        tbb::parallel_for(Eigen::Index{0}, scene.xyz.cols(), [&](Eigen::Index i) {
-            found[i] = best_pose(table, model, scene, i, index.radius_search(scene.xyz.col(i), table.reach()));
-        });
-        poses.insert(poses.end(), found.begin(), found.end());
-        scene.normals *= -1;
-    }
+    const bool has_two_sides = !(model.outward && scene.outward);
+    const OrientedPoints turned{scene.xyz, -scene.normals, scene.outward};
+    const Eigen::Index count = scene.xyz.cols();
+    std::vector<Pose> poses(static_cast<std::size_t>((has_two_sides ? 2 : 1) * count));
+    tbb::parallel_for(Eigen::Index{0}, count, [&](Eigen::Index i) {
+        const std::vector<Eigen::Index> neighbours = index.radius_search(scene.xyz.col(i), table.reach());
+        poses[i] = best_pose(table, model, scene, i, neighbours);
+        if (has_two_sides) poses[count + i] = best_pose(table, model, turned, i, neighbours);
+    });
     return clustered(std::move(poses), twist_frame(model.xyz));
 }
 

@@ -48,8 +48,11 @@ class Grower {
         while (!unsearched.empty()) {
             const std::size_t member = unsearched.front();
             unsearched.pop_front();
+            std::vector<std::size_t> others;
             for (std::size_t other = 0; other < scans_.size(); ++other)
-                if (free[other] && !places_[other]) search(other, member);
+                if (free[other] && !places_[other]) others.push_back(other);
+            search_pairs(others, member);
+            for (const std::size_t other : others) add_candidates(other, member);
             while (const auto joined = join_best(kEarlyScore)) unsearched.push_back(*joined);
             if (!unsearched.empty()) continue;
             if (const auto joined = join_best(0)) unsearched.push_back(*joined);
@@ -59,9 +62,10 @@ class Grower {
     std::vector<Refusal> refused;
 
   private:
-    void search(std::size_t scan, std::size_t on)
+    /// Adds the poses of a scan on another that may be right to the candidates.
+    void add_candidates(std::size_t scan, std::size_t on)
     {
-        const std::vector<Hypothesis>& found = hypotheses(scan, on);
+        const std::vector<Hypothesis>& found = known_.at({scan, on});
         for (std::size_t k = 0; k < found.size(); ++k) {
             const double rival = found.size() < 2 ? 0 : found[k == 0 ? 1 : 0].score;
             const Agreement& agreement = found[k].agreement;
@@ -75,24 +79,31 @@ class Grower {
         }
     }
 
-    /// Poses of a scan on another. Each pair is searched once, the smaller scan on the larger, whatever their order.
-    const std::vector<Hypothesis>& hypotheses(std::size_t scan, std::size_t on)
+    /// Searches the pairs of the free scans with one that are not known yet: each once, the smaller scan on the larger,
+    /// whatever their order.
+    void search_pairs(const std::vector<std::size_t>& others, std::size_t on)
     {
-        const auto found = known_.find({scan, on});
-        if (found != known_.end()) return found->second;
         const auto size = [&](std::size_t s) { return scans_[s]->means.xyz.cols(); };
-        const bool turned = size(scan) > size(on) || (size(scan) == size(on) && scan > on);
-        const std::size_t a = turned ? on : scan, b = turned ? scan : on;
-        std::vector<Hypothesis> list = search_pair(*scans_[a], *scans_[b], length_);
-        std::vector<Hypothesis>& there = known_[{a, b}] = list;
-        for (Hypothesis& h : list) {
-            h.pose.T_b_a = h.pose.T_b_a.inverse();
-            std::swap(h.agreement.overlap_a, h.agreement.overlap_b);
+        std::vector<std::pair<std::size_t, std::size_t>> pairs;
+        for (const std::size_t scan : others) {
+            const bool turned = size(scan) > size(on) || (size(scan) == size(on) && scan > on);
+            if (!known_.contains({scan, on})) pairs.emplace_back(turned ? on : scan, turned ? scan : on);
         }
-        std::vector<Hypothesis>& back = known_[{b, a}] = std::move(list);
-        const double pairs = 0.5 * static_cast<double>(scans_.size() * (scans_.size() - 1));
-        core::report_progress(progress_, std::min(1.0, static_cast<double>(known_.size()) / 2 / pairs));
-        return turned ? back : there;
+        std::vector<std::vector<Hypothesis>> found(pairs.size());
+        tbb::parallel_for(std::size_t{0}, pairs.size(), [&](std::size_t k) {
+            found[k] = search_pair(*scans_[pairs[k].first], *scans_[pairs[k].second], length_);
+        });
+        for (std::size_t k = 0; k < pairs.size(); ++k) {
+            const auto [a, b] = pairs[k];
+            known_[{a, b}] = found[k];
+            for (Hypothesis& h : found[k]) {
+                h.pose.T_b_a = h.pose.T_b_a.inverse();
+                std::swap(h.agreement.overlap_a, h.agreement.overlap_b);
+            }
+            known_[{b, a}] = std::move(found[k]);
+        }
+        const double all = static_cast<double>(scans_.size() * (scans_.size() - 1));
+        core::report_progress(progress_, std::min(1.0, static_cast<double>(known_.size()) / all));
     }
 
     /// Joins the scan of the best candidate with a score of at least `min_score`. @return  the scan; nothing if no

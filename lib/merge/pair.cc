@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 namespace fettle::merge {
 namespace {
@@ -35,7 +36,7 @@ std::vector<Eigen::Index> every_nth(Eigen::Index size, Eigen::Index n)
 
 align::OrientedPoints voters(const Scan& scan)
 {
-    const auto chosen = align::evenly_spaced_indices(scan.means.xyz.cols(), kVotingMeans);
+    const auto chosen = align::scattered_indices(scan.means.xyz.cols(), kVotingMeans);
     return {scan.means.xyz(Eigen::all, chosen), scan.means.normals(Eigen::all, chosen), scan.means.outward};
 }
 
@@ -72,9 +73,11 @@ OneWay look(const Scan& a, const Scan& b, const PairPose& pose, double length, E
     for (Eigen::Index i = 0; i < a.means.xyz.cols(); i += every) {
         ++way.all;
         const Eigen::Vector3d p = T * a.means.xyz.col(i);
-        const Eigen::Index j = b.index.nearest(p, 1).front();
+        const std::optional<Eigen::Index> nearest = b.index.nearest_within(p, kNearLengths * length);
+        if (!nearest) continue;
+        const Eigen::Index j = *nearest;
         const Eigen::Vector3d between = p - b.means.xyz.col(j), nb = b.means.normals.col(j);
-        if (between.norm() > kNearLengths * length || nb.isZero(0)) continue;
+        if (nb.isZero(0)) continue;
         const Eigen::Vector3d na = pose.side * (T.linear() * a.means.normals.col(i));
         const double cosine = na.dot(nb);
         const Eigen::Vector3d sum = na + nb;
@@ -104,9 +107,10 @@ std::vector<Correspondence> correspondences(const Scan& a, const Scan& b, const 
     const Eigen::Isometry3d& T = pose.T_b_a;
     for (const Eigen::Index i : chosen) {
         const Eigen::Vector3d p = T * a.means.xyz.col(i);
-        const Eigen::Index j = b.index.nearest(p, 1).front();
+        const std::optional<Eigen::Index> nearest = b.index.nearest_within(p, reach);
+        if (!nearest) continue;
+        const Eigen::Index j = *nearest;
         const Eigen::Vector3d between = p - b.means.xyz.col(j);
-        if (between.squaredNorm() > reach * reach) continue;
         const Eigen::Vector3d na = pose.side * (T.linear() * a.means.normals.col(i)), nb = b.means.normals.col(j);
         if (na.dot(nb) < kMinNormalCosine) continue;
         const Eigen::Vector3d n = (na + nb).normalized();
