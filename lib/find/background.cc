@@ -85,15 +85,18 @@ float solve(const Moments& moments, int y, int x)
     const double ridge = kRidge * A(0, 0) + 1e-9; // an empty window yields 0
     A.diagonal().array() += ridge;
     A(0, 0) -= (1 - kRidge) * ridge;
-    return static_cast<float>(A.ldlt().solve(b)[0]); // positive definite by the ridge
+    return static_cast<float>(A.llt().solve(b)[0]); // positive definite by the ridge
 }
 
-Image solve(const Moments& moments, cv::Size size)
+/// @param needed  elsewhere the surface is 0
+Image solve(const Moments& moments, const Mask& needed)
 {
-    Image surface(size);
+    const cv::Size size = needed.size();
+    Image surface(size, 0.F);
     tbb::parallel_for(tbb::blocked_range<int>(0, size.height), [&](const tbb::blocked_range<int>& rows) {
         for (int y = rows.begin(); y < rows.end(); ++y)
-            for (int x = 0; x < size.width; ++x) surface(y, x) = solve(moments, y, x);
+            for (int x = 0; x < size.width; ++x)
+                if (needed(y, x)) surface(y, x) = solve(moments, y, x);
     });
     return surface;
 }
@@ -127,8 +130,10 @@ Image regression_filter(const Image& z, const Mask& trusted, double sigma, doubl
     full.setTo(0, ~seen);
     const Window window = make_window(kWindowPerWidth * width / factor);
     Image weight = full.clone(), surface;
+    const Mask needed =
+        dilated(seen, 2); // what is seen is interpolated between cells up to one off, across corners, too
     for (const double cutoff : kCutoffs) {
-        surface = solve(moments(weight, coarse, window), coarse.size());
+        surface = solve(moments(weight, coarse, window), needed);
         const double limit =
             cutoff * std::max(sigma / std::sqrt(factor), residual_sigma(coarse, surface, weight, seen));
         for (int y = 0; y < coarse.rows; ++y)

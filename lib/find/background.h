@@ -9,7 +9,7 @@ namespace fettle::find {
 /// what lies deep. It follows form up to the window's width and passes beneath what is narrower.
 /// @param z      heights, mm   @param trusted  cells that weigh fully at first; others weigh a hundredth
 /// @param sigma  of the noise, mm   @param width  of the window, cells; what is narrower stays in the residual
-/// @return  mm, without gaps
+/// @return  mm; what is seen has a value, what lies farther off may have none
 Image regression_filter(const Image& z, const Mask& trusted, double sigma, double width);
 
 /// Grey-scale opening by a ball (Sternberg 1986; ISO 16610-41 and -49): what the ball reaches from beneath. What is

@@ -202,10 +202,11 @@ FoundAnomaly describe(const mesh::CloudMesh& part, const SeenSide& side, const C
 
 void set_outlines(FoundAnomaly& anomaly, const SeenSide& side, const Verified& find, const Mask& others)
 {
-    const HeightMap& map = side.surface;
-    Mask region(map.z.size(), 0);
-    find.with_rim.copyTo(region(find.window));
-    const Outlines outlines = outlines_of(map, region, others & ~region, find.growth);
+    const HeightMap map = coarsened(side.surface, find.factor);
+    Mask all(side.surface.z.size(), 0);
+    find.with_rim.copyTo(all(find.window));
+    const Mask region = coarsened(all, find.factor);
+    const Outlines outlines = outlines_of(map, region, coarsened(others, find.factor) & ~region, find.growth);
     const Eigen::Isometry3d T_anomaly_view = anomaly.T_anomaly_part * side.view.inverse();
     // The plane through the anomaly's origin, whose normal is the surface's: n · (p - p0) = 0.
     const Eigen::Vector3d n = T_anomaly_view.linear().row(2), p0 = T_anomaly_view.inverse().translation();

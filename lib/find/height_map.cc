@@ -67,6 +67,26 @@ void fill_small_holes(Image& z)
 
 } // namespace
 
+HeightMap coarsened(const HeightMap& map, int factor)
+{
+    if (factor == 1) return map;
+    HeightMap coarse{
+        coarsened(map.z, factor), factor * map.cell, map.point_at(0.5 * (factor - 1), 0.5 * (factor - 1)), {}, 0};
+    coarse.seen = finite(coarse.z);
+    coarse.sigma = std::max(noise_sigma(coarse.z), map.sigma / factor);
+    return coarse;
+}
+
+Mask coarsened(const Mask& mask, int factor)
+{
+    if (factor == 1) return mask;
+    Mask coarse((mask.rows + factor - 1) / factor, (mask.cols + factor - 1) / factor, std::uint8_t(0));
+    for (int y = 0; y < mask.rows; ++y)
+        for (int x = 0; x < mask.cols; ++x)
+            if (mask(y, x)) coarse(y / factor, x / factor) = 255;
+    return coarse;
+}
+
 void clean(HeightMap& map)
 {
     map.z = map.z.clone();

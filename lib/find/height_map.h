@@ -25,6 +25,11 @@ struct HeightMap {
     Eigen::Vector2d point_at(double x, double y) const { return origin + cell * Eigen::Vector2d(x, y); }
 };
 
+/// The map with cells `factor` times as long, their means; its noise is measured anew.
+HeightMap coarsened(const HeightMap& map, int factor);
+/// Cells of which any is in the mask.
+Mask coarsened(const Mask& mask, int factor);
+
 /// Takes single outliers (flying points) out, fills holes of single cells by the median around, leaves out specks, and
 /// sets `seen` and `sigma`.
 void clean(HeightMap& map);

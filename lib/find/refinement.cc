@@ -134,6 +134,14 @@ void Refinement::evaluate()
     beneath_.smooth.setTo(-1e9, ~seen_);
 }
 
+Image Refinement::surface() const
+{
+    Image surface(z_.size());
+    for (int y = 0; y < z_.rows; ++y)
+        for (int x = 0; x < z_.cols; ++x) surface(y, x) = float(beneath_.fit.z_at(x, y));
+    return surface;
+}
+
 Mask Refinement::region_over_surface() const
 {
     const double height = quantile_of(values_in(beneath_.smooth, region_ & seen_), 0.85);

@@ -38,6 +38,9 @@ class Refinement {
 
     Verified result(double texture) const;
 
+    /// The surface beneath, all over the window.
+    Image surface() const;
+
   private:
     Mask ring_of(const Image& distance, double width) const;
 

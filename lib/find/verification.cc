@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace fettle::find {
 namespace {
@@ -108,7 +109,7 @@ int Refinement::growth() const
 
 Verified Refinement::result(double texture) const
 {
-    Verified verified{window_, trimmed(), region_, beneath_.residual, {}, growth(), 0};
+    Verified verified{window_, trimmed(), region_, beneath_.residual, {}, 1, growth(), 0};
     Evidence& e = verified.evidence;
     const Mask inside = region_ & seen_;
     e.height = quantile_of(values_in(beneath_.residual, inside), 0.9);
@@ -147,6 +148,38 @@ Verified Refinement::result(double texture) const
     return verified;
 }
 
+namespace {
+
+/// A mask of cells `factor` times as long in the map's own.
+Mask magnified(const Mask& mask, int factor, const cv::Size& size)
+{
+    Mask large;
+    cv::resize(mask, large, {}, factor, factor, cv::INTER_NEAREST);
+    return large(cv::Rect({0, 0}, size)).clone();
+}
+
+/// What was verified in a coarse map, in the cells of the map.
+/// @param surface  beneath, in the coarse window
+Verified in_cells_of(const HeightMap& map, Verified coarse, const Image& surface, int factor)
+{
+    const cv::Rect box(factor * coarse.window.tl(),
+                       cv::Size(factor * coarse.window.width, factor * coarse.window.height));
+    Verified fine = std::move(coarse);
+    fine.window = box & cv::Rect({0, 0}, map.z.size());
+    fine.mask = magnified(fine.mask, factor, fine.window.size()) & map.seen(fine.window);
+    fine.with_rim = magnified(fine.with_rim, factor, fine.window.size());
+    fine.height = map.z(fine.window) - refined(surface, factor, fine.window.size());
+    fine.factor = factor;
+    Evidence& e = fine.evidence;
+    e.cell = map.cell;
+    e.cells *= factor * factor;
+    e.thickness *= factor;
+    e.ring_width *= factor;
+    return fine;
+}
+
+} // namespace
+
 std::optional<Verified> verify(const HeightMap& map, const Candidate& candidate, const Mask& others,
                                const SearchBounds& bounds)
 {
@@ -158,6 +191,51 @@ std::optional<Verified> verify(const HeightMap& map, const Candidate& candidate,
 }
 
 namespace {
+
+// A candidate is verified in cells twice as long, and again, as long as it remains thicker than this many of them; a
+// long one, whose window would be large, than the other number.
+constexpr double kMinCoarseThickness = 40, kMinLongThickness = 12;
+constexpr double kMaxExtent = 150; // cells: what is longer is long
+
+/// A map in cells twice as long from level to level, with the cells of all candidates.
+struct Level {
+    HeightMap map;
+    Mask others;
+};
+
+int level_of(const Candidate& candidate)
+{
+    double thickness = thickness_of(candidate.mask), extent = std::max(candidate.box.width, candidate.box.height);
+    int level = 0;
+    while (thickness >= 2 * (extent > kMaxExtent ? kMinLongThickness : kMinCoarseThickness))
+        thickness /= 2, extent /= 2, ++level;
+    return level;
+}
+
+/// A candidate in the cells of a level.
+Candidate at_level(const Candidate& candidate, int level, const cv::Size& size)
+{
+    const int factor = 1 << level;
+    const cv::Point corner(candidate.box.x / factor, candidate.box.y / factor);
+    Mask aligned;
+    cv::copyMakeBorder(candidate.mask, aligned, candidate.box.y % factor, 0, candidate.box.x % factor, 0,
+                       cv::BORDER_CONSTANT, 0);
+    Candidate coarse{cv::Rect(corner, cv::Size()), coarsened(aligned, factor), candidate.rank, candidate.texture};
+    coarse.box = cv::Rect(corner, coarse.mask.size()) & cv::Rect({0, 0}, size);
+    return coarse;
+}
+
+std::optional<Verified> verify_at(int level, const std::vector<Level>& levels, const Candidate& candidate,
+                                  const SearchBounds& bounds)
+{
+    const Level& at = levels[std::size_t(level)];
+    if (level == 0) return verify(at.map, candidate, at.others, bounds);
+    Refinement refinement(at.map, at_level(candidate, level, at.map.z.size()), at.others, bounds);
+    if (!refinement.run()) return std::nullopt;
+    Verified verified = refinement.result(candidate.texture);
+    if (!is_plausible(verified.evidence, bounds)) return std::nullopt;
+    return in_cells_of(levels[0].map, std::move(verified), refinement.surface(), 1 << level);
+}
 
 // Candidates larger than this share of the largest anomaly, or of a lower rank, do not keep cells out of others' rings.
 constexpr double kMaxOtherArea = 0.3;
@@ -173,9 +251,15 @@ std::vector<Verified> verify_all(const HeightMap& map, const std::vector<Candida
     for (const Candidate& candidate : candidates)
         if (candidate.rank > kMinOtherRank && cv::countNonZero(candidate.mask) < max_cells)
             others(candidate.box) |= candidate.mask;
+    std::vector<int> levels_of(candidates.size());
+    std::ranges::transform(candidates, levels_of.begin(), level_of);
+    std::vector<Level> levels{{map, others}};
+    const int top = levels_of.empty() ? 0 : std::ranges::max(levels_of);
+    for (int level = 1; level <= top; ++level)
+        levels.push_back({coarsened(map, 1 << level), coarsened(others, 1 << level)});
     std::vector<std::optional<Verified>> results(candidates.size());
     tbb::parallel_for(std::size_t{0}, candidates.size(),
-                      [&](std::size_t i) { results[i] = verify(map, candidates[i], others, bounds); });
+                      [&](std::size_t i) { results[i] = verify_at(levels_of[i], levels, candidates[i], bounds); });
     std::vector<Verified> verified;
     for (auto& result : results)
         if (result) verified.push_back(std::move(*result));

@@ -15,7 +15,8 @@ struct Verified {
     Mask with_rim;   ///< the same with cells around that only smoothing may have raised: B goes around them
     Image height;    ///< over the surface beneath, all over the window, mm; NaN: nothing seen
     Evidence evidence;
-    int growth = 0; ///< cells around the mask whose mean still stands over the surface
+    int factor = 1; ///< a thick candidate is verified in cells so many times as long
+    int growth = 0; ///< of those cells around the mask: their mean still stands over the surface
     double probability = 0;
 };
 
@@ -26,7 +27,8 @@ struct Verified {
 std::optional<Verified> verify(const HeightMap& map, const Candidate& candidate, const Mask& others,
                                const SearchBounds& bounds);
 
-/// Verifies all candidates, in parallel. @return  those that remain, in the candidates' order
+/// Verifies all candidates, in parallel, each in cells of which some dozens lie across it: finer ones say no more about
+/// the surface beneath, and cost time by their square. @return  those that remain, in the candidates' order
 std::vector<Verified> verify_all(const HeightMap& map, const std::vector<Candidate>& candidates,
                                  const SearchBounds& bounds);
 
