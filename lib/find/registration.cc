@@ -128,6 +128,9 @@ void check_same_part(const Eigen::Matrix3Xd& points, const compare::Reference& r
     throw core::InputError(text.str());
 }
 
+// A departure beyond chance counts by what the slow field cannot explain within so many of its standard deviations.
+constexpr double kChanceSds = 4, kFieldSds = 3;
+
 } // namespace
 
 SignedDistances signed_distances(const mesh::CloudMesh& part, const mesh::MeshOrCloud& reference,
@@ -145,12 +148,18 @@ SignedDistances signed_distances(const mesh::CloudMesh& part, const mesh::MeshOr
     const SlowField field = fit_slow_field(placed_samples, *distances);
 
     return [distances, field, T_reference_part](const Eigen::Matrix3Xd& points) -> Eigen::VectorXd {
-        Eigen::Matrix3Xd placed = T_reference_part * points;
+        const Eigen::Matrix3Xd placed = T_reference_part * points;
+        Eigen::Matrix3Xd straightened = placed;
+        tbb::parallel_for(Eigen::Index{0}, placed.cols(),
+                          [&](Eigen::Index i) { straightened.col(i) -= field.at(placed.col(i)); });
+        compare::ErrorMap map = (*distances)(straightened);
         tbb::parallel_for(Eigen::Index{0}, placed.cols(), [&](Eigen::Index i) {
-            const Eigen::Vector3d p = placed.col(i);
-            placed.col(i) = p - field.at(p);
+            double& error = map.error[i];
+            if (!(std::abs(error) > kChanceSds * field.sd)) return;
+            const double limit = kFieldSds * field.sd_along(placed.col(i), map.normal.col(i));
+            error -= std::clamp(error, -limit, limit);
         });
-        return (*distances)(placed).error;
+        return map.error;
     };
 }
 

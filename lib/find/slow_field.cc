@@ -35,6 +35,15 @@ Monomials monomials_of(const Eigen::Vector3d& p)
     return result;
 }
 
+/// Robust standard deviation of the residuals that there are; 0 without any.
+double spread_of(const Eigen::VectorXd& residuals)
+{
+    std::vector<double> sizes;
+    for (const double r : residuals)
+        if (std::isfinite(r)) sizes.push_back(std::abs(r));
+    return sizes.empty() ? 0 : geometry::kMedianToSigma * geometry::median(sizes);
+}
+
 /// Tukey's weights of residuals; 0 where there is none.
 Eigen::VectorXd weights_of(const Eigen::VectorXd& residuals)
 {
@@ -60,6 +69,16 @@ Eigen::Vector3d SlowField::at(const Eigen::Vector3d& point) const
 {
     if (coefficients.cols() == 0) return Eigen::Vector3d::Zero();
     return coefficients * monomials_of((point - centre) / scale);
+}
+
+double SlowField::sd_along(const Eigen::Vector3d& point, const Eigen::Vector3d& direction) const
+{
+    if (coefficients.cols() == 0) return 0;
+    const Monomials basis = monomials_of((point - centre) / scale);
+    Eigen::VectorXd gradient(3 * kMonomials);
+    for (int axis = 0; axis < 3; ++axis) gradient.segment(axis * kMonomials, kMonomials) = direction[axis] * basis;
+    root.triangularView<Eigen::Lower>().solveInPlace(gradient);
+    return sd * gradient.norm();
 }
 
 SlowField fit_slow_field(const Eigen::Matrix3Xd& points, const compare::Reference& reference)
@@ -88,7 +107,10 @@ SlowField fit_slow_field(const Eigen::Matrix3Xd& points, const compare::Referenc
         N.selfadjointView<Eigen::Lower>().rankUpdate(A);
         N.diagonal().array() += kFieldRidge * N.trace() / double(A.rows()) + kMinRidge;
         // LLT: the ridge makes the matrix definite.
-        const Eigen::VectorXd solution = N.selfadjointView<Eigen::Lower>().llt().solve(A * b);
+        const Eigen::LLT<Eigen::MatrixXd> llt(N.selfadjointView<Eigen::Lower>());
+        const Eigen::VectorXd solution = llt.solve(A * b);
+        field.root = llt.matrixL();
+        field.sd = spread_of(map.error);
         for (int axis = 0; axis < 3; ++axis)
             field.coefficients.row(axis) = solution.segment(axis * kMonomials, kMonomials).transpose();
     }

@@ -12,8 +12,13 @@ struct SlowField {
     Eigen::Vector3d centre = Eigen::Vector3d::Zero();
     double scale = 1;              ///< mm: half of the part's longest side
     Eigen::Matrix3Xd coefficients; ///< a column for each monomial; none: no displacement
+    Eigen::MatrixXd root;          ///< L of the normal equations L Lᵀ: rows for x of all monomials, y, z
+    double sd = 0;                 ///< of the distances that it leaves, mm
 
     Eigen::Vector3d at(const Eigen::Vector3d& point) const;
+    /// Standard deviation of the field at a point along a direction, mm. It is large where hardly any surface faced
+    /// that way: across a plate, the walls of its few holes alone say how far it lies sideways.
+    double sd_along(const Eigen::Vector3d& point, const Eigen::Vector3d& direction) const;
 };
 
 /// Fits the field so that points, taken back by it, lie on the reference: weighted least squares of the distances along
