@@ -3,6 +3,7 @@
 #
 #   make -f pipelines/find.mk -j2                     the table; exit 1 if a figure is missed
 #   make -f pipelines/find.mk -j2 CASES='0 c0'        fewer cases of each base
+#   make -f pipelines/find.mk -j2 chain               the chain on each find by its own job and by an operator's: another table
 #   make -f pipelines/find.mk -j2 evidence            the evidence on all candidates: what study/find-train learns weights from
 #
 # Case K of a base has 1 + K mod 5 anomalies, those of K mod 5 = 2 and 4 stand at edges; c0, c1, … have none. A step is a case.
@@ -12,7 +13,8 @@ B     ?= build
 CASES ?= 0 1 2 3 4 c0 c1
 BASES ?= samples/studies/find-bases.txt
 FIND  ?= $(B)/find
-export PATH := $(abspath $(B)/bin):$(PATH)
+TEMPLATE ?= samples/jobs/hammer.json
+export PATH := $(abspath $(B)/bin):$(abspath $(B)/study):$(PATH)
 
 NAMES := $(shell awk '!/^\#/ && NF { print $$1 }' $(BASES))
 ALL   := $(foreach name,$(NAMES),$(CASES:%=$(FIND)/$(name)_%))
@@ -20,9 +22,14 @@ ALL   := $(foreach name,$(NAMES),$(CASES:%=$(FIND)/$(name)_%))
 MESHES  := $(shell awk '!/^\#/ && NF && $$5 > 0 { print $$1 }' $(BASES))
 AGAINST := $(foreach name,$(MESHES),$(CASES:%=$(FIND)/$(name)_%))
 
-.PHONY: find evidence
+WORN    := $(foreach name,$(NAMES),$(patsubst %,$(FIND)/$(name)_%,$(filter-out c%,$(CASES))))
+
+.PHONY: find chain evidence
 find: $(ALL:%=%/score.csv) $(AGAINST:%=%/against.csv)
 	@pipelines/find-table $(FIND)
+
+chain: $(WORN:%=%/chain.csv)
+	@pipelines/find-chain-table $^
 
 evidence: $(ALL:%=%/evidence.csv)
 
@@ -52,3 +59,6 @@ $(FIND)/%/evidence.csv: $(FIND)/%/worn.pcd $(B)/study/find-evidence
 
 $(FIND)/%/against.csv: $(FIND)/%/bent.pcd $(B)/study/find-score
 	$(call step,$(B)/study/find-score $< --against $(@D)/design.stl -q > $@.part)
+
+$(FIND)/%/chain.csv: $(FIND)/%/worn.pcd $(TEMPLATE) $(B)/study/find-jobs pipelines/find-chain
+	$(call step,pipelines/find-chain $< $(TEMPLATE) $(@D)/chain > $@.part)
