@@ -1,7 +1,7 @@
 // Triangles from points in any order: fettle's Delaunay stars beside pcl::GreedyProjectionTriangulation (race.h).
-//   ours_area, library_area         area of the triangles over that of the sphere: 1 if nothing is open, or covered
-//   twice ours_borders, library_borders   edges of one triangle alone: 0 on a closed surface ours_folds, library_folds
-//   triangles that face inwards, and edges of more than two triangles
+//   area      of the triangles over that of the sphere: 1 if nothing is open, or covered twice
+//   borders   edges of one triangle alone: 0 on a closed surface
+//   folds     edges that two triangles go along in the same direction: one lies over the other, or is turned over
 
 #include "race.h"
 
@@ -41,17 +41,17 @@ Eigen::Matrix3Xd scattered_directions(Eigen::Index count)
     return directions;
 }
 
-/// PCL's triangulation with the angles of its tutorial.
+/// PCL's triangulation; its tutorial's bounds on angles, made for even points, would leave a quarter open.
 Triangles greedy_projection(const Eigen::Matrix3Xd& xyz, const Eigen::Matrix3Xd& normals, double max_gap)
 {
     const auto cloud = cloud::to_pcl(xyz, normals, Eigen::Vector3d::Zero());
     pcl::GreedyProjectionTriangulation<pcl::PointNormal> greedy;
     greedy.setSearchRadius(max_gap);
-    greedy.setMu(2.5);
+    greedy.setMu(5);
     greedy.setMaximumNearestNeighbors(100);
-    greedy.setMaximumSurfaceAngle(std::numbers::pi / 4);
-    greedy.setMinimumAngle(std::numbers::pi / 18);
-    greedy.setMaximumAngle(2 * std::numbers::pi / 3);
+    greedy.setMaximumSurfaceAngle(std::numbers::pi / 3);
+    greedy.setMinimumAngle(0);
+    greedy.setMaximumAngle(std::numbers::pi);
     greedy.setNormalConsistency(true);
     greedy.setInputCloud(cloud);
     greedy.setSearchMethod(pcl::make_shared<pcl::search::KdTree<pcl::PointNormal>>());
@@ -70,17 +70,15 @@ struct Quality {
 Quality quality_of(const Triangles& triangles, const Eigen::Matrix3Xd& xyz)
 {
     Quality quality;
-    std::map<std::pair<int, int>, int> edges;
+    std::map<std::pair<int, int>, int> edges; // as triangles go along them
     for (const Eigen::Vector3i& t : triangles) {
         const Eigen::Vector3d a = xyz.col(t[0]), b = xyz.col(t[1]), c = xyz.col(t[2]);
-        const Eigen::Vector3d normal = (b - a).cross(c - a);
-        quality.area += normal.norm() / 2 / (4 * std::numbers::pi * kRadius * kRadius);
-        quality.folds += normal.dot(a + b + c) <= 0;
-        for (int k = 0; k < 3; ++k) ++edges[std::minmax(int(t[k]), int(t[(k + 1) % 3]))];
+        quality.area += (b - a).cross(c - a).norm() / 2 / (4 * std::numbers::pi * kRadius * kRadius);
+        for (int k = 0; k < 3; ++k) ++edges[{t[k], t[(k + 1) % 3]}];
     }
     for (const auto& [edge, count] : edges) {
-        quality.borders += count == 1;
-        quality.folds += count > 2;
+        quality.borders += count == 1 && !edges.contains({edge.second, edge.first});
+        quality.folds += count > 1;
     }
     return quality;
 }
