@@ -195,7 +195,7 @@ namespace {
 // A candidate is verified in cells twice as long, and again, as long as it remains thicker than this many of them; a
 // long one, whose window would be large, than the other number.
 constexpr double kMinCoarseThickness = 40, kMinLongThickness = 12;
-constexpr double kMaxExtent = 150; // cells: what is longer is long
+constexpr double kMaxExtent = 300; // cells: what is longer is long
 
 /// A map in cells twice as long from level to level, with the cells of all candidates.
 struct Level {
