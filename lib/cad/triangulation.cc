@@ -6,7 +6,9 @@
 #include "core/text.h"
 #include "mesh/equal_corners.h"
 
+#include <Bnd_Box.hxx>
 #include <BRep_Tool.hxx>
+#include <BRepBndLib.hxx>
 #include <BRepMesh_IncrementalMesh.hxx>
 #include <BRepTools.hxx>
 #include <IMeshTools_Parameters.hxx>
@@ -95,13 +97,36 @@ void append_corners(const TopoDS_Face& face, std::vector<mesh::Corner<float>>& c
     }
 }
 
-/// Half the spacing of floats at the size of the coordinates and half of kSnap, in the worst direction, mm.
+/// Half the spacing of floats at a coordinate and half of kSnap, in the worst direction, mm.
+double rounding_at(float coordinate)
+{
+    return std::sqrt(3.0) / 2 *
+           (std::nextafter(coordinate, std::numeric_limits<float>::infinity()) - coordinate + kSnap);
+}
+
+/// A tolerance for which the rounding of coordinates leaves no room could take all memory, to be missed in the end.
+void require_room_for_rounding(const Shapes& shapes, double tolerance)
+{
+    Bnd_Box box;
+    for (const TopoDS_Shape& face : shapes.placed) BRepBndLib::AddClose(face, box);
+    if (box.IsVoid()) return;
+    const gp_Pnt min = box.CornerMin(), max = box.CornerMax();
+    double largest = 0;
+    for (int k = 1; k <= 3; ++k) largest = std::max({largest, std::abs(min.Coord(k)), std::abs(max.Coord(k))});
+    const double finest = rounding_at(static_cast<float>(largest)) / (1 - kGoal);
+    if (tolerance < finest)
+        throw core::InputError(shapes.source, "reaches to " + core::to_short_text(largest) +
+                                                  " mm, where the floats of the output allow no tolerance under " +
+                                                  core::to_short_text(finest) + " mm, got " +
+                                                  core::to_short_text(tolerance) + " mm");
+}
+
 double rounding_of(const std::vector<mesh::Corner<float>>& corners)
 {
     float largest = 0;
     for (const mesh::Corner<float>& corner : corners)
         for (const float x : corner) largest = std::max(largest, std::abs(x));
-    return std::sqrt(3.0) / 2 * (std::nextafter(largest, std::numeric_limits<float>::infinity()) - largest + kSnap);
+    return rounding_at(largest);
 }
 
 /// Edges that are not those of two triangles, one in each direction.
@@ -126,6 +151,7 @@ Triangulation triangulate(const Design& design, double tolerance, const core::Pr
     Triangulation result;
     std::vector<mesh::Corner<float>> corners;
     try {
+        require_room_for_rounding(shapes, tolerance);
         for (std::size_t i = 0; i < shapes.parts.size(); ++i) {
             mesh_within(shapes.parts[i], kGoal * tolerance);
             core::report_progress(progress, double(i + 1) / double(shapes.parts.size()));
