@@ -1,6 +1,7 @@
 # Belt grinding: a rough part as surfels, a path over it, and what the belt leaves on it.
 #
-#   make -f pipelines/belt.mk                                      the blade that the project makes itself
+#   make -f pipelines/belt.mk                                      the blade that the project makes itself, by planned feeds
+#   make -f pipelines/belt.mk PLANNED=no BELT=build/belt-constant  the same by one constant feed
 #   make -f pipelines/belt.mk PARTS='blade nasa handle edge' DATA=DIR
 #       and DIR/nasa_blade_a.stl, DIR/handle.off, and of EDGE=DIR/../before_after a leading edge before and after, LE_mesh.ply and LE_mesh_grinded.ply
 #   make -f pipelines/belt.mk plan                                 feeds, and forces, that meet the blade's allowance
@@ -8,7 +9,7 @@
 #   make -f pipelines/belt.mk law                                  the removal law from measured trials; exit 1 if a figure is missed
 #
 # BELT/PART/stock.stl is the design with an allowance of 0.2 to 0.6 mm that varies over it, work.pcd the surfels, errors.pcd what
-# would be left without grinding, surface.pcd the stock's surface with its normals, rows.pcd a path; ground.pcd the surfels after it,
+# would be left without grinding, surface.pcd the stock's surface with its normals, rows.pcd a path, planned.pcd with its feeds; ground.pcd the surfels after it,
 # watch.csv the errors on the way, left.pcd what is left. At one contact point: contact.png, the gap before anything gives way less what gave
 # way, pressure.png and removal.png; three.png: removed after three points; whole.png: after the path; errors.png and left.png: the error before
 # and after; cell.png: part, wheel and robot. report.html holds the numbers.
@@ -26,6 +27,10 @@ UPPER   ?= 0.05
 PRESS   ?= 10
 FEED    ?= 6
 WHEEL   ?= samples/wheels/crowned_preston.json
+# Distance of the points along a row, mm; limits of planned feeds.
+STEP    ?= 1.25
+LIMITS_feed := --min 0.5 --max 200
+PLANNED ?= yes
 
 PICTURES := contact pressure removal three whole errors left cell
 .PHONY: belt
@@ -88,25 +93,33 @@ $(BELT)/%/errors.pcd: $(BELT)/%/work.pcd $(B)/bin/fettle-assess
 $(BELT)/%/surface.pcd: $(BELT)/%/work.pcd $(B)/bin/fettle-assess
 	$(ASSESS) --displaced --report $(@D)/surface.json -o $@ || test $$? = 1
 $(BELT)/%/left.pcd: $(BELT)/%/ground.pcd $(B)/bin/fettle-assess
-	$(ASSESS) --report $(@D)/left.json -o $@ || test $$? = 1
+	$(ASSESS) --report $(@D)/left.json --ascii -o $@ || test $$? = 1
 
 $(BELT)/%/rows.pcd: $(BELT)/%/work.pcd $(B)/bin/fettle-path
-	$(B)/bin/fettle-path $< --step-over 2 --spacing 0.5 --ascii --report $(@D)/rows.json -o $@
+	$(B)/bin/fettle-path $< --step-over 2 --spacing $(STEP) --ascii --report $(@D)/rows.json -o $@
+
+# Feeds that leave the middle of the tolerance everywhere; PLANNED=no: the constant FEED.
+MIDDLE := $(shell awk 'BEGIN { print ($(LOWER) + $(UPPER)) / 2 }')
+$(BELT)/%/planned.pcd: $(BELT)/%/rows.pcd $(BELT)/%/work.pcd $(WHEEL) $(B)/bin/fettle-feed
+	$(if $(filter no,$(PLANNED)),cp $< $@,$(B)/bin/fettle-feed $< --on $(@D)/work.pcd --wheel $(WHEEL) $(LIMITS_feed) --force $(PRESS) --feed $(FEED) \
+	    --wanted $(MIDDLE) --ascii -q --report $(@D)/plan.json -o $@)
 
 GRIND = $(B)/bin/fettle-belt $< --wheel $(WHEEL) --force $(PRESS) --feed $(FEED)
-$(BELT)/%/ground.pcd: $(BELT)/%/work.pcd $(BELT)/%/rows.pcd $(WHEEL) $(B)/bin/fettle-belt
-	$(GRIND) --path $(@D)/rows.pcd --journal $(@D)/journal --watch $(@D)/watch.csv --lower $(LOWER) --upper $(UPPER) --trace $(@D)/trace.pcd \
+GRIND_PLANNED = $(B)/bin/fettle-belt $< --wheel $(WHEEL) $(if $(filter no,$(PLANNED)),--force $(PRESS) --feed $(FEED))
+$(BELT)/%/ground.pcd: $(BELT)/%/work.pcd $(BELT)/%/planned.pcd $(WHEEL) $(B)/bin/fettle-belt
+	$(GRIND_PLANNED) --path $(@D)/planned.pcd --journal $(@D)/journal --watch $(@D)/watch.csv --lower $(LOWER) --upper $(UPPER) --trace $(@D)/trace.pcd \
 	    --report $(@D)/ground.json -o $@
 	rm -f $(@D)/journal
 
+APART := $(shell awk 'BEGIN { print int(8 / $(STEP) + 0.5) }')
 # --- one contact point, three, and the whole path --------------------------------------------------------------------------
 $(BELT)/%/one.pcd: $(BELT)/%/rows.pcd pipelines/belt-points
 	pipelines/belt-points middle 1 0 < $< > $@
 $(BELT)/%/three.pcd: $(BELT)/%/rows.pcd pipelines/belt-points
-	pipelines/belt-points middle 3 16 < $< > $@
+	pipelines/belt-points middle 3 $(APART) < $< > $@
 $(BELT)/%/contact.pcd: $(BELT)/%/work.pcd $(BELT)/%/one.pcd $(WHEEL) $(B)/bin/fettle-contact
 	$(B)/bin/fettle-contact $< --wheel $(WHEEL) --at "$$(pipelines/belt-points pose < $(@D)/one.pcd)" --force $(PRESS) --report $(@D)/contact.json -o $@
-# Half a second there; the three points take the time of the ways between them, 16 points of the path.
+# Half a second there; the three points take the time of the ways between them, 8 mm each.
 $(BELT)/%/at-one.pcd: $(BELT)/%/work.pcd $(BELT)/%/one.pcd $(WHEEL) $(B)/bin/fettle-belt
 	$(GRIND) --path $(@D)/one.pcd --dwell 0.5 --ascii | pipelines/belt-points near "$$(pipelines/belt-points pose < $(@D)/one.pcd)" 12 > $@
 $(BELT)/%/at-three.pcd: $(BELT)/%/work.pcd $(BELT)/%/three.pcd $(WHEEL) $(B)/bin/fettle-belt
@@ -177,9 +190,6 @@ $(HELD)/checked.pcd: $(HELD)/path.pcd $(HELD)/part.stl samples/robots/irb1400_be
 # closer together. BELT/plan/VARY/report.json is the plan's account, constant/ and planned/ have what is left.
 VARY  ?= feed force
 FINER ?= $(shell awk 'BEGIN { print 0.7 * $(SPACING) }')
-# Distance of the points along a row, mm.
-STEP  ?= 1.25
-LIMITS_feed  := --min 0.5 --max 200
 LIMITS_force := --min 1 --max 40
 OTHER_feed   := --force $(PRESS)
 OTHER_force  := --feed $(FEED)

@@ -169,7 +169,8 @@ figures: $(call results,1,$(WANG)) $W/wang1/flatness.json $W/wang2/cylindricity.
 	@status=0; pipelines/chain-figures $(CHAIN) $(abspath $(B)/bin) || status=1;                                     \
 	    $(MAKE) --no-print-directory -s -f pipelines/casting.mk B=$(B) CHAIN=$(CHAIN) seeds || status=1;              \
 	    $(MAKE) --no-print-directory -s -f pipelines/casting.mk B=$(B) CHAIN=$(CHAIN) holdout || status=1;            \
-	    $(MAKE) --no-print-directory -f pipelines/bands.mk B=$(B) || status=1; exit $$status
+	    $(MAKE) --no-print-directory -f pipelines/bands.mk B=$(B) || status=1;                                        \
+	    $(MAKE) --no-print-directory -s -f pipelines/calibrate.mk B=$(B) || status=1; exit $$status
 
 # One row a case: how much of the figures is the luck of the draw.
 SEEDS ?= 20

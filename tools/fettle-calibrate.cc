@@ -73,8 +73,10 @@ Measurement measure_gantry_trace(const Options& o)
     const job::Job job = job::read_job(o.job);
     const double cell = gantry::stock_cell_size(job, o.cell ? *o.cell * job.units.mm() : 0);
     const auto height_map = [&](const std::string& file) {
-        return removal::stock_from_scan(sampling::read_scan(file, job, std::nullopt), job, cell,
-                                        core::display_name(file));
+        const std::string name = core::display_name(file);
+        const sampling::Scan part = sampling::read_scan(file, job, std::nullopt);
+        for (const std::string& doubt : sampling::scan_warnings(part, job, name)) o.t.warn(doubt);
+        return removal::stock_from_scan(part, job, cell, name);
     };
     const auto trace = strategy::read_trace(o.input, job.units);
     const removal::HeightField before = height_map(o.before);

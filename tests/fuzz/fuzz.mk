@@ -9,6 +9,7 @@ FUZZ_SOURCES := $(wildcard $(addprefix lib/,$(addsuffix /*.cc,core geometry unit
     $(addprefix gantry/,protocol serve driver driver_checks driver_halt head_check child machine virtual_gantry quasi_static) \
     $(addprefix strategy/,trace trace_file run_identity steering joystick keys) align/rigid compare/comparison_report \
     $(addprefix belt/,contact_wheel belt_journal_file assess running_error) \
+    $(addprefix calibrate/,law_belief law_record trials_csv) belt/removal_fit \
     $(addprefix machining/,nc_block nc_arc nc_program nc_writer cutter_path cutter limits) \
     $(addprefix part/,spec surface anomalies outline profile) $(addprefix sampling/,noise scan point_surface triangle_grid) \
     $(addprefix report/,summary_reader tool_reports) $(addprefix robot/,robot body_json hull_points simplex urdf urdf_shapes srdf dh_from_axes arm arm_newton arm_parallel)))
