@@ -5,10 +5,11 @@
 // WORN, seen from +z, has the fields `truth` (0, or the number of the anomaly that a point is on) and `truth_height`.
 // The operator's B and S are drawn around the points of the anomaly as the find's around what was found. Out:
 // FOLDER/K-found.json, FOLDER/K-operator.json for each anomaly K of which a find covers more than 0.3 (intersection
-// over union), FOLDER/bare.pcd, the part without its anomalies. The tolerance is twice the noise, the probe as good
-// as it.
+// over union) and that can have a job, FOLDER/bare.pcd, the part without its anomalies. The tolerance is twice the
+// noise, the probe as good as it.
 #include "cli/tool.h"
 #include "cloud/pcd.h"
+#include "core/error.h"
 #include "find/description.h"
 #include "find/jobs.h"
 #include "find/refinement.h"
@@ -104,7 +105,12 @@ int main(int argc, char** argv)
             if (found == nullptr) continue;
             const std::string name = folder + "/" + std::to_string(number);
             const auto write = [&](const find::FoundAnomaly& anomaly, const std::string& whose) {
-                t.output_file(name + whose) << job::to_json(find::job_for(anomaly, part, result.noise, machine));
+                try {
+                    const job::Job job = find::job_for(anomaly, part, result.noise, machine);
+                    t.output_file(name + whose) << job::to_json(job);
+                } catch (const core::InputError& error) {
+                    t.warn(name + whose + ": " + error.what());
+                }
             };
             write(*found, "-found.json");
             write(operators(side, part, cells, all, number), "-operator.json");
