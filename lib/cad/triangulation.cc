@@ -113,7 +113,8 @@ void require_room_for_rounding(const Shapes& shapes, double tolerance)
     const gp_Pnt min = box.CornerMin(), max = box.CornerMax();
     double largest = 0;
     for (int k = 1; k <= 3; ++k) largest = std::max({largest, std::abs(min.Coord(k)), std::abs(max.Coord(k))});
-    const double finest = rounding_at(static_cast<float>(largest)) / (1 - kGoal);
+    const bool is_flat = std::ranges::all_of(shapes.faces, [](const Face& face) { return face.surface == "plane"; });
+    const double finest = rounding_at(static_cast<float>(largest)) / (is_flat ? 1 : 1 - kGoal);
     if (tolerance < finest)
         throw core::InputError(shapes.source, "reaches to " + core::to_short_text(largest) +
                                                   " mm, where the floats of the output allow no tolerance under " +
