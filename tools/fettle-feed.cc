@@ -44,8 +44,8 @@ int main(int argc, char** argv)
         const cloud::CloudOutput out{t};
         t.example("fettle-part parts/keel.json -o keel.stl && fettle-surfel keel.stl --stock keel.stl --spacing 1 "
                   "-o keel.pcd && fettle-feed paths/keel.pcd --on keel.pcd --wheel wheels/rubber.json --force 20 "
-                  "--wanted -0.05 --report plan.json > planned.pcd",
-                  "0.05 mm off the keel");
+                  "--wanted -0.01 --report plan.json > planned.pcd",
+                  "0.01 mm off the keel");
         t.reference("Ren et al. 2006, eq. 5; Moré & Toraldo 1991");
         t.parse();
 
