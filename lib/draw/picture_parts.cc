@@ -106,8 +106,11 @@ std::vector<Eigen::Matrix2Xd> visible_pieces(const Layout& layout, const Raster&
 std::string number_text(double value)
 {
     if (std::isnan(value)) return "-";
+    // Four to six digits before the point are read more easily than an exponent.
+    constexpr double kMinWhole = 999.5, kMaxWhole = 1e6;
+    const bool is_whole = std::abs(value) >= kMinWhole && std::abs(value) < kMaxWhole;
     char buffer[64];
-    std::snprintf(buffer, sizeof buffer, "%.3g", value == 0 ? 0.0 : value);
+    std::snprintf(buffer, sizeof buffer, is_whole ? "%.0f" : "%.3g", value == 0 ? 0.0 : value);
     return buffer;
 }
 
