@@ -23,15 +23,15 @@ struct Options {
     const std::string& input = t.main_input("PASSES", "what was ground: rows of measured trials, CSV; or a trace, PCD, "
                                                       "of fettle-grind with --job, of fettle-belt with --wheel");
     const std::string& job = t.optional_file("--job", "JOB", "Of a gantry's trace: the operator's job, JSON");
-    const std::string& wheel = t.optional_file(
-        "--wheel", "WHEEL", "Of a belt: its wheel, JSON, which is written with the law that was learnt");
+    const std::string& wheel =
+        t.optional_file("--wheel", "FILE", "Of a belt: its wheel, JSON, which is written with the law that was learnt");
     const std::string& before =
         t.optional_file("--before", "PART", "Of a trace: the part before, a mesh or a cloud; of a belt, its surfels");
     const std::string& after =
         t.optional_file("--after", "PART", "And after: required of a belt; of a gantry, for the machine's yielding");
     const std::optional<double>& cell =
         t.optional_number("--cell", "LENGTH", "Of a gantry's height maps [as fettle-grind]", core::Range::positive());
-    const std::string& known = t.optional_file("--known", "LAW", "Learn on from this law, an output of this tool");
+    const std::string& known = t.optional_file("--known", "FILE", "Learn on from this law, an output of this tool");
     const double& area =
         t.number("--area", 50, "MM2", "Of rows, with --wheel: contact while the wheel stands", core::Range::positive());
     const double& travel = t.number("--travel", 100, "MM", "Of rows, with --wheel: way of the belt in a revolution",

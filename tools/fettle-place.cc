@@ -93,8 +93,9 @@ int main(int argc, char** argv)
         mesh::CloudMeshFile file = mesh::read_cloud_mesh(
             o.path, mesh::resolve_file_units(o.unit, request.into ? std::optional(request.into->units) : std::nullopt));
         const std::string name = core::display_name(o.path);
-        if (cloud::has_field(file.part.points, "joint1"))
-            throw core::InputError(name, "has joints, which do not move with it: place a path before fettle-collide");
+        const auto is_joint = [](const cloud::Field& field) { return field.name.starts_with("joint"); };
+        if (std::erase_if(file.part.points.fields, is_joint) > 0)
+            t.warn(name + ": its joints reach where it was, and are left out");
         o.out.format_for(file.part.is_mesh());
         const double mm = file.units.mm();
         if (request.picked) *request.picked *= mm;

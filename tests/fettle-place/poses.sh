@@ -19,4 +19,6 @@ fettle-place there.csv --matrix back.txt -o back.csv
 sed s/nan,0,0,0/nan,nan,nan,nan/ path.csv | fettle-diff --tol 1e-5 back.csv -
 # Joints reach a path where it was.
 printf 'x,y,z,joint1\n1,2,3,4\n' > joints.csv
-"$HERE/../refuses" 'joints.csv: has joints, which do not move with it' fettle-place joints.csv --turn z,90
+fettle-place joints.csv --turn z,90 -o left.csv 2> warning
+grep -q '^fettle-place: warning: joints.csv: its joints reach where it was, and are left out$' warning
+[ "$(head -n 1 left.csv)" = x,y,z ]
