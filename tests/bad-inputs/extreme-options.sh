@@ -16,6 +16,11 @@ company_of() { # NAME OPTION: changes `command`
     'arm --joint-speed') command=(robot.json --inverse --feed 50 --unchecked --krl program.src tips.pcd) ;;
     'arm --box' | 'arm --step') command=(robot.json --reach --box 700,0,500,720,20,520) ;;
     *' --table') command[0]=$SAMPLES/robots/irb1400_table.json ;;
+    'calibrate --cell')
+        awk 'BEGIN { for (x = 0; x <= 30; x += 0.5) for (y = 0; y <= 30; y += 0.5) print x, y, 8 }' >high.xyz # several layers
+        [ -e cut.pcd ] || fettle-grind plan.json --stock high.xyz --cell 0.5 --gantry virtual --trace cut.pcd -q >ground.pcd
+        command=(cut.pcd --job job.json --before high.xyz)
+        ;;
     'collide --max-t'* | 'collide --max-r'*) command+=(--avoid) ;;
     'collide --cell') command+=(--method grid) ;;
     'collide --at' | 'collide --from') command+=(--picture picture.png) ;;
