@@ -122,6 +122,7 @@ int main(int argc, char** argv)
         t.example("fettle-calibrate removal/static.csv > law.json", "the law of a belt from 24 measured trials");
         t.reference("West & Harrison 1997, 4 and 12 (models in parallel); Meinhold & Singpurwalla 1989 (heavy tails); "
                     "Preston 1927");
+        t.output_formats({"json"});
         t.parse();
         o.check();
 
