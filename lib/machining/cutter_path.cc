@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "core/text.h"
+#include "machining/tilt.h"
 
 #include <Eigen/Geometry>
 
@@ -10,19 +11,23 @@
 namespace fettle::machining {
 namespace {
 
-/// Requires that every pose turns +z into the axis: a height field has only one.
+/// Requires that every pose turns +z into the axis: a height field has only one. The points are in the tilted frame,
+/// the axis and what is said of the poses in M.
 void require_axis(const cloud::Cloud& points, const Eigen::Vector3d& axis, const std::string& source)
 {
     const auto has = [&](const char* name) { return cloud::has_field(points, name); };
     if (!has("qw") && !has("qx") && !has("qy") && !has("qz")) return;
-    constexpr double kFloatRounding = 1e-6;
+    static constexpr double kFloatRounding = 1e-6;
     const Eigen::VectorXd w = cloud::field(points, "qw"), x = cloud::field(points, "qx"),
                           y = cloud::field(points, "qy"), z = cloud::field(points, "qz");
+    const Eigen::Matrix3d rotation = rotation_tilted_machine(axis);
     for (Eigen::Index i = 0; i < points.size(); ++i) {
         const Eigen::Vector3d found =
-            Eigen::Quaterniond(w[i], x[i], y[i], z[i]).normalized() * Eigen::Vector3d::UnitZ();
+            rotation.transpose() * (Eigen::Quaterniond(w[i], x[i], y[i], z[i]).normalized() * Eigen::Vector3d::UnitZ());
         const auto text = [](const Eigen::Vector3d& v) {
-            return core::to_short_text(v.x()) + ", " + core::to_short_text(v.y()) + ", " + core::to_short_text(v.z());
+            const Eigen::Vector3d shown = (v.array().abs() < kFloatRounding).select(0, v);
+            return core::to_short_text(shown.x()) + ", " + core::to_short_text(shown.y()) + ", " +
+                   core::to_short_text(shown.z());
         };
         if (!((found - axis).norm() <= kFloatRounding))
             throw core::InputError(source, "point " + std::to_string(i + 1) + ": the cutter's axis is " + text(found) +

@@ -25,11 +25,11 @@ struct CutterMove {
 /// Length of the path of the tip, mm. An arc counts by its angle.
 double length(const CutterMove& move);
 
-/// Straight moves from point to point of a cloud. The field `feed` of a point, mm/s, is that of the move which ends
-/// there (0: rapid); without the field all moves have the parameter `feed`.
+/// Straight moves from point to point of a cloud, in the tilted frame. The field `feed` of a point, mm/s, is that of
+/// the move which ends there (0: rapid); without the field all moves have the parameter `feed`.
 /// @param contacts  true: the points are cutter contacts (CC) with normals; false: cutter locations (CL, the tip)
 /// @param source    the cloud's name for messages
-/// @param axis      cutter axis, unit; poses of the points (qw qx qy qz), if any, must have it
+/// @param axis      cutter axis in M, unit; poses of the points (qw qx qy qz), if any, must have it
 /// @throws InputError, with the point's number, for NaN, a negative feed, another axis, or a contact that the cutter
 /// cannot have
 std::vector<CutterMove> moves_from_points(const cloud::Cloud& points, const Cutter& cutter, bool contacts, double feed,

@@ -34,3 +34,5 @@ printf 'x y z qw qx qy qz\n0 0 9 1 0 0 0\n1 0 9 1 0 0 0\n' > upright.xyz
 status=0
 fettle-mill upright.xyz $axis --stock tilted-stock.off $mill > part.stl 2> message || status=$?
 [ $status = 2 ] && grep -q "point 1: the cutter's axis is 0, 0, 1, expected 0.6, 0, 0.8" message
+printf 'x y z qw qx qy qz\n0 0 9 0.9486832980505138 0 0.31622776601683794 0\n1 0 9 0.9486832980505138 0 0.31622776601683794 0\n' > along.xyz
+fettle-mill along.xyz $axis --stock tilted-stock.off $mill > part.stl
