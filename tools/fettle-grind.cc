@@ -48,7 +48,7 @@ struct Options {
     const std::string& resume =
         t.text("--resume", "", "TRACE", "Continue the interrupted run that wrote this trace, and append to it");
     const std::string& learn =
-        t.text("--learn", "", "FILE", "Removal law, learnt from run to run: read if it is there, and written anew");
+        t.text("--learn", "", "LAW", "Removal law, learnt from run to run: read if it is there, and written anew");
     const cloud::CloudOutput out{t};
     draw::Frames frames{t};
 };

@@ -23,7 +23,7 @@ for name in $names; do
     option --zebra --zebra
     # every option that takes a number, a word of a few or a list of them: nan is none; --avoid may occur alone
     while read -r name_of placeholder; do
-        case $placeholder in FILE | FOLDER | PART | SCAN | STOCK | SURFELS | SURFACE* | MESH | JOB | POINTS | PATH | TRACE | EVENTS | TEXT | NAME) continue ;; esac
+        case $placeholder in FILE | FOLDER | LAW | PART | SCAN | STOCK | SURFELS | SURFACE* | MESH | JOB | POINTS | PATH | TRACE | EVENTS | TEXT | NAME) continue ;; esac
         case " ${command[*]} --threads --seed --avoid " in *" $name_of "*) continue ;; esac
         option "$name_of" "$name_of" nan
     done < <("$tool" --help | sed -nE 's/^ +(-[a-z],)?(--[a-z0-9-]+) ([^ =]+).*/\2 \3/p')

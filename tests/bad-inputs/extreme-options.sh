@@ -95,7 +95,7 @@ within_bounds() { # COMMAND…: sets `status`; complains of anything but an answ
 for name in $names; do
     tool=fettle-$name
     while IFS='= ' read -r option placeholder default; do
-        case $placeholder in FILE | FOLDER | DEVICE | PART | SCAN | REF | ROW* | SURFELS | SURFACE* | MESH | JOB | POINTS | PATH | TRACE | EVENTS | TEXT | NAME | NAME,… | LINK | LIST | AXES | RULE | exec:*) continue ;; esac
+        case $placeholder in FILE | FOLDER | LAW | DEVICE | PART | SCAN | REF | ROW* | SURFELS | SURFACE* | MESH | JOB | POINTS | PATH | TRACE | EVENTS | TEXT | NAME | NAME,… | LINK | LIST | AXES | RULE | exec:*) continue ;; esac
         [ "$name $option" != 'station --pace' ] || continue # it makes a simulated machine wait
         case $option:$placeholder in --threads:* | --seed:*) continue ;; *:uniform:A*) ;; *\|*) continue ;; esac # command-line.sh has them
         command_of "$name"

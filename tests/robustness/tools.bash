@@ -23,6 +23,7 @@ inputs() { # STEP
     fettle-surfel plate.stl --stock plate.stl --spacing 4 -q -o work.pcd
     awk 'BEGIN { for (i = 0; i < 9; i++) print 10 + 2 * i, 10, 5 }' | rows | pcd "$kFields" >rows.pcd
     cp "$SAMPLES/paths/keel.pcd" tips.pcd
+    fettle-calibrate "$SAMPLES/removal/static.csv" -q >law.json
     printf '0 0 1 up\n0.1 0 -1\n0.4 end\n' >steer.txt
     printf '0 next\n0 next\n0 start\n0 manual\n0 start\n100 1 0\n100.2 end\n' >operator.txt
     printf '10,10,5\n20,10,5\n20,20,5\n10,20,5\n' >picked.txt
@@ -37,7 +38,7 @@ command_of() { # NAME
     arm) command=(robot.json --inverse --feed 50 --unchecked tips.pcd) writes=(--rapid --krl --ls --urscript) ;;
     assess) command=(--lower -1 --upper 1 good.pcd) ;;
     belt) command=(--path rows.pcd --wheel wheel.json --force 5 --lower -1 --upper 1 work.pcd) writes=(--trace --watch --journal --frames-in) ;;
-    calibrate) command=("$SAMPLES/removal/static.csv") ;;
+    calibrate) command=(--wheel wheel.json --known law.json "$SAMPLES/removal/static.csv") ;;
     clean) command=(--outliers statistical:4,3 --thin 1 good.pcd) ;;
     find) command=(--against plate.stl --transform-in identity.txt good.pcd) writes=(--transform-out) ;;
     collide) command=(robot.json --workpiece plate.stl tips.pcd) writes=(--picture --chart) ;;
