@@ -146,7 +146,10 @@ int main(int argc, char** argv)
 
         const auto begun = Clock::now();
         std::optional<calibrate::RunLearning> learning;
-        if (!o.learn.empty()) learning.emplace(o.learn);
+        if (!o.learn.empty()) {
+            learning.emplace(o.learn);
+            core::OutputFile{o.learn}; // where it cannot be written, that is said before the part is ground
+        }
         const plan::Plan given = plan::read_plan(o.plan), plan = informed(given, learning);
         const units::Units& units = plan.job.units;
         const auto [stock, doubts, dropped] = gantry::read_stock(o.stock, plan.job, removal::Extent::anomaly);

@@ -101,6 +101,17 @@ std::unique_ptr<const Scan> prepared(RawScan raw, double length)
     });
 }
 
+/// Scans that do not fit at all may do so for what was seen when they were read, as a unit that is not theirs.
+/// @throws InputError as register_scans(), with the first of the warnings
+Registration register_or_explain(const Scans& scans, const RegistrationRequest& request,
+                                 const std::vector<std::string>& warnings)
+try {
+    return register_scans(scans, request);
+} catch (const core::InputError& error) {
+    if (warnings.empty()) throw;
+    throw core::InputError(std::string(error.what()) + "; " + warnings.front());
+}
+
 } // namespace
 
 MergeRun merge_files(const MergeRequest& request)
@@ -122,7 +133,7 @@ MergeRun merge_files(const MergeRequest& request)
     }
     Scans scans;
     for (RawScan& scan : raw) scans.push_back(prepared(std::move(scan), registration_request.length));
-    const Registration registration = register_scans(scans, registration_request);
+    const Registration registration = register_or_explain(scans, registration_request, run.warnings);
     run.merged = merge_points(scans, registration, spacing, reach);
     run.converged = registration.converged;
     run.all_placed = std::ranges::all_of(registration.scans, [](const auto& pose) { return pose.has_value(); });

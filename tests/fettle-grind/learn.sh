@@ -29,3 +29,6 @@ jq '{p: .learnt.passes, c: 1.4}' once.json | fettle-diff - after.json --rel 0.05
 # A belt's law is none of a gantry's.
 fettle-calibrate "$SAMPLES/removal/static.csv" -o belt.json
 "$HERE/../refuses" 'belt.json: is the law of a belt' fettle-grind plan.json --stock stock.stl --learn belt.json
+# A law that cannot be written is refused before the part is ground.
+"$HERE/../refuses" 'missing/law.json: cannot write' fettle-grind plan.json --stock stock.stl --gantry 'exec:touch begun' --learn missing/law.json
+[ ! -e begun ]

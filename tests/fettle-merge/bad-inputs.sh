@@ -14,6 +14,9 @@ refuses 'profile.xyz: shows no surface' 1.pcd profile.xyz
 fettle-place "$SAMPLES/scans/panel.pcd" --units mm --centre -o panel.pcd
 fettle-clean panel.pcd --crop sphere:0,0,0,40 -o foreign.pcd
 refuses "no two of the scans fit each other" 1.pcd foreign.pcd
+# In metres, without a word of it: what is odd about the files is said with it.
+for k in 1 2; do fettle-clean $k.pcd --format csv -q | awk -F , 'NR > 1 { print $1 / 1000, $2 / 1000, $3 / 1000 }' >m$k.xyz; done
+refuses 'is under 5 mm long: is its unit right' m1.xyz m2.xyz
 refuses 'poses.json: ' --poses poses.json 1.pcd 2.pcd
 echo '{"kind": "poses", "units": {"length": "mm"}, "scans": [{"file": "1.pcd", "matrix": [[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]}]}' >poses.json
 refuses 'poses.json: scans: none of them is 2.pcd' --poses poses.json 1.pcd 2.pcd

@@ -6,7 +6,7 @@ inputs
 reads='align:--transform-in arm:--srdf collide:--srdf merge:--poses mill:--design path:--part place:--matrix stock-linuxcnc:--after teach:--machine' # files that the commands do without, and only read
 for file in "$HERE"/../../tools/fettle-*.cc; do
     name=$(basename "$file" .cc)
-    [[ " ${names//$'\n'/ } gantry-linuxcnc " == *" ${name#fettle-} "* ]] || say 'is not in tools.bash' "$name"
+    [[ " ${names//$'\n'/ } gantry-linuxcnc step " == *" ${name#fettle-} "* ]] || say 'is not in tools.bash' "$name"
 done
 for name in $names; do
     command_of "$name"
