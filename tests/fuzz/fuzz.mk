@@ -10,7 +10,7 @@ FUZZ_SOURCES := $(wildcard $(addprefix lib/,$(addsuffix /*.cc,core geometry unit
     $(addprefix strategy/,trace trace_file run_identity steering joystick keys) align/rigid compare/comparison_report \
     $(addprefix belt/,contact_wheel belt_journal_file assess running_error) \
     $(addprefix calibrate/,law_belief law_record trials_csv) belt/removal_fit \
-    $(addprefix machining/,nc_block nc_arc nc_program nc_writer cutter_path cutter limits) \
+    $(addprefix machining/,nc_block nc_arc nc_program nc_writer cutter_path cutter limits tilt) \
     $(addprefix part/,spec surface anomalies outline profile) $(addprefix sampling/,noise scan point_surface triangle_grid) \
     $(addprefix report/,summary_reader tool_reports) $(addprefix robot/,robot body_json hull_points simplex urdf urdf_shapes srdf dh_from_axes arm arm_newton arm_parallel)))
 # Not what belongs to the command line: a bundle is linked as a whole.
