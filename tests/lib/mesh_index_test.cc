@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 #include <random>
+#include <utility>
 
 namespace fettle {
 namespace mesh_index_test {
@@ -80,6 +81,18 @@ mesh::Triangle corners_of(const mesh::Mesh& mesh, Eigen::Index t)
     mesh::Triangle corners;
     for (int k = 0; k < 3; ++k) corners.col(k) = mesh.vertices.col(mesh.triangles(k, t));
     return corners;
+}
+
+// The nearest triangle and its nearest point, by looking at all of them in double.
+std::pair<Eigen::Index, mesh::TrianglePoint> closest_of_all(const mesh::Mesh& mesh, const Eigen::Vector3d& point)
+{
+    std::pair<Eigen::Index, mesh::TrianglePoint> closest{-1, {}};
+    closest.second.squared_distance = std::numeric_limits<double>::infinity();
+    for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t)
+        if (const mesh::TrianglePoint other = mesh::closest_on_triangle(corners_of(mesh, t), point);
+            other.squared_distance < closest.second.squared_distance)
+            closest = {t, other};
+    return closest;
 }
 
 // Möller and Trumbore's test, an independent formula.
@@ -161,15 +174,7 @@ TEST(MeshIndex, ClosestIsThatOfBruteForceOnCurvedSurfaces)
             const Eigen::Vector3d point =
                 i % 2 == 0 && far > 30 ? mesh.vertices.col(i) * (1 + far / 130)
                                        : Eigen::Vector3d(ring * std::cos(u), ring * std::sin(u), r * std::sin(v));
-            mesh::TrianglePoint nearest;
-            nearest.squared_distance = std::numeric_limits<double>::infinity();
-            Eigen::Index triangle = -1;
-            for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t)
-                if (const mesh::TrianglePoint other = mesh::closest_on_triangle(corners_of(mesh, t), point);
-                    other.squared_distance < nearest.squared_distance) {
-                    nearest = other;
-                    triangle = t;
-                }
+            const auto [triangle, nearest] = closest_of_all(mesh, point);
             for (const std::uint32_t leaf : {0u, 123u, 499u, 1u << 31}) {
                 const auto found = index.closest(point, std::numeric_limits<double>::infinity(), leaf);
                 ASSERT_TRUE(found);
@@ -196,15 +201,7 @@ TEST(MeshIndex, VerticesFarOffDisturbNothing)
     int hits = 0;
     for (int i = 0; i < 300; ++i) {
         const Eigen::Vector3d point(place(random), place(random), place(random) / 3);
-        mesh::TrianglePoint nearest;
-        nearest.squared_distance = std::numeric_limits<double>::infinity();
-        Eigen::Index triangle = -1;
-        for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t)
-            if (const mesh::TrianglePoint other = mesh::closest_on_triangle(corners_of(mesh, t), point);
-                other.squared_distance < nearest.squared_distance) {
-                nearest = other;
-                triangle = t;
-            }
+        const auto [triangle, nearest] = closest_of_all(mesh, point);
         const auto found = index.closest(point, std::numeric_limits<double>::infinity());
         ASSERT_TRUE(found);
         EXPECT_EQ(found->triangle, triangle);
