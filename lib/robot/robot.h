@@ -74,6 +74,9 @@ inline constexpr int kCell = -1; ///< fixtures, which do not move
 inline constexpr int kBase = 0;  ///< the robot's base, on the track if there is one
 inline constexpr int kTool = 7;  ///< tip at the origin, +z from the tip to the holder
 inline constexpr int kTable = 8;
+
+/// Is a link part of the arm, from its base to its tool?
+inline constexpr bool is_on_arm(int link) { return link >= kBase && link <= kTool; }
 } // namespace link
 
 struct Body {

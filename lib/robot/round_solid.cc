@@ -176,7 +176,7 @@ class SegmentSearch {
     Vector3d on_segment_, on_triangle_;
 };
 
-// The nearest point of a capsule has a closed form, and most triangles are excluded by their planes.
+// The nearest point of a capsule or a sphere has a closed form, and most triangles are excluded by their planes.
 std::optional<TriangleFoot> nearest_to_capsule(const RoundSolid& capsule, const mesh::Triangle& triangle,
                                                double upper_bound)
 {
@@ -226,9 +226,7 @@ ProfileDistance profile_distance(const RoundSolid& solid, double r, double z)
 std::optional<TriangleFoot> nearest_point_of_triangle(const RoundSolid& solid, const mesh::Triangle& triangle,
                                                       double upper_bound)
 {
-    // A sphere takes the search by slices: it checks what mesh::closest_on_triangle() finds on needles.
-    if (solid.radius_from == 0 && solid.radius_to == 0 && solid.length > 0)
-        return nearest_to_capsule(solid, triangle, upper_bound);
+    if (solid.radius_from == 0 && solid.radius_to == 0) return nearest_to_capsule(solid, triangle, upper_bound);
     const mesh::Triangle local = solid.T.linear().transpose() * (triangle.colwise() - Vector3d(solid.T.translation()));
     int low = 0, high = 0;
     for (int k = 1; k < 3; ++k) {

@@ -87,6 +87,32 @@ struct WideRound {
     double size;                      ///< bound of the coordinates, mm
 };
 
+/// The points no farther than its radius from a segment.
+struct WideCapsule {
+    WideCapsule(const RoundSolid& solid, const Eigen::Vector3d& centre)
+        : length(solid.length), radius(solid.rounding),
+          size(solid.length + solid.rounding + (solid.T.translation() - centre).cwiseAbs().maxCoeff())
+    {
+        Eigen::Vector3f::Map(origin) = (solid.T.translation() - centre).cast<float>();
+        Eigen::Vector3f::Map(axis) = solid.T.linear().col(2).cast<float>();
+    }
+
+    FETTLE_INLINE Distance8 operator()(const mesh::Point8& point) const
+    {
+        const mesh::Point8 w = point - mesh::broadcast(origin), a = mesh::broadcast(axis);
+        const mesh::Float8 z =
+            mesh::cwise_min(mesh::cwise_max(mesh::dot(w, a), mesh::Float8{}), mesh::broadcast(length));
+        const mesh::Point8 from_segment = {w.x - z * a.x, w.y - z * a.y, w.z - z * a.z};
+        const mesh::Float8 distance = mesh::cwise_sqrt(mesh::dot(from_segment, from_segment));
+        const mesh::Float8 scale = distance > 0 ? 1 / distance : mesh::Float8{};
+        return {distance - radius, {from_segment.x * scale, from_segment.y * scale, from_segment.z * scale}};
+    }
+
+    float origin[3], axis[3], length, radius;
+    static constexpr bool exact = true;
+    double size; ///< bound of the coordinates, mm
+};
+
 struct WideBox {
     WideBox(const BoxSolid& box, const Eigen::Vector3d& centre)
     {

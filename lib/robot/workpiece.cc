@@ -180,11 +180,13 @@ struct TreeSearch {
 };
 
 using SphereSearch = TreeSearch<RoundSolid, WideSphere>;
+using CapsuleSearch = TreeSearch<RoundSolid, WideCapsule>;
 using RoundSearch = TreeSearch<RoundSolid, WideRound>;
 using BoxSearch = TreeSearch<BoxSolid, WideBox>;
 
 // Functions with clones for several processors cannot be templates.
 FETTLE_CLONES void run_from(SphereSearch& search, std::uint32_t leaf) { search.run_from(leaf); }
+FETTLE_CLONES void run_from(CapsuleSearch& search, std::uint32_t leaf) { search.run_from(leaf); }
 FETTLE_CLONES void run_from(RoundSearch& search, std::uint32_t leaf) { search.run_from(leaf); }
 FETTLE_CLONES void run_from(BoxSearch& search, std::uint32_t leaf) { search.run_from(leaf); }
 
@@ -239,12 +241,17 @@ void Workpiece::search(const PlacedSolid& body, const std::function<bool(Eigen::
         if (bounds_only)
             best.clearance.distance = std::min(best.clearance.distance, search.upper_bound - search.rounding);
     };
-    if (const auto* box = std::get_if<BoxSolid>(&outline))
+    if (const auto* box = std::get_if<BoxSolid>(&outline)) {
         run(BoxSearch(*box, body, mesh(), tree, is_selected, best, bounds_only));
-    else if (body.is_sphere())
-        run(SphereSearch(std::get<RoundSolid>(outline), body, mesh(), tree, is_selected, best, bounds_only));
+        return;
+    }
+    const auto& round = std::get<RoundSolid>(outline);
+    if (body.is_sphere())
+        run(SphereSearch(round, body, mesh(), tree, is_selected, best, bounds_only));
+    else if (round.radius_from == 0 && round.radius_to == 0)
+        run(CapsuleSearch(round, body, mesh(), tree, is_selected, best, bounds_only));
     else
-        run(RoundSearch(std::get<RoundSolid>(outline), body, mesh(), tree, is_selected, best, bounds_only));
+        run(RoundSearch(round, body, mesh(), tree, is_selected, best, bounds_only));
 }
 
 bool Workpiece::contains(const Vector3d& point) const
