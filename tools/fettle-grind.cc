@@ -1,3 +1,4 @@
+#include "align/rigid.h"
 #include "calibrate/run_learning.h"
 #include "cli/tool.h"
 #include "cloud/cloud_output.h"
@@ -35,6 +36,10 @@ struct Options {
         {.fallback = "virtual",
          .gantry = "The machine: a simulated gantry that is always in equilibrium (virtual), one with drives, inertia "
                    "and sensors (virtual:dynamic), or a driver (docs/driver.md)"}};
+    const std::string& place =
+        t.optional_file("--place", "FILE",
+                        "A robot's driver: where the part lies in its cell, a 4 x 4 matrix as fettle-place takes it, "
+                        "lengths in the job's unit");
     const strategy::Layer1& layer_1 = t.choice<strategy::Layer1>(
         "--layer-1",
         {{"constant", strategy::Layer1::constant},
@@ -61,6 +66,16 @@ void add_usage(cli::Tool& t)
               "Wang's part 1 from the job to the ground part, on a machine with inertia");
     t.reference("Wang 2007, 5.3.2 and figure 5-7: the layer-based path planning strategy; 6.1.2, eq. 6-1 to 6-8: "
                 "the machine");
+}
+
+/// Where the job lies in the cell of a robot, mm; nothing: the machine has a frame of its own.
+std::optional<Eigen::Isometry3d> place_of(const Options& o, const job::Job& job)
+{
+    if (o.place.empty()) return std::nullopt;
+    if (!o.gantry.has_driver()) throw core::InputError("--place", "goes with --gantry exec:COMMAND, a robot's driver");
+    Eigen::Isometry3d T_cell_part(align::read_transform(o.place));
+    T_cell_part.translation() *= job.units.mm();
+    return T_cell_part * job.T_part_job.value_or(Eigen::Isometry3d::Identity());
 }
 
 strategy::RunOptions run_options(const Options& o, const units::Units& units, const strategy::RunIdentity& identity)
@@ -152,6 +167,7 @@ int main(int argc, char** argv)
         }
         const plan::Plan given = plan::read_plan(o.plan), plan = informed(given, learning);
         const units::Units& units = plan.job.units;
+        const auto T_cell_job = place_of(o, plan.job);
         const auto [stock, doubts, dropped] = gantry::read_stock(o.stock, plan.job, removal::Extent::anomaly);
         gantry::require_below_safe_height(stock, plan.job, core::display_name(o.stock.file));
         for (const std::string& doubt : doubts) t.warn(doubt);
@@ -165,7 +181,8 @@ int main(int argc, char** argv)
         options.journal = journal.get();
 
         const removal::HeightField left = strategy::replay_removal(options.previous_trace, plan.job, stock);
-        auto [machine, limits, simulated] = gantry::open_gantry(o.gantry, given.job, left, t.seed(), o.removal_factor);
+        auto [machine, limits, simulated] =
+            gantry::open_gantry(o.gantry, given.job, left, t.seed(), o.removal_factor, T_cell_job);
         if (simulated == nullptr) options.known_stock = &left;
         const strategy::GrindRun run = strategy::run(plan, *machine, options, t.progress("grinding"));
         if (simulated == nullptr) machine.reset(); // it lifts now, not after what is computed below

@@ -24,21 +24,21 @@ constexpr double kEchoTolerance = 1e-6; // relative
 } // namespace
 
 DriverGantry::DriverGantry(const std::string& command, const job::Job& job, double timeout,
-                           const std::optional<Head>& head)
+                           const std::optional<Head>& head, const std::optional<Eigen::Isometry3d>& T_cell_job)
     : command_(command), child_(command), timeout_(timeout), head_(head_check(job, head)),
       height_tolerance_(job.tolerance), new_radius_(job.wheel.radius)
 {
-    connect(job);
+    connect(job, T_cell_job);
 }
 
 DriverGantry::DriverGantry(const std::string& name, core::FileDescriptor socket, const job::Job& job, double timeout)
     : command_(name), child_(std::move(socket)), timeout_(timeout), head_(head_check(job, std::nullopt)),
       height_tolerance_(job.tolerance), new_radius_(job.wheel.radius)
 {
-    connect(job);
+    connect(job, std::nullopt);
 }
 
-void DriverGantry::connect(const job::Job& job)
+void DriverGantry::connect(const job::Job& job, const std::optional<Eigen::Isometry3d>& T_cell_job)
 {
     const std::string answer = request("connect " + protocol::kVersion, kStartTime);
     const std::string version = protocol::kVersion + " ";
@@ -49,8 +49,17 @@ void DriverGantry::connect(const job::Job& job)
     if (job.force.max > limits_.force)
         throw core::InputError(job.source,
                                "force.max is above the " + core::to_short_text(limits_.force) + " N of the machine");
+    if (T_cell_job) send_frame(*T_cell_job);
     set_limit(job.force.max);
     turn_to(job.theta);
+}
+
+/// A driver that does not know the command answers by an error, as a robot that does not reach the job there.
+void DriverGantry::send_frame(const Eigen::Isometry3d& T_cell_job)
+{
+    const Answer answer = exchange("frame " + protocol::to_words(T_cell_job), kStartTime);
+    if (answer.is_error) fail("does not take the job's frame: " + answer.text);
+    parse_or_fail([&] { accept(protocol::parse_status(answer.text)); });
 }
 
 void DriverGantry::turn_to(double theta) { execute("home " + core::to_text(theta), kServiceTime); }

@@ -7,6 +7,8 @@
 #include "gantry/protocol.h"
 #include "job/job.h"
 
+#include <Eigen/Geometry>
+
 #include <chrono>
 #include <optional>
 #include <string>
@@ -23,12 +25,14 @@ namespace fettle::gantry {
 /// An interruption sends `halt` while the command is under way. A driver that does not know it ends its move first.
 class DriverGantry final : public Gantry {
   public:
-    /// Connects, sends the head's F_max, and homes: the head turns to θ.
-    /// @param timeout  of an answer beyond the time of the move, s
-    /// @param head     of the machine, if it is known: for what its transducer may read
+    /// Connects, sends the job's frame to a robot, the head's F_max, and homes: the head turns to θ.
+    /// @param timeout     of an answer beyond the time of the move, s
+    /// @param head        of the machine, if it is known: for what its transducer may read
+    /// @param T_cell_job  where the job lies in the cell of a robot, mm; nothing: the machine has a frame of its own
     /// @throws InputError if the driver cannot be started, GantryFault if it is at fault
     DriverGantry(const std::string& command, const job::Job& job, double timeout,
-                 const std::optional<Head>& head = std::nullopt);
+                 const std::optional<Head>& head = std::nullopt,
+                 const std::optional<Eigen::Isometry3d>& T_cell_job = std::nullopt);
     /// Connects to a driver that runs already. @param name  for messages   @param socket  connected to the driver
     DriverGantry(const std::string& name, core::FileDescriptor socket, const job::Job& job, double timeout);
     ~DriverGantry() override;
@@ -49,7 +53,8 @@ class DriverGantry final : public Gantry {
     const protocol::Limits& limits() const { return limits_; }
 
   private:
-    void connect(const job::Job& job);
+    void connect(const job::Job& job, const std::optional<Eigen::Isometry3d>& T_cell_job);
+    void send_frame(const Eigen::Isometry3d& T_cell_job);
     void set_limit(double force);
     struct Answer {
         bool is_error;

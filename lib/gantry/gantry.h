@@ -3,6 +3,7 @@
 #include "core/error.h"
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <exception>
@@ -71,6 +72,9 @@ class Gantry {
     /// Turns the head at the safe height, so that the wheel's axis is at θ, rad. A machine that cannot throws
     /// GantryFault.
     virtual void turn_to(double theta);
+    /// Tells a robot where the job lies, before anything moves: the pose of the job's frame in its cell, mm. A machine
+    /// on which the part is laid in its own frame throws GantryFault, a robot also if it does not reach the job there.
+    virtual void set_frame(const Eigen::Isometry3d& T_cell_job);
     virtual GantryStatus status() const = 0;
     /// Largest feed that grind() takes, mm/s.
     virtual double max_feed() const { return std::numeric_limits<double>::infinity(); }
@@ -118,5 +122,10 @@ inline GantryStatus Gantry::press(const Eigen::Vector3d& /*tool_point*/, double 
 }
 
 inline void Gantry::turn_to(double /*theta*/) { throw GantryFault("the machine cannot turn its head"); }
+
+inline void Gantry::set_frame(const Eigen::Isometry3d& /*T_cell_job*/)
+{
+    throw GantryFault("the machine has a frame of its own, in which the part is to be laid");
+}
 
 } // namespace fettle::gantry

@@ -86,12 +86,13 @@ void require_below_safe_height(const removal::HeightField& stock, const job::Job
 }
 
 OpenGantry open_gantry(const GantryOptions& options, const job::Job& job, const removal::HeightField& stock,
-                       std::uint64_t seed, double removal_factor)
+                       std::uint64_t seed, double removal_factor, const std::optional<Eigen::Isometry3d>& T_cell_job)
 {
     if (options.has_driver()) {
         std::optional<Head> head;
         if (!options.machine.empty()) head = read_machine(options.machine).head;
-        auto driver = std::make_unique<DriverGantry>(options.kind.substr(kDriver.size()), job, options.timeout, head);
+        auto driver =
+            std::make_unique<DriverGantry>(options.kind.substr(kDriver.size()), job, options.timeout, head, T_cell_job);
         const protocol::Limits limits = driver->limits();
         return {std::move(driver), limits, nullptr};
     }

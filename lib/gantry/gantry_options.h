@@ -7,6 +7,8 @@
 #include "removal/height_field.h"
 #include "sampling/scan.h"
 
+#include <Eigen/Geometry>
+
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -80,8 +82,10 @@ struct OpenGantry {
 };
 
 /// Starts the driver, or makes the simulated machine. @param stock  of a simulated machine; a driver has its own
+/// @param T_cell_job  of a robot's driver: where the job lies in its cell, mm
 /// @throws InputError if that fails, GantryFault if the driver is at fault
 OpenGantry open_gantry(const GantryOptions& options, const job::Job& job, const removal::HeightField& stock,
-                       std::uint64_t seed, double removal_factor = 1);
+                       std::uint64_t seed, double removal_factor = 1,
+                       const std::optional<Eigen::Isometry3d>& T_cell_job = std::nullopt);
 
 } // namespace fettle::gantry

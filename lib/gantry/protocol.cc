@@ -15,6 +15,8 @@ std::string join(std::initializer_list<double> numbers)
     return text;
 }
 
+/// Rounding of the text of a unit quaternion, with six digits.
+constexpr double kQuaternionTolerance = 1e-5;
 /// A malformed line is quoted up to this length.
 constexpr std::size_t kMaxQuotedLength = 60;
 
@@ -51,6 +53,13 @@ std::string_view next_word(std::string_view& line)
 
 std::string to_words(const Eigen::Vector3d& p) { return join({p.x(), p.y(), p.z()}); }
 
+std::string to_words(const Eigen::Isometry3d& pose)
+{
+    const Eigen::Vector3d p = pose.translation();
+    const Eigen::Quaterniond q(pose.linear());
+    return join({p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z()});
+}
+
 std::string to_line(const Limits& l)
 {
     return join({l.min.x(), l.max.x(), l.min.y(), l.max.y(), l.min.z(), l.max.z(), l.speed, l.force});
@@ -71,6 +80,18 @@ GantryStatus parse_status(std::string_view text)
 {
     const std::vector<double> n = parse_numbers(text, 7);
     return {n[0], {n[1], n[2], n[3]}, n[4], n[5], n[6]};
+}
+
+Eigen::Isometry3d parse_pose(std::string_view text)
+{
+    const std::vector<double> n = parse_numbers(text, 7);
+    const Eigen::Quaterniond q(n[3], n[4], n[5], n[6]);
+    if (!(std::abs(q.norm() - 1) <= kQuaternionTolerance))
+        throw GantryFault("turns by a quaternion of length " + core::to_text(q.norm()) + ": '" + std::string(text) +
+                          "'");
+    Eigen::Isometry3d pose(q.normalized());
+    pose.pretranslate(Eigen::Vector3d(n[0], n[1], n[2]));
+    return pose;
 }
 
 double parse_finite_number(std::string_view text) { return parse_numbers(text, 1).front(); }

@@ -3,6 +3,7 @@
 #include "gantry/gantry.h"
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include <string>
 #include <string_view>
@@ -25,12 +26,15 @@ struct Limits {
 inline constexpr double kPositionTolerance = 5; // mm
 
 std::string to_words(const Eigen::Vector3d& point);
+std::string to_words(const Eigen::Isometry3d& pose); ///< x y z and the unit quaternion w x y z
 std::string to_line(const Limits& limits);
 std::string to_line(const GantryStatus& status);
 
-/// All three: @throws GantryFault that quotes the text, if it is malformed or a number is not finite
+/// All four: @throws GantryFault that quotes the text, if it is malformed or a number is not finite; for a pose also
+/// unless the quaternion's length is 1
 Limits parse_limits(std::string_view text);
 GantryStatus parse_status(std::string_view text);
+Eigen::Isometry3d parse_pose(std::string_view text);
 double parse_finite_number(std::string_view text);
 
 /// Removes the first word from a line, and returns it; words are separated by one blank.

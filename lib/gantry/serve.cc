@@ -124,6 +124,10 @@ class Server {
         if (command == "connect" && rest == protocol::kVersion)
             return protocol::kVersion + " " + protocol::to_line(limits_);
         if (command == "limit") return limit(number());
+        if (command == "frame") {
+            gantry_.set_frame(protocol::parse_pose(rest));
+            return protocol::to_line(gantry_.status());
+        }
         if (command == "home") return home(number());
         if (command == "status") return protocol::to_line(gantry_.status());
         if (command == "travel") return protocol::to_line(gantry_.travel(point()));

@@ -11,7 +11,7 @@
 . "$HERE/../bad-inputs/probe.bash"
 
 # fettle-gantry-linuxcnc is for a machine that runs: tests/linuxcnc.
-names='align arm assess belt calibrate clean collide compare contact diff estimate feed find finish fit form gantry-virtual grind manual margin merge mesh mill part path place
+names='align arm assess belt calibrate clean collide compare contact diff estimate feed find finish fit form gantry-robot gantry-virtual grind manual margin merge mesh mill part path place
     plan reconstruct render report sample station stock-linuxcnc surfel teach verify view'
 if command -v fettle-step > /dev/null; then names+=' step'; fi # built where OpenCASCADE is
 
@@ -50,6 +50,7 @@ command_of() { # NAME
     finish) command=(--cutter ball:6 --step-over 4 plate.stl) ;;
     fit) command=(job.json samples.pcd) ;;
     form) command=(flatness good.pcd) ;;
+    gantry-robot) command=(robot.json --stock good.pcd --cell 0.5 plan.json) bulk=() writes=(--ground --moves) lines='1 status' ;;
     gantry-virtual) command=(--stock good.pcd --cell 0.5 --machine machine.json plan.json) bulk=() writes=(--ground) lines='1 status' ;;
     grind) command=(--stock good.pcd --cell 0.5 --gantry virtual:dynamic --machine machine.json plan.json) writes=(--trace --frames-in) ;;
     manual) command=(--stock good.pcd --cell 0.5 --machine machine.json --steer steer.txt job.json) writes=(--trace) ;;
