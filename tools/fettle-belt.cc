@@ -3,6 +3,7 @@
 #include "belt/belt_report.h"
 #include "belt/belt_watch.h"
 #include "belt/stock_frames.h"
+#include "calibrate/belt_learning.h"
 #include "cli/tool.h"
 #include "cloud/cloud_output.h"
 #include "core/file.h"
@@ -24,32 +25,41 @@ struct Options {
     const std::optional<double>&lower, &upper;
     const std::string& journal;
     const double& journal_interval;
+    const std::string& learn;
+    const std::string& actual;
     draw::Frames frames;
 };
 
 Options declare_options(cli::Tool& t)
 {
     using enum belt::BeltModel;
-    return {belt::GrindingOptions(t),
-            t.choice<belt::BeltModel>(
-                "--model", {{"local", local}, {"global", global}},
-                "The force acts as the contact's pressure, or evenly over the contact's rectangle (Hammann 1998)"),
-            belt::ContactOptions(t, 32, 1e-4),
-            t.optional_output("--trace", "The path with what happened at each point", cloud::cloud_formats()),
-            t.text("--watch", "", "FILE",
-                   "The errors after each point, CSV, line by line as they come; with --lower and --upper"),
-            t.optional_number("--lower", "LENGTH", "For --watch: less is left on gouged surfels"),
-            t.optional_number("--upper", "LENGTH", "For --watch: more is left on undercut ones"),
-            t.text("--journal", "", "FILE",
-                   "Checkpoints of the run; where it is there already, from a run that was killed, the run goes on"),
-            t.number("--journal-every", belt::BeltJournal{}.interval, "S", "Work that may be lost",
-                     core::Range::at_least(0)),
-            draw::Frames(t)};
+    return {
+        belt::GrindingOptions(t),
+        t.choice<belt::BeltModel>(
+            "--model", {{"local", local}, {"global", global}},
+            "The force acts as the contact's pressure, or evenly over the contact's rectangle (Hammann 1998)"),
+        belt::ContactOptions(t, 32, 1e-4),
+        t.optional_output("--trace", "The path with what happened at each point", cloud::cloud_formats()),
+        t.text("--watch", "", "FILE",
+               "The errors after each point, CSV, line by line as they come; with --lower and --upper"),
+        t.optional_number("--lower", "LENGTH", "For --watch: less is left on gouged surfels"),
+        t.optional_number("--upper", "LENGTH", "For --watch: more is left on undercut ones"),
+        t.text("--journal", "", "FILE",
+               "Checkpoints of the run; where it is there already, from a run that was killed, the run goes on"),
+        t.number("--journal-every", belt::BeltJournal{}.interval, "S", "Work that may be lost",
+                 core::Range::at_least(0)),
+        t.text(
+            "--learn", "", "LAW",
+            "The belt's law, learnt pass by pass: read if it is there, and written anew as a wheel; feeds are changed "
+            "to remove what the path was planned for"),
+        t.optional_file("--actual", "FILE", "The wheel with the law that the belt has in truth, JSON [--wheel]"),
+        draw::Frames(t)};
 }
 
 void check(const Options& options)
 {
     options.grinding.check();
+    options.contact.check();
     options.frames.check_folder();
     const bool has_lower = options.lower.has_value(), has_upper = options.upper.has_value();
     if (has_lower == options.watch.empty() || has_upper == options.watch.empty())
@@ -57,18 +67,22 @@ void check(const Options& options)
     if (has_lower && !(*options.lower <= *options.upper)) throw core::InputError("--lower", "is more than --upper");
 }
 
-belt::BeltRun grind(cli::Tool& t, Options& given, belt::Surfels& surfels, const belt::ContactWheel& wheel,
-                    const std::vector<belt::BeltPoint>& path, double mm)
+belt::BeltOptions belt_options(const Options& given, double mm)
 {
     belt::BeltOptions options;
     options.contact = given.contact.values();
     options.model = given.model;
     options.prior_work = given.grinding.prior_work();
+    if (given.lower) options.range = {*given.lower * mm, *given.upper * mm};
+    return options;
+}
+
+belt::BeltRun grind(cli::Tool& t, Options& given, const belt::BeltOptions& options, belt::Surfels& surfels,
+                    const belt::ContactWheel& wheel, const std::vector<belt::BeltPoint>& path, double mm,
+                    calibrate::BeltLearning* learning)
+{
     std::optional<belt::BeltErrorLog> log;
-    if (given.lower) {
-        options.range = {*given.lower * mm, *given.upper * mm};
-        log.emplace(given.watch, mm);
-    }
+    if (given.lower) log.emplace(given.watch, mm);
     std::optional<belt::SurfelPictures> pictures;
     if (given.frames.wanted()) pictures.emplace(surfels, options.range);
     const std::vector<std::size_t> frame_steps = given.frames.steps(path.size());
@@ -81,8 +95,25 @@ belt::BeltRun grind(cli::Tool& t, Options& given, belt::Surfels& surfels, const 
                                                             std::to_string(point + 1) + " of " +
                                                             std::to_string(path.size())));
     };
-    return belt::grind(surfels, wheel, path, options, {given.journal, given.journal_interval}, listener,
-                       t.progress("grinding"));
+    const belt::BeltJournal journal{given.journal, given.journal_interval,
+                                    learning ? learning->context_digest() : std::string()};
+    return belt::grind(surfels, wheel, path, options, journal, listener, learning, t.progress("grinding"));
+}
+
+/// The wheel as it is in truth: its law may be another one than that for which the path was planned.
+belt::ContactWheel actual_wheel(const Options& options, belt::ContactWheel wheel)
+{
+    if (!options.actual.empty()) wheel.law = belt::read_contact_wheel(options.actual).law;
+    return wheel;
+}
+
+/// Hands the law on, and warns of the passes that it does not explain.
+void write_law(cli::Tool& t, const Options& options, const std::string& path_file,
+               const calibrate::BeltLearning& learning)
+{
+    for (const std::string& line : learning.warnings()) t.warn(core::display_name(path_file) + ": " + line);
+    t.report().set("learnt", learning.report());
+    if (learning.is_informed()) t.output_file(options.learn) << learning.file();
 }
 
 } // namespace
@@ -118,18 +149,26 @@ int main(int argc, char** argv)
         const units::Units units = ground.file.units;
         const belt::ContactWheel wheel = belt::read_contact_wheel(wheel_file);
         cloud::CloudFile path = cloud::read_cloud(path_file);
-        const auto belt_points = cli::with_error_prefix(core::display_name(path_file), [&] {
+        auto belt_points = cli::with_error_prefix(core::display_name(path_file), [&] {
             return belt::belt_path(path.cloud, options.grinding.settings(units.mm()));
         });
+        const belt::BeltOptions belt_options = ::belt_options(options, units.mm());
+        std::optional<calibrate::BeltLearning> learning;
+        if (!options.learn.empty()) {
+            core::OutputFile{options.learn}; // where it cannot be written, that is said before the part is ground
+            learning.emplace(options.learn, wheel, belt_options, ground.surfels, belt_points);
+        }
         belt::BeltRun run;
         try {
-            run = grind(t, options, ground.surfels, wheel, belt_points, units.mm());
+            run = grind(t, options, belt_options, ground.surfels, actual_wheel(options, wheel), belt_points, units.mm(),
+                        learning ? &*learning : nullptr);
         } catch (const core::InputError& error) {
             if (!std::string(error.what()).starts_with("point ")) throw;
             throw core::InputError(core::display_name(path_file), error.what());
         }
 
         if (!options.trace.empty()) {
+            if (learning) belt::set_feeds(path.cloud, belt_points);
             belt::set_trace(path.cloud, run.trace);
             out.write(options.trace, path.cloud, path.units);
         }
@@ -140,9 +179,9 @@ int main(int argc, char** argv)
         out.write(cloud, units);
         options.frames.finish("The surfels while they are ground.");
         t.report() = belt::to_json(run, out.units(units));
-        if (run.near_edge > 0)
-            t.warn(std::to_string(run.near_edge) + " contacts are nearer to the wheel's edge than 1.5 thicknesses of "
-                                                   "its layer, where it is softer than computed");
+        if (learning) write_law(t, options, path_file, *learning);
+        if (const std::string doubt = belt::edge_warning(run.near_edge, options.contact.values()); !doubt.empty())
+            t.warn(doubt);
         if (const std::string doubt = belt::coarse_grid_warning(run, options.contact.cells); !doubt.empty())
             t.warn(doubt);
         return cli::Verdict::yes;

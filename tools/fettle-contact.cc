@@ -38,12 +38,6 @@ int main(int argc, char** argv)
         const auto& force = t.optional_number("--force", "FORCE", "Press with this force, N", core::Range::positive());
         const auto& depth =
             t.optional_number("--depth", "LENGTH", "Press to this indentation", core::Range::positive());
-        using enum belt::LayerSolver;
-        const belt::LayerSolver& solver = t.choice<belt::LayerSolver>(
-            "--solver", {{"layer", layer}, {"fem", fem}},
-            "Compliance of the bonded layer in Fourier space, flat and without edges; or linear finite elements "
-            "of the round layer with its free sides, of 256 --cells at most");
-        const int& elements = t.count("--elements", 8, "From the surface to the hub, of --solver fem", 1, 64);
         const belt::ContactOptions contact(t, 64, 1e-6);
         const cloud::CloudOutput out{t};
         t.example("fettle-part parts/keel.json -o keel.stl && fettle-surfel keel.stl --stock keel.stl --spacing 1 | "
@@ -55,23 +49,17 @@ int main(int argc, char** argv)
 
         if (force.has_value() == depth.has_value())
             throw core::InputError("--force", "either --force or --depth says how the wheel is pressed on");
-        constexpr int kMaxFemCells = 256; // along a side: memory grows with the cube, 140 MB here
-        if (solver == fem && contact.cells > kMaxFemCells)
-            throw core::InputError("--cells", "at most " + std::to_string(kMaxFemCells) + " with --solver fem");
+        contact.check();
         const belt::SurfelFile part = belt::read_surfels(points, unit);
         const units::Units& units = part.file.units;
         const belt::ContactWheel wheel = belt::read_contact_wheel(wheel_file);
         const Eigen::Isometry3d pose = parse_pose(at, units.mm());
-        belt::WheelContactOptions options = contact.values();
-        options.solver = solver;
-        options.elements = elements;
-        belt::WheelContactSolver contact_solver(part.surfels, wheel, options);
+        belt::WheelContactSolver contact_solver(part.surfels, wheel, contact.values());
         const belt::WheelContact& press =
             contact_solver.solve(pose, {force.has_value(), force ? *force : *depth * units.mm()});
         t.report() = belt::to_json(press, out.units(units));
-        if (press.is_near_edge && solver == layer)
-            t.warn("the contact is nearer to the wheel's edge than 1.5 thicknesses of its layer, where it is softer "
-                   "than computed; --solver fem sees the edge");
+        if (const std::string doubt = belt::edge_warning(press.is_near_edge ? 1 : 0, contact.values()); !doubt.empty())
+            t.warn(doubt);
         out.write(belt::to_cloud(press, contact_solver.residual_gap(), pose), units);
         return cli::Verdict::yes;
     });

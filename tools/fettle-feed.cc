@@ -48,6 +48,7 @@ int main(int argc, char** argv)
                   "0.01 mm off the keel");
         t.reference("Ren et al. 2006, eq. 5; Moré & Toraldo 1991");
         t.parse();
+        contact.check();
 
         grinding.check();
         cloud::CloudFile path = cloud::read_cloud(path_file);

@@ -2,6 +2,7 @@
 
 #include "belt/belt_path.h"
 #include "belt/press.h"
+#include "belt/removal_fit.h"
 #include "belt/running_error.h"
 #include "core/progress.h"
 
@@ -49,6 +50,14 @@ struct BeltError {
     double mean = 0, rms = 0, min = 0;                ///< mm
 };
 
+/// What was measured of a pass of a path: the path from a touchdown to the next.
+struct MeasuredPass {
+    RemovalTrial trial;        ///< volume 0: the pass has no length, or removed nothing
+    double contact_volume = 0; ///< volume of the pass, mm³, per volume of the trial
+    double work = 0;           ///< of the belt, N mm
+    double feed_factor = 1;    ///< by which the feeds of the path were multiplied
+};
+
 /// Results of a grinding run.
 struct BeltRun {
     std::vector<BeltTrace> trace;
@@ -60,6 +69,7 @@ struct BeltRun {
     double max_cell_spacings = 0;        ///< largest cell over the surfels' spacing, at these points
     std::vector<SurfelRemoval> removals; ///< ordered by point; empty without BeltOptions::keep_removals
     std::vector<BeltError> errors;       ///< one for each point; empty without BeltOptions::range
+    std::vector<MeasuredPass> passes;    ///< that a PassSupervisor measured (belt_journal.h)
 };
 
 /// Checkpoint of a run: everything that the next point depends on, except the surfels' displacements.
@@ -90,6 +100,11 @@ class BeltGrinding {
     void step();
 
     const BeltRun& run() const { return state_.run; }
+    std::size_t next_point() const { return state_.next_point; }
+    /// Of the last contact; the next one begins with it. No rows: it is not known yet.
+    const ContactGrid& contact_grid() const { return solver_.contact_grid(); }
+    void set_contact_grid(const ContactGrid& grid) { solver_.restore({grid, {}, {}}); }
+    void add_pass(const MeasuredPass& pass) { state_.run.passes.push_back(pass); }
     /// Checkpoint for restore(); the caller keeps the displacements of the surfels.
     BeltState state() const;
     /// Continues from a checkpoint. The surfels must have the displacements that they had then.

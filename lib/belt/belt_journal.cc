@@ -42,20 +42,31 @@ struct JournalFile {
 } // namespace
 
 BeltRun grind(Surfels& surfels, const ContactWheel& wheel, const std::vector<BeltPoint>& path, BeltOptions options,
-              const BeltJournal& journal, const BeltListener& listener, const core::Progress& progress)
+              const BeltJournal& journal, const BeltListener& listener, PassSupervisor* supervisor,
+              const core::Progress& progress)
 {
     using Clock = std::chrono::steady_clock;
     const bool has_journal = !journal.file.empty();
     if (has_journal) options.keep_removals = false;
-    const JournalFile file = {journal.file, has_journal ? run_digest(surfels, wheel, path, options) : ""};
+    const JournalFile file = {journal.file,
+                              has_journal ? run_digest(surfels, wheel, path, options, journal.context_digest) : ""};
     BeltGrinding grinding(surfels, wheel, path, options);
     file.resume(grinding, surfels, path.size(), options.contact.cells_per_side);
+    if (supervisor) supervisor->resume(grinding.run());
     if (listener) listener(grinding.run());
     Clock::time_point last_write = Clock::now();
+    std::size_t pass_end = grinding.next_point();
     while (!grinding.is_done()) {
         core::report_progress(progress, grinding.progress());
+        if (grinding.next_point() == pass_end) {
+            pass_end = end_of_pass(path, pass_end);
+            if (supervisor) supervisor->begin_pass(grinding, grinding.next_point(), pass_end);
+        }
         grinding.step();
+        const bool is_between_passes = grinding.next_point() == pass_end;
+        if (supervisor && is_between_passes) grinding.add_pass(supervisor->end_pass(grinding.run()));
         if (listener) listener(grinding.run());
+        if (supervisor && !is_between_passes) continue;
         const std::chrono::duration<double> since = Clock::now() - last_write;
         if (!has_journal || (since.count() < journal.interval && !grinding.is_done())) continue;
         file.write(grinding, surfels);

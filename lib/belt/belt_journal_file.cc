@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::Index;
 
-constexpr std::string_view kTitle = "fettle-belt journal 2\n";
+constexpr std::string_view kTitle = "fettle-belt journal 3\n";
 constexpr std::string_view kTitleOfAnyVersion = "fettle-belt journal ";
 constexpr std::size_t kDigestLine = 64 + 1;           // hexadecimal digits of SHA-256, and the end of the line
 constexpr double kMaxExactInteger = 9007199254740992; // 2^53: a double holds all integers up to it
@@ -116,6 +116,13 @@ void serialize(Archive& archive, RunningError& error)
     archive.serialize_all(error.sum, error.sum_squares, error.min);
 }
 
+void serialize(Archive& archive, MeasuredPass& pass)
+{
+    RemovalTrial& trial = pass.trial;
+    archive.serialize_all(trial.force, trial.speed, trial.feed, trial.duration, trial.prior_work, trial.volume,
+                          pass.contact_volume, pass.work, pass.feed_factor);
+}
+
 void serialize(Archive& archive, BeltCheckpoint& checkpoint)
 {
     BeltState& state = checkpoint.state;
@@ -124,6 +131,7 @@ void serialize(Archive& archive, BeltCheckpoint& checkpoint)
     archive.serialize_all(state.next_point, checkpoint.displacement, run.removed);
     archive.serialize(run.trace, [&](BeltTrace& trace) { serialize(archive, trace); });
     archive.serialize(run.errors, [&](BeltError& error) { serialize(archive, error); });
+    archive.serialize(run.passes, [&](MeasuredPass& pass) { serialize(archive, pass); });
     archive.serialize_all(run.removed_volume, run.work, run.near_edge, run.coarse_grids, run.max_cell_spacings);
     if (state.error) serialize(archive, *state.error);
     archive.serialize_all(contact.grid.cell_size, contact.grid.rows, contact.grid.columns, contact.pressure,
@@ -169,7 +177,7 @@ bool is_consistent(const BeltCheckpoint& found, const BeltCheckpoint& initial, s
 } // namespace
 
 std::string run_digest(const Surfels& surfels, const ContactWheel& wheel, const std::vector<BeltPoint>& path,
-                       const BeltOptions& options)
+                       const BeltOptions& options, const std::string& context)
 {
     std::vector<double> values;
     const auto add = [&](auto... numbers) { (values.push_back(static_cast<double>(numbers)), ...); };
@@ -194,7 +202,7 @@ std::string run_digest(const Surfels& surfels, const ContactWheel& wheel, const 
     const WheelContactOptions& contact = options.contact;
     add(contact.gridding, contact.cells_per_side, contact.tolerance, contact.solver, contact.elements, options.model,
         options.prior_work, options.range.has_value(), range.lower, range.upper);
-    return core::sha256(bytes_of(values));
+    return core::sha256(bytes_of(values) + context);
 }
 
 std::string seal_journal(const std::string& digest, std::string_view numbers)

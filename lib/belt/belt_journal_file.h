@@ -18,8 +18,9 @@ struct BeltCheckpoint {
 };
 
 /// SHA-256 of everything that a run depends on: it identifies a journal of another run.
+/// @param context  of what else it depends on
 std::string run_digest(const Surfels& surfels, const ContactWheel& wheel, const std::vector<BeltPoint>& path,
-                       const BeltOptions& options);
+                       const BeltOptions& options, const std::string& context = {});
 
 /// A checkpoint as the bytes of a journal: a title, the SHA-256 of the rest, the run's digest, and the numbers in the
 /// processor's own format.

@@ -7,6 +7,7 @@ namespace {
 // converge; above the upper one the pressure is visibly wrong at the edge of the contact.
 constexpr double kMinContactTolerance = 1e-9;
 constexpr double kMaxContactTolerance = 1e-2;
+constexpr int kMaxFemCells = 256; // along a side: memory grows with the cube, 140 MB here
 
 } // namespace
 
@@ -16,11 +17,23 @@ ContactOptions::ContactOptions(cli::Tool& tool, int default_cells, double defaul
       cells(tool.count("--cells", default_cells, "Number of cells along each side of the grid", 8, 512)),
       tolerance(tool.number("--tolerance", default_tolerance, "SHARE",
                             "Maximum of pressure times gap, as a share of peak pressure times indentation",
-                            core::Range::between(kMinContactTolerance, kMaxContactTolerance)))
+                            core::Range::between(kMinContactTolerance, kMaxContactTolerance))),
+      solver(tool.choice<LayerSolver>("--solver", {{"layer", LayerSolver::layer}, {"fem", LayerSolver::fem}},
+                                      "Compliance of the bonded layer, flat and, with up to 128 --cells, with free "
+                                      "sides; or linear finite elements of "
+                                      "the round layer with its sides, of 256 --cells at most")),
+      elements(tool.count("--elements", WheelContactOptions{}.elements, "From the surface to the hub, of --solver fem",
+                          1, 64))
 {
 }
 
-WheelContactOptions ContactOptions::values() const { return {gridding, cells, tolerance}; }
+void ContactOptions::check() const
+{
+    if (solver == LayerSolver::fem && cells > kMaxFemCells)
+        throw core::InputError("--cells", "at most " + std::to_string(kMaxFemCells) + " with --solver fem");
+}
+
+WheelContactOptions ContactOptions::values() const { return {gridding, cells, tolerance, solver, elements}; }
 
 GrindingOptions::GrindingOptions(cli::Tool& tool)
     : force(tool.optional_number("--force", "FORCE", "At all points, N", core::Range::positive())),

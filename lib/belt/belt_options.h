@@ -8,14 +8,19 @@
 
 namespace fettle::belt {
 
-/// The options of the contact: --gridding, --cells, --tolerance. The references are those of the tool.
+/// The options of the contact: --gridding, --cells, --tolerance, --solver, --elements. The references are those of the
+/// tool.
 struct ContactOptions {
     ContactOptions(cli::Tool& tool, int default_cells, double default_tolerance);
+    /// @throws InputError for more cells than the solver can have
+    void check() const;
     WheelContactOptions values() const;
 
     const Gridding& gridding;
     const int& cells;        ///< along each side of the grid
     const double& tolerance; ///< of the contact
+    const LayerSolver& solver;
+    const int& elements; ///< of LayerSolver::fem, from the surface to the hub
 };
 
 /// The options of grinding along a path: --force, --depth, --feed, --dwell, --worn. The references are those of the

@@ -3,6 +3,7 @@
 #include "cloud/poses.h"
 #include "core/error.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -66,6 +67,13 @@ Eigen::VectorXd tributary_lengths(const std::vector<BeltPoint>& path)
         result[k] += length / 2;
     }
     return result;
+}
+
+std::size_t end_of_pass(const std::vector<BeltPoint>& path, std::size_t point)
+{
+    const auto next = std::find_if(path.begin() + std::ptrdiff_t(point) + 1, path.end(),
+                                   [](const BeltPoint& at) { return at.touches_down; });
+    return std::size_t(next - path.begin());
 }
 
 } // namespace fettle::belt

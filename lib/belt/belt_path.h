@@ -34,6 +34,9 @@ struct BeltSettings {
 /// @throws InputError if a point has neither force nor depth, or a value is not positive
 std::vector<BeltPoint> belt_path(const cloud::Cloud& path, const BeltSettings& settings);
 
+/// First point of the pass after the one that `point` is in. A pass is the path from a touchdown to the next.
+std::size_t end_of_pass(const std::vector<BeltPoint>& path, std::size_t point);
+
 /// Tributary length of each point, mm: half the distance to each of its neighbours in the same run; 0 where the wheel
 /// is off the part.
 Eigen::VectorXd tributary_lengths(const std::vector<BeltPoint>& path);

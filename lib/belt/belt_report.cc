@@ -65,6 +65,15 @@ json::Value to_json(const BeltPlan& plan, bool by_force, const units::Units& uni
         .set("converged", plan.converged);
 }
 
+std::string edge_warning(Eigen::Index near_edge, const WheelContactOptions& options)
+{
+    if (near_edge == 0 || options.solver == LayerSolver::fem || options.cells_per_side <= kMaxEdgeCells) return "";
+    return std::to_string(near_edge) +
+           " contacts are nearer to the wheel's edge than 1.5 thicknesses of its layer, where "
+           "it is softer than computed; --solver fem and up to " +
+           std::to_string(kMaxEdgeCells) + " --cells see the edge";
+}
+
 std::string coarse_grid_warning(const BeltRun& run, int cells_per_side)
 {
     if (run.coarse_grids == 0) return "";
@@ -90,19 +99,26 @@ void set_trace(cloud::Cloud& path, const std::vector<BeltTrace>& trace)
     add("removed_volume", &BeltTrace::removed_volume);
 }
 
+void set_feeds(cloud::Cloud& path, const std::vector<BeltPoint>& points)
+{
+    Eigen::VectorXd feed(path.size());
+    for (Eigen::Index i = 0; i < path.size(); ++i)
+        feed[i] = points[i].is_on_part() ? points[i].feed : std::numeric_limits<double>::quiet_NaN();
+    cloud::set_field(path, "feed", feed, 8);
+}
+
 void set_plan(cloud::Cloud& path, const BeltPlan& plan)
 {
     constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-    Eigen::VectorXd force = Eigen::VectorXd::Constant(path.size(), kNone), depth = force, feed = force;
+    Eigen::VectorXd force = Eigen::VectorXd::Constant(path.size(), kNone), depth = force;
     for (Eigen::Index i = 0; i < path.size(); ++i) {
         const BeltPoint& point = plan.path[i];
         if (!point.is_on_part()) continue;
         (point.load.by_force ? force : depth)[i] = point.load.value;
-        feed[i] = point.feed;
     }
     if (!force.array().isNaN().all()) cloud::set_field(path, "force", force, 8);
     if (!depth.array().isNaN().all()) cloud::set_field(path, "depth", depth, 8);
-    cloud::set_field(path, "feed", feed, 8);
+    set_feeds(path, plan.path);
 }
 
 } // namespace fettle::belt

@@ -174,22 +174,6 @@ std::vector<std::pair<double, double>> phase_quadrature(const LayerMesh& mesh, I
     return result;
 }
 
-/// Weights of the compliance at each phase (rows) for each wave (columns) of the grid, periodic at twice its length,
-/// which leaves the influence between its cells unchanged. There is one wave more than rows of cells.
-MatrixXd wave_weights(const std::vector<std::pair<double, double>>& nodes, Index rows)
-{
-    MatrixXd result(nodes.size(), rows + 1);
-    for (Index f = 0; f <= rows; ++f)
-        for (Index k = 0; k < result.rows(); ++k) {
-            const auto [phase, weight] = nodes[k];
-            const double wave = pi * f / rows;
-            double sum = 1;
-            for (Index m = 1; m < rows; ++m) sum += 2 * std::cos(m * phase) * std::cos(m * wave);
-            result(k, f) = weight * sum * (f == 0 || f == rows ? 1 : 2) / (2 * rows);
-        }
-    return result;
-}
-
 } // namespace
 
 LayerMesh layer_mesh(const ElasticLayer& layer, double radius, double width, const Eigen::Vector2d& cell, Index columns,
@@ -216,44 +200,28 @@ LayerMesh layer_mesh(const ElasticLayer& layer, double radius, double width, con
 
 MatrixXd wave_compliance(const LayerMesh& mesh, double phase) { return compliance(assemble(mesh), phase); }
 
-FemLayer::FemLayer(const LayerMesh& mesh, Index rows) : tilt_cosines_(rows), waves_(2 * (rows + 1), rows)
+FemLayer::FemLayer(const LayerMesh& mesh, Index rows) : tilt_cosines_(rows), waves_(rows, mesh.loaded_count)
 {
     for (Index i = 0; i < rows; ++i)
         tilt_cosines_[i] = std::cos((static_cast<double>(2 * i + 1 - rows) / 2) * mesh.cell_size.x() / mesh.radius);
-    for (Index f = 0; f <= rows; ++f)
-        for (Index i = 0; i < rows; ++i) {
-            waves_(2 * f, i) = std::cos(pi * (f * i) / rows);
-            waves_(2 * f + 1, i) = std::sin(pi * (f * i) / rows);
-        }
     const std::vector<std::pair<double, double>> nodes = phase_quadrature(mesh, rows);
     const Index count = std::ssize(nodes);
     const MatrixXd weights = wave_weights(nodes, rows);
     const RingStiffness ring = assemble(mesh);
     constexpr Index kBlockSize = 64; // phases at a time, to limit the memory
-    spectrum_ = MatrixXd::Zero(mesh.loaded_count * mesh.loaded_count, rows + 1);
+    MatrixXd& spectrum = waves_.spectrum();
     for (Index from = 0; from < count; from += kBlockSize) {
-        MatrixXd compliances(spectrum_.rows(), std::min(kBlockSize, count - from));
+        MatrixXd compliances(spectrum.rows(), std::min(kBlockSize, count - from));
         tbb::parallel_for(Index{0}, compliances.cols(), [&](Index k) {
             const double phase = nodes[from + k].first;
             compliances.col(k) = mesh.cell_size.prod() * compliance(ring, phase).reshaped();
         });
         tbb::parallel_for(Index{0}, mesh.loaded_count, [&](Index column) {
-            spectrum_.middleRows(column * mesh.loaded_count, mesh.loaded_count).noalias() +=
+            spectrum.middleRows(column * mesh.loaded_count, mesh.loaded_count).noalias() +=
                 compliances.middleRows(column * mesh.loaded_count, mesh.loaded_count) *
                 weights.middleRows(from, compliances.cols());
         });
     }
-}
-
-MatrixXd FemLayer::displacement(const MatrixXd& pressure) const
-{
-    const Index columns = pressure.cols();
-    MatrixXd amplitudes = (waves_ * pressure).transpose();
-    for (Index f = 0; f < spectrum_.cols(); ++f) {
-        const Eigen::Map<const MatrixXd> compliance_of_wave(spectrum_.col(f).data(), columns, columns);
-        amplitudes.middleCols(2 * f, 2) = (compliance_of_wave * amplitudes.middleCols(2 * f, 2)).eval();
-    }
-    return waves_.transpose() * amplitudes.transpose();
 }
 
 } // namespace fettle::belt

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "belt/layer_compliance.h"
+#include "belt/wave_operator.h"
 
 #include <Eigen/Core>
 
@@ -38,14 +39,13 @@ class FemLayer {
     FemLayer(const LayerMesh& mesh, Eigen::Index rows);
 
     /// @param pressure  radial, on the cells, MPa   @return  radial, mm
-    Eigen::MatrixXd displacement(const Eigen::MatrixXd& pressure) const;
+    Eigen::MatrixXd displacement(const Eigen::MatrixXd& pressure) const { return waves_.displacement(pressure); }
     /// Cosine of the angle between each row's radius and the radius at the middle of the grid.
     const Eigen::ArrayXd& tilt_cosines() const { return tilt_cosines_; }
 
   private:
     Eigen::ArrayXd tilt_cosines_;
-    Eigen::MatrixXd waves_;    ///< cosine and sine of each wave over the grid's rows, in alternate rows
-    Eigen::MatrixXd spectrum_; ///< compliance of each wave (column), mm/MPa
+    WaveOperator waves_;
 };
 
 } // namespace fettle::belt

@@ -51,6 +51,18 @@ LayerContact::LayerContact(const ElasticLayer& layer, const Eigen::Vector2d& cel
 {
 }
 
+LayerContact::LayerContact(const ElasticLayer& layer, const EdgeCompliance& edges, const Eigen::Vector2d& cell,
+                           Index rows, Index columns)
+    : LayerContact(layer, cell, rows, columns)
+{
+    waves_.emplace(rows, columns);
+    const MatrixXd transform = wave_transform(influence_);
+    for (Index f = 0; f <= rows; ++f)
+        for (Index j = 0; j < columns; ++j)
+            for (Index i = 0; i < columns; ++i) waves_->spectrum()(i + j * columns, f) = transform(f, std::abs(i - j));
+    edges.add_to(waves_->spectrum(), cell, rows, columns);
+}
+
 LayerContact::LayerContact(const LayerMesh& mesh, Index rows)
     : layer_(mesh.layer), cell_area_(mesh.cell_size.prod()), min_influence_(0), fem_(std::in_place, mesh, rows)
 {
@@ -68,6 +80,10 @@ Convolution& LayerContact::convolution(Index rows, Index columns)
 /// that radius and each row's own.
 void LayerContact::compute_displacement(const MatrixXd& pressure, MatrixXd& displacement)
 {
+    if (waves_) {
+        displacement = waves_->displacement(pressure);
+        return;
+    }
     if (!fem_) return convolution(pressure.rows(), pressure.cols())(pressure, displacement);
     const auto cosines = fem_->tilt_cosines();
     displacement = fem_->displacement((pressure.array().colwise() / cosines).matrix());
@@ -211,7 +227,7 @@ Contact LayerContact::solve(const MatrixXd& input_gap, const Contact& given, dou
     contact.converged = true;
     while (contact.converged) {
         Window window{0, 0, gap.rows(), gap.cols()};
-        if (!fem_) {
+        if (!fem_ && !waves_) {
             std::tie(window.row, window.rows) = window_side(may_touch.rowwise().any());
             std::tie(window.column, window.columns) = window_side(may_touch.colwise().any().transpose());
         }

@@ -2,6 +2,7 @@
 
 #include "belt/belt_law.h"
 #include "belt/convolution.h"
+#include "belt/edge_compliance.h"
 #include "belt/fem_layer.h"
 #include "belt/layer_compliance.h"
 
@@ -37,6 +38,9 @@ class LayerContact {
     /// @param cell  size, mm
     /// @throws InputError as influence() does
     LayerContact(const ElasticLayer& layer, const Eigen::Vector2d& cell, Eigen::Index rows, Eigen::Index columns);
+    /// The same with the free sides of a wheel; the grid is in the middle of its width.
+    LayerContact(const ElasticLayer& layer, const EdgeCompliance& edges, const Eigen::Vector2d& cell, Eigen::Index rows,
+                 Eigen::Index columns);
     /// Uses finite elements. Rows lie along the wheel's arc with the lowest point in the middle. Pressure and gap are
     /// radial; force and indentation are along the radius at the middle.
     LayerContact(const LayerMesh& mesh, Eigen::Index rows);
@@ -80,7 +84,8 @@ class LayerContact {
     Eigen::MatrixXd influence_;
     double min_influence_; ///< < 0 where rubber bulges beside the contact
     std::map<std::pair<Eigen::Index, Eigen::Index>, Convolution> convolutions_; ///< by size
-    std::optional<FemLayer> fem_;                                               ///< replaces the influence coefficients
+    std::optional<WaveOperator> waves_; ///< with the wheel's sides: replaces the convolutions
+    std::optional<FemLayer> fem_;       ///< replaces the influence coefficients
 };
 
 } // namespace fettle::belt

@@ -27,6 +27,14 @@ Vector2d initial_half_size(const ContactWheel& wheel)
 
 ContactGrid square_grid(const Vector2d& half, Index count) { return {2 * half / count, count, count}; }
 
+/// Does what reaches so far from the middle of the width come near the layer's sides? At this distance from a side
+/// rubber of ν = 0.49 yields 0.5 % more than without one, at a sixth of it 5 %.
+bool is_near_edge(double extent, const ContactWheel& wheel)
+{
+    constexpr double kEdgeZoneThicknesses = 1.5;
+    return extent > wheel.width / 2 - kEdgeZoneThicknesses * wheel.layer.thickness;
+}
+
 /// Converts points from the tool frame to coordinates along the wheel's arc, along its axis, and inwards from the arc.
 void unroll_arc(double radius, Eigen::Matrix3Xd& points)
 {
@@ -46,7 +54,8 @@ WheelContactSolver::WheelContactSolver(const Surfels& surfels, const ContactWhee
 {
 }
 
-void WheelContactSolver::set_grid(const ContactGrid& grid, LayerSolver solver)
+/// @param sees_edges  of LayerSolver::layer
+void WheelContactSolver::set_grid(const ContactGrid& grid, LayerSolver solver, bool sees_edges)
 {
     contact_.grid = grid;
     if (solver == LayerSolver::fem) {
@@ -56,7 +65,12 @@ void WheelContactSolver::set_grid(const ContactGrid& grid, LayerSolver solver)
             grid.rows);
     } else {
         contact_.arc_radius = std::numeric_limits<double>::infinity();
-        layer_.emplace(wheel_.layer, grid.cell_size, grid.rows, grid.columns);
+        if (sees_edges && grid.columns <= kMaxEdgeCells && is_near_edge(grid.half_size().y(), wheel_)) {
+            if (!edges_) edges_.emplace(wheel_.layer, wheel_.radius, wheel_.width);
+            layer_.emplace(wheel_.layer, *edges_, grid.cell_size, grid.rows, grid.columns);
+        } else {
+            layer_.emplace(wheel_.layer, grid.cell_size, grid.rows, grid.columns);
+        }
     }
     reset();
 }
@@ -76,7 +90,7 @@ void WheelContactSolver::restore(const WheelContactState& state)
 {
     layer_.reset();
     contact_.grid = state.grid;
-    if (state.grid.rows > 0) set_grid(state.grid, options_.solver);
+    if (state.grid.rows > 0) set_grid(state.grid, options_.solver, true);
     contact_.contact.pressure = state.pressure;
     previous_pressure_ = state.previous;
 }
@@ -143,12 +157,12 @@ void WheelContactSolver::find_grid(const Eigen::Isometry3d& T_part_tool, const C
     Vector2d half = layer_ ? Vector2d(1.5 * contact_.grid.half_size()) : initial_half_size(wheel_);
     for (;; half *= 2) {
         half = half.cwiseMin(max_half);
-        set_grid(square_grid(half, kCoarseCells), LayerSolver::layer);
+        set_grid(square_grid(half, kCoarseCells), LayerSolver::layer, false);
         solve_on_grid(T_part_tool, load, Gridding::shepard, kCoarseTolerance, removal);
         if (!is_at_border()) break;
     }
     half = (kGridPerExtent * contact_extent() + contact_.grid.cell_size).cwiseMin(max_half);
-    set_grid(square_grid(half, options_.cells_per_side), options_.solver);
+    set_grid(square_grid(half, options_.cells_per_side), options_.solver, true);
 }
 
 const WheelContact& WheelContactSolver::solve(const Eigen::Isometry3d& T_part_tool, const ContactLoad& load,
@@ -160,9 +174,7 @@ const WheelContact& WheelContactSolver::solve(const Eigen::Isometry3d& T_part_to
         find_grid(T_part_tool, load, removal);
         solve_on_grid(T_part_tool, load, options_.gridding, options_.tolerance, removal);
     }
-    // At this distance from the edge rubber of ν = 0.49 yields 0.5 % more than without an edge, at a sixth of it 5 %.
-    constexpr double kEdgeZoneThicknesses = 1.5;
-    contact_.is_near_edge = contact_extent().y() > wheel_.width / 2 - kEdgeZoneThicknesses * wheel_.layer.thickness;
+    contact_.is_near_edge = is_near_edge(contact_extent().y(), wheel_);
     return contact_;
 }
 

@@ -10,8 +10,8 @@
 
 namespace fettle::belt {
 
-/// Model of the layer's compliance: a flat bonded layer without edges (layer_compliance.h), or finite elements of the
-/// round layer with its sides (fem_layer.h).
+/// Model of the layer's compliance: a flat bonded layer (layer_compliance.h), beside the wheel's free sides with what
+/// they add (edge_compliance.h), or finite elements of the round layer with its sides (fem_layer.h).
 enum class LayerSolver { layer, fem };
 
 struct WheelContactOptions {
@@ -21,6 +21,9 @@ struct WheelContactOptions {
     LayerSolver solver = LayerSolver::layer;
     Eigen::Index elements = 8; ///< of LayerSolver::fem from the surface to the hub
 };
+
+/// Cells along each side up to which LayerSolver::layer sees the wheel's sides: memory grows with the cube, 17 MB here.
+inline constexpr Eigen::Index kMaxEdgeCells = 128;
 
 /// Load on the wheel: a force, or a depth of its lowest point below the contact point.
 struct ContactLoad {
@@ -36,8 +39,7 @@ struct WheelContact {
     double arc_radius = std::numeric_limits<double>::infinity();
     Eigen::MatrixXd height; ///< of the workpiece, mm; NaN: no surfels
     Contact contact;
-    /// The contact is nearer than 1.5 thicknesses to the layer's free edge, where it is softer than a layer without
-    /// edges.
+    /// The contact is nearer than 1.5 thicknesses to the layer's free edge, where it is softer than elsewhere.
     bool is_near_edge = false;
     double area() const; ///< of the cells in contact, mm²
 };
@@ -69,6 +71,7 @@ class WheelContactSolver {
     Eigen::Vector2d contact_extent() const;
     /// Gap between wheel and surfels after deformation, mm.
     Eigen::MatrixXd residual_gap();
+    const ContactGrid& contact_grid() const { return contact_.grid; }
     /// Forgets the last contacts; the next one starts without them.
     void reset();
     WheelContactState state() const;
@@ -76,7 +79,7 @@ class WheelContactSolver {
     void restore(const WheelContactState& state);
 
   private:
-    void set_grid(const ContactGrid& grid, LayerSolver solver);
+    void set_grid(const ContactGrid& grid, LayerSolver solver, bool sees_edges);
     void find_grid(const Eigen::Isometry3d& T_part_tool, const ContactLoad& load, const RemovalStep& removal);
     void solve_on_grid(const Eigen::Isometry3d& T_part_tool, const ContactLoad& load, Gridding gridding,
                        double tolerance, const RemovalStep& removal);
@@ -86,8 +89,9 @@ class WheelContactSolver {
     const ContactWheel& wheel_;
     WheelContactOptions options_;
     SurfelIndex index_;
-    double max_displacement_;           ///< absolute, of the surfels, mm
-    std::optional<LayerContact> layer_; ///< none: the grid is not known yet
+    double max_displacement_;             ///< absolute, of the surfels, mm
+    std::optional<EdgeCompliance> edges_; ///< of LayerSolver::layer; none: no contact was near them yet
+    std::optional<LayerContact> layer_;   ///< none: the grid is not known yet
     std::vector<Eigen::Index> surfels_in_grid_;
     Eigen::Matrix3Xd surfel_coordinates_;
     Eigen::MatrixXd gap_, previous_pressure_;

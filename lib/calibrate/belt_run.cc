@@ -123,12 +123,13 @@ VectorXd weights_of(const VectorXd& residuals, double& sigma)
     return (u.abs() < 1).select((1 - u.square()).square(), 0);
 }
 
-/// Volumes of the passes from the measured depths, shared as the simulation shares them.
-void add_passes(const std::vector<belt::BeltPoint>& path, const belt::BeltRun& run, const VectorXd& measured,
-                double belt_speed, BeltRunLaw& result)
+/// Trials of the passes from the measured depths, shared as the simulation by the fitted law shares them.
+/// @param run, given_run  simulated by the fitted law and by the wheel's
+void add_passes(const std::vector<belt::BeltPoint>& path, const belt::BeltRun& run, const belt::BeltRun& given_run,
+                const VectorXd& measured, const belt::ContactWheel& wheel, BeltRunLaw& result)
 {
     struct Sums {
-        double impulse = 0, time = 0, length = 0, volume = 0, measured = 0, simulated = 0;
+        double impulse = 0, time = 0, length = 0, measured = 0, simulated = 0;
     };
     std::vector<Sums> passes;
     std::vector<std::size_t> pass_of(path.size());
@@ -142,30 +143,38 @@ void add_passes(const std::vector<belt::BeltPoint>& path, const belt::BeltRun& r
         pass.impulse += at.force * at.duration;
         pass.time += at.duration;
         pass.length += lengths[k];
-        pass.volume += at.removed_volume;
     }
     for (const belt::SurfelRemoval& loss : run.removals) {
         const double share = loss.depth / run.removed[loss.surfel];
         if (!(share > 0) || !std::isfinite(measured[loss.surfel])) continue;
         passes[pass_of[loss.point]].measured += share * measured[loss.surfel];
-        passes[pass_of[loss.point]].simulated += loss.depth;
     }
-    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    for (const belt::SurfelRemoval& loss : given_run.removals)
+        if (std::isfinite(measured[loss.surfel])) passes[pass_of[loss.point]].simulated += loss.depth;
     double work = 0;
     for (const Sums& pass : passes) {
         if (!(pass.length > 0 && pass.measured > 0 && pass.simulated > 0)) continue; // or it only stood
-        result.passes.push_back({.force = pass.impulse / pass.time,
-                                 .speed = kNone,
-                                 .feed = pass.length / pass.time,
-                                 .duration = kNone,
-                                 .prior_work = work,
-                                 .volume = pass.volume / pass.length * pass.measured / pass.simulated});
-        work += pass.impulse * belt_speed;
+        belt::RemovalTrial trial = expected_trial(wheel, pass.impulse / pass.time, pass.length / pass.time, work);
+        trial.volume *= pass.measured / pass.simulated;
+        result.passes.push_back(trial);
+        work += pass.impulse * wheel.belt_speed;
     }
     result.pass_work = work / std::max<std::size_t>(result.passes.size(), 1);
 }
 
 } // namespace
+
+belt::RemovalTrial expected_trial(const belt::ContactWheel& wheel, double force, double feed, double prior_work)
+{
+    constexpr double kUnrecorded = std::numeric_limits<double>::quiet_NaN();
+    const double rate = wheel.law.coefficient * std::pow(wheel.belt_speed, wheel.law.speed_exponent);
+    return {.force = force,
+            .speed = kUnrecorded,
+            .feed = feed,
+            .duration = kUnrecorded,
+            .prior_work = prior_work,
+            .volume = rate * force / feed};
+}
 
 BeltRunLaw measure_belt(const cloud::Cloud& trace, const belt::ContactWheel& wheel, const belt::Surfels& before,
                         const belt::Surfels& after, const core::Progress& progress)
@@ -228,7 +237,7 @@ BeltRunLaw measure_belt(const cloud::Cloud& trace, const belt::ContactWheel& whe
     result.reference_pressure = map.pressure;
     result.reference_feed = map.feed;
     result.surfels = count;
-    add_passes(path, fit.simulate(result.law, true), measured, wheel.belt_speed, result);
+    add_passes(path, fit.simulate(result.law, true), fit.simulate(wheel.law, true), measured, wheel, result);
     if (result.passes.empty()) throw core::InputError("no pass removed anything");
     return result;
 }

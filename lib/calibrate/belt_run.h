@@ -12,6 +12,14 @@
 
 namespace fettle::calibrate {
 
+/// The trial of a belt's pass as its wheel's law expects it. It is one of a contact without shape: its volume, of a
+/// millimetre of way, is what Preston's law would remove that is as fast as the wheel's law at 1 MPa and 1 mm/s.
+/// Measured, that is multiplied by the measured over the simulated volume of the pass. So a law whose coefficient alone
+/// is unknown has Preston's exponents, whatever its own are and wherever on the part the wheel is, and the trial does
+/// not change if the wheel's file gets another coefficient. For Preston's law it is the volume itself.
+/// @param force  mean, N   @param feed  mean, mm/s   @param prior_work  of the belt, N mm
+belt::RemovalTrial expected_trial(const belt::ContactWheel& wheel, double force, double feed, double prior_work);
+
 /// What a run of a belt says of its wheel's law.
 struct BeltRunLaw {
     belt::BeltLaw law; ///< as given, with coefficient, pressure exponent and, if the feed varied, its exponent
@@ -23,8 +31,8 @@ struct BeltRunLaw {
     double reference_pressure = 0, reference_feed = 0; ///< MPa, mm/s
     double depth_error = 0;                            ///< standard deviation of measured minus fitted depth, mm
     Eigen::Index surfels = 0;                          ///< that were compared
-    /// A pass for each run of the path that has a length: mean force and feed, and the volume of a millimetre of way.
-    /// Measured depths are shared among the passes as the fitted law shares them.
+    /// A trial (expected_trial) for each run of the path that has a length. Measured depths are shared among the passes
+    /// as the fitted law shares them.
     std::vector<belt::RemovalTrial> passes;
     double pass_work = 0; ///< mean work of a pass, N mm
 };

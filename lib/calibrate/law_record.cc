@@ -27,25 +27,45 @@ constexpr RecordColumn kRecordColumns[] = {
 
 } // namespace
 
+void learn_pass(LearntLaw& law, const belt::RemovalTrial& pass)
+{
+    JudgedPass judged{pass, {}, law.passes.size() >= kFirstJudged, false};
+    if (judged.is_judged) {
+        judged.predicted = law.belief.predict(pass);
+        judged.has_change = judged.predicted.tail_probability < kMaxChangeProbability;
+        if (judged.has_change) law.belief.loosen_level();
+    }
+    law.belief.update(pass);
+    law.passes.push_back(judged);
+}
+
 LearntLaw learn(const LawRecord& record)
 {
     if (record.passes.empty()) throw core::InputError("there is no pass to learn from");
     LearntLaw law{LawBelief(record.passes.front(), record.pass_work), {}};
     for (std::size_t k = 0; k < record.passes.size(); ++k) {
         try {
-            JudgedPass judged{record.passes[k], {}, k >= kFirstJudged, false};
-            if (judged.is_judged) {
-                judged.predicted = law.belief.predict(judged.pass);
-                judged.has_change = judged.predicted.tail_probability < kMaxChangeProbability;
-                if (judged.has_change) law.belief.loosen_level();
-            }
-            law.belief.update(judged.pass);
-            law.passes.push_back(judged);
+            learn_pass(law, record.passes[k]);
         } catch (const core::InputError& error) {
             throw core::InputError("pass " + std::to_string(k + 1), error.what());
         }
     }
     return law;
+}
+
+RemovalTrial next_pass(const LawRecord& record)
+{
+    RemovalTrial next = record.passes.back();
+    next.volume = 0;
+    next.prior_work += record.pass_work;
+    double force = 0, feed = 0;
+    for (const RemovalTrial& pass : record.passes) {
+        force += pass.force / record.passes.size();
+        feed += pass.feed / record.passes.size();
+    }
+    next.force = force;
+    next.feed = feed;
+    return next;
 }
 
 std::string change_message(const JudgedPass& pass, std::size_t number)

@@ -32,11 +32,16 @@ struct LearntLaw {
 /// Passes that are learned from before the first one is judged.
 inline constexpr std::size_t kFirstJudged = 5;
 
-/// Learns pass by pass: predicts, compares, updates. A pass whose volume has a two-sided probability of tail below
-/// 1/300 has a change; then the level is loosened
-/// (LawBelief::loosen_level).
+/// Learns from one more pass: predicts, compares, updates. A pass whose volume has a two-sided probability of tail
+/// below 1/300 has a change; then the level is loosened (LawBelief::loosen_level).
+/// @throws InputError for a wrong value
+void learn_pass(LearntLaw& law, const belt::RemovalTrial& pass);
+/// Learns pass by pass.
 /// @throws InputError for no pass, and naming the pass that has a wrong value
 LearntLaw learn(const LawRecord& record);
+
+/// The pass after those of a record, at their mean force and feed; its volume is unknown.
+belt::RemovalTrial next_pass(const LawRecord& record);
 
 /// What a pass removed of what was expected, for a message: "pass 12 took 3.1 mm³, expected 5.9 to 6.6: …".
 std::string change_message(const JudgedPass& pass, std::size_t number);

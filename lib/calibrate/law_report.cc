@@ -131,6 +131,21 @@ PredictionQuality prediction_quality(const LearntLaw& law)
     return quality;
 }
 
+json::Value run_report(LearntLaw law, std::size_t known_passes, const RemovalTrial& next)
+{
+    const Prediction expected = law.belief.predict(next, std::erf(std::sqrt(0.5))); // one standard deviation
+    law.passes.erase(law.passes.begin(), law.passes.begin() + std::ptrdiff_t(known_passes));
+    const PredictionQuality quality = prediction_quality(law);
+    return json::Value()
+        .set("passes", law.passes.size())
+        .set("known", known_passes)
+        .set("judged", quality.judged)
+        .set("covered", quality.covered)
+        .set("changes", quality.changes)
+        .set("median_error", quality.median_error)
+        .set("spread", (expected.upper - expected.lower) / (2 * expected.volume));
+}
+
 json::Value to_json(const LearntLaw& law)
 {
     const Posterior posterior = law.belief.posterior();

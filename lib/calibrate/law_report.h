@@ -27,6 +27,10 @@ struct PredictionQuality {
 };
 PredictionQuality prediction_quality(const LearntLaw& law);
 
+/// Numbers about the last run that a law was learnt from: passes, known (before it), judged, covered, changes,
+/// median_error, and the relative standard deviation of what is expected of the next pass.
+json::Value run_report(LearntLaw law, std::size_t known_passes, const belt::RemovalTrial& next);
+
 /// The law: mean, covariance, determination of each parameter, indistinct pairs, the next pass, the quality, changes.
 json::Value to_json(const LearntLaw& law);
 

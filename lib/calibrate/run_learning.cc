@@ -10,23 +10,8 @@
 #include <filesystem>
 
 namespace fettle::calibrate {
-namespace {
 
 using belt::RemovalTrial;
-
-/// The pass that comes next, at the mean force.
-RemovalTrial next_pass(const LawRecord& record)
-{
-    RemovalTrial next = record.passes.back();
-    next.volume = 0;
-    next.prior_work += record.pass_work;
-    double force = 0;
-    for (const RemovalTrial& pass : record.passes) force += pass.force / record.passes.size();
-    next.force = force;
-    return next;
-}
-
-} // namespace
 
 RunLearning::RunLearning(const std::string& path)
 {
@@ -77,20 +62,8 @@ std::vector<std::string> RunLearning::warnings() const
 json::Value RunLearning::report() const
 {
     if (!is_informed()) return json::Value().set("passes", 0);
-    LearntLaw law = learn(record_);
-    const Prediction next = law.belief.predict(next_pass(record_), std::erf(std::sqrt(0.5))); // one standard deviation
-    const double expected = coefficient(law);
-    law.passes.erase(law.passes.begin(), law.passes.begin() + known_passes_);
-    const PredictionQuality quality = prediction_quality(law);
-    return json::Value()
-        .set("passes", law.passes.size())
-        .set("known", known_passes_)
-        .set("judged", quality.judged)
-        .set("covered", quality.covered)
-        .set("changes", quality.changes)
-        .set("median_error", quality.median_error)
-        .set("coefficient", expected)
-        .set("spread", (next.upper - next.lower) / (2 * next.volume));
+    const LearntLaw law = learn(record_);
+    return run_report(law, known_passes_, next_pass(record_)).set("coefficient", coefficient(law));
 }
 
 json::Value RunLearning::file() const

@@ -107,8 +107,8 @@ TEST(FemContact, AgreesWithHertzOnAThickLayer)
 }
 
 // A wheel pressed across its whole width: of second order too, its pressure at the edges finite. The layer without
-// edges is a quarter too stiff, and its pressure at the edges grows as the cells get smaller: what is_near_edge warns
-// of.
+// edges is a quarter too stiff, and its pressure at the edges grows as the cells get smaller; with them
+// (EdgeCompliance) it is the elements' to 3 %.
 TEST(FemContact, ConvergesAcrossTheWholeWidth)
 {
     const belt::ElasticLayer rubber{6, 5, 0.49};
@@ -133,6 +133,12 @@ TEST(FemContact, ConvergesAcrossTheWholeWidth)
         pressed(64, [&](const Eigen::Vector2d& cell) { return belt::LayerContact(rubber, cell, 64, 64); });
     EXPECT_LT(edgeless.indentation, 0.8 * fine.indentation);
     EXPECT_GT(edgeless.pressure.maxCoeff(), 2 * fine.pressure.maxCoeff());
+    const belt::EdgeCompliance edges(rubber, radius, width);
+    const belt::Contact layer =
+        pressed(64, [&](const Eigen::Vector2d& cell) { return belt::LayerContact(rubber, edges, cell, 64, 64); });
+    EXPECT_NEAR(layer.indentation, fine.indentation, 0.03 * fine.indentation);
+    EXPECT_NEAR(layer.pressure.maxCoeff(), fine.pressure.maxCoeff(), 0.03 * fine.pressure.maxCoeff());
+    EXPECT_LE((layer.pressure - fine.pressure).norm(), 0.03 * fine.pressure.norm());
 }
 
 /// On a small wheel, under its edge, where nothing is under a corner of the window.

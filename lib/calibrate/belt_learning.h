@@ -1,0 +1,82 @@
+#pragma once
+
+#include "belt/belt_journal.h"
+#include "calibrate/law_record.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace fettle::calibrate {
+
+/// What a belt learns while it grinds, pass by pass. Before a pass the simulation by the wheel's law, as far as it is
+/// known, says what it will remove from the surfels as they are; the belief says how much more or less that will be,
+/// with an interval, and the feeds of the pass are changed by that so that it removes what its path was planned for.
+/// After it, the surfels say what it was. The trials are those of measure_belt (belt_run.h).
+class BeltLearning : public belt::PassSupervisor {
+  public:
+    /// Keeps references to all but the file's name and the options.
+    /// @param file  of the law: a wheel that was learnt; where there is no file yet, nothing is known
+    /// @param wheel  for which the path was planned
+    /// @param surfels  that are ground
+    /// @param path  whose feeds are changed
+    /// @throws InputError if the file is no belt's law
+    BeltLearning(const std::string& file, const belt::ContactWheel& wheel, const belt::BeltOptions& options,
+                 const belt::Surfels& surfels, std::vector<belt::BeltPoint>& path);
+
+    /// Of the passes that were known beforehand, and the wheel: for BeltJournal::context_digest.
+    std::string context_digest() const;
+    void resume(const belt::BeltRun& run) override;
+    void begin_pass(const belt::BeltGrinding& grinding, std::size_t first, std::size_t end) override;
+    belt::MeasuredPass end_pass(const belt::BeltRun& run) override;
+
+    /// Is anything known of the law?
+    bool is_informed() const { return law_.has_value(); }
+    /// A line for each pass of this run that the law does not explain, with its number on the path.
+    std::vector<std::string> warnings() const;
+    /// As RunLearning::report(), the coefficient being the wheel's; and `predictions`: of each pass of this run its
+    /// volume, mm³, its feed_factor, what was expected of it (expected, lower, upper), and whether it has a change.
+    json::Value report() const;
+    /// The wheel with the coefficient that is expected of the next pass, and the record; only if something is known.
+    json::Value file() const;
+
+  private:
+    /// A pass of this run.
+    struct RunPass {
+        belt::MeasuredPass measured;
+        std::size_t number;                  ///< on the path, from 1
+        std::optional<Prediction> predicted; ///< of the trial's volume; none: nothing was known
+    };
+    /// The pass that is being ground.
+    struct CurrentPass {
+        std::size_t first = 0, end = 0;
+        Eigen::VectorXd before; ///< displacements of the surfels, mm
+        belt::BeltRun simulated;
+        double ratio = 1; ///< of the simulation's coefficient to the wheel's
+        double feed_factor = 1;
+    };
+
+    /// Conditions, and the volume by the wheel's law.  @param work  of this run before, N mm
+    belt::RemovalTrial trial_at(double force, double feed, double work) const;
+    /// Expected volume over that by the wheel's law.
+    double coefficient_ratio(const belt::RemovalTrial& conditions) const;
+    double expected_ratio() const;
+    double feed_factor(double work) const;
+    void scale_feeds(double factor);
+    void add(const belt::MeasuredPass& measured);
+
+    const belt::ContactWheel& wheel_;
+    belt::BeltOptions options_;
+    const belt::Surfels& surfels_;
+    std::vector<belt::BeltPoint>& path_;
+    Eigen::VectorXd lengths_; ///< tributary, of the points, mm
+    LawRecord record_;
+    std::optional<LearntLaw> law_; ///< none: there is no pass in the record
+    std::size_t known_passes_ = 0; ///< before this run
+    double known_work_ = 0;        ///< of the belt before this run, N mm
+    std::size_t path_passes_ = 0;  ///< ground in this run
+    std::vector<RunPass> passes_;
+    CurrentPass pass_;
+};
+
+} // namespace fettle::calibrate
