@@ -24,7 +24,8 @@ const std::string kDescription =
     "fettle-grind --place says where the part lies in the robot's cell. The wheel stands in the job's frame as on a "
     "gantry; the joints follow on one branch of the inverse kinematics, within their ranges and no faster than the "
     "robot's file allows. A plan that is not reached as a whole is refused before anything moves, with the place, the "
-    "joint and its value. Head, spring and stock are those of fettle-gantry-virtual.";
+    "joint and its value, and so is one over which arm, head and fixtures hit each other; the part is for "
+    "fettle-collide. Head, spring and stock are those of fettle-gantry-virtual.";
 
 struct Options {
     cli::Tool& t;

@@ -5,6 +5,7 @@
 #include "gantry/gantry.h"
 #include "job/job.h"
 #include "robot/arm_report.h"
+#include "robot/collision.h"
 
 #include <algorithm>
 #include <cmath>
@@ -75,8 +76,10 @@ ArmFollower::ArmFollower(const robot::Robot& robot, const robot::PathArguments& 
     R_job_tool_.col(0).head<2>() = R_machine_working.col(1);
     R_job_tool_.col(1) = R_job_tool_.col(2).cross(R_job_tool_.col(0));
     choose(arguments, points);
-    robot::CellJoints joints = start_;
-    for (const Eigen::Vector3d& point : points) joints = joints_at(point, joints);
+    robot::CellJointsPath joints(8, static_cast<Eigen::Index>(points.size()));
+    for (Eigen::Index i = 0; i < joints.cols(); ++i)
+        joints.col(i) = joints_at(points[i], i > 0 ? robot::CellJoints(joints.col(i - 1)) : start_);
+    check_clearance(joints, points);
 }
 
 void ArmFollower::choose(const robot::PathArguments& arguments, const std::vector<Eigen::Vector3d>& points)
@@ -139,6 +142,21 @@ robot::CellJoints ArmFollower::joints_at(const Eigen::Vector3d& tool_point, cons
                           value_text(joint, turn) + " degrees, from " + value_text(joint, before[joint]) + " to " +
                           value_text(joint, joints[joint]));
     return joints;
+}
+
+/// Arm, tool and fixtures among each other. Where metal stands the strategy finds out.
+void ArmFollower::check_clearance(const robot::CellJointsPath& joints, const std::vector<Eigen::Vector3d>& points) const
+{
+    robot::CollisionOptions options;
+    options.max_clearance = 1; // mm: how far apart bodies are is not asked
+    const robot::CheckedPath checked = robot::check_path(robot_, nullptr, joints, options);
+    const std::vector<robot::CellPair> pairs = robot::checked_pairs(robot_);
+    for (std::size_t i = 0; i < points.size(); ++i)
+        for (const robot::CellClearance& found : {checked.between_poses[i], checked.at_poses[i]})
+            if (found.clearance < -options.tolerance)
+                throw GantryFault(pose_text(points[i]) + ": " + robot::body_name(robot_, pairs[found.pair].a) +
+                                  " and " + robot::body_name(robot_, pairs[found.pair].b) + " would collide, " +
+                                  core::to_short_text(-found.clearance) + " mm deep");
 }
 
 void ArmFollower::check_range(const Eigen::Vector3d& tool_point, Eigen::Index joint, double value) const

@@ -15,11 +15,12 @@ namespace fettle::carrier {
 /// θ. They follow the tool point on one branch of the inverse kinematics, continuously; a table stands still.
 class ArmFollower {
   public:
-    /// Chooses the place of track and table, and the branch, so that all points are reached one after the other.
+    /// Chooses the place of track and table, and the branch, so that all points are reached one after the other. What
+    /// the arm then hits in its cell is refused; the part is not looked at.
     /// @param T_cell_job  of the job's frame in the cell, with the table at 0; mm   @param theta  of the wheel's axis
     /// @param points  of the tool, in the job's frame, no farther apart than a joint may turn at once; the first one is
     /// where the robot stands then
-    /// @throws GantryFault that names the first point that is not reached, the joint and its value
+    /// @throws GantryFault that names the first point that is not reached, the joint and its value, or the two bodies
     ArmFollower(const robot::Robot& robot, const robot::PathArguments& arguments, const Eigen::Isometry3d& T_cell_job,
                 double theta, const std::vector<Eigen::Vector3d>& points);
 
@@ -39,6 +40,7 @@ class ArmFollower {
     void choose(const robot::PathArguments& arguments, const std::vector<Eigen::Vector3d>& points);
     std::string obstacle_abreast(robot::PathArguments arguments, const cloud::Cloud& poses,
                                  const std::vector<Eigen::Vector3d>& points) const;
+    void check_clearance(const robot::CellJointsPath& joints, const std::vector<Eigen::Vector3d>& points) const;
     void check_range(const Eigen::Vector3d& tool_point, Eigen::Index joint, double value) const;
 
     const robot::Robot& robot_;

@@ -28,6 +28,8 @@ jq '.dh[4].max_deg = 20 | .dh[4].min_deg = -20' "$ROBOT" > stiff.json
 refused "${frame}the pose at .* mm: joint 5 would be at .* degrees, out of its range of -20 to 20" "$(robot stiff.json)"
 jq '.track.min = 1300 | .dh[0].min_deg = -10 | .dh[0].max_deg = 10' "$ROBOT" > narrow.json
 refused "${frame}the pose at .* mm: joint 1 would be at .* degrees, out of its range of -10 to 10" "$(robot narrow.json)"
+jq '.bodies += [{name: "lamp", link: -1, shape: "sphere", centre: [1000, 930, 800], radius: 20}]' "$ROBOT" > lamp.json
+refused "${frame}the pose at .* mm: spindle and lamp would collide, .* mm deep" "$(robot lamp.json)"
 refused "${frame}--track: " "$(robot "$ROBOT") --track nowhere"
 
 # Without --place the robot does not know where it is; a matrix that is none, and a machine that is no driver.
