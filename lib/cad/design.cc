@@ -142,7 +142,9 @@ void add_part(const XCAFPrs_DocumentExplorer& node, const Handle(XCAFDoc_ShapeTo
             shapes.faces.push_back(describe(face.Current()));
             shapes.placed.push_back(TopoDS::Face(face.Current().Moved(leaf.Location)));
         }
-        shapes.parts.push_back(solid.Current());
+        if (std::ranges::none_of(shapes.parts,
+                                 [&](const TopoDS_Shape& known) { return known.IsSame(solid.Current()); }))
+            shapes.parts.push_back(solid.Current());
     }
     for (TopExp_Explorer face(part, TopAbs_FACE, TopAbs_SOLID); face.More(); face.Next()) {
         loose.faces.push_back(describe(face.Current()));

@@ -1,7 +1,6 @@
 #include "cad/foot.h"
 
-#include <gp_Pnt.hxx>
-#include <gp_Vec.hxx>
+#include "cad/point.h"
 
 #include <Eigen/LU>
 
@@ -17,8 +16,6 @@ constexpr int kMaxSteps = 60;        // Newton takes under ten; from where the d
 constexpr double kStep = 1e-13;      // of the coordinates' size: a step below it changes the last digits
 constexpr double kMaxDamping = 1e12; // of the metric: a step then no longer moves the point
 constexpr double kMinDamping = 1e-3; // of the metric: less hardly changes a step, so that Newton goes on undamped
-
-Eigen::Vector3d vector_of(const gp_XYZ& p) { return {p.X(), p.Y(), p.Z()}; }
 
 /// Range of a parameter; of a periodic one, everything.
 struct Limits {
@@ -47,15 +44,15 @@ Distance distance_at(const Adaptor3d_Surface& surface, const Eigen::Vector2d& uv
     gp_Vec du, dv, duu, dvv, duv;
     surface.D2(uv.x(), uv.y(), p, du, dv, duu, dvv, duv);
     Distance d;
-    d.point = vector_of(p.XYZ());
-    const Eigen::Vector3d r = d.point - to, u = vector_of(du.XYZ()), v = vector_of(dv.XYZ());
+    d.point = vector_of(p);
+    const Eigen::Vector3d r = d.point - to, u = vector_of(du), v = vector_of(dv);
     d.value = r.squaredNorm() / 2;
     d.gradient = {r.dot(u), r.dot(v)};
     d.metric << u.dot(u), u.dot(v), u.dot(v), v.dot(v);
     d.hessian = d.metric;
-    d.hessian(0, 0) += r.dot(vector_of(duu.XYZ()));
-    d.hessian(1, 1) += r.dot(vector_of(dvv.XYZ()));
-    d.hessian(0, 1) += r.dot(vector_of(duv.XYZ()));
+    d.hessian(0, 0) += r.dot(vector_of(duu));
+    d.hessian(1, 1) += r.dot(vector_of(dvv));
+    d.hessian(0, 1) += r.dot(vector_of(duv));
     d.hessian(1, 0) = d.hessian(0, 1);
     return d;
 }
