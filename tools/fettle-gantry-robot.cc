@@ -48,14 +48,6 @@ void add_usage(cli::Tool& t)
     t.reference("docs/driver.md: the protocol");
 }
 
-robot::Robot read_robot(const Options& o)
-{
-    robot::Robot robot = o.robot.read();
-    if (robot.holds_workpiece)
-        throw core::InputError(core::display_name(o.robot.file), "the robot holds the part; here it holds the wheel");
-    return robot;
-}
-
 /// What the joints did, as fettle-arm reports it.
 void report_moves(cli::Tool& t, const robot::Robot& robot, const carrier::RobotGantry& gantry, double jump)
 {
@@ -84,7 +76,7 @@ int main(int argc, char** argv)
         t.disable_output();
         t.parse();
 
-        const robot::Robot robot = read_robot(o);
+        const robot::Robot robot = o.robot.read();
         const plan::Plan plan = plan::read_plan(o.plan);
         const auto [stock, doubts, dropped] = gantry::read_stock(o.stock, plan.job, removal::Extent::anomaly);
         gantry::require_below_safe_height(stock, plan.job, core::display_name(o.stock.file));

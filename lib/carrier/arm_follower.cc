@@ -91,20 +91,22 @@ void ArmFollower::choose(const robot::PathArguments& arguments, const std::vecto
     cloud::set_poses(cloud, poses);
     const robot::SolvedPath solved = robot::path_from_poses(robot_, cloud, arguments, 1);
     if (const std::string obstacle = obstacle_at(robot_, solved.path, points); !obstacle.empty())
-        throw GantryFault(robot_.track && arguments.track == kAuto ? obstacle_abreast(arguments, cloud, points)
-                                                                   : obstacle);
+        throw GantryFault(robot_.track && arguments.track == kAuto
+                              ? obstacle_abreast(arguments, cloud, points, solved.external_values(1, 0))
+                              : obstacle);
     externals_ = solved.externals;
     if (externals_.table.follows)
-        throw GantryFault("the job is reached only while the table turns, which a driver's table does not");
+        throw GantryFault("the table would turn while the wheel grinds: it has to stand still (--table DEG)");
     start_ = solved.path.joints.col(0);
 }
 
 /// The obstacle with the track abreast of the work: where no place of it will do, the one that was chosen tells
 /// nothing.
 std::string ArmFollower::obstacle_abreast(robot::PathArguments arguments, const cloud::Cloud& poses,
-                                          const std::vector<Eigen::Vector3d>& points) const
+                                          const std::vector<Eigen::Vector3d>& points, double table) const
 {
-    const Eigen::Vector3d from_base = poses.xyz.rowwise().mean() - robot_.T_cell_base.translation();
+    const Eigen::Vector3d middle = robot::part_in_cell(robot_, table) * Eigen::Vector3d(poses.xyz.rowwise().mean());
+    const Eigen::Vector3d from_base = middle - robot_.T_cell_base.translation();
     const robot::JointRange& range = robot_.track->range;
     const std::string abreast =
         core::to_short_text(std::clamp(from_base.dot(robot_.track->axis), range.min, range.max));

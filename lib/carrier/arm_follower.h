@@ -39,7 +39,7 @@ class ArmFollower {
   private:
     void choose(const robot::PathArguments& arguments, const std::vector<Eigen::Vector3d>& points);
     std::string obstacle_abreast(robot::PathArguments arguments, const cloud::Cloud& poses,
-                                 const std::vector<Eigen::Vector3d>& points) const;
+                                 const std::vector<Eigen::Vector3d>& points, double table) const;
     void check_clearance(const robot::CellJointsPath& joints, const std::vector<Eigen::Vector3d>& points) const;
     void check_range(const Eigen::Vector3d& tool_point, Eigen::Index joint, double value) const;
 

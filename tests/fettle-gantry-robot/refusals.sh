@@ -30,6 +30,8 @@ jq '.track.min = 1300 | .dh[0].min_deg = -10 | .dh[0].max_deg = 10' "$ROBOT" > n
 refused "${frame}the pose at .* mm: joint 1 would be at .* degrees, out of its range of -10 to 10" "$(robot narrow.json)"
 jq '.bodies += [{name: "lamp", link: -1, shape: "sphere", centre: [1000, 930, 800], radius: 20}]' "$ROBOT" > lamp.json
 refused "${frame}the pose at .* mm: spindle and lamp would collide, .* mm deep" "$(robot lamp.json)"
+refused "${frame}the pose at .* mm: joint 2 would jump by 0.* degrees, from .* to " "$(robot "$ROBOT") --jump 0.05"
+refused "${frame}the table would turn while the wheel grinds: it has to stand still" "$(robot "$SAMPLES/robots/irb1400_table.json") --table follow:20"
 refused "${frame}--track: " "$(robot "$ROBOT") --track nowhere"
 
 # Without --place the robot does not know where it is; a matrix that is none, and a machine that is no driver.
