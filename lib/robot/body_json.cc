@@ -4,9 +4,11 @@
 #include "core/text.h"
 #include "mesh/mesh_file.h"
 #include "robot/hull_points.h"
+#include "robot/mesh_body.h"
 
 #include <algorithm>
 #include <filesystem>
+#include <memory>
 #include <set>
 
 namespace fettle::robot {
@@ -58,20 +60,21 @@ solid::Box read_box(Reader& reader, double mm)
     return {read_placement(reader.object("at"), mm), size / 2};
 }
 
-solid::Hull read_hull(Reader& reader, const std::string& path, double mm)
+// A mesh in a file of its own, in the body's frame.
+mesh::Mesh read_file_mesh(Reader& reader, const std::string& path, double mm)
 {
     const std::string file = reader.text("file");
     const std::string unit = reader.choice_or("file_units", "mm", {"mm", "in", "m"});
     const std::filesystem::path mesh_path = std::filesystem::path(path).parent_path() / file;
-    const mesh::Mesh mesh = read_body_mesh(mesh_path.string(), units::parse_length_unit(unit));
+    mesh::Mesh mesh = read_body_mesh(mesh_path.string(), units::parse_length_unit(unit));
     const auto at = reader.optional_object("at");
-    const Eigen::Isometry3d T_body_file = at ? read_placement(*at, mm) : Eigen::Isometry3d::Identity();
-    return {T_body_file * hull_points(mesh.vertices)};
+    if (at) mesh.vertices = read_placement(*at, mm) * mesh.vertices;
+    return mesh;
 }
 
 Solid read_solid(Reader& reader, const std::string& path, double mm)
 {
-    const std::string shape = reader.choice("shape", {"sphere", "capsule", "cylinder", "cone", "box", "hull"});
+    const std::string shape = reader.choice("shape", {"sphere", "capsule", "cylinder", "cone", "box", "hull", "mesh"});
     if (shape == "sphere") {
         const Eigen::Vector3d centre = read_point(reader, "centre", mm);
         return solid::Sphere{centre, read_radius(reader, "radius", mm)};
@@ -80,7 +83,9 @@ Solid read_solid(Reader& reader, const std::string& path, double mm)
     if (shape == "cylinder") return read_round<solid::Cylinder>(reader, mm, false);
     if (shape == "cone") return read_cone(reader, mm);
     if (shape == "box") return read_box(reader, mm);
-    return read_hull(reader, path, mm);
+    mesh::Mesh mesh = read_file_mesh(reader, path, mm);
+    if (shape == "hull") return solid::Hull{hull_points(mesh.vertices)};
+    return solid::Triangles{std::make_shared<MeshBody>(std::move(mesh))};
 }
 
 std::size_t find_body(Reader& reader, const std::string& key, const Robot& robot, const std::string& name)

@@ -138,49 +138,9 @@ void Cell::place_bodies(const CellJoints& joints, CellState& state) const
     for (std::size_t b = 0; b < robot_.bodies.size(); ++b) state.T_cell_body[b] = frames[robot_.bodies[b].link + 1];
     if (workpiece_ != nullptr) state.T_cell_body.back() = workpiece_frame(robot_, frames);
     state.clearances.resize(pairs_.size());
-    state.start_leaf.resize(pairs_.size());
+    state.start_leaves.resize(pairs_.size());
     if (workpiece_ != nullptr && options_.model != nullptr)
         state.tool_zone = options_.model->tool_zone(robot_, frames[9].inverse() * frames[8]);
-}
-
-double Cell::measure_clearance(CellState& state, std::size_t index, double max_clearance) const
-{
-    const CellPair& pair = pairs_[index];
-    const Isometry3d& T_a = state.T_cell_body[pair.a];
-    CellClearance& found = state.clearances[index];
-    found.pair = index;
-    Clearance c;
-    if (pair.b == robot_.bodies.size()) {
-        const Isometry3d& T_cell_part = state.T_cell_body.back();
-        const Solid& solid = robot_.bodies[pair.a].solid;
-        const Isometry3d T_part_a = T_cell_part.inverse() * T_a;
-        const Workpiece::Nearest nearest =
-            options_.model != nullptr
-                ? options_.model->nearest(solid, T_part_a, state.tool_zone, max_clearance + pair.margin)
-                : workpiece_->nearest(PlacedSolid(solid, T_part_a), max_clearance + pair.margin,
-                                      state.start_leaf[index]);
-        state.start_leaf[index] = nearest.leaf;
-        c = nearest.clearance;
-        found.point = T_cell_part * c.on_a;
-    } else {
-        const PlacedSolid a(robot_.bodies[pair.a].solid, T_a);
-        const PlacedSolid b(robot_.bodies[pair.b].solid, state.T_cell_body[pair.b]);
-        c = clearance(a, b, max_clearance + pair.margin);
-        found.point = c.on_a;
-    }
-    found.clearance = std::min(c.distance - pair.margin, max_clearance);
-    return c.distance - pair.margin;
-}
-
-double Cell::bound_clearance(CellState& state, std::size_t index, double max_clearance) const
-{
-    if (!is_of_workpiece(index) || options_.model != nullptr) return measure_clearance(state, index, max_clearance);
-    const CellPair& pair = pairs_[index];
-    const Isometry3d T_part_a = state.T_cell_body.back().inverse() * state.T_cell_body[pair.a];
-    const Workpiece::LowerBound found = workpiece_->lower_bound(PlacedSolid(robot_.bodies[pair.a].solid, T_part_a),
-                                                                max_clearance + pair.margin, state.start_leaf[index]);
-    state.start_leaf[index] = found.leaf;
-    return found.distance - pair.margin;
 }
 
 // For the workpiece this is the distance of the body's ball from the box around it.

@@ -4,6 +4,7 @@
 #include "robot/arm.h"
 #include "robot/externals.h"
 #include "robot/heterogeneous.h"
+#include "robot/mesh_clearance.h"
 #include "robot/robot.h"
 #include "robot/workpiece.h"
 
@@ -11,7 +12,6 @@
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -59,7 +59,7 @@ Eigen::Isometry3d workpiece_frame(const Robot& robot, const std::array<Eigen::Is
 struct CellState {
     std::vector<Eigen::Isometry3d> T_cell_body; ///< by body; the workpiece's is the last one
     std::vector<CellClearance> clearances;      ///< by pair; NaN until measured
-    std::vector<std::uint32_t> start_leaf;      ///< by pair: where the search in the workpiece's tree starts
+    std::vector<LeafPair> start_leaves;         ///< by pair: where the search in the trees of meshes starts
     ToolZone tool_zone;                         ///< only with CollisionOptions::model
 };
 
@@ -131,6 +131,8 @@ class Cell {
     static double displacement_bound(const BoundingBall& ball, const Eigen::Isometry3d& T0,
                                      const Eigen::Isometry3d& T1);
     int link_of(std::size_t body) const;
+    const Workpiece* surface_of(std::size_t body) const;
+    Clearance measure_in_cell(CellState& state, std::size_t pair, double max_clearance) const;
     Eigen::Array<double, 6, 1> axis_distances(std::size_t body) const;
     double arm_arc_excess(const CellJoints& change, double extent) const;
     double table_arc_excess(const CellJoints& change, double extent) const;

@@ -113,7 +113,7 @@ std::optional<double> Cell::swept_ball_clearance(std::size_t index, const CellJo
     const PlacedSolid swept(solid::Capsule{centre(s0), centre(s1), ball->radius}, Isometry3d::Identity());
     const double max_distance = at_ends + pair.margin - kSlackTolerances * options_.tolerance;
     const double distance =
-        workpiece_->nearest_of_surface(swept, max_distance, s0.start_leaf[index]).clearance.distance;
+        workpiece_->nearest_of_surface(swept, max_distance, s0.start_leaves[index].b).clearance.distance;
     return distance - pair.margin - acceleration_bound(pair.a, change, 1) / 8;
 }
 

@@ -2,6 +2,7 @@
 
 #include "draw/raster.h"
 #include "robot/cell.h"
+#include "robot/mesh_body.h"
 
 #include <cmath>
 #include <numbers>
@@ -67,6 +68,7 @@ CellScene make_scene(const TriangleSoup& soup)
 
 mesh::Mesh solid_mesh(const Solid& solid)
 {
+    if (const auto* triangles = std::get_if<solid::Triangles>(&solid)) return triangles->body->mesh;
     const PlacedSolid placed(solid, Eigen::Isometry3d::Identity());
     mesh::Mesh mesh;
     mesh.vertices.resize(3, (kElevations + 1) * kAzimuths);

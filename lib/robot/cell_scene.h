@@ -19,7 +19,7 @@ struct CellScene {
 };
 
 /// The surface of a convex solid from its support points along directions 3 degrees apart, body frame, mm: polytopes
-/// exactly, round ones to a thousandth of their radius.
+/// exactly, round ones to a thousandth of their radius; triangles as they are.
 mesh::Mesh solid_mesh(const Solid& solid);
 
 /// The cell with all bodies at some joints.

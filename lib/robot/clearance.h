@@ -30,7 +30,7 @@ struct BoxSolid {
 /// or frustum). Distances and overlaps are measured between the cores.
 class PlacedSolid {
   public:
-    /// The solid must outlive it.
+    /// The solid must outlive it. Of triangles it is the convex hull.
     PlacedSolid(const Solid& solid, const Eigen::Isometry3d& T_cell_body);
     explicit PlacedSolid(const mesh::Triangle& triangle) : core_(triangle) {}
 

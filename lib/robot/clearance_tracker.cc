@@ -78,7 +78,7 @@ CellClearance ClearanceTracker::advance(const CellJoints& joints)
         std::ranges::fill(distance_travelled_, 0.0);
         std::ranges::fill(clearance_bound_at_reset_, -core::kInfinity);
     } else {
-        current_.cell_state.start_leaf = previous_.cell_state.start_leaf;
+        current_.cell_state.start_leaves = previous_.cell_state.start_leaves;
         for (std::size_t body = 0; body < displacement.size(); ++body) {
             displacement[body] = cell_.displacement_bound(body, previous_.cell_state, current_.cell_state);
             distance_travelled_[body] += displacement[body];
@@ -193,7 +193,7 @@ void ClearanceTracker::place_midpoint(const State& from, const State& to, State&
     middle.bounds.resize(cell_.pairs().size());
     for (const std::size_t pair : middle.pairs) {
         middle.bounds[pair] = Bound();
-        middle.cell_state.start_leaf[pair] = from.cell_state.start_leaf[pair];
+        middle.cell_state.start_leaves[pair] = from.cell_state.start_leaves[pair];
     }
     ++midpoint_count_;
 }

@@ -24,13 +24,15 @@ RobotOptions::RobotOptions(cli::Tool& of_tool)
       srdf(tool.optional_file("--srdf", "FILE", "URDF: pairs of links that may touch")),
       tip(tool.text("--tip", "", "LINK",
                     "URDF: the link whose frame is the tool's, z out of the robot [tool0, or the "
-                    "last]"))
+                    "last]")),
+      meshes(tool.choice("--link-meshes", "exact", {"exact", "hull"},
+                         "URDF: collision meshes triangle by triangle, or as their convex hulls"))
 {
 }
 
 Robot RobotOptions::read() const
 {
-    Robot robot = read_robot(file, {parse_packages(packages), srdf, tip});
+    Robot robot = read_robot(file, {parse_packages(packages), srdf, tip, meshes == "exact"});
     for (const std::string& note : robot.notes) tool.warn(core::display_name(file) + ": " + note);
     return robot;
 }

@@ -31,6 +31,7 @@ struct RobotOptions {
     const std::string& packages; ///< --package
     const std::string& srdf;     ///< --srdf
     const std::string& tip;      ///< --tip
+    const std::string& meshes;   ///< --link-meshes
 };
 
 } // namespace fettle::robot

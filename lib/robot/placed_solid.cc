@@ -1,5 +1,6 @@
 #include "geometry/bounding_box.h"
 #include "robot/clearance.h"
+#include "robot/mesh_body.h"
 
 #include <algorithm>
 
@@ -105,6 +106,9 @@ PlacedSolid::PlacedSolid(const Solid& solid, const Eigen::Isometry3d& T)
                           },
                           [&](const solid::Hull& s) {
                               core_ = Hull{&s.points, T};
+                          },
+                          [&](const solid::Triangles& s) {
+                              core_ = Hull{&s.body->hull, T};
                           }},
                solid);
 }

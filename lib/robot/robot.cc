@@ -2,6 +2,7 @@
 
 #include "core/constants.h"
 #include "robot/body_json.h"
+#include "robot/mesh_body.h"
 #include "robot/urdf.h"
 
 #include "core/digest.h"
@@ -133,14 +134,32 @@ Robot parse_robot(const std::string& text, const std::string& path)
     return robot;
 }
 
+// Notes the meshes that have no inside.
+void note_open_meshes(Robot& robot)
+{
+    for (const Body& body : robot.bodies) {
+        const auto* triangles = std::get_if<solid::Triangles>(&body.solid);
+        if (triangles != nullptr && !triangles->body->surface.closed())
+            robot.notes.push_back("the mesh of '" + body.name +
+                                  "' is not closed: a body wholly inside it would not be noticed");
+    }
+}
+
 std::string digest_of(const std::string& text, const Robot& robot)
 {
     core::Digest digest;
     digest.add(text);
-    for (const Body& body : robot.bodies)
-        if (const auto* hull = std::get_if<solid::Hull>(&body.solid))
-            digest.add({reinterpret_cast<const char*>(hull->points.data()),
-                        static_cast<std::size_t>(hull->points.size()) * sizeof(double)});
+    const auto add = [&](const auto& matrix) {
+        digest.add({reinterpret_cast<const char*>(matrix.data()),
+                    static_cast<std::size_t>(matrix.size()) * sizeof(*matrix.data())});
+    };
+    for (const Body& body : robot.bodies) {
+        if (const auto* hull = std::get_if<solid::Hull>(&body.solid)) add(hull->points);
+        if (const auto* triangles = std::get_if<solid::Triangles>(&body.solid)) {
+            add(triangles->body->mesh.vertices);
+            add(triangles->body->mesh.triangles);
+        }
+    }
     return digest.text();
 }
 
@@ -165,6 +184,7 @@ Robot read_robot(const std::string& path)
 {
     const std::string text = core::read_file(path, core::kMaxJsonBytes);
     Robot robot = parse_robot(text, path);
+    note_open_meshes(robot);
     robot.digest = digest_of(text, robot);
     return robot;
 }
@@ -172,10 +192,13 @@ Robot read_robot(const std::string& path)
 Robot read_robot(const std::string& path, const UrdfOptions& options)
 {
     const std::string text = core::read_file(path, core::kMaxJsonBytes);
-    if (!looks_like_xml(text) && !(options.srdf.empty() && options.tip.empty() && options.packages.empty()))
-        throw core::InputError("--package, --srdf and --tip go with a URDF, and " + core::display_name(path) +
-                               " is none");
+    const bool has_options =
+        !options.srdf.empty() || !options.tip.empty() || !options.packages.empty() || !options.exact_meshes;
+    if (!looks_like_xml(text) && has_options)
+        throw core::InputError("--package, --srdf, --tip and --link-meshes go with a URDF, and " +
+                               core::display_name(path) + " is none");
     Robot robot = looks_like_xml(text) ? parse_urdf(text, core::display_name(path), options) : parse_robot(text, path);
+    note_open_meshes(robot);
     robot.digest = digest_of(text, robot);
     return robot;
 }

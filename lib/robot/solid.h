@@ -3,9 +3,14 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include <memory>
 #include <variant>
 
-/// Convex solids in the frame of the body that they belong to, mm.
+namespace fettle::robot {
+struct MeshBody;
+}
+
+/// Solids in the frame of the body that they belong to, mm. All but triangles are convex.
 namespace fettle::robot::solid {
 
 struct Sphere {
@@ -41,10 +46,16 @@ struct Hull {
     Eigen::Matrix3Xd points;
 };
 
+/// A mesh, convex or not, every triangle of which counts. Where only a convex solid will do its hull stands for it.
+struct Triangles {
+    std::shared_ptr<const MeshBody> body;
+};
+
 } // namespace fettle::robot::solid
 
 namespace fettle::robot {
 
-using Solid = std::variant<solid::Sphere, solid::Capsule, solid::Cylinder, solid::Cone, solid::Box, solid::Hull>;
+using Solid = std::variant<solid::Sphere, solid::Capsule, solid::Cylinder, solid::Cone, solid::Box, solid::Hull,
+                           solid::Triangles>;
 
 } // namespace fettle::robot

@@ -4,6 +4,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/xml.h"
+#include "robot/urdf.h"
 
 #include <tinyxml.h>
 
@@ -13,7 +14,7 @@ void read_srdf(const std::string& path, const std::vector<std::string>& links, R
 {
     const std::string text = core::read_file(path, core::kMaxJsonBytes);
     const std::string source = core::display_name(path);
-    core::refuse_other_content(text, source, "an SRDF");
+    if (!looks_like_xml(text)) core::refuse_other_content(text, source, "an SRDF");
     core::require_plain_xml(text, source);
     TiXmlDocument document;
     document.Parse(text.c_str(), nullptr, TIXML_ENCODING_UTF8);

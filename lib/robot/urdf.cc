@@ -216,7 +216,7 @@ class UrdfReader {
         const int index = moving_link(link);
         const Isometry3d T_root_frame =
             index == link::kCell ? Isometry3d::Identity() : robot_.T_cell_base * frames_[index];
-        const UrdfFiles files{source_, link.name, options_.packages};
+        const UrdfFiles files{source_, link.name, options_.packages, options_.exact_meshes};
         std::size_t count = 0;
         for (const auto& collision : link.collision_array) {
             if (collision == nullptr || collision->geometry == nullptr) continue;

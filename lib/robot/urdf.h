@@ -13,6 +13,7 @@ struct UrdfOptions {
     std::map<std::string, std::string> packages; ///< folders of the packages that package:// names
     std::string srdf;                            ///< file of pairs of links that may touch; empty: none
     std::string tip;                             ///< link whose frame is the tool's; empty: tool0, else the last link
+    bool exact_meshes = true;                    ///< meshes of links count triangle by triangle; false: their hulls
 };
 
 /// Parses "NAME=DIR,NAME=DIR". @throws InputError for anything else

@@ -5,12 +5,14 @@
 #include "mesh/mesh_file.h"
 #include "robot/body_json.h"
 #include "robot/hull_points.h"
+#include "robot/mesh_body.h"
 
 #include <urdf_model/link.h>
 
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <memory>
 
 namespace fettle::robot {
 
@@ -58,12 +60,14 @@ std::string mesh_path(const std::string& name, const UrdfFiles& files)
 Solid mesh_solid(const urdf::Mesh& shape, const Isometry3d& T, const UrdfFiles& files)
 {
     const std::string path = mesh_path(shape.filename, files);
-    const mesh::Mesh mesh = read_body_mesh(path, units::Units::Length::m);
+    mesh::Mesh mesh = read_body_mesh(path, units::Units::Length::m);
     const Vector3d scale(shape.scale.x, shape.scale.y, shape.scale.z);
     if (!scale.allFinite() || scale.cwiseAbs().minCoeff() == 0)
         throw core::InputError("link '" + files.link + "': the scale of its mesh is 0");
-    const Eigen::Matrix3Xd points = scale.asDiagonal() * mesh.vertices;
-    return solid::Hull{T * hull_points(points)};
+    mesh.vertices = (T.linear() * scale.asDiagonal() * mesh.vertices).colwise() + T.translation();
+    if (!files.exact_meshes) return solid::Hull{hull_points(mesh.vertices)};
+    if (scale.prod() < 0) mesh.triangles.row(1).swap(mesh.triangles.row(2)); // a mirror turns them inside out
+    return solid::Triangles{std::make_shared<MeshBody>(std::move(mesh))};
 }
 
 } // namespace

@@ -60,6 +60,8 @@ class Workpiece {
 
     bool closed() const { return closed_; }
     const mesh::Mesh& mesh() const { return index_.mesh(); }
+    /// The tree, for searches of other kinds.
+    const mesh::BoxTree& tree() const { return index_.tree(); }
 
   private:
     void search(const PlacedSolid& body, const std::function<bool(Eigen::Index)>* is_selected, Nearest& best,

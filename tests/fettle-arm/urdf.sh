@@ -23,7 +23,7 @@ fettle-collide bodies.urdf folded.pcd --srdf ur5.srdf --beyond 2000 --report nea
 jq -e '.min.pair == null' near.json >ok
 refuses 'is a xacro file' fettle-arm <(echo '<robot xmlns:xacro="x"><xacro:include filename="a"/></robot>') --forward folded.pcd
 refuses '--package: expected NAME=DIR' fettle-arm "$urdf/ur5.urdf" --package ur --forward folded.pcd
-refuses '--package, --srdf and --tip go with a URDF' fettle-arm "$SAMPLES/robots/irb2400.json" --tip tool0 --forward folded.pcd
+refuses '--package, --srdf, --tip and --link-meshes go with a URDF' fettle-arm "$SAMPLES/robots/irb2400.json" --tip tool0 --forward folded.pcd
 sed 's|<link name="forearm_link"/>|<link name="forearm_link"><collision><geometry><mesh filename="package://ur/f.stl"/></geometry></collision></link>|' "$urdf/ur5.urdf" >mesh.urdf
 refuses '--package ur=DIR says it' fettle-arm mesh.urdf --forward folded.pcd
 refuses 'there is no mesh ./f.stl' fettle-arm mesh.urdf --package ur=. --forward folded.pcd
