@@ -15,7 +15,7 @@ using gantry::GantryFault;
 using gantry::GantryStatus;
 
 /// Between two poses at which the inverse kinematics are solved, mm: the joints, moving evenly, keep the tip within
-/// some hundredths of a mm of the straight line.
+/// some micrometres of the straight line.
 constexpr double kStep = 1;
 /// Highest speed of the tip, mm/s: that of a robot beside which somebody may stand (ISO 10218-1, reduced speed).
 constexpr double kMaxTipSpeed = 250;

@@ -155,6 +155,13 @@ TEST(RobotGantry, IsNoFasterThanItsJoints)
                 EXPECT_LE(turn, speed * (moments[i].time - moments[i - 1].time) * (1 + 1e-6))
                     << i << " joint " << k + 1;
             }
+        // Halfway between two moments, the joints moving evenly, the tip is still on its line.
+        for (std::size_t i = 1; i < moments.size(); ++i) {
+            const robot::Joints halfway = (moments[i].joints + moments[i - 1].joints).head<6>() / 2;
+            const Eigen::Vector3d tip = (robot::Arm(robot).flange(halfway) * robot.T_flange_tool).translation();
+            const Eigen::Vector3d line = (moments[i].pose.translation() + moments[i - 1].pose.translation()) / 2;
+            EXPECT_LT((tip - line).norm(), 0.005) << i;
+        }
         EXPECT_NEAR(moments.back().time, gantry.status().time, 10.1); // the touch-off
         return gantry.status().time;
     };
