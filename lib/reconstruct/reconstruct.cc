@@ -22,9 +22,10 @@
 namespace fettle::reconstruct {
 namespace {
 
-constexpr Eigen::Index kNormalNeighbours = 16; // as registration takes: they average noise and stay on one face
-constexpr Eigen::Index kLinkNeighbours = 8;    // from point to point, along which normals agree on their side
-constexpr std::size_t kMaxLoopPoints = 200;    // of a hole that is filled: the time grows with the third power
+constexpr Eigen::Index kNormalNeighbours = 16;     // as registration takes: they average noise and stay on one face
+constexpr Eigen::Index kLinkNeighbours = 8;        // from point to point, along which normals agree on their side
+constexpr Eigen::Index kMaxUnordered = 20'000'000; // points: they take a quarter of an hour, and 9 GB
+constexpr std::size_t kMaxLoopPoints = 200;        // of a hole that is filled: the time grows with the third power
 
 /// Points, what is known of their outer side, and what they were in the file.
 struct Points {
@@ -210,6 +211,10 @@ Reconstruction reconstruct(const cloud::Cloud& cloud, const ReconstructRequest& 
     Reconstruction result;
     TriangleSheet sheet;
     const bool is_grid = cloud.width > 1 && cloud.size() > static_cast<Eigen::Index>(cloud.width);
+    if (!is_grid && cloud.size() > kMaxUnordered)
+        throw core::InputError(std::to_string(cloud.size()) + " points are more than can be joined, " +
+                               std::to_string(kMaxUnordered / 1'000'000) +
+                               " million: thin them first (fettle-clean --thin)");
     cloud::Cloud usable = is_grid ? cloud : distinct_points(cloud);
     if (usable.size() < 3)
         throw core::InputError(std::to_string(usable.size()) + " different points, three are needed");

@@ -40,7 +40,8 @@ struct Reconstruction {
 /// where profiles lie ten times farther apart than their points; all others by their Delaunay stars (stars.h), whose
 /// narrow holes are then filled (Barequet & Sharir 1995). Wider holes stay open. pcl::Poisson closes every hole,
 /// invents what lies in it, and links VTK; pcl::GreedyProjectionTriangulation folds triangles (stars.h).
-/// @throws InputError if there are fewer than three points, or nothing is joined within the gap
+/// @throws InputError for fewer than three points, for more than 20 million that are no grid, and if nothing is joined
+///         within the gap
 Reconstruction reconstruct(const cloud::Cloud& cloud, const ReconstructRequest& request);
 
 } // namespace fettle::reconstruct
