@@ -159,7 +159,8 @@ double Cell::rough_clearance(const CellState& state, std::size_t index) const
 {
     const CellPair& pair = pairs_[index];
     const double of_balls = ball_clearance(state, index);
-    if (!is_of_workpiece(index)) return of_balls;
+    if (!is_of_workpiece(index))
+        return has_mesh(index) ? std::max(of_balls, hull_clearance(state, index, options_.max_clearance)) : of_balls;
     const PlacedSolid body(robot_.bodies[pair.a].solid, state.T_cell_body[pair.a]);
     const Clearance to_box = clearance(body, PlacedSolid(workpiece_box_, state.T_cell_body.back()));
     return to_box.distance > 0 ? std::max(of_balls, to_box.distance - pair.margin) : of_balls;

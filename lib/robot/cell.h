@@ -88,9 +88,9 @@ class Cell {
     }
     /// Measures it only up to `max_clearance`, mm. @return  a lower bound of the clearance, mm
     double measure_clearance(CellState& state, std::size_t pair, double max_clearance) const;
-    /// Lower bound of a clearance, mm, from the workpiece's tree in float alone: a third of the time of measuring it.
-    /// It holds for a body that is known not to lie wholly inside. Other pairs, and a model of the workpiece, are
-    /// measured.
+    /// Lower bound of a clearance, mm. For the workpiece from its tree in float alone: a third of the time of measuring
+    /// it; it holds for a body that is known not to lie wholly inside. For two bodies of which one is a mesh, from
+    /// their convex hulls. Other pairs, and a model of the workpiece, are measured.
     double bound_clearance(CellState& state, std::size_t pair, double max_clearance) const;
     /// Lower bound of a clearance from balls around the bodies and a box around the workpiece, mm. A positive one says
     /// that the body does not lie inside the workpiece.
@@ -98,6 +98,8 @@ class Cell {
     /// Lower bound of a clearance from the body itself and the box around the workpiece, mm: tighter, at little cost.
     double rough_clearance(const CellState& state, std::size_t pair) const;
     bool is_of_workpiece(std::size_t pair) const { return pairs_[pair].b == robot_.bodies.size(); }
+    /// Does every triangle of a body of the pair, or of the workpiece, count?
+    bool has_mesh(std::size_t pair) const;
 
     /// Upper bound of the distance of a body's points in one state from where they are in another, mm.
     double displacement_bound(std::size_t body, const CellState& s0, const CellState& s1) const;
@@ -132,6 +134,7 @@ class Cell {
                                      const Eigen::Isometry3d& T1);
     int link_of(std::size_t body) const;
     const Workpiece* surface_of(std::size_t body) const;
+    double hull_clearance(const CellState& state, std::size_t pair, double max_clearance) const;
     Clearance measure_in_cell(CellState& state, std::size_t pair, double max_clearance) const;
     Eigen::Array<double, 6, 1> axis_distances(std::size_t body) const;
     double arm_arc_excess(const CellJoints& change, double extent) const;

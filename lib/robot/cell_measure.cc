@@ -68,11 +68,25 @@ double Cell::measure_clearance(CellState& state, std::size_t index, double max_c
     return found.distance - margin;
 }
 
+bool Cell::has_mesh(std::size_t index) const
+{
+    return surface_of(pairs_[index].a) != nullptr || surface_of(pairs_[index].b) != nullptr;
+}
+
+// Of the convex hulls of two bodies.
+double Cell::hull_clearance(const CellState& state, std::size_t index, double max_clearance) const
+{
+    const CellPair& pair = pairs_[index];
+    const PlacedSolid a(robot_.bodies[pair.a].solid, state.T_cell_body[pair.a]),
+        b(robot_.bodies[pair.b].solid, state.T_cell_body[pair.b]);
+    return clearance(a, b, max_clearance + pair.margin).distance - pair.margin;
+}
+
 double Cell::bound_clearance(CellState& state, std::size_t index, double max_clearance) const
 {
     const CellPair& pair = pairs_[index];
-    if (!is_of_workpiece(index) || options_.model != nullptr || surface_of(pair.a) != nullptr)
-        return measure_clearance(state, index, max_clearance);
+    if (!is_of_workpiece(index) && has_mesh(index)) return hull_clearance(state, index, max_clearance);
+    if (!is_of_workpiece(index) || options_.model != nullptr) return measure_clearance(state, index, max_clearance);
     const Isometry3d T_part_a = state.T_cell_body.back().inverse() * state.T_cell_body[pair.a];
     std::uint32_t& leaf = state.start_leaves[index].b;
     const Workpiece::LowerBound found =

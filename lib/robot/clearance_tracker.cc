@@ -51,8 +51,8 @@ bool ClearanceTracker::renew_bound(std::size_t pair, double required, double loo
     double bound = cell_.ball_clearance(current_.cell_state, pair);
     const bool is_far = bound > 0 && bound >= look_ahead;
     if (!is_far) {
-        // The tree's bounds say nothing of a body that may lie wholly inside.
-        if (!cell_.is_of_workpiece(pair) || !(clearance_lower_bound(pair) > 0)) return false;
+        // The tree's bounds say nothing of a body that may lie wholly inside the workpiece.
+        if (cell_.is_of_workpiece(pair) ? !(clearance_lower_bound(pair) > 0) : !cell_.has_mesh(pair)) return false;
         bound = cell_.bound_clearance(current_.cell_state, pair, look_ahead);
         if (!(bound > 0 && bound >= required)) return false;
     }

@@ -1,6 +1,7 @@
 // A UR5 with a ball-end tool along 50,000 poses over a boat's hull of 100,000 triangles, its links as the triangles of
-// their collision meshes, as the convex hulls of these, and as boxes around them; and the 15 bodies of the IRB 1400 on
-// the path of cell_bench as they are, as hulls and as triangles. All pairs at the poses, and between them. One core.
+// their collision meshes, as the convex hulls of these, and as boxes around them; and the IRB 1400 on the path
+// of cell_bench, its links and fixtures as the round solids that they are and as 15,000 triangles each. All pairs at
+// the poses, and between them. One core.
 
 #include "../lib/boat_hull.h"
 #include "robot/cell_scene.h"
@@ -76,12 +77,11 @@ robot::Solid as(Form form, const robot::Solid& solid)
     return robot::solid::Box{Isometry3d(Eigen::Translation3d((min + max) / 2)), (max - min) / 2};
 }
 
-/// @param only_meshes  other bodies stay what they are
-robot::Robot with_bodies(robot::Robot robot, Form form, bool only_meshes)
+/// The tool stays what it is: how a ball moves is bounded in closed form.
+robot::Robot with_links(robot::Robot robot, Form form)
 {
     for (robot::Body& body : robot.bodies)
-        if (!only_meshes || std::holds_alternative<robot::solid::Triangles>(body.solid))
-            body.solid = as(form, body.solid);
+        if (body.link != robot::link::kTool) body.solid = as(form, body.solid);
     return robot;
 }
 
@@ -130,8 +130,8 @@ int main()
         const robot::Joints kElbowUp = std::numbers::pi / 2 * (robot::Joints() << 0, -1, 1, -1, -1, 0).finished();
         const robot::CellJointsPath joints = follow(robot, path_at(place, 0), kElbowUp);
         for (int round = 0; round < kRounds; ++round) {
-            const double boxes = measure("UR5, boxes", with_bodies(robot, Form::boxes, true), workpiece, joints, 0);
-            measure("UR5, hulls", with_bodies(robot, Form::hulls, true), workpiece, joints, boxes);
+            const double boxes = measure("UR5, boxes", with_links(robot, Form::boxes), workpiece, joints, 0);
+            measure("UR5, hulls", with_links(robot, Form::hulls), workpiece, joints, boxes);
             measure("UR5, meshes", robot, workpiece, joints, boxes);
         }
     }
@@ -142,6 +142,6 @@ int main()
     const robot::CellJointsPath joints = follow(robot, path_at(place, std::numbers::pi), robot::Joints::Zero());
     for (int round = 0; round < kRounds; ++round) {
         const double given = measure("IRB 1400, as given", robot, workpiece, joints, 0);
-        measure("IRB 1400, meshes", with_bodies(robot, Form::meshes, false), workpiece, joints, given);
+        measure("IRB 1400, meshes", with_links(robot, Form::meshes), workpiece, joints, given);
     }
 }

@@ -5,14 +5,18 @@
 #include "core/constants.h"
 #include "cube.h"
 #include "draws.h"
+#include "robot/clearance_tracker.h"
 #include "robot/mesh_body.h"
 #include "robot/mesh_clearance.h"
+#include "robot/urdf.h"
 
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <random>
+#include <string>
 #include <vector>
 
 namespace fettle {
@@ -254,6 +258,51 @@ TEST(MeshClearance, ChangesNoMoreThanTheMotion)
         const double motion = (T1 * of_a.vertices - T0 * of_a.vertices).colwise().norm().maxCoeff();
         EXPECT_LE(std::abs(at1.clearance.distance - at0.clearance.distance), motion + 2 * kClearanceAccuracy) << k;
     }
+}
+
+// A real arm's meshes over a hull of triangles: hulls and bounds spare measuring, and nothing is lost.
+TEST(MeshClearance, AlongAPathAsPairByPair)
+{
+    const char* samples = std::getenv("SAMPLES");
+    const std::string folder = (samples == nullptr ? std::string("samples") : samples) + "/robots/ur5/";
+    robot::UrdfOptions urdf;
+    urdf.srdf = folder + "ur5.srdf";
+    const robot::Robot arm = robot::read_robot(folder + "ur5.urdf", urdf);
+    mesh::Mesh hull = boat::hull(2000);
+    hull.vertices.colwise() += Vector3d(500, 0, 0);
+    const robot::Workpiece workpiece(hull);
+    const robot::Cell cell(arm, &workpiece, {});
+    robot::ClearanceTracker tracker(cell);
+    Draw draw(34);
+    robot::CellJoints q = robot::CellJoints::Zero(), speed = q;
+    q.head<6>() << 0, -1, 1.5, -1, -1, 0;
+    int colliding = 0, of_meshes = 0;
+    for (int k = 0; k < 1500; ++k) {
+        for (int j = 0; j < 6; ++j) speed[j] = 0.97 * speed[j] + draw.number(-4e-3, 4e-3);
+        const robot::CellJoints before = q;
+        q += speed;
+        const double found = tracker.advance(q).clearance;
+        const auto least = [&](const robot::CellJoints& joints) {
+            robot::CellState state = cell.place_bodies(joints);
+            double min = cell.options().max_clearance;
+            for (const std::size_t pair : cell.active_pairs()) {
+                cell.measure_clearance(state, pair);
+                min = std::min(min, state.clearances[pair].clearance);
+            }
+            return min;
+        };
+        EXPECT_NEAR(found, least(q), 2 * kClearanceAccuracy) << k;
+        colliding += found < -0.01;
+        of_meshes += found > 0 && found < cell.options().max_clearance;
+        if (k == 0) continue;
+        const double swept = tracker.swept_clearance().clearance;
+        for (const double t : {0.3, 0.7})
+            if (swept >= -cell.options().tolerance) {
+                EXPECT_GE(least(before + t * (q - before)), swept - 2 * kClearanceAccuracy) << k;
+            }
+    }
+    EXPECT_GT(colliding, 50);
+    EXPECT_GT(of_meshes, 300);
 }
 
 } // namespace mesh_clearance_test
