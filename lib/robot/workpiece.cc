@@ -3,6 +3,7 @@
 #include "core/simd.h"
 #include "mesh/box_search.h"
 #include "mesh/box_tree.h"
+#include "mesh/closed.h"
 #include "robot/deepest_point.h"
 #include "robot/wide_solid.h"
 
@@ -192,18 +193,7 @@ FETTLE_CLONES void run_from(BoxSearch& search, std::uint32_t leaf) { search.run_
 
 } // namespace
 
-bool is_closed(const mesh::Mesh& mesh)
-{
-    std::vector<std::pair<int, int>> edges; // directed
-    for (const auto t : mesh.triangles.colwise())
-        for (int k = 0; k < 3; ++k) edges.emplace_back(t[k], t[(k + 1) % 3]);
-    std::ranges::sort(edges);
-    if (std::ranges::adjacent_find(edges) != edges.end()) return false;
-    return std::ranges::all_of(
-        edges, [&](const auto& edge) { return std::ranges::binary_search(edges, std::pair(edge.second, edge.first)); });
-}
-
-Workpiece::Workpiece(const mesh::Mesh& mesh) : closed_(is_closed(mesh)), index_(mesh) {}
+Workpiece::Workpiece(const mesh::Mesh& mesh) : closed_(mesh::is_closed(mesh)), index_(mesh) {}
 
 // A ray from inside a closed mesh first hits a triangle from behind. A grazing hit decides nothing: another ray is
 // cast.

@@ -12,10 +12,6 @@
 
 namespace fettle::robot {
 
-/// Is each edge of a triangle shared with exactly one other triangle, in the opposite direction? Then the mesh has an
-/// inside.
-bool is_closed(const mesh::Mesh& mesh);
-
 /// A mesh for distance queries of bodies. Every triangle counts; a tree of boxes spares those that cannot be nearest.
 /// Thread-safe. FCL decides overlaps with a mesh, too, but does not give their depth.
 class Workpiece {

@@ -1,5 +1,6 @@
 #include "boat_hull.h"
 #include "brute_force.h"
+#include "mesh/closed.h"
 #include "robot/workpiece.h"
 
 #include <gtest/gtest.h>
@@ -226,7 +227,7 @@ TEST(Workpiece, BallOnAPlane)
     // a hole in the mesh: it has no inside
     mesh::Mesh open = mesh;
     open.triangles.conservativeResize(3, 11);
-    EXPECT_FALSE(robot::is_closed(open));
+    EXPECT_FALSE(mesh::is_closed(open));
     EXPECT_FALSE(robot::Workpiece(open).nearest(robot::PlacedSolid(ball, Isometry3d::Identity())).inside);
 }
 
