@@ -26,6 +26,7 @@ constexpr double kLengthSpacings = 3;
 constexpr double kReachSpacings = 1.5;
 // With fewer points there is no telling a surface from its noise.
 constexpr Eigen::Index kMinPoints = 100;
+constexpr Eigen::Index kMaxPoints = 20'000'000; // of a scan: they take 2 GB until it is merged
 
 /// A scan as it was read.
 struct RawScan {
@@ -63,6 +64,11 @@ RawScan read_scan(const std::string& path, const MergeRequest& request, MergeRun
     mesh::CloudMeshFile file = mesh::read_cloud_mesh(path, mesh::resolve_file_units(request.unit));
     if (is_first) run.units = file.units;
     for (const std::string& warning : job::shape_warnings(file, scan.name)) run.warnings.push_back(warning);
+    if (file.part.points.size() > kMaxPoints)
+        throw core::InputError(scan.name,
+                               "has " + std::to_string(file.part.points.size()) + " points, more than the " +
+                                   std::to_string(kMaxPoints / 1'000'000) +
+                                   " million of a scan that can be merged: thin it first (fettle-clean --thin)");
     const mesh::CloudMesh part = core::with_error_prefix(
         scan.name, [&] { return clean::clean_part(std::move(file.part), clean::CleanRequest{}).part; });
     if (part.points.size() < kMinPoints)
