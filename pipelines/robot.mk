@@ -22,7 +22,7 @@ keel: $(ROBOT)/keel/clearance.png $(ROBOT)/keel/keel.mod
 	@jq -r '"\(.reached) of \(.count) poses reached, \(.collisions) collide, \(.collisions_between) ways between them; least clearance \(1000 * .min.clearance | round / 1000) mm, \(.min.pair | join(" and "))"' $(ROBOT)/keel/report.json
 
 reach: $(HEIGHTS:%=$(ROBOT)/reach/%.png) $(ROBOT)/reach/cell.json
-	@jq -r '"of \(.cells) cells \(100 * .reached | round) % are reached, \(100 * .reached_from_all_sides | round) % from all sides"' $(ROBOT)/reach/cell.json
+	@jq -r '"of \(.cells) cells \(100 * .reached | round) % are reached, \(100 * .reached_from_all_sides | round) % from all sides; \(1000 * .limited.by_length | round / 10) % are too far for the arm, \(1000 * .limited.by_joint_ranges | round / 10) % for its joints, \(1000 * .limited.by_collisions | round / 10) % never free of collisions"' $(ROBOT)/reach/cell.json
 
 include pipelines/step.mk
 
@@ -48,18 +48,16 @@ $(ROBOT)/small/%: SIZE  := 300 120 100
 $(ROBOT)/small/%: PLACE := $(LIES) 1000 850 460
 $(ROBOT)/small/%: TURN  := $(LIES)
 $(ROBOT)/small/%: CELL_OF := samples/robots/irb1400_vise.json
-$(ROBOT)/small/%: WAYS  := --track 700
 $(ROBOT)/large/%: SIZE  := 567 250 150
 $(ROBOT)/large/%: PLACE := $(STANDS) 1075 1000 420
 $(ROBOT)/large/%: TURN  := 0.5 0.5 -0.5 -0.5
 $(ROBOT)/large/%: CELL_OF := samples/robots/irb1400_table.json
-$(ROBOT)/large/%: WAYS  := --track 700 --table 0
 # Commas are no part of a step's command.
 $(ROBOT)/small/%: FROM  := 1,-1,0.8
 $(ROBOT)/large/%: FROM  := -0.3,-1,0.4
 $(ROBOT)/small/%: NEAR  := 1,-1,0.5
 $(ROBOT)/large/%: NEAR  := -1,-0.6,0.3
-COLLIDE = $(B)/bin/fettle-collide $(CELL_OF) $(@D)/path.pcd --workpiece $(@D)/hull.stl $(WAYS)
+COLLIDE = $(B)/bin/fettle-collide $(CELL_OF) $(@D)/path.pcd --workpiece $(@D)/hull.stl
 AVOID = $(COLLIDE) --report $(basename $@).json --picture $(basename $@).png --from $(FROM) --chart $(basename $@)-clearance.png --avoid
 
 # Seconds by the clock, and of all processors.
@@ -96,7 +94,7 @@ $(ROBOT)/%/smooth.pcd: $(ROBOT)/%/path.pcd $(ROBOT)/%/hull.stl $(B)/bin/fettle-c
 
 # The workpiece as Chen & Wei's figure 6 has it, at one pose.
 $(ROBOT)/%/model.png: $(ROBOT)/%/path.pcd $(ROBOT)/%/hull.stl $(B)/bin/fettle-collide $(wildcard samples/robots/*.json)
-	$(call step,pipelines/robot-hull pick 30000 < $< | $(B)/bin/fettle-collide $(CELL_OF) --workpiece $(@D)/hull.stl $(WAYS) --method grid --cell 5 --picture $@.part --from $(NEAR) -q -o /dev/null || test $$? = 1)
+	$(call step,pipelines/robot-hull pick 30000 < $< | $(B)/bin/fettle-collide $(CELL_OF) --workpiece $(@D)/hull.stl --method grid --cell 5 --picture $@.part --from $(NEAR) -q -o /dev/null || test $$? = 1)
 
 $(ROBOT)/%/hull.mod: $(ROBOT)/%/smooth.pcd $(B)/bin/fettle-arm
 	$(call step,$(B)/bin/fettle-arm $(CELL_OF) --forward $< --feed 50 --rapid $@.part --unchecked -q -o /dev/null)

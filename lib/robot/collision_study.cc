@@ -4,10 +4,41 @@
 #include "core/error.h"
 #include "robot/arm_report.h"
 #include "robot/avoid_report.h"
+#include "robot/cell.h"
 #include "robot/collision_report.h"
 #include "robot/path_cloud.h"
 
+#include <algorithm>
+#include <vector>
+
 namespace fettle::robot {
+
+namespace {
+
+// Whether nothing collides that track and table could keep apart: the flange and all beyond it are where the pose has
+// them, relative to the part and the table, whatever the others do.
+IsClear clear_of_arm(const Cell& cell, const Robot& robot)
+{
+    const auto goes_with_pose = [&](std::size_t body) {
+        const int on = body < robot.bodies.size() ? robot.bodies[body].link : workpiece_link(robot);
+        return on == 6 || on == link::kTool || on == link::kTable;
+    };
+    std::vector<std::size_t> pairs;
+    for (const std::size_t pair : cell.active_pairs()) {
+        const auto& [a, b, margin] = cell.pairs()[pair];
+        const bool on_part = cell.is_of_workpiece(pair) && goes_with_pose(a); // without a table, too
+        if (!on_part && !(goes_with_pose(a) && goes_with_pose(b))) pairs.push_back(pair);
+    }
+    return [&cell, pairs](const CellJoints& joints) {
+        const double tolerance = cell.options().tolerance;
+        CellState state = cell.place_bodies(joints);
+        return std::ranges::all_of(pairs, [&](std::size_t pair) {
+            return cell.ball_clearance(state, pair) > 0 || cell.measure_clearance(state, pair, 0) >= -tolerance;
+        });
+    };
+}
+
+} // namespace
 
 CollisionStudy study_collisions(const Robot& robot, const cloud::Cloud& path, const std::string& source, double mm,
                                 const Workpiece* workpiece, const CollisionRequest& request,
@@ -15,7 +46,9 @@ CollisionStudy study_collisions(const Robot& robot, const cloud::Cloud& path, co
 {
     CollisionStudy study;
     study.request = request;
-    study.solved = core::with_error_prefix(source, [&] { return solve_path(robot, path, request.path, mm); });
+    const Cell cell(robot, workpiece, request.collision);
+    study.solved = core::with_error_prefix(
+        source, [&] { return solve_path(robot, path, request.path, mm, clear_of_arm(cell, robot)); });
     CollisionOptions& options = study.request.collision;
     if (request.model) {
         if (workpiece == nullptr) throw core::InputError("--method", "needs a --workpiece");

@@ -9,7 +9,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <span>
+#include <vector>
 
 namespace fettle::robot {
 
@@ -20,6 +23,8 @@ constexpr double kPi = std::numbers::pi;
 constexpr std::size_t kMaxPosesEvaluated = 64;
 // Positions of the track: 50 mm apart on the paper's 2 m. Angles of the table: 15 degrees apart.
 constexpr int kTrackPositions = 41, kTableAngles = 24;
+// Choices whose collisions are counted: the best by reach, spread over most of track and table. A second or two.
+constexpr std::size_t kMaxChoicesChecked = 512, kChoicesAtATime = 16;
 // The azimuth of a tip nearer to the table's axis is undetermined, mm.
 constexpr double kMinAzimuthRadius = 1e-6;
 
@@ -64,10 +69,27 @@ cloud::PosePath sample_poses(const cloud::PosePath& poses)
     return sample;
 }
 
+// Number of poses all of whose solutions collide, counted up to `limit`.
+Eigen::Index count_colliding(const Robot& robot, const Arm& arm, const cloud::PosePath& poses,
+                             const ExternalChoice& choice, const IsClear& is_clear, Eigen::Index limit)
+{
+    const Eigen::Matrix2Xd values = external_values(robot, poses, choice.track, choice.table);
+    Eigen::Index colliding = 0;
+    for (std::size_t i = 0; i < poses.size() && colliding < limit; ++i) {
+        const ArmSolutions solutions =
+            arm.solve(flange_target(robot, poses[i], values(0, i), values(1, i)), Joints::Zero(), Ranges::respect);
+        const bool none_clear = std::ranges::none_of(solutions, [&](const ArmSolution& solution) {
+            return is_clear((CellJoints() << solution.joints, values.col(i)).finished());
+        });
+        if (none_clear && solutions.size() > 0) ++colliding;
+    }
+    return colliding;
+}
+
 ExternalChoice evaluate_rules(const Robot& robot, const Arm& arm, const cloud::PosePath& poses, const AxisRule& track,
                               const AxisRule& table)
 {
-    ExternalChoice choice = {track, table, 0, INFINITY};
+    ExternalChoice choice = {track, table, 0, 0, INFINITY};
     const Eigen::Matrix2Xd values = external_values(robot, poses, track, table);
     for (std::size_t i = 0; i < poses.size(); ++i) {
         double best = -1;
@@ -164,7 +186,32 @@ Eigen::Matrix2Xd external_values(const Robot& robot, const cloud::PosePath& pose
     return values;
 }
 
-ExternalChoice choose_externals(const Robot& robot, const cloud::PosePath& poses, const ExternalRules& rules)
+// The first of the choices, best first, with the fewest colliding poses. Only those that reach as many poses as the
+// first count; they are checked some at a time, until one is clear.
+ExternalChoice fewest_collisions(const Robot& robot, const Arm& arm, const cloud::PosePath& poses,
+                                 std::span<ExternalChoice> choices, const IsClear& is_clear)
+{
+    const auto reaches = [&](const ExternalChoice& c) { return c.unreached == choices.front().unreached; };
+    const std::size_t count =
+        std::min<std::size_t>(kMaxChoicesChecked, std::ranges::find_if_not(choices, reaches) - choices.begin());
+    Eigen::Index fewest = std::numeric_limits<Eigen::Index>::max();
+    const ExternalChoice* best = nullptr;
+    for (std::size_t first = 0; first < count && fewest > 0; first += kChoicesAtATime) {
+        const std::span<ExternalChoice> some = choices.subspan(first, std::min(kChoicesAtATime, count - first));
+        tbb::parallel_for(std::size_t{0}, some.size(), [&](std::size_t i) {
+            some[i].colliding = count_colliding(robot, arm, poses, some[i], is_clear, fewest);
+        });
+        for (const ExternalChoice& choice : some)
+            if (choice.colliding < fewest) {
+                fewest = choice.colliding;
+                best = &choice;
+            }
+    }
+    return *best;
+}
+
+ExternalChoice choose_externals(const Robot& robot, const cloud::PosePath& poses, const ExternalRules& rules,
+                                const IsClear& is_clear)
 {
     const Arm arm(robot);
     const cloud::PosePath sample = sample_poses(poses);
@@ -173,7 +220,8 @@ ExternalChoice choose_externals(const Robot& robot, const cloud::PosePath& poses
     tbb::parallel_for(std::size_t{0}, choices.size(), [&](std::size_t i) {
         choices[i] = evaluate_rules(robot, arm, sample, tracks[i / tables.size()], tables[i % tables.size()]);
     });
-    return *std::ranges::min_element(choices, &is_better);
+    std::ranges::stable_sort(choices, &is_better);
+    return is_clear && choices.size() > 1 ? fewest_collisions(robot, arm, sample, choices, is_clear) : choices.front();
 }
 
 } // namespace fettle::robot

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -38,12 +39,19 @@ struct ExternalRules {
 struct ExternalChoice {
     AxisRule track, table;
     Eigen::Index unreached = 0; ///< number of evaluated poses without a solution
+    Eigen::Index colliding = 0; ///< number of evaluated poses all of whose solutions collide; 0 if nobody checked
     double singularity = 0;     ///< minimum over the poses of the best solution's Singularity::min
 };
 
-/// Chooses the rules with the fewest poses that have no solution in range, then with the fewest axes that follow, then
-/// with the largest distance from a singularity. Evaluates a sample of the poses and of the axes' ranges.
-ExternalChoice choose_externals(const Robot& robot, const cloud::PosePath& poses, const ExternalRules& rules);
+/// Whether nothing touches what it must not with these joints. Thread-safe.
+using IsClear = std::function<bool(const CellJoints& joints)>;
+
+/// Chooses the rules with the fewest poses that have no solution in range, then with the fewest that have none without
+/// a collision, then with the fewest axes that follow, then with the largest distance from a singularity. Evaluates a
+/// sample of the poses and of the axes' ranges.
+/// @param is_clear  empty: collisions do not matter
+ExternalChoice choose_externals(const Robot& robot, const cloud::PosePath& poses, const ExternalRules& rules,
+                                const IsClear& is_clear = {});
 
 /// Values of track (mm) and table (rad) at each pose, 2xN; NaN where there is no pose. An axis that the robot lacks is
 /// 0.

@@ -8,7 +8,8 @@ namespace fettle::robot {
 PathOptions::PathOptions(cli::Tool& tool)
     : track(tool.text("--track", PathArguments().track, "RULE",
                       "Position of the track: fixed (LENGTH), or following the tip (follow:LENGTH behind it along the "
-                      "track); auto: the rule by which the whole path is reached farthest from singularities, a fixed "
+                      "track); auto: the rule by which the whole path is reached, for fettle-collide clear, farthest "
+                      "from singularities, a fixed "
                       "position if there is one")),
       table(tool.text("--table", PathArguments().table, "RULE",
                       "Angle of the table: DEG, follow:DEG (the tip's azimuth about its axis) or auto")),

@@ -39,7 +39,8 @@ void check_not_empty(const cloud::Cloud& cloud)
 
 } // namespace
 
-SolvedPath path_from_poses(const Robot& robot, const cloud::Cloud& cloud, const PathArguments& options, double mm)
+SolvedPath path_from_poses(const Robot& robot, const cloud::Cloud& cloud, const PathArguments& options, double mm,
+                           const IsClear& is_clear)
 {
     const ExternalRules rules = {parse_rule("--track", options.track, robot.track.has_value(), mm),
                                  parse_rule("--table", options.table, robot.table.has_value(), core::kRadPerDegree)};
@@ -47,7 +48,7 @@ SolvedPath path_from_poses(const Robot& robot, const cloud::Cloud& cloud, const 
     check_not_empty(cloud);
     SolvedPath solved;
     solved.poses = cloud::read_poses(cloud);
-    solved.externals = choose_externals(robot, solved.poses, rules);
+    solved.externals = choose_externals(robot, solved.poses, rules, is_clear);
     solved.external_values = external_values(robot, solved.poses, solved.externals.track, solved.externals.table);
     solved.path = follow_path(robot, solved.poses, solved.external_values, follow_options);
     return solved;
@@ -63,10 +64,11 @@ SolvedPath path_from_joints(const Robot& robot, const cloud::Cloud& cloud, doubl
     return given;
 }
 
-SolvedPath solve_path(const Robot& robot, const cloud::Cloud& cloud, const PathArguments& options, double mm)
+SolvedPath solve_path(const Robot& robot, const cloud::Cloud& cloud, const PathArguments& options, double mm,
+                      const IsClear& is_clear)
 {
     if (cloud::has_field(cloud, "joint1")) return path_from_joints(robot, cloud, options.jump_threshold_deg);
-    return path_from_poses(robot, cloud, options, mm);
+    return path_from_poses(robot, cloud, options, mm, is_clear);
 }
 
 cloud::Cloud all_solutions(const Robot& robot, const cloud::Cloud& cloud, const SolvedPath& solved)

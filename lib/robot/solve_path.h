@@ -28,15 +28,18 @@ struct SolvedPath {
 
 /// Finds joints for the poses of a cloud, see cloud::read_poses().
 /// @param mm  in the length unit of the options
+/// @param is_clear  see choose_externals()
 /// @throws InputError if there are no points, or for an option, then starting with its name
-SolvedPath path_from_poses(const Robot& robot, const cloud::Cloud& cloud, const PathArguments& options, double mm);
+SolvedPath path_from_poses(const Robot& robot, const cloud::Cloud& cloud, const PathArguments& options, double mm,
+                           const IsClear& is_clear = {});
 
 /// Finds the poses for the joints of a cloud, see path_joints(). `externals` is not set.
 /// @throws InputError if there are no points, or a field is missing
 SolvedPath path_from_joints(const Robot& robot, const cloud::Cloud& cloud, double jump_deg);
 
 /// Finds joints for the poses of a cloud, or the poses for its joints if it has these. @throws as both functions above
-SolvedPath solve_path(const Robot& robot, const cloud::Cloud& cloud, const PathArguments& options, double mm);
+SolvedPath solve_path(const Robot& robot, const cloud::Cloud& cloud, const PathArguments& options, double mm,
+                      const IsClear& is_clear = {});
 
 /// Every solution of every pose: the points of the path, repeated, with the fields of the joints, pose and branch.
 cloud::Cloud all_solutions(const Robot& robot, const cloud::Cloud& cloud, const SolvedPath& solved);

@@ -166,6 +166,30 @@ TEST(Follow, StatesNameTheFault)
     EXPECT_TRUE(path.jumps.empty());
 }
 
+TEST(Externals, CollisionsMoveTheTrack)
+{
+    robot::Robot robot = irb1400();
+    robot.track = kTrack;
+    cloud::PosePath poses = circle(50);
+    for (Eigen::Isometry3d& pose : poses) pose.translation().y() += 900;
+    const robot::ExternalChoice unaware = robot::choose_externals(robot, poses, {});
+    const double farther = unaware.track.value + 130;
+    const auto beyond = [&](const robot::CellJoints& joints) { return joints[6] >= farther; };
+    const robot::ExternalChoice clear = robot::choose_externals(robot, poses, {}, beyond);
+    EXPECT_EQ(clear.unreached, 0);
+    EXPECT_EQ(clear.colliding, 0);
+    EXPECT_GE(clear.track.value, farther);
+    EXPECT_LE(clear.singularity, unaware.singularity);
+    // Where each collides, the choice is that of reach.
+    const robot::ExternalChoice none = robot::choose_externals(robot, poses, {}, [](const auto&) { return false; });
+    EXPECT_EQ(none.track.value, unaware.track.value);
+    EXPECT_GT(none.colliding, 0);
+    // The choice of a few poses that cannot be clear is the one with the fewest.
+    const auto half = [&](const robot::CellJoints& joints) { return joints[6] >= farther && joints[0] > 0; };
+    const robot::ExternalChoice fewest = robot::choose_externals(robot, poses, {}, half);
+    EXPECT_LT(fewest.colliding, none.colliding);
+}
+
 TEST(Externals, AxesRestIfAllowed)
 {
     robot::Robot robot = irb1400();
