@@ -134,7 +134,7 @@ $(BELT)/%/pressure.png: $(BELT)/%/contact.pcd $(B)/bin/fettle-render
 	$(RENDER) --field pressure $(ALONG) --title '$*: pressure, MPa'
 $(BELT)/%/removal.png: $(BELT)/%/at-one.pcd $(B)/bin/fettle-render
 	$(RENDER) --field removed $(ALONG) --title '$*: removed at one contact point'
-$(BELT)/%/three.png: $(BELT)/%/at-three.pcd $(B)/bin/fettle-render
+$(BELT)/%/three.png: $(BELT)/%/at-three.pcd $(BELT)/%/one.pcd $(B)/bin/fettle-render
 	$(RENDER) --field removed $(ALONG) --title '$*: removed after three points'
 $(BELT)/%/whole.png: $(BELT)/%/ground.pcd $(B)/bin/fettle-render
 	$(RENDER) --field removed --scale 0.8 --from 1,-2,0.5 --title '$*: removed after the whole path'

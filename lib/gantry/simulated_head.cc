@@ -51,7 +51,7 @@ HeadAndStock head_and_stock(removal::HeightField stock, const job::Job& job)
             job.wheel.radius,
             job.wheel.width,
             job.probe.tip_radius,
-            VirtualOptions().grinding_ratio};
+            job.wheel.grinding_ratio.value_or(kUsualGrindingRatio)};
 }
 
 void write_head(std::ostream& out, const HeadAndStock& head)

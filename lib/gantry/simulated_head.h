@@ -16,7 +16,7 @@ struct HeadAndStock {
     double radius = 0;         ///< of a new wheel, mm
     double width = 0;          ///< of the wheel, mm
     double tip_radius = 0;     ///< of the probe, mm
-    double grinding_ratio = 0; ///< volume of stock per volume of wheel, as in VirtualOptions
+    double grinding_ratio = 0; ///< volume of stock per volume of wheel, as in job::GrindingWheel
 };
 
 HeadAndStock head_and_stock(removal::HeightField stock, const job::Job& job);

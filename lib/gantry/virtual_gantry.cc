@@ -28,12 +28,13 @@ VirtualGantry::VirtualGantry(removal::HeightField stock, const job::Job& job, co
                              const removal::RimForce& rim)
     : stock_(std::move(stock)), wheel_(stock_, job.wheel.width, rim), spring_{job.force.preload, job.force.stiffness},
       options_(options), R_working_machine_(job::rotation_working_machine(job.theta)),
-      removal_(job.removal_coefficient * options.removal_factor), new_radius_(job.wheel.radius),
-      width_(job.wheel.width), safe_height_(job.safe_height), tip_radius_(job.probe.tip_radius),
-      max_force_(job.force.max), radius_(new_radius_), measured_radius_(new_radius_)
+      removal_(job.removal_coefficient * options.removal_factor),
+      grinding_ratio_(options.grinding_ratio.value_or(job.wheel.grinding_ratio.value_or(kUsualGrindingRatio))),
+      new_radius_(job.wheel.radius), width_(job.wheel.width), safe_height_(job.safe_height),
+      tip_radius_(job.probe.tip_radius), max_force_(job.force.max), radius_(new_radius_), measured_radius_(new_radius_)
 {
     check_positive(options_.touch_resolution, "resolution of a touch");
-    check_positive(options_.grinding_ratio, "grinding ratio");
+    check_positive(grinding_ratio_, "grinding ratio");
     check_positive(options_.removal_factor, "removal factor");
     check_positive(options_.substep, "step");
     const Eigen::Vector2d middle = (stock_.centre(0, 0) + stock_.centre(stock_.columns() - 1, stock_.rows() - 1)) / 2;
@@ -84,7 +85,7 @@ void VirtualGantry::change_wheel()
 void VirtualGantry::wear(double removed_volume)
 {
     totals_.removed_volume += removed_volume;
-    radius_ -= removed_volume / options_.grinding_ratio / (2 * std::numbers::pi * radius_ * width_);
+    radius_ -= removed_volume / grinding_ratio_ / (2 * std::numbers::pi * radius_ * width_);
     if (!(radius_ > 0))
         throw core::InputError("gantry", "the wheel is worn away after " + core::to_text(totals_.removed_volume) +
                                              " mm³; it was not changed in time");

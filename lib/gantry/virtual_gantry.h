@@ -9,6 +9,8 @@
 #include "sampling/order.h"
 #include "json/document.h"
 
+#include <optional>
+
 namespace fettle::gantry {
 
 /// Settings that neither the job nor a machine file has.
@@ -19,14 +21,17 @@ struct VirtualOptions {
     double touch_resolution = 0.005;
     sampling::ProbingMachine
         probing; ///< its speeds; it searches for the surface at `approach`, from the safe height on
-    /// Volume of stock ground off per volume of wheel (G ratio). Common wheels have 20 to 80 on steel and iron.
-    double grinding_ratio = 60;
+    std::optional<double> grinding_ratio; ///< overrides the job's
     /// The stock's removal coefficient relative to the job's.
     double removal_factor = 1;
     /// Length of a simulation step in cells. Between two steps the rim leaves a ridge of step² / 8R: 0.0002 mm for
     /// 0.2 mm and R = 25.4 mm.
     double substep = 2;
 };
+
+/// Volume of stock ground off per volume of wheel (G ratio) where the job's wheel has none: from the middle of what
+/// common wheels have on steel and iron, 20 to 80.
+inline constexpr double kUsualGrindingRatio = 60;
 
 /// Totals of a run. mm³, s, mm.
 struct GrindTotals {
@@ -94,6 +99,7 @@ class VirtualGantry : public Gantry {
     VirtualOptions options_;
     Eigen::Matrix2d R_working_machine_;
     double removal_;         ///< c, mm³/(N s)
+    double grinding_ratio_;  ///< volume of stock per volume of wheel
     double new_radius_;      ///< of a new wheel, mm
     double width_;           ///< mm
     double safe_height_;     ///< z, mm

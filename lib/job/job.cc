@@ -113,6 +113,8 @@ void parse_wheel(Reader reader, double mm, GrindingWheel& wheel)
     if (wheel.min_radius > wheel.radius)
         reader.refuse("min_radius", "must be at most the radius, " + core::to_short_text(wheel.radius / mm) + ", got " +
                                         core::to_short_text(wheel.min_radius / mm));
+    if (reader.has("grinding_ratio")) wheel.grinding_ratio = reader.number("grinding_ratio", core::Range::positive());
+    wheel.source = reader.text_or("source", "");
     reader.reject_unknown_keys();
 }
 
@@ -260,6 +262,13 @@ Value to_json(const Job& job)
     surface.set("type", to_string(job.surface));
     if (job.surface == SurfaceType::swept) surface.set("direction_deg", in(job.ruling_direction, core::kRadPerDegree));
 
+    Value wheel;
+    wheel.set("radius", in(job.wheel.radius, mm))
+        .set("width", in(job.wheel.width, mm))
+        .set("min_radius", in(job.wheel.min_radius, mm));
+    if (job.wheel.grinding_ratio) wheel.set("grinding_ratio", *job.wheel.grinding_ratio);
+    if (!job.wheel.source.empty()) wheel.set("source", job.wheel.source);
+
     Value value;
     value.set("kind", "job")
         .set("units", json::to_json(job.units))
@@ -272,11 +281,7 @@ Value to_json(const Job& job)
              Value().set("accuracy", in(job.probe.accuracy, mm)).set("tip_radius", in(job.probe.tip_radius, mm)))
         .set("tolerance", in(job.tolerance, mm));
     if (job.is_safe_height_known) value.set("safe_height", in(job.safe_height, mm));
-    value
-        .set("wheel", Value()
-                          .set("radius", in(job.wheel.radius, mm))
-                          .set("width", in(job.wheel.width, mm))
-                          .set("min_radius", in(job.wheel.min_radius, mm)))
+    value.set("wheel", wheel)
         .set("force", Value()
                           .set("min", in(job.force.min, newton))
                           .set("down", in(job.force.down, newton))

@@ -29,6 +29,9 @@ struct GrindingWheel {
     double radius = 25.4;     ///< mm
     double width = 6.35;      ///< along its axis X_w, mm
     double min_radius = 12.7; ///< below it the wheel is worn out, mm; default of a job: half the radius
+    /// Volume of stock ground off per volume of wheel (G ratio), of a simulated wheel; none: the job does not say it.
+    std::optional<double> grinding_ratio{};
+    std::string source{}; ///< where the ratio comes from; may be empty
 };
 
 /// Force bounds and spring of the grinding head (Wang 2007, 5.3.1): force = preload + stiffness · deflection.

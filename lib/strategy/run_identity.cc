@@ -55,7 +55,7 @@ std::string digest(const removal::HeightField& field)
 RunIdentity identity_of(const plan::Plan& plan, const removal::HeightField& stock, Layer1 layer_1)
 {
     const job::Job& job = plan.job;
-    const auto& [radius, width, min_radius] = job.wheel;
+    const job::GrindingWheel& wheel = job.wheel;
     const job::ForceRange& force = job.force;
     std::string frame = core::to_text(job.theta) + ' ';
     if (job.T_part_job)
@@ -65,7 +65,7 @@ RunIdentity identity_of(const plan::Plan& plan, const removal::HeightField& stoc
              {"job.anomaly", digest(job.anomaly)},
              {"job.tolerance", digest({job.tolerance})},
              {"job.safe_height", digest({job.safe_height})},
-             {"job.wheel", digest({radius, width, min_radius})},
+             {"job.wheel", digest({wheel.radius, wheel.width, wheel.min_radius})},
              {"job.force", digest({force.min, force.down, force.max, force.stiffness, force.preload})},
              {"job.feed", digest({double(job.feed.axis), job.feed.rate, job.feed.step_over})},
              {"job.removal", digest({job.removal_coefficient})},

@@ -229,6 +229,11 @@ TEST(QuasiStatic, WheelWearsByTheGrindingRatio)
     gantry.change_wheel();
     EXPECT_EQ(gantry.true_radius(), 25.4);
 
+    job.wheel.grinding_ratio = 5; // the job's wheel says it as well
+    gantry::QuasiStaticGantry again(flat(), job, {});
+    pass(again, kTop - 1, 25.4);
+    EXPECT_EQ(again.true_radius(), r);
+
     options.grinding_ratio = 1e-3;
     gantry::QuasiStaticGantry soft(flat(), job, options);
     const auto grind_on = [&] {

@@ -38,7 +38,7 @@ TEST(Job, ConvertsEveryNumberToBaseUnits)
       "frame": {"theta_deg": 90}, "surface": {"type": "swept", "direction_deg": 45},
       "anomaly": [[1,1,0.5],[2,1],[2,2],[1,2]], "sampling": [[0,0,0],[3,0,0],[3,3,0],[0,3,0]],
       "probe": {"accuracy": 0.005, "tip_radius": 0.1}, "tolerance": 0.02, "safe_height": 2,
-      "wheel": {"radius": 3, "width": 0.5, "min_radius": 2},
+      "wheel": {"radius": 3, "width": 0.5, "min_radius": 2, "grinding_ratio": 35, "source": "fettle-calibrate"},
       "force": {"min": 20, "down": 40, "max": 60, "stiffness": 200, "preload": 1},
       "feed": {"axis": "x", "rate": 2, "step_over": 0.25}, "removal": {"coefficient": 1e-3}})");
     const double in = 25.4, lbf = 4.4482216152605;
@@ -53,6 +53,8 @@ TEST(Job, ConvertsEveryNumberToBaseUnits)
     EXPECT_DOUBLE_EQ(job.tolerance, 0.02 * in);
     EXPECT_DOUBLE_EQ(job.safe_height, 2 * in);
     EXPECT_DOUBLE_EQ(job.wheel.min_radius, 2 * in);
+    EXPECT_EQ(job.wheel.grinding_ratio, 35);
+    EXPECT_EQ(job.wheel.source, "fettle-calibrate");
     EXPECT_DOUBLE_EQ(job.force.down, 40 * lbf);
     EXPECT_DOUBLE_EQ(job.force.stiffness, 200 * lbf / in);
     EXPECT_DOUBLE_EQ(job.feed.rate, 2 * in);
@@ -127,6 +129,7 @@ TEST(Job, RefusesWithTheKey)
     expect(R"(, "feed": {"rate": -1})", "feed.rate: must be positive, got -1");
     expect(R"(, "wheel": {"width": 0.25}, "feed": {"step_over": 0.5})",
            "feed.step_over: wider than the wheel, 0.25: 0.5 leaves ridges");
+    expect(R"(, "wheel": {"grinding_ratio": 0})", "wheel.grinding_ratio: must be positive, got 0");
     expect(R"(, "wheel": {"radius": 1, "min_radius": 2})", "wheel.min_radius: must be at most the radius, 1, got 2");
     expect(R"(, "tolerance": 0)", "tolerance: must be positive, got 0");
     expect(R"(, "feed": {"axes": "x"})", "feed.axes: unknown key, did you mean \"axis\"?");
