@@ -96,6 +96,23 @@ class Buckets {
     Matrix3Xd points_;
 };
 
+/// Is the query in the convex hull of its neighbours, so that its height is interpolated and not extrapolated? It is
+/// not if all lie on one side of a line through it and one of them.
+bool is_surrounded(const Vector2d& query, const Nearest& near, const Matrix3Xd& points)
+{
+    std::array<Vector2d, kMaxGridNeighbours> offsets;
+    for (Index k = 0; k < near.count; ++k) offsets[k] = points.col(near.index[k]).head<2>() - query;
+    for (Index i = 0; i < near.count; ++i) {
+        bool has_right = false; // or straight across
+        for (Index j = 0; j < near.count; ++j) {
+            const double cross = offsets[i].x() * offsets[j].y() - offsets[i].y() * offsets[j].x();
+            has_right = has_right || cross < 0 || (cross == 0 && offsets[i].dot(offsets[j]) < 0);
+        }
+        if (!has_right) return false;
+    }
+    return true;
+}
+
 double shepard(const Nearest& near, const Matrix3Xd& points)
 {
     double sum = 0, weights = 0;
@@ -196,7 +213,11 @@ Eigen::MatrixXd interpolate_heights(const ContactGrid& grid, const Matrix3Xd& po
     if (points.cols() == 0) return heights;
     const Buckets buckets(points);
     const double spacing = mean_spacing(points);
-    constexpr double kMaxNearestSpacings = 2, kSearchRadiusSpacings = 3;
+    // A surfel stands for a square of one spacing. The part ends where those of its last surfels do: discs of this
+    // radius reach half a spacing, on average, beyond a straight row of them. A cell that is half beyond still carries
+    // load. A gap between surfels is bridged, up to a width.
+    constexpr double kSurfelRadiusSpacings = 0.583, kMaxBridgeSpacings = 2, kSearchRadiusSpacings = 3;
+    const double max_distance = kSurfelRadiusSpacings * spacing + grid.cell_size.maxCoeff() / 2;
     tbb::parallel_for(Index{0}, grid.columns, [&](Index column) {
         KrigingOfFour kriging;
         Index rows[KrigingOfFour::kLanes], lanes = 0;
@@ -208,7 +229,10 @@ Eigen::MatrixXd interpolate_heights(const ContactGrid& grid, const Matrix3Xd& po
         for (Index row = 0; row < grid.rows; ++row) {
             const Vector2d center = grid.cell_center(row, column);
             const Nearest near = buckets.nearest(center, kSearchRadiusSpacings * spacing);
-            if (near.count == 0 || !(std::sqrt(near.squared_distance[0]) <= kMaxNearestSpacings * spacing)) continue;
+            if (near.count == 0) continue;
+            const double nearest = std::sqrt(near.squared_distance[0]);
+            if (!(nearest <= std::max(kMaxBridgeSpacings * spacing, max_distance))) continue;
+            if (nearest > max_distance && !is_surrounded(center, near, buckets.points())) continue;
             if (gridding == Gridding::shepard) {
                 heights(row, column) = shepard(near, buckets.points());
                 continue;

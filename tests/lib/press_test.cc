@@ -66,6 +66,19 @@ TEST(Gridding, WeighsThreeSurfels)
     EXPECT_NEAR(belt::interpolate_heights(one, points, belt::Gridding::kriging)(0, 0), 3 * w + 6 * v, 1e-12);
 }
 
+// The part ends half a spacing and half a cell beyond its last surfels, and goes on over a gap of one.
+TEST(Gridding, StopsBesideTheLastSurfels)
+{
+    Eigen::Matrix3Xd points(3, 11 * 11 - 1);
+    for (Index i = 0, k = 0; i < 11; ++i)
+        for (Index j = 0; j < 11; ++j)
+            if (i != 5 || j != 5) points.col(k++) = Eigen::Vector3d(double(i) - 5, double(j) - 5, 1);
+    const MatrixXd heights = belt::interpolate_heights({{0.125, 0.125}, 160, 160}, points, belt::Gridding::kriging);
+    const auto covered = static_cast<double>(heights.array().isFinite().count());
+    EXPECT_NEAR(covered * 0.125 * 0.125, 11.125 * 11.125, 0.02 * 11 * 11);
+    EXPECT_NEAR(heights(80, 80), 1, 1e-9);
+}
+
 TEST(Gridding, StopsWhereThereAreNoSurfels)
 {
     Eigen::Matrix3Xd points = spread(900, 30, [](double x, double) { return 0.1 * x; });
