@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -248,6 +249,28 @@ TEST(Reconstruct, ProfilesAreJoinedAlongTheirOrder)
         scan.xyz.col(i - 1).swap(scan.xyz.col(other));
     }
     EXPECT_FALSE(cloud::find_profiles(scan.xyz));
+}
+
+// A sphere thinned to one point in each cube of a grid, in the order of the cubes: rows that run one way, and yet no
+// profiles, since the points lie anywhere in their cubes. The Delaunay stars leave out next to none.
+TEST(Reconstruct, RowsOfCubesAreNoProfiles)
+{
+    std::mt19937_64 random(4);
+    std::normal_distribution<double> normal;
+    std::map<std::array<int, 3>, Eigen::Vector3d> cubes; // by z, y, x
+    for (int k = 0; k < 100'000; ++k) {
+        const Eigen::Vector3d p = 20 * Eigen::Vector3d(normal(random), normal(random), normal(random)).normalized();
+        const Eigen::Array3i cube = p.array().floor().cast<int>();
+        cubes.try_emplace({cube.z(), cube.y(), cube.x()}, p);
+    }
+    cloud::Cloud scan;
+    scan.xyz.resize(3, std::ssize(cubes));
+    Eigen::Index next = 0;
+    for (const auto& [cube, point] : cubes) scan.xyz.col(next++) = point;
+    EXPECT_FALSE(cloud::find_profiles(scan.xyz));
+    const Reconstruction result = reconstruct::reconstruct(scan, {});
+    EXPECT_EQ(result.order, "none");
+    EXPECT_LT(static_cast<double>(result.left_out), 0.01 * static_cast<double>(scan.size()));
 }
 
 TEST(Reconstruct, GridsKeepTheirHoles)
