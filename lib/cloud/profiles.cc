@@ -14,7 +14,7 @@ constexpr double kMinReturnSteps = 10;     // of a return to the begin of the ne
 constexpr double kMaxStepSteps = 5;        // longer steps cross gaps, and say nothing about the direction
 constexpr Eigen::Index kMinProfiles = 3;   // two are no surface that is wider than a gap
 constexpr Eigen::Index kMinMeanPoints = 5; // points in any other order seldom advance as often
-constexpr double kMaxSideStep = 0.05;      // of neighbouring points across their profile; rows of cubes have 0.08 to 0.2
+constexpr double kMaxSideStep = 0.05; // of neighbouring points across their profile; rows of cubes have 0.08 to 0.2
 constexpr double kMaxBackwardShare =
     0.2; // of all steps: reflections, noise, overhangs; half of them in any other order
 
