@@ -113,4 +113,39 @@ SurfaceFoot foot_on_surface(const Adaptor3d_Surface& surface, const Eigen::Vecto
     return {uv, d.point, is_held[0] || is_held[1]};
 }
 
+CurveFoot foot_on_curve(const Adaptor3d_Curve& curve, double start, const Eigen::Vector3d& point)
+{
+    const double first = curve.FirstParameter(), last = curve.LastParameter();
+    const double smallest = kStep * (1 + point.cwiseAbs().maxCoeff());
+    gp_Pnt p;
+    gp_Vec d1, d2;
+    double t = std::clamp(start, first, last), damping = 0;
+    curve.D2(t, p, d1, d2);
+    Eigen::Vector3d at = vector_of(p), tangent = vector_of(d1), second = vector_of(d2);
+    for (int step = 0; step < kMaxSteps && damping < kMaxDamping; ++step) {
+        const Eigen::Vector3d r = at - point;
+        const double gradient = r.dot(tangent), metric = tangent.squaredNorm();
+        const double hessian = metric + r.dot(second);
+        if (!(metric > 0)) break;
+        const double by = -gradient / ((hessian > 0 ? hessian : metric) + damping * metric);
+        const double next = std::clamp(t + by, first, last);
+        const double moved = std::abs(next - t) * std::sqrt(metric);
+        curve.D2(next, p, d1, d2);
+        if ((vector_of(p) - point).squaredNorm() <= r.squaredNorm()) {
+            t = next;
+            at = vector_of(p);
+            tangent = vector_of(d1);
+            second = vector_of(d2);
+            damping = damping > kMinDamping ? damping / 10 : 0;
+            if (moved <= smallest) break;
+        } else {
+            if (moved <= smallest) break; // rounding alone
+            damping = std::max(kMinDamping, 10 * damping);
+        }
+    }
+    const double length = tangent.norm();
+    constexpr double kEnd = 1e-7; // mm: OpenCASCADE's own tolerance of points
+    return {t, at, (t - first) * length <= kEnd || (last - t) * length <= kEnd};
+}
+
 } // namespace fettle::cad

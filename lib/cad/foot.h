@@ -2,6 +2,7 @@
 
 // For the files of this module alone.
 
+#include <Adaptor3d_Curve.hxx>
 #include <Adaptor3d_Surface.hxx>
 
 #include <Eigen/Core>
@@ -20,5 +21,15 @@ struct SurfaceFoot {
 /// @param start  u and v to begin with
 SurfaceFoot foot_on_surface(const Adaptor3d_Surface& surface, const Eigen::Vector2d& start,
                             const Eigen::Vector3d& point);
+
+/// The point of a curve closest to a point, near where the search starts, between the ends of the curve.
+struct CurveFoot {
+    double t = 0;
+    Eigen::Vector3d point;  ///< of the curve, mm
+    bool is_at_end = false; ///< of the curve
+};
+
+/// Newton's method, as foot_on_surface().
+CurveFoot foot_on_curve(const Adaptor3d_Curve& curve, double start, const Eigen::Vector3d& point);
 
 } // namespace fettle::cad

@@ -16,7 +16,11 @@ refuses 'none.stp: has no solid, and no face' none.stp
 first=$(grep -m 1 -o '^#[0-9]* = ADVANCED_FACE(' good.stp)
 sed "s/^$first/${first%% =*} = ADVANCED_FOCE(/" good.stp > broken.stp
 refuses 'cannot be built' broken.stp --tolerance 1
-refuses "'.pcd' is no format of this output: .stl, .ply" good.stp -o x.pcd
+refuses "'.obj' is no format of this output: .stl, .ply, .pcd, .csv, .vtk" good.stp -o x.obj
+refuses '--exact: is what writes .pcd; triangles go to .stl or .ply' good.stp -o x.pcd
+printf '0 0 0\n1 2 3\n' > points.xyz
+refuses '--exact: writes points: .pcd, .ply, .csv or .vtk, not .stl' good.stp --exact points.xyz -o x.stl
+refuses 'missing.xyz: cannot open' good.stp --exact missing.xyz
 refuses '--tolerance' good.stp --tolerance 0
 # What floats cannot hold would take all memory. Reference: they are 3.8e-6 mm apart at 60 mm.
 refuses 'clamp.step: reaches to 60 mm, where the floats of the output allow no tolerance under' "$SAMPLES/designs/clamp.step" --tolerance 1e-6

@@ -1,5 +1,6 @@
 // Solids that OpenCASCADE makes and writes are read and triangulated. References: closed forms of the solids.
 
+#include "cad/exact_distance.h"
 #include "cad/triangulation.h"
 #include "core/error.h"
 
@@ -202,6 +203,65 @@ TEST(Cad, AToleranceBelowTheRoundingOfTheFileIsRefused)
     const cad::Design design = cad::read_design(written(BRepPrimAPI_MakeBox(1e3, 1e3, 1e3).Shape(), "box"), 0.01);
     EXPECT_NO_THROW(cad::triangulate(design, 1e-3));
     EXPECT_THROW(cad::triangulate(design, 1e-6), core::InputError);
+}
+
+/// Signed distance of a capped cone frustum about z: radius r0 at z = 0, r1 at z = h.
+double frustum_distance(const Eigen::Vector3d& p, double r0, double r1, double h)
+{
+    const Eigen::Vector2d q(std::hypot(p.x(), p.y()), p.z());
+    const auto to_line = [&](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+        const double t = std::clamp((q - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
+        return (a + t * (b - a) - q).norm();
+    };
+    const double d = std::min({to_line({0, 0}, {r0, 0}), to_line({r0, 0}, {r1, h}), to_line({r1, h}, {0, h})});
+    const bool is_inside = q.y() > 0 && q.y() < h && q.x() < r0 + (r1 - r0) * q.y() / h;
+    return is_inside ? -d : d;
+}
+
+double box_distance(const Eigen::Vector3d& p, const Eigen::Vector3d& size)
+{
+    const Eigen::Vector3d q = (p - size / 2).cwiseAbs() - size / 2;
+    return q.cwiseMax(0).norm() + std::min(q.maxCoeff(), 0.0);
+}
+
+TEST(Cad, ExactDistancesAreThoseOfClosedForms)
+{
+    using Distance = std::function<double(const Eigen::Vector3d&)>;
+    const auto ring = [](const Eigen::Vector3d& p) { return std::hypot(std::hypot(p.x(), p.y()) - 20, p.z()) - 6; };
+    const auto of_frustum = [](double r0, double r1, double h) {
+        return [=](const Eigen::Vector3d& p) { return frustum_distance(p, r0, r1, h); };
+    };
+    const TopoDS_Shape sphere = BRepPrimAPI_MakeSphere(15).Shape(), torus = BRepPrimAPI_MakeTorus(20, 6).Shape();
+    const TopoDS_Shape frustum = BRepPrimAPI_MakeCone(10, 4, 24).Shape();
+    const std::vector<std::pair<TopoDS_Shape, Distance>> cases = {
+        {sphere, [](const Eigen::Vector3d& p) { return p.norm() - 15; }},
+        {BRepPrimAPI_MakeCylinder(8, 30).Shape(), of_frustum(8, 8, 30)},
+        {BRepPrimAPI_MakeCone(10, 0, 24).Shape(), of_frustum(10, 0, 24)},
+        {frustum, of_frustum(10, 4, 24)},
+        {torus, ring},
+        {BRepPrimAPI_MakeBox(10, 20, 30).Shape(),
+         [](const Eigen::Vector3d& p) {
+             return box_distance(p, {10, 20, 30});
+         }},
+        {BRepBuilderAPI_NurbsConvert(sphere).Shape(), [](const Eigen::Vector3d& p) { return p.norm() - 15; }},
+        {BRepBuilderAPI_NurbsConvert(torus).Shape(), ring},
+        {BRepBuilderAPI_NurbsConvert(frustum).Shape(), of_frustum(10, 4, 24)}};
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+        SCOPED_TRACE(i);
+        const cad::Design design = cad::read_design(written(cases[i].first, "exact"), 0.01);
+        const cad::Triangulation triangulation = cad::triangulate(design, kTolerance);
+        srand(1);
+        Eigen::Matrix3Xd points = 32 * Eigen::Matrix3Xd::Random(3, 400); // far and near
+        points.rightCols(200) = triangulation.mesh.vertices(
+            Eigen::all, Eigen::VectorXi::LinSpaced(200, 0, static_cast<int>(triangulation.mesh.vertices.cols()) - 1));
+        points.rightCols(200) += 0.5 * Eigen::Matrix3Xd::Random(3, 200); // at edges, seams, corners and poles
+        const cad::ExactDistances found = cad::ExactDistance(design, triangulation)(points);
+        for (Eigen::Index k = 0; k < points.cols(); ++k) {
+            EXPECT_NEAR(found.error[k], cases[i].second(points.col(k)), 1e-6) << points.col(k).transpose();
+            EXPECT_NEAR((points.col(k) - found.foot.col(k)).norm(), std::abs(found.error[k]), 1e-12);
+            EXPECT_GE(found.face[k], 0);
+        }
+    }
 }
 
 } // namespace cad_test
