@@ -26,7 +26,8 @@ UPPER   ?= 0.05
 # N, mm/s
 PRESS   ?= 10
 FEED    ?= 6
-WHEEL   ?= samples/wheels/crowned_preston.json
+# Its law is fitted to measured trials; WHEEL=samples/wheels/crowned_preston.json: Preston's.
+WHEEL   ?= samples/wheels/crowned.json
 # Distance of the points along a row, mm; limits of planned feeds.
 STEP    ?= 1.25
 LIMITS_feed := --min 0.5 --max 200

@@ -5,7 +5,7 @@
 root=$HERE/../..
 build=$(dirname "$(dirname "$(command -v fettle-surfel)")")
 unset MAKEFLAGS MFLAGS MAKELEVEL
-make --no-print-directory -s -C "$root" -f pipelines/belt.mk B="$build" BELT="$PWD/out" SPACING=1 STEP=2.5 > table
+make --no-print-directory -s -C "$root" -f pipelines/belt.mk B="$build" BELT="$PWD/out" SPACING=1 STEP=2.5 WHEEL=samples/wheels/crowned_preston.json > table
 grep -q '^blade ' table
 # Planned feeds leave 95 % of the design's area and more within the tolerance; each patch has its line.
 awk '$1 == "all:" { share = $2 } $1 == "patch" { ++patches } END { exit !(share >= 0.95 && patches == 2) }' table
