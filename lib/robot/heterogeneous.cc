@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <variant>
 
 namespace fettle::robot {
@@ -42,18 +43,16 @@ HeterogeneousModel::HeterogeneousModel(const Workpiece& workpiece, std::span<con
     for (const Vector3d& axis : axes) {
         const auto is_near = [&](const Grid& g) { return g.normal.dot(axis) >= std::cos(kMaxTiltToGrid); };
         if (std::ranges::any_of(grids_, is_near)) continue;
-        Grid grid{HeightGrid(workpiece.mesh(), axis, options.cell_size, options.formulas), {}, {}, {}, axis};
-        grid.occupied = grid.heights.occupied();
-        grid.cuboids = std::make_unique<mesh::Mesh>(grid.heights.cuboids());
-        grid.workpiece = std::make_unique<Workpiece>(*grid.cuboids);
-        grids_.push_back(std::move(grid));
+        auto heights = std::make_unique<HeightGrid>(workpiece.mesh(), axis, options.cell_size, options.formulas);
+        auto cuboids = std::make_unique<CuboidSearch>(*heights);
+        grids_.push_back({std::move(heights), std::move(cuboids), axis});
     }
 }
 
 double HeterogeneousModel::accuracy() const
 {
     double max = 0;
-    for (const Grid& grid : grids_) max = std::max(max, grid.heights.accuracy);
+    for (const Grid& grid : grids_) max = std::max(max, grid.heights->accuracy);
     return max;
 }
 
@@ -61,16 +60,18 @@ ToolZone HeterogeneousModel::tool_zone(const Robot& robot, const Isometry3d& T_p
 {
     const Vector3d axis = T_part_tool.linear().col(2);
     const auto nearest = std::ranges::max_element(grids_, {}, [&](const Grid& g) { return g.normal.dot(axis); });
-    ToolZone zone{std::size_t(nearest - grids_.begin()), std::vector<char>(nearest->heights.heights.size())};
+    ToolZone zone{std::size_t(nearest - grids_.begin()), std::vector<char>(nearest->heights->heights.size())};
     for (const Body& body : robot.bodies)
-        if (body.link == link::kTool)
-            nearest->heights.mark(nearest->heights.footprint(body.solid, T_part_tool, options_.formulas), zone.cells);
+        if (body.link == link::kTool) {
+            zone.footprints.push_back(nearest->heights->footprint(body.solid, T_part_tool, options_.formulas));
+            nearest->heights->mark(zone.footprints.back(), zone.cells);
+        }
     return zone;
 }
 
 bool HeterogeneousModel::touches_zone(const Grid& grid, std::size_t triangle, const ToolZone& zone)
 {
-    return std::ranges::any_of(grid.heights.triangle_cells[triangle],
+    return std::ranges::any_of(grid.heights->triangle_cells[triangle],
                                [&](std::uint32_t c) { return zone.cells[c] != 0; });
 }
 
@@ -99,22 +100,28 @@ Workpiece::Nearest HeterogeneousModel::nearest(const Solid& solid, const Isometr
         return workpiece_.nearest(body, max_distance);
     const Workpiece::Nearest to_triangles = nearest_triangle(solid, T_part_body, zone, max_distance);
     const Grid& grid = grids_[zone.grid];
-    const auto out_of_zone = [&](Eigen::Index side) { return zone.cells[grid.occupied[side / 12]] == 0; };
-    Workpiece::Nearest to_cuboids = grid.workpiece->nearest_of(body, to_triangles.clearance.distance, out_of_zone);
-    if (to_cuboids.triangle < 0) return to_triangles;
-    to_cuboids.triangle = -1; // a cuboid's side is not a triangle of the workpiece
-    return to_cuboids;
+    const Isometry3d& T_grid_part = grid.heights->T_grid_part;
+    const std::optional<Clearance> to_cuboids = grid.cuboids->nearest(
+        PlacedSolid(solid, T_grid_part * T_part_body), to_triangles.clearance.distance, zone.cells, zone.footprints);
+    if (!to_cuboids) return to_triangles;
+    const Isometry3d T_part_grid = T_grid_part.inverse();
+    Workpiece::Nearest found; // of no triangle
+    found.clearance = {to_cuboids->distance, T_part_grid.linear() * to_cuboids->normal, T_part_grid * to_cuboids->on_a,
+                       T_part_grid * to_cuboids->on_b};
+    return found;
 }
 
 HeterogeneousModel::Geometry HeterogeneousModel::geometry(const ToolZone& zone) const
 {
     const Grid& grid = grids_[zone.grid];
     std::vector<Eigen::Index> triangles, sides;
-    for (std::size_t t = 0; t < grid.heights.triangle_cells.size(); ++t)
+    for (std::size_t t = 0; t < grid.heights->triangle_cells.size(); ++t)
         if (touches_zone(grid, t, zone)) triangles.push_back(t);
-    for (Eigen::Index side = 0; side < grid.cuboids->triangles.cols(); ++side)
-        if (zone.cells[grid.occupied[side / 12]] == 0) sides.push_back(side);
-    return {submesh(workpiece_.mesh(), triangles), submesh(*grid.cuboids, sides)};
+    const mesh::Mesh cuboids = grid.heights->cuboids();
+    const std::vector<std::size_t> occupied = grid.heights->occupied();
+    for (Eigen::Index side = 0; side < cuboids.triangles.cols(); ++side)
+        if (zone.cells[occupied[side / 12]] == 0) sides.push_back(side);
+    return {submesh(workpiece_.mesh(), triangles), submesh(cuboids, sides)};
 }
 
 } // namespace fettle::robot

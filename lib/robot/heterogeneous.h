@@ -1,5 +1,6 @@
 #pragma once
 
+#include "robot/cuboid_search.h"
 #include "robot/externals.h"
 #include "robot/height_grid.h"
 #include "robot/robot.h"
@@ -27,7 +28,8 @@ struct HeterogeneousOptions {
 /// The cells of a grid that the tool projects to. These are represented by their triangles, all others by cuboids.
 struct ToolZone {
     std::size_t grid = 0;
-    std::vector<char> cells; ///< by cell of the grid: 1 if the tool projects to it
+    std::vector<char> cells;             ///< by cell of the grid: 1 if the tool projects to it
+    std::vector<Footprint> footprints{}; ///< of the tool's bodies; all cells that they touch are among these
 };
 
 /// A workpiece by Chen & Wei's heterogeneous resolution (section 4): triangles where the tool projects to, cuboids
@@ -44,7 +46,7 @@ class HeterogeneousModel {
     ToolZone tool_zone(const Robot& robot, const Eigen::Isometry3d& T_part_tool) const;
     /// Minimum signed distance of the model from a body, see Workpiece::nearest(). With the corrected formulas it is
     /// never larger than that, and, where the surface is visible along the tool's axis, smaller by no more than
-    /// accuracy(). In the zone it is the same.
+    /// accuracy(). In the zone it is the same. The depth in a cuboid is the shortest shift that leaves it.
     Workpiece::Nearest nearest(const Solid& solid, const Eigen::Isometry3d& T_part_body, const ToolZone& zone,
                                double max_distance) const;
 
@@ -61,11 +63,9 @@ class HeterogeneousModel {
 
   private:
     struct Grid {
-        HeightGrid heights;
-        std::vector<std::size_t> occupied;
-        std::unique_ptr<mesh::Mesh> cuboids;
-        std::unique_ptr<Workpiece> workpiece; ///< for distances from the cuboids
-        Eigen::Vector3d normal;               ///< unit, part frame
+        std::unique_ptr<HeightGrid> heights;
+        std::unique_ptr<CuboidSearch> cuboids;
+        Eigen::Vector3d normal; ///< unit, part frame
     };
     static bool touches_zone(const Grid& grid, std::size_t triangle, const ToolZone& zone);
     Workpiece::Nearest nearest_triangle(const Solid& solid, const Eigen::Isometry3d& T_part_body, const ToolZone& zone,

@@ -2,6 +2,7 @@
 #include "cube.h"
 
 #include "core/direction.h"
+#include "robot/cuboid_search.h"
 #include "robot/heterogeneous.h"
 
 #include <Eigen/Geometry>
@@ -205,6 +206,51 @@ TEST(HeightGrid, Equation22IsTooShort)
                 workpiece.nearest(robot::PlacedSolid(spindle, T)).clearance.distance, 1e-6);
     EXPECT_EQ(distance(robot::Formulas::corrected).second, 1);
     EXPECT_EQ(distance(robot::Formulas::published).second, 0);
+}
+
+// Reference: box by box.
+TEST(CuboidSearch, AsBoxByBox)
+{
+    const robot::HeightGrid grid(boat::hull(2000), Vector3d(0.2, -0.1, 1).normalized(), 7, robot::Formulas::corrected);
+    const robot::CuboidSearch search(grid);
+    std::mt19937 random(5);
+    const auto number = [&](double min, double max) {
+        return std::uniform_real_distribution<double>(min, max)(random);
+    };
+    const std::vector<robot::Solid> bodies = {
+        robot::solid::Sphere{{0, 0, 0}, 6}, robot::solid::Cylinder{{0, 0, 0}, {0, 0, 90}, 25},
+        robot::solid::Cone{{0, 0, 0}, {0, 0, 30}, 12, 25},
+        robot::solid::Box{Isometry3d(Eigen::Translation3d(20, 0, 40)), {70, 50, 10}}};
+    int deep = 0, none = 0;
+    for (int k = 0; k < 400; ++k) {
+        const robot::Solid& solid = bodies[static_cast<std::size_t>(k) % bodies.size()];
+        Isometry3d T(Eigen::Translation3d(number(-20, 320), number(-20, 140), number(0, 160)));
+        T.rotate(Eigen::AngleAxisd(number(-0.6, 0.6), Vector3d(number(-1, 1), number(-1, 1), 0.1).normalized()));
+        const robot::PlacedSolid body(solid, T);
+        const std::vector<robot::Footprint> areas = {
+            grid.footprint(bodies[0], grid.T_grid_part.inverse() * T, robot::Formulas::corrected),
+            grid.footprint(bodies[3], grid.T_grid_part.inverse() * T, robot::Formulas::corrected)};
+        std::vector<char> left_out(grid.heights.size(), 0);
+        if (k % 2 == 0)
+            for (const robot::Footprint& area : areas) grid.mark(area, left_out);
+        const double max = k % 3 == 0 ? 20 : 500;
+        double expected = max;
+        for (const std::size_t c : grid.occupied()) {
+            if (left_out[c] != 0) continue;
+            const Vector3d half = Vector3d(grid.cell_size, grid.cell_size, grid.heights[c]) / 2,
+                           min(grid.cell_size * static_cast<double>(c % static_cast<std::size_t>(grid.columns)),
+                               grid.cell_size * static_cast<double>(c / static_cast<std::size_t>(grid.columns)), 0);
+            const robot::Solid box = robot::solid::Box{Isometry3d(Eigen::Translation3d(min + half)), half};
+            expected =
+                std::min(expected, robot::clearance(body, robot::PlacedSolid(box, Isometry3d::Identity())).distance);
+        }
+        const auto found = search.nearest(body, max, left_out, k % 2 == 0 ? areas : std::vector<robot::Footprint>{});
+        EXPECT_NEAR(found ? found->distance : max, expected, robot::kClearanceAccuracy) << k;
+        deep += expected < 0;
+        none += !found;
+    }
+    EXPECT_GT(deep, 100);
+    EXPECT_GT(none, 10);
 }
 
 // Deep inside a body neither its triangles nor the cuboids are near: the depth is that of the workpiece itself. By
