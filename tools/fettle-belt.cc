@@ -79,7 +79,7 @@ belt::BeltOptions belt_options(const Options& given, double mm)
 
 belt::BeltRun grind(cli::Tool& t, Options& given, const belt::BeltOptions& options, belt::Surfels& surfels,
                     const belt::ContactWheel& wheel, const std::vector<belt::BeltPoint>& path, double mm,
-                    calibrate::BeltLearning* learning)
+                    const std::string& path_file, calibrate::BeltLearning* learning)
 {
     std::optional<belt::BeltErrorLog> log;
     if (given.lower) log.emplace(given.watch, mm);
@@ -97,7 +97,12 @@ belt::BeltRun grind(cli::Tool& t, Options& given, const belt::BeltOptions& optio
     };
     const belt::BeltJournal journal{given.journal, given.journal_interval,
                                     learning ? learning->context_digest() : std::string()};
-    return belt::grind(surfels, wheel, path, options, journal, listener, learning, t.progress("grinding"));
+    try {
+        return belt::grind(surfels, wheel, path, options, journal, listener, learning, t.progress("grinding"));
+    } catch (const core::InputError& error) { // about a point of the path
+        if (!std::string(error.what()).starts_with("point ")) throw;
+        throw core::InputError(core::display_name(path_file), error.what());
+    }
 }
 
 /// The wheel as it is in truth: its law may be another one than that for which the path was planned.
@@ -114,6 +119,15 @@ void write_law(cli::Tool& t, const Options& options, const std::string& path_fil
     for (const std::string& line : learning.warnings()) t.warn(core::display_name(path_file) + ": " + line);
     t.report().set("learnt", learning.report());
     if (learning.is_informed()) t.output_file(options.learn) << learning.file();
+}
+
+void write_surfels(const cloud::CloudOutput& out, belt::SurfelFile& ground, Eigen::VectorXd removed)
+{
+    cloud::Cloud& cloud = ground.file.cloud;
+    if (cloud::has_field(cloud, "removed")) removed += cloud::field(cloud, "removed");
+    cloud::set_field(cloud, "displacement", ground.surfels.displacement, 8);
+    cloud::set_field(cloud, "removed", removed, 8);
+    out.write(cloud, ground.file.units);
 }
 
 } // namespace
@@ -158,25 +172,15 @@ int main(int argc, char** argv)
             core::OutputFile{options.learn}; // where it cannot be written, that is said before the part is ground
             learning.emplace(options.learn, wheel, belt_options, ground.surfels, belt_points);
         }
-        belt::BeltRun run;
-        try {
-            run = grind(t, options, belt_options, ground.surfels, actual_wheel(options, wheel), belt_points, units.mm(),
-                        learning ? &*learning : nullptr);
-        } catch (const core::InputError& error) {
-            if (!std::string(error.what()).starts_with("point ")) throw;
-            throw core::InputError(core::display_name(path_file), error.what());
-        }
+        belt::BeltRun run = grind(t, options, belt_options, ground.surfels, actual_wheel(options, wheel), belt_points,
+                                  units.mm(), path_file, learning ? &*learning : nullptr);
 
         if (!options.trace.empty()) {
             if (learning) belt::set_feeds(path.cloud, belt_points);
             belt::set_trace(path.cloud, run.trace);
             out.write(options.trace, path.cloud, path.units);
         }
-        cloud::Cloud& cloud = ground.file.cloud;
-        if (cloud::has_field(cloud, "removed")) run.removed += cloud::field(cloud, "removed");
-        cloud::set_field(cloud, "displacement", ground.surfels.displacement, 8);
-        cloud::set_field(cloud, "removed", run.removed, 8);
-        out.write(cloud, units);
+        write_surfels(out, ground, run.removed);
         options.frames.finish("The surfels while they are ground.");
         t.report() = belt::to_json(run, out.units(units));
         if (learning) write_law(t, options, path_file, *learning);

@@ -23,8 +23,8 @@ namespace {
 
 namespace bgi = boost::geometry::index;
 
-constexpr double kSamePoint = 1e-7;   // mm: OpenCASCADE's own tolerance of points
-constexpr double kBorderReach = 4;    // of the deviation: farther from its border, a face has triangles or has not
+constexpr double kPointTolerance = 1e-7; // mm: OpenCASCADE's own tolerance of points
+constexpr double kBorderReach = 4;       // of the deviation: farther from its border, a face has triangles or has not
 constexpr double kTowardInner = 1e-4; // of the way to the middle of a triangle: there a pole's neighbour has a normal
 
 /// Foot on a border.
@@ -145,7 +145,7 @@ class Search {
     {
         const BorderFoot closest = *std::ranges::min_element(feet, {}, &BorderFoot::distance);
         std::erase_if(feet, [&](const BorderFoot& foot) {
-            const double same = 2 * std::max({kSamePoint, pieces_.borders[foot.border].tolerance,
+            const double same = 2 * std::max({kPointTolerance, pieces_.borders[foot.border].tolerance,
                                               pieces_.borders[closest.border].tolerance});
             return foot.border != closest.border && (foot.foot.point - closest.foot.point).norm() > same;
         });
@@ -181,7 +181,7 @@ class Search {
     /// them; in a corner of the borders, of the sum of both (Baerentzen & Aanaes 2005, in the tangent plane).
     bool is_within_borders(int face, const SurfaceFoot& foot)
     {
-        const double deviation = deviation_of(face), reach = kBorderReach * deviation + kSamePoint;
+        const double deviation = deviation_of(face), reach = kBorderReach * deviation + kPointTolerance;
         const Eigen::Vector3d& p = foot.point;
         const Pieces::Box box({p.x() - reach, p.y() - reach, p.z() - reach},
                               {p.x() + reach, p.y() + reach, p.z() + reach});
@@ -201,12 +201,12 @@ class Search {
             if (border.face != face || border.is_seam || border.is_pole) continue;
             if (const auto found = foot_on(chord, p, reach)) feet.push_back(*found);
         }
-        if (feet.empty()) return to_triangles <= deviation + kSamePoint;
+        if (feet.empty()) return to_triangles <= deviation + kPointTolerance;
         keep_closest(feet);
         Eigen::Vector3d inward = Eigen::Vector3d::Zero();
         for (const BorderFoot& f : feet) inward += natural_normal(f).cross(direction_of(f)).normalized();
         const Eigen::Vector3d offset = p - std::ranges::min_element(feet, {}, &BorderFoot::distance)->foot.point;
-        return offset.norm() <= kSamePoint || inward.dot(offset) >= 0;
+        return offset.norm() <= kPointTolerance || inward.dot(offset) >= 0;
     }
 
     /// Angle of a face at a foot: a straight one along a border, in a corner that from the border that leaves it to the

@@ -30,10 +30,10 @@
 namespace fettle::cad {
 namespace {
 
-// Of the tolerance: OpenCASCADE's own measure of edges is by samples, and now and then exceeded.
+// Deflection of the edges, in tolerances: OpenCASCADE measures edges by samples, and now and then exceeds it.
 constexpr double kFirstDeflection = 0.8;
-// Of that of the edges. Inside the faces a coarse start is enough: refine_triangles() makes of it what is needed, in a
-// fifth of the time that OpenCASCADE takes for a B-spline surface.
+// Deflection inside the faces, in that of the edges. A coarse start is enough: refine_triangles() makes of it what is
+// needed, in a fifth of the time that OpenCASCADE takes for a B-spline surface.
 constexpr double kInnerDeflection = 10;
 constexpr double kGoal = 0.99;    // of the tolerance: the rest is for the rounding of coordinates to float
 constexpr double kSnap = 0x1p-20; // mm: points that OpenCASCADE calls one are closer than 1e-7 mm

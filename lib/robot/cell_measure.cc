@@ -73,7 +73,7 @@ bool Cell::has_mesh(std::size_t index) const
     return surface_of(pairs_[index].a) != nullptr || surface_of(pairs_[index].b) != nullptr;
 }
 
-// Of the convex hulls of two bodies.
+// The clearance of the convex hulls of two bodies is a lower bound of theirs.
 double Cell::hull_clearance(const CellState& state, std::size_t index, double max_clearance) const
 {
     const CellPair& pair = pairs_[index];
