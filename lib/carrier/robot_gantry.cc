@@ -28,6 +28,7 @@ RobotGantry::RobotGantry(const robot::Robot& robot, const robot::PathArguments& 
                          std::unique_ptr<gantry::VirtualGantry> head)
     : robot_(robot), arguments_(arguments), plan_(plan), head_(std::move(head))
 {
+    robot::check_arguments(robot, arguments, 1);
 }
 
 void RobotGantry::set_frame(const Eigen::Isometry3d& T_cell_job)

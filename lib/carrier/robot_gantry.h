@@ -22,6 +22,7 @@ namespace fettle::carrier {
 class RobotGantry final : public gantry::Gantry {
   public:
     /// @param robot, plan  must outlive it; the robot does not hold the part   @param head  in the plan's job
+    /// @throws InputError as robot::check_arguments(), lengths in mm
     RobotGantry(const robot::Robot& robot, const robot::PathArguments& arguments, const plan::Plan& plan,
                 std::unique_ptr<gantry::VirtualGantry> head);
 

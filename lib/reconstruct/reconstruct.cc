@@ -24,6 +24,7 @@ namespace {
 
 constexpr Eigen::Index kNormalNeighbours = 16;     // as registration takes: they average noise and stay on one face
 constexpr Eigen::Index kLinkNeighbours = 8;        // from point to point, along which normals agree on their side
+constexpr double kMinSeenShare = 0.8;              // of the points that face a viewpoint: all do but for grazing ones
 constexpr Eigen::Index kMaxUnordered = 20'000'000; // points: they take a quarter of an hour, and 9 GB
 constexpr std::size_t kMaxLoopPoints = 200;        // of a hole that is filled: the time grows with the third power
 
@@ -55,8 +56,17 @@ Points with_hints(const cloud::Cloud& cloud, const ReconstructRequest& request)
     return points;
 }
 
-/// Unit normals: those of the cloud, else of planes through the nearest points, turned to the outer side.
-Eigen::Matrix3Xd outward_normals(const Points& points)
+/// Share of the points with a hint whose normals point to its side.
+double agreeing_share(const Eigen::Matrix3Xd& normals, const Eigen::Matrix3Xd& hints)
+{
+    const Eigen::ArrayXd towards = (normals.array() * hints.array()).colwise().sum();
+    const auto known = static_cast<double>((towards != 0).count());
+    return known > 0 ? static_cast<double>((towards > 0).count()) / known : 1;
+}
+
+/// Unit normals: those of the cloud, else of planes through the nearest points, turned to the outer side. A viewpoint
+/// from which half of the surface would be seen from behind is none: that of scans that were merged, and then moved.
+Eigen::Matrix3Xd outward_normals(Points& points)
 {
     if (points.side == OuterSide::normals) { // the two sides of a thin wall would share neighbours
         Eigen::Matrix3Xd given = points.hints;
@@ -80,6 +90,11 @@ Eigen::Matrix3Xd outward_normals(const Points& points)
         for (const std::uint32_t b : std::vector<std::uint32_t>(links[a]))
             if (b < a) links[b].push_back(a);
     geometry::orient_consistently(normals, points.xyz, links, points.hints);
+    if (points.side == OuterSide::viewpoint && agreeing_share(normals, points.hints) < kMinSeenShare) {
+        points.side = OuterSide::guessed;
+        points.hints.setZero();
+        geometry::orient_consistently(normals, points.xyz, links, points.hints);
+    }
     return normals;
 }
 
@@ -218,8 +233,7 @@ Reconstruction reconstruct(const cloud::Cloud& cloud, const ReconstructRequest& 
     cloud::Cloud usable = is_grid ? cloud : distinct_points(cloud);
     if (usable.size() < 3)
         throw core::InputError(std::to_string(usable.size()) + " different points, three are needed");
-    const Points points = with_hints(usable, request);
-    result.side = points.side;
+    Points points = with_hints(usable, request);
     const std::optional<cloud::Profiles> profiles = is_grid ? std::nullopt : cloud::find_profiles(usable.xyz);
     result.order = is_grid ? "grid" : profiles ? "profiles" : "none";
     if (is_grid || profiles) {
@@ -233,6 +247,7 @@ Reconstruction reconstruct(const cloud::Cloud& cloud, const ReconstructRequest& 
         add_scattered(sheet, points, normals, result.max_gap);
         result.filled_holes = fill_holes(sheet, points, normals, result.max_gap);
     }
+    result.side = points.side;
     finish(result, sheet, std::move(usable));
     return result;
 }

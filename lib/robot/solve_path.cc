@@ -39,6 +39,13 @@ void check_not_empty(const cloud::Cloud& cloud)
 
 } // namespace
 
+void check_arguments(const Robot& robot, const PathArguments& arguments, double mm)
+{
+    parse_rule("--track", arguments.track, robot.track.has_value(), mm);
+    parse_rule("--table", arguments.table, robot.table.has_value(), core::kRadPerDegree);
+    parse_start(arguments.start);
+}
+
 SolvedPath path_from_poses(const Robot& robot, const cloud::Cloud& cloud, const PathArguments& options, double mm,
                            const IsClear& is_clear)
 {

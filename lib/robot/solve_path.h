@@ -26,6 +26,9 @@ struct SolvedPath {
     FollowedPath path;
 };
 
+/// @throws InputError for a rule or a start that cannot be read, and for a rule of an axis that the robot lacks
+void check_arguments(const Robot& robot, const PathArguments& arguments, double mm);
+
 /// Finds joints for the poses of a cloud, see cloud::read_poses().
 /// @param mm  in the length unit of the options
 /// @param is_clear  see choose_externals()

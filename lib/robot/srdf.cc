@@ -4,7 +4,6 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/xml.h"
-#include "robot/urdf.h"
 
 #include <tinyxml.h>
 
@@ -14,7 +13,8 @@ void read_srdf(const std::string& path, const std::vector<std::string>& links, R
 {
     const std::string text = core::read_file(path, core::kMaxJsonBytes);
     const std::string source = core::display_name(path);
-    if (!looks_like_xml(text)) core::refuse_other_content(text, source, "an SRDF");
+    const bool is_declared_xml = text.starts_with("<?xml");
+    if (!is_declared_xml) core::refuse_other_content(text, source, "an SRDF");
     core::require_plain_xml(text, source);
     TiXmlDocument document;
     document.Parse(text.c_str(), nullptr, TIXML_ENCODING_UTF8);

@@ -17,7 +17,7 @@ pages=$(cd "$root" && ls README.md CONTRIBUTING.md samples/README.md docs/*.md d
 unset MAKEFLAGS MFLAGS # a make that a page begins is not of this one
 for page in $pages; do
     case $page in
-    docs/tutorial.md | docs/adding-a-tool.md | docs/writing-a-driver.md) test -e "$HERE/$(basename "$page" .md).sh" && continue ;;
+    docs/tutorial.md | docs/tutorial-robot.md | docs/adding-a-tool.md | docs/writing-a-driver.md) test -e "$HERE/$(basename "$page" .md).sh" && continue ;;
     docs/methods/README.md) ;;
     docs/methods/*) grep -qE "^follow .*\b$(basename "$page" .md)( |\$)" "$HERE"/methods-*.sh && continue ;;
     esac

@@ -251,6 +251,24 @@ TEST(Reconstruct, ProfilesAreJoinedAlongTheirOrder)
     EXPECT_FALSE(cloud::find_profiles(scan.xyz));
 }
 
+// A file of merged scans that were moved states a viewpoint from which nobody has seen the far side: it decides
+// nothing.
+TEST(Reconstruct, NoViewpointSeesAllSides)
+{
+    std::mt19937_64 random(7);
+    std::normal_distribution<double> normal;
+    cloud::Cloud scan;
+    scan.xyz.resize(3, 4000);
+    for (auto p : scan.xyz.colwise())
+        p = 20 * Eigen::Vector3d(normal(random), normal(random), normal(random)).normalized();
+    for (const double distance : {-200.0, 200.0}) {
+        scan.view_origin = {distance, 3, -2};
+        const Reconstruction result = reconstruct::reconstruct(scan, {});
+        EXPECT_EQ(result.side, reconstruct::OuterSide::guessed);
+        EXPECT_GT(volume(result.mesh), 0);
+    }
+}
+
 // A sphere thinned to one point in each cube of a grid, in the order of the cubes: rows that run one way, and yet no
 // profiles, since the points lie anywhere in their cubes. The Delaunay stars leave out next to none.
 TEST(Reconstruct, RowsOfCubesAreNoProfiles)

@@ -37,7 +37,7 @@ command_of() { # NAME
     align) command=(--to plate.stl --near good.pcd) writes=(--transform-out) ;;
     arm) command=(robot.json --inverse --feed 50 --unchecked tips.pcd) writes=(--rapid --krl --ls --urscript) ;;
     assess) command=(--lower -1 --upper 1 good.pcd) ;;
-    belt) command=(--path rows.pcd --wheel wheel.json --force 5 --lower -1 --upper 1 work.pcd) writes=(--trace --watch --journal --frames-in) ;;
+    belt) command=(--path rows.pcd --wheel wheel.json --actual wheel.json --force 5 --lower -1 --upper 1 work.pcd) writes=(--trace --watch --journal --frames-in) ;;
     calibrate) command=(--wheel wheel.json --known law.json "$SAMPLES/removal/static.csv") ;;
     clean) command=(--outliers statistical:4,3 --thin 1 good.pcd) ;;
     find) command=(--against plate.stl --transform-in identity.txt good.pcd) writes=(--transform-out) ;;
