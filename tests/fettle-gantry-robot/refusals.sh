@@ -32,7 +32,7 @@ jq '.bodies += [{name: "lamp", link: -1, shape: "sphere", centre: [1000, 930, 80
 refused "${frame}the pose at .* mm: spindle and lamp would collide, .* mm deep" "$(robot lamp.json)"
 refused "${frame}the pose at .* mm: joint 2 would jump by 0.* degrees, from .* to " "$(robot "$ROBOT") --jump 0.05"
 refused "${frame}the table would turn while the wheel grinds: it has to stand still" "$(robot "$SAMPLES/robots/irb1400_table.json") --table follow:20"
-refused "${frame}--track: " "$(robot "$ROBOT") --track nowhere"
+"$HERE/../refuses" "--track: expected auto, a number or follow:NUMBER, got 'nowhere'" fettle-gantry-robot "$ROBOT" plan.json --stock stock.stl --cell 0.2 --track nowhere
 
 # Without --place the robot does not know where it is; a matrix that is none, and a machine that is no driver.
 refuses() { "$HERE/../refuses" "$1" fettle-grind plan.json --stock stock.stl --cell 0.2 "${@:2}"; }
