@@ -14,6 +14,7 @@
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
 #include <Standard_Failure.hxx>
+#include <StepBasic_SiUnit.hxx>
 #include <STEPCAFControl_Reader.hxx>
 #include <StepRepr_Representation.hxx>
 #include <StepRepr_RepresentationItem.hxx>
@@ -120,6 +121,19 @@ bool has_unknown_item(const Handle(Interface_InterfaceModel) & model)
     return false;
 }
 
+/// OpenCASCADE takes a unit whose name it does not know for metres; only its check of the entity tells.
+/// @throws InputError for such a unit
+void check_units(const Handle(Interface_InterfaceModel) & model, const std::string& source)
+{
+    constexpr Standard_Boolean kSyntactic = Standard_True;
+    for (int i = 1; i <= model->NbEntities(); ++i) {
+        if (!model->Value(i)->IsKind(STANDARD_TYPE(StepBasic_SiUnit))) continue;
+        const Handle(Interface_Check) check = model->Check(i, kSyntactic);
+        if (check->HasFailed())
+            throw core::InputError(source, std::string("states a unit that is not known: ") + check->CFail(1));
+    }
+}
+
 /// @return  its unit of length
 std::string read_step(const std::string& bytes, const std::string& source, Handle(TDocStd_Document) & document)
 {
@@ -130,6 +144,7 @@ std::string read_step(const std::string& bytes, const std::string& source, Handl
     require_read(reader.ChangeReader().ReadStream(source.c_str(), stream), source, "STEP");
     Interface_Static::SetIVal("read.stepcaf.subshapes.name", has_unknown_item(reader.Reader().WS()->Model()) ? 0 : 1);
     if (reader.Reader().WS()->Model()->NbEntities() == 0) throw core::InputError(source, "holds no STEP entities");
+    check_units(reader.Reader().WS()->Model(), source);
     TColStd_SequenceOfAsciiString lengths, angles, solid_angles;
     reader.ChangeReader().FileUnits(lengths, angles, solid_angles);
     if (lengths.IsEmpty()) throw core::InputError(source, "states no unit of length");

@@ -15,7 +15,7 @@ constexpr int kMaxHalvings = 5; // the second differences of a bulge are then a 
 /// Finds the corners in which the surface stays where it is, whatever one of the parameters.
 void find_singular_corners(const Adaptor3d_Surface& surface, FaceTriangle& t)
 {
-    constexpr double kPointTolerance = 1e-7; // mm: OpenCASCADE's own tolerance of points
+    constexpr double kMaxMotion = 1e-7; // mm, of a point that stays: OpenCASCADE's own tolerance of points
     for (int k = 0; k < 2; ++k) {
         const double min = t.uv.row(k).minCoeff(), max = t.uv.row(k).maxCoeff();
         if (min == max) continue;
@@ -23,7 +23,7 @@ void find_singular_corners(const Adaptor3d_Surface& surface, FaceTriangle& t)
             const auto stays = [&](double parameter) {
                 Eigen::Vector2d uv = t.uv.col(corner);
                 uv[k] = parameter;
-                return (vector_of(surface.Value(uv[0], uv[1])) - t.corners.col(corner)).norm() < kPointTolerance;
+                return (vector_of(surface.Value(uv[0], uv[1])) - t.corners.col(corner)).norm() < kMaxMotion;
             };
             t.is_singular(k, corner) = stays(min) && stays(max) && stays((min + max) / 2);
         }

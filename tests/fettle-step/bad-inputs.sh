@@ -11,6 +11,8 @@ head -c 20000 good.stp > cut.stp
 refuses 'cut.stp: ' cut.stp
 sed 's/SI_UNIT(.MILLI.,.METRE.)/SI_UNIT(.MILLI.,.SECOND.)/' good.stp > unit.stp
 refuses "unit.stp: states a unit of length that is not known, 'milli'" unit.stp
+sed 's/SI_UNIT(.MILLI.,.METRE.)/SI_UNIT(.MILLI.,.FURLONG.)/' good.stp > furlong.stp
+refuses 'furlong.stp: states a unit that is not known: ' furlong.stp
 sed 's/MANIFOLD_SOLID_BREP(/MANIFOLD_SOLID_BROP(/' good.stp > none.stp
 refuses 'none.stp: has no solid, and no face' none.stp
 first=$(grep -m 1 -o '^#[0-9]* = ADVANCED_FACE(' good.stp)
