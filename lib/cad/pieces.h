@@ -10,6 +10,7 @@
 #include <Geom2d_Curve.hxx>
 #include <TopoDS_Edge.hxx>
 
+#define BOOST_ALLOW_DEPRECATED_HEADERS // Boost.Geometry includes one of Boost's own
 #include <boost/geometry.hpp>
 #include <boost/geometry/index/rtree.hpp>
 
