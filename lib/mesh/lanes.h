@@ -35,8 +35,8 @@ FETTLE_INLINE Float8 cwise_sqrt(Float8 a)
 FETTLE_INLINE float sum_lanes(Float8 a) { return ((a[0] + a[4]) + (a[1] + a[5])) + ((a[2] + a[6]) + (a[3] + a[7])); }
 FETTLE_INLINE float min_lane(Float8 a)
 {
-    a = cwise_min(a, __builtin_shuffle(a, Mask8{4, 5, 6, 7, 0, 1, 2, 3}));
-    a = cwise_min(a, __builtin_shuffle(a, Mask8{2, 3, 0, 1, 6, 7, 4, 5}));
+    a = cwise_min(a, __builtin_shufflevector(a, a, 4, 5, 6, 7, 0, 1, 2, 3));
+    a = cwise_min(a, __builtin_shufflevector(a, a, 2, 3, 0, 1, 6, 7, 4, 5));
     return a[0] < a[1] ? a[0] : a[1];
 }
 FETTLE_INLINE float max_lane(Float8 a) { return -min_lane(-a); }

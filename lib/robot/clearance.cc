@@ -10,7 +10,7 @@ namespace {
 using Eigen::Vector3d;
 
 // Two curved rims need some fifty steps, polytopes a dozen.
-constexpr int kMaxSteps = 200;
+constexpr int kMaxClearanceSteps = 200;
 // The search ends when the upper and lower bound of a distance differ by no more, mm. Cores as near as that touch.
 constexpr double kDistanceTolerance = 1e-9;
 // Points of the Minkowski difference count as equal within this fraction of their size.
@@ -42,7 +42,7 @@ Clearance clearance(const PlacedSolid& a, const PlacedSolid& b, double max_dista
     simplex.add(difference_support(a, b, Vector3d::UnitX()));
     reduce(simplex);
     Vector3d v = simplex.nearest();
-    for (int step = 0; step < kMaxSteps; ++step) {
+    for (int step = 0; step < kMaxClearanceSteps; ++step) {
         const double length = v.norm();
         if (length <= kDistanceTolerance) return with_radii(core_depth(a, b, simplex), a, b);
         const DifferencePoint next = difference_support(a, b, -v);

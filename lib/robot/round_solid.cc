@@ -12,7 +12,7 @@ namespace {
 using Eigen::Vector2d, Eigen::Vector3d;
 
 // Tangents find kinks, secants of the slope find smooth minima: in turns they take some six steps.
-constexpr int kMaxSteps = 60;
+constexpr int kMaxMinimisationSteps = 60;
 
 /// The point nearest to the axis in a horizontal slice of the triangle.
 struct Slice {
@@ -56,7 +56,7 @@ class MinimumSearch {
     void minimise(const Strip& strip, Slice a, Slice b)
     {
         double from = 0, to = 1;
-        for (int step = 0; step < kMaxSteps; ++step) {
+        for (int step = 0; step < kMaxMinimisationSteps; ++step) {
             // A convex function without a change of the slope's sign has its minimum at an end.
             if (!(a.slope < 0 && b.slope > 0)) return;
             const double tangents_meet = (b.value - a.value + a.slope * from - b.slope * to) / (a.slope - b.slope);
