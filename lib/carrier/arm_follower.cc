@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 namespace fettle::carrier {
@@ -51,13 +50,13 @@ std::string obstacle_at(const robot::Robot& robot, robot::FollowedPath path, con
 std::optional<robot::Joints> nearest_solution(const robot::ArmSolutions& solutions, const robot::Joints& from)
 {
     std::optional<robot::Joints> nearest;
-    double least = std::numeric_limits<double>::infinity();
+    double min_distance = core::kInfinity;
     for (const robot::ArmSolution& solution : solutions) {
         const robot::Joints turns = ((from - solution.joints) / kTurn).array().round();
         const robot::Joints joints = solution.joints + kTurn * turns;
         const double distance = (joints - from).squaredNorm();
-        if (distance >= least) continue;
-        least = distance;
+        if (distance >= min_distance) continue;
+        min_distance = distance;
         nearest = joints;
     }
     return nearest;

@@ -108,7 +108,7 @@ void RobotGantry::carry(const std::vector<Leg>& legs, const Move& move)
     head_->set_interrupt([this](const GantryStatus& /*now*/) { return is_interrupted(); });
     try {
         move();
-    } catch (...) {
+    } catch (...) { // whatever ended the move: where the arm came to is recorded, and the caller learns why
         steps = steps_of({{at(), legs.back().motion}});
         follow();
         throw;

@@ -17,7 +17,7 @@ namespace fettle::program {
 namespace {
 
 // Joints found again for the poses of a checked path differ by rounding only, rad or mm.
-constexpr double kSameJoint = 1e-6;
+constexpr double kJointTolerance = 1e-6;
 
 std::vector<std::string> zone_names()
 {
@@ -69,7 +69,7 @@ try {
     for (Eigen::Index i = 0; i < checked.cols(); ++i)
         for (Eigen::Index k = 0; k < 8; ++k) {
             const double found = solved.path.joints(k, i), unit = k == 6 ? 1 : core::kRadPerDegree;
-            if (std::abs(found - checked(k, i)) > kSameJoint)
+            if (std::abs(found - checked(k, i)) > kJointTolerance)
                 throw core::InputError("pose " + std::to_string(i) + ": joint " + std::to_string(k + 1) + " is at " +
                                        core::to_short_text(found / unit) + ", and was checked at " +
                                        core::to_short_text(checked(k, i) / unit));

@@ -19,7 +19,7 @@ constexpr int kSearchSteps = 60;
 // Starts of a search, beside the given one.
 constexpr int kStarts = 96;
 // Two solutions whose joints differ by less are one, rad.
-constexpr double kSameSolution = 1e-6;
+constexpr double kSolutionTolerance = 1e-6;
 // Departures from the closed form's assumptions that move no flange by 1e-9 mm: rad, mm.
 constexpr double kExactAngle = 1e-13, kExactLength = 1e-10;
 constexpr double kInitialDamping = 1e-3, kMaxDamping = 1e8; // relative to the normal equations' diagonal
@@ -129,7 +129,7 @@ ArmSolutions Arm::solve_general(const Eigen::Isometry3d& T_base_flange, const Jo
         bool is_in_range = true;
         for (Eigen::Index k = 0; k < 6; ++k) is_in_range = wrap(joints, k, ranges) && is_in_range;
         const bool is_known = std::ranges::any_of(found, [&](const ArmSolution& other) {
-            return (other.joints - joints).cwiseAbs().maxCoeff() < kSameSolution;
+            return (other.joints - joints).cwiseAbs().maxCoeff() < kSolutionTolerance;
         });
         if (is_in_range && !is_known) {
             found.solutions[found.count] = {joints, static_cast<int>(found.count)};

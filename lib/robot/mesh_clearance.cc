@@ -134,8 +134,9 @@ struct PairSearch {
                 outside2 += off * off;
                 highest = mesh::cwise_max(highest, excess);
             }
-            const mesh::Float8 apart = mesh::cwise_sqrt(outside2) + mesh::cwise_min(highest, mesh::Float8{}) - margin;
-            const mesh::Mask8 near = apart <= upper_bound;
+            const mesh::Float8 distances =
+                mesh::cwise_sqrt(outside2) + mesh::cwise_min(highest, mesh::Float8{}) - margin;
+            const mesh::Mask8 near = distances <= upper_bound;
             if (mesh::lane_bits(near) == 0) continue;
             mesh::Point8 corners_a[3];
             for (int k = 0; k < 3; ++k)
