@@ -1,5 +1,7 @@
 #include "core/constants.h"
+#include "core/error.h"
 #include "core/fixed_text.h"
+#include "core/text.h"
 #include "program/languages.h"
 #include "robot/arm.h"
 
@@ -11,6 +13,9 @@
 namespace fettle::program {
 
 namespace {
+
+// By which a URDF may have the world frame off axis 2's height, mm: they round lengths to 0.1 mm.
+constexpr double kMaxWorldHeight = 1;
 
 std::string upper(std::string text)
 {
@@ -26,12 +31,22 @@ std::string remark(const std::string& text)
     return "  !" + ascii + " ;";
 }
 
-// World coordinates begin at axis 2's height over the base.
-Eigen::Isometry3d target_in_world(const robot::Robot& robot, const Step& step)
+// World coordinates begin at axis 2's height over the base, or where a URDF says.
+Eigen::Isometry3d target_in_fanuc_world(const robot::Robot& robot, const Step& step)
 {
-    Eigen::Isometry3d T = target_in_base(robot, step);
-    T.translation().z() -= robot.dh[0].d;
+    Eigen::Isometry3d T = target_in_world(robot, step);
+    if (!robot.controller) T.translation().z() -= robot.dh[0].d;
     return T;
+}
+
+void check_world(const robot::Robot& robot)
+{
+    if (!robot.controller) return;
+    const Eigen::Vector3d axis_2(0, 0, robot.dh[0].d);
+    const double over_world = (robot.controller->T_base_world.inverse() * axis_2).z();
+    if (std::abs(over_world) > kMaxWorldHeight)
+        throw core::InputError("axis 2 is " + core::to_short_text(over_world) +
+                               " mm over the link base, and Fanuc's controllers count from its height");
 }
 
 // "N U T, 0, 0, 0": wrist flipped or not (joint 5 positive or not), elbow up or down, wrist centre to the front of axis
@@ -71,7 +86,7 @@ std::string position_text(const robot::Robot& robot, const Step& step, std::uint
             text += std::string(k == 0 ? "\n" : ",\n") + "\tJ" + std::to_string(k + 1) + " = " +
                     core::to_fixed_text(q[k], 6) + " deg";
     } else {
-        const Eigen::Isometry3d T = target_in_world(robot, step);
+        const Eigen::Isometry3d T = target_in_fanuc_world(robot, step);
         const Eigen::Vector3d zyx = z_y_x_angles(T.linear());
         text += "\tCONFIG : " + configuration(robot, step.joints.head<6>()) +
                 ",\n\tX = " + core::to_fixed_text(T.translation().x(), 4) +
@@ -156,26 +171,23 @@ std::string fanuc_line_number(std::uint64_t number)
 
 Eigen::VectorXd fanuc_joints(const robot::Robot& robot, const robot::Joints& joints)
 {
-    Eigen::VectorXd q = joints / core::kRadPerDegree;
-    // The forearm's angle to the horizontal is the sum of both turns about parallel axes; of opposite ones a
-    // difference.
-    if (robot.coupling == robot::Coupling::serial) q[2] += robot.dh[1].sign * robot.dh[2].sign * q[1];
-    return q;
+    return from_horizontal(robot, joints) / core::kRadPerDegree;
 }
 
 std::vector<ProgramFile> fanuc_files(const Program& program, const std::string& name, std::uint64_t max_lines)
 {
+    check_world(*program.robot);
     File main(program);
     main.add_line(remark(program.options.remark));
     main.add_line("  UFRAME_NUM=0 ;");
     main.add_line("  UTOOL_NUM=1 ;");
-    const Eigen::Isometry3d tool = outward_tool(program.robot->T_flange_tool);
+    const Eigen::Isometry3d tool = tool_on_flange(*program.robot);
     const Eigen::Vector3d zyx = z_y_x_angles(tool.linear());
-    main.add_line(remark("UTOOL 1: X " + core::to_fixed_text(tool.translation().x(), 3) + " Y " +
-                         core::to_fixed_text(tool.translation().y(), 3) + " Z " +
-                         core::to_fixed_text(tool.translation().z(), 3)));
-    main.add_line(remark("W " + core::to_fixed_text(zyx[2], 4) + " P " + core::to_fixed_text(zyx[1], 4) + " R " +
-                         core::to_fixed_text(zyx[0], 4)));
+    const double numbers[] = {
+        tool.translation().x(), tool.translation().y(), tool.translation().z(), zyx[2], zyx[1], zyx[0]};
+    // A line for each number: a remark's end is cut off.
+    for (std::size_t k = 0; k < 6; ++k)
+        main.add_line(remark(std::string("UTOOL 1: ") + "XYZWPR"[k] + " " + core::to_fixed_text(numbers[k], 4)));
     std::vector<ProgramFile> files;
     const auto close = [&](const File& file) {
         const std::string called = upper(name.substr(0, 12)) + "_" + std::to_string(files.size() + 1);

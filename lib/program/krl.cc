@@ -28,7 +28,7 @@ std::string krl_axes(const robot::Robot& robot, const robot::CellJoints& joints)
 // On a table the base turns with it: EK() couples the two (KUKA.SystemSoftware, "mathematically coupled kinematics").
 std::string base_text(const robot::Robot& robot)
 {
-    if (!robot.table) return "  $BASE={" + frame_text(robot.T_cell_base.inverse()) + "}\n";
+    if (!robot.table) return "  $BASE={" + frame_text(controller_world(robot).inverse()) + "}\n";
     Eigen::Isometry3d T_table_part = Eigen::Isometry3d::Identity();
     T_table_part.translation() = -robot.table->point;
     return "  $BASE=EK(MACHINE_DEF[2].ROOT,MACHINE_DEF[2].MECH_TYPE,{" + frame_text(T_table_part) + "})\n";
@@ -98,7 +98,7 @@ std::string krl_text(const Program& program, const std::string& name)
         "base; E1, E2: track (mm), table (degrees)\n"
         "  BAS(#INITMOV,0)\n  BAS(#VEL_PTP," +
         core::to_fixed_text(options.joint_speed, 3) + ")\n" + base_text(robot) + "  $TOOL={" +
-        frame_text(outward_tool(robot.T_flange_tool)) +
+        frame_text(tool_on_flange(robot)) +
         "}\n  $VEL.ORI1=" + core::to_fixed_text(options.turn_rate / core::kRadPerDegree, 4) +
         "\n  $VEL.ORI2=" + core::to_fixed_text(options.turn_rate / core::kRadPerDegree, 4) +
         "\n  $APO.CDIS=" + core::to_fixed_text(options.zone.radius, 4) + "\n";

@@ -4,6 +4,7 @@
 #include "core/constants.h"
 #include "core/error.h"
 #include "core/text.h"
+#include "program/languages.h"
 #include "robot/arm_report.h"
 
 #include <algorithm>
@@ -96,6 +97,7 @@ Program make_program(const robot::Robot& robot, const cloud::Cloud& path, const 
 {
     if (const std::string obstacle = robot::path_obstacle(robot, solved.path, std::nullopt); !obstacle.empty())
         throw core::InputError(obstacle);
+    if (!robot.no_controller.empty()) throw core::InputError("no program can be written: " + robot.no_controller);
     const std::vector<Motion> motions = cloud::read_motions(path);
     const Eigen::VectorXd anomaly = cloud::has_field(path, "anomaly")
                                         ? cloud::field(path, "anomaly")
@@ -123,9 +125,30 @@ Eigen::Isometry3d outward_tool(const Eigen::Isometry3d& T)
     return T * Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitX());
 }
 
-Eigen::Isometry3d target_in_base(const robot::Robot& robot, const Step& step)
+Eigen::Isometry3d controller_world(const robot::Robot& robot, double track)
 {
-    return outward_tool(robot.T_cell_base.inverse() * robot::part_in_cell(robot, step.joints[7]) * step.T_part_tool);
+    const Eigen::Isometry3d T_cell_base = robot::base_in_cell(robot, track);
+    return robot.controller ? T_cell_base * robot.controller->T_base_world : T_cell_base;
+}
+
+Eigen::Isometry3d target_in_world(const robot::Robot& robot, const Step& step)
+{
+    return outward_tool(controller_world(robot).inverse() * robot::part_in_cell(robot, step.joints[7]) *
+                        step.T_part_tool);
+}
+
+Eigen::Isometry3d tool_on_flange(const robot::Robot& robot)
+{
+    const Eigen::Isometry3d T_6_tool = outward_tool(robot.T_flange_tool);
+    return robot.controller ? robot.controller->T_6_flange.inverse() * T_6_tool : T_6_tool;
+}
+
+robot::Joints from_horizontal(const robot::Robot& robot, robot::Joints q)
+{
+    // The forearm's angle to the horizontal is the sum of both turns about parallel axes; of opposite ones a
+    // difference.
+    if (robot.coupling == robot::Coupling::serial) q[2] += robot.dh[1].sign * robot.dh[2].sign * q[1];
+    return q;
 }
 
 Eigen::Vector3d z_y_x_angles(const Eigen::Matrix3d& R)

@@ -52,14 +52,15 @@ struct ProgramOptions {
     Eigen::VectorXd speeds; ///< N, mm/s, of the motion to each pose
     double turn_rate = 0;   ///< limit, rad/s
     Zone zone;
-    double joint_speed = 20;     ///< of moves by joints, % of the robot's own
-    int process_output = 1;      ///< digital output that switches the process on
-    std::optional<double> force; ///< N, while the tool is on a stroke; nothing: the path's positions hold
-    std::string remark;          ///< the first line: which check the path has passed, or that it has not
+    double joint_speed = 20;                 ///< of moves by joints, % of the robot's own
+    int process_output = 1;                  ///< digital output that switches the process on
+    std::optional<double> force;             ///< N, while the tool is on a stroke; nothing: the path's positions hold
+    std::optional<robot::Coupling> coupling; ///< how the controller counts joint 3, if a URDF does not say it
+    std::string remark;                      ///< the first line: which check the path has passed, or that it has not
 };
 
 /// A neutral program. Robot files and paths are in the cell; controllers count from the robot's base (with its track at
-/// 0), which their world frame coincides with.
+/// 0), which their world frame coincides with (robot::ControllerFrames).
 struct Program {
     const robot::Robot* robot = nullptr;
     ProgramOptions options;
@@ -77,13 +78,17 @@ struct ProgramFile {
 /// approach to after its last retract; force control from a stroke's first point to its last. The tip stops where
 /// something is switched.
 /// @param robot  must outlive it
-/// @throws InputError if a pose is not reached
+/// @throws InputError if a pose is not reached, or the frames that the robot's controller counts in are unknown
 Program make_program(const robot::Robot& robot, const cloud::Cloud& path, const robot::SolvedPath& solved,
                      const ProgramOptions& options);
 
-/// T_base_tool as makers count it, z out of the robot: the robot's base at its track's 0, the table as at the step.
-Eigen::Isometry3d target_in_base(const robot::Robot& robot, const Step& step);
-/// T_part_tool with the tool's z out of the robot, and T_flange_tool likewise.
+/// T_cell_world: the frame that the robot's controller counts from, with the track at a position, mm.
+Eigen::Isometry3d controller_world(const robot::Robot& robot, double track = 0);
+/// T_world_tool as makers count it, z out of the robot: the track at 0, the table as at the step.
+Eigen::Isometry3d target_in_world(const robot::Robot& robot, const Step& step);
+/// T_flange_tool as makers count it, z out of the robot.
+Eigen::Isometry3d tool_on_flange(const robot::Robot& robot);
+/// T_part_tool with the tool's z out of the robot.
 Eigen::Isometry3d outward_tool(const Eigen::Isometry3d& T);
 
 /// Angles of R = R_z(first) R_y(second) R_x(third), degrees: KUKA's A, B, C and Fanuc's R, P, W.

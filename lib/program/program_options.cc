@@ -45,7 +45,10 @@ ProgramArguments::ProgramArguments(cli::Tool& tool)
       force(tool.optional_number("--force", "N",
                                  "Programs: press with it on the strokes, by the robot's force control "
                                  "where the language has it [by position]",
-                                 core::Range::positive()))
+                                 core::Range::positive())),
+      coupling(tool.choice("--coupling", "file", {"file", "serial", "parallelogram"},
+                           "RAPID of a URDF, which does not say it: the controller counts joint 3 from the upper arm, "
+                           "or from the horizontal, as of ABB's arms with a parallelogram"))
 {
 }
 
@@ -91,6 +94,13 @@ void write_programs(cli::Tool& tool, const ProgramArguments& arguments, const ro
     options.joint_speed = arguments.joint_speed;
     options.process_output = arguments.output;
     options.force = arguments.force;
+    if (arguments.coupling != "file")
+        options.coupling = arguments.coupling == "serial" ? robot::Coupling::serial : robot::Coupling::parallelogram;
+    if (!arguments.rapid.empty() && robot.controller && !options.coupling)
+        throw core::InputError("--rapid of a URDF needs --coupling serial or parallelogram: whether the controller "
+                               "counts joint 3 from the upper arm or from the horizontal");
+    if (options.coupling && !robot.controller)
+        throw core::InputError("--coupling goes with a URDF: a robot file says it");
     const Program program = make_program(robot, path, solved, options);
     if (!arguments.rapid.empty()) tool.output_file(arguments.rapid) << rapid_text(program);
     if (!arguments.krl.empty()) tool.output_file(arguments.krl) << krl_text(program, program_name(arguments.krl));

@@ -27,6 +27,7 @@ struct ProgramArguments {
     const double& joint_speed;          ///< --joint-speed, %
     const int& output;                  ///< --process-output
     const std::optional<double>& force; ///< --force, N
+    const std::string& coupling;        ///< --coupling
 };
 
 /// What the first line of a program says about the check of its path: its clearances and digest, or that it is

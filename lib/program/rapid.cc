@@ -48,7 +48,7 @@ std::string work_object(const robot::Robot& robot)
 {
     Eigen::Isometry3d T_user_part = Eigen::Isometry3d::Identity();
     const std::string identity = pose_text(T_user_part);
-    if (!robot.table) return "[FALSE,TRUE,\"\"," + pose_text(robot.T_cell_base.inverse()) + "," + identity + "]";
+    if (!robot.table) return "[FALSE,TRUE,\"\"," + pose_text(controller_world(robot).inverse()) + "," + identity + "]";
     T_user_part.translation() = -robot.table->point;
     return "[FALSE,FALSE,\"" + (robot.table->unit.empty() ? "STN1" : robot.table->unit) + "\"," + identity + "," +
            pose_text(T_user_part) + "]";
@@ -98,13 +98,13 @@ std::string procedure(const Program& program, const Routine& routine, std::size_
 
 } // namespace
 
-Eigen::Vector4i rapid_configuration(const robot::Robot& robot, const robot::Joints& joints)
+Eigen::Vector4i rapid_configuration(const robot::Robot& robot, robot::Coupling coupling, const robot::Joints& joints)
 {
     const auto quadrant = [&](Eigen::Index k) {
         return static_cast<int>(std::floor(joints[k] / (core::kRadPerDegree * 90)));
     };
     Eigen::Vector4i configuration(quadrant(0), quadrant(3), quadrant(5), 0);
-    if (robot.coupling == robot::Coupling::parallelogram) return configuration;
+    if (coupling == robot::Coupling::parallelogram) return configuration;
     const auto frames = robot::Arm(robot).frames(joints);
     const Eigen::Vector3d forward = frames[1].linear().col(0);
     const auto in_plane = [&](const Eigen::Vector3d& v) { return Eigen::Vector2d(v.dot(forward), v.z()); };
@@ -120,13 +120,17 @@ std::string rapid_text(const Program& program)
 {
     const robot::Robot& robot = *program.robot;
     const ProgramOptions& options = program.options;
+    const robot::Coupling coupling = options.coupling.value_or(robot.coupling);
+    const auto counted = [&](const robot::Joints& joints) {
+        return coupling == robot::Coupling::parallelogram ? from_horizontal(robot, joints) : joints;
+    };
     std::string text =
         "MODULE fettle_path ! " + options.remark +
         "\n  ! robtarget: position (mm), q1,q2,q3,q4 = w,x,y,z, cf1,cf4,cf6,cfx, eax_a = track (mm), eax_b = table "
         "(deg)\n  ! z of the tool points from the holder to the tip. The tool's load is to be measured. The world "
         "frame "
         "is the robot's base.\n  PERS tooldata fettle_tool := [TRUE," +
-        pose_text(outward_tool(robot.T_flange_tool)) +
+        pose_text(tool_on_flange(robot)) +
         ",[1,[0,0,1],[1,0,0,0],0,0,0]];\n  PERS wobjdata fettle_part := " + work_object(robot) + ";\n";
     std::set<double> speeds;
     for (const Routine& routine : program.routines)
@@ -148,11 +152,11 @@ std::string rapid_text(const Program& program)
             const auto q = step.joints;
             if (step.kind == StepKind::move_joints)
                 text += "  CONST jointtarget begin" + std::to_string(begin++) + " := [" +
-                        array_text(q.head<6>() / core::kRadPerDegree, 6) + "," + external_axes(robot, q.tail<2>()) +
-                        "];\n";
+                        array_text(counted(q.head<6>()) / core::kRadPerDegree, 6) + "," +
+                        external_axes(robot, q.tail<2>()) + "];\n";
             const std::string pose = pose_text(outward_tool(step.T_part_tool));
             text += "  CONST robtarget p" + std::to_string(target++) + " := " + pose.substr(0, pose.size() - 1) + "," +
-                    array_text(rapid_configuration(robot, q.head<6>()).cast<double>(), 0) + "," +
+                    array_text(rapid_configuration(robot, coupling, q.head<6>()).cast<double>(), 0) + "," +
                     external_axes(robot, q.tail<2>()) + "];\n";
         }
     }

@@ -18,8 +18,7 @@ constexpr double kAcceleration = 1.2; // m/s², URScript's default of movel
 // From the base where the track, which rests, has brought it.
 Eigen::Isometry3d target_in_resting_base(const robot::Robot& robot, const Step& step)
 {
-    Eigen::Isometry3d T_base_shifted = robot::base_in_cell(robot, step.joints[6]).inverse() * robot.T_cell_base;
-    return T_base_shifted * target_in_base(robot, step);
+    return controller_world(robot, step.joints[6]).inverse() * controller_world(robot) * target_in_world(robot, step);
 }
 
 // p[x, y, z, rx, ry, rz]: m to a tenth of a micrometre, and the rotation vector, rad.
@@ -117,7 +116,7 @@ std::string urscript_text(const Program& program, const std::string& name)
     std::string text = "# " + program.options.remark + "\ndef " + name +
                        "():\n  # poses p[x, y, z, rx, ry, rz] from the robot's base: m, and rotation vectors in rad\n"
                        "  set_tcp(" +
-                       script_pose(outward_tool(robot.T_flange_tool)) + ")\n";
+                       script_pose(tool_on_flange(robot)) + ")\n";
     for (const Routine& routine : program.routines) text += routine_text(program, routine);
     for (const Routine& routine : program.routines) text += "  " + routine.name + "()\n";
     return text + "end\n";

@@ -79,6 +79,12 @@ inline constexpr int kTable = 8;
 inline constexpr bool is_on_arm(int link) { return link >= kBase && link <= kTool; }
 } // namespace link
 
+/// The frames that the controller of an arm counts in and its programs refer to.
+struct ControllerFrames {
+    Eigen::Isometry3d T_base_world = Eigen::Isometry3d::Identity(); ///< its world frame, in frame 0 of the table
+    Eigen::Isometry3d T_6_flange = Eigen::Isometry3d::Identity();   ///< its flange, from which tools are counted
+};
+
 struct Body {
     std::string name;
     int link = link::kCell;
@@ -117,6 +123,9 @@ struct Robot {
     /// The robot holds the workpiece: the part's frame is the tool's D-H frame, the tool frame of a path after half a
     /// turn about its x, as belt::held_part_path() has it.
     bool holds_workpiece = false;
+    /// Nothing: a robot file's, whose table begins at the controller's base and ends at its flange.
+    std::optional<ControllerFrames> controller;
+    std::string no_controller;      ///< of a URDF: why the controller's frames are unknown; empty if they are not
     std::vector<std::string> notes; ///< what a user should know of how the file was read
     std::string digest; ///< SHA-256 of the file and the points of its meshes: by it a checked path knows its robot
 };

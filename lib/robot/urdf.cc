@@ -69,6 +69,7 @@ class UrdfReader {
         check_tree();
         find_chain();
         read_kinematics();
+        read_controller_frames();
         for (const auto& [name, link] : model_.links_) read_bodies(*link);
         if (!options_.srdf.empty()) read_srdf(options_.srdf, links_of_bodies_, robot_);
         return std::move(robot_);
@@ -209,6 +210,24 @@ class UrdfReader {
         }
         // Fixed to the root: of the robot, if that does not move.
         return track_ != nullptr ? link::kCell : link::kBase;
+    }
+
+    // REP 199: the frames of the controller are the links base and tool0. Those of the table are not, where joint 1
+    // turns about an axis that points down (KUKA), where the robot is built in turned by half a turn (Universal
+    // Robots), and behind the wrist.
+    void read_controller_frames()
+    {
+        const urdf::Link *base = model_.getLink("base").get(), *flange = model_.getLink("tool0").get();
+        const auto must = [&](bool is_there, const std::string& what) {
+            if (!is_there && robot_.no_controller.empty()) robot_.no_controller = what;
+        };
+        must(base != nullptr, "no link is called base, the frame that the controller counts from (REP 199)");
+        must(flange != nullptr, "no link is called tool0, the frame that the controller counts tools from (REP 199)");
+        if (!robot_.no_controller.empty()) return;
+        must(moving_link(*base) <= link::kBase, "the link base moves with the arm");
+        must(moving_link(*flange) == 6, "the link tool0 is not behind joint 6");
+        robot_.controller = {robot_.T_cell_base.inverse() * place(*base),
+                             (robot_.T_cell_base * frames_[6]).inverse() * place(*flange)};
     }
 
     void read_bodies(const urdf::Link& link)

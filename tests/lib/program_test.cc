@@ -78,7 +78,9 @@ TEST(Rapid, TargetsOfTheHomePose)
 TEST(Rapid, EightBranchesOfASerialArm)
 {
     const robot::Robot robot = irb1400(robot::Coupling::serial);
-    const auto configuration = [&](const robot::Joints& q) { return program::rapid_configuration(robot, q)[3]; };
+    const auto configuration = [&](const robot::Joints& q) {
+        return program::rapid_configuration(robot, robot.coupling, q)[3];
+    };
     EXPECT_EQ(configuration(degrees(0, 0, 0, 0, 30, 0)), 0);
     EXPECT_EQ(configuration(degrees(0, 0, 0, 0, -30, 0)), 1);
     EXPECT_EQ(configuration(degrees(0, 60, -150, 0, 30, 0)),
@@ -89,7 +91,8 @@ TEST(Rapid, EightBranchesOfASerialArm)
               4); // the arm leans back, the forearm points upwards from it
     EXPECT_EQ(configuration(degrees(0, -80, -100, 0, 30, 0)), 6); // and lies back, too
     EXPECT_EQ(configuration(degrees(0, -80, -100, 0, -30, 0)), 7);
-    EXPECT_EQ(program::rapid_configuration(irb1400(), degrees(0, 0, 0, 0, -30, 0))[3], 0);
+    EXPECT_EQ(program::rapid_configuration(irb1400(), robot::Coupling::parallelogram, degrees(0, 0, 0, 0, -30, 0))[3],
+              0);
 }
 
 // Process and force are switched where the tool stands: the process off the part, the force at the ends of each stroke.
@@ -212,7 +215,7 @@ TEST(UrScript, BlendRadii)
     ASSERT_EQ(radii.size(), 7u);
     std::vector<Eigen::Vector3d> places;
     for (const program::Step& step : made.routines[0].steps)
-        if (step.is_move()) places.push_back(program::target_in_base(irb1400(), step).translation());
+        if (step.is_move()) places.push_back(program::target_in_world(irb1400(), step).translation());
     ASSERT_EQ(places.size(), 8u);
     for (std::size_t i = 1; i + 1 < places.size(); ++i) {
         EXPECT_GT(radii[i - 1], 0);
