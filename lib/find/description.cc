@@ -1,5 +1,6 @@
 #include "find/description.h"
 
+#include "core/direction.h"
 #include "core/text.h"
 #include "find/outline.h"
 
@@ -177,8 +178,7 @@ FoundAnomaly describe(const mesh::CloudMesh& part, const SeenSide& side, const C
     found.significance = find.evidence.significance();
     found.doubt = doubts_of(find);
     found.cell = side.surface.cell;
-    found.T_anomaly_part =
-        Eigen::Quaterniond::FromTwoVectors(side.view.linear().transpose() * up, Eigen::Vector3d::UnitZ());
+    found.T_anomaly_part = core::rotation_between(side.view.linear().transpose() * up, Eigen::Vector3d::UnitZ());
     found.T_anomaly_part.pretranslate(-(found.T_anomaly_part * (side.view.inverse() * middle_beneath(side, find))));
     std::vector<std::pair<Index, double>> points = points_of(part, side, cells, find, up);
     double sum = 0;

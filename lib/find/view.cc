@@ -1,6 +1,7 @@
 #include "find/view.h"
 
 #include "align/oriented_points.h"
+#include "core/direction.h"
 #include "core/error.h"
 #include "geometry/bounding_box.h"
 
@@ -67,7 +68,7 @@ std::vector<Eigen::Vector3d> directions()
 
 View view_from(const Eigen::Vector3d& direction)
 {
-    return View(Eigen::Quaterniond::FromTwoVectors(direction, Eigen::Vector3d::UnitZ()));
+    return View(core::rotation_between(direction, Eigen::Vector3d::UnitZ()));
 }
 
 /// Which samples are seen from a direction: those that face it, beneath no other.

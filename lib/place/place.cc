@@ -2,6 +2,7 @@
 
 #include "align/rigid.h"
 #include "core/decompositions.h"
+#include "core/direction.h"
 #include "core/error.h"
 #include "geometry/bounding_box.h"
 #include "job/frame.h"
@@ -71,8 +72,7 @@ PlacedPart place_part(mesh::CloudMesh part, const PlaceRequest& request, double 
         placed.region = find_region(searched_points(part), *request.up,
                                     request.threshold.value_or(kThresholdDiagonals * box.diagonal().norm()));
     if (placed.region)
-        motion =
-            Eigen::Quaterniond::FromTwoVectors(motion.linear() * placed.region->up, Eigen::Vector3d::UnitZ()) * motion;
+        motion = core::rotation_between(motion.linear() * placed.region->up, Eigen::Vector3d::UnitZ()) * motion;
     motion = align::orthonormalized(motion);
     if (request.is_centred) {
         cloud::Cloud moved;

@@ -7,6 +7,7 @@
 // faults: white noise and half as much that is correlated over three cells, flying points, dropouts, faces steeper than
 // 78° that are hardly seen. Out: PCD with the fields `truth` (0, or the number of the anomaly that a point is on) and
 // `truth_height` (of that anomaly, mm).
+#include "core/direction.h"
 #include "find-case-anomalies.h"
 #include "find-case-scanner.h"
 
@@ -27,8 +28,8 @@ Eigen::Vector3d axis_of(const std::string& name)
 mesh::CloudMesh read_base(const std::string& path, const std::string& up, double scale)
 {
     mesh::CloudMesh base = mesh::read_cloud_mesh(path, {}).part;
-    const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(axis_of(up), Vector3d::UnitZ());
-    base.points.xyz = (scale * turn.toRotationMatrix() * base.points.xyz).eval();
+    const Eigen::Matrix3d turn = core::rotation_between(axis_of(up), Vector3d::UnitZ());
+    base.points.xyz = (scale * turn * base.points.xyz).eval();
     base.points.fields.clear();
     if (base.is_mesh()) return base;
     std::vector<Index> finite;

@@ -6,6 +6,7 @@
 //
 // MIN and MAX bound the sides of B in mm; ACCURACY is that of the probe, mm: 99 % of the touches lie within it.
 #include "core/decompositions.h"
+#include "core/direction.h"
 #include "fit/fit.h"
 #include "gantry/touch_job.h"
 #include "margin/error_band.h"
@@ -146,9 +147,8 @@ std::optional<Cell> try_cell(const Shape& all, double min, double max, std::mt19
     Shape piece = crop(all, middle, 0.6 * S.norm());
     if (coordinates(piece).cols() < 50) return std::nullopt;
     const Eigen::Vector3d normal = mean_normal(piece);
-    const Eigen::Matrix3d R = (Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ()) *
-                               Eigen::Quaterniond::FromTwoVectors(normal, Eigen::Vector3d::UnitZ()))
-                                  .toRotationMatrix();
+    const Eigen::Matrix3d R =
+        Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ()) * core::rotation_between(normal, Eigen::Vector3d::UnitZ());
     coordinates(piece) = R * (coordinates(piece).colwise() - middle);
     Cell cell{a, b, d, 0, std::make_shared<sampling::Scan>(std::move(piece))};
     if (!is_one_face(*cell.on, S.x(), S.y())) return std::nullopt;

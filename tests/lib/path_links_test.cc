@@ -2,6 +2,7 @@
 
 #include "belt/contact_path.h"
 #include "cloud/poses.h"
+#include "core/direction.h"
 #include "core/error.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +24,7 @@ cloud::Cloud strokes_on(const Eigen::Matrix3Xd& part, int count)
     for (int k = 0; k < count; ++k) {
         const Eigen::Vector3d p = part.col(draw(engine)), z = p.normalized();
         Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-        pose.linear() = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), z).toRotationMatrix();
+        pose.linear() = core::rotation_between(Eigen::Vector3d::UnitZ(), z);
         for (const double along : {0.0, 1.0}) {
             pose.translation() = p + along * pose.linear().col(0);
             poses.push_back(pose);
