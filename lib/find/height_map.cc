@@ -60,7 +60,7 @@ void fill_small_holes(Image& z)
         Image count(z.size(), 0.F);
         count.setTo(1, finite(z));
         cv::boxFilter(count, count, CV_32F, {3, 3}, {-1, -1}, false, cv::BORDER_REFLECT);
-        const Mask fills = (z != z) & (count >= float(kMinFillNeighbours));
+        const Mask fills = ~finite(z) & (count >= float(kMinFillNeighbours));
         if (cv::countNonZero(fills) > 0) nan_median(z, 1).copyTo(z, fills);
     }
 }

@@ -87,7 +87,7 @@ Image smoothed(const Image& z, const Mask& mask, double sigma)
 
 Image filled(const Image& z)
 {
-    const Mask gaps = z != z;
+    const Mask gaps = ~finite(z);
     cv::Mat distance;
     cv::Mat1i nearest;
     cv::distanceTransform(gaps, distance, nearest, cv::DIST_L2, cv::DIST_MASK_5, cv::DIST_LABEL_PIXEL);

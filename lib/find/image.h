@@ -12,7 +12,8 @@ namespace fettle::find {
 using Image = cv::Mat1f; ///< one number a cell; NaN: nothing seen there
 using Mask = cv::Mat1b;  ///< 255: true, 0: false
 
-/// Cells with a value.
+/// Cells with a value; ~finite(image) those without. `image != image` is no way to find these: OpenCV compares by
+/// instructions for which NaN is unequal to itself on some processors, and not on others (AVX2).
 Mask finite(const Image& image);
 
 /// Standard deviation of white noise, from second differences along rows and columns, which are free of slopes; 0 if

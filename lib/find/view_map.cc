@@ -21,12 +21,18 @@ constexpr double kMaxCells = 2e7; // of a map: four bytes each, and some ten suc
 // another surface.
 constexpr double kLayerCells = 3;
 
+// A cell is hidden if it lies so many cells beneath what is seen around it: the far side of a body shows where no point
+// of the near one falls into a cell. Walls up to 70 degrees drop by less within that reach.
+constexpr int kHiddenReach = 2;
+constexpr float kHiddenCells = 6;
+
 // The cell is the spacing of the points, or the first of its multiples at which this share of the cells between seen
-// ones is seen, too.
+// ones is seen, too. Gaps that count as between seen cells are as wide as points lie apart where they are sparse.
 constexpr double kCellRatio = 1.25;
 constexpr double kMinFill = 0.8;
-constexpr int kFillRadius = 2; // cells: of the gaps that count as between seen cells
-constexpr int kMaxSpacingQueries = 4000;
+constexpr int kMinFillRadius = 2, kMaxFillRadius = 8; // of these gaps, cells
+constexpr double kSparseShare = 0.9;                  // of the area has points closer together
+constexpr int kSpacingQueries = 4000;                 // about
 constexpr double kPointsPerGridCell = 3;
 
 // A mesh has been smoothed and interpolated: its second differences do not show the noise that is left in waves of a
@@ -37,23 +43,38 @@ constexpr double kMinMeshCells = 300, kMaxMeshCells = 3000; // along a mesh's di
 constexpr double kMinTriangleArea = 1e-12; // twice the area, in cells: a degenerate triangle covers no cell's centre
 constexpr double kOnEdge = -1e-9;          // barycentric: cells on the common edge of two triangles belong to both
 
-/// Median distance of points of a plane to their nearest others.
-double median_spacing(const Eigen::Matrix2Xd& points)
+/// Distances of points of a plane to their nearest others.
+struct Spacing {
+    double median;
+    double sparse; // exceeded in a tenth of the area
+};
+
+/// One point of each square of a grid is asked: areas count alike, however many points lie in some. Walls, seen from
+/// the side, put many into a few places, and merged scans where they overlap.
+Spacing spacing_of(const Eigen::Matrix2Xd& points)
 {
     const geometry::PlanarGrid grid = geometry::planar_grid(points, kPointsPerGridCell);
+    const int step = std::max(1, int(std::sqrt(double(grid.count.prod()) / kSpacingQueries)));
+    const Eigen::Array2d square(step * grid.side, step * grid.side);
     std::vector<double> nearest;
-    const Index step = std::max<Index>(1, points.cols() / kMaxSpacingQueries);
-    for (Index i = 0; i < points.cols(); i += step) {
-        double square = std::numeric_limits<double>::infinity();
-        const Eigen::Array2d p = points.col(i).array();
-        geometry::visit_cells(grid, p - grid.side, p + grid.side, [&](Index k) {
-            const double other = (points.col(grid.order[std::size_t(k)]) - points.col(i)).squaredNorm();
-            if (other > 0) square = std::min(square, other);
-        });
-        if (std::isfinite(square)) nearest.push_back(std::sqrt(square));
-    }
+    for (int y = 0; y < grid.count.y(); y += step)
+        for (int x = 0; x < grid.count.x(); x += step) {
+            const Eigen::Array2d middle = grid.min.array() + grid.side * Eigen::Array2d(x + 0.5, y + 0.5);
+            Index chosen = -1;
+            geometry::visit_cells(grid, middle, middle + (step - 1) * grid.side, [&](Index k) {
+                if (chosen < 0) chosen = grid.order[std::size_t(k)];
+            });
+            if (chosen < 0) continue;
+            double squared = std::numeric_limits<double>::infinity();
+            const Eigen::Array2d p = points.col(chosen).array();
+            geometry::visit_cells(grid, p - square, p + square, [&](Index k) {
+                const double other = (points.col(grid.order[std::size_t(k)]) - points.col(chosen)).squaredNorm();
+                if (other > 0) squared = std::min(squared, other);
+            });
+            if (std::isfinite(squared)) nearest.push_back(std::sqrt(squared));
+        }
     if (nearest.empty()) throw core::InputError("no surface: the points lie far apart, or all at one place");
-    return geometry::median(nearest);
+    return {geometry::median(nearest), geometry::quantile(nearest, kSparseShare)};
 }
 
 HeightMap empty_map(const Eigen::AlignedBox2d& box, double cell)
@@ -70,11 +91,24 @@ HeightMap empty_map(const Eigen::AlignedBox2d& box, double cell)
     return map;
 }
 
+/// Leaves out cells beneath the closing of the heights around them.
+void remove_hidden(HeightMap& map)
+{
+    constexpr float kNothing = std::numeric_limits<float>::lowest();
+    Image upper = map.z.clone();
+    upper.setTo(kNothing, ~finite(map.z));
+    const cv::Mat square = cv::getStructuringElement(cv::MORPH_RECT, {2 * kHiddenReach + 1, 2 * kHiddenReach + 1});
+    cv::morphologyEx(upper, upper, cv::MORPH_CLOSE,
+                     square); // beyond the map's edge there is nothing to cover or to show
+    map.z.setTo(std::numeric_limits<float>::quiet_NaN(), map.z < upper - kHiddenCells * float(map.cell));
+}
+
 /// Share of the seen cells among those that are seen or between seen ones.
-double fill_of(const Image& z)
+/// @param radius  of the gaps that are between, cells
+double fill_of(const Image& z, int radius)
 {
     const Mask seen = finite(z);
-    return double(cv::countNonZero(seen)) / std::max(1, cv::countNonZero(closed(seen, kFillRadius)));
+    return double(cv::countNonZero(seen)) / std::max(1, cv::countNonZero(closed(seen, radius)));
 }
 
 HeightMap map_of_points(const Eigen::Matrix3Xd& placed, const Eigen::AlignedBox2d& box, double cell)
@@ -170,10 +204,12 @@ HeightMap height_map(const mesh::CloudMesh& part, const View& view)
                                " million cells shows: thin them first (fettle-clean --thin)");
     const Eigen::AlignedBox2d box(placed.topRows<2>().rowwise().minCoeff(), placed.topRows<2>().rowwise().maxCoeff());
     if (part.is_mesh()) return map_of_mesh(part, placed, box);
-    HeightMap map;
-    for (double cell = median_spacing(placed.topRows<2>());; cell *= kCellRatio) {
-        map = map_of_points(placed, box, cell);
-        if (fill_of(map.z) >= kMinFill) return map;
+    const Spacing spacing = spacing_of(placed.topRows<2>());
+    for (double cell = spacing.median;; cell *= kCellRatio) {
+        HeightMap map = map_of_points(placed, box, cell);
+        remove_hidden(map);
+        const int radius = std::clamp(int(std::ceil(spacing.sparse / cell)), kMinFillRadius, kMaxFillRadius);
+        if (fill_of(map.z, radius) >= kMinFill) return map;
     }
 }
 

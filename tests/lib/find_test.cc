@@ -3,12 +3,15 @@
 #include "find/outline.h"
 #include "find/ring_fit.h"
 #include "find/slow_field.h"
+#include "find/view.h"
 
 #include "core/error.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
+#include <random>
 
 namespace fettle::find {
 namespace find_test {
@@ -38,6 +41,44 @@ TEST(Image, DistancesAndHolesAreExact)
     EXPECT_FLOAT_EQ(distance_to(mask)(0, 0), std::sqrt(8.F));
     EXPECT_FLOAT_EQ(depth_of(with_holes_filled(mask))(4, 4), 3);
     EXPECT_FLOAT_EQ(depth_of(Mask(5, 5, uchar(255)))(2, 2), 3); // beyond the image is nothing
+}
+
+TEST(Image, GapsGetTheNearestValue)
+{
+    Image z = quadratic(9, 9);
+    z(4, 4) = std::numeric_limits<float>::quiet_NaN();
+    z.row(0).setTo(std::numeric_limits<float>::quiet_NaN());
+    const Image whole = filled(z);
+    EXPECT_EQ(cv::countNonZero(finite(whole)), 81);
+    for (int x = 0; x < 9; ++x) EXPECT_EQ(whole(0, x), z(1, x));
+    HeightMap map{z, 1, {0, 0}, {}, 0};
+    clean(map);
+    EXPECT_NEAR(map.z(4, 4), quadratic(9, 9)(4, 4), 0.02); // the median of the cells around
+    EXPECT_TRUE(map.seen(4, 4));
+}
+
+// Two sheets of scattered points, one 30 mm beneath the other, and a wall that puts as many points on a line: the cell
+// follows the density of the upper sheet, 8 points a mm², and nothing of the lower one shows, in whatever cell no point
+// of the upper one falls.
+TEST(View, FarSideOfABodyDoesNotShow)
+{
+    std::mt19937 random(4);
+    std::uniform_real_distribution<double> draw;
+    mesh::CloudMesh part;
+    part.points.xyz.resize(3, 60000);
+    for (Eigen::Index i = 0; i < 60000; ++i)
+        part.points.xyz.col(i) << 50 * draw(random), (i < 40000 ? 50 * draw(random) : 0),
+            (i < 20000   ? 30
+             : i < 40000 ? 0
+                         : 30 * draw(random));
+    HeightMap map = height_map(part, View::Identity());
+    EXPECT_GT(map.cell, 0.35); // 1 point a cell
+    EXPECT_LT(map.cell, 0.7);  // 4
+    double min = 0, max = 0;
+    cv::minMaxLoc(map.z.rowRange(1, map.z.rows), &min, &max, nullptr, nullptr, finite(map.z.rowRange(1, map.z.rows)));
+    EXPECT_EQ(min, 30);
+    clean(map);
+    EXPECT_GT(cv::countNonZero(map.seen), 0.98 * double(map.z.total()));
 }
 
 // A filter of order 2 reproduces quadratics; 1e-3 of it is the ridge's share.
