@@ -98,18 +98,42 @@ void check_surface(const std::vector<SeenSide>& sides)
         throw core::InputError("no surface: its points lie on lines, as those of a single profile, or are too few");
 }
 
-/// Signed distances of what a side shows, as a map.
-HeightMap distance_map(const SeenSide& side, const SignedDistances& distances)
+/// The places of a side's cells in the part: of a cloud the point whose height the cell has, of a mesh its surface at
+/// the cell's middle. Cells of a cloud that were filled from those around have none.
+std::pair<std::vector<cv::Point>, Eigen::Matrix3Xd> places_of(const mesh::CloudMesh& part, const SeenSide& side)
 {
     const HeightMap& map = side.surface;
-    std::vector<cv::Point> cells;
-    cv::findNonZero(map.seen, cells);
-    Eigen::Matrix3Xd points(3, Index(cells.size()));
-    for (std::size_t k = 0; k < cells.size(); ++k) {
-        const Eigen::Vector2d place = map.point_at(cells[k].x, cells[k].y);
-        points.col(Index(k)) = side.view.inverse() * Eigen::Vector3d(place.x(), place.y(), map.z(cells[k]));
+    std::vector<cv::Point> seen, cells;
+    cv::findNonZero(map.seen, seen);
+    const CellPoints points = part.is_mesh() ? CellPoints() : points_by_cell(part, side);
+    const Eigen::RowVector3d up = side.view.linear().row(2);
+    Eigen::Matrix3Xd places(3, Index(seen.size()));
+    for (const cv::Point& cell : seen) {
+        if (part.is_mesh()) {
+            const Eigen::Vector2d place = map.point_at(cell.x, cell.y);
+            places.col(Index(cells.size())) = side.view.inverse() * Eigen::Vector3d(place.x(), place.y(), map.z(cell));
+            cells.push_back(cell);
+            continue;
+        }
+        const double height = map.z(cell) - side.view.translation().z();
+        const auto error_of = [&](Index i) { return std::abs(up.dot(part.points.xyz.col(i)) - height); };
+        Index nearest = points.first(cell);
+        if (nearest < 0) continue;
+        for (Index i = nearest; i >= 0; i = points.next[std::size_t(i)])
+            if (error_of(i) < error_of(nearest)) nearest = i;
+        places.col(Index(cells.size())) = part.points.xyz.col(nearest);
+        cells.push_back(cell);
     }
-    const Eigen::VectorXd errors = distances(points);
+    places.conservativeResize(Eigen::NoChange, Index(cells.size()));
+    return {cells, places};
+}
+
+/// Signed distances of what a side shows, as a map.
+HeightMap distance_map(const mesh::CloudMesh& part, const SeenSide& side, const SignedDistances& distances)
+{
+    const HeightMap& map = side.surface;
+    const auto [cells, places] = places_of(part, side);
+    const Eigen::VectorXd errors = distances(places);
     HeightMap result{Image(map.z.size(), std::numeric_limits<float>::quiet_NaN()), map.cell, map.origin, {}, 0};
     for (std::size_t k = 0; k < cells.size(); ++k) result.z(cells[k]) = float(errors[Index(k)]);
     return result;
@@ -139,7 +163,7 @@ FindResult find_anomalies_against(const mesh::CloudMesh& part, const SignedDista
     for (const View& view : choose_views(part)) {
         SeenSide side{view, height_map(part, view), {}, true, {}};
         clean(side.surface);
-        side.searched = distance_map(side, distances);
+        side.searched = distance_map(part, side, distances);
         if (cv::countNonZero(finite(side.searched.z)) == 0) continue;
         is_defined = true;
         clean(side.searched);
