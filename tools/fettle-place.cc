@@ -79,7 +79,9 @@ int main(int argc, char** argv)
         "Move a part: by a matrix, by turns, or so that a face of it is up; convert its unit.\n"
         "Out: the cloud or mesh with all its triangles and fields; normals, poses and viewpoint are turned with it. "
         "The matrix is applied first, then the turns, then --up, then --centre. A face's upper side is where the "
-        "normals of mesh or cloud point; of a cloud without normals, the side of its viewpoint.";
+        "normals of mesh or cloud point; of a cloud without normals, the side of its viewpoint, and where it states "
+        "none, "
+        "the convex side, which is said.";
     return cli::tool_main(argc, argv, description, [](cli::Tool& t) {
         const Options o{t};
         t.example("fettle-place scans/hammer.stl --up plane --centre --inverse back.txt -o lying.stl",
@@ -107,6 +109,9 @@ int main(int argc, char** argv)
         if (!o.transform_out.empty()) align::write_transform(t.output_file(o.transform_out), placed.transform);
         if (!o.inverse.empty()) align::write_transform(t.output_file(o.inverse), place::inverse_of(placed.transform));
         t.report().set("transform", Eigen::MatrixXd(placed.transform));
+        if (placed.is_side_guessed)
+            t.warn(name + ": has neither normals nor a viewpoint: which side is up is a guess, and --turn x,180 turns "
+                          "the result over");
         if (placed.region) {
             t.report().set("up", Eigen::VectorXd(placed.region->up));
             if (placed.region->radius > 0) t.report().set("radius", placed.region->radius / mm);

@@ -1,11 +1,11 @@
 #include "align/oriented_points.h"
 
-#include "core/decompositions.h"
-#include "geometry/point_index.h"
+#include "cloud/viewpoint.h"
+#include "geometry/orientation.h"
+#include "geometry/plane_normals.h"
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -13,28 +13,24 @@
 #include <numbers>
 #include <numeric>
 #include <span>
+#include <utility>
 
 namespace fettle::align {
 
 namespace {
 
-// Enough points to average noise over a plane, few enough to stay on one face.
-constexpr Eigen::Index kNeighbours = 16;
-
-/// @param view_origin  to whose side the normals point
-Eigen::Matrix3Xd estimate_normals(const Eigen::Matrix3Xd& xyz, const Eigen::Vector3d& view_origin)
+/// Normals of planes fitted to the nearest points: to the side of the viewpoint, else all to one side of the surface.
+Eigen::Matrix3Xd estimate_normals(const Eigen::Matrix3Xd& xyz, const cloud::Cloud& cloud)
 {
-    const geometry::PointIndex<3> neighbours(xyz);
-    Eigen::Matrix3Xd normals = Eigen::Matrix3Xd::Zero(3, xyz.cols());
-    tbb::parallel_for(Eigen::Index{0}, xyz.cols(), [&](Eigen::Index i) {
-        const std::vector<Eigen::Index> near = neighbours.nearest(xyz.col(i), kNeighbours);
-        if (near.size() < 3) return;
-        Eigen::Matrix3Xd local = xyz(Eigen::all, near);
-        local.colwise() -= Eigen::Vector3d(local.rowwise().mean());
-        const Eigen::Vector3d normal = core::symmetric_eigen<3>(local * local.transpose()).vectors.col(0);
-        normals.col(i) = normal.dot(view_origin - xyz.col(i)) < 0 ? Eigen::Vector3d(-normal) : normal;
-    });
-    return normals;
+    geometry::PlaneNormals planes = geometry::plane_normals(xyz);
+    if (cloud::has_viewpoint(cloud)) {
+        const Eigen::Matrix3Xd towards = (-xyz).colwise() + cloud.view_origin;
+        for (Eigen::Index i = 0; i < xyz.cols(); ++i)
+            if (planes.normals.col(i).dot(towards.col(i)) < 0) planes.normals.col(i) *= -1;
+    } else {
+        geometry::orient_consistently(planes.normals, xyz, planes.links, Eigen::Matrix3Xd::Zero(3, xyz.cols()));
+    }
+    return std::move(planes.normals);
 }
 
 /// Points near each other, and the one of them that is farthest from all samples.
@@ -75,7 +71,7 @@ OrientedPoints oriented_points(const cloud::Cloud& cloud)
     OrientedPoints points;
     points.xyz = cloud.xyz(Eigen::all, finite);
     if (!cloud::has_normals(cloud)) {
-        points.normals = estimate_normals(points.xyz, cloud.view_origin);
+        points.normals = estimate_normals(points.xyz, cloud);
         return points;
     }
     points.outward = true;

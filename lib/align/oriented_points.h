@@ -17,7 +17,8 @@ struct OrientedPoints {
 };
 
 /// The finite points of a cloud with its normals, which are taken for outward. A cloud without normals gets those of
-/// planes fitted to the nearest points, on the side of the viewpoint.
+/// planes fitted to the nearest points, on the side of the viewpoint; where that is unknown all on one side of the
+/// surface, that from which most of it is convex.
 OrientedPoints oriented_points(const cloud::Cloud& cloud);
 
 /// Samples a mesh evenly by area with a low-discrepancy sequence; a mesh without area has no samples.

@@ -1,6 +1,7 @@
 #include "cloud/cloud.h"
 
 #include "cloud/element.h"
+#include "cloud/viewpoint.h"
 #include "core/error.h"
 
 #include <algorithm>
@@ -128,9 +129,8 @@ Cloud transformed(Cloud cloud, const Eigen::Matrix4d& matrix, double mm)
     const Eigen::Matrix3d R = matrix.topLeftCorner<3, 3>();
     if (has_normals(cloud)) set_normals(cloud, R * normals(cloud));
     if (has_poses(cloud)) turn_poses(cloud, Eigen::Quaterniond(R));
-    cloud.view_origin = mm * apply(cloud.view_origin / mm);
-    const Eigen::Quaterniond q = (Eigen::Quaterniond(R) * cloud.view_orientation).normalized();
-    cloud.view_orientation = q.w() < 0 ? Eigen::Quaterniond(-q.coeffs()) : q; // q and -q are the same rotation
+    if (has_viewpoint(cloud))
+        set_viewpoint(cloud, mm * apply(cloud.view_origin / mm), Eigen::Quaterniond(R) * cloud.view_orientation);
     return cloud;
 }
 

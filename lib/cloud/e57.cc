@@ -1,6 +1,7 @@
 #include "cloud/e57.h"
 
 #include "cloud/e57_records.h"
+#include "cloud/viewpoint.h"
 #include "core/constants.h"
 #include "core/error.h"
 
@@ -163,8 +164,8 @@ Cloud parse_e57(std::string_view bytes, const std::string& source)
     Eigen::Index points = 0;
     for (const E57Scan& scan : scans) points += records.emplace_back(pages, scan, source).size();
     Cloud cloud;
-    cloud.view_origin = scans.front().T_file_scanner.translation();
-    cloud.view_orientation = Eigen::Quaterniond(scans.front().T_file_scanner.linear());
+    if (const E57Scan& scan = scans.front(); scans.size() == 1 && scan.has_pose)
+        set_viewpoint(cloud, scan.T_file_scanner.translation(), Eigen::Quaterniond(scan.T_file_scanner.linear()));
     cloud.xyz.resize(3, points);
     FieldCollector fields(points);
     Eigen::Index first = 0;

@@ -114,6 +114,7 @@ class ScanReader : public core::XmlHandler {
     {
         const std::string& part = path_[kScanDepth + 1];
         const std::string& axis = path_[kScanDepth + 2];
+        scan_.has_pose = true;
         const std::string word = text_.substr(std::min(text_.find_first_not_of(" \t\r\n"), text_.size()));
         const double value =
             word.empty() ? 0

@@ -26,6 +26,7 @@ struct E57Column {
 /// A scan (data3D) as the XML section describes it.
 struct E57Scan {
     Eigen::Isometry3d T_file_scanner = Eigen::Isometry3d::Identity(); ///< m
+    bool has_pose = false;                                            ///< the file states it
     std::uint64_t offset = 0;                                         ///< physical, of its binary section
     std::uint64_t records = 0;
     std::vector<E57Column> columns;

@@ -1,5 +1,6 @@
 #include "cloud/ptx.h"
 
+#include "cloud/viewpoint.h"
 #include "core/constants.h"
 #include "core/error.h"
 #include "core/lines.h"
@@ -44,21 +45,22 @@ class PtxParser : core::FileLines {
     Cloud parse()
     {
         std::size_t scans = 0, rows = 0;
+        Eigen::Isometry3d T_file_scanner = Eigen::Isometry3d::Identity();
         Cloud cloud;
         while (next()) {
             if (core::is_blank_line(line())) continue;
             const std::size_t columns = side(line(), "columns");
             rows = side(next_line(), "rows");
-            const Eigen::Isometry3d T_file_scanner = read_pose();
-            if (scans++ == 0) {
-                cloud.view_origin = T_file_scanner.translation();
-                cloud.view_orientation = Eigen::Quaterniond(T_file_scanner.linear());
-            }
+            T_file_scanner = read_pose();
+            ++scans;
             read_points(columns * rows, T_file_scanner);
         }
         cloud.xyz.resize(3, static_cast<Eigen::Index>(points_.xyz.size()));
         for (std::size_t i = 0; i < points_.xyz.size(); ++i) cloud.xyz.col(i) = points_.xyz[i];
-        if (scans == 1) cloud.width = rows;
+        if (scans == 1) { // else each point has another viewpoint
+            cloud.width = rows;
+            set_viewpoint(cloud, T_file_scanner.translation(), Eigen::Quaterniond(T_file_scanner.linear()));
+        }
         set_field(cloud, "intensity", Eigen::Map<const Eigen::VectorXd>(points_.intensities.data(), cloud.size()));
         if (!points_.colours.empty() && points_.colours.size() == points_.xyz.size())
             set_colours(cloud, Eigen::Map<const Eigen::Matrix<std::uint8_t, 3, Eigen::Dynamic>>(

@@ -11,7 +11,8 @@ namespace fettle::cloud {
 /// matrix, then columns x rows points x y z intensity [r g b] in the scanner's frame. The points are moved by the
 /// matrix, whose last row is the translation; 0 0 0, which stands for no echo, becomes NaN. A file of one scan is
 /// organised: its width is the number of rows, because the points of a column follow each other. The viewpoint is the
-/// first scanner's. Fields: intensity, and rgb where all scans have colours. The cloud is in the units of the file.
+/// scanner's, if the file has one scan. Fields: intensity, and rgb where all scans have colours. The cloud is in the
+/// units of the file.
 /// @throws InputError with the line
 Cloud parse_ptx(std::string_view bytes, const std::string& source);
 

@@ -30,6 +30,7 @@ Eigen::Matrix3Xd sums_of_pieces(const Eigen::Matrix3Xd& normals, UnionFind& piec
 void orient_consistently(Eigen::Matrix3Xd& normals, const Eigen::Matrix3Xd& xyz,
                          const std::vector<std::vector<std::uint32_t>>& neighbours, const Eigen::Matrix3Xd& hints)
 {
+    if (normals.cols() == 0) return;
     std::vector<Edge> edges;
     for (std::uint32_t a = 0; a < neighbours.size(); ++a)
         for (const std::uint32_t b : neighbours[a])

@@ -1,6 +1,7 @@
 #include "merge/merge_run.h"
 
 #include "clean/clean.h"
+#include "cloud/viewpoint.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/text.h"
@@ -78,7 +79,7 @@ RawScan read_scan(const std::string& path, const MergeRequest& request, MergeRun
         scan.sides.normals = vertex_normals(part);
     else if (cloud::has_normals(part.points))
         scan.sides.normals = finite_normals(part.points);
-    scan.sides.has_view = scan.sides.normals.cols() == 0 && !part.points.view_origin.isZero(0);
+    scan.sides.has_view = scan.sides.normals.cols() == 0 && cloud::has_viewpoint(part.points);
     scan.sides.view = part.points.view_origin;
     scan.xyz = part.points.xyz;
     scan.spacing = geometry::point_spacing(scan.xyz);

@@ -1,6 +1,7 @@
 #include "place/place.h"
 
 #include "align/rigid.h"
+#include "cloud/viewpoint.h"
 #include "core/decompositions.h"
 #include "core/direction.h"
 #include "core/error.h"
@@ -71,6 +72,8 @@ PlacedPart place_part(mesh::CloudMesh part, const PlaceRequest& request, double 
     if (request.up)
         placed.region = find_region(searched_points(part), *request.up,
                                     request.threshold.value_or(kThresholdDiagonals * box.diagonal().norm()));
+    placed.is_side_guessed =
+        placed.region && !part.is_mesh() && !cloud::has_normals(part.points) && !cloud::has_viewpoint(part.points);
     if (placed.region)
         motion = core::rotation_between(motion.linear() * placed.region->up, Eigen::Vector3d::UnitZ()) * motion;
     motion = align::orthonormalized(motion);

@@ -35,6 +35,7 @@ struct PlacedPart {
     mesh::CloudMesh part;
     Eigen::Matrix4d transform;         ///< p_placed = transform · p, lengths in the unit of the part's file
     std::optional<FoundRegion> region; ///< what faces up, before it was turned
+    bool is_side_guessed = false;      ///< neither normals nor a viewpoint say which side of it is up
 };
 
 /// Moves a part: points, normals, poses and viewpoint; triangles and all other fields stay as they are.

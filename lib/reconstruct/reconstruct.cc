@@ -1,19 +1,17 @@
 #include "reconstruct/reconstruct.h"
 
 #include "cloud/profiles.h"
-#include "core/decompositions.h"
+#include "cloud/viewpoint.h"
 #include "core/error.h"
 #include "core/text.h"
 #include "geometry/bounding_box.h"
 #include "geometry/orientation.h"
-#include "geometry/point_index.h"
+#include "geometry/plane_normals.h"
 #include "geometry/quantiles.h"
 #include "geometry/spacing.h"
 #include "reconstruct/ordered.h"
 #include "reconstruct/stars.h"
 #include "reconstruct/triangle_sheet.h"
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <tuple>
@@ -22,8 +20,6 @@
 namespace fettle::reconstruct {
 namespace {
 
-constexpr Eigen::Index kNormalNeighbours = 16;     // as registration takes: they average noise and stay on one face
-constexpr Eigen::Index kLinkNeighbours = 8;        // from point to point, along which normals agree on their side
 constexpr double kMinSeenShare = 0.8;              // of the points that face a viewpoint: all do but for grazing ones
 constexpr Eigen::Index kMaxUnordered = 20'000'000; // points: they take a quarter of an hour, and 9 GB
 constexpr std::size_t kMaxLoopPoints = 200;        // of a hole that is filled: the time grows with the third power
@@ -47,7 +43,7 @@ Points with_hints(const cloud::Cloud& cloud, const ReconstructRequest& request)
     } else if (cloud::has_normals(cloud)) {
         points.side = OuterSide::normals;
         points.hints = cloud::normals(cloud);
-    } else if (!cloud.view_origin.isZero(0)) {
+    } else if (cloud::has_viewpoint(cloud)) {
         points.side = OuterSide::viewpoint;
         points.hints = (-points.xyz).colwise() + cloud.view_origin;
     }
@@ -73,29 +69,15 @@ Eigen::Matrix3Xd outward_normals(Points& points)
         for (auto normal : given.colwise()) normal = Eigen::Vector3d(normal).stableNormalized();
         return given;
     }
-    const geometry::PointIndex<3> index(points.xyz);
-    Eigen::Matrix3Xd normals = Eigen::Matrix3Xd::Zero(3, points.xyz.cols());
-    std::vector<std::vector<std::uint32_t>> links(static_cast<std::size_t>(points.xyz.cols()));
-    tbb::parallel_for(Eigen::Index{0}, points.xyz.cols(), [&](Eigen::Index i) {
-        const std::vector<Eigen::Index> near = index.nearest(points.xyz.col(i), kNormalNeighbours);
-        if (near.size() < 3) return;
-        Eigen::Matrix3Xd local = points.xyz(Eigen::all, near);
-        local.colwise() -= Eigen::Vector3d(local.rowwise().mean());
-        normals.col(i) = core::symmetric_eigen<3>(local * local.transpose()).vectors.col(0);
-        for (Eigen::Index k = 1; k < std::min<Eigen::Index>(kLinkNeighbours + 1, std::ssize(near)); ++k)
-            links[static_cast<std::size_t>(i)].push_back(static_cast<std::uint32_t>(near[static_cast<std::size_t>(k)]));
-    });
-    // Links are taken from the smaller index only.
-    for (std::uint32_t a = 0; a < links.size(); ++a)
-        for (const std::uint32_t b : std::vector<std::uint32_t>(links[a]))
-            if (b < a) links[b].push_back(a);
-    geometry::orient_consistently(normals, points.xyz, links, points.hints);
+    geometry::PlaneNormals planes = geometry::plane_normals(points.xyz);
+    Eigen::Matrix3Xd& normals = planes.normals;
+    geometry::orient_consistently(normals, points.xyz, planes.links, points.hints);
     if (points.side == OuterSide::viewpoint && agreeing_share(normals, points.hints) < kMinSeenShare) {
         points.side = OuterSide::guessed;
         points.hints.setZero();
-        geometry::orient_consistently(normals, points.xyz, links, points.hints);
+        geometry::orient_consistently(normals, points.xyz, planes.links, points.hints);
     }
-    return normals;
+    return std::move(planes.normals);
 }
 
 bool has_short_edges(const Eigen::Vector3i& corners, const Eigen::Matrix3Xd& xyz, double max_gap)

@@ -13,13 +13,18 @@ done
 grep -q '^# units m$' single.pcd
 grep -q '^FIELDS x y z intensity rgb$' single.pcd
 sed '1,/^DATA/d' single.pcd | sed -n 8p | grep -qE ' 0.007[0-9]* 522247$' # 7, 248, 7
-# Two scans in a file, the first of them turned by 90 degrees about z and shifted: its scanner is the viewpoint.
+# Two scans in a file, the first of them turned by 90 degrees about z and shifted. Of one scan the scanner is the viewpoint, if its pose is stated; two have none.
 printf '1 0 0\n2 0 0\n1 1 0\n' > a.txt
 printf '5 6 7\n5 6 8\n' > b.txt
 "$HERE/../write-e57" two.e57 double pose=0.7071067811865476,0,0,0.7071067811865476,10,20,30 a.txt b.txt
 fettle-place two.e57 --format ply > two.ply
-fettle-place two.e57 -o two.pcd
-grep -a -q '^VIEWPOINT 10 20 30 ' two.pcd
+view() { fettle-place "$1" | grep -a -m 1 '^VIEWPOINT'; }
+[ "$(view two.e57)" = 'VIEWPOINT 0 0 0 1 0 0 0' ]
+"$HERE/../write-e57" one.e57 double pose=0.7071067811865476,0,0,0.7071067811865476,10,20,30 a.txt
+view one.e57 | grep -q '^VIEWPOINT 10 20 30 0.70'
+"$HERE/../write-e57" still.e57 double pose=1,0,0,0,0,0,0 a.txt
+[ "$(view still.e57)" = 'VIEWPOINT 0 0 0 -1 0 0 0' ]
+[ "$(view double.e57)" = 'VIEWPOINT 0 0 0 1 0 0 0' ]
 printf '10 21 30\n10 22 30\n9 21 30\n5 6 7\n5 6 8\n' > two.xyz
 fettle-clean two.e57 --ascii > two.txt
 fettle-diff --tol 1e-5 <(points_of two.txt) two.xyz

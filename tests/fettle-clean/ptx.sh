@@ -13,10 +13,11 @@ sed '1,/^DATA/d' one.pcd | cut -d ' ' -f 5 | tr '\n' ' ' | grep -q '^16711680 65
 fettle-place one.ptx -o whole.pcd
 grep -a -q '^WIDTH 3$' whole.pcd
 grep -a -q '^VIEWPOINT 10 20 30 ' whole.pcd
-# Two scans in a file, one of them without colours.
+# Two scans in a file, one of them without colours: they have no common viewpoint.
 (cat one.ptx; scan 1 2 0 0 0; printf '7 8 9 1\n0 0 0 0\n') > two.ptx
 fettle-clean two.ptx --report two.json --ascii | sed '1,/^DATA/d' | tail -n 1 | grep -q '^-8 7 9 1$'
 jq -e '.points == 8 and .invalid == 2' two.json > ok
+fettle-place two.ptx | grep -a -q '^VIEWPOINT 0 0 0 1 0 0 0$'
 refuse() { "$HERE/../refuses" "$@"; }
 head -n 14 one.ptx > cut.ptx
 refuse 'cut.ptx: the scan ends after 14 lines' fettle-clean cut.ptx
