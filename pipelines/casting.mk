@@ -149,7 +149,8 @@ $(CHAIN)/%/after.png: $$(call job,$$*) $(CHAIN)/%/ground.pcd $(B)/bin/fettle-ren
 	fettle-render $(@D)/ground.pcd --field z --within $< --title "$(call case,$*): after" -o $@
 
 $(CHAIN)/%/errors.png: $$(call job,$$*) $(CHAIN)/%/errors.pcd $(B)/bin/fettle-render
-	fettle-render $(@D)/errors.pcd --within $< --title "$(call case,$*): ground surface against the truth" -o $@
+	fettle-render $(@D)/errors.pcd --within $< \
+	    --title "$(call case,$*): $$(jq -r '"\(1000 * .regions.inside.within | floor / 10) % inside B within \(.tolerance) \(.units.length)"' $(@D)/errors.json) of the reference" -o $@
 
 # The page takes the plan's job and surface; everything of the run is on it.
 $(CHAIN)/%/report.html: $$(call job,$$*) $$(call part,$$*) $(CHAIN)/%/errors.pcd $(B)/bin/fettle-report

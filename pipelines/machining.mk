@@ -7,11 +7,12 @@
 #   make -f pipelines/machining.mk PART=mine DESIGN=part.stl UNITS=mm STOCK=box:…   another design
 #
 # MACHINING/finish.nc is the program, machined.stl the part, patches.pcd the errors of its triangles, sheet.csv the data sheet,
-# errors.png the picture, verdict.json the report. fettle-verify judges by the closest point, since the mould has steep walls; what
+# errors.png the picture, verdict.json the report, room.json at how many of the serious under-cuts the cutter has no room. fettle-verify judges by the closest point, since the mould has steep walls; what
 # triangles cut off the rims of walls is no more than half a cell of the grid. `corrected`: worn.json is the verdict on what the WORN
 # cutter leaves along the program, by patches, corrected.json that on what it leaves along corrected.nc.
 
 B         ?= build
+export PATH := $(abspath $(B)/bin):$(PATH)
 PART      ?= mould
 MACHINING ?= $(B)/machining/$(PART)
 DESIGN    ?= samples/designs/$(PART).stl
@@ -56,8 +57,12 @@ $(MACHINING)/patches.pcd: $(MACHINING)/machined.stl $(DESIGN) $(B)/bin/fettle-ve
 	    --csv $(@D)/sheet.csv --z-errors $(@D)/z-errors.pcd --report $(@D)/verdict.json -o $@ || test $$? = 1
 $(MACHINING)/verdict.json: $(MACHINING)/patches.pcd
 
-$(MACHINING)/errors.png: $(MACHINING)/patches.pcd $(B)/bin/fettle-render
-	$(B)/bin/fettle-render $< --scale $(TOLERANCE) --from 1,-1,2 --title 'material left after finishing' -o $@
+# Where the cutter has no room metal stays, whatever the path: that is told apart from what the path has left.
+$(MACHINING)/room.json: $(MACHINING)/patches.pcd pipelines/machining-room $(DESIGN)
+	pipelines/machining-room $< $(DESIGN) $(UNITS) $(CUTTER) > $@
+
+$(MACHINING)/errors.png: $(MACHINING)/patches.pcd $(MACHINING)/room.json $(B)/bin/fettle-render
+	$(B)/bin/fettle-render $< --scale $(TOLERANCE) --from 1,-1,2 --title "$$(pipelines/machining-table $(@D) --title)" -o $@
 
 # --- the same path with a worn cutter, and corrected ----------------------------------------------------------------------
 corrected: $(MACHINING)/corrected.json

@@ -6,7 +6,7 @@
 #   make -f pipelines/robot.mk reach            where it reaches: a picture of each layer, and the whole cell's numbers
 #   make -f pipelines/robot.mk reach CELL=20    finer cells, mm
 #
-# ROBOT/keel holds the sheet, joints, program, clearances, their picture and report. ROBOT/small and ROBOT/large hold a hull each, its path, the
+# ROBOT/keel holds the sheet, joints, program, report, the clearances as a chart, and the cell at the pose where it is nearest to a collision (cell.png). ROBOT/small and ROBOT/large hold a hull each, its path, the
 # path led around pose by pose and smoothly (pose.pcd, smooth.pcd) with reports and pictures, the robot's program of
 # the latter, and the hull as triangles under the tool and cuboids elsewhere (model.png). ROBOT/reach/HEIGHT.png is a layer, one cell
 # thick; ROBOT/reach/cell.json counts all cells of 100 mm.
@@ -18,7 +18,7 @@ HEIGHTS := 100 300 500 700 900 1100 1300 1500 1700 1900
 ARM     := $(B)/bin/fettle-arm samples/robots/irb1400.json
 
 .PHONY: keel reach hulls times
-keel: $(ROBOT)/keel/clearance.png $(ROBOT)/keel/keel.mod
+keel: $(ROBOT)/keel/checked.pcd $(ROBOT)/keel/keel.mod
 	@jq -r '"\(.reached) of \(.count) poses reached, \(.collisions) collide, \(.collisions_between) ways between them; least clearance \(1000 * .min.clearance | round / 1000) mm, \(.min.pair | join(" and "))"' $(ROBOT)/keel/report.json
 
 reach: $(HEIGHTS:%=$(ROBOT)/reach/%.png) $(ROBOT)/reach/cell.json
@@ -28,13 +28,16 @@ include pipelines/step.mk
 
 LAYER = 0,-1000,$*,2000,3000,$*
 WHOLE = 0,-1000,0,2000,3000,2000
-TITLE = Reach of the IRB 1400 on its track, z $* mm
 
 $(ROBOT)/reach/%.pcd: $(B)/bin/fettle-arm samples/robots/irb1400.json
-	$(call step,$(ARM) --reach --box $(LAYER) --step $(CELL) -o $@.part)
+	$(call step,$(ARM) --reach --box $(LAYER) --step $(CELL) --report $(@:.pcd=.json) -o $@.part)
 
-$(ROBOT)/reach/%.png: $(ROBOT)/reach/%.pcd $(B)/bin/fettle-render
-	$(call step,$(B)/bin/fettle-render $< --field reach --title "$(TITLE)" -o $@.part)
+# Its headline is the finding.
+$(ROBOT)/reach/%.title: $(ROBOT)/reach/%.pcd
+	@jq -r '"IRB 1400 on its track, z $* mm: reaches \(100 * .reached | round) % of the places, from \(100 * .mean_reach | round) % of the sides on the mean"' $(<:.pcd=.json) > $@
+
+$(ROBOT)/reach/%.png: $(ROBOT)/reach/%.pcd $(ROBOT)/reach/%.title $(B)/bin/fettle-render
+	$(call step,$(B)/bin/fettle-render $< --field reach --scale 1 --title "$$(cat $(<:.pcd=.title))" -o $@.part)
 
 $(ROBOT)/reach/cell.json: $(B)/bin/fettle-arm samples/robots/irb1400.json
 	$(call step,$(ARM) --reach --box $(WHOLE) --report $@.part > /dev/null)
@@ -106,11 +109,9 @@ $(ROBOT)/keel/joints.pcd: samples/paths/keel.pcd $(B)/bin/fettle-arm samples/rob
 	$(call step,$(ARM) --inverse $< --feed 50 -o $@.part)
 
 # Exit status 1 is an answer, which the report holds.
+$(ROBOT)/keel/checked.pcd: FROM := 1,-1,0.5
 $(ROBOT)/keel/checked.pcd: $(ROBOT)/keel/joints.pcd $(ROBOT)/keel/keel.stl $(B)/bin/fettle-collide samples/robots/irb1400.json
-	$(call step,$(B)/bin/fettle-collide samples/robots/irb1400.json $< --workpiece $(@D)/keel.stl --report $(@D)/report.json -q -o $@.part || test $$? = 1)
+	$(call step,$(B)/bin/fettle-collide samples/robots/irb1400.json $< --workpiece $(@D)/keel.stl --report $(@D)/report.json --picture $(@D)/cell.png --from $(FROM) --chart $(@D)/clearance.png -q -o $@.part || test $$? = 1)
 
 $(ROBOT)/keel/keel.mod: $(ROBOT)/keel/checked.pcd $(B)/bin/fettle-arm
 	$(call step,$(ARM) --forward $< --feed 50 --rapid $@.part -q -o /dev/null)
-
-$(ROBOT)/keel/clearance.png: $(ROBOT)/keel/checked.pcd $(B)/bin/fettle-render
-	$(call step,$(B)/bin/fettle-render $< --field clearance --title "Clearance along the keel" -o $@.part)

@@ -121,7 +121,7 @@ void draw(const Options& o, const robot::Robot& robot, const mesh::Mesh* workpie
     if (!o.chart.empty())
         o.t.output_file(o.chart) << robot::draw_clearance_chart(study.checked, study.avoided ? &study.before : nullptr,
                                                                 study.avoided ? &study.avoided->changes : nullptr,
-                                                                units);
+                                                                study.request.collision.tolerance, units);
 }
 
 /// Stamps a path that the robot can run without a collision, or says why it does not.

@@ -189,6 +189,15 @@ draw::Html player(const PlayedFrames& played)
            draw::Html::from_markup(kPlayerScript);
 }
 
+std::string trace_caption(const RunFiles& run)
+{
+    std::string caption = "Force, layer and feed against time";
+    if (!run.grinding || !run.job) return caption + ".";
+    const double peak = run.grinding->numbers.at("peak_force"), max = run.job->force.max / run.units.newton();
+    return caption + ": the highest force, " + draw::short_text(peak) + " " + units::to_string(run.units.force) +
+           ", is " + draw::fixed_text(100 * peak / max, 0) + " % of the limit that the job sets.";
+}
+
 } // namespace
 
 draw::Html grinding_section(const RunFiles& run)
@@ -196,8 +205,7 @@ draw::Html grinding_section(const RunFiles& run)
     draw::Html html;
     if (run.grinding) html += totals(run);
     if (run.trace) {
-        html +=
-            drawing_with_caption(trace_chart(*run.trace, run.job, run.units), "Force, layer and feed against time.");
+        html += drawing_with_caption(trace_chart(*run.trace, run.job, run.units), trace_caption(run));
         html += layer_table(run);
     }
     if (run.frames) html += player(*run.frames);

@@ -7,6 +7,19 @@
 #include <numbers>
 
 namespace fettle::report {
+namespace {
+
+std::string plan_view_caption(const RunFiles& run)
+{
+    const auto touches = run.surface ? run.surface->touches.cols() : run.samples ? run.samples->xyz.cols() : 0;
+    std::string caption = "Plan view, to scale";
+    if (touches > 0) caption += ": " + draw::count_text(double(touches)) + " touches around the anomaly";
+    if (run.plan)
+        caption += (touches > 0 ? ", " : ": ") + draw::count_text(double(run.plan->passes.size())) + " passes over it";
+    return caption + ".";
+}
+
+} // namespace
 
 draw::Html job_section(const RunFiles& run)
 {
@@ -52,7 +65,7 @@ draw::Html job_section(const RunFiles& run)
          {"Removal coefficient",
           number_figure("job.removal.coefficient", removal) + " " + length_unit + "\u00B3/(" + force_unit + " s)"}});
     const Sketch sketch = job_sketch(run);
-    const draw::Html drawing = drawing_with_caption(sketch.drawing, "Plan view, to scale.");
+    const draw::Html drawing = drawing_with_caption(sketch.drawing, plan_view_caption(run));
     if (sketch.narrow)
         return section("job", "Job",
                        draw::element("div", {{"class", "columns"}},

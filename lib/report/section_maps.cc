@@ -1,10 +1,14 @@
+#include "core/constants.h"
 #include "core/error.h"
+#include "draw/figures.h"
 #include "draw/picture.h"
 #include "draw/svg_sheet.h"
+#include "job/region.h"
 #include "report/sections.h"
 #include "view/view.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace fettle::report {
 namespace {
@@ -55,6 +59,51 @@ void set_common_scale(const RunFiles& run, draw::PictureOptions& options)
             if (p.allFinite()) options.extent.extend(p);
 }
 
+/// The highest point inside B, mm; NaN without a job or a point.
+double top_inside(const RunFiles& run, const mesh::MeshOrCloud& part)
+{
+    double top = core::kNaN;
+    if (!run.job) return top;
+    const Eigen::Matrix3Xd& xyz = mesh::coordinates_of(part);
+    const std::vector<job::Region> regions = job::classify_regions(*run.job, xyz);
+    for (Eigen::Index i = 0; i < xyz.cols(); ++i)
+        if (regions[i] == job::Region::inside) top = std::fmax(top, xyz(2, i));
+    return top;
+}
+
+std::string length_text(double mm, const units::Units& units)
+{
+    return draw::short_text(mm / units.mm()) + " " + units::to_string(units.length);
+}
+
+/// What the pictures before and after show.
+struct HeightCaptions {
+    std::string before = "Before: heights, with hill shading", after = "After: heights, with hill shading";
+};
+HeightCaptions height_captions(const RunFiles& run)
+{
+    HeightCaptions captions;
+    const double before = run.before ? top_inside(run, *run.before) : core::kNaN,
+                 after = run.after ? top_inside(run, *run.after) : core::kNaN;
+    if (!std::isnan(before)) captions.before += "; inside B up to " + length_text(before, run.units);
+    if (!std::isnan(after)) captions.after += "; inside B up to " + length_text(after, run.units);
+    if (before > after) captions.after += ", " + length_text(before - after, run.units) + " lower than before";
+    captions.before += ".";
+    captions.after += ".";
+    return captions;
+}
+
+/// What the error map shows, where a tolerance judges it.
+std::string error_finding(const RunFiles& run)
+{
+    if (!run.comparison || run.comparison->judged.empty()) return {};
+    const NamedNumbers& n = run.comparison->region(run.comparison->judged);
+    return ": " + draw::fixed_text(100 * n.at("within"), 2) + " % of the points " +
+           (run.comparison->judged == "inside" ? "inside B" : "of the part") + " within \u00B1" +
+           draw::short_text(run.comparison->tolerance) + " " + units::to_string(run.units.length) + ", mean " +
+           draw::short_text(n.at("mean"));
+}
+
 } // namespace
 
 draw::Html maps_section(const RunFiles& run)
@@ -67,8 +116,9 @@ draw::Html maps_section(const RunFiles& run)
     options.supersampling = 2;
     draw::Html html = rotatable_view(run, options);
     set_common_scale(run, options);
-    if (run.before) html += picture_of(run, "part before", *run.before, options, "Before: heights, with hill shading.");
-    if (run.after) html += picture_of(run, "part after", *run.after, options, "After: heights, with hill shading.");
+    const HeightCaptions captions = height_captions(run);
+    if (run.before) html += picture_of(run, "part before", *run.before, options, captions.before);
+    if (run.after) html += picture_of(run, "part after", *run.after, options, captions.after);
     if (run.errors) {
         options.field = "error";
         options.range.reset();
@@ -79,9 +129,11 @@ draw::Html maps_section(const RunFiles& run)
             scale = " The colour scale ends at the tolerance.";
         }
         html += picture_of(run, "error map", *run.errors, options,
-                           "Error map: blue is material left (under-cut), red is over-cut, grey is undefined." + scale);
+                           "Error map" + error_finding(run) +
+                               ". Blue is material left (under-cut), red is over-cut, grey is undefined." + scale);
         options.towards_eye = Eigen::Vector3d(1, -2, 1.5).normalized(); // shows the surface and the material left on it
-        html += picture_of(run, "error map", *run.errors, options, "Error map from the side.");
+        html += picture_of(run, "error map", *run.errors, options,
+                           "The same from the side, where what is left stands over the surface around it.");
     }
     return section("maps", "Maps", html);
 }

@@ -80,6 +80,19 @@ draw::Html statistics_table(const ComparisonReport& comparison, const std::strin
     return table("Errors: + material left (under-cut), \u2212 over-cut", names, rows, 1);
 }
 
+/// Where nine tenths of the points inside B lie.
+std::string middle_text(const ComparisonReport& comparison, const std::string& unit)
+{
+    for (const auto& [region, numbers] : comparison.regions) {
+        const double low = numbers.at("p05"), high = numbers.at("p95");
+        if (region != "inside" || !std::isfinite(low)) continue;
+        const int decimals = draw::decimals_for(std::max(std::abs(low), std::abs(high)));
+        return " Nine of ten points lie between " + draw::fixed_text(low, decimals) + " and " +
+               draw::fixed_text(high, decimals) + " " + unit + ".";
+    }
+    return {};
+}
+
 /// Histogram of the points inside B if the run has an error map and a job, else of all points.
 draw::Html histogram(const RunFiles& run)
 {
@@ -99,7 +112,7 @@ draw::Html histogram(const RunFiles& run)
     const std::vector<double> counts(counted.counts.begin(), counted.counts.end());
     return drawing_with_caption(
         error_histogram(counts, c.limit, double(counted.below), double(counted.above), c.tolerance, unit),
-        "Histogram of the points inside B; dashed lines: the tolerance.");
+        "Histogram of the points inside B; dashed lines: the tolerance." + middle_text(c, unit));
 }
 
 } // namespace

@@ -38,6 +38,6 @@ std::string draw_cell_picture(const Robot& robot, const mesh::Mesh* workpiece, c
 ///                         further curves and as a chart of the tilts; nullptr: not drawn
 /// @return  the bytes of a PNG
 std::string draw_clearance_chart(const CheckedPath& checked, const CheckedPath* before,
-                                 const std::vector<PoseChange>* changes, const units::Units& units);
+                                 const std::vector<PoseChange>* changes, double tolerance, const units::Units& units);
 
 } // namespace fettle::robot

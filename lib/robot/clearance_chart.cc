@@ -48,24 +48,24 @@ draw::Chart tilt_chart(const std::vector<PoseChange>& changes)
 } // namespace
 
 std::string draw_clearance_chart(const CheckedPath& checked, const CheckedPath* before,
-                                 const std::vector<PoseChange>* changes, const units::Units& units)
+                                 const std::vector<PoseChange>* changes, double tolerance, const units::Units& units)
 {
     constexpr int kWidth = 1100, kHeight = 460, kTiltHeight = 280;
     constexpr draw::Rgb kFaint = {205, 205, 205}, kGrey = {150, 150, 150}, kRed = {200, 30, 40};
     draw::Chart chart;
     chart.title = "Clearance along the path";
     chart.x_label = "pose";
-    chart.y_label =
-        std::string("minimum clearance, ") + units::to_string(units.length) + "; below the red line it collides";
+    chart.y_label = std::string("minimum clearance, ") + units::to_string(units.length) +
+                    ", between poses a lower bound; below the red line it collides";
     if (before != nullptr) {
         chart.curves.push_back(clearance_curve(before->between_poses, "before, between", kFaint, units.mm()));
         chart.curves.push_back(clearance_curve(before->at_poses, "before, at poses", kGrey, units.mm()));
     }
     chart.curves.push_back(clearance_curve(checked.between_poses, "between poses", draw::curve_colour(5), units.mm()));
     chart.curves.push_back(clearance_curve(checked.at_poses, "at poses", draw::curve_colour(0), units.mm()));
-    Eigen::Matrix2d zero; // drawn last, so that no curve along it hides it
-    zero << 0, double(checked.at_poses.size()), 0, 0;
-    chart.curves.push_back({"", zero, kRed, false});
+    Eigen::Matrix2d limit; // drawn last, so that no curve along it hides it
+    limit << 0, double(checked.at_poses.size()), -tolerance / units.mm(), -tolerance / units.mm();
+    chart.curves.push_back({"", limit, kRed, false});
     draw::Canvas canvas(kWidth, kHeight + (changes == nullptr ? 0 : kTiltHeight));
     draw::draw_chart(canvas, {0, 0}, {kWidth, kHeight}, chart);
     if (changes != nullptr) draw::draw_chart(canvas, {0, kHeight}, {kWidth, kTiltHeight}, tilt_chart(*changes));
