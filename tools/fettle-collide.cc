@@ -30,7 +30,8 @@ const std::string kDescription =
     "and other (which bodies: indices in the robot file from 0, the workpiece after the last), foot_x foot_y foot_z "
     "(where, in the cell). Exit 1 if something collides, a pose is not reached or the path jumps. A path that is clear "
     "of "
-    "a --workpiece is stamped in its header, checked DIGEST clearance D between D strokes D (minimum at poses, between "
+    "a --workpiece is stamped in its header, checked DIGEST clearance D between D strokes D part DIGITS (minimum at "
+    "poses, between "
     "them, and on the way from stroke to stroke): fettle-arm writes programs of such paths only.\n"
     "With --avoid such poses are tilted about the centre of the ball at the tip, so that the point of contact stays "
     "(about the tip if there is no ball), on cones 5 degrees apart up to --max-tilt; the first tilt that is free of "
@@ -125,13 +126,13 @@ void draw(const Options& o, const robot::Robot& robot, const mesh::Mesh* workpie
 }
 
 /// Stamps a path that the robot can run without a collision, or says why it does not.
-void stamp(cli::Tool& t, const robot::Robot& robot, const robot::CollisionStudy& study, bool has_workpiece,
+void stamp(cli::Tool& t, const robot::Robot& robot, const robot::CollisionStudy& study, const mesh::Mesh* workpiece,
            const std::optional<double>& strokes, double mm, cloud::Cloud& path)
 {
-    const std::string obstacle = robot::stamp_obstacle(robot, study, has_workpiece);
+    const std::string obstacle = robot::stamp_obstacle(robot, study, workpiece != nullptr);
     t.report().set("stamped", obstacle.empty());
     if (obstacle.empty())
-        path.comment = robot::stamp_text(robot, path, study.checked, strokes, mm);
+        path.comment = robot::stamp_text(robot, path, study.checked, strokes, *workpiece, mm);
     else
         t.note("the path is not stamped as checked, so that it becomes no program: " + obstacle);
 }
@@ -147,6 +148,7 @@ int main(int argc, char** argv)
 
         robot::Robot robot = o.robot.read();
         robot.holds_workpiece = o.held;
+        if (robot.bodies.empty()) t.warn(core::display_name(o.robot.file) + ": has no bodies: nothing can collide");
         if (o.held && robot.table) throw core::InputError("--held", "a robot with a table does not hold the workpiece");
         auto [path, units] = cloud::read_cloud(o.points, mesh::resolve_file_units(o.unit));
         const robot::CollisionRequest wanted = request(o, units.mm());
@@ -172,7 +174,7 @@ int main(int argc, char** argv)
             robot::min_travel_clearance(robot, workpiece ? &*workpiece : nullptr, path, study);
         if (strokes) t.report().set("min_between_strokes", *strokes / units.mm());
         path.comment.clear();
-        if (clear) stamp(t, robot, study, workpiece.has_value(), strokes, units.mm(), path);
+        if (clear) stamp(t, robot, study, mesh ? &*mesh : nullptr, strokes, units.mm(), path);
         o.out.write(path, units);
         return clear ? cli::Verdict::yes : cli::Verdict::no;
     });

@@ -1,5 +1,6 @@
 #include "cad/design_file.h"
 
+#include "cad/step_placements.h"
 #include "core/content.h"
 #include "core/error.h"
 #include "core/file.h"
@@ -152,6 +153,7 @@ std::string read_step(const std::string& bytes, const std::string& source, Handl
         throw core::InputError(source, "states a unit of length that is not known, '" + unit + "'");
     if (!reader.Transfer(document)) throw core::InputError(source, "holds no shape");
     check_all_built(reader.Reader(), source);
+    check_step_placements(reader.Reader(), source);
     return lengths.First().ToCString();
 }
 

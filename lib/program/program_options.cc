@@ -79,8 +79,8 @@ try {
         }
     return "checked: clearance " + core::to_short_text(stamp.clearance) + " mm, between poses " +
            core::to_short_text(stamp.between) + " mm" +
-           (stamp.strokes ? ", from stroke to stroke " + core::to_short_text(*stamp.strokes) + " mm" : "") + ", path " +
-           stamp.digest.substr(0, 16);
+           (stamp.strokes ? ", from stroke to stroke " + core::to_short_text(*stamp.strokes) + " mm" : "") + ", part " +
+           stamp.part + ", path " + stamp.digest.substr(0, 16);
 } catch (const core::InputError& error) {
     if (!may_be_unchecked)
         throw core::InputError(std::string(error.what()) + "; --unchecked writes the program all the same");

@@ -21,7 +21,8 @@ namespace {
 constexpr int kJointDigits = 8;
 // What the motion from step to step may hide is a quarter of the resolution, or less.
 constexpr double kStepsPerResolution = 4;
-constexpr int kClearanceDigits = 4; // after the decimal point, mm: a tenth of a micrometre
+constexpr std::size_t kPartDigits = 16; // of a digest: enough to tell parts apart by eye
+constexpr int kClearanceDigits = 4;     // after the decimal point, mm: a tenth of a micrometre
 
 template <typename Values>
 void add_bytes(core::Digest& digest, const Values& values)
@@ -44,7 +45,7 @@ std::string clearance_text(double mm)
 
 } // namespace
 
-std::string path_digest(const Robot& robot, const cloud::Cloud& path, double mm)
+std::string stamp_digest(const Robot& robot, const cloud::Cloud& path, double mm, std::string_view said)
 {
     core::Digest digest;
     digest.add(robot.digest);
@@ -54,7 +55,15 @@ std::string path_digest(const Robot& robot, const cloud::Cloud& path, double mm)
     for (const double value : joints.reshaped()) digest.add(core::to_fixed_text(value, kJointDigits) + ' ');
     add_bytes(digest, cloud::read_strokes(path));
     for (const cloud::Motion motion : cloud::read_motions(path)) digest.add(std::to_string(static_cast<int>(motion)));
-    return digest.text();
+    return digest.text(said);
+}
+
+std::string part_digest(const mesh::Mesh& part)
+{
+    core::Digest digest;
+    add_bytes(digest, part.vertices);
+    add_bytes(digest, part.triangles);
+    return digest.text().substr(0, kPartDigits);
 }
 
 std::optional<double> min_travel_clearance(const Robot& robot, const Workpiece* workpiece, const cloud::Cloud& path,
@@ -90,6 +99,12 @@ std::optional<double> min_travel_clearance(const Robot& robot, const Workpiece* 
 std::string stamp_obstacle(const Robot& robot, const CollisionStudy& study, bool has_workpiece)
 {
     if (!has_workpiece) return "there was no --workpiece";
+    const auto comes_near = [&](const Body& body) {
+        return robot.holds_workpiece ? body.link == link::kCell : body.link == 6 || body.link == link::kTool;
+    };
+    if (std::ranges::none_of(robot.bodies, comes_near))
+        return robot.holds_workpiece ? "the cell has no body that the workpiece could touch"
+                                     : "the robot has no body at its flange or tool that could touch the workpiece";
     if (study.model) return "--method is not exact";
     const CellJointsPath& joints = study.solved.path.joints;
     const cloud::PosePath& poses = study.solved.poses;
@@ -107,13 +122,13 @@ std::string stamp_obstacle(const Robot& robot, const CollisionStudy& study, bool
 }
 
 std::string stamp_text(const Robot& robot, const cloud::Cloud& path, const CheckedPath& checked,
-                       const std::optional<double>& strokes, double mm)
+                       const std::optional<double>& strokes, const mesh::Mesh& part, double mm)
 {
-    std::string text = "checked " + path_digest(robot, path, mm) + " clearance " +
-                       clearance_text(minimum(checked.at_poses)) + " between " +
+    std::string said = "clearance " + clearance_text(minimum(checked.at_poses)) + " between " +
                        clearance_text(path.size() > 1 ? minimum(checked.between_poses) : minimum(checked.at_poses));
-    if (strokes) text += " strokes " + clearance_text(*strokes);
-    return text;
+    if (strokes) said += " strokes " + clearance_text(*strokes);
+    said += " part " + part_digest(part);
+    return "checked " + stamp_digest(robot, path, mm, said) + " " + said;
 }
 
 PathStamp read_stamp(const Robot& robot, const cloud::Cloud& path, double mm)
@@ -122,16 +137,21 @@ PathStamp read_stamp(const Robot& robot, const cloud::Cloud& path, double mm)
     if (!path.comment.starts_with("checked ")) throw core::InputError("the path is not checked for collisions: " + how);
     std::istringstream words(path.comment);
     PathStamp stamp;
-    std::string checked, clearance, between, word, number, value_of_clearance, value_of_between;
-    words >> checked >> stamp.digest >> clearance >> value_of_clearance >> between >> value_of_between;
-    const std::optional<double> at = core::parse_number(value_of_clearance),
-                                on_way = core::parse_number(value_of_between);
-    if (clearance != "clearance" || between != "between" || !at || !on_way)
+    std::string checked, said, word, value;
+    words >> checked >> stamp.digest >> std::ws;
+    std::getline(words, said);
+    std::optional<double> at, on_way;
+    for (std::istringstream pairs(said); pairs >> word >> value;) {
+        if (word == "clearance") at = core::parse_number(value);
+        if (word == "between") on_way = core::parse_number(value);
+        if (word == "strokes") stamp.strokes = core::parse_number(value);
+        if (word == "part") stamp.part = value;
+    }
+    if (!at || !on_way || stamp.part.empty())
         throw core::InputError("'" + path.comment + "' is no stamp of a checked path: " + how);
     stamp.clearance = *at;
     stamp.between = *on_way;
-    if (words >> word >> number) stamp.strokes = core::parse_number(number);
-    if (stamp.digest != path_digest(robot, path, mm))
+    if (stamp.digest != stamp_digest(robot, path, mm, said))
         throw core::InputError("the path or the robot has changed since it was checked for collisions: " + how);
     return stamp;
 }

@@ -153,6 +153,7 @@ std::string digest_of(const std::string& text, const Robot& robot)
         digest.add({reinterpret_cast<const char*>(matrix.data()),
                     static_cast<std::size_t>(matrix.size()) * sizeof(*matrix.data())});
     };
+    add(robot.T_flange_tool.matrix()); // of a URDF an option says it
     for (const Body& body : robot.bodies) {
         if (const auto* hull = std::get_if<solid::Hull>(&body.solid)) add(hull->points);
         if (const auto* triangles = std::get_if<solid::Triangles>(&body.solid)) {

@@ -8,6 +8,7 @@
 #include "robot/arm.h"
 #include "robot/body_json.h"
 #include "robot/dh_from_axes.h"
+#include "robot/mesh_body.h"
 #include "robot/srdf.h"
 #include "robot/urdf_shapes.h"
 
@@ -29,6 +30,9 @@ using Eigen::Isometry3d, Eigen::Vector3d;
 constexpr double kMmPerMetre = 1000;
 // A joint without limits that turns for ever, degrees either way: what cables stand.
 constexpr double kContinuousDegrees = 360;
+// Shapes of a robot or its cell are smaller, mm: the largest arms reach 4.7 m, a mesh in mm taken as m is 1000 times as
+// large as it should be.
+constexpr double kMaxLinkSize = 3e4;
 
 // Names and numbers of a file stand in messages, and may hold line ends.
 std::string in_one_line(std::string text)
@@ -53,6 +57,17 @@ class FirstMessage : public console_bridge::OutputHandler {
     std::string text_;
 };
 
+// Diagonal of the bounding box of a mesh, mm; 0 of other solids, whose lengths the URDF itself states.
+double mesh_size(const Solid& solid)
+{
+    const auto diagonal = [](const Eigen::Matrix3Xd& points) {
+        return (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).norm();
+    };
+    if (const auto* hull = std::get_if<solid::Hull>(&solid)) return diagonal(hull->points);
+    const auto* triangles = std::get_if<solid::Triangles>(&solid);
+    return triangles != nullptr ? diagonal(triangles->body->hull) : 0;
+}
+
 std::string of_joint(const urdf::Joint& joint) { return "joint '" + joint.name + "': "; }
 
 bool moves(const urdf::Joint& joint) { return joint.type != urdf::Joint::FIXED; }
@@ -76,9 +91,15 @@ class UrdfReader {
     }
 
   private:
-    // Every link but the root hangs on it: liburdfdom does not see a loop apart from the root.
+    // Every link but the root hangs on it: liburdfdom does not see a loop apart from the root, and of two joints that
+    // carry one link it takes the last by name.
     void check_tree() const
     {
+        std::map<std::string, std::string> carriers;
+        for (const auto& [name, joint] : model_.joints_)
+            if (const auto [other, is_first] = carriers.emplace(joint->child_link_name, name); !is_first)
+                throw core::InputError("link '" + joint->child_link_name + "' hangs on two joints, '" + other->second +
+                                       "' and '" + name + "'");
         for (const auto& [name, link] : model_.links_) {
             const urdf::Link* at = link.get();
             for (std::size_t steps = 0; at->getParent() != nullptr; at = at->getParent().get())
@@ -238,13 +259,19 @@ class UrdfReader {
         const UrdfFiles files{source_, link.name, options_.packages, options_.exact_meshes};
         std::size_t count = 0;
         for (const auto& collision : link.collision_array) {
-            if (collision == nullptr || collision->geometry == nullptr) continue;
+            if (collision == nullptr || collision->geometry == nullptr)
+                throw core::InputError("link '" + link.name + "': a collision has no shape");
             const Isometry3d T = T_root_frame.inverse() * place(link) * urdf_isometry(collision->origin);
             const std::string name = link.name + (count == 0 ? "" : " " + std::to_string(count + 1));
             ++count;
             if (name == kWorkpieceName) throw core::InputError("link 'workpiece': the name is that of the part");
             links_of_bodies_.push_back(link.name);
             robot_.bodies.push_back({name, index, urdf_solid(*collision->geometry, T, files)});
+            const double size = mesh_size(robot_.bodies.back().solid);
+            if (size > kMaxLinkSize)
+                robot_.notes.push_back("link '" + link.name + "': its mesh is " +
+                                       core::to_short_text(size / kMmPerMetre) +
+                                       " m long: is it in mm, and its scale missing?");
         }
     }
 
@@ -289,7 +316,8 @@ Robot parse_urdf(const std::string& text, const std::string& source, const UrdfO
     core::require_plain_xml(text, source);
     FirstMessage message;
     const urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(text);
-    if (model == nullptr || model->getRoot() == nullptr)
+    // Shapes that liburdfdom cannot read it leaves out, and says so in a message.
+    if (model == nullptr || model->getRoot() == nullptr || !message.text().empty())
         throw core::InputError(source, message.text().empty() ? "is no URDF" : in_one_line(message.text()));
     try {
         return UrdfReader(*model, source, options).read();

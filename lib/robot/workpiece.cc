@@ -193,7 +193,27 @@ FETTLE_CLONES void run_from(BoxSearch& search, std::uint32_t leaf) { search.run_
 
 } // namespace
 
-Workpiece::Workpiece(const mesh::Mesh& mesh) : closed_(mesh::is_closed(mesh)), index_(mesh) {}
+namespace {
+
+// Six times the volume that the triangles enclose, about a point near them; negative if they are inside out.
+double enclosed_volume(const mesh::Mesh& mesh)
+{
+    double volume = 0;
+    if (mesh.triangles.cols() == 0) return volume;
+    const Vector3d origin = mesh::triangle_of(mesh, 0).col(0);
+    for (Eigen::Index i = 0; i < mesh.triangles.cols(); ++i) {
+        const mesh::Triangle t = mesh::triangle_of(mesh, i).colwise() - origin;
+        volume += t.col(0).cross(t.col(1)).dot(t.col(2));
+    }
+    return volume;
+}
+
+} // namespace
+
+Workpiece::Workpiece(const mesh::Mesh& mesh)
+    : closed_(mesh::is_closed(mesh)), outwards_(enclosed_volume(mesh) < 0 ? -1 : 1), index_(mesh)
+{
+}
 
 // A ray from inside a closed mesh first hits a triangle from behind. A grazing hit decides nothing: another ray is
 // cast.
@@ -205,7 +225,7 @@ bool Workpiece::is_inside(const Nearest& nearest, const Vector3d& point) const
         const mesh::Triangle t = mesh::triangle_of(mesh(), nearest.triangle);
         const mesh::TrianglePoint foot = mesh::closest_on_triangle(t, nearest.clearance.on_b);
         if (foot.barycentric.minCoeff() > kMinBarycentric)
-            return (t.col(1) - t.col(0)).cross(t.col(2) - t.col(0)).dot(nearest.clearance.normal) > 0;
+            return outwards_ * (t.col(1) - t.col(0)).cross(t.col(2) - t.col(0)).dot(nearest.clearance.normal) > 0;
     }
     constexpr double kMinSineToPlane = 1e-6;
     for (const Vector3d& direction : {Vector3d::UnitZ().eval(), Vector3d(0.8, 0, 0.6), Vector3d(-0.36, 0.48, 0.8)}) {
@@ -214,7 +234,7 @@ bool Workpiece::is_inside(const Nearest& nearest, const Vector3d& point) const
         const mesh::Triangle t = mesh::triangle_of(mesh(), hit->triangle);
         const Vector3d normal = (t.col(1) - t.col(0)).cross(t.col(2) - t.col(0));
         const double along = normal.dot(direction);
-        if (std::abs(along) > kMinSineToPlane * normal.norm()) return along > 0;
+        if (std::abs(along) > kMinSineToPlane * normal.norm()) return outwards_ * along > 0;
     }
     return false;
 }

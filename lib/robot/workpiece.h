@@ -65,6 +65,7 @@ class Workpiece {
     bool is_inside(const Nearest& nearest, const Eigen::Vector3d& point) const;
 
     bool closed_;
+    double outwards_; ///< 1: the triangles' normals point out of the mesh; -1: into it, as of a file that is inside out
     mesh::MeshIndex index_;
 };
 

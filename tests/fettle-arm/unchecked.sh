@@ -24,3 +24,10 @@ refuses 'the path or the robot has changed since it was checked' fettle-arm othe
 refuses 'pose 0: joint 1 is at -17.613, and was checked at 13.0904' fettle-arm "$robot" --inverse checked.pcd --track 900 --feed 50 --rapid p2.mod
 sed 's/^# checked .*/# checked by me/' checked.pcd >forged.pcd
 refuses "'checked by me' is no stamp of a checked path" fettle-arm "$robot" --forward forged.pcd --feed 50 --rapid p2.mod
+# a clearance that was edited; a robot with nothing that could touch the part; a part that is inside out
+sed 's/ clearance [-0-9.e]* / clearance 25 /' checked.pcd >better.pcd
+refuses 'better.pcd: the path or the robot has changed since it was checked' fettle-arm "$robot" --forward better.pcd --feed 50 --rapid p2.mod
+jq '.bodies |= map(select(.link < 6)) | .allowed = []' "$robot" >bare.json
+fettle-collide bare.json "$path" --workpiece keel.stl -q -v --report bare-report.json -o bare.pcd 2>said
+jq -e '.stamped == false' bare-report.json >ok
+refuses 'bare.pcd: the path is not checked for collisions' fettle-arm bare.json --forward bare.pcd --feed 50 --rapid p2.mod

@@ -29,3 +29,18 @@ refuses '--package ur=DIR says it' fettle-arm mesh.urdf --forward folded.pcd
 refuses 'there is no mesh ./f.stl' fettle-arm mesh.urdf --package ur=. --forward folded.pcd
 printf '<robot><disable_collisions link1="a"/></robot>\n' >half.srdf
 refuses 'disable_collisions needs link1 and link2' fettle-arm "$urdf/ur5.urdf" --srdf half.srdf --forward folded.pcd
+# What liburdfdom leaves out or decides by names is refused: a shape that it does not know, half a scale, a collision without a shape, a link
+# with two parents. A mesh in mm is 1000 times too large.
+shape() { sed "s|<link name=\"forearm_link\"/>|<link name=\"forearm_link\"><collision>$1</collision></link>|" "$urdf/ur5.urdf" >shape.urdf; }
+shape '<geometry><capsule radius="1" length="1"/></geometry>'
+refuses 'shape.urdf: ' fettle-arm shape.urdf --forward folded.pcd
+shape '<geometry><mesh filename="f.stl" scale="0.5"/></geometry>'
+refuses 'shape.urdf: ' fettle-arm shape.urdf --forward folded.pcd
+shape ''
+refuses 'shape.urdf: ' fettle-arm shape.urdf --forward folded.pcd
+sed 's|</robot>|<joint name="aa" type="fixed"><parent link="base_link"/><child link="tool0"/></joint></robot>|' "$urdf/ur5.urdf" >two.urdf
+refuses "link 'tool0' hangs on two joints, 'aa' and 'flange-tool0'" fettle-arm two.urdf --forward folded.pcd
+printf 'solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 90 0 0\nvertex 0 80 0\nendloop\nendfacet\nendsolid\n' >f.stl
+shape '<geometry><mesh filename="f.stl"/></geometry>'
+fettle-arm shape.urdf --forward folded.pcd -o /dev/null 2>said
+grep -q "link 'forearm_link': its mesh is 120.4.* m long: is it in mm" said

@@ -12,7 +12,7 @@ for part in cylinder blade hull keel; do
     check $part
     jq -e '.collisions == 0 and .collisions_between == 0 and .jumps == [] and .stamped and .min_between_strokes >= 15' $part.json >ok ||
         { jq -c '[.collisions, .collisions_between, .min, .min_between, .jumps, .stamped, .min_between_strokes]' $part.json; exit 1; }
-    head -c 2000 $part-checked.pcd | grep -aq '^# checked [0-9a-f]\{64\} clearance [-0-9.e]* between [-0-9.e]* strokes [0-9.]*$'
+    head -c 2000 $part-checked.pcd | grep -aq '^# checked [0-9a-f]\{64\} clearance [-0-9.e]* between [-0-9.e]* strokes [0-9.]* part [0-9a-f]\{16\}$'
 done
 # there and back without a turn of the tool, and with one of 180 degrees at each end
 fettle-path <(fettle-surfel cylinder-top.stl --stock cylinder-top.stl --spacing 2 -q) --step-over 6 --spacing 4 >unjoined.pcd
