@@ -117,5 +117,7 @@ $(TABLES)/values.txt: $(SEARCHES) $(OTHERS)
 $(TABLES)/figures.png: $(TABLES)/values.txt $(B)/study/tables-chart
 	@$(B)/study/tables-chart $< -o $@
 
+# The waves alone, of one colour scale: of heights the pair looks alike. The first trial is drawn, and its waves are the first of pairs.txt.
 $(TABLES)/figure-4-4-%.png: $(TABLES)/pairs.txt $(B)/bin/fettle-render
-	@$(B)/bin/fettle-render $(@D)/$*.pcd --field z --within $(call job,concave_2x2) --title "griddata, $* resampling" -o $@
+	@$(B)/bin/fettle-render $(@D)/$*.pcd --field error --scale 0.05 --within $(call job,concave_2x2) \
+	    --title "griddata $* resampling: waves of $$(awk '$$1 == "4-4/pairs/$*" { printf "%.4f", $$2; exit }' $<) in rms" -o $@

@@ -2,6 +2,7 @@
 
 #include "cli/tool.h"
 #include "cloud/pcd.h"
+#include "core/constants.h"
 #include "job/boundary.h"
 #include "margin/anomaly_grid.h"
 #include "surface/griddata.h"
@@ -40,15 +41,14 @@ Sheet sheet_over(const job::Polygon& outline, double step)
     return sheet;
 }
 
-/// Rms height inside B of the waves that are shorter than the cut-off: what is left of the errors when their mean under
-/// the weight of the Gaussian profile filter (ISO 16610-21, -61) is taken away. mm
-double waviness(const Sheet& sheet, const Eigen::VectorXd& errors, const job::Polygon& anomaly, double cut_off)
+/// The waves inside B that are shorter than the cut-off: what is left of the errors when their mean under the weight of
+/// the Gaussian profile filter (ISO 16610-21, -61) is taken away. mm; NaN elsewhere
+Eigen::VectorXd waves(const Sheet& sheet, const Eigen::VectorXd& errors, const job::Polygon& anomaly, double cut_off)
 {
     const double alpha = std::sqrt(std::numbers::ln2 / std::numbers::pi);
     const auto reach = static_cast<Eigen::Index>(cut_off / sheet.step); // the weight there is 6e-7
     const Eigen::Index rows = errors.size() / sheet.columns;
-    double squares = 0;
-    int count = 0;
+    Eigen::VectorXd heights = Eigen::VectorXd::Constant(errors.size(), core::kNaN);
     for (Eigen::Index row = 0; row < rows; ++row)
         for (Eigen::Index column = 0; column < sheet.columns; ++column) {
             const Eigen::Index here = row * sheet.columns + column;
@@ -64,17 +64,25 @@ double waviness(const Sheet& sheet, const Eigen::VectorXd& errors, const job::Po
                     sum += weight * errors[there];
                     weights += weight;
                 }
-            squares += std::pow(errors[here] - sum / weights, 2);
-            ++count;
+            heights[here] = errors[here] - sum / weights;
         }
-    return std::sqrt(squares / count);
+    return heights;
 }
 
-void draw_surface(std::ostream& out, const Sheet& sheet, const Eigen::VectorXd& z, const units::Units& units)
+double rms(const Eigen::VectorXd& heights)
+{
+    const auto defined = (heights.array() == heights.array()).eval();
+    return std::sqrt(defined.select(heights, 0).squaredNorm() / double(defined.count()));
+}
+
+/// The surface with its waves as errors.
+void draw_surface(std::ostream& out, const Sheet& sheet, const Eigen::VectorXd& z, const Eigen::VectorXd& heights,
+                  const units::Units& units)
 {
     cloud::Cloud cloud;
     cloud.xyz.resize(3, sheet.xy.cols());
     cloud.xyz << sheet.xy, z.transpose();
+    cloud::set_field(cloud, "error", heights);
     cloud::write_pcd(out, cloud, units, cloud::PcdEncoding::binary);
 }
 
@@ -116,14 +124,15 @@ int main(int argc, char** argv)
             const Eigen::Matrix3Xd touches = touch(truth, xy, seed_of(seed, 1));
             const Eigen::VectorXd once = surface::griddata_heights(touches, 0, job.theta, sheet.xy);
             const Eigen::VectorXd twice = surface::griddata_heights(touches, spacing, job.theta, sheet.xy);
-            const double before = waviness(sheet, once - true_z, both.anomaly, cut_off);
-            const double after = waviness(sheet, twice - true_z, both.anomaly, cut_off);
+            const Eigen::VectorXd waves_before = waves(sheet, once - true_z, both.anomaly, cut_off),
+                                  waves_after = waves(sheet, twice - true_z, both.anomaly, cut_off);
+            const double before = rms(waves_before), after = rms(waves_after);
             write(t.output(), name + "/before", before / kInch);
             write(t.output(), name + "/after", after / kInch);
             write(t.output(), name + "/ratio", after / before);
             if (trial > 1) continue;
-            if (!before_file.empty()) draw_surface(t.output_file(before_file), sheet, once, job.units);
-            if (!after_file.empty()) draw_surface(t.output_file(after_file), sheet, twice, job.units);
+            if (!before_file.empty()) draw_surface(t.output_file(before_file), sheet, once, waves_before, job.units);
+            if (!after_file.empty()) draw_surface(t.output_file(after_file), sheet, twice, waves_after, job.units);
         }
         return cli::Verdict::yes;
     });
