@@ -5,6 +5,7 @@
 #include "cloud/pcd.h"
 #include "draw/canvas.h"
 #include "draw/chart.h"
+#include "draw/figures.h"
 #include "job/boundary.h"
 #include "plan/plan.h"
 #include "removal/height_field.h"
@@ -93,15 +94,26 @@ void draw_heights(draw::Canvas& sheet, const Map& map, const removal::HeightFiel
     sheet.image(map.corner, map.size, int(map.columns), rgb);
 }
 
+/// Layer 1 is blue, those above it go from yellow to purple, so that no two of many are alike.
+draw::Rgb layer_colour(int layer, int highest)
+{
+    const Eigen::Array3d low = {240, 175, 20}, high = {110, 0, 120};
+    if (layer <= 1) return draw::curve_colour(0);
+    const double share = highest > 2 ? double(layer - 2) / double(highest - 2) : 0;
+    const Eigen::Array3d colour = low + share * (high - low);
+    return {static_cast<std::uint8_t>(colour[0]), static_cast<std::uint8_t>(colour[1]),
+            static_cast<std::uint8_t>(colour[2])};
+}
+
 void draw_paths(draw::Canvas& sheet, const Map& map, const std::vector<strategy::TraceRow>& rows, const Stage& stage,
-                const Eigen::Matrix2d& R_working_machine)
+                const Eigen::Matrix2d& R_working_machine, int highest)
 {
     for (std::size_t i = std::max<std::size_t>(stage.first, 1); i < stage.end; ++i) {
         if (!(rows[i].feed > 0)) continue;
         Eigen::Matrix2Xd line(2, 2);
         line.col(0) = map(R_working_machine * rows[i - 1].tool.head<2>());
         line.col(1) = map(R_working_machine * rows[i].tool.head<2>());
-        sheet.line(line, draw::curve_colour(std::size_t(rows[i].layer - 1)), rows[i].layer > 1 ? 2 : 1);
+        sheet.line(line, layer_colour(rows[i].layer, highest), rows[i].layer > 1 ? 2 : 1);
     }
 }
 
@@ -149,20 +161,27 @@ int main(int argc, char** argv)
 
         const std::vector<Stage> shown = stages(rows, plan.job, stock);
         draw::Canvas sheet(int(kTimes.x() + 2 * kGap), int(kHead + 2 * kPanel.y() + kTimes.y()));
-        sheet.text("Wang 2007, figure 5-8: " + title + ", layer by layer", {kGap, 18}, 14, draw::Canvas::kInk,
-                   draw::Canvas::Align::left, true);
         int highest = 1;
-        for (const strategy::TraceRow& row : rows) highest = std::max(highest, row.layer);
+        double peak = 0;
+        for (const strategy::TraceRow& row : rows) {
+            highest = std::max(highest, row.layer);
+            peak = std::max(peak, row.force);
+        }
+        const double newton = plan.job.units.newton();
+        sheet.text("Wang 2007, figure 5-8: " + title + " in " + std::to_string(highest) + " layers, with " +
+                       draw::short_text(peak / newton) + " of " + draw::short_text(plan.job.force.max / newton) + " " +
+                       units::to_string(plan.job.units.force) + " at most",
+                   {kGap, 18}, 14, draw::Canvas::kInk, draw::Canvas::Align::left, true);
         for (int layer = 1; layer <= highest; ++layer)
             sheet.text("layer " + std::to_string(layer), {kGap + 80 * (layer - 1), 42}, 11,
-                       draw::curve_colour(std::size_t(layer - 1)));
+                       layer_colour(layer, highest));
         for (std::size_t k = 0; k < shown.size(); ++k) {
             const Vector2d corner(kGap + double(k % kColumns) * kPanel.x(), kHead + double(k / kColumns) * kPanel.y());
             const double time = shown[k].end ? rows[shown[k].end - 1].time : 0;
             sheet.text(k ? "after " + std::to_string(std::lround(time)) + " s" : "before", corner + Vector2d(0, 8), 11);
             const Map map(corner + Vector2d(0, 20), stock, anomaly);
             draw_heights(sheet, map, shown[k].stock, desired, max_cell);
-            draw_paths(sheet, map, rows, shown[k], R_working_machine);
+            draw_paths(sheet, map, rows, shown[k], R_working_machine, highest);
             Eigen::Matrix2Xd outline = anomaly;
             for (Eigen::Index i = 0; i < outline.cols(); ++i) outline.col(i) = map(anomaly.col(i));
             sheet.line(outline, draw::Canvas::kInk, 1.5, true);
