@@ -40,7 +40,7 @@ std::vector<SurfacePlace> surface_places(const Scans& scans, const std::vector<s
 /// so that it cancels in their differences. Each pair's pose is that of least squares of its differences, with less
 /// weight for those beyond the noise (Tukey's biweight). Where scans with weights w = 1/σ² see a place, the pair a, b
 /// gets w_a w_b / Σ w: the weighted squares of all pairs' differences are those from the common mean, and no noise
-/// counts twice.
+/// counts twice. Only the points that planes share do, for which `variance_scale` makes up.
 /// @param places  of all scans in `pairs`   @param length  radius of the planes, mm
 JointFit fit_jointly(const Scans& scans, const std::vector<std::optional<Place>>& places,
                      const std::vector<IndexPair>& pairs, const std::vector<SurfacePlace>& surface, double length);
