@@ -159,6 +159,18 @@ ContactPath path_over_patch(const Surfels& surfels, const ContactPathOptions& op
     return std::move(builder.path);
 }
 
+/// The lines u of two patches may run opposite ways: turns the tool by half a turn on a path if its first pose is then
+/// nearer to that of the path before it.
+void keep_side(const cloud::PosePath& before, cloud::PosePath& poses)
+{
+    if (before.empty() || poses.empty()) return;
+    const Eigen::Isometry3d half_turn(Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitZ()));
+    const Eigen::Quaterniond last(before.back().linear()), as_is(poses.front().linear()),
+        turned((poses.front() * half_turn).linear());
+    if (last.angularDistance(turned) >= last.angularDistance(as_is)) return;
+    for (Eigen::Isometry3d& pose : poses) pose = pose * half_turn;
+}
+
 } // namespace
 
 ContactPath contact_path(const Surfels& surfels, const ContactPathOptions& options)
@@ -171,7 +183,8 @@ ContactPath contact_path(const Surfels& surfels, const ContactPathOptions& optio
         ContactPathOptions options_of_patch = options;
         options_of_patch.patch = patch;
         try {
-            const ContactPath path = path_over_patch(surfels, options_of_patch);
+            ContactPath path = path_over_patch(surfels, options_of_patch);
+            if (options.orientation == PathOrientation::fixed) keep_side(whole.poses, path.poses);
             const int first_pass = whole.pass.empty() ? 0 : whole.pass.back() + 1;
             whole.poses.insert(whole.poses.end(), path.poses.begin(), path.poses.end());
             for (const int pass : path.pass) whole.pass.push_back(first_pass + pass);

@@ -17,7 +17,8 @@ enum class PathPattern {
 
 /// How the tool turns about its axis along a path.
 enum class PathOrientation {
-    fixed, ///< its x points along u (along v) on every row, whichever way the row runs
+    fixed, ///< its x points along u (along v) on every row, whichever way the row runs, or on all of a later patch
+           ///< against it, if the tool then turns less on the way there
     along  ///< its x points along the feed
 };
 

@@ -25,3 +25,11 @@ fettle-path work.pcd --patch 1 --pattern spiral --step-over 1 --report spiral.js
 jq -e '.passes == 1 and (.length - 199 | fabs) < 1e-4 and (.largest_turn_deg - 90 | fabs) < 1e-6' spiral.json > ok
 # on the stock, 0.3 mm higher
 top --on-stock --spacing 5 --ascii | awk 'data && ($3 - 5.3) ^ 2 > 1e-10 { exit 1 } $1 == "DATA" { data = 1 }'
+# two patches whose u runs opposite ways: the tool is not turned from one to the other
+echo '{"kind": "patches", "units": {"length": "mm"}, "patches": [
+    {"degree": [1, 1], "knots_u": [0, 0, 1, 1], "knots_v": [0, 0, 1, 1], "control": [[[0, 0, 5], [0, 10, 5]], [[20, 0, 5], [20, 10, 5]]], "weights": null},
+    {"degree": [1, 1], "knots_u": [0, 0, 1, 1], "knots_v": [0, 0, 1, 1], "control": [[[20, 20, 5], [20, 10, 5]], [[0, 20, 5], [0, 10, 5]]], "weights": null}]}' >two.json
+box -1 -1 -1 21 21 5.3 >two.off
+fettle-surfel two.json --stock two.off --spacing 0.5 | fettle-path --step-over 2 --spacing 5 --report two-report.json --ascii >two.pcd
+jq -e '.passes == 10' two-report.json >ok
+awk 'data { x = 1 - 2 * ($6 ^ 2 + $7 ^ 2); if (n++ && x * first < 0.99) exit 1; if (n == 1) first = x } $1 == "DATA" { data = 1 }' two.pcd
