@@ -174,7 +174,7 @@ int main(int argc, char** argv)
         const std::string& trace_file = o.trace.empty() ? o.resume : o.trace;
         if (o.trace.empty() && !o.resume.empty()) t.reserve_output(o.resume);
         const auto identity =
-            trace_file.empty() ? strategy::RunIdentity{} : strategy::identity_of(plan, stock, o.layer_1);
+            trace_file.empty() ? strategy::RunIdentity{} : strategy::identity_of(plan, stock, o.layer_1, T_cell_job);
         strategy::RunOptions options = run_options(o, units, identity);
         const cloud::PcdEncoding encoding = cloud::pcd_encoding(o.out.ascii);
         const auto journal = strategy::open_journal(trace_file, units, encoding, options.previous_trace, identity);

@@ -30,6 +30,14 @@ std::string digest(const Eigen::Matrix3Xd& points)
     return digest(text);
 }
 
+std::string text_of(const std::optional<Eigen::Isometry3d>& placement)
+{
+    std::string text;
+    if (placement)
+        for (const double number : placement->matrix().reshaped()) text += core::to_text(number) + ' ';
+    return text;
+}
+
 std::string digest(const std::vector<plan::Pass>& passes)
 {
     std::string text;
@@ -52,30 +60,31 @@ std::string digest(const removal::HeightField& field)
 
 } // namespace
 
-RunIdentity identity_of(const plan::Plan& plan, const removal::HeightField& stock, Layer1 layer_1)
+RunIdentity identity_of(const plan::Plan& plan, const removal::HeightField& stock, Layer1 layer_1,
+                        const std::optional<Eigen::Isometry3d>& T_cell_job)
 {
     const job::Job& job = plan.job;
     const job::GrindingWheel& wheel = job.wheel;
     const job::ForceRange& force = job.force;
-    std::string frame = core::to_text(job.theta) + ' ';
-    if (job.T_part_job)
-        for (const double number : job.T_part_job->matrix().reshaped()) frame += core::to_text(number) + ' ';
-    return {{{"job.units", digest(units::to_string(job.units.length) + ' ' + units::to_string(job.units.force))},
-             {"job.frame", digest(frame)},
-             {"job.anomaly", digest(job.anomaly)},
-             {"job.tolerance", digest({job.tolerance})},
-             {"job.safe_height", digest({job.safe_height})},
-             {"job.wheel", digest({wheel.radius, wheel.width, wheel.min_radius})},
-             {"job.force", digest({force.min, force.down, force.max, force.stiffness, force.preload})},
-             {"job.feed", digest({double(job.feed.axis), job.feed.rate, job.feed.step_over})},
-             {"job.removal", digest({job.removal_coefficient})},
-             {"surface", digest(surface::to_json(plan.surface).text())},
-             {"start", digest({plan.start.x(), plan.start.y(), plan.start.z()})},
-             {"step", digest({plan.step})},
-             {"passes", digest(plan.passes)},
-             {"--stock", digest(stock)},
-             {"--layer-1", digest({double(layer_1)})}},
-            job.frame()};
+    RunIdentity identity = {
+        {{"job.units", digest(units::to_string(job.units.length) + ' ' + units::to_string(job.units.force))},
+         {"job.frame", digest(core::to_text(job.theta) + ' ' + text_of(job.T_part_job))},
+         {"job.anomaly", digest(job.anomaly)},
+         {"job.tolerance", digest({job.tolerance})},
+         {"job.safe_height", digest({job.safe_height})},
+         {"job.wheel", digest({wheel.radius, wheel.width, wheel.min_radius})},
+         {"job.force", digest({force.min, force.down, force.max, force.stiffness, force.preload})},
+         {"job.feed", digest({double(job.feed.axis), job.feed.rate, job.feed.step_over})},
+         {"job.removal", digest({job.removal_coefficient})},
+         {"surface", digest(surface::to_json(plan.surface).text())},
+         {"start", digest({plan.start.x(), plan.start.y(), plan.start.z()})},
+         {"step", digest({plan.step})},
+         {"passes", digest(plan.passes)},
+         {"--stock", digest(stock)},
+         {"--layer-1", digest({double(layer_1)})}},
+        job.frame()};
+    if (T_cell_job) identity.parts.push_back({"--place", digest(text_of(T_cell_job))});
+    return identity;
 }
 
 std::string to_text(const RunIdentity& identity)

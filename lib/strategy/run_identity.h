@@ -4,6 +4,9 @@
 #include "removal/height_field.h"
 #include "strategy/run.h"
 
+#include <Eigen/Geometry>
+
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,7 +24,9 @@ struct RunIdentity {
     cloud::Frame frame = cloud::Frame::part; ///< that the trace is labelled with
 };
 
-RunIdentity identity_of(const plan::Plan& plan, const removal::HeightField& stock, Layer1 layer_1);
+/// @param T_cell_job  where a robot finds the job; nothing: the machine has a frame of its own
+RunIdentity identity_of(const plan::Plan& plan, const removal::HeightField& stock, Layer1 layer_1,
+                        const std::optional<Eigen::Isometry3d>& T_cell_job);
 
 /// "NAME:DIGEST NAME:DIGEST …", without a line's end, and its inverse.
 std::string to_text(const RunIdentity& identity);
