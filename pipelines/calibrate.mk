@@ -5,21 +5,25 @@
 #
 # CALIBRATE/LAW.csv has a line a series drawn from a hidden law (pipelines/programs/law-series.cc); static.json and moving.json are the reports on the
 # measured rows; part1/N.json those of Wang's part 1, ground on a gantry that removes HIDDEN of what its job says, from the first covering of
-# its trace, with forces 5 % and heights 0.02 mm (a standard deviation each) off.
+# its trace, with forces 5 % and heights 0.02 mm (a standard deviation each) off. like/PART-LAYER1.csv has PARTS like parts of Wang's, one after the other,
+# whose coefficient falls by 30 %, ground with fettle-grind --learn and without.
 
 B         ?= build
 SERIES    ?= 200
 RUNS      ?= 20
 SEED      ?= 1
 HIDDEN    ?= 0.7
+PARTS     ?= 10
+LIKE      ?= 1-force 2-force 1-constant
 CALIBRATE ?= $(B)/calibrate/$(SERIES)-$(RUNS)/$(SEED)
 TRIALS    ?= samples/removal
 LAWS      := preston power tails threshold wearing
 PART      := $(CALIBRATE)/part1
 
 .PHONY: calibrate
-calibrate: $(LAWS:%=$(CALIBRATE)/%.csv) $(CALIBRATE)/static.json $(CALIBRATE)/moving.json $(patsubst %,$(PART)/%.json,$(shell seq $(RUNS)))
-	@SERIES=$(SERIES) RUNS=$(RUNS) HIDDEN=$(HIDDEN) pipelines/calibrate-table $(CALIBRATE) "$(LAWS)"
+calibrate: $(LAWS:%=$(CALIBRATE)/%.csv) $(CALIBRATE)/static.json $(CALIBRATE)/moving.json $(patsubst %,$(PART)/%.json,$(shell seq $(RUNS))) \
+           $(LIKE:%=$(CALIBRATE)/like-$(PARTS)/%.csv)
+	@SERIES=$(SERIES) RUNS=$(RUNS) HIDDEN=$(HIDDEN) PARTS=$(PARTS) pipelines/calibrate-table $(CALIBRATE) "$(LAWS)" "$(LIKE)"
 
 include pipelines/step.mk
 
@@ -38,6 +42,21 @@ $(PART)/plan.json: $(PART)/stock.stl $(JOB) $(B)/bin/fettle-sample $(B)/bin/fett
 	$(B)/bin/fettle-sample $(JOB) --on $< -q | $(B)/bin/fettle-fit $(JOB) -q | $(B)/bin/fettle-plan $(JOB) -q -o $@
 $(PART)/trace.pcd: $(PART)/plan.json $(PART)/stock.stl $(B)/bin/fettle-grind
 	$(B)/bin/fettle-grind $< --stock $(PART)/stock.stl --gantry virtual --removal-factor $(HIDDEN) --ascii -q --trace $@ -o $(PART)/ground.pcd
+
+SAMPLE_TOOLS := $(addprefix $(B)/bin/fettle-,part sample fit plan mesh)
+define like_rule
+$(CALIBRATE)/like-$(PARTS)/$(1).csv: pipelines/calibrate-parts $(CALIBRATE)/like/$(firstword $(subst -, ,$(1)))/desired.stl $(B)/bin/fettle-grind $(B)/bin/fettle-compare
+	$$(call step,$$< $(B)/bin $$(dir $$(word 2,$$^))plan.json $$(dir $$(word 2,$$^))stock.stl $$(word 2,$$^) \
+	    samples/jobs/wang$(firstword $(subst -, ,$(1))).json $(lastword $(subst -, ,$(1))) $(PARTS) > $$@.part)
+endef
+$(foreach like,$(LIKE),$(eval $(call like_rule,$(like))))
+
+$(CALIBRATE)/like/%/desired.stl: samples/parts/wang%.json samples/jobs/wang%.json $(SAMPLE_TOOLS)
+	@mkdir -p $(@D)
+	$(B)/bin/fettle-part $< -o $(@D)/stock.stl
+	$(B)/bin/fettle-sample $(word 2,$^) --on $(@D)/stock.stl --strategy wang -q | $(B)/bin/fettle-fit $(word 2,$^) -q -o $(@D)/desired.json
+	$(B)/bin/fettle-plan $(word 2,$^) $(@D)/desired.json -q -o $(@D)/plan.json
+	$(B)/bin/fettle-mesh $(@D)/desired.json --step 0.02 --within $(word 2,$^) --stl -o $@
 
 $(PART)/%.json: $(PART)/trace.pcd $(PART)/stock.stl pipelines/calibrate-noise $(B)/bin/fettle-calibrate $(B)/bin/fettle-part
 	pipelines/calibrate-noise $* < $< > $(PART)/$*.pcd

@@ -78,10 +78,12 @@ std::optional<Eigen::Isometry3d> place_of(const Options& o, const job::Job& job)
     return T_cell_part * job.T_part_job.value_or(Eigen::Isometry3d::Identity());
 }
 
-strategy::RunOptions run_options(const Options& o, const units::Units& units, const strategy::RunIdentity& identity)
+strategy::RunOptions run_options(const Options& o, const units::Units& units, const strategy::RunIdentity& identity,
+                                 const std::optional<strategy::KnownRemoval>& known)
 {
     strategy::RunOptions options;
     options.layer_1 = o.layer_1;
+    options.known_removal = known;
     options.previous_source = o.resume;
     if (o.resume.empty()) return options;
     strategy::RecordedTrace trace = strategy::read_recorded_trace(o.resume, units);
@@ -166,6 +168,7 @@ int main(int argc, char** argv)
             core::OutputFile{o.learn}; // where it cannot be written, that is said before the part is ground
         }
         const plan::Plan given = plan::read_plan(o.plan), plan = informed(given, learning);
+        const auto known = learning ? learning->known() : std::nullopt;
         const units::Units& units = plan.job.units;
         const auto T_cell_job = place_of(o, plan.job);
         const auto [stock, doubts, dropped] = gantry::read_stock(o.stock, plan.job, removal::Extent::anomaly);
@@ -173,9 +176,9 @@ int main(int argc, char** argv)
         for (const std::string& doubt : doubts) t.warn(doubt);
         const std::string& trace_file = o.trace.empty() ? o.resume : o.trace;
         if (o.trace.empty() && !o.resume.empty()) t.reserve_output(o.resume);
-        const auto identity =
-            trace_file.empty() ? strategy::RunIdentity{} : strategy::identity_of(plan, stock, o.layer_1, T_cell_job);
-        strategy::RunOptions options = run_options(o, units, identity);
+        const auto identity = trace_file.empty() ? strategy::RunIdentity{}
+                                                 : strategy::identity_of(plan, stock, o.layer_1, known, T_cell_job);
+        strategy::RunOptions options = run_options(o, units, identity, known);
         const cloud::PcdEncoding encoding = cloud::pcd_encoding(o.out.ascii);
         const auto journal = strategy::open_journal(trace_file, units, encoding, options.previous_trace, identity);
         options.journal = journal.get();

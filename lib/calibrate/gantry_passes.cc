@@ -26,6 +26,7 @@ constexpr double kReplayStepCells = 2;
 struct Stroke {
     double impulse = 0, duration = 0, volume = 0; ///< N s, s, mm³
     double radius = 0;                            ///< of the wheel, as measured before, mm
+    double other_volume = 0; ///< that it took without a reading of the force, or in place before the next stroke, mm³
 };
 
 struct Replay {
@@ -50,6 +51,7 @@ Replay replay(const std::vector<TraceRow>& trace, const job::Job& job, const rem
             if (!(row.force > 0)) continue;
             const double z = row.tool.z() + compliance * row.force;
             wheel.place(R_working_machine * row.tool.head<2>(), rim_radius(row, job), z);
+            if (!result.strokes.empty()) result.strokes.back().other_volume += wheel.overlap(z).volume;
             wheel.cut(z);
             continue;
         }
@@ -68,11 +70,11 @@ Replay replay(const std::vector<TraceRow>& trace, const job::Job& job, const rem
             wheel.cut(z);
         }
         const double force = (row.force + last.force) / 2, time = row.time - last.time;
+        stroke.radius = rim_radius(row, job);
+        (force > 0 ? stroke.volume : stroke.other_volume) += volume;
         if (!(force > 0)) continue;
         stroke.impulse += force * time;
         stroke.duration += time;
-        stroke.volume += volume;
-        stroke.radius = rim_radius(row, job);
     }
     return result;
 }
@@ -137,27 +139,21 @@ void fit_compliance(const std::vector<TraceRow>& trace, const job::Job& job, con
     law.cells = A.rows();
 }
 
-/// Lost volume of the wheel over the removed volume, of the intervals between two measurements of the radius.
-void fit_grinding_ratio(const std::vector<Stroke>& strokes, const job::Job& job, GantryLaw& law)
+/// The intervals between two measurements of the radius.
+std::vector<WearInterval> wear_intervals(const std::vector<Stroke>& strokes, const job::Job& job)
 {
-    std::vector<double> removed, lost;
-    double volume = 0;
+    std::vector<WearInterval> intervals;
+    WearInterval interval;
     for (std::size_t k = 0; k < strokes.size(); ++k) {
         const double radius = strokes[k].radius, last = strokes[k > 0 ? k - 1 : 0].radius;
         if (radius != last) {
-            if (radius < last) { // otherwise it is a new wheel
-                removed.push_back(volume);
-                lost.push_back(std::numbers::pi * (last * last - radius * radius) * job.wheel.width);
-            }
-            volume = 0;
+            interval.lost = std::numbers::pi * (last * last - radius * radius) * job.wheel.width;
+            if (radius < last) intervals.push_back(interval); // otherwise it is a new wheel
+            interval = {};
         }
-        volume += strokes[k].volume;
+        interval.removed += strokes[k].volume + strokes[k].other_volume;
     }
-    if (removed.size() < 2) return;
-    const LinearFit fit =
-        fit_linear(VectorXd::Map(removed.data(), removed.size()), VectorXd::Map(lost.data(), lost.size()));
-    const Measured inverse = measured(fit, 0);
-    if (inverse.value > 0) law.grinding_ratio = {1 / inverse.value, inverse.sigma / (inverse.value * inverse.value)};
+    return intervals;
 }
 
 void fit_spring(const std::vector<TraceRow>& trace, GantryLaw& law)
@@ -228,6 +224,18 @@ void add_passes(const std::vector<Stroke>& strokes, GantryLaw& law)
 
 } // namespace
 
+std::optional<Measured> fit_wear(const std::vector<WearInterval>& intervals)
+{
+    if (intervals.size() < 2) return std::nullopt;
+    VectorXd removed(intervals.size()), lost(intervals.size());
+    for (Index k = 0; k < removed.size(); ++k) {
+        removed[k] = intervals[k].removed;
+        lost[k] = intervals[k].lost;
+    }
+    const Measured ratio = measured(fit_linear(removed, lost), 0);
+    return ratio.value > 0 ? std::optional(ratio) : std::nullopt;
+}
+
 GantryLaw measure_gantry(const std::vector<TraceRow>& trace, const job::Job& job, const removal::HeightField& before,
                          const std::optional<removal::HeightField>& after)
 {
@@ -236,7 +244,9 @@ GantryLaw measure_gantry(const std::vector<TraceRow>& trace, const job::Job& job
     constexpr double kSignificantSigmas = 3;
     const bool yields = law.compliance && law.compliance->value > kSignificantSigmas * law.compliance->sigma;
     std::vector<Stroke> strokes = replay(trace, job, before, yields ? law.compliance->value : 0).strokes;
-    fit_grinding_ratio(strokes, job, law);
+    law.wear = wear_intervals(strokes, job);
+    if (const auto wear = fit_wear(law.wear))
+        law.grinding_ratio = {1 / wear->value, wear->sigma / (wear->value * wear->value)};
     // With less force the wheel rides on ridges, and meets them between the readings.
     constexpr double kMinForceShare = 0.5; // of F_min
     std::erase_if(strokes, [&](const Stroke& stroke) {

@@ -15,6 +15,12 @@ struct Measured {
     double value = 0, sigma = 0;
 };
 
+/// What was ground off between two measurements of the wheel, mm³.
+struct WearInterval {
+    double removed = 0; ///< of the stock
+    double lost = 0;    ///< of the wheel
+};
+
 /// What the machine's own records and the stock before and after say, beside the passes.
 struct GantryLaw {
     /// A pass is some consecutive strokes of the wheel: mean force; the volume of a second of contact, since volumes
@@ -26,6 +32,7 @@ struct GantryLaw {
     /// Volume of stock per volume of wheel, from the radii that were measured; none if less than two intervals between
     /// measurements ground anything.
     std::optional<Measured> grinding_ratio;
+    std::vector<WearInterval> wear; ///< between two measurements of the wheel
     /// The machine's yielding, mm/N: by how much more the stock stands over the wheel's recorded places where it was
     /// ground with more force. None without the stock after.
     std::optional<Measured> compliance;
@@ -33,6 +40,9 @@ struct GantryLaw {
     double height_error = 0;  ///< standard deviation of what offset and yielding leave, mm
     Eigen::Index cells = 0;   ///< ground cells that were compared
 };
+
+/// Volume that the wheel lost per volume of stock, by least squares; none of less than two intervals.
+std::optional<Measured> fit_wear(const std::vector<WearInterval>& intervals);
 
 /// Measures a gantry from the trace of a run. The volumes are those that the wheel swept through the stock where the
 /// trace says that it was. The coefficient is their median over ∫F dt, weighted with that: a stroke that begins in the

@@ -53,6 +53,15 @@ LearntLaw learn(const LawRecord& record)
     return law;
 }
 
+void add_wear(LawRecord& record, const std::vector<WearInterval>& run)
+{
+    constexpr std::ptrdiff_t kMaxWearIntervals = 20; // of some five runs
+    std::vector<WearInterval>& wear = record.wear;
+    record.runs_without_wear = run.empty() ? record.runs_without_wear + 1 : 0;
+    wear.insert(wear.end(), run.begin(), run.end());
+    if (std::ssize(wear) > kMaxWearIntervals) wear.erase(wear.begin(), wear.end() - kMaxWearIntervals);
+}
+
 RemovalTrial next_pass(const LawRecord& record)
 {
     RemovalTrial next = record.passes.back();
@@ -86,7 +95,11 @@ json::Value to_json(const LawRecord& record)
             const double value = record.passes[i].*kRecordColumns[k].value;
             rows(i, k) = std::isnan(value) ? 0 : value;
         }
-    return json::Value().set("pass_work", record.pass_work).set("passes", rows);
+    json::Value value = json::Value().set("pass_work", record.pass_work).set("passes", rows);
+    if (record.wear.empty()) return value;
+    Eigen::MatrixXd wear(record.wear.size(), 2);
+    for (Eigen::Index i = 0; i < wear.rows(); ++i) wear.row(i) << record.wear[i].removed, record.wear[i].lost;
+    return value.set("wear", wear).set("runs_without_wear", record.runs_without_wear);
 }
 
 LawRecord read_record(json::Reader reader)
@@ -106,6 +119,14 @@ LawRecord read_record(json::Reader reader)
         }
     }
     if (record.passes.empty()) reader.refuse("passes", "is empty");
+    if (reader.has("wear")) {
+        const Eigen::MatrixXd wear = reader.matrix("wear", 2);
+        for (const auto& row : wear.rowwise()) {
+            if (!(row[0] >= 0 && row[1] > 0)) reader.refuse("wear", "has a row whose lost volume is not positive");
+            record.wear.push_back({.removed = row[0], .lost = row[1]});
+        }
+        record.runs_without_wear = reader.integer("runs_without_wear", 0, std::numeric_limits<int>::max());
+    }
     reader.reject_unknown_keys();
     return record;
 }

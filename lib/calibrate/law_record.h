@@ -1,5 +1,6 @@
 #pragma once
 
+#include "calibrate/gantry_passes.h"
 #include "calibrate/law_belief.h"
 #include "json/document.h"
 
@@ -13,6 +14,8 @@ namespace fettle::calibrate {
 struct LawRecord {
     double pass_work = 0; ///< as in LawBelief
     std::vector<belt::RemovalTrial> passes;
+    std::vector<WearInterval> wear; ///< of a gantry's wheel, the last ones
+    int runs_without_wear = 0;      ///< the runs since then, in which the wheel was not measured twice
 };
 
 /// A pass beside what was expected of it.
@@ -40,13 +43,17 @@ void learn_pass(LearntLaw& law, const belt::RemovalTrial& pass);
 /// @throws InputError for no pass, and naming the pass that has a wrong value
 LearntLaw learn(const LawRecord& record);
 
+/// Adds what a run told of the wheel's wear; only the last intervals are kept, since wheels change.
+void add_wear(LawRecord& record, const std::vector<WearInterval>& run);
+
 /// The pass after those of a record, at their mean force and feed; its volume is unknown.
 belt::RemovalTrial next_pass(const LawRecord& record);
 
 /// What a pass removed of what was expected, for a message: "pass 12 took 3.1 mm³, expected 5.9 to 6.6: …".
 std::string change_message(const JudgedPass& pass, std::size_t number);
 
-/// The members pass_work, columns and passes. 0 stands for what was not recorded.
+/// The members pass_work and passes, and wear and runs_without_wear if the wheel was measured. 0 stands for what was
+/// not recorded.
 json::Value to_json(const LawRecord& record);
 /// @throws InputError naming the key
 LawRecord read_record(json::Reader reader);

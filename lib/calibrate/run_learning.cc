@@ -13,6 +13,13 @@ namespace fettle::calibrate {
 
 using belt::RemovalTrial;
 
+namespace {
+
+/// Standard deviation of the change of the grinding ratio from part to part, relative: it wanders.
+constexpr double kWearDriftPerRun = 0.05;
+
+} // namespace
+
 RunLearning::RunLearning(const std::string& path)
 {
     if (!std::filesystem::exists(path)) return;
@@ -35,11 +42,27 @@ job::Job RunLearning::informed(job::Job job) const
     return job;
 }
 
+std::optional<strategy::KnownRemoval> RunLearning::known() const
+{
+    if (!is_informed()) return std::nullopt;
+    strategy::KnownRemoval known;
+    const LawBelief belief = learn(record_).belief;
+    known.coefficient_sigma = std::sqrt(belief.information(next_pass(record_))) * belief.posterior().scatter;
+    const std::optional<Measured> wear = fit_wear(record_.wear);
+    if (!wear) return known;
+    for (const WearInterval& interval : record_.wear) known.removed_volume += interval.removed;
+    known.lost_volume = wear->value * known.removed_volume;
+    known.wear_sigma =
+        std::hypot(wear->sigma / wear->value, kWearDriftPerRun * std::sqrt(record_.runs_without_wear + 1));
+    return known;
+}
+
 void RunLearning::learn_from(const std::vector<strategy::TraceRow>& trace, const job::Job& job,
                              const removal::HeightField& before)
 {
     const GantryLaw run = measure_gantry(trace, job, before, std::nullopt);
     known_passes_ = record_.passes.size();
+    add_wear(record_, run.wear);
     if (run.passes.empty()) return;
     if (known_passes_ == 0) record_.pass_work = run.pass_work;
     const double work = known_passes_ > 0 ? next_pass(record_).prior_work : 0;
@@ -63,7 +86,13 @@ json::Value RunLearning::report() const
 {
     if (!is_informed()) return json::Value().set("passes", 0);
     const LearntLaw law = learn(record_);
-    return run_report(law, known_passes_, next_pass(record_)).set("coefficient", coefficient(law));
+    json::Value report = run_report(law, known_passes_, next_pass(record_)).set("coefficient", coefficient(law));
+    const strategy::KnownRemoval next = *known();
+    report.set("coefficient_sigma", next.coefficient_sigma);
+    if (next.lost_volume > 0)
+        report.set("grinding_ratio", next.removed_volume / next.lost_volume)
+            .set("grinding_ratio_sigma", next.wear_sigma);
+    return report;
 }
 
 json::Value RunLearning::file() const

@@ -5,6 +5,7 @@
 #include "removal/height_field.h"
 #include "strategy/run.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,8 @@ class RunLearning {
     /// The job with the removal coefficient that is expected of the next pass at the mean force of all; as it is where
     /// nothing is known.
     job::Job informed(job::Job job) const;
+    /// What else is known of the removal; nothing where the coefficient is not.
+    std::optional<strategy::KnownRemoval> known() const;
     bool is_informed() const { return !record_.passes.empty(); }
 
     /// Learns from the strokes of a run: each is predicted from those before, of former runs, too.

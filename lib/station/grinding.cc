@@ -18,7 +18,8 @@ void MachineWork::grind(const Save& save)
     teacher_.reset();
     const removal::HeightField& stock = place_.stock(plan_->job);
     add_warnings(place_.warnings);
-    const strategy::RunIdentity identity = strategy::identity_of(*plan_, stock, options_.layer_1, std::nullopt);
+    const strategy::RunIdentity identity =
+        strategy::identity_of(*plan_, stock, options_.layer_1, std::nullopt, std::nullopt);
     std::vector<strategy::TraceRow> previous;
     if (folder_.has(kTraceFile)) {
         strategy::RecordedTrace trace = read_trace_or_checkpoint(folder_.file(kTraceFile), plan_->job.units);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace fettle::strategy {
 namespace {
@@ -11,12 +12,16 @@ namespace {
 constexpr double kForceTargetShare = 0.5;
 /// Upper bound of q relative to its estimate: readings are noisy, and the edges of metal lie between points.
 constexpr double kMaxQRatio = 1.25;
+/// A learnt coefficient is taken for larger than expected by so many standard deviations: less is ground then.
+constexpr double kCoefficientSigmas = 2;
 
 } // namespace
 
-ForceControl::ForceControl(const job::Job& job, double max_remaining)
+ForceControl::ForceControl(const job::Job& job, double max_remaining, const std::optional<KnownRemoval>& known)
     : radius_(job.wheel.radius), preload_(job.force.preload), stiffness_(job.force.stiffness), feed_(job.feed.rate),
       max_force_(job.force.down), target_(kForceTargetShare * max_remaining),
+      max_known_q_(
+          known ? (1 + kCoefficientSigmas * known->coefficient_sigma) * job.removal_coefficient / job.wheel.width : 0),
       min_q_(job.removal_coefficient / job.wheel.width),
       contact_length_(std::sqrt(2 * job.wheel.radius * max_remaining)),
       max_offset_slope_(max_remaining / contact_length_)
@@ -25,6 +30,12 @@ ForceControl::ForceControl(const job::Job& job, double max_remaining)
 
 void ForceControl::begin_pass(const std::vector<double>& along)
 {
+    if (max_known_q_ > 0) {
+        std::vector<PassQ> taught;
+        for (std::size_t n = 0; n < along_.size(); ++n)
+            if (points_[n].impulse > 0) taught.push_back({along_[n], learned_q(int(n))});
+        last_pass_ = std::move(taught);
+    }
     along_ = along;
     points_.assign(along.size(), {std::numeric_limits<double>::quiet_NaN(), 0, 0});
     interrupt_stroke();
@@ -62,7 +73,7 @@ double ForceControl::desired_offset(int point, int direction) const
 {
     const double learned = learned_q(point);
     if (!(learned > 0)) return 0;
-    const double q = std::max(kMaxQRatio * learned, min_q_);
+    const double q = std::max(points_[point].impulse > 0 ? kMaxQRatio * learned : learned, min_q_);
     const double force = std::min(cut_depth(point, direction, target_) * feed_ / q, max_force_);
     return std::max((force - preload_) / stiffness_ - target_, 0.0);
 }
@@ -71,7 +82,8 @@ double ForceControl::desired_offset(int point, int direction) const
 double ForceControl::learned_q(int point) const
 {
     const double here = along_[point];
-    if (!(points_[point].impulse > 0)) return 0;
+    if (!std::isfinite(points_[point].remaining)) return 0;
+    if (!(points_[point].impulse > 0)) return expected_q(here);
     double removed = 0, impulse = 0;
     for (std::size_t n = 0; n < along_.size(); ++n) {
         if (std::abs(along_[n] - here) > contact_length_) continue;
@@ -79,6 +91,16 @@ double ForceControl::learned_q(int point) const
         impulse += points_[n].impulse;
     }
     return removed / impulse;
+}
+
+/// q where the strokes of this pass have taught nothing, by the learnt law; the largest one that the last pass taught
+/// within a contact length, if that is more; 0: not known.
+double ForceControl::expected_q(double along) const
+{
+    double q = max_known_q_;
+    for (const PassQ& there : last_pass_)
+        if (std::abs(there.along - along) <= contact_length_) q = std::max(q, kMaxQRatio * there.q);
+    return q;
 }
 
 /// Depth of cut of a wheel whose lowest line is at `tip`.

@@ -1,7 +1,9 @@
 #pragma once
 
 #include "job/job.h"
+#include "strategy/run.h"
 
+#include <optional>
 #include <vector>
 
 namespace fettle::strategy {
@@ -22,7 +24,9 @@ namespace fettle::strategy {
 class ForceControl {
   public:
     /// @param max_remaining  largest height that may be left above the reference surface, mm
-    ForceControl(const job::Job& job, double max_remaining);
+    /// @param known  that the job's coefficient was learnt: then strokes over places that taught nothing yet are
+    /// controlled, too
+    ForceControl(const job::Job& job, double max_remaining, const std::optional<KnownRemoval>& known = std::nullopt);
 
     /// Forgets the last pass.
     /// @param along  positions of the new pass's points, ascending, mm
@@ -42,20 +46,26 @@ class ForceControl {
         double remaining = 0;            ///< mm; NaN: not known
         double removed = 0, impulse = 0; ///< by the last stroke: depth times length, mm²; N s
     };
+    struct PassQ {
+        double along, q;
+    };
     double desired_offset(int point, int direction) const;
     double cut_depth(int point, int direction, double tip) const;
     double stock_height(int point) const;
     double learned_q(int point) const;
+    double expected_q(double along) const;
     double rim(double distance) const { return distance * distance / (2 * radius_); }
 
     double radius_, preload_, stiffness_, feed_;
     double max_force_;        ///< a larger force belongs to a layer above
     double target_;           ///< height to be left, mm
+    double max_known_q_;      ///< of the whole width in stock that yields as easily as it may; 0: not known
     double min_q_;            ///< q of the whole width in stock as hard as the job says
     double contact_length_;   ///< points within it share one q, mm
     double max_offset_slope_; ///< growth of the force offset per length
     std::vector<double> along_;
     std::vector<PointState> points_;
+    std::vector<PassQ> last_pass_;
     int last_point_ = -1;     ///< of the stroke; -1: none yet
     double force_offset_ = 0; ///< at the last point, mm
 };

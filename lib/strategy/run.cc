@@ -29,8 +29,9 @@ Runner::Runner(const plan::Plan& plan, gantry::Gantry& gantry, const RunOptions&
       machine_(gantry, plan.job.units, options.previous_trace, options.previous_source, options.journal),
       path_(plan.job, plan.surface, plan.passes, plan.step), settings_(strategy_settings(plan, single_covering())),
       strategy_(path_.passes(), settings_, {force_on_passes(StockBound::kMaxHardness), force_on_passes(1)}),
-      feed_control_(plan.job, settings_.max_remaining), force_control_(plan.job, settings_.max_remaining),
-      wear_model_(plan.job, settings_.max_remaining), bound_(plan.job, highest_point(path_))
+      feed_control_(plan.job, settings_.max_remaining),
+      force_control_(plan.job, settings_.max_remaining, options.known_removal),
+      wear_model_(plan.job, settings_.max_remaining, options.known_removal), bound_(plan.job, highest_point(path_))
 {
     if (options.known_stock != nullptr) contact_watch_.emplace(*options.known_stock, plan.job);
 }
@@ -132,10 +133,11 @@ void Runner::resume_from_trace(const Action& action)
 
 void Runner::measure_wheel_if_due(const Action& action)
 {
-    const bool covering = action.event == Event::start || action.event == Event::covering_done;
+    const bool covering =
+        action.event == Event::start || (action.event == Event::covering_done && !wear_model_.is_known());
     const bool in_pass = action.kind == Action::Kind::grind && action.event == Event::none;
     const bool due = grinding_time_ - last_touch_off_ >= options_.touch_off_period ||
-                     (single_covering() && finishing(action.layer) && wear_model_.measurement_due());
+                     (makes_up_for_wear() && finishing(action.layer) && wear_model_.measurement_due());
     if (!covering && !(due && (in_pass || action.kind == Action::Kind::travel))) return;
     measure_wheel(action);
     if (!in_pass) return;

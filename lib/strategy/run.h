@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,8 +38,17 @@ struct TraceRow {
 /// (force_control.h).
 enum class Layer1 { constant, feed, force };
 
+/// What former runs taught of the removal, beside the job's coefficient.
+struct KnownRemoval {
+    double coefficient_sigma = 0; ///< standard deviation of the job's coefficient, relative
+    /// Stock and wheel that were ground off between measurements of the wheel, mm³; 0: none were made.
+    double removed_volume = 0, lost_volume = 0;
+    double wear_sigma = 0; ///< standard deviation of their ratio, relative
+};
+
 struct RunOptions {
     Layer1 layer_1 = Layer1::constant;
+    std::optional<KnownRemoval> known_removal;
     /// Grinding time between two measurements of the wheel at P0, s. It is measured at the start of each covering, too.
     double touch_off_period = 120;
     /// Trace of an interrupted run (trace_file.h). It is replayed without the machine; then the wheel is measured, the

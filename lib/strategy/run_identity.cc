@@ -61,6 +61,7 @@ std::string digest(const removal::HeightField& field)
 } // namespace
 
 RunIdentity identity_of(const plan::Plan& plan, const removal::HeightField& stock, Layer1 layer_1,
+                        const std::optional<KnownRemoval>& known_removal,
                         const std::optional<Eigen::Isometry3d>& T_cell_job)
 {
     const job::Job& job = plan.job;
@@ -84,6 +85,9 @@ RunIdentity identity_of(const plan::Plan& plan, const removal::HeightField& stoc
          {"--layer-1", digest({double(layer_1)})}},
         job.frame()};
     if (T_cell_job) identity.parts.push_back({"--place", digest(text_of(T_cell_job))});
+    if (const auto& k = known_removal)
+        identity.parts.push_back(
+            {"--learn", digest({k->coefficient_sigma, k->removed_volume, k->lost_volume, k->wear_sigma})});
     return identity;
 }
 

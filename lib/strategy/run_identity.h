@@ -26,6 +26,7 @@ struct RunIdentity {
 
 /// @param T_cell_job  where a robot finds the job; nothing: the machine has a frame of its own
 RunIdentity identity_of(const plan::Plan& plan, const removal::HeightField& stock, Layer1 layer_1,
+                        const std::optional<KnownRemoval>& known_removal,
                         const std::optional<Eigen::Isometry3d>& T_cell_job);
 
 /// "NAME:DIGEST NAME:DIGEST …", without a line's end, and its inverse.

@@ -23,6 +23,7 @@ class Runner {
 
   private:
     bool single_covering() const { return options_.layer_1 != Layer1::constant; }
+    bool makes_up_for_wear() const { return single_covering() || wear_model_.is_known(); }
     bool finishing(int layer) const { return layer == 1 && !strategy_.is_roughing(); }
     bool by_feed(int layer) const { return finishing(layer) && options_.layer_1 == Layer1::feed; }
     bool by_force(int layer) const { return finishing(layer) && options_.layer_1 == Layer1::force; }
@@ -86,7 +87,7 @@ class Runner {
     GrindRun result_;
     PathIndex at_;
     Eigen::Vector3d reference_point_ = Eigen::Vector3d::Zero(); ///< tool point in layer 1 at the tool's position
-    double wheel_wear_ = 0;     ///< estimated since the last measurement, mm; only if one covering has to suffice
+    double wheel_wear_ = 0;     ///< estimated since the last measurement, mm; only if it is made up for
     double force_offset_ = 0;   ///< how far the drives go below the reference to reach the desired force, mm
     double impulse_ = 0;        ///< ∫F dt of the last step, N s
     Event event_ = Event::none; ///< of the next row

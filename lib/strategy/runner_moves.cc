@@ -250,7 +250,7 @@ void Runner::record_move(const gantry::GantryStatus& status, int layer, double f
     impulse_ = (last_force_ + status.force) / 2 * duration;
     grinding_time_ += duration;
     wear_model_.add_force(status.force, duration);
-    if (single_covering()) wheel_wear_ = wear_model_.loss();
+    if (makes_up_for_wear()) wheel_wear_ = wear_model_.loss();
     last_time_ = status.time;
     lower_bound(status, feed);
     last_force_ = status.force;

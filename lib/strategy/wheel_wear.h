@@ -1,6 +1,9 @@
 #pragma once
 
 #include "job/job.h"
+#include "strategy/run.h"
+
+#include <optional>
 
 namespace fettle::strategy {
 
@@ -10,7 +13,10 @@ namespace fettle::strategy {
 class WheelWear {
   public:
     /// @param max_remaining  largest height that may be left on the stock, mm
-    WheelWear(const job::Job& job, double max_remaining);
+    WheelWear(const job::Job& job, double max_remaining, const std::optional<KnownRemoval>& known = std::nullopt);
+
+    /// True if former runs taught the wear rate: no measurement is needed to learn it.
+    bool is_known() const { return is_known_; }
 
     void add_force(double force, double duration) { impulse_ += force * duration; }
     void set_measured_radius(double radius);
@@ -24,6 +30,8 @@ class WheelWear {
     bool measurement_due() const;
 
   private:
+    bool is_known_;
+    double sigma_;             ///< of a learned wear rate, relative
     double max_rate_;          ///< wear rate of a soft wheel, used until one has been measured, mm/(N s)
     double max_loss_;          ///< between two measurements, mm
     double impulse_ = 0;       ///< since the last measurement, N s

@@ -1,5 +1,6 @@
 # What a gantry learns from run to run. A stock that is removed 1.4 times as easily as its job says: the coefficient is learnt within 5 %, the next part
-# takes less time than without, and is not ground deeper; its passes are predicted. On the last the wheel is half as sharp, which is said.
+# takes less time than without, and is not ground deeper; its passes are predicted. On the last the wheel is half as sharp, which is said. A run is resumed
+# with what it knew.
 # References: the simulated machine's law; the same parts without learning.
 # shellcheck source=tests/fettle-grind/stock.bash
 . "$HERE/stock.bash"
@@ -22,6 +23,10 @@ awk -v a="$(lowest alone.pcd)" -v b="$(lowest second.pcd)" 'BEGIN { exit !(b >= 
 grind blunt 0.7 --learn law.json 2> warning
 grep -q 'the wheel is blunt or loaded' warning
 jq -e '.learnt.changes > 0' blunt.json > ok
+# A run is continued with what it knew.
+cp once.json known.json
+grind part 1.4 --learn known.json --trace part-trace.pcd
+"$HERE/../refuses" '--learn' fettle-grind plan.json --stock stock.stl --cell 0.1 --resume part-trace.pcd
 # The file is fettle-calibrate's: the same run learnt after the fact.
 fettle-grind plan.json --stock stock.stl --cell 0.1 --removal-factor 1.4 --trace trace.pcd > ground.pcd
 fettle-calibrate trace.pcd --job job.json --cell 0.1 --before stock.stl -q | jq '{p: .learnt.passes, c: .learnt.gantry.coefficient}' > after.json

@@ -8,6 +8,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
+#include <optional>
 #include <random>
 #include <set>
 
@@ -152,9 +154,10 @@ TEST(FeedControl, DoesWithTheFewestStrokes)
 /// Strokes to and fro over a flat stock `high` above the reference until no more than `limit` is left in the
 /// middle. Each
 /// step is a balance of Preston's law and the spring: (stock − r) v = q k (r + u). Returns how many, and the lowest r.
-std::pair<int, double> strokes_by_force(const job::Job& job, double q, double high, double limit, bool pressed)
+std::pair<int, double> strokes_by_force(const job::Job& job, double q, double high, double limit, bool pressed,
+                                        const std::optional<strategy::KnownRemoval>& known = std::nullopt)
 {
-    strategy::ForceControl control(job, limit);
+    strategy::ForceControl control(job, limit, known);
     std::vector<double> along(100), z(100, high);
     for (std::size_t n = 0; n < along.size(); ++n) along[n] = 0.5 * double(n);
     control.begin_pass(along);
@@ -193,6 +196,19 @@ TEST(ForceControl, TakesFewerStrokesThanTheSpringAndNeverGrindsTooDeep)
                 EXPECT_LT(with, without) << yields << " " << high;
             }
         }
+}
+
+TEST(ForceControl, TakesFewerStrokesWhereTheLawIsKnown)
+{
+    job::Job job;
+    for (const double error : {0.95, 1.0, 1.05}) {
+        const double q = error * job.removal_coefficient / job.wheel.width, limit = 0.05;
+        const strategy::KnownRemoval known{.coefficient_sigma = 0.05};
+        const auto [taught, lowest] = strokes_by_force(job, q, 1.0, limit, true, known);
+        const auto [untaught, ignored] = strokes_by_force(job, q, 1.0, limit, true);
+        EXPECT_LT(taught, untaught) << error;
+        EXPECT_GE(lowest, 0) << error;
+    }
 }
 
 TEST(ForceControl, SetsTheForceByTheEstimatedRate)
@@ -234,6 +250,26 @@ TEST(WheelWear, LearnsAndStaysCautious)
     wear.set_measured_radius(30); // a new wheel has not grown
     wear.add_force(10, 10);
     EXPECT_NEAR(wear.loss(), 0.7 * 0.01, 1e-9);
+}
+
+TEST(WheelWear, KnowsWhatFormerRunsTaught)
+{
+    job::Job job;
+    const double circle = 2 * std::numbers::pi * job.wheel.radius * job.wheel.width, c = job.removal_coefficient;
+    const strategy::KnownRemoval known{
+        .coefficient_sigma = 0.03, .removed_volume = 600, .lost_volume = 10, .wear_sigma = 0.04};
+    strategy::WheelWear wear(job, 0.05, known);
+    EXPECT_TRUE(wear.is_known());
+    wear.set_measured_radius(job.wheel.radius);
+    wear.add_force(20, 10);
+    EXPECT_NEAR(wear.expected_loss(), 200 * c / 60 / circle, 1e-12);
+    EXPECT_NEAR(wear.loss(), 0.95 * wear.expected_loss(), 1e-12);
+    // A quarter of what may remain for an error of a twentieth: due at five times that.
+    const double impulse_due = 5 * 0.05 * circle * 60 / c;
+    wear.add_force(1, 0.99 * impulse_due - 200);
+    EXPECT_FALSE(wear.measurement_due());
+    wear.add_force(1, 0.02 * impulse_due);
+    EXPECT_TRUE(wear.measurement_due());
 }
 
 } // namespace feed_control_test
