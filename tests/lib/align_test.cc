@@ -1,5 +1,6 @@
 #include "align/align.h"
 
+#include "cloud/viewpoint.h"
 #include "core/error.h"
 #include "draws.h"
 #include "own_folder.h"
@@ -319,6 +320,28 @@ TEST(Align, ASmallObjectInAScene)
         EXPECT_LT(((a.fit.T_reference_scan * motion) * object.xyz - object.xyz).colwise().norm().maxCoeff(), 0.5);
         EXPECT_EQ(align::doubts(a, options.icp), std::vector<std::string>());
     }
+}
+
+// A cloud that states no viewpoint gets normals to one side, wherever it was moved: here the origin lies on it. A known
+// viewpoint turns them to itself, inside as well. Reference: the sphere's own normals.
+TEST(Align, NormalsWithoutAViewpointPointToOneSide)
+{
+    std::mt19937 random(3);
+    std::normal_distribution<double> normal;
+    cloud::Cloud cloud;
+    cloud.xyz.resize(3, 3000);
+    for (auto p : cloud.xyz.colwise())
+        p = 20 * Eigen::Vector3d(normal(random), normal(random), normal(random)).normalized();
+    const auto outward_share = [](const cloud::Cloud& sphere, const Eigen::Vector3d& middle) {
+        const align::OrientedPoints points = align::oriented_points(sphere);
+        const Eigen::Matrix3Xd out = points.xyz.colwise() - middle;
+        return ((points.normals.array() * out.array()).colwise().sum() > 0).cast<double>().mean();
+    };
+    Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
+    motion.translation().x() = 20;
+    EXPECT_EQ(outward_share(cloud::transformed(cloud, motion.matrix(), 1), {20, 0, 0}), 1);
+    cloud::set_viewpoint(cloud, {0, 0, 0}, Eigen::Quaterniond::Identity());
+    EXPECT_EQ(outward_share(cloud::transformed(cloud, motion.matrix(), 1), {20, 0, 0}), 0);
 }
 
 // Far away the distances along the normals vanish, too: the steps become short, but the scan is not there.
