@@ -129,6 +129,8 @@ $(BELT)/%/at-three.pcd: $(BELT)/%/work.pcd $(BELT)/%/three.pcd $(WHEEL) $(B)/bin
 # --- pictures ---------------------------------------------------------------------------------------------------------------
 ALONG = --from "$$(pipelines/belt-points normal < $(@D)/one.pcd)"
 RENDER = $(B)/bin/fettle-render $< -o $@
+# The finding, for a headline.
+WITHIN = jq -r '"\(1000 * .within | round / 10) % within the tolerance"'
 $(BELT)/%/contact.png: $(BELT)/%/contact.pcd $(B)/bin/fettle-render
 	$(RENDER) --field gap $(ALONG) --title '$*: gap beside the contact'
 $(BELT)/%/pressure.png: $(BELT)/%/contact.pcd $(B)/bin/fettle-render
@@ -140,9 +142,9 @@ $(BELT)/%/three.png: $(BELT)/%/at-three.pcd $(BELT)/%/one.pcd $(B)/bin/fettle-re
 $(BELT)/%/whole.png: $(BELT)/%/ground.pcd $(B)/bin/fettle-render
 	$(RENDER) --field removed --scale 0.8 --from 1,-2,0.5 --title '$*: removed after the whole path'
 $(BELT)/%/errors.png: $(BELT)/%/errors.pcd $(B)/bin/fettle-render
-	$(RENDER) --scale 0.6 --from 1,-2,0.5 --title '$*: error before grinding'
+	$(RENDER) --scale 0.6 --from 1,-2,0.5 --title "$*: before grinding $$($(WITHIN) $(@D)/errors.json)"
 $(BELT)/%/left.png: $(BELT)/%/left.pcd $(B)/bin/fettle-render
-	$(RENDER) --scale 0.6 --from 1,-2,0.5 --title '$*: error after grinding'
+	$(RENDER) --scale 0.6 --from 1,-2,0.5 --title "$*: after grinding $$($(WITHIN) $(@D)/left.json)"
 
 # The robot holds the wheel; the part is before it so that the contact point is at SPOT with the wheel above it.
 SPOT = 1000,950,520
@@ -227,7 +229,7 @@ $(PLAN)/%/errors.pcd: $(PLAN)/%/ground.pcd $(B)/bin/fettle-assess
 	$(B)/bin/fettle-assess $< --lower $(LOWER) --upper $(UPPER) -q --report $(@D)/errors.json -o $@ || test $$? = 1
 
 $(PLAN)/%/errors.png: $(PLAN)/%/errors.pcd $(B)/bin/fettle-render
-	$(B)/bin/fettle-render $< --scale 0.2 --from 1,-2,0.5 --title '$*: what is left' -o $@
+	$(B)/bin/fettle-render $< --scale 0.2 --from 1,-2,0.5 --title "$*: $$($(WITHIN) $(@D)/errors.json)" -o $@
 
 .DELETE_ON_ERROR:
 .SECONDARY:

@@ -6,6 +6,7 @@
 #include "cli/tool.h"
 #include "draw/canvas.h"
 #include "draw/chart.h"
+#include "draw/figures.h"
 
 #include <array>
 #include <functional>
@@ -65,6 +66,17 @@ draw::Chart by_methods(const std::string& title, const std::string& x_label, con
     return chart;
 }
 
+/// What the figure shows, for its headline.
+std::string finding(const Kind& kind, const Cells& cells)
+{
+    std::vector<double> ours, published;
+    for (const Cell& cell : cells) {
+        ours.push_back(cell.error("auto", band));
+        published.push_back(cell.published(kind, band));
+    }
+    return "the default's band is " + draw::short_text(median(ours) / median(published)) + " of the published";
+}
+
 /// Wang's method over the shape, for the areas that the experiment has in several shapes.
 draw::Chart by_shape(const Kind& kind, const Cells& cells)
 {
@@ -113,7 +125,8 @@ int main(int argc, char** argv)
             };
             constexpr double kHead = 30;
             draw::Canvas sheet(static_cast<int>(2 * kPanel.x()), static_cast<int>(2 * kPanel.y() + kHead));
-            sheet.text("Wang 2007, figure 4-14: " + surface + ", " + std::to_string(cells.size()) + " cells",
+            sheet.text("Wang 2007, figure 4-14: " + surface + ", " + std::to_string(cells.size()) +
+                           " cells: " + finding(kind, cells),
                        {kPanel.x(), 18}, 14, draw::Canvas::kInk, draw::Canvas::Align::centre, true);
             for (std::size_t i = 0; i < charts.size(); ++i)
                 draw::draw_chart(sheet, Eigen::Vector2d(i % 2 ? kPanel.x() : 0, (i / 2 ? kPanel.y() : 0) + kHead),
