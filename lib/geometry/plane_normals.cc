@@ -32,7 +32,7 @@ PlaneNormals plane_normals(const Eigen::Matrix3Xd& xyz)
     });
     // Links are taken from the smaller index only.
     for (std::uint32_t a = 0; a < planes.links.size(); ++a)
-        for (const std::uint32_t b : std::vector<std::uint32_t>(planes.links[a]))
+        for (const std::uint32_t b : planes.links[a])
             if (b < a) planes.links[b].push_back(a);
     return planes;
 }
