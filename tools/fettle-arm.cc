@@ -4,14 +4,18 @@
 #include "cloud/poses.h"
 #include "core/constants.h"
 #include "core/file.h"
+#include "core/text.h"
 #include "mesh/shape_file.h"
 #include "program/program_options.h"
 #include "robot/arm_report.h"
 #include "robot/path_cloud.h"
 #include "robot/path_options.h"
+#include "robot/rates.h"
 #include "robot/reach.h"
 
+#include <cmath>
 #include <optional>
+#include <vector>
 
 using namespace fettle;
 
@@ -106,6 +110,37 @@ Eigen::VectorXd speeds_along(const Options& o, const cloud::Cloud& path, double 
     return speeds;
 }
 
+/// Way to each pose that the feed is along, mm: the field way of a part in the robot's hand, while it is on the wheel;
+/// else the tip's.
+Eigen::VectorXd ways_along(const cloud::Cloud& path, const cloud::PosePath& poses)
+{
+    Eigen::VectorXd ways = robot::tip_ways(poses);
+    if (!cloud::has_field(path, "way")) return ways;
+    const Eigen::VectorXd contact = cloud::field(path, "way");
+    const std::vector<cloud::Motion> motions = cloud::read_motions(path);
+    for (Eigen::Index i = 1; i < ways.size(); ++i)
+        if (motions[i] < cloud::Motion::lead && !std::isnan(ways[i])) ways[i] = contact[i] - contact[i - 1];
+    return ways;
+}
+
+/// Speeds of the tip at which it takes the times given, mm/s; programs state no other.
+Eigen::VectorXd tip_speeds(const cloud::PosePath& poses, const Eigen::VectorXd& ways, const Eigen::VectorXd& speeds)
+{
+    // Where the part turns about its frame's origin, the tip rests and its speed says nothing.
+    constexpr double kMinShare = 0.01;
+    const Eigen::VectorXd of_tip = robot::tip_ways(poses);
+    Eigen::VectorXd result = speeds;
+    for (Eigen::Index i = 1; i < ways.size(); ++i) {
+        if (!(ways[i] > 0) || of_tip[i] == ways[i]) continue;
+        if (of_tip[i] < kMinShare * ways[i])
+            throw core::InputError("pose " + std::to_string(i) + ": the contact moves " + core::to_short_text(ways[i]) +
+                                   " mm along the part, but the part's frame only " + core::to_short_text(of_tip[i]) +
+                                   " mm: no speed of a program holds the feed there; put the tool frame elsewhere");
+        result[i] *= of_tip[i] / ways[i];
+    }
+    return result;
+}
+
 } // namespace
 
 int main(int argc, char** argv)
@@ -134,7 +169,12 @@ int main(int argc, char** argv)
         options.turn_rate = o.turn_feed * core::kRadPerDegree;
         if (o.feed) {
             options.speeds = speeds_along(o, cloud, mm);
-            cloud::set_field(cloud, "t", robot::arrival_times(solved.poses, options.speeds, options.turn_rate), 8);
+            const Eigen::VectorXd ways = ways_along(cloud, solved.poses);
+            cloud::set_field(cloud, "t", robot::arrival_times(solved.poses, ways, options.speeds, options.turn_rate),
+                             8);
+            if (o.program.any())
+                options.speeds = cli::with_error_prefix(core::display_name(o.points),
+                                                        [&] { return tip_speeds(solved.poses, ways, options.speeds); });
         }
         robot::set_states(cloud, solved.path);
         if (!o.all) o.out.write(cloud, file.units);

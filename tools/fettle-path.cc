@@ -25,7 +25,9 @@ const std::string kDescription =
     "axis back; a tool no part of which lies below its tip stays that far off. stroke is then -1 between strokes, and "
     "motion says how the tool comes to a point: 0 on the part, 1 near it along the axis, 2 farther off along it, 3 "
     "from "
-    "stroke to stroke. Lengths in mm. Exit 1 if the path has no point.";
+    "stroke to stroke. With --held part the field way is the contact's way along the part, which fettle-arm's --feed "
+    "is "
+    "along. Lengths in mm. Exit 1 if the path has no point.";
 
 constexpr double kMinSpacing = 1e-3; // mm: below what any machine resolves; keeps the number of points bounded
 
@@ -139,7 +141,9 @@ int main(int argc, char** argv)
         if (o.held == "part") {
             const Eigen::Isometry3d T_cell_wheel =
                 cli::with_error_prefix("--wheel", [&] { return cloud::parse_pose(o.wheel); });
-            cloud::set_poses(path, belt::held_part_path(cloud::read_poses(path), T_cell_wheel));
+            const cloud::PosePath T_part_contact = cloud::read_poses(path);
+            cloud::set_field(path, "way", belt::way_along(T_part_contact), 8);
+            cloud::set_poses(path, belt::held_part_path(T_part_contact, T_cell_wheel));
             path.comment = "frame: cell";
         }
         o.out.write(path, units::Units{});

@@ -249,6 +249,16 @@ cloud::Cloud interpolate_path(const cloud::Cloud& path, double spacing)
     return dense;
 }
 
+Eigen::VectorXd way_along(const cloud::PosePath& poses)
+{
+    Eigen::VectorXd way = Eigen::VectorXd::Zero(poses.size());
+    for (std::size_t i = 1; i < poses.size(); ++i) {
+        const double step = (poses[i].translation() - poses[i - 1].translation()).norm();
+        way[i] = way[i - 1] + (std::isnan(step) ? 0 : step);
+    }
+    return way;
+}
+
 cloud::PosePath held_part_path(const cloud::PosePath& T_part_contact, const Eigen::Isometry3d& T_cell_wheel)
 {
     const Eigen::AngleAxisd half_turn(std::numbers::pi, Eigen::Vector3d::UnitX());

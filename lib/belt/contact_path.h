@@ -54,6 +54,10 @@ ContactPath contact_path(const Surfels& surfels, const ContactPathOptions& optio
 /// @param path  with poses   @param spacing  mm
 cloud::Cloud interpolate_path(const cloud::Cloud& path, double spacing);
 
+/// Length of a path up to each pose, mm; NaN poses do not count. For a part in a robot's hand it is what its feed is
+/// along: where the part turns about the contact, its frame moves more or less.
+Eigen::VectorXd way_along(const cloud::PosePath& poses);
+
 /// Path of a part that the robot holds against a fixed wheel: the poses of the part's frame in which each contact point
 /// meets the wheel. The frames are those of fettle-arm: the part's frame is the tool frame of the robot's file, with z
 /// out of the robot; in a path that frame is turned by 180° about x.

@@ -14,7 +14,7 @@ units::Dimension field_dimension(const std::string& name)
 {
     for (const char* length :
          {"error", "sigma", "clearance", "radius", "displacement", "removed", "foot_x", "foot_y", "foot_z", "joint7",
-          "clearance_between", "gap", "indentation", "deflection", "depth", "retreat", "height", "disagreement"})
+          "clearance_between", "gap", "indentation", "deflection", "depth", "retreat", "way", "height", "disagreement"})
         if (name == length) return {1, 0};
     if (name == "area") return {2, 0};
     if (name == "removed_volume") return {3, 0};

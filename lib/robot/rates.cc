@@ -36,13 +36,26 @@ Eigen::VectorXd arrival_times(const cloud::PosePath& poses, const Feedrate& feed
     return arrival_times(poses, Eigen::VectorXd::Constant(poses.size(), feed.tip_speed), feed.turn_rate);
 }
 
+Eigen::VectorXd tip_ways(const cloud::PosePath& poses)
+{
+    Eigen::VectorXd ways = Eigen::VectorXd::Zero(poses.size());
+    for (std::size_t i = 1; i < poses.size(); ++i)
+        ways[i] = (poses[i].translation() - poses[i - 1].translation()).norm();
+    return ways;
+}
+
 Eigen::VectorXd arrival_times(const cloud::PosePath& poses, const Eigen::VectorXd& speeds, double turn_rate)
+{
+    return arrival_times(poses, tip_ways(poses), speeds, turn_rate);
+}
+
+Eigen::VectorXd arrival_times(const cloud::PosePath& poses, const Eigen::VectorXd& lengths,
+                              const Eigen::VectorXd& speeds, double turn_rate)
 {
     Eigen::VectorXd times = Eigen::VectorXd::Zero(poses.size());
     for (std::size_t i = 1; i < poses.size(); ++i) {
-        const double distance = (poses[i].translation() - poses[i - 1].translation()).norm();
-        const double turn =
-            Eigen::Quaterniond(poses[i].linear()).angularDistance(Eigen::Quaterniond(poses[i - 1].linear()));
+        const double distance = lengths[i], turn = Eigen::Quaterniond(poses[i].linear())
+                                                       .angularDistance(Eigen::Quaterniond(poses[i - 1].linear()));
         const double time = std::isnan(distance) ? 0 : std::max(distance / speeds[i], turn / turn_rate);
         times[i] = times[i - 1] + time;
     }

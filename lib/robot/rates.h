@@ -20,6 +20,12 @@ struct Feedrate {
 Eigen::VectorXd arrival_times(const cloud::PosePath& poses, const Feedrate& feed);
 /// Arrival times with a speed of the tip for the motion to each pose. @param speeds  N, mm/s   @param turn_rate  rad/s
 Eigen::VectorXd arrival_times(const cloud::PosePath& poses, const Eigen::VectorXd& speeds, double turn_rate);
+/// The same where speeds are along other ways than the tip's. @param lengths  N, of the motion to each pose, mm
+Eigen::VectorXd arrival_times(const cloud::PosePath& poses, const Eigen::VectorXd& lengths,
+                              const Eigen::VectorXd& speeds, double turn_rate);
+
+/// Way of the tip to each pose, mm; 0 to the first, and NaN to and from a NaN pose.
+Eigen::VectorXd tip_ways(const cloud::PosePath& poses);
 
 /// Largest speed and acceleration of one joint along a path; rad/s and rad/s² (track: mm/s and mm/s²).
 struct JointRate {
