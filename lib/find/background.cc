@@ -108,10 +108,17 @@ double biweight(double ratio)
     return std::abs(ratio) < 1 ? rest * rest : 0;
 }
 
+constexpr std::size_t kSigmaCells = 20000; // from which a spread is known to 1 %
+
 /// Standard deviation of the residuals of cells with a weight.
 double residual_sigma(const Image& z, const Image& surface, const Image& weight, const Mask& seen)
 {
-    return robust_sd(values_in(z - surface, seen & (weight > 0.1F)));
+    std::vector<double> residuals = values_in(z - surface, seen & (weight > 0.1F));
+    if (const std::size_t step = residuals.size() / kSigmaCells; step > 1) {
+        for (std::size_t i = 0; i < residuals.size() / step; ++i) residuals[i] = residuals[i * step];
+        residuals.resize(residuals.size() / step);
+    }
+    return robust_sd(std::move(residuals));
 }
 
 } // namespace

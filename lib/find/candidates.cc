@@ -3,10 +3,12 @@
 #include "find/background.h"
 #include "find/sheets.h"
 
+#include <opencv2/imgproc.hpp>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
+#include <climits>
 #include <cmath>
 #include <iterator>
 
@@ -61,50 +63,63 @@ double rank_of(const Image& residual, const Mask& domain, const Mask& mask, doub
     return enclosure > kMinEnclosure ? std::min(contrast, kMaxContrast) * enclosure * enclosure : 0;
 }
 
-/// Candidates of one residual: components over rising thresholds.
+/// What hangs together over a threshold.
+struct Region {
+    cv::Rect box;
+    Mask mask; ///< of the box's size
+    int area;
+};
+
+/// The regions over a threshold within one over the threshold before it.
+void add_regions(const Image& residual, const Region& below, double threshold, std::vector<Region>& regions)
+{
+    Mask high = residual(below.box) > threshold;
+    high &= below.mask;
+    if (cv::countNonZero(high) < kMinCells) return;
+    const Components parts = components(high);
+    for (int k = 1; k <= parts.count; ++k) {
+        if (parts.area(k) < kMinCells) continue;
+        const cv::Rect box = parts.box(k);
+        regions.push_back({box + below.box.tl(), parts.labels(box) == k, parts.area(k)});
+    }
+}
+
+/// Candidates of one residual: components over rising thresholds. Those over each are sought in those over the one
+/// before it, which are few beside the map.
 std::vector<Candidate> cut_out(const Image& residual, const Mask& domain, const HeightMap& map,
                                const SearchBounds& bounds)
 {
     const double max_cells = 1.5 * bounds.max_area / (map.cell * map.cell),
                  max_extent = 2 * bounds.max_width / map.cell;
     std::vector<Candidate> candidates;
-    Components below;
+    std::vector<Region> below{{cv::Rect({0, 0}, residual.size()), Mask(residual.size(), 255), INT_MAX}};
     for (const double threshold : kThresholdSigmas) {
-        Components parts = components(residual > threshold * map.sigma);
-        if (parts.count == 0) break;
-        for (int k = 1; k <= parts.count; ++k) {
-            const cv::Rect box = parts.box(k);
-            if (parts.area(k) < kMinCells || parts.area(k) > max_cells || std::max(box.width, box.height) > max_extent)
-                continue;
-            const cv::Rect around = grown_box(box, kShellOuter, residual.size());
-            const Mask mask = parts.labels(around) == k;
-            if (below.count > 0) {
-                const int x = box.x + int(std::ranges::find(parts.labels.ptr<int>(box.y) + box.x,
-                                                            parts.labels.ptr<int>(box.y) + box.x + box.width, k) -
-                                          (parts.labels.ptr<int>(box.y) + box.x));
-                if (parts.area(k) > kMaxNestedAreaShare * below.area(below.labels(box.y, x))) continue;
+        std::vector<Region> regions;
+        for (const Region& whole : below) {
+            const std::size_t first = regions.size();
+            add_regions(residual, whole, threshold * map.sigma, regions);
+            for (std::size_t i = first; i < regions.size(); ++i) {
+                const Region& region = regions[i];
+                if (region.area > max_cells || std::max(region.box.width, region.box.height) > max_extent ||
+                    region.area > kMaxNestedAreaShare * whole.area)
+                    continue;
+                const cv::Rect around = grown_box(region.box, kShellOuter, residual.size());
+                Mask mask(around.size(), 0);
+                region.mask.copyTo(mask(region.box - around.tl()));
+                if (const double rank = rank_of(residual(around), domain(around), mask, map.sigma, bounds.min_height);
+                    rank > 0)
+                    candidates.push_back({around, mask, rank * std::pow(region.area, 0.25), 0});
             }
-            if (const double rank = rank_of(residual(around), domain(around), mask, map.sigma, bounds.min_height);
-                rank > 0)
-                candidates.push_back({around, mask, rank * std::pow(parts.area(k), 0.25), 0});
         }
-        below = std::move(parts);
+        below = std::move(regions);
     }
     return candidates;
-}
-
-cv::Rect box_of(const Mask& mask)
-{
-    const Components all = components(mask != 0, 8);
-    cv::Rect box;
-    for (int k = 1; k <= all.count; ++k) box |= all.box(k);
-    return box;
 }
 
 /// Candidates of one sheet at one width of the filter.
 std::vector<Candidate> candidates_of(const HeightMap& map, const Sheet& sheet, double width, const SearchBounds& bounds)
 {
-    const cv::Rect box = box_of(sheet.domain);
+    const cv::Rect box = cv::boundingRect(sheet.domain);
     HeightMap part{map.z(box).clone(), map.cell, map.origin, sheet.domain(box).clone(), map.sigma};
     part.z.setTo(std::numeric_limits<float>::quiet_NaN(), ~part.seen);
     const Mask smooth = sheet.smooth(box);

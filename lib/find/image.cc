@@ -54,21 +54,40 @@ double noise_sigma(const Image& z)
     return geometry::kMedianToSigma * geometry::median(second_differences) / std::sqrt(6.0);
 }
 
+namespace {
+
+/// Median of the values of a box that are finite.
+float median_in(const Image& z, const cv::Rect& box, std::vector<float>& values)
+{
+    values.clear();
+    for (int v = box.y; v < box.y + box.height; ++v)
+        for (int u = box.x; u < box.x + box.width; ++u)
+            if (const float value = z(v, u); std::isfinite(value)) values.push_back(value);
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return values.empty() ? kUnseen : *middle;
+}
+
+} // namespace
+
 Image nan_median(const Image& z, int radius)
 {
-    Image result(z.size());
+    const int side = 2 * radius + 1;
+    const Mask seen = finite(z);
+    // OpenCV's median knows no gaps: it is right where there are none in the square, which is most of an image.
+    Image whole = z.clone(), result;
+    whole.setTo(0, ~seen);
+    cv::medianBlur(whole, result, side);
+    Mask is_whole;
+    cv::erode(seen, is_whole, cv::getStructuringElement(cv::MORPH_RECT, {side, side}), {-1, -1}, 1, cv::BORDER_CONSTANT,
+              cv::Scalar(0));
     tbb::parallel_for(tbb::blocked_range<int>(0, z.rows), [&](const tbb::blocked_range<int>& rows) {
         std::vector<float> values;
         for (int y = rows.begin(); y < rows.end(); ++y)
-            for (int x = 0; x < z.cols; ++x) {
-                values.clear();
-                for (int v = std::max(0, y - radius); v <= std::min(z.rows - 1, y + radius); ++v)
-                    for (int u = std::max(0, x - radius); u <= std::min(z.cols - 1, x + radius); ++u)
-                        if (const float value = z(v, u); std::isfinite(value)) values.push_back(value);
-                const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-                std::nth_element(values.begin(), middle, values.end());
-                result(y, x) = values.empty() ? kUnseen : *middle;
-            }
+            for (int x = 0; x < z.cols; ++x)
+                if (!is_whole(y, x))
+                    result(y, x) =
+                        median_in(z, cv::Rect(x - radius, y - radius, side, side) & cv::Rect({0, 0}, z.size()), values);
     });
     return result;
 }

@@ -20,7 +20,7 @@ Mask finite(const Image& image);
 /// no three cells in a line have values.
 double noise_sigma(const Image& z);
 
-/// Median of the values among the (2 radius + 1)² cells around each; NaN where there are none.
+/// Median of the values among the (2 radius + 1)² cells around each; NaN where there are none. @param radius  1 or 2
 Image nan_median(const Image& z, int radius);
 
 /// Gaussian smoothing of the cells of a mask by those of the mask alone (normalized convolution, Knutsson & Westin

@@ -95,11 +95,11 @@ std::optional<RingFit> Refinement::fit(const Mask& ring, const Image& distance, 
     for (int y = 0; y < ring.rows; ++y)
         for (int x = 0; x < ring.cols; ++x)
             if (ring(y, x)) {
-                const double d = distance(y, x) / width;
                 points.xy.col(k) << x, y;
                 points.z[k] = z_(y, x);
-                points.weights[k++] = std::exp(-d * d / 2);
+                points.weights[k++] = -0.5 * distance(y, x) * distance(y, x) / (width * width);
             }
+    points.weights = points.weights.array().exp();
     return fit_ring(points, sigma_, max_degree);
 }
 
@@ -126,9 +126,8 @@ void Refinement::evaluate()
         for (int x = 0; x < coarse.cols; ++x)
             coarse(y, x) = float(beneath_.fit.at((x + 0.5) * step - 0.5, (y + 0.5) * step - 0.5).sd);
     beneath_.sd = refined(coarse, step, z_.size());
-    beneath_.residual.create(z_.size());
-    for (int y = 0; y < z_.rows; ++y)
-        for (int x = 0; x < z_.cols; ++x) beneath_.residual(y, x) = float(z_(y, x) - beneath_.fit.z_at(x, y));
+    beneath_.residual = z_.clone();
+    for (int y = 0; y < z_.rows; ++y) beneath_.fit.add_row(y, -1, {beneath_.residual[y], std::size_t(z_.cols)});
     beneath_.residual.setTo(std::numeric_limits<float>::quiet_NaN(), ~seen_);
     beneath_.smooth = smoothed(beneath_.residual, seen_, kHeightSmoothing);
     beneath_.smooth.setTo(-1e9, ~seen_);
@@ -136,9 +135,8 @@ void Refinement::evaluate()
 
 Image Refinement::surface() const
 {
-    Image surface(z_.size());
-    for (int y = 0; y < z_.rows; ++y)
-        for (int x = 0; x < z_.cols; ++x) surface(y, x) = float(beneath_.fit.z_at(x, y));
+    Image surface(z_.size(), 0.F);
+    for (int y = 0; y < z_.rows; ++y) beneath_.fit.add_row(y, 1, {surface[y], std::size_t(z_.cols)});
     return surface;
 }
 

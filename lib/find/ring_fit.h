@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace fettle::find {
@@ -42,6 +43,8 @@ struct RingFit {
     };
     Value at(double x, double y) const;
     double z_at(double x, double y) const;
+    /// Adds `factor` times the heights at (0, y), (1, y), … to a row of numbers: many places cost less together.
+    void add_row(double y, double factor, std::span<float> row) const;
 };
 
 /// @param sigma  of the noise, mm   @param max_degree  1 to 4
