@@ -6,13 +6,15 @@
 #include "core/error.h"
 
 #include <algorithm>
+#include <limits>
+#include <optional>
 
 namespace fettle::find {
 namespace {
 
 using Eigen::Index;
 
-// If two finds share more than this of either's points, the more probable one is kept.
+// If two finds share more than this of either's points, the one with the higher rank is kept.
 constexpr double kMaxOverlap = 0.1;
 
 /// A find of a side, and what it is of the part.
@@ -22,10 +24,18 @@ struct Entry {
     FoundAnomaly found;
 };
 
-/// Takes finds by falling probability, without those that share points with one taken before.
+/// How well a side shows a find. A reference tells what stands out, hardly a doubt is left, but not whether a side
+/// shows all of it: one that sees half of it from beside has an edge around that half.
+double rank_in_part(const Entry& entry)
+{
+    const double probability = entry.found.probability;
+    return entry.side->is_along_normal ? probability * entry.find->evidence.enclosure : probability;
+}
+
+/// Takes finds by falling rank, without those that share points with one taken before. @return  most probable first
 std::vector<Entry> without_overlaps(std::vector<Entry> entries, Index points)
 {
-    std::ranges::stable_sort(entries, std::greater{}, [](const Entry& e) { return e.found.probability; });
+    std::ranges::stable_sort(entries, std::greater{}, rank_in_part);
     std::vector<int> taken_by(std::size_t(points), -1);
     std::vector<Entry> taken;
     for (Entry& entry : entries) {
@@ -41,6 +51,7 @@ std::vector<Entry> without_overlaps(std::vector<Entry> entries, Index points)
         for (const Index i : entry.found.points) taken_by[std::size_t(i)] = int(taken.size());
         taken.push_back(std::move(entry));
     }
+    std::ranges::stable_sort(taken, std::greater{}, [](const Entry& e) { return e.found.probability; });
     return taken;
 }
 
@@ -98,43 +109,42 @@ void check_surface(const std::vector<SeenSide>& sides)
         throw core::InputError("no surface: its points lie on lines, as those of a single profile, or are too few");
 }
 
-/// The places of a side's cells in the part: of a cloud the point whose height the cell has, of a mesh its surface at
-/// the cell's middle. Cells of a cloud that were filled from those around have none.
-std::pair<std::vector<cv::Point>, Eigen::Matrix3Xd> places_of(const mesh::CloudMesh& part, const SeenSide& side)
+/// The place of a cell in the part: of a cloud the point whose height the cell has, of a mesh its surface at the cell's
+/// middle; nothing where rounding has put the only point beside the cell.
+std::optional<Eigen::Vector3d> place_of(const mesh::CloudMesh& part, const SeenSide& side, const CellPoints& points,
+                                        const cv::Point& cell)
 {
-    const HeightMap& map = side.surface;
-    std::vector<cv::Point> seen, cells;
-    cv::findNonZero(map.seen, seen);
-    const CellPoints points = part.is_mesh() ? CellPoints() : points_by_cell(part, side);
-    const Eigen::RowVector3d up = side.view.linear().row(2);
-    Eigen::Matrix3Xd places(3, Index(seen.size()));
-    for (const cv::Point& cell : seen) {
-        if (part.is_mesh()) {
-            const Eigen::Vector2d place = map.point_at(cell.x, cell.y);
-            places.col(Index(cells.size())) = side.view.inverse() * Eigen::Vector3d(place.x(), place.y(), map.z(cell));
-            cells.push_back(cell);
-            continue;
-        }
-        const double height = map.z(cell) - side.view.translation().z();
-        const auto error_of = [&](Index i) { return std::abs(up.dot(part.points.xyz.col(i)) - height); };
-        Index nearest = points.first(cell);
-        if (nearest < 0) continue;
-        for (Index i = nearest; i >= 0; i = points.next[std::size_t(i)])
-            if (error_of(i) < error_of(nearest)) nearest = i;
-        places.col(Index(cells.size())) = part.points.xyz.col(nearest);
-        cells.push_back(cell);
+    const Eigen::Vector2d middle = side.surface.point_at(cell.x, cell.y);
+    const Eigen::Vector3d place(middle.x(), middle.y(), side.surface.z(cell));
+    if (part.is_mesh()) return side.view.inverse() * place;
+    double best = std::numeric_limits<double>::infinity();
+    std::optional<Eigen::Vector3d> nearest;
+    for (Index i = points.first(cell); i >= 0; i = points.next[std::size_t(i)]) {
+        const Eigen::Vector3d point = part.points.xyz.col(i);
+        if (const double off = std::abs((side.view * point).z() - place.z()); off < best) best = off, nearest = point;
     }
-    places.conservativeResize(Eigen::NoChange, Index(cells.size()));
-    return {cells, places};
+    return nearest;
 }
 
 /// Signed distances of what a side shows, as a map.
-HeightMap distance_map(const mesh::CloudMesh& part, const SeenSide& side, const SignedDistances& distances)
+/// @param measured  the side's map before it was cleaned
+HeightMap distance_map(const mesh::CloudMesh& part, const SeenSide& side, const HeightMap& measured,
+                       const SignedDistances& distances)
 {
     const HeightMap& map = side.surface;
-    const auto [cells, places] = places_of(part, side);
-    const Eigen::VectorXd errors = distances(places);
-    HeightMap result{Image(map.z.size(), std::numeric_limits<float>::quiet_NaN()), map.cell, map.origin, {}, 0};
+    std::vector<cv::Point> seen, cells;
+    cv::findNonZero(map.seen & (map.z == measured.z), seen); // what was filled from cells around lies beside the part
+    const CellPoints points = part.is_mesh() ? CellPoints() : points_by_cell(part, side);
+    Eigen::Matrix3Xd places(3, Index(seen.size()));
+    for (const cv::Point& cell : seen)
+        if (const auto place = place_of(part, side, points, cell)) {
+            places.col(Index(cells.size())) = *place;
+            cells.push_back(cell);
+        }
+    const Eigen::VectorXd errors = distances(places.leftCols(Index(cells.size())));
+    // Distances from a reference that is the part itself have no noise, but are no surer than the part's surface.
+    HeightMap result{
+        Image(map.z.size(), std::numeric_limits<float>::quiet_NaN()), map.cell, map.origin, {}, measured.sigma};
     for (std::size_t k = 0; k < cells.size(); ++k) result.z(cells[k]) = float(errors[Index(k)]);
     return result;
 }
@@ -161,9 +171,10 @@ FindResult find_anomalies_against(const mesh::CloudMesh& part, const SignedDista
     std::vector<SeenSide> sides;
     bool is_defined = false;
     for (const View& view : choose_views(part)) {
-        SeenSide side{view, height_map(part, view), {}, true, {}};
+        const HeightMap measured = height_map(part, view);
+        SeenSide side{view, measured, {}, true, {}};
         clean(side.surface);
-        side.searched = distance_map(part, side, distances);
+        side.searched = distance_map(part, side, measured, distances);
         if (cv::countNonZero(finite(side.searched.z)) == 0) continue;
         is_defined = true;
         clean(side.searched);
