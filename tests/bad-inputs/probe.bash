@@ -85,6 +85,7 @@ good() { # STEP: mm between points [3]
     fettle-fit job.json samples.pcd >fit.json
     fettle-plan job.json surface.json >plan.json
     { echo 'solid plate'; facet 0 0 5 40 0 5 40 40 5; facet 0 0 5 40 40 5 0 40 5; echo 'endsolid plate'; } >plate.stl
+    printf '1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n' >identity.txt
     printf '0 0 5\n9 9 5\n' >path.xyz
     printf 'G21 G90\nG0 X0 Y0 Z9\nF100\nG1 Z4\nX9\nM30\n' >path.nc
 }
@@ -112,15 +113,18 @@ points() { # R|S FILE
     fi
     try "${1/G/S}" "$2" fettle-estimate job.json "$2"
     try "$1" "$2" fettle-fit job.json "$2"
+    try "${1/G/S}" "$2" fettle-find "$2"
     try "$1" "$2" fettle-form flatness "$2"
     try "$1" "$2" fettle-form sphericity "$2"
     try "$1" "$2" fettle-grind plan.json --stock "$2" --cell 2
     stocks "$@"
+    try "${1/G/S}" "$2" fettle-merge "$2" good.pcd
     try "$1" "$2" fettle-mesh surface.json --at "$2"
     try "$1" "$2" fettle-mill "$2" --stock box:0,0,0,9,9,9 --cutter ball:6 --step 0.5
     try "$1" "$2" fettle-mill path.nc --stock "$2" --cutter ball:6 --step 0.5
     try "$1" "$2" fettle-path "$2"
     try "$1" "$2" fettle-place "$2" --turn x,30
+    try "${1/G/S}" "$2" fettle-reconstruct "$2"
     try "$1" "$2" fettle-render "$2"
     try "$1" "$2" fettle-report --errors "$2"
     try "${1/R/T}" "$2" fettle-report --trace "$2" # a trace may be one of a killed run
@@ -128,6 +132,7 @@ points() { # R|S FILE
     try "$1" "$2" fettle-sample job.json --on "$2"
     try "$1" "$2" fettle-surfel "$2" --stock plate.stl
     try "$1" "$2" fettle-surfel plate.stl --stock "$2"
+    try "$1" "$2" fettle-view "$2"
     jq -n --arg file "$PWD/$2" '{kind: "part", units: {length: "mm"}, scan: {file: $file, units: "mm"}, region: {x: [5, 25], y: [5, 25]}, step: 1, anomalies: []}' >spec.json
     try "$1" "$2" fettle-part spec.json
 }
@@ -136,6 +141,7 @@ points() { # R|S FILE
 stocks() { # R|S|G FILE
     try "$1" "$2" fettle-gantry-virtual plan.json --stock "$2" --cell 2
     try "$1" "$2" fettle-manual job.json --stock "$2" --cell 2 --machine machine.json --steer -
+    try "$1" "$2" fettle-gantry-robot robot.json plan.json --stock "$2" --cell 2
     try "$1" "$2" fettle-stock-linuxcnc plan.json --stock "$2" --cell 2
     [ "$1" != R ] || try R "$2" fettle-teach job.json --gantry virtual --stock "$2" --steer - # without points there is no job
     try "$1" "$2" fettle-station job.json --session "session-$tried" --gantry virtual --stock "$2" --cell 2 --steer -
@@ -150,6 +156,7 @@ meshes() { # R|S|G FILE
     try "$1" "$2" fettle-compare "$2" --to plate.stl
     try "$1" "$2" fettle-diff "$2" plate.stl
     try "$1" "$2" fettle-diff plate.stl "$2"
+    try "${1/G/S}" "$2" fettle-find good.pcd --against "$2" --transform-in identity.txt
     try "$1" "$2" fettle-finish "$2" --cutter ball:6 --step-over 4
     try "$1" "$2" fettle-grind plan.json --stock "$2" --cell 2
     try "$1" "$2" fettle-mill path.nc --stock "$2" --cutter ball:6 --step 0.5
@@ -162,6 +169,7 @@ meshes() { # R|S|G FILE
     try "$1" "$2" fettle-surfel plate.stl --stock "$2" --spacing 4
     try "$1" "$2" fettle-verify "$2" --design plate.stl --step 4
     try "$1" "$2" fettle-verify plate.stl --design "$2" --step 4
+    try "$1" "$2" fettle-view "$2"
 }
 
 # Binary files: numbers as Perl's pack writes them.

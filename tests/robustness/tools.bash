@@ -17,7 +17,6 @@ if command -v fettle-step > /dev/null; then names+=' step'; fi # built where Ope
 
 inputs() { # STEP
     good "$@"
-    printf '1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n' >identity.txt
     echo '{"kind": "part", "units": {"length": "mm"}, "surface": {"type": "plane", "point": [0, 0, 5]}, "region": {"x": [-20, 20], "y": [-20, 20]},
         "step": 1, "anomalies": [{"type": "hill", "centre": [0, 0], "semi_axes": [4, 3], "height": 1}]}' >part.json
     fettle-surfel plate.stl --stock plate.stl --spacing 4 -q -o work.pcd
