@@ -21,7 +21,7 @@ class EdgeCompliance {
     /// Takes a fraction of a second.
     EdgeCompliance(const ElasticLayer& layer, double radius, double width);
 
-    /// Adds the compliance to that of each wave of a grid (WaveOperator::spectrum) in the middle of the width.
+    /// Adds the compliance to that of each wave of a grid (wave_operator.h) in the middle of the width.
     void add_to(Eigen::MatrixXd& spectrum, const Eigen::Vector2d& cell, Eigen::Index rows, Eigen::Index columns) const;
 
   private:

@@ -200,7 +200,7 @@ LayerMesh layer_mesh(const ElasticLayer& layer, double radius, double width, con
 
 MatrixXd wave_compliance(const LayerMesh& mesh, double phase) { return compliance(assemble(mesh), phase); }
 
-FemLayer::FemLayer(const LayerMesh& mesh, Index rows) : tilt_cosines_(rows), waves_(rows, mesh.loaded_count)
+FemLayer::FemLayer(const LayerMesh& mesh, Index rows) : tilt_cosines_(rows)
 {
     for (Index i = 0; i < rows; ++i)
         tilt_cosines_[i] = std::cos((static_cast<double>(2 * i + 1 - rows) / 2) * mesh.cell_size.x() / mesh.radius);
@@ -209,7 +209,7 @@ FemLayer::FemLayer(const LayerMesh& mesh, Index rows) : tilt_cosines_(rows), wav
     const MatrixXd weights = wave_weights(nodes, rows);
     const RingStiffness ring = assemble(mesh);
     constexpr Index kBlockSize = 64; // phases at a time, to limit the memory
-    MatrixXd& spectrum = waves_.spectrum();
+    MatrixXd spectrum = MatrixXd::Zero(mesh.loaded_count * mesh.loaded_count, rows + 1);
     for (Index from = 0; from < count; from += kBlockSize) {
         MatrixXd compliances(spectrum.rows(), std::min(kBlockSize, count - from));
         tbb::parallel_for(Index{0}, compliances.cols(), [&](Index k) {
@@ -222,6 +222,7 @@ FemLayer::FemLayer(const LayerMesh& mesh, Index rows) : tilt_cosines_(rows), wav
                 weights.middleRows(from, compliances.cols());
         });
     }
+    waves_.emplace(rows, mesh.loaded_count, spectrum);
 }
 
 } // namespace fettle::belt

@@ -5,6 +5,8 @@
 
 #include <Eigen/Core>
 
+#include <optional>
+
 namespace fettle::belt {
 
 /// Hexahedral mesh of a layer bonded to a hub: equal elements along the arc, graded ones along the axis and through the
@@ -39,13 +41,13 @@ class FemLayer {
     FemLayer(const LayerMesh& mesh, Eigen::Index rows);
 
     /// @param pressure  radial, on the cells, MPa   @return  radial, mm
-    Eigen::MatrixXd displacement(const Eigen::MatrixXd& pressure) const { return waves_.displacement(pressure); }
+    Eigen::MatrixXd displacement(const Eigen::MatrixXd& pressure) const { return waves_->displacement(pressure); }
     /// Cosine of the angle between each row's radius and the radius at the middle of the grid.
     const Eigen::ArrayXd& tilt_cosines() const { return tilt_cosines_; }
 
   private:
     Eigen::ArrayXd tilt_cosines_;
-    WaveOperator waves_;
+    std::optional<WaveOperator> waves_; ///< always there after construction
 };
 
 } // namespace fettle::belt

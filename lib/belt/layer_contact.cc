@@ -55,12 +55,13 @@ LayerContact::LayerContact(const ElasticLayer& layer, const EdgeCompliance& edge
                            Index rows, Index columns)
     : LayerContact(layer, cell, rows, columns)
 {
-    waves_.emplace(rows, columns);
+    MatrixXd spectrum(columns * columns, rows + 1);
     const MatrixXd transform = wave_transform(influence_);
     for (Index f = 0; f <= rows; ++f)
         for (Index j = 0; j < columns; ++j)
-            for (Index i = 0; i < columns; ++i) waves_->spectrum()(i + j * columns, f) = transform(f, std::abs(i - j));
-    edges.add_to(waves_->spectrum(), cell, rows, columns);
+            for (Index i = 0; i < columns; ++i) spectrum(i + j * columns, f) = transform(f, std::abs(i - j));
+    edges.add_to(spectrum, cell, rows, columns);
+    waves_.emplace(rows, columns, spectrum);
 }
 
 LayerContact::LayerContact(const LayerMesh& mesh, Index rows)
@@ -227,9 +228,12 @@ Contact LayerContact::solve(const MatrixXd& input_gap, const Contact& given, dou
     contact.converged = true;
     while (contact.converged) {
         Window window{0, 0, gap.rows(), gap.cols()};
-        if (!fem_ && !waves_) {
+        if (!fem_) std::tie(window.column, window.columns) = window_side(may_touch.colwise().any().transpose());
+        if (waves_) { // as wide on either side of the middle
+            window.column = std::min(window.column, gap.cols() - window.column - window.columns);
+            window.columns = gap.cols() - 2 * window.column;
+        } else if (!fem_) {
             std::tie(window.row, window.rows) = window_side(may_touch.rowwise().any());
-            std::tie(window.column, window.columns) = window_side(may_touch.colwise().any().transpose());
         }
         contact.converged = iterate(gap, window, tolerance, removal, is_force_known,
                                     start.size() > 0 ? kMaxIterationsFromStart : kMaxIterations, contact);

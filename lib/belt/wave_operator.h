@@ -9,18 +9,22 @@ namespace fettle::belt {
 
 /// Maps the pressure on a grid of cells to a displacement, wave by wave along the rows: any compliance that does not
 /// vary along them, such as that of a layer with sides. The grid is periodic at twice its length, which leaves the
-/// influence between its cells unchanged. There is one wave more than rows.
+/// influence between its cells unchanged. There is one wave more than rows. Where the compliance is the same from
+/// either end of the columns, the even and the odd part of a pressure do not mix: two matrices of half the size do.
 class WaveOperator {
   public:
-    WaveOperator(Eigen::Index rows, Eigen::Index columns);
+    /// @param spectrum  compliance of each wave (column), a matrix of columns x columns, mm/MPa
+    WaveOperator(Eigen::Index rows, Eigen::Index columns, const Eigen::MatrixXd& spectrum);
 
-    /// Compliance of each wave (column), a matrix of columns x columns; 0 at first. mm/MPa
-    Eigen::MatrixXd& spectrum() { return spectrum_; }
+    /// @param pressure  of all columns, or of some in the middle, as many left out on either side: the pressure there
+    /// is 0   @return  displacement of the same columns
     Eigen::MatrixXd displacement(const Eigen::MatrixXd& pressure) const;
 
   private:
-    Eigen::MatrixXd waves_; ///< cosine and sine of each wave over the grid's rows, in alternate rows
-    Eigen::MatrixXd spectrum_;
+    Eigen::Index rows_, columns_;
+    bool is_symmetric_;
+    Eigen::Index odd_count_, even_count_; ///< the even part has the middle column; without symmetry it has all
+    Eigen::MatrixXd even_, odd_;          ///< the spectrum for either part, with the factors of the transform
 };
 
 /// Weights of a compliance at phases from row to row (rows of the result) for each wave of a grid (columns).
