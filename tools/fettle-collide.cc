@@ -151,6 +151,9 @@ int main(int argc, char** argv)
         if (robot.bodies.empty()) t.warn(core::display_name(o.robot.file) + ": has no bodies: nothing can collide");
         if (o.held && robot.table) throw core::InputError("--held", "a robot with a table does not hold the workpiece");
         auto [path, units] = cloud::read_cloud(o.points, mesh::resolve_file_units(o.unit));
+        if (!o.part.empty() && !o.held && cloud::has_field(path, "way"))
+            throw core::InputError(core::display_name(o.points),
+                                   "is of a part in the robot's hand (field way): --held checks it there");
         const robot::CollisionRequest wanted = request(o, units.mm());
         std::optional<mesh::Mesh> mesh;
         std::optional<robot::Workpiece> workpiece;

@@ -18,5 +18,6 @@ held 2 -3 | collide >deep.pcd && exit 1
 jq -e '.collisions == 1 and (.min.clearance + 3 | fabs) < 1e-3 and .min.pair == ["wheel", "workpiece"]' report.json >ok
 held 5 >path.pcd
 "$HERE/../refuses" '--held: goes with --workpiece' fettle-collide "$robot" path.pcd --held
+"$HERE/../refuses" "path.pcd: is of a part in the robot's hand (field way): --held checks it there" fettle-collide "$robot" path.pcd --workpiece block.off
 "$HERE/../refuses" '--held: goes with --workpiece' fettle-collide "$robot" path.pcd --workpiece block.off --held --avoid
 "$HERE/../refuses" '--held: a robot with a table' fettle-collide "$SAMPLES/robots/irb1400_table.json" path.pcd --workpiece block.off --held
