@@ -93,4 +93,4 @@ $(RAW)/hammer-truth.stl: samples/parts/hammer.json $(B)/bin/fettle-part
 	fettle-part $< --without-anomaly -o $@
 
 demo: $(RAW)/hammer.stl $(RAW)/hammer-truth.stl
-	@$(MAKE) --no-print-directory -f pipelines/raw.mk part NAME=hammer CLEAN=no PART=$(RAW)/hammer.stl TEMPLATE=samples/jobs/hammer.json TRUTH=$(RAW)/hammer-truth.stl LIMIT=0.4
+	@$(MAKE) --no-print-directory -f pipelines/raw.mk part NAME=hammer CLEAN=no PART=$(RAW)/hammer.stl TEMPLATE=samples/jobs/hammer.json TRUTH=$(RAW)/hammer-truth.stl LIMIT=0.4 FIND="--min-height 0.2"
