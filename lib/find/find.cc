@@ -156,7 +156,7 @@ FindResult find_anomalies(const mesh::CloudMesh& part, const FindOptions& option
     std::vector<SeenSide> sides;
     for (const View& view : choose_views(part)) {
         SeenSide side{view, height_map(part, view), {}, false, {}};
-        clean(side.surface);
+        clean(side.surface, !part.is_mesh());
         side.searched = side.surface;
         sides.push_back(std::move(side));
     }
@@ -173,11 +173,11 @@ FindResult find_anomalies_against(const mesh::CloudMesh& part, const SignedDista
     for (const View& view : choose_views(part)) {
         const HeightMap measured = height_map(part, view);
         SeenSide side{view, measured, {}, true, {}};
-        clean(side.surface);
+        clean(side.surface, !part.is_mesh());
         side.searched = distance_map(part, side, measured, distances);
         if (cv::countNonZero(finite(side.searched.z)) == 0) continue;
         is_defined = true;
-        clean(side.searched);
+        clean(side.searched, !part.is_mesh());
         search(side, options);
         sides.push_back(std::move(side));
     }

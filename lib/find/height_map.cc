@@ -87,12 +87,12 @@ Mask coarsened(const Mask& mask, int factor)
     return coarse;
 }
 
-void clean(HeightMap& map)
+void clean(HeightMap& map, bool fills)
 {
     map.z = map.z.clone();
     map.sigma = std::max({noise_sigma(map.z), map.sigma, kMinSigmaCells * map.cell});
     remove_outliers(map.z, map.sigma);
-    fill_small_holes(map.z);
+    if (fills) fill_small_holes(map.z);
     const Components pieces = components(finite(map.z));
     for (int y = 0; y < map.z.rows; ++y)
         for (int x = 0; x < map.z.cols; ++x)

@@ -32,6 +32,7 @@ Mask coarsened(const Mask& mask, int factor);
 
 /// Takes single outliers (flying points) out, fills holes of single cells by the median around, leaves out specks, and
 /// sets `seen` and `sigma`.
-void clean(HeightMap& map);
+/// @param fills  of a mesh false: cells that it does not cover are its walls and holes, no lack of points
+void clean(HeightMap& map, bool fills);
 
 } // namespace fettle::find

@@ -226,7 +226,7 @@ job::Job job_for(const FoundAnomaly& found, const mesh::CloudMesh& part, double 
 {
     FoundAnomaly anomaly = found;
     HeightMap map = height_map(part, anomaly.T_anomaly_part);
-    clean(map); // single holes are no edges
+    clean(map, !part.is_mesh()); // single holes are no edges
     const std::optional<RingFit> beneath = surface_beneath(anomaly, map);
     if (beneath) anomaly.sampling = before_edges(anomaly, map, *beneath);
     job::Job job = settings;

@@ -83,7 +83,7 @@ int main(int argc, char** argv)
         t.parse();
         const mesh::CloudMesh base = read_base(path, up, scale);
         find::HeightMap map = base.is_mesh() ? sampled(base, cell) : find::height_map(base, find::View::Identity());
-        if (!base.is_mesh()) find::clean(map);
+        if (!base.is_mesh()) find::clean(map, true);
         Random random(std::uint64_t(number) * 7919 + std::uint64_t(std::abs(std::lround(1e3 * map.origin.sum()))));
         const std::vector<Placed> placed = place_anomalies(ground_of(map, sigma), number, count, at_edge, random);
 

@@ -69,7 +69,7 @@ int main(int argc, char** argv)
         const mesh::CloudMeshFile file = mesh::read_cloud_mesh(path, {});
         const find::SearchBounds bounds;
         find::HeightMap map = find::height_map(file.part, find::View::Identity());
-        find::clean(map);
+        find::clean(map, true); // its cases are clouds
         const Truth truth = truth_of(file.part.points, map);
         std::map<int, double> best, best_verified;
         const std::vector<find::Candidate> candidates = find::find_candidates(map, bounds);

@@ -93,7 +93,7 @@ int main(int argc, char** argv)
         const mesh::CloudMesh part = mesh::read_cloud_mesh(path, {}).part;
         const Eigen::VectorXd truth = cloud::field(part.points, "truth");
         find::SeenSide side{find::View::Identity(), find::height_map(part, find::View::Identity()), {}, false, {}};
-        find::clean(side.surface);
+        find::clean(side.surface, true);
         const find::CellPoints cells = find::points_by_cell(part, side);
         const std::map<int, find::Verified> all = truths(side, part);
         const find::FindResult result = find::find_anomalies(part);
