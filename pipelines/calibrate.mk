@@ -6,7 +6,7 @@
 # CALIBRATE/LAW.csv has a line a series drawn from a hidden law (pipelines/programs/law-series.cc); static.json and moving.json are the reports on the
 # measured rows; part1/N.json those of Wang's part 1, ground on a gantry that removes HIDDEN of what its job says, from the first covering of
 # its trace, with forces 5 % and heights 0.02 mm (a standard deviation each) off. like/PART-LAYER1.csv has PARTS like parts of Wang's, one after the other,
-# whose coefficient falls by 30 %, ground with fettle-grind --learn and without.
+# whose coefficient falls by 30 %, ground with fettle-grind --learn and without. edge.json compares the free sides of a wheel by its layer and by finite elements.
 
 B         ?= build
 SERIES    ?= 200
@@ -22,10 +22,13 @@ PART      := $(CALIBRATE)/part1
 
 .PHONY: calibrate
 calibrate: $(LAWS:%=$(CALIBRATE)/%.csv) $(CALIBRATE)/static.json $(CALIBRATE)/moving.json $(patsubst %,$(PART)/%.json,$(shell seq $(RUNS))) \
-           $(LIKE:%=$(CALIBRATE)/like-$(PARTS)/%.csv)
+           $(LIKE:%=$(CALIBRATE)/like-$(PARTS)/%.csv) $(CALIBRATE)/edge.json
 	@SERIES=$(SERIES) RUNS=$(RUNS) HIDDEN=$(HIDDEN) PARTS=$(PARTS) pipelines/calibrate-table $(CALIBRATE) "$(LAWS)" "$(LIKE)"
 
 include pipelines/step.mk
+
+$(CALIBRATE)/edge.json: pipelines/calibrate-edge samples/wheels/crowned.json $(B)/bin/fettle-contact
+	$(call step,$< $(B)/bin > $@.part)
 
 $(LAWS:%=$(CALIBRATE)/%.csv): $(CALIBRATE)/%.csv: $(B)/study/law-series
 	$(call step,$< $* $(SERIES) $(SEED) > $@.part)

@@ -12,6 +12,7 @@ test $status -eq "$(grep -q MISSED table && echo 2 || echo 0)"
 jq -e '.gantry.coefficient / (0.7 * 0.002 * pow(25.4; 3) / 4.4482216152605) - 1 | fabs < 0.05' out/part1/1.json
 # Of three like parts the first teaches; the others take less time, and the wheel is measured less often. None is ground deeper than the tolerance.
 awk -F, 'NR == 2 && $3 != $8 { exit 1 } NR > 2 && !($8 < 0.92 * $3 && $9 < $4) { exit 1 } $12 > $7 { exit 1 }' out/like-3/1-force.csv
+grep -E '^free sides of a wheel, .* reached$' table
 # A series is the same in every batch.
 law-series power 4 1 | cmp - out/power.csv
 # Enough of them, whose intervals cover half.
