@@ -27,7 +27,7 @@ using Operator = StepGeom_CartesianTransformationOperator3d;
 // Of a scale that is written as a ratio of two units.
 constexpr double kScaleTolerance = 1e-9;
 
-gp_Vec vector_of(const Handle(StepGeom_Direction) & direction)
+gp_Vec ratios_of(const Handle(StepGeom_Direction) & direction)
 {
     gp_Vec v(0, 0, 0);
     for (int k = 1; k <= std::min(3, direction->NbDirectionRatios()); ++k)
@@ -39,7 +39,7 @@ gp_Vec vector_of(const Handle(StepGeom_Direction) & direction)
 bool reflects(const Handle(Operator) & by)
 {
     if (!by->HasAxis1() || !by->HasAxis2() || !by->HasAxis3()) return false;
-    return vector_of(by->Axis1()).Crossed(vector_of(by->Axis2())).Dot(vector_of(by->Axis3())) < 0;
+    return ratios_of(by->Axis1()).Crossed(ratios_of(by->Axis2())).Dot(ratios_of(by->Axis3())) < 0;
 }
 
 /// Why OpenCASCADE has not placed an item as the file says; empty: it has.
