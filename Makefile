@@ -90,7 +90,7 @@ OCCT_LIBS := $(addprefix -lTK,XDESTEP XDEIGES XCAF IGES STEP STEPBase STEPAttr X
 LDLIBS_ALL := -llzf -ltbb -lminizip -lexpat -lz
 
 # The files that see OpenCV. Private: what a file needs before it, the precompiled header, is compiled as ever.
-$(B)/lib/draw/canvas.o $(B)/lib/belt/convolution.o $(B)/lib/belt/wave_operator.o $(B)/lib/cli/version.o $(B)/lib/find/%.o $(B)/tests/lib/%.o $(patsubst %,$(B)/pipelines/programs/find-%.o,case evidence jobs score): private override CPPFLAGS += $(addprefix -isystem ,$(wildcard /usr/include/opencv4))
+$(B)/lib/draw/canvas.o $(B)/lib/belt/%.o $(B)/lib/cli/version.o $(B)/lib/find/%.o $(B)/tests/lib/%.o $(patsubst %,$(B)/pipelines/programs/find-%.o,case evidence jobs score): private override CPPFLAGS += $(addprefix -isystem ,$(wildcard /usr/include/opencv4))
 
 # Those that see OpenCASCADE.
 $(B)/lib/cad/%.o $(B)/tests/lib/%.o: private override CPPFLAGS += -isystem /usr/include/opencascade
