@@ -11,7 +11,7 @@ for layer_1 in constant feed force; do
     fettle-grind plan.json --stock stock.stl --cell 0.2 --layer-1 $layer_1 --trace robot.pcd --place place.txt --report grind.json \
         --gantry "exec:fettle-gantry-robot $ROBOT plan.json --stock stock.stl --cell 0.2 --ground robot-ground.pcd --moves moves.pcd --report moves.json" > robot-known.pcd
     jq -e .finished grind.json > ok
-    cmp gantry.pcd robot.pcd
+    cmp gantry.pcd <(without_place robot.pcd)
     cmp gantry-ground.pcd robot-ground.pcd
     cmp gantry-known.pcd robot-known.pcd
     jq -e '.count > 500 and .reached == .count and .jumps == [] and .min_singularity > 0.05' moves.json > ok || { cat moves.json; exit 1; }

@@ -9,7 +9,7 @@ while read -r robot x y z; do
     printf '1 0 0 %s\n0 1 0 %s\n0 0 1 %s\n0 0 0 1\n' "$x" "$y" "$z" > place.txt
     fettle-grind plan.json --stock stock.stl --cell 0.2 --place place.txt --trace robot.pcd \
         --gantry "exec:fettle-gantry-robot -q $SAMPLES/robots/$robot plan.json --stock stock.stl --cell 0.2 --moves moves.csv" > ground.pcd
-    cmp gantry.pcd robot.pcd
+    cmp gantry.pcd <(without_place robot.pcd)
     fettle-arm "$SAMPLES/robots/$robot" --forward moves.csv --report judged.json -q -o forward.csv
     jq -e '.count > 500 and .reached == .count and .jumps == [] and ([.joints[].too_fast] | add) == 0' judged.json > ok || { cat judged.json; exit 1; }
     paste -d , <(cut -d , -f 1-7 moves.csv) <(cut -d , -f 1-7 forward.csv) |
