@@ -100,11 +100,11 @@ $(B)/tests/lib/bundle-%.o: private override CPPFLAGS += -Itests/lib
 $(B)/tests/lib/bundle-%.o: private override CXXFLAGS += -Wno-maybe-uninitialized
 
 # Square roots of eight numbers at once are one instruction where nobody reads errno.
-$(B)/lib/mesh/mesh_index.o $(B)/lib/robot/workpiece.o $(B)/lib/robot/mesh_clearance.o: private override CXXFLAGS += -fno-math-errno
+$(B)/lib/mesh/mesh_index.o $(B)/lib/robot/workpiece_search.o $(B)/lib/robot/mesh_clearance.o: private override CXXFLAGS += -fno-math-errno
 # What this one computes in float only bounds what double measures elsewhere: products and sums may be fused.
 $(B)/lib/mesh/mesh_index.o: private override CXXFLAGS += -ffp-contract=fast
 # Those with flags of their own are compiled alone, and so are LinuxCNC's.
-ALONE := lib/mesh/mesh_index.cc lib/robot/workpiece.cc lib/robot/mesh_clearance.cc $(wildcard lib/gantry/linuxcnc*.cc)
+ALONE := lib/mesh/mesh_index.cc lib/robot/workpiece_search.cc lib/robot/mesh_clearance.cc $(wildcard lib/gantry/linuxcnc*.cc)
 
 # What these do themselves is little, and what they do is bound by files and people: they are sooner compiled and run so
 # than with -O2.

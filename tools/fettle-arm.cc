@@ -23,17 +23,15 @@ namespace {
 
 const std::string kDescription =
     "Compute the kinematics of a robot along a path: joints to tool poses (--forward), or tool poses to joints "
-    "(--inverse), in "
-    "closed form; or the reach of a robot (--reach).\n"
-    "Of all solutions in range, whole turns included, --inverse takes those with the fewest jumps and, of these, the "
-    "least motion. Points: x y z is the tip, qw qx qy qz turns the tool's frame (+z from the tip to the holder, +x "
-    "along the feed) to the part's; joint1 to joint6 in degrees, joint7 the track, joint8 the table in degrees. Added: "
-    "state (0 reached, 1 unreachable, 2 out of range, 3 undefined) and singularity, the distance from one. Exit 1 "
-    "if a pose is not reached, the path jumps or a joint is too fast. Robot programs are written of paths only that "
-    "fettle-collide has checked, with the joints that it has checked: to the first pose by joints, on straight from "
-    "pose "
-    "to pose; a part of its own for each value of the field anomaly, called one after the other; feeds from the field "
-    "feed, where it has a value, else --feed.";
+    "(--inverse), in closed form; or the reach of a robot (--reach).\n"
+    "Points: x y z is the tip, qw qx qy qz turns the tool's frame (+z from the tip to the holder, +x along the feed) "
+    "to the part's; joint1 to joint6 in degrees, joint7 the track, joint8 the table in degrees. Of all solutions in "
+    "range, whole turns included, --inverse takes those with the fewest jumps and, of these, the least motion.\n"
+    "Added: state (0 reached, 1 unreachable, 2 out of range, 3 undefined) and singularity, the distance from one. "
+    "Exit 1 if a pose is not reached, the path jumps or a joint is too fast.\n"
+    "Robot programs are written of paths only that fettle-collide has checked, with the joints that it has checked: to "
+    "the first pose by joints, on straight from pose to pose; a part of its own for each value of the field anomaly, "
+    "called one after the other; feeds from the field feed, where it has a value, else --feed.";
 
 struct Options {
     cli::Tool& t;

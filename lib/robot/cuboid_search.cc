@@ -69,20 +69,20 @@ std::optional<Clearance> CuboidSearch::nearest(const PlacedSolid& body, double m
         Block block;
     };
     std::optional<Clearance> best;
-    double least = max_distance;
+    double min_distance = max_distance;
     std::vector<Entry> stack = {{-std::numeric_limits<double>::infinity(), {std::int32_t(levels_.size()), 0, 0}}};
     while (!stack.empty()) {
         const auto [bound, block] = stack.back();
         stack.pop_back();
-        if (bound >= least || height_of(block) < 0) continue;
+        if (bound >= min_distance || height_of(block) < 0) continue;
         const Eigen::AlignedBox3d box = box_of(block);
         if (block.level == 0) {
             if (left_out[grid_.index(block.column, block.row)] != 0) continue;
             const Solid cuboid = solid::Box{Eigen::Isometry3d(Eigen::Translation3d(box.center())), box.sizes() / 2};
-            const Clearance c = clearance(body, PlacedSolid(cuboid, Eigen::Isometry3d::Identity()), least);
-            if (!(c.distance < least)) continue;
+            const Clearance c = clearance(body, PlacedSolid(cuboid, Eigen::Isometry3d::Identity()), min_distance);
+            if (!(c.distance < min_distance)) continue;
             best = c;
-            least = c.distance;
+            min_distance = c.distance;
             continue;
         }
         if (std::ranges::any_of(areas, [&](const Footprint& area) { return is_inside(box, area); })) continue;
@@ -93,7 +93,7 @@ std::optional<Clearance> CuboidSearch::nearest(const PlacedSolid& body, double m
             const Block child = {block.level - 1, 2 * block.column + k % 2, 2 * block.row + k / 2};
             if (child.column >= columns || child.row >= rows || height_of(child) < 0) continue;
             const double child_bound = distance_bound(body, box_of(child));
-            if (child_bound < least) stack.push_back({child_bound, child});
+            if (child_bound < min_distance) stack.push_back({child_bound, child});
         }
         std::sort(stack.begin() + first, stack.end(), [](const Entry& a, const Entry& b) { return a.bound > b.bound; });
     }

@@ -2,7 +2,7 @@
 
 const kMaxFrame = 42;          // ms: a turning part is thinned where a frame takes longer
 const kRelaxedFrame = 24;      // ms: and drawn with more points where it takes less
-const kStillAfter = 180;       // ms without a motion: all is drawn
+const kRedrawDelay = 180;      // ms without a motion: then all is drawn
 const kClickDistance = 4;      // pixels that a click may move
 const kHelp = "Drag: turn. Right button, Shift or two fingers: move. Wheel or two fingers: zoom. Keys: arrows, +, \u2212, 0 all, t top, f front, r right, " +
     "1\u20139 layers, s section, Esc.";
@@ -165,7 +165,7 @@ class View {
         this.stillTimer = setTimeout(() => {
             this.moving = false;
             this.requestDraw();
-        }, kStillAfter);
+        }, kRedrawDelay);
         this.movedAt = now;
         this.requestDraw();
     }

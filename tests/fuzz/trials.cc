@@ -31,7 +31,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
             learn_from(calibrate::read_record(json::Reader::parse(text, "file").object("learnt").object("record")));
         } else {
             const auto trials = calibrate::read_trials(text, "file").exact;
-            learn_from({calibrate::typical_pass_work(trials.front()), trials});
+            learn_from({calibrate::typical_pass_work(trials.front()), trials, {}, 0});
         }
     });
     return 0;
