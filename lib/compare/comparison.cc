@@ -110,6 +110,45 @@ class Accumulator {
     Eigen::AlignedBox3d box_;
 };
 
+/// What is done with each block, which begins at a point.
+struct BlockSteps {
+    std::function<Block(std::size_t first)> read;
+    std::function<void(std::size_t first, Block& block)> measure;
+    std::function<void(const Block&block)> accumulate, write;
+};
+
+/// Takes the blocks of `count` points through all steps: several are measured at once, and each other step sees them
+/// one by one and in order. A cloud without points is one empty block.
+void for_each_block(std::size_t count, const BlockSteps& steps)
+{
+    // While one block is measured, others are read, measured or written.
+    constexpr std::size_t kBlocksInFlight = 3;
+    std::size_t next = 0;
+    bool started = false;
+    using Numbered = std::pair<std::size_t, std::shared_ptr<Block>>;
+    const auto read = tbb::make_filter<void, Numbered>(tbb::filter_mode::serial_in_order, [&](tbb::flow_control& flow) {
+        if (started && next >= count) {
+            flow.stop();
+            return Numbered();
+        }
+        started = true;
+        const std::size_t first = std::exchange(next, next + kBlockPoints);
+        return Numbered(first, std::make_shared<Block>(steps.read(first)));
+    });
+    const auto measure = tbb::make_filter<Numbered, Numbered>(tbb::filter_mode::parallel, [&](const Numbered& in) {
+        steps.measure(in.first, *in.second);
+        return in;
+    });
+    const auto accumulate =
+        tbb::make_filter<Numbered, Numbered>(tbb::filter_mode::serial_in_order, [&](const Numbered& in) {
+            steps.accumulate(*in.second);
+            return in;
+        });
+    const auto write = tbb::make_filter<Numbered, void>(tbb::filter_mode::serial_in_order,
+                                                        [&](const Numbered& in) { steps.write(*in.second); });
+    tbb::parallel_pipeline(kBlocksInFlight, read & measure & accumulate & write);
+}
+
 } // namespace
 
 Survey start_survey(const TestPoints& test, const ComparisonOptions& options)
@@ -132,7 +171,7 @@ Comparison compare(const TestPoints& test, Survey& survey, const Reference& refe
         block.cloud = test.slice(first, std::min(kBlockPoints, count - first));
         return block;
     };
-    const auto measure = [&](std::size_t first, Block block) {
+    const auto measure = [&](std::size_t first, Block& block) {
         block.map = reference(block.cloud.xyz);
         if (options.reversed) block.map.error = (0 - block.map.error.array()).matrix(); // gives no negative zeros
         if (surveyed.plan_areas)
@@ -144,38 +183,14 @@ Comparison compare(const TestPoints& test, Survey& survey, const Reference& refe
         block.map.normal.resize(3, 0); // now held as fields of the cloud
         block.map.foot.resize(3, 0);
         block.map.facet.resize(0);
-        return block;
     };
-    // While one block is measured, others are read, measured or written.
-    constexpr std::size_t kBlocksInFlight = 3;
-    std::size_t next = 0, done = 0;
-    bool started = false; // a cloud without points is one empty block
-    using Numbered = std::pair<std::size_t, std::shared_ptr<Block>>;
-    const auto source =
-        tbb::make_filter<void, Numbered>(tbb::filter_mode::serial_in_order, [&](tbb::flow_control& flow) {
-            if (started && next >= count) {
-                flow.stop();
-                return Numbered();
-            }
-            started = true;
-            const std::size_t first = std::exchange(next, next + kBlockPoints);
-            return Numbered(first, std::make_shared<Block>(read(first)));
-        });
-    const auto work = tbb::make_filter<Numbered, Numbered>(tbb::filter_mode::parallel, [&](const Numbered& in) {
-        *in.second = measure(in.first, std::move(*in.second));
-        return in;
-    });
-    const auto accumulate =
-        tbb::make_filter<Numbered, Numbered>(tbb::filter_mode::serial_in_order, [&](const Numbered& in) {
-            accumulator.add(*in.second);
-            return in;
-        });
-    const auto write = tbb::make_filter<Numbered, void>(tbb::filter_mode::serial_in_order, [&](const Numbered& in) {
-        use(in.second->cloud);
-        done += in.second->cloud.size();
+    std::size_t done = 0;
+    const auto write = [&](const Block& block) {
+        use(block.cloud);
+        done += block.cloud.size();
         if (count > 0) core::report_progress(progress, double(done) / count);
-    });
-    tbb::parallel_pipeline(kBlocksInFlight, source & work & accumulate & write);
+    };
+    for_each_block(count, {read, measure, [&](const Block& block) { accumulator.add(block); }, write});
     return accumulator.comparison();
 }
 
