@@ -20,8 +20,8 @@ constexpr double kDegreesOfFreedom = 4;
 /// Standard deviations before the first pass. The level may be anything. Published exponents of the force and the speed
 /// of belts are from 0.7 to 2.3. Time adds up: its exponent, and the feed's, differ from Preston's by the run-in alone.
 constexpr double kLevelDeviation = 5, kForceDeviation = 1, kSpeedDeviation = 1, kTimeDeviation = 0.3;
-/// A belt or a wheel lasts some hundreds of passes.
-constexpr double kWearDeviation = 0.003;
+/// A belt or a wheel lasts some hundreds of passes, and does not sharpen: the wear is two deviations from none.
+constexpr double kWear = 1.0 / 300, kWearDeviation = kWear / 2;
 /// Scatter from a laboratory's to one beyond which no law is of use.
 constexpr double kScatters[] = {0.01, 0.02, 0.04, 0.08, 0.16, 0.32, 0.64};
 /// A level that wanders is the exception, and must show itself.
@@ -128,6 +128,7 @@ LawBelief::LawBelief(const RemovalTrial& reference, double pass_work) : referenc
                     model.has_heavy_tails = has_heavy_tails;
                     model.log_score = std::log(drift.prior);
                     model.mean = preston_exponents();
+                    model.mean[wear] = kWear;
                     for (Index k = 0; k < parameter_count; ++k)
                         model.covariance(k, k) = set[k] ? deviation[k] * deviation[k] : 0;
                 }

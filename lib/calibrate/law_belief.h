@@ -60,9 +60,10 @@ struct Posterior {
 
 /// What is known of a removal law after some passes. Dynamic linear models in the logarithm of the volume run in
 /// parallel and are averaged by their predictive scores (West & Harrison 1997, 4 and 12). Before the first pass the
-/// exponents are those of Preston's law, give or take 1 (force, speed) or 0.3 (feed, duration), and nothing is known of
-/// the level. A model with heavy tails weights an observation by (ν + 1) / (ν + e²/Q) (Meinhold & Singpurwalla 1989).
-/// A belief is a function of its passes and their order alone.
+/// exponents are those of Preston's law, give or take 1 (force, speed) or 0.3 (feed, duration), the level falls by
+/// 1/300 in a pass, give or take half of that, and nothing else is known of it. A model with heavy tails weights an
+/// observation by (ν + 1) / (ν + e²/Q) (Meinhold & Singpurwalla 1989). A belief is a function of its passes and their
+/// order alone.
 class LawBelief {
   public:
     /// @param reference  conditions of the reference pass; what is NaN in it was not recorded, and is ignored in all

@@ -7,6 +7,7 @@ status=0
 make --no-print-directory -s -C "$root" -f pipelines/calibrate.mk B="$build" SERIES=4 RUNS=1 PARTS=3 LIKE=1-force CALIBRATE="$PWD/out" > table || status=$?
 grep -c 'not judged' table | grep -x 6
 grep -E '^static rows: .* reached$' table
+grep -E '^moving rows: .* reached$' table
 grep -E '^95 % intervals cover .* of the rows .* reached$' table
 test $status -eq "$(grep -q MISSED table && echo 2 || echo 0)"
 jq -e '.gantry.coefficient / (0.7 * 0.002 * pow(25.4; 3) / 4.4482216152605) - 1 | fabs < 0.05' out/part1/1.json
