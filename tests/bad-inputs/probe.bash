@@ -8,7 +8,7 @@
 #                             G: it is good: status 0 or 1.
 #   all_tried                 fails if a try has, or if there were fewer than MIN_COUNT
 #
-# With FETTLE_DRAWS=few (make test) a quarter of the bad files' tries is made: drawn, so that over the files of a case each place has some.
+# With FETTLE_DRAWS=few (make test) an eighth of the bad files' tries is made: drawn, so that over the files of a case each place has some.
 #
 # In all cases: no signal, at most 10 s of processor time, and no more memory than the tool itself needs and ten times the file, of a large one three times.
 kOwnMemory=250000 # KiB: libraries and their threads; PCL and OpenCV alone map half of it
@@ -26,7 +26,7 @@ say() {
 try() {
     local wish=$1 file=$2 status=0 memory max_memory lines
     shift 2
-    if [ "${FETTLE_DRAWS:-all}" != all ] && [ "$wish" != G ] && [ $((RANDOM % 4)) != 0 ]; then
+    if [ "${FETTLE_DRAWS:-all}" != all ] && [ "$wish" != G ] && [ $((RANDOM % 8)) != 0 ]; then
         left=$((left + 1))
         return
     fi

@@ -1,12 +1,14 @@
 # Against a reference: the hammer with its bead, moved and bent by 0.8 mm over its length, is registered to its bare scan, and the bead is found
 # where it is; bent without the bead nothing is. Reference: the bead that fettle-part has made.
+# shellcheck source=tests/fettle-find/part.bash
+. "$HERE/part.bash"
 bend() { # IN OUT: a shift of z by a half wave along x, and 30 mm along y
     fettle-clean "$1" --format csv > points.csv
     awk -F , 'NR == 1 { print "x y z"; next } { print $1, $2 + 30, $3 + 0.8 * sin($1 / 35) }' points.csv > "$2"
 }
-fettle-part "$SAMPLES/parts/hammer.json" -o worn.stl
+hammer -o worn.stl
 fettle-compare worn.stl --to "$SAMPLES/scans/hammer.stl" --tolerance 99 -o worn.pcd
-fettle-part "$SAMPLES/parts/hammer.json" --without-anomaly -o bare.stl
+hammer --without-anomaly -o bare.stl
 fettle-compare bare.stl --to "$SAMPLES/scans/hammer.stl" --tolerance 99 -o bare.pcd
 bend worn.pcd worn.xyz
 bend bare.pcd bare.xyz

@@ -1,10 +1,12 @@
 # A part that lies anyhow gets a job for each anomaly: in its frame the anomaly faces up, B is around all of it, S on good metal, and the
 # chain runs. Doubtful rows have none until a person decides. Reference: the part without its bead and burr.
+# shellcheck source=tests/fettle-find/part.bash
+. "$HERE/part.bash"
 turn="--turn x,140,z,35"
 # shellcheck disable=SC2086 # words
-fettle-part "$SAMPLES/parts/hammer.json" | fettle-place - $turn -o worn.stl
+hammer | fettle-place - $turn -o worn.stl
 # shellcheck disable=SC2086
-fettle-part "$SAMPLES/parts/hammer.json" --without-anomaly | fettle-place - $turn -o truth.stl
+hammer --without-anomaly | fettle-place - $turn -o truth.stl
 settings=$SAMPLES/jobs/hammer.json
 fettle-find worn.stl --jobs jobs --template "$settings" --report found.json -o found.pcd || [ $? = 1 ]
 jq -c '[.anomalies[] | [.anomaly, .height, .doubt, .job]]' found.json

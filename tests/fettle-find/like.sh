@@ -1,7 +1,9 @@
 # A casting of the same kind comes again: yesterday's jobs are found on today's part, which lies elsewhere, without a doubt; a place where nothing stands any
 # more is named. Reference: today's part without its bead and burr; the part turned by a known motion.
+# shellcheck source=tests/fettle-find/part.bash
+. "$HERE/part.bash"
 settings=$SAMPLES/jobs/hammer.json
-fettle-part "$SAMPLES/parts/hammer.json" -o yesterday.stl
+hammer -o yesterday.stl
 fettle-find yesterday.stl --jobs jobs --template "$settings" --min-height 1 --report yesterday.json -o found.pcd || [ $? = 1 ]
 count=$(jq '[.anomalies[] | select(.job != "")] | length' yesterday.json)
 [ "$count" -ge 1 ] && [ -s jobs/part.pcd ]
@@ -13,7 +15,7 @@ jq -e --argjson count "$count" '[.anomalies[] | select(.like != null)] | length 
 jq -e '.absent == null' today.json > ok
 # Nothing stands out of B: the earlier job's B goes around all of it.
 # shellcheck disable=SC2086
-fettle-part "$SAMPLES/parts/hammer.json" --without-anomaly | fettle-place - $turn -o truth.stl
+hammer --without-anomaly | fettle-place - $turn -o truth.stl
 row=$(jq '[.anomalies[] | select(.like != null)] | max_by(.height) | .anomaly' today.json)
 fettle-compare today.stl --to truth.stl --within "again/$row.json" --tolerance 9 --report errors.json -o errors.pcd
 jq -e '.regions | .inside.max > 2 and .around.max < 0.1' errors.json > ok

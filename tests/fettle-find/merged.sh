@@ -1,8 +1,10 @@
 # Eight scans of a hammer from all around, put together: a closed body whose points lie unevenly, without normals. Where no point of the near side falls
 # into a cell the far side does not show, and what lies beneath walls does not count as dense: the bead is found, and gets a job, as on the triangles
 # that the scans were made of. Reference: these, and the part without bead and burr.
-fettle-part "$SAMPLES/parts/hammer.json" -o worn.stl
-fettle-part "$SAMPLES/parts/hammer.json" --without-anomaly -o truth.stl
+# shellcheck source=tests/fettle-find/part.bash
+. "$HERE/part.bash"
+hammer -o worn.stl
+hammer --without-anomaly -o truth.stl
 mkdir raw && merge-scans worn.stl 8 12000 0.02 1 raw
 for scan in raw/*.pcd; do fettle-place "$scan" --matrix "${scan%.pcd}.txt" --format csv | tail -n +2; done | cut -d , -f 1-3 > merged.xyz
 settings=$SAMPLES/jobs/hammer.json

@@ -1,5 +1,7 @@
 # A person's word: a dropped row is left out and the others keep their numbers; a kept row has no doubt. Reference: the run without.
-fettle-part "$SAMPLES/parts/hammer.json" -o worn.stl
+# shellcheck source=tests/fettle-find/part.bash
+. "$HERE/part.bash"
+hammer -o worn.stl
 fettle-find worn.stl --report all.json -o all.ply || [ $? = 1 ]
 n=$(jq '.anomalies | length' all.json)
 [ "$n" -ge 2 ]

@@ -6,6 +6,10 @@
 inputs
 mkdir place
 killed=0
+moments=('3 KILL' '6 TERM' '8 INT' '9 KILL')
+min_killed=20
+# With FETTLE_DRAWS=few (make test) two of the moments.
+[ "${FETTLE_DRAWS:-all}" = all ] || { moments=('6 TERM' '9 KILL') && min_killed=10; }
 for name in $names; do
     command_of "$name"
     outputs once
@@ -13,7 +17,7 @@ for name in $names; do
     "fettle-$name" "${command[@]}" "${named[@]}" -q >out 2>err <<<"$lines" || say "$(cat err)" "$name"
     took=$((($(date +%s%N) - begun) / 1000)) # us
     outputs place
-    for moment in '3 KILL' '6 TERM' '8 INT' '9 KILL'; do
+    for moment in "${moments[@]}"; do
         read -r tenths signal <<<"$moment"
         rm -rf place/* place/.[!.]*
         for option in "${bulk[@]}" --report "${writes[@]}"; do [[ " --journal --session --frames-in " == *" $option "* ]] || echo 'what was there' >"place/$option"; done
@@ -45,5 +49,5 @@ for name in $names; do
     cmp -s place/-o once/-o && [ -z "$(find place -name '.*--o')" ] || say 'is hindered by what was left' "$name"
 done
 echo "$killed were killed before their end"
-[ $killed -ge 20 ]
-all_tried 110
+[ $killed -ge $min_killed ]
+all_tried $((min_killed * 11 / 2))
