@@ -2,6 +2,7 @@
 #include "report/charts.h"
 #include "report/sections.h"
 #include "report/verdict.h"
+#include "strategy/force_record.h"
 
 #include <algorithm>
 #include <cmath>
@@ -99,15 +100,12 @@ draw::Html tiles(const RunFiles& run, const PageVerdict& verdict)
     return items.empty() ? draw::Html() : draw::element("ul", {{"class", "tiles"}}, items);
 }
 
-/// A force above this share of F_max is worth a warning, as fettle-grind warns: what is less is the way of one reading.
-constexpr double kMaxPeakShare = 1.15;
-
 /// Warns of a force far above F_max, with its place; empty if there was none.
 draw::Html force_card(const RunFiles& run)
 {
     if (!run.grinding || !run.job) return {};
     const double peak = run.grinding->numbers.at("peak_force"), max = run.job->force.max / run.units.newton();
-    if (!(peak > kMaxPeakShare * max)) return {};
+    if (!(peak > strategy::kMaxPeakShare * max)) return {};
     const std::string force = " " + units::to_string(run.units.force);
     draw::Html text = "Peak force " + number_figure("grinding.peak_force", peak) + force + ", " +
                       draw::fixed_text(100 * peak / max, 0) + " % of " + draw::symbol_with_subscript("F_max") + " (" +

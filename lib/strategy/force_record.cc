@@ -6,12 +6,6 @@
 #include <cmath>
 
 namespace fettle::strategy {
-namespace {
-
-/// A peak above this share of F_max is worth a warning.
-constexpr double kMaxPeakShare = 1.15;
-
-} // namespace
 
 void ForceRecord::add(const gantry::GantryStatus& status, int layer, double duration, const job::ForceRange& limits)
 {

@@ -9,6 +9,9 @@
 
 namespace fettle::strategy {
 
+/// A peak above this share of F_max is worth a warning: what is less is the way of one reading.
+inline constexpr double kMaxPeakShare = 1.15;
+
 /// How a run has kept the limits of the force.
 struct ForceRecord {
     double peak = 0;                                   ///< N
