@@ -215,9 +215,9 @@ void refuse_undetermined(const TouchSet& touches, const std::string& name, const
 
 Fit fit_family_by_name(const FitInput& input, const std::string& name)
 {
-    static const std::map<std::string, int> min_touches = {{"sphere", 4}, {"cylinder", 5}, {"cone", 6},
-                                                           {"torus", 7},  {"quadric", 9},  {"quadratic", 6},
-                                                           {"cubic", 10}, {"quartic", 15}, {"swept", 5}};
+    static const std::map<std::string, int> min_touches = {
+        {"sphere", 4},  {"cylinder", 5},  {"cone", 6},   {"torus", 7},    {"ellipsoid", 6},
+        {"quadric", 9}, {"quadratic", 6}, {"cubic", 10}, {"quartic", 15}, {"swept", 5}};
     surface::Surface surface = begin_surface(input, name, kSampleRoles, min_touches.at(name));
     const TouchSet touches = make_touch_set(surface, input.job);
     std::optional<FitCandidate> best = fit_family(name, touches, all_touches(touches));

@@ -67,6 +67,12 @@ std::optional<FamilySolution> quadric(const TouchSet& touches, const TouchIndice
     return paraboloid ? solve_quadric(touches, kept, *paraboloid) : std::nullopt;
 }
 
+std::optional<FamilySolution> ellipsoid(const TouchSet& touches, const TouchIndices& kept)
+{
+    const std::optional<surface::Polynomial> paraboloid = fit_polynomial(touches, kept, 2);
+    return paraboloid ? solve_ellipsoid(touches, kept, *paraboloid) : std::nullopt;
+}
+
 std::optional<FamilySolution> plane(const TouchSet& touches, const TouchIndices& kept)
 {
     const std::optional<surface::Polynomial> fitted = fit_polynomial(touches, kept, 1);
@@ -203,7 +209,7 @@ std::optional<FamilySolution> swept(const TouchSet& touches, const TouchIndices&
 
 const std::vector<std::string>& family_names()
 {
-    static const std::vector<std::string> names = {"plane",   "sphere",    "cylinder", "cone",    "torus",
+    static const std::vector<std::string> names = {"plane",   "sphere",    "cylinder", "cone",    "torus", "ellipsoid",
                                                    "quadric", "quadratic", "cubic",    "quartic", "swept"};
     return names;
 }
@@ -217,6 +223,7 @@ std::optional<FamilySolution> solve_family(const std::string& name, const TouchS
         {"cylinder", round<RoundFamily::cylinder>},
         {"cone", round<RoundFamily::cone>},
         {"torus", round<RoundFamily::torus>},
+        {"ellipsoid", ellipsoid},
         {"quadric", quadric},
         {"quadratic", polynomial<2>},
         {"cubic", polynomial<3>},

@@ -32,7 +32,7 @@ struct FamilySolution {
     int iterations = 0;
 };
 
-/// plane, sphere, cylinder, cone, torus, quadric; quadratic, cubic, quartic (polynomials); swept.
+/// plane, sphere, cylinder, cone, torus, ellipsoid, quadric; quadratic, cubic, quartic (polynomials); swept.
 const std::vector<std::string>& family_names();
 
 /// Least squares of the vertical errors of the kept touches. The round families use the orthogonal distances over n_z

@@ -10,4 +10,11 @@ namespace fettle::fit {
 std::optional<FamilySolution> solve_quadric(const TouchSet& touched, const TouchIndices& kept,
                                             const surface::Polynomial& paraboloid);
 
+/// An ellipsoid, a hyperboloid or a paraboloid with the sphere among them, as many parameters as a paraboloid: of the
+/// quadric's form the mixed terms with the normal amid the touches are 0, and that along it is the mean of the two
+/// across. Paraboloids lie about a sphere with errors of the fourth order, which touches around an anomaly do not show.
+/// @return  likewise; nothing for touches that determine none
+std::optional<FamilySolution> solve_ellipsoid(const TouchSet& touched, const TouchIndices& kept,
+                                              const surface::Polynomial& paraboloid);
+
 } // namespace fettle::fit

@@ -60,14 +60,14 @@ void penalise_rare_families(std::vector<FitCandidate>& candidates, Eigen::Index 
     const double n = touches;
     const auto parameters = [&](const FitCandidate& c) { return n - c.outliers.size() - c.freedom; };
     for (FitCandidate& rare : candidates) {
-        if (prior_penalty(rare.method) == 0) continue;
+        if (!is_rare(rare.method)) continue;
         const double schwarz = rare.score;
         double min_score = std::numeric_limits<double>::infinity();
         for (const FitCandidate& common : candidates) {
             const double more = parameters(rare) - parameters(common);
-            if (prior_penalty(common.method) > 0 || more <= 0) continue;
-            const double explained =
-                std::max(0.0, common.score - (schwarz - prior_penalty(rare.method)) + more * std::log(n));
+            if (is_rare(common.method) || more <= 0) continue;
+            const double explained = std::max(0.0, common.score - prior_penalty(common.method) -
+                                                       (schwarz - prior_penalty(rare.method)) + more * std::log(n));
             const double g = std::max(n, explained / more - 1);
             min_score =
                 std::min(min_score, schwarz - more * std::log(n) + more * std::log(1 + g) + explained / (1 + g));
@@ -78,17 +78,22 @@ void penalise_rare_families(std::vector<FitCandidate>& candidates, Eigen::Index 
 
 } // namespace
 
+bool is_rare(const std::string& family)
+{
+    return family == "cone" || family == "torus" || family == "cubic" || family == "swept";
+}
+
 double prior_penalty(const std::string& family)
 {
-    constexpr double kPriorRatio = 4;
-    return family == "cone" || family == "torus" || family == "cubic" || family == "swept" ? 2 * std::log(kPriorRatio)
-                                                                                           : 0;
+    constexpr double kPriorRatio = 4, kCubicRatio = 10;
+    if (family == "cubic") return 2 * std::log(kCubicRatio);
+    return is_rare(family) || family == "quadratic" || family == "gp" ? 2 * std::log(kPriorRatio) : 0;
 }
 
 std::vector<std::string> candidate_families(job::SurfaceType type)
 {
     if (type == job::SurfaceType::swept) return {"plane", "cylinder", "swept"};
-    return {"plane", "sphere", "cylinder", "cone", "torus", "quadratic", "cubic"};
+    return {"plane", "sphere", "cylinder", "cone", "torus", "ellipsoid", "quadratic", "cubic"};
 }
 
 void set_candidates(std::vector<WeightedCandidate> candidates, surface::Surface& surface)
@@ -136,9 +141,11 @@ Fit fit_auto(const FitInput& input)
     // A rare family also fits some surfaces that belong to no family. With estimated noise a process fits any touches.
     const FitCandidate* best = best_of(candidates);
     if (input.job.surface == job::SurfaceType::freeform && !input.estimate_noise &&
-        (!is_sufficient(best, n) || prior_penalty(best->method) > 0))
-        if (std::optional<FitCandidate> smooth = fit_gaussian_process(touches, spline_grid(input, surface.touches)))
+        (!is_sufficient(best, n) || is_rare(best->method)))
+        if (std::optional<FitCandidate> smooth = fit_gaussian_process(touches, spline_grid(input, surface.touches))) {
+            smooth->score += prior_penalty(smooth->method);
             candidates.push_back(std::move(*smooth));
+        }
     if (candidates.empty()) refuse_undetermined(touches, surface.method + " surface", input.source);
     std::stable_sort(candidates.begin(), candidates.end(),
                      [](const FitCandidate& a, const FitCandidate& b) { return a.score < b.score; });

@@ -10,8 +10,8 @@ namespace fettle::fit {
 
 /// The method "auto", Bayesian model averaging (Hoeting et al. 1999) of the families (family_solution.h) and, if no
 /// common one of them fits the touches, a Gaussian process (process.h). A family's posterior probability is taken as
-/// exp(-score/2), with scores by Schwarz's criterion (family.h; Kass and Raftery 1995, 4.3); rare families (cone,
-/// torus, cubic, swept) have smaller prior probabilities and wider priors of their parameters. The surface is the mean
+/// exp(-score/2), with scores by Schwarz's criterion (family.h; Kass and Raftery 1995, 4.3), times prior_penalty()'s
+/// priors; rare families (is_rare()) have wider priors of their parameters, too. The surface is the mean
 /// of all and named after the most probable one. Plane jobs use only the plane; swept jobs use planes, circular and
 /// cubic sections, all straight along the job's direction.
 /// @throws InputError if the touches determine no surface
@@ -20,9 +20,16 @@ Fit fit_auto(const FitInput& input);
 // --- shared with the fit of scans (scan_fit.h)
 // ------------------------------------------------------------------------
 
-/// −2 ln of a family's relative prior probability. Castings are mostly planes, cylinders, spheres and nearly quadratic;
-/// cones, tori and surfaces (sections) of varying curvature count as four times rarer. With equal priors, sixteen
-/// touches of a common family are overfitted by a rare one in one case of twenty.
+/// Cones, tori and surfaces (sections) of varying curvature: their prior of the further parameters is wider, they are
+/// believed only with touches enough for each parameter, and a process is weighed beside them.
+bool is_rare(const std::string& family);
+
+/// −2 ln of a family's relative prior probability. Castings are mostly planes, cylinders, spheres and what bends a
+/// little differently both ways, ellipsoids; paraboloids, which differ from those by terms of the fourth order that
+/// only a formula makes zero, the rare families and a process ("gp") count as four times rarer. A cubic, the next terms
+/// of a series, is no more a casting's form than those, but has ten parameters, and touches of a sphere are overfitted
+/// by it most easily: ten times. With equal priors, sixteen touches of a common family are overfitted by a rare one in
+/// one case of twenty.
 double prior_penalty(const std::string& family);
 
 /// The families that are weighed for a free-form or swept job.

@@ -138,7 +138,7 @@ void append(sampling::TouchPlan& plan, const Vector2d& xy, const job::Job& job, 
 /// Whether a surface may explain its touches by chance: it is of a rare family, with many parameters for their number.
 bool may_be_chance(const surface::Surface& surface, Index touches)
 {
-    return fit::prior_penalty(surface.method) > 0 && touches < kTouchesPerParameter * surface.covariance.rows();
+    return fit::is_rare(surface.method) && touches < kTouchesPerParameter * surface.covariance.rows();
 }
 
 surface::Surface fit_touches(const job::Job& job, const sampling::TouchPlan& plan, const Eigen::Matrix3Xd& touches)

@@ -469,6 +469,12 @@ TEST(Sigma, AgreesWithNoisyRefits)
     expect_calibrated(family("quadratic"), quadratic, 1000);
     const auto cubic = [](double u, double v) { return quadratic(u, v) + 1e-4 * u * u * u - 5e-5 * u * v * v; };
     expect_calibrated(family("cubic"), cubic, 1000);
+    // The sphere is one of them; this one is no sphere, and its touches lie beside its pole.
+    const surface::Shape sphere = surface::sphere_from_centre({25, -30, 10}, 4 * kInch, true);
+    expect_calibrated(family("ellipsoid"), of(sphere), 1000);
+    const Eigen::Matrix3d bent = Eigen::Vector3d(1 / 90., 1 / 150., (1 / 90. + 1 / 150.) / 2).asDiagonal();
+    const surface::Shape ellipsoid = surface::Quadric{{0, 0, 5}, up, bent};
+    expect_calibrated(family("ellipsoid"), of(ellipsoid), 1000);
     expect_calibrated(family("quadric"), implicit_quadrics()[0], 1000);
     expect_calibrated(family("quadric"), implicit_quadrics()[3], 1000);
 }
