@@ -1,6 +1,7 @@
 #include "find/jobs.h"
 
 #include "core/constants.h"
+#include "find/job_outlines.h"
 #include "find/ring_fit.h"
 #include "find/view.h"
 #include "job/boundary.h"
@@ -9,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <vector>
 
 namespace fettle::find {
@@ -22,9 +22,8 @@ constexpr int kCornerReach = 1;
 // the plane's own uncertainty, and what a scan's errors have in common.
 constexpr double kPlaneNoises = 1.5;
 
-// The part leaves a surface where it is off it by so many standard deviations of the metal around; S stays so many
-// cells before that.
-constexpr double kLeavingSds = 4, kEdgeCells = 2.5;
+// The part leaves a surface where it is off it by so many standard deviations of the metal around.
+constexpr double kLeavingSds = 4;
 constexpr int kMaxDegree = 3; // of that surface: one more would follow a fillet
 
 // Cells that are needed to tell whether a face is a plane: ten times as many as a quadric has coefficients.
@@ -46,18 +45,6 @@ Eigen::Matrix3Xd with_heights(const Eigen::Matrix2Xd& polygon, const HeightMap& 
     return corners;
 }
 
-/// The point of a polygon's edge that is nearest to another.
-Eigen::Vector2d nearest_on(const Eigen::Matrix2Xd& polygon, const Eigen::Vector2d& point)
-{
-    Eigen::Vector2d nearest = polygon.col(0);
-    for (Eigen::Index k = 0; k < polygon.cols(); ++k) {
-        const Eigen::Vector2d from = polygon.col(k), along = polygon.col((k + 1) % polygon.cols()) - from;
-        const double t = std::clamp((point - from).dot(along) / along.squaredNorm(), 0.0, 1.0);
-        if ((from + t * along - point).norm() < (nearest - point).norm()) nearest = from + t * along;
-    }
-    return nearest;
-}
-
 /// The places between B and S as the part's map has them, 3xN.
 Eigen::Matrix3Xd metal_around(const FoundAnomaly& anomaly, const HeightMap& map)
 {
@@ -69,48 +56,6 @@ Eigen::Matrix3Xd metal_around(const FoundAnomaly& anomaly, const HeightMap& map)
                 places.emplace_back(p.x(), p.y(), double(map.z(y, x)));
         }
     return job::columns_to_matrix(places);
-}
-
-/// The outline of the good metal in a polygon together with an inner one: corners that were moved one by one may have
-/// made the first cross itself, and an edge may run between two of them. Its corners lie on half cells.
-/// @param is_good  of a place
-Eigen::Matrix2Xd joined_outline(const Eigen::Matrix2Xd& polygon, const Eigen::Matrix2Xd& inner, double cell,
-                                const std::function<bool(const Eigen::Vector2d&)>& is_good)
-{
-    constexpr int kMargin = 8; // pixels, of half a cell
-    constexpr int kMinEdgePixels = 4, kEdgePixels = int(2 * kEdgeCells);
-    constexpr double kTolerance = 1.5;
-    const double pixel = cell / 2;
-    const Eigen::Vector2d low = polygon.rowwise().minCoeff().cwiseMin(inner.rowwise().minCoeff());
-    const Eigen::Vector2d high = polygon.rowwise().maxCoeff().cwiseMax(inner.rowwise().maxCoeff());
-    const auto pixels_of = [&](const Eigen::Matrix2Xd& corners) {
-        std::vector<cv::Point> places;
-        for (const auto& corner : corners.colwise())
-            places.emplace_back(cvRound((corner.x() - low.x()) / pixel) + kMargin,
-                                cvRound((corner.y() - low.y()) / pixel) + kMargin);
-        return std::vector<std::vector<cv::Point>>{places};
-    };
-    const Eigen::Vector2d size = (high - low) / pixel;
-    Mask outer(int(size.y()) + 2 * kMargin + 1, int(size.x()) + 2 * kMargin + 1, std::uint8_t(0)), core = outer.clone();
-    cv::fillPoly(outer, pixels_of(polygon), 255);
-    cv::fillPoly(core, pixels_of(inner), 255);
-    Mask bad(outer.size(), 0);
-    for (int y = 0; y < bad.rows; ++y)
-        for (int x = 0; x < bad.cols; ++x)
-            if (!core(y, x) && !is_good(low + pixel * Eigen::Vector2d(x - kMargin, y - kMargin))) bad(y, x) = 255;
-    // Single cells are outliers of the noise, no edge.
-    const Mask edges = dilated(opened(bad, kMinEdgePixels), kEdgePixels);
-    const Mask joined = opened(outer & ~edges, 3) | dilated(core, 1);
-    std::vector<std::vector<cv::Point>> outlines;
-    cv::findContours(joined, outlines, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
-    const auto largest = std::ranges::max_element(
-        outlines, {}, [](const std::vector<cv::Point>& outline) { return cv::contourArea(outline); });
-    std::vector<cv::Point> corners;
-    cv::approxPolyDP(*largest, corners, kTolerance, true);
-    Eigen::Matrix2Xd result(2, corners.size());
-    for (std::size_t i = 0; i < corners.size(); ++i)
-        result.col(i) = low + pixel * Eigen::Vector2d(corners[i].x - kMargin, corners[i].y - kMargin);
-    return result;
 }
 
 /// The robust surface through the metal between B and S; nothing if that is too little.
@@ -137,16 +82,7 @@ Eigen::Matrix2Xd before_edges(const FoundAnomaly& anomaly, const HeightMap& map,
         if (!cv::Rect({0, 0}, map.z.size()).contains(cell)) return false;
         return std::abs(double(map.z(cell)) - surface.z_at(place.x(), place.y())) <= limit; // false for NaN
     };
-    Eigen::Matrix2Xd sampling = anomaly.sampling;
-    for (auto corner : sampling.colwise()) {
-        const Eigen::Vector2d from = nearest_on(anomaly.boundary, corner);
-        const double length = (corner - from).norm();
-        const Eigen::Vector2d along = (corner - from) / std::max(length, 1e-12);
-        double reach = map.cell;
-        while (reach <= length && is_on_surface(from + reach * along)) reach += map.cell;
-        if (reach <= length) corner = from + std::max(map.cell, reach - kEdgeCells * map.cell) * along;
-    }
-    return joined_outline(sampling, anomaly.boundary, map.cell, is_on_surface);
+    return sampling_before_edges(anomaly, map, is_on_surface);
 }
 
 /// Whether the metal around an anomaly is a plane, as far as its noise tells.
@@ -227,6 +163,7 @@ job::Job job_for(const FoundAnomaly& found, const mesh::CloudMesh& part, double 
     FoundAnomaly anomaly = found;
     HeightMap map = height_map(part, anomaly.T_anomaly_part);
     clean(map, !part.is_mesh()); // single holes are no edges
+    anomaly.boundary = clipped_to_part(anomaly.boundary, map);
     const std::optional<RingFit> beneath = surface_beneath(anomaly, map);
     if (beneath) anomaly.sampling = before_edges(anomaly, map, *beneath);
     job::Job job = settings;

@@ -8,6 +8,7 @@
 #include "sampling/order.h"
 #include "sampling/probe.h"
 
+#include <cmath>
 #include <utility>
 
 namespace fettle::gantry {
@@ -37,9 +38,12 @@ void set_adaptive(JobTouches& result, const job::Job& job, const TouchedPart& pa
     result.touches = found.touches; // made already, in their order
     result.order = sampling::short_probing_path(result.touches.leftCols(found.layout).topRows<2>());
     for (Eigen::Index i = found.layout; i < result.plan.size(); ++i) result.order.push_back(i);
-    for (const Eigen::Vector2d& xy : found.unreachable)
-        result.warnings.push_back(part.name + ": no surface at " + job::point_text(xy, job.units) +
+    if (!found.unreachable.empty()) {
+        const std::size_t more = found.unreachable.size() - 1;
+        result.warnings.push_back(part.name + ": no surface at " + job::point_text(found.unreachable[0], job.units) +
+                                  (more > 0 ? " and " + std::to_string(more) + " other places" : "") +
                                   "; touched elsewhere");
+    }
     if (found.band_reached) return;
     const double mm = job.units.mm(), band = found.band[found.band.size() - 1];
     const std::string tolerance = core::to_short_text(job.tolerance / mm);
@@ -111,15 +115,46 @@ Eigen::Matrix3Xd planned_points(const sampling::TouchPlan& plan)
     return points;
 }
 
-void touch(JobTouches& result, const job::Job& job, const TouchedPart* part, bool plan_only)
+constexpr int kEdgeSteps = 100; // from a touch to the border of the scan's box
+
+/// Whether a part ends between the anomaly and a place: there is no surface beyond it, either. Beyond a hole there is.
+bool is_over_edge(const sampling::Scan& scan, const Eigen::Vector2d& middle, const Eigen::Vector2d& place)
+{
+    const Eigen::Vector2d away = (place - middle).normalized() * scan.bounds().diagonal().norm() / kEdgeSteps;
+    for (int k = 0; k <= kEdgeSteps; ++k)
+        if (scan.height(place + k * away)) return false;
+    return true;
+}
+
+/// Whether a layout may give way to touches that are chosen where there is a surface: all that missed are over an edge.
+bool misses_at_edge(const JobTouches& result, const job::Job& job, const TouchedPart& part)
+{
+    if (!part.scan || result.touches.row(2).array().isNaN().all()) return false;
+    const Eigen::Vector2d middle = job.anomaly.topRows<2>().rowwise().mean();
+    bool is_any = false;
+    for (Eigen::Index i = 0; i < result.plan.size(); ++i)
+        if (std::isnan(result.touches(2, i))) {
+            if (!is_over_edge(*part.scan, middle, result.plan.xy.col(i))) return false;
+            is_any = true;
+        }
+    return is_any;
+}
+
+void touch(JobTouches& result, const job::Job& job, const TouchedPart* part, const TouchRequest& request)
 {
     if (result.adaptive) return;
-    if (part != nullptr && !plan_only) {
+    if (part != nullptr && !request.plan_only) {
         result.touches = part->touch(result.plan);
+        if (request.strategy == TouchStrategy::extended && misses_at_edge(result, job, *part)) {
+            result.warnings.push_back(part->name +
+                                      ": touches lie over an edge of the part; touched adaptively, where it is");
+            return set_adaptive(result, job, *part,
+                                margin::touch_adaptively(job, adaptive_limits(job, request.max_touches), part->touch));
+        }
         sampling::check_all_touched(result.touches, job, result.plan, part->name, part->warning);
     } else {
         result.touches = planned_points(result.plan);
-        if (!plan_only && result.touches.row(2).hasNaN())
+        if (!request.plan_only && result.touches.row(2).hasNaN())
             throw core::InputError(job.source, "touch points without z: name the part to touch, --on SURFACE");
     }
     result.order = sampling::short_probing_path(result.touches.topRows<2>());
@@ -144,7 +179,7 @@ JobTouches touch_job(const job::Job& job, const TouchedPart* part, const TouchRe
     JobTouches result;
     if (part != nullptr && part->scan) result.warnings = sampling::scan_warnings(*part->scan, job, part->name);
     choose(result, job, part, request);
-    touch(result, job, part, request.plan_only);
+    touch(result, job, part, request);
     if (request.strategy == TouchStrategy::extended && part != nullptr && !request.plan_only && !result.adaptive)
         extend(result, job, *part, request.max_touches);
     check_heights(result, job, request.plan_only ? nullptr : part);

@@ -4,19 +4,7 @@
 #include "core/error.h"
 #include "core/text.h"
 #include "geometry/bounding_box.h"
-
-// With optimisation, g++ 12 warns of values in Boost.Geometry's rescale policy that are set through references.
-#if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
-#endif
-#define BOOST_ALLOW_DEPRECATED_HEADERS // Boost.Geometry includes one of Boost's own
-#include <boost/geometry.hpp>
-#include <boost/geometry/geometries/point_xy.hpp>
-#include <boost/geometry/geometries/polygon.hpp>
-#if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC diagnostic pop
-#endif
+#include "job/boost_polygons.h"
 
 #include <algorithm>
 #include <cmath>
@@ -25,11 +13,6 @@
 namespace fettle::job {
 
 namespace {
-
-namespace bg = boost::geometry;
-using Point = bg::model::d2::point_xy<double>;
-using BoostPolygon = bg::model::polygon<Point, false, false>; // counter-clockwise, not closed
-using BoostPolygons = bg::model::multi_polygon<BoostPolygon>;
 
 // Relative to the largest coordinate. Rotation into W moves a corner by a few units in the last place (2e-16 of its
 // distance from the origin); this bound is a hundred times larger, and far below the resolution of a probe.
@@ -41,13 +24,6 @@ constexpr double kMinRelativeArea = 1e-6;
 double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 double max_coordinate(const Polygon& polygon) { return polygon.cwiseAbs().maxCoeff(); }
-
-BoostPolygon to_boost(const Polygon& polygon)
-{
-    BoostPolygon result;
-    for (Eigen::Index i = 0; i < polygon.cols(); ++i) result.outer().emplace_back(polygon(0, i), polygon(1, i));
-    return result;
-}
 
 BoostPolygons difference(const Polygon& a, const Polygon& b)
 {

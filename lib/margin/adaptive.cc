@@ -210,12 +210,19 @@ class AdaptiveSearch {
         std::erase_if(places_, [&](const Vector2d& p) { return (p - place).norm() <= radius; });
     }
 
+    /// The place to touch next. A sphere through few touches may end inside of S: then far ones refute it.
+    Index next_place() const
+    {
+        const bool is_begun = result_.plan.size() >= kInitialTouches;
+        if (is_begun && surface::heights(surface_, as_columns(places_)).allFinite())
+            return most_informative(surface_, grid_, places_);
+        return farthest(places_, result_.plan.xy);
+    }
+
     void touch_next()
     {
         const Index n = result_.plan.size();
-        const Index chosen =
-            n < kInitialTouches ? farthest(places_, result_.plan.xy) : most_informative(surface_, grid_, places_);
-        const Vector2d place = places_[chosen];
+        const Vector2d place = places_[next_place()];
         sampling::TouchPlan longer = result_.plan;
         append(longer, place, job_, polygons_);
         Eigen::Matrix3Xd touches = probe_(longer);

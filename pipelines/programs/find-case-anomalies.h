@@ -135,6 +135,12 @@ constexpr double kMaxSmoothSlope = 1; // of places where anomalies stand
 constexpr double kMinWidthCells = 6, kMinWidth = 3, kMaxWidth = 40;
 constexpr double kMaxExtentCells = 25, kMinMaxExtent = 60;
 constexpr double kMinHeightSigmas = 8, kMinHeight = 0.3, kMaxHeight = 6;
+constexpr double kFaintSigmas = 3, kFaintHeight = 0.2, kFaintSpread = 4; // the last over the first two
+
+/// Which anomalies a case has.
+struct Draws {
+    bool at_edge, faint;
+};
 
 struct Ground {
     find::HeightMap map;
@@ -178,18 +184,21 @@ inline std::vector<cv::Point> places_for(const Ground& ground, Kind kind, double
     return places;
 }
 
-inline std::vector<Placed> place_anomalies(const Ground& ground, int number, int count, bool at_edge, Random& random)
+inline std::vector<Placed> place_anomalies(const Ground& ground, int number, int count, const Draws& draws,
+                                           Random& random)
 {
     const double cell = ground.map.cell;
     double room = 0;
     cv::minMaxLoc(ground.room, nullptr, &room);
     const double min_width = std::max(kMinWidth, kMinWidthCells * cell);
     const double max_width = std::max(1.3 * min_width, std::min(kMaxWidth, room * (cell < 2 ? 0.9 : 1.5)));
-    const double min_height = std::max(kMinHeight, kMinHeightSigmas * ground.sigma);
+    const double min_height = draws.faint ? std::max(kFaintHeight, kFaintSigmas * ground.sigma)
+                                          : std::max(kMinHeight, kMinHeightSigmas * ground.sigma);
+    const double high = draws.faint ? kFaintSpread * min_height : kMaxHeight;
     std::vector<Placed> placed;
     for (int attempt = 0; attempt < count * kMaxTries && int(placed.size()) < count; ++attempt) {
         double width = draw_log(random, min_width, max_width);
-        const double max_height = std::max(1.2 * min_height, std::min(kMaxHeight, 0.5 * width));
+        const double max_height = std::max(1.2 * min_height, std::min(high, 0.5 * width));
         const double height = draw_log(random, min_height, max_height);
         const auto kind = Kind((number * 3 + int(placed.size()) * 2 + int(geometry::draw_index(random, 2))) % kKinds);
         if (kind == Kind::ring) width = std::max(0.8 * min_width, 0.45 * width);
@@ -197,7 +206,7 @@ inline std::vector<Placed> place_anomalies(const Ground& ground, int number, int
         Random own(form);
         const double reach = make_anomaly(kind, {0, 0}, width, std::min(height, 0.5 * width), own).reach;
         if (2 * reach > std::max(kMinMaxExtent, kMaxExtentCells * cell)) continue;
-        const std::vector<cv::Point> places = places_for(ground, kind, reach, at_edge, placed);
+        const std::vector<cv::Point> places = places_for(ground, kind, reach, draws.at_edge, placed);
         if (places.size() < 10) continue;
         const cv::Point place = places[geometry::draw_index(random, places.size())];
         own.seed(form);

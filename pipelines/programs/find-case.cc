@@ -3,10 +3,10 @@
 //
 // BASE, a mesh or a cloud, is seen from --up; a mesh is sampled at the cells of a grid as a scanner would, a cloud
 // keeps its own points and noise. Up to N anomalies of the seven kinds of fettle-part stand on its smooth places, away
-// from edges or (--edge) over them; their kinds, sizes and places follow from --number alone. Then come the scanner's
-// faults: white noise and half as much that is correlated over three cells, flying points, dropouts, faces steeper than
-// 78° that are hardly seen. Out: PCD with the fields `truth` (0, or the number of the anomaly that a point is on) and
-// `truth_height` (of that anomaly, mm).
+// from edges or (--edge) over them, high or (--faint) low; their kinds, sizes and places follow from --number alone.
+// Then come the scanner's faults: white noise and half as much that is correlated over three cells, flying points,
+// dropouts, faces steeper than 78° that are hardly seen. Out: PCD with the fields `truth` (0, or the number of the
+// anomaly that a point is on) and `truth_height` (of that anomaly, mm).
 #include "core/direction.h"
 #include "find-case-anomalies.h"
 #include "find-case-scanner.h"
@@ -78,6 +78,7 @@ int main(int argc, char** argv)
         const int& number = t.count("--number", 1, "of the case: the draws' seed", 0, 1000000);
         const int& count = t.count("--anomalies", 0, "how many", 0, 20);
         const bool& at_edge = t.flag("--edge", "they stand at edges");
+        const bool& faint = t.flag("--faint", "they stand out as little as what a part has of its own");
         const double& warp = t.number("--bend", 0, "MM", "of slow form");
         const std::string& design = t.optional_output("--design", "the base as it lies", {"stl"});
         t.parse();
@@ -85,7 +86,8 @@ int main(int argc, char** argv)
         find::HeightMap map = base.is_mesh() ? sampled(base, cell) : find::height_map(base, find::View::Identity());
         if (!base.is_mesh()) find::clean(map, true);
         Random random(std::uint64_t(number) * 7919 + std::uint64_t(std::abs(std::lround(1e3 * map.origin.sum()))));
-        const std::vector<Placed> placed = place_anomalies(ground_of(map, sigma), number, count, at_edge, random);
+        const std::vector<Placed> placed =
+            place_anomalies(ground_of(map, sigma), number, count, {at_edge, faint}, random);
 
         cloud::Cloud worn;
         worn.xyz = base.is_mesh() ? scan_of(map, placed, sigma, random) : lifted(base.points.xyz, placed);

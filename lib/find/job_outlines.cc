@@ -1,0 +1,144 @@
+#include "find/job_outlines.h"
+
+#include "job/joined.h"
+
+#include <opencv2/imgproc.hpp>
+
+#include <algorithm>
+#include <vector>
+
+namespace fettle::find {
+namespace {
+
+// S stays so many cells before a place where the part leaves the surface around B.
+constexpr double kEdgeCells = 2.5;
+// Pixels, of half a cell: around polygons; of an edge's least size, as single cells are outliers of the noise; of S's
+// and B's simplified outlines.
+constexpr int kMargin = 8, kMinEdgePixels = 4, kEdgePixels = int(2 * kEdgeCells);
+constexpr double kSamplingTolerance = 1.5, kBoundaryTolerance = 0.8;
+// The part ends at B if it does so within this of it: as far as B is clipped, and as its outline is simplified.
+constexpr int kOpenSidePixels = 4;
+// Less of B than this share beside the part is no edge.
+constexpr double kMinClippedShare = 0.005;
+
+/// A window of half cells around polygons, whose corners come to lie on them.
+struct HalfCells {
+    Eigen::Vector2d low; // the place of the first inside of the margin, mm
+    double pixel;        // mm
+    cv::Size size;
+
+    HalfCells(const Eigen::Matrix2Xd& a, const Eigen::Matrix2Xd& b, double cell)
+        : low(a.rowwise().minCoeff().cwiseMin(b.rowwise().minCoeff())), pixel(cell / 2)
+    {
+        const Eigen::Vector2d high = a.rowwise().maxCoeff().cwiseMax(b.rowwise().maxCoeff());
+        const Eigen::Vector2d pixels = (high - low) / pixel;
+        size = {int(pixels.x()) + 2 * kMargin + 1, int(pixels.y()) + 2 * kMargin + 1};
+    }
+
+    Eigen::Vector2d place(const cv::Point& p) const
+    {
+        return low + pixel * Eigen::Vector2d(p.x - kMargin, p.y - kMargin);
+    }
+
+    Mask inside(const Eigen::Matrix2Xd& polygon) const
+    {
+        std::vector<cv::Point> places;
+        for (const auto& corner : polygon.colwise())
+            places.emplace_back(cvRound((corner.x() - low.x()) / pixel) + kMargin,
+                                cvRound((corner.y() - low.y()) / pixel) + kMargin);
+        Mask mask(size, std::uint8_t(0));
+        cv::fillPoly(mask, std::vector<std::vector<cv::Point>>{places}, 255);
+        return mask;
+    }
+
+    Mask where(const std::function<bool(const Eigen::Vector2d&)>& holds) const
+    {
+        Mask mask(size, std::uint8_t(0));
+        for (int y = 0; y < mask.rows; ++y)
+            for (int x = 0; x < mask.cols; ++x)
+                if (holds(place({x, y}))) mask(y, x) = 255;
+        return mask;
+    }
+
+    /// The simplified outline of a mask's largest component; nothing if the mask is empty.
+    Eigen::Matrix2Xd outline(const Mask& mask, double tolerance) const
+    {
+        std::vector<std::vector<cv::Point>> outlines;
+        cv::findContours(mask, outlines, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
+        if (outlines.empty()) return {};
+        const auto largest = std::ranges::max_element(
+            outlines, {}, [](const std::vector<cv::Point>& outline) { return cv::contourArea(outline); });
+        std::vector<cv::Point> corners;
+        cv::approxPolyDP(*largest, corners, tolerance, true);
+        Eigen::Matrix2Xd result(2, corners.size());
+        for (std::size_t i = 0; i < corners.size(); ++i) result.col(Eigen::Index(i)) = place(corners[i]);
+        return result;
+    }
+};
+
+/// The half cells beside the part: not seen, but for holes inside of a mask.
+Mask beside_part(const HalfCells& cells, const Mask& inside, const HeightMap& map)
+{
+    const Mask seen = closed(finite(map.z), 1);
+    const Mask unseen = cells.where([&](const Eigen::Vector2d& place) {
+        const cv::Point cell = map.cell_of(place);
+        return !cv::Rect({0, 0}, seen.size()).contains(cell) || !seen(cell);
+    });
+    const Components pieces = components(unseen);
+    std::vector<bool> goes_on(std::size_t(pieces.count) + 1, false);
+    for (int y = 0; y < unseen.rows; ++y)
+        for (int x = 0; x < unseen.cols; ++x)
+            if (!inside(y, x)) goes_on[std::size_t(pieces.labels(y, x))] = true;
+    Mask beside(unseen.size(), std::uint8_t(0));
+    for (int y = 0; y < unseen.rows; ++y)
+        for (int x = 0; x < unseen.cols; ++x)
+            if (const int piece = pieces.labels(y, x); piece > 0 && goes_on[std::size_t(piece)]) beside(y, x) = 255;
+    return opened(beside, kMinEdgePixels);
+}
+
+} // namespace
+
+Eigen::Vector2d nearest_on(const Eigen::Matrix2Xd& polygon, const Eigen::Vector2d& point)
+{
+    Eigen::Vector2d nearest = polygon.col(0);
+    for (Eigen::Index k = 0; k < polygon.cols(); ++k) {
+        const Eigen::Vector2d from = polygon.col(k), along = polygon.col((k + 1) % polygon.cols()) - from;
+        const double t = std::clamp((point - from).dot(along) / along.squaredNorm(), 0.0, 1.0);
+        if ((from + t * along - point).norm() < (nearest - point).norm()) nearest = from + t * along;
+    }
+    return nearest;
+}
+
+Eigen::Matrix2Xd clipped_to_part(const Eigen::Matrix2Xd& boundary, const HeightMap& map)
+{
+    const HalfCells cells(boundary, boundary, map.cell);
+    const Mask inside = cells.inside(boundary), beside = beside_part(cells, inside, map);
+    if (cv::countNonZero(inside & beside) <= kMinClippedShare * cv::countNonZero(inside)) return boundary;
+    const Eigen::Matrix2Xd clipped = cells.outline(opened(inside & ~dilated(beside, 2), 3), kBoundaryTolerance);
+    return clipped.cols() >= 3 ? clipped : boundary;
+}
+
+Eigen::Matrix2Xd sampling_before_edges(const FoundAnomaly& anomaly, const HeightMap& map,
+                                       const std::function<bool(const Eigen::Vector2d&)>& is_good)
+{
+    Eigen::Matrix2Xd sampling = anomaly.sampling;
+    for (auto corner : sampling.colwise()) {
+        const Eigen::Vector2d from = nearest_on(anomaly.boundary, corner);
+        const double length = (corner - from).norm();
+        const Eigen::Vector2d along = (corner - from) / std::max(length, 1e-12);
+        double reach = map.cell;
+        while (reach <= length && is_good(from + reach * along)) reach += map.cell;
+        if (reach <= length) corner = from + std::max(map.cell, reach - kEdgeCells * map.cell) * along;
+    }
+    // Corners that were moved one by one may have made S cross itself, and an edge may run between two of them.
+    const HalfCells cells(sampling, anomaly.boundary, map.cell);
+    const Mask core = cells.inside(anomaly.boundary), outer = cells.inside(sampling);
+    const Mask edges = dilated(opened(~core & ~cells.where(is_good), kMinEdgePixels), kEdgePixels);
+    const Mask metal = opened(outer & ~edges, 3);
+    // Where the part ends, what is left between B and its edge is the anomaly's, and no metal to touch.
+    if (cv::countNonZero(beside_part(cells, core, map) & dilated(core, kOpenSidePixels)) == 0)
+        return cells.outline(metal | dilated(core, 1), kSamplingTolerance);
+    return job::joined(cells.outline(metal | core, kSamplingTolerance), anomaly.boundary);
+}
+
+} // namespace fettle::find

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "find/find.h"
+#include "find/height_map.h"
+
+#include <functional>
+
+namespace fettle::find {
+
+/// The point of a polygon's edge that is nearest to another.
+Eigen::Vector2d nearest_on(const Eigen::Matrix2Xd& polygon, const Eigen::Vector2d& point);
+
+/// B without what juts out over an edge of the part or of the scan, where there is nothing to grind; B itself if that
+/// is none of it. Holes that lie inside of it stay.
+/// @param map  of the part, in the anomaly's frame
+Eigen::Matrix2Xd clipped_to_part(const Eigen::Matrix2Xd& boundary, const HeightMap& map);
+
+/// S, each corner drawn towards B until no edge, fillet or hole lies between. Where the part ends at B, so does S.
+/// @param map  of the part, in the anomaly's frame
+/// @param is_good  whether the part goes on at a place as the surface around B does
+Eigen::Matrix2Xd sampling_before_edges(const FoundAnomaly& anomaly, const HeightMap& map,
+                                       const std::function<bool(const Eigen::Vector2d&)>& is_good);
+
+} // namespace fettle::find

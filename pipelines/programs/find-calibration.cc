@@ -1,0 +1,151 @@
+// How honest the probabilities of fettle-find are:    find-calibration SCORE.csv...
+//
+// SCORE.csv are find-score's, in folders named PART_CASE; `under` and `side` after a part's name are views of it. A
+// line for each range of probabilities: finds said so, how many of them are right. Then the same after slope and offset
+// of the log odds were fitted to the finds (Platt 1999), each part's by the finds of all other parts, and slope and
+// offset from all of them. Exit 1 if of finds said 0.85 to 0.95 a share outside of that range is right.
+#include "core/error.h"
+
+#include <Eigen/Cholesky>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <set>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+using namespace fettle;
+
+namespace {
+
+constexpr double kMaxLogOdds = 12; // said 1 - 6e-6: what is written as 1
+
+struct Find {
+    std::string part;
+    double log_odds;
+    bool is_right;
+};
+
+struct Calibration {
+    double slope = 1, offset = 0;
+
+    double probability(const Find& find) const { return 1 / (1 + std::exp(-slope * find.log_odds - offset)); }
+};
+
+/// bestboat of FOLDER/bestboatunder_3/score.csv.
+std::string part_of(const std::string& path)
+{
+    const std::string folder = path.substr(0, path.rfind('/'));
+    std::string name = folder.substr(folder.rfind('/') + 1);
+    name.resize(std::min(name.find('_'), name.size()));
+    for (const std::string view : {"under", "side"})
+        if (name.size() > view.size() && name.ends_with(view)) name.resize(name.size() - view.size());
+    return name;
+}
+
+std::vector<Find> read_finds(const std::string& path)
+{
+    std::ifstream in(path);
+    if (!in) throw core::InputError(path, "cannot be read");
+    std::vector<Find> finds;
+    for (std::string line; std::getline(in, line);) {
+        if (!line.starts_with("find,")) continue;
+        std::ranges::replace(line, ',', ' ');
+        std::istringstream words(line);
+        std::string kind;
+        int is_right = 0;
+        double p = 0;
+        words >> kind >> is_right >> p;
+        if (!words) throw core::InputError(path, "not a row of find-score: " + line);
+        finds.push_back({part_of(path), std::clamp(std::log(p / (1 - p)), -kMaxLogOdds, kMaxLogOdds), is_right != 0});
+    }
+    return finds;
+}
+
+double loss_of(const std::vector<Find>& finds, const Calibration& calibration)
+{
+    double loss = 0;
+    for (const Find& find : finds) {
+        const double s = (calibration.slope * find.log_odds + calibration.offset) * (find.is_right ? 1 : -1);
+        loss += s > 0 ? std::log1p(std::exp(-s)) : std::log1p(std::exp(s)) - s;
+    }
+    return loss;
+}
+
+/// By Newton's method with halved steps.
+Calibration fit(const std::vector<Find>& finds)
+{
+    Calibration best;
+    for (int step = 0; step < 50; ++step) {
+        Eigen::Vector2d gradient(0, 0);
+        Eigen::Matrix2d curvature = 1e-6 * Eigen::Matrix2d::Identity();
+        for (const Find& find : finds) {
+            const double p = best.probability(find);
+            const Eigen::Vector2d d(find.log_odds, 1);
+            gradient += (p - find.is_right) * d;
+            curvature += p * (1 - p) * d * d.transpose();
+        }
+        Eigen::Vector2d change = curvature.ldlt().solve(gradient);
+        const auto changed = [&] { return Calibration{best.slope - change[0], best.offset - change[1]}; };
+        while (change.norm() > 1e-9 && loss_of(finds, changed()) > loss_of(finds, best)) change /= 2;
+        best = changed();
+    }
+    return best;
+}
+
+using Said = std::pair<double, bool>;
+
+/// Prints the table. @return  whether the finds said 0.9 are as often right
+bool judge(const char* title, const std::vector<Said>& finds)
+{
+    constexpr double kRanges[][2] = {{0.05, 0.3}, {0.3, 0.5}, {0.5, 0.7}, {0.7, 0.85}, {0.85, 0.95}, {0.95, 1}};
+    std::printf("%s\n", title);
+    bool is_honest = false;
+    for (const auto& [low, high] : kRanges) {
+        int count = 0, right = 0;
+        double sum = 0;
+        for (const auto& [p, is_right] : finds)
+            if (p >= low && (p < high || high == 1)) ++count, right += is_right, sum += p;
+        const double n = std::max(1, count), share = right / n;
+        std::printf("  said %.2f to %.2f, %.3f in the mean: %4d finds, right %.3f, standard error %.3f\n", low, high,
+                    sum / n, count, share, std::sqrt(std::max(share * (1 - share), 1 / (n + 2) / 4) / n));
+        if (high == 0.95) is_honest = count > 0 && share >= 0.85 && share <= 0.95;
+    }
+    return is_honest;
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+try {
+    std::vector<Find> finds;
+    std::set<std::string> parts;
+    for (int i = 1; i < argc; ++i)
+        for (Find& find : read_finds(argv[i])) {
+            parts.insert(find.part);
+            finds.push_back(std::move(find));
+        }
+    std::vector<Said> said, left_out;
+    for (const Find& find : finds) said.emplace_back(Calibration().probability(find), find.is_right);
+    std::printf("%zu finds on %zu parts\n", finds.size(), parts.size());
+    const bool is_honest = judge("as fettle-find says it", said);
+    for (const std::string& part : parts) {
+        std::vector<Find> others;
+        for (const Find& find : finds)
+            if (find.part != part) others.push_back(find);
+        const Calibration calibration = fit(others);
+        for (const Find& find : finds)
+            if (find.part == part) left_out.emplace_back(calibration.probability(find), find.is_right);
+    }
+    judge("calibrated by other parts", left_out);
+    const Calibration all = fit(finds);
+    std::printf("slope %.3f, offset %.3f of the log odds\n", all.slope, all.offset);
+    return is_honest ? 0 : 1;
+} catch (const core::InputError& error) {
+    std::fprintf(stderr, "find-calibration: %s\n", error.what());
+    return 2;
+}
