@@ -166,7 +166,7 @@ find::FindResult find_against(const Options& o, const find::FindOptions& options
 }
 
 // What is less probable by itself is no anomaly, whatever stood there on an earlier casting.
-constexpr double kMinLikeProbability = 0.05;
+constexpr double kMinLikeProbability = 0.15;
 
 find::FindResult find_like(const Options& o, find::FindOptions options, const std::vector<find::EarlierJob>& jobs,
                            const mesh::CloudMeshFile& part, const std::string& name)

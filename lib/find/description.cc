@@ -23,7 +23,7 @@ constexpr double kSurfaceSigmas = 8, kSurfaceCells = 2;
 constexpr double kOwnSigmas = 3, kOwnShare = 0.08;
 
 // Doubts. Below this probability a person looks at a find.
-constexpr double kSureProbability = 0.85;
+constexpr double kSureProbability = 0.96;
 // What is thicker than this multiple of the ring that could be fitted rests on extrapolation.
 constexpr double kMaxThicknessPerRing = 2.5;
 // Share of the surroundings that is not the surface: an edge of the part, of the scan, or another feature.

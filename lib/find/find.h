@@ -42,7 +42,7 @@ struct FindResult {
 
 struct FindOptions {
     SearchBounds bounds;
-    double min_probability = 0.5; ///< less probable ones are left out
+    double min_probability = 0.8; ///< less probable ones are left out
 };
 
 /// Finds anomalies of a part without a model: the metal around each candidate predicts the surface beneath it

@@ -25,9 +25,10 @@ namespace {
 constexpr double kMaxLogOdds = 12; // said 1 - 6e-6: what is written as 1
 
 struct Find {
-    std::string part;
+    std::string part, view;
     double log_odds;
     bool is_right;
+    double height, area;
 };
 
 struct Calibration {
@@ -36,12 +37,17 @@ struct Calibration {
     double probability(const Find& find) const { return 1 / (1 + std::exp(-slope * find.log_odds - offset)); }
 };
 
-/// bestboat of FOLDER/bestboatunder_3/score.csv.
-std::string part_of(const std::string& path)
+/// bestboatunder of FOLDER/bestboatunder_3/score.csv.
+std::string view_of(const std::string& path)
 {
     const std::string folder = path.substr(0, path.rfind('/'));
-    std::string name = folder.substr(folder.rfind('/') + 1);
-    name.resize(std::min(name.find('_'), name.size()));
+    const std::string name = folder.substr(folder.rfind('/') + 1);
+    return name.substr(0, name.find('_'));
+}
+
+/// bestboat of bestboatunder.
+std::string part_of(std::string name)
+{
     for (const std::string view : {"under", "side"})
         if (name.size() > view.size() && name.ends_with(view)) name.resize(name.size() - view.size());
     return name;
@@ -58,12 +64,22 @@ std::vector<Find> read_finds(const std::string& path)
         std::istringstream words(line);
         std::string kind;
         int is_right = 0;
-        double p = 0;
-        words >> kind >> is_right >> p;
+        double p = 0, height = 0, area = 0;
+        words >> kind >> is_right >> p >> height >> area;
         if (!words) throw core::InputError(path, "not a row of find-score: " + line);
-        finds.push_back({part_of(path), std::clamp(std::log(p / (1 - p)), -kMaxLogOdds, kMaxLogOdds), is_right != 0});
+        finds.push_back({part_of(view_of(path)), view_of(path),
+                         std::clamp(std::log(p / (1 - p)), -kMaxLogOdds, kMaxLogOdds), is_right != 0, height, area});
     }
     return finds;
+}
+
+/// Whether two finds are one feature of a part, in two cases of a view.
+bool is_same_feature(const Find& a, const Find& b)
+{
+    constexpr double kHeightRatio = 1.05, kAreaRatio = 1.25;
+    return !a.is_right && !b.is_right && a.view == b.view &&
+           std::abs(std::log(a.height / b.height)) < std::log(kHeightRatio) &&
+           std::abs(std::log(a.area / b.area)) < std::log(kAreaRatio);
 }
 
 double loss_of(const std::vector<Find>& finds, const Calibration& calibration)
@@ -127,7 +143,8 @@ try {
     for (int i = 1; i < argc; ++i)
         for (Find& find : read_finds(argv[i])) {
             parts.insert(find.part);
-            finds.push_back(std::move(find));
+            if (std::ranges::none_of(finds, [&](const Find& other) { return is_same_feature(find, other); }))
+                finds.push_back(std::move(find));
         }
     std::vector<Said> said, left_out;
     for (const Find& find : finds) said.emplace_back(Calibration().probability(find), find.is_right);
