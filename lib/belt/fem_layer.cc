@@ -1,15 +1,16 @@
 #include "belt/fem_layer.h"
 
 #include "belt/fem_element.h"
+#include "core/cholesky.h"
 #include "core/error.h"
 
 #include <boost/math/quadrature/gauss.hpp>
-#include <Eigen/Cholesky>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -108,19 +109,19 @@ MatrixXd compliance(const RingStiffness& ring, double phase)
 {
     const Index size = ring.diagonal.front().even.rows();
     MatrixXd result = MatrixXd::Zero(ring.count, ring.count), solved = MatrixXd::Zero(size, ring.count);
-    Eigen::LLT<MatrixXd> cholesky;
+    std::optional<core::Cholesky> cholesky;
     for (Index column = 0; column < std::ssize(ring.diagonal); ++column) {
         const Index loaded = std::clamp<Index>(column + 1 - ring.first, 0, ring.count);
         MatrixXd diagonal = ring.diagonal[column].at(phase), forces = MatrixXd::Zero(size, loaded);
         if (column > 0) {
-            const MatrixXd before = cholesky.matrixL().solve(ring.coupling[column].at(phase).transpose());
+            const MatrixXd before = cholesky->solve_lower(ring.coupling[column].at(phase).transpose());
             diagonal.noalias() -= before.transpose() * before;
             forces.noalias() -= before.transpose() * solved.leftCols(loaded);
         }
         if (column >= ring.first && column < ring.first + ring.count) forces(0, loaded - 1) += 1;
-        cholesky.compute(diagonal);
+        cholesky.emplace(diagonal);
         if (loaded == 0) continue; // Eigen cannot solve with zero columns
-        cholesky.matrixL().solveInPlace(forces);
+        forces = cholesky->solve_lower(forces);
         solved.leftCols(loaded) = forces;
         result.topLeftCorner(loaded, loaded).noalias() += forces.transpose() * forces;
     }

@@ -1,10 +1,9 @@
 #include "calibrate/belt_run.h"
 
 #include "belt/belt_path.h"
+#include "core/cholesky.h"
 #include "core/error.h"
 #include "geometry/quantiles.h"
-
-#include <Eigen/Cholesky>
 
 #include <algorithm>
 #include <cmath>
@@ -220,7 +219,7 @@ BeltRunLaw measure_belt(const cloud::Cloud& trace, const belt::ContactWheel& whe
         normal = AtW * A;
         normal.diagonal() += prior.cwiseInverse().cwiseAbs2();
         const VectorXd gradient = AtW * b + prior.cwiseInverse().cwiseAbs2().cwiseProduct(center - x);
-        VectorXd change = normal.ldlt().solve(gradient);
+        VectorXd change = core::solve_ldlt(normal, gradient);
         constexpr double kMaxStep = 0.7; // a factor of two at once: farther off the simulation is not linear
         change *= std::min(1.0, kMaxStep / change.cwiseAbs().maxCoeff());
         x += change;
@@ -233,7 +232,7 @@ BeltRunLaw measure_belt(const cloud::Cloud& trace, const belt::ContactWheel& whe
     result.names = {"level", "pressure"};
     if (map.fits_feed) result.names.push_back("feed");
     result.mean = x;
-    result.covariance = normal.ldlt().solve(MatrixXd::Identity(unknowns, unknowns));
+    result.covariance = core::solve_ldlt(normal, MatrixXd::Identity(unknowns, unknowns));
     result.reference_pressure = map.pressure;
     result.reference_feed = map.feed;
     result.surfels = count;

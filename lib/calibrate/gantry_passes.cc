@@ -1,10 +1,9 @@
 #include "calibrate/gantry_passes.h"
 
+#include "core/cholesky.h"
 #include "core/error.h"
 #include "geometry/quantiles.h"
 #include "removal/wheel.h"
-
-#include <Eigen/Cholesky>
 
 #include <algorithm>
 #include <cmath>
@@ -88,12 +87,12 @@ struct LinearFit {
 
 LinearFit fit_linear(const MatrixXd& A, const VectorXd& b)
 {
-    const Eigen::LDLT<MatrixXd> normal(A.transpose() * A); // a few columns of like size
+    const MatrixXd normal = A.transpose() * A; // a few columns of like size
     LinearFit fit;
-    fit.x = normal.solve(A.transpose() * b);
+    fit.x = core::solve_ldlt(normal, A.transpose() * b);
     const double freedom = std::max<double>(A.rows() - A.cols(), 1);
     fit.sigma = std::sqrt((A * fit.x - b).squaredNorm() / freedom);
-    fit.covariance = fit.sigma * fit.sigma * normal.solve(MatrixXd::Identity(A.cols(), A.cols()));
+    fit.covariance = fit.sigma * fit.sigma * core::solve_ldlt(normal, MatrixXd::Identity(A.cols(), A.cols()));
     return fit;
 }
 

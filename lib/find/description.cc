@@ -1,10 +1,10 @@
 #include "find/description.h"
 
+#include "core/cholesky.h"
 #include "core/direction.h"
 #include "core/text.h"
 #include "find/outline.h"
 
-#include <Eigen/Cholesky>
 #include <opencv2/imgproc.hpp>
 
 #include <algorithm>
@@ -83,7 +83,7 @@ bool looks_designed(const Verified& find)
         A.row(Index(k)) << 1, places[k].x - places[0].x, places[k].y - places[0].y;
         z[Index(k)] = find.height(places[k]);
     }
-    const Eigen::Vector3d plane = (A.transpose() * A).ldlt().solve(A.transpose() * z); // definite: cells of an area
+    const Eigen::Vector3d plane = core::solve_ldlt(A.transpose() * A, A.transpose() * z); // definite: cells of an area
     if ((z - A * plane).norm() > kFlatTop * find.evidence.height * std::sqrt(double(places.size()))) return false;
     const cv::RotatedRect rectangle = cv::minAreaRect(all);
     const double width = rectangle.size.width + 1.0, height = rectangle.size.height + 1.0;

@@ -1,9 +1,8 @@
 #include "find/ring_fit.h"
 
+#include "core/cholesky.h"
 #include "core/decompositions.h"
 #include "geometry/quantiles.h"
-
-#include <Eigen/Cholesky>
 
 #include <algorithm>
 #include <array>
@@ -79,7 +78,7 @@ Eigen::MatrixXd normal_matrix(const Eigen::MatrixXd& A, const Eigen::VectorXd& w
 /// Weighted least squares. LDLT: the ridge makes the matrix definite.
 Eigen::VectorXd solve(const Eigen::MatrixXd& A, const Eigen::VectorXd& z, const Eigen::VectorXd& weights)
 {
-    return normal_matrix(A, weights).ldlt().solve(A.transpose() * (weights.array() * z.array()).matrix());
+    return core::solve_ldlt(normal_matrix(A, weights), A.transpose() * (weights.array() * z.array()).matrix());
 }
 
 double quantile_of_sizes(const Eigen::VectorXd& residuals, double share)

@@ -1,9 +1,8 @@
 #include "find/slow_field.h"
 
+#include "core/cholesky.h"
 #include "geometry/bounding_box.h"
 #include "geometry/quantiles.h"
-
-#include <Eigen/Cholesky>
 
 #include <algorithm>
 #include <cmath>
@@ -107,9 +106,9 @@ SlowField fit_slow_field(const Eigen::Matrix3Xd& points, const compare::Referenc
         N.selfadjointView<Eigen::Lower>().rankUpdate(A);
         N.diagonal().array() += kFieldRidge * N.trace() / double(A.rows()) + kMinRidge;
         // LLT: the ridge makes the matrix definite.
-        const Eigen::LLT<Eigen::MatrixXd> llt(N.selfadjointView<Eigen::Lower>());
-        const Eigen::VectorXd solution = llt.solve(A * b);
-        field.root = llt.matrixL();
+        const core::Cholesky cholesky(N);
+        const Eigen::VectorXd solution = cholesky.solve(A * b);
+        field.root = cholesky.L();
         field.sd = spread_of(map.error);
         for (int axis = 0; axis < 3; ++axis)
             field.coefficients.row(axis) = solution.segment(axis * kMonomials, kMonomials).transpose();

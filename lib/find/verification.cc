@@ -1,8 +1,8 @@
 #include "find/verification.h"
 
+#include "core/cholesky.h"
 #include "find/refinement.h"
 
-#include <Eigen/Cholesky>
 #include <opencv2/imgproc.hpp>
 #include <tbb/parallel_for.h>
 
@@ -78,7 +78,7 @@ void Refinement::measure_stability(Evidence& evidence) const
         A.row(Eigen::Index(k)) << 1, places[k].x - x0, places[k].y - y0;
         z[Eigen::Index(k)] = beneath_.fit.z_at(places[k].x, places[k].y);
     }
-    const Eigen::Vector3d plane = (A.transpose() * A).ldlt().solve(A.transpose() * z);
+    const Eigen::Vector3d plane = core::solve_ldlt(A.transpose() * A, A.transpose() * z);
     evidence.sag = std::sqrt((z - A * plane).squaredNorm() / double(places.size()));
 }
 

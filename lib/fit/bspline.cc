@@ -1,5 +1,6 @@
 #include "fit/bspline.h"
 
+#include "core/cholesky.h"
 #include "core/decompositions.h"
 #include "fit/dense.h"
 #include "fit/evidence.h"
@@ -8,8 +9,6 @@
 #include "fit/spline_prior.h"
 #include "geometry/bounding_box.h"
 #include "surface/shapes.h"
-
-#include <Eigen/Cholesky>
 
 #include <algorithm>
 #include <cmath>
@@ -151,15 +150,15 @@ Posterior compute_posterior(const Model& m, double sigma, double tau, const Vect
     const double t2 = tau * tau;
     MatrixXd M = t2 * m.R;
     M.diagonal() += sigma * sigma * weight.cwiseInverse();
-    const Eigen::LLT<MatrixXd> noise(M);
-    const MatrixXd half_H = noise.matrixL().solve(m.H);
+    const core::Cholesky noise(M);
+    const MatrixXd half_H = noise.solve_lower(m.H);
     MatrixXd precision = half_H.transpose() * half_H;
     precision.diagonal() += m.precision.cwiseAbs2();
-    const Eigen::LLT<MatrixXd> beta(precision);
+    const core::Cholesky beta(precision);
 
-    const MatrixXd half_GA = noise.matrixL().solve(t2 * m.GA.transpose()); // n x N
-    const MatrixXd leverage = m.basis - half_GA.transpose() * half_H;      // N x kNumBeta
-    const MatrixXd half = beta.matrixL().solve(leverage.transpose());
+    const MatrixXd half_GA = noise.solve_lower(t2 * m.GA.transpose()); // n x N
+    const MatrixXd leverage = m.basis - half_GA.transpose() * half_H;  // N x kNumBeta
+    const MatrixXd half = beta.solve_lower(leverage.transpose());
     Posterior result;
     result.covariance = t2 * m.prior.pseudo_inverse;
     result.covariance.noalias() -= half_GA.transpose() * half_GA;

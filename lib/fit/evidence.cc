@@ -1,8 +1,7 @@
 #include "fit/evidence.h"
 
+#include "core/cholesky.h"
 #include "fit/leave_one_out.h"
-
-#include <Eigen/Cholesky>
 
 #include <cmath>
 #include <numbers>
@@ -43,15 +42,13 @@ void likelihood_at(const FieldModel& model, const VectorXd& z, Index k, Likeliho
     const Index n = z.size();
     MatrixXd C = model.effect_covariance + result.tau[k] * result.tau[k] * model.R;
     C.diagonal().array() += model.sigma * model.sigma;
-    const Eigen::LLT<MatrixXd> c(C);
+    const core::Cholesky c(C);
     const MatrixXd inverse = c.solve(MatrixXd::Identity(n, n));
     const MatrixXd CF = inverse * model.fixed_effects;
-    const Eigen::LLT<MatrixXd> f(model.fixed_effects.transpose() * CF);
+    const core::Cholesky f(model.fixed_effects.transpose() * CF);
     const MatrixXd P = inverse - CF * f.solve(CF.transpose());
     const VectorXd Pz = P * z;
-    const auto half_log_det = [](const Eigen::LLT<MatrixXd>& factor) {
-        return MatrixXd(factor.matrixLLT()).diagonal().array().log().sum();
-    };
+    const auto half_log_det = [](const core::Cholesky& factor) { return factor.L().diagonal().array().log().sum(); };
     const double log_2pi = std::log(2 * std::numbers::pi);
     result.log_all[k] =
         -half_log_det(c) - half_log_det(f) - z.dot(Pz) / 2 - (n - model.fixed_effects.cols()) / 2.0 * log_2pi;

@@ -1,10 +1,9 @@
 #include "fit/spline_prior.h"
 
+#include "core/cholesky.h"
 #include "core/decompositions.h"
 #include "fit/smoothing.h"
 #include "surface/spline_energy.h"
-
-#include <Eigen/Cholesky>
 
 namespace fettle::fit {
 
@@ -33,7 +32,7 @@ SplinePrior spline_prior(const surface::Bspline& grid)
     const MatrixXd K = dense_energy_matrix(grid);
     const MatrixXd Q = core::householder_qr(prior.quadratics, 6).Q;
     const double s = K.trace() / K.rows();
-    prior.pseudo_inverse = (K + s * Q * Q.transpose()).llt().solve(MatrixXd::Identity(K.rows(), K.rows()));
+    prior.pseudo_inverse = core::Cholesky(K + s * Q * Q.transpose()).solve(MatrixXd::Identity(K.rows(), K.rows()));
     prior.pseudo_inverse -= Q * Q.transpose() / s;
     return prior;
 }

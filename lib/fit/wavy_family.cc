@@ -1,11 +1,10 @@
 #include "fit/wavy_family.h"
 
+#include "core/cholesky.h"
 #include "fit/process_mixture.h"
 #include "fit/process_spectrum.h"
 #include "fit/process_weights.h"
 #include "surface/shapes.h"
-
-#include <Eigen/Cholesky>
 
 #include <algorithm>
 #include <cmath>
@@ -76,8 +75,7 @@ ShortWaves short_waves(const std::vector<Spectrum>& spectra, const ProcessTouche
 /// Covariance of θ by least squares if the heights deviate by waves and noise.
 MatrixXd covariance_of_family(const ProcessTouches& touches, const MatrixXd& waves)
 {
-    const Eigen::LDLT<MatrixXd> gram(touches.F.transpose() * touches.F);
-    const MatrixXd from_heights = gram.solve(touches.F.transpose());
+    const MatrixXd from_heights = core::solve_ldlt(touches.F.transpose() * touches.F, touches.F.transpose());
     MatrixXd heights = waves;
     heights.diagonal().array() += touches.sigma * touches.sigma;
     return from_heights * heights * from_heights.transpose();

@@ -1,5 +1,6 @@
 #include "margin/regression.h"
 
+#include "core/cholesky.h"
 #include "core/decompositions.h"
 #include "core/error.h"
 #include "job/boundary.h"
@@ -7,8 +8,6 @@
 #include "margin/shift.h"
 #include "sampling/touch_plan.h"
 #include "units/units.h"
-
-#include <Eigen/Cholesky>
 
 #include <algorithm>
 #include <cmath>
@@ -70,7 +69,7 @@ surface::Prediction worst_case_of_plane(const surface::Surface& surface, const j
     const job::Polygon corners =
         job::rotation_working_machine(job.theta).transpose() * job::working_boundaries(job).anomaly;
     // Derivatives of the least-squares plane's height at each corner by each touch; between corners they are smaller.
-    const Eigen::MatrixXd influence = (touched * touched.transpose()).ldlt().solve(touched).transpose() *
+    const Eigen::MatrixXd influence = core::solve_ldlt(touched * touched.transpose(), touched).transpose() *
                                       surface::height_gradients(surface.shape, corners);
     double shift = 0, band = 0;
     for (Eigen::Index i = 0; i < influence.cols(); ++i) {

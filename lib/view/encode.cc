@@ -1,11 +1,11 @@
 #include "view/encode.h"
 
+#include "core/decompositions.h"
 #include "core/morton.h"
 #include "draw/base64.h"
 #include "draw/raster.h"
 #include "geometry/point_index.h"
 
-#include <Eigen/Eigenvalues>
 #include <tbb/parallel_for.h>
 #include <zlib.h>
 
@@ -91,8 +91,8 @@ Eigen::Matrix3Xd light_normals(const cloud::Cloud& points)
         if (!points.xyz.col(i).allFinite()) return;
         const Eigen::Matrix3Xd near = points.xyz(Eigen::all, index.nearest(points.xyz.col(i), kNeighbours));
         const Eigen::Matrix3Xd centred = near.colwise() - near.rowwise().mean();
-        const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(Eigen::Matrix3d(centred * centred.transpose()));
-        normals.col(i) = axes.eigenvectors().col(0);
+        const core::SymmetricEigen<3> axes = core::symmetric_eigen(Eigen::Matrix3d(centred * centred.transpose()));
+        normals.col(i) = axes.vectors.col(0);
     });
     return normals;
 }

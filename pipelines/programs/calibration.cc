@@ -7,13 +7,12 @@
 // by restricted likelihood, what a statistician would take.
 #include "cells.h"
 
+#include "core/cholesky.h"
 #include "fit/family.h"
 #include "fit/fit.h"
 #include "margin/error_band.h"
 #include "margin/shift.h"
 #include "surface/surface.h"
-
-#include <Eigen/Cholesky>
 
 #include <cmath>
 #include <iostream>
@@ -52,13 +51,13 @@ Eigen::VectorXd gaussian_process(const fit::FitInput& input, const Eigen::Matrix
             };
             Eigen::MatrixXd C = k(xy, xy);
             C.diagonal().array() += sigma * sigma;
-            const Eigen::LLT<Eigen::MatrixXd> c(C);
+            const core::Cholesky c(C);
             const Eigen::MatrixXd CH = c.solve(H);
-            const Eigen::LLT<Eigen::MatrixXd> f(H.transpose() * CH);
+            const core::Cholesky f(H.transpose() * CH);
             const Eigen::VectorXd beta = f.solve(CH.transpose() * z);
             const Eigen::VectorXd alpha = c.solve(z - H * beta);
-            const double score = 2 * Eigen::MatrixXd(c.matrixL()).diagonal().array().log().sum() +
-                                 2 * Eigen::MatrixXd(f.matrixL()).diagonal().array().log().sum() + z.dot(alpha);
+            const double score =
+                2 * c.L().diagonal().array().log().sum() + 2 * f.L().diagonal().array().log().sum() + z.dot(alpha);
             if (!(score < best)) continue;
             best = score;
             result = Hg * beta + k(grid, xy) * alpha;
@@ -74,7 +73,7 @@ double limit(const std::string& family, const fit::FitInput& exact, const Eigen:
     const fit::TouchSet touched = fit::make_touch_set(surface, exact.job);
     const std::optional<fit::FitCandidate> known = fit::fit_family(family, touched, fit::all_touches(touched));
     if (!known) return std::numeric_limits<double>::quiet_NaN();
-    const Eigen::MatrixXd root = Eigen::LLT<Eigen::MatrixXd>(known->covariance).matrixL();
+    const Eigen::MatrixXd root = core::Cholesky(known->covariance).L();
     const Eigen::MatrixXd G = surface::height_gradients(known->shape, grid).transpose() * root;
     std::normal_distribution<double> normal;
     std::vector<double> bands;

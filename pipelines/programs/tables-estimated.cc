@@ -2,13 +2,13 @@
 // 4-5).
 
 #include "cli/tool.h"
+#include "core/decompositions.h"
 #include "core/error.h"
 #include "job/boundary.h"
 #include "sampling/estimate.h"
 #include "sampling/freeform.h"
 #include "tables-griddata.h"
 
-#include <Eigen/QR>
 #include <unsupported/Eigen/Splines>
 
 #include <algorithm>
@@ -68,7 +68,7 @@ double cubic_at(const Curve& curve, double t)
     };
     Eigen::MatrixXd model(curve.along.size(), kCoefficients);
     for (Eigen::Index i = 0; i < model.rows(); ++i) model.row(i) = powers(curve.along[i]);
-    return powers(t).dot(model.colPivHouseholderQr().solve(curve.z));
+    return powers(t).dot(core::least_squares_by_qr(model, curve.z).x);
 }
 
 /// @param across  number of curves in each set   @param points  on each curve

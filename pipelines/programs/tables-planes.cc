@@ -1,12 +1,11 @@
 // How many touches make a plane (Wang 2007, Table 4-2) and a line (4.4.2).
 
 #include "cli/tool.h"
+#include "core/decompositions.h"
 #include "core/error.h"
 #include "fit/plane.h"
 #include "surface/surface.h"
 #include "tables.h"
-
-#include <Eigen/QR>
 
 #include <algorithm>
 #include <array>
@@ -103,7 +102,7 @@ double line_error(const Eigen::VectorXd& shares, std::uint64_t seed)
 {
     Eigen::MatrixXd A(shares.size(), 2);
     A << Eigen::VectorXd::Ones(shares.size()), shares;
-    const Eigen::Vector2d error = A.colPivHouseholderQr().solve(sampling::draw_noise(kNoise, shares.size(), seed));
+    const Eigen::Vector2d error = core::least_squares_by_qr(A, sampling::draw_noise(kNoise, shares.size(), seed)).x;
     return std::max(std::abs(error[0]), std::abs(error.sum())) / kInch;
 }
 
