@@ -46,8 +46,11 @@ constexpr Term kModelTerms[] = {
 // pipelines/programs/find-calibration.cc.
 constexpr double kCalibrationSlope = 1.06, kCalibrationOffset = 1.38;
 
-// Against a reference: standard deviations at which chance and anomaly are as probable, and over which that changes.
+// Against a reference: log odds of 0 before the same calibration, and the standard deviations over which they change
+// by 1.
 constexpr double kEvenStanding = 6, kStandingScale = 1;
+
+double calibrated(double log_odds) { return 1 / (1 + std::exp(-kCalibrationSlope * log_odds - kCalibrationOffset)); }
 
 double log_ratio(double a, double b)
 {
@@ -84,13 +87,13 @@ double probability_of(const Evidence& evidence)
     const Features features = features_of(evidence);
     double score = 0;
     for (const Term& term : kModelTerms) score += term.weight * std::min(features[term.feature], term.knot);
-    return 1 / (1 + std::exp(-kCalibrationSlope * score - kCalibrationOffset));
+    return calibrated(score);
 }
 
 double probability_against(const Evidence& e)
 {
     const double standing = std::min(e.significance(), e.height / e.noise);
-    return 1 / (1 + std::exp((kEvenStanding - standing) / kStandingScale));
+    return calibrated((standing - kEvenStanding) / kStandingScale);
 }
 
 bool is_plausible(const Evidence& e, const SearchBounds& bounds)
