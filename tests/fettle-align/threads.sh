@@ -1,5 +1,5 @@
 # Any number of threads writes the same bytes, for a mesh and for a cloud as reference.
-fettle-part "$SAMPLES/parts/hammer.json" >part.stl
+jq --arg scan "$SAMPLES/scans/hammer.stl" '.scan.file = $scan | .step = 1' "$SAMPLES/parts/hammer.json" | fettle-part - >part.stl
 fettle-align part.stl --to part.stl --near --iterations 0 -o cloud.pcd
 for reference in "$SAMPLES/scans/hammer.stl" cloud.pcd; do
     for threads in 1 3; do
