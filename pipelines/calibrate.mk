@@ -6,7 +6,9 @@
 # CALIBRATE/LAW.csv has a line a series drawn from a hidden law (pipelines/programs/law-series.cc); static.json and moving.json are the reports on the
 # measured rows; part1/N.json those of Wang's part 1, ground on a gantry that removes HIDDEN of what its job says, from the first covering of
 # its trace, with forces 5 % and heights 0.02 mm (a standard deviation each) off. like/PART-LAYER1.csv has PARTS like parts of Wang's, one after the other,
-# whose coefficient falls by 30 %, ground with fettle-grind --learn and without. edge.json compares the free sides of a wheel by its layer and by finite elements.
+# whose coefficient falls by 30 %, ground with fettle-grind --learn and without. edge.json compares the free sides of a wheel by its layer and by finite elements;
+# exponents.csv has the exponents that fettle-belt --learn finds, halving.txt what half the spacing changes.
+# BELT= leaves these two out.
 
 B         ?= build
 SERIES    ?= 200
@@ -17,18 +19,27 @@ PARTS     ?= 10
 LIKE      ?= 1-force 2-force 1-constant
 CALIBRATE ?= $(B)/calibrate/$(SERIES)-$(RUNS)/$(SEED)
 TRIALS    ?= samples/removal
+BELT      ?= exponents.csv halving.txt
 LAWS      := preston power tails threshold wearing
 PART      := $(CALIBRATE)/part1
 
 .PHONY: calibrate
 calibrate: $(LAWS:%=$(CALIBRATE)/%.csv) $(CALIBRATE)/static.json $(CALIBRATE)/moving.json $(patsubst %,$(PART)/%.json,$(shell seq $(RUNS))) \
-           $(LIKE:%=$(CALIBRATE)/like-$(PARTS)/%.csv) $(CALIBRATE)/edge.json
+           $(LIKE:%=$(CALIBRATE)/like-$(PARTS)/%.csv) $(CALIBRATE)/edge.json $(BELT:%=$(CALIBRATE)/%)
 	@SERIES=$(SERIES) RUNS=$(RUNS) HIDDEN=$(HIDDEN) PARTS=$(PARTS) pipelines/calibrate-table $(CALIBRATE) "$(LAWS)" "$(LIKE)"
 
 include pipelines/step.mk
 
 $(CALIBRATE)/edge.json: pipelines/calibrate-edge samples/wheels/crowned.json $(B)/bin/fettle-contact
 	$(call step,$< $(B)/bin > $@.part)
+
+$(CALIBRATE)/exponents.csv: pipelines/calibrate-exponents samples/wheels/crowned.json $(B)/bin/fettle-belt
+	$(call step,$< $(B)/bin > $@.part)
+
+# The case of the suite prints a line a bead, up to the first that fails.
+$(CALIBRATE)/halving.txt: tests/fettle-belt/halving.sh $(B)/bin/fettle-belt
+	@mkdir -p $(@D)/halving
+	$(call step,(cd $(@D)/halving && PATH="$(abspath $(B)/bin):$$PATH" SAMPLES="$(abspath samples)" bash -e $(abspath $<)) > $@.part || true)
 
 $(LAWS:%=$(CALIBRATE)/%.csv): $(CALIBRATE)/%.csv: $(B)/study/law-series
 	$(call step,$< $* $(SERIES) $(SEED) > $@.part)

@@ -59,6 +59,7 @@ struct Measurement {
     json::Value traced;
     std::optional<belt::BeltLaw> wheel_law;
     std::vector<calibrate::WearInterval> wear; ///< of a gantry's wheel
+    calibrate::TrialBase base;                 ///< of a belt's passes
 };
 
 Measurement measure_rows(const Options& o)
@@ -84,7 +85,7 @@ Measurement measure_gantry_trace(const Options& o)
     std::optional<removal::HeightField> after;
     if (!o.after.empty()) after = height_map(o.after);
     const calibrate::GantryLaw law = calibrate::measure_gantry(trace, job, before, after);
-    return {law.passes, law.pass_work, "gantry", calibrate::to_json(law), std::nullopt, law.wear};
+    return {law.passes, law.pass_work, "gantry", calibrate::to_json(law), std::nullopt, law.wear, {}};
 }
 
 Measurement measure_belt_trace(const Options& o, const belt::ContactWheel& wheel)
@@ -94,15 +95,21 @@ Measurement measure_belt_trace(const Options& o, const belt::ContactWheel& wheel
     const calibrate::BeltRunLaw law = cli::with_error_prefix(core::display_name(o.input), [&] {
         return calibrate::measure_belt(trace, wheel, before, after, o.t.progress("fitting"));
     });
-    return {law.passes, law.pass_work, "belt", calibrate::to_json(law), law.law, {}};
+    return {law.passes,
+            law.pass_work,
+            "belt",
+            calibrate::to_json(law),
+            law.law,
+            {},
+            {wheel.law.pressure_exponent, wheel.law.feed_exponent}};
 }
 
 /// The passes of the input, after those of the law that is known.
 calibrate::LawRecord record_of(const Options& o, const Measurement& measured)
 {
-    calibrate::LawRecord record{.pass_work = measured.pass_work, .passes = measured.passes, .wear = {}};
+    calibrate::LawRecord record{.pass_work = measured.pass_work, .passes = measured.passes, .base = measured.base};
     if (!o.known.empty())
-        record = calibrate::continued(calibrate::read_law(o.known), measured.passes, core::display_name(o.input));
+        record = calibrate::continued(calibrate::read_law(o.known), record, core::display_name(o.input));
     if (measured.machine == "gantry") calibrate::add_wear(record, measured.wear);
     return record;
 }

@@ -54,8 +54,10 @@ struct BeltError {
 struct MeasuredPass {
     RemovalTrial trial;        ///< volume 0: the pass has no length, or removed nothing
     double contact_volume = 0; ///< volume of the pass, mm³, per volume of the trial
+    double sensitivity = 1;    ///< derivative of the logarithm of the pass's volume by that of the law's coefficient
     double work = 0;           ///< of the belt, N mm
     double feed_factor = 1;    ///< by which the feeds of the path were multiplied
+    std::vector<RemovalTrial> parts; ///< of the pass, if its pressure or feed varied
 };
 
 /// Results of a grinding run.

@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::Index;
 
-constexpr std::string_view kTitle = "fettle-belt journal 3\n";
+constexpr std::string_view kTitle = "fettle-belt journal 4\n";
 constexpr std::string_view kTitleOfAnyVersion = "fettle-belt journal ";
 constexpr std::size_t kDigestLine = 64 + 1;           // hexadecimal digits of SHA-256, and the end of the line
 constexpr double kMaxExactInteger = 9007199254740992; // 2^53: a double holds all integers up to it
@@ -116,11 +116,17 @@ void serialize(Archive& archive, RunningError& error)
     archive.serialize_all(error.sum, error.sum_squares, error.min);
 }
 
+void serialize(Archive& archive, RemovalTrial& trial)
+{
+    archive.serialize_all(trial.force, trial.speed, trial.feed, trial.duration, trial.prior_work, trial.volume,
+                          trial.deviation);
+}
+
 void serialize(Archive& archive, MeasuredPass& pass)
 {
-    RemovalTrial& trial = pass.trial;
-    archive.serialize_all(trial.force, trial.speed, trial.feed, trial.duration, trial.prior_work, trial.volume,
-                          pass.contact_volume, pass.work, pass.feed_factor);
+    serialize(archive, pass.trial);
+    archive.serialize_all(pass.contact_volume, pass.sensitivity, pass.work, pass.feed_factor);
+    archive.serialize(pass.parts, [&](RemovalTrial& part) { serialize(archive, part); });
 }
 
 void serialize(Archive& archive, BeltCheckpoint& checkpoint)

@@ -13,6 +13,7 @@ struct RemovalTrial {
     double duration = 0;   ///< s
     double prior_work = 0; ///< work that the belt did before: sum of force · speed · duration
     double volume = 0;     ///< removed, mm³
+    double deviation = 0;  ///< standard deviation of the volume's logarithm by its measurement alone
 };
 
 /// Terms of a law that are fitted besides its coefficient.

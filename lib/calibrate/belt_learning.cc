@@ -16,6 +16,7 @@
 namespace fettle::calibrate {
 namespace {
 
+using belt::ContactWheel;
 using belt::MeasuredPass;
 using belt::RemovalTrial;
 using Eigen::Index;
@@ -24,20 +25,28 @@ using Eigen::VectorXd;
 /// A belt that is so many times as sharp or as blunt as its wheel's file says is another belt.
 constexpr double kMaxFeedFactor = 4;
 
-/// Sums over the points of a pass.
-struct PassSums {
-    double impulse = 0, time = 0, length = 0; ///< N s, s, mm
+/// Standard deviation of a part's logarithm over its distance from the simulation: so much of it the sensitivities,
+/// which are those of the simulation, leave open.
+constexpr double kLinearizationShare = 0.25;
 
-    double force() const { return impulse / time; }
-    double feed() const { return length / time; }
-};
+/// Mean feed of the points, mm/s.
+double mean_feed(const std::vector<belt::BeltPoint>& points)
+{
+    double sum = 0, count = 0;
+    for (const belt::BeltPoint& point : points) {
+        if (!point.is_on_part()) continue;
+        sum += std::log(point.feed);
+        ++count;
+    }
+    return std::exp(sum / std::max(count, 1.0));
+}
 
 /// The predicted volumes of a trial as those of its pass.
-Prediction as_measured(Prediction predicted, double contact_volume)
+Prediction as_measured(Prediction predicted, const MeasuredPass& measured)
 {
-    predicted.volume *= contact_volume;
-    predicted.lower *= contact_volume;
-    predicted.upper *= contact_volume;
+    for (double* volume : {&predicted.volume, &predicted.lower, &predicted.upper})
+        *volume = measured.contact_volume * measured.trial.volume *
+                  std::pow(*volume / measured.trial.volume, measured.sensitivity);
     return predicted;
 }
 
@@ -48,7 +57,7 @@ BeltLearning::BeltLearning(const std::string& file, const belt::ContactWheel& wh
     : wheel_(wheel), options_(options), surfels_(surfels), path_(path), lengths_(belt::tributary_lengths(path))
 {
     options_.range.reset();
-    options_.keep_removals = false;
+    record_.base = {wheel.law.pressure_exponent, wheel.law.feed_exponent};
     if (!std::filesystem::exists(file)) return;
     record_ = read_law(file);
     const RemovalTrial& first = record_.passes.front();
@@ -66,54 +75,64 @@ std::string BeltLearning::context_digest() const
     return core::sha256(text.str());
 }
 
-RemovalTrial BeltLearning::trial_at(double force, double feed, double work) const
+RemovalTrial BeltLearning::trial_at(const ContactWheel& wheel, double pressure, double feed, double work) const
 {
-    return expected_trial(wheel_, force, feed, known_work_ + work);
+    return expected_trial(wheel, record_.base, pressure, feed, known_work_ + work);
 }
 
-double BeltLearning::coefficient_ratio(const RemovalTrial& conditions) const
+ContactWheel BeltLearning::known_wheel(double pressure, double feed, double work) const
 {
-    return law_ ? law_->belief.predict(conditions).volume / conditions.volume : 1;
+    ContactWheel wheel = wheel_;
+    if (!law_) return wheel;
+    const Parameters offset = law_->belief.posterior().mean - preston_exponents();
+    // The ranges of a wheel's file.
+    wheel.law.pressure_exponent = std::clamp(record_.base.pressure_exponent + offset[Parameter::force], 0.0, 5.0);
+    wheel.law.feed_exponent = std::clamp(record_.base.feed_exponent + offset[Parameter::feed], -5.0, 5.0);
+    const RemovalTrial planned = trial_at(wheel_, pressure, feed, work);
+    const double ratio = law_->belief.predict(planned).volume / planned.volume;
+    wheel.law.coefficient *= std::clamp(ratio, 1 / kMaxFeedFactor, kMaxFeedFactor) * planned.volume /
+                             trial_at(wheel, pressure, feed, work).volume;
+    return wheel;
 }
 
-double BeltLearning::expected_ratio() const
+ContactWheel BeltLearning::next_wheel() const
 {
     const RemovalTrial next = next_pass(record_);
-    return coefficient_ratio(trial_at(next.force, next.feed, next.prior_work - known_work_));
+    return known_wheel(next.force, next.feed, next.prior_work - known_work_);
 }
 
-/// The factor for the feeds of the pass by which it removes as much as its path was planned for.
-double BeltLearning::feed_factor(double work) const
+double BeltLearning::feed_factor(double pressure, double planned_feed, double work) const
 {
     const double exponent =
         1 - wheel_.law.feed_exponent; // of the inverse of the feed, to which the depth is in proportion
     if (!law_ || !(exponent > 0)) return 1;
-    PassSums sums;
-    for (std::size_t k = pass_.first; k < pass_.end; ++k) {
-        const belt::BeltPoint& point = path_[k];
-        if (!point.is_on_part()) continue;
-        const double duration = lengths_[Index(k)] / point.feed + point.dwell;
-        sums.impulse += duration * (point.load.by_force ? point.load.value : record_.passes.back().force);
-        sums.time += duration;
-        sums.length += lengths_[Index(k)];
-    }
-    if (!(sums.length > 0)) return 1;
     constexpr int kRounds = 4; // the exponent of the feed that is believed differs little from the law's
     double factor = 1;
     for (int round = 0; round < kRounds; ++round) {
-        const double ratio = coefficient_ratio(trial_at(sums.force(), factor * sums.feed(), work));
+        const RemovalTrial trial = trial_at(wheel_, pressure, factor * planned_feed, work);
+        const double ratio = law_->belief.predict(trial).volume / trial.volume;
         factor = std::clamp(std::pow(ratio, 1 / exponent), 1 / kMaxFeedFactor, kMaxFeedFactor);
     }
     return factor;
 }
 
+void BeltLearning::plan_pass(std::size_t first, std::size_t end)
+{
+    pass_ = {};
+    pass_.first = first;
+    pass_.end = end;
+    pass_.planned.assign(path_.begin() + std::ptrdiff_t(first), path_.begin() + std::ptrdiff_t(end));
+}
+
 void BeltLearning::scale_feeds(double factor)
 {
+    pass_.feed_factor = factor;
     // A dwell removes with the dwell's exponent what a motion does.
     const double depth_factor = std::pow(factor, 1 - wheel_.law.feed_exponent);
-    for (std::size_t k = pass_.first; k < pass_.end; ++k) {
-        path_[k].feed *= factor;
-        path_[k].dwell /= std::pow(depth_factor, 1 / wheel_.law.dwell_exponent);
+    for (std::size_t k = 0; k < pass_.planned.size(); ++k) {
+        belt::BeltPoint& point = path_[pass_.first + k];
+        point.feed = pass_.planned[k].feed * factor;
+        point.dwell = pass_.planned[k].dwell / std::pow(depth_factor, 1 / wheel_.law.dwell_exponent);
     }
 }
 
@@ -121,36 +140,45 @@ void BeltLearning::resume(const belt::BeltRun& run)
 {
     std::size_t first = 0;
     for (const MeasuredPass& measured : run.passes) {
-        pass_.first = first;
-        pass_.end = first = belt::end_of_pass(path_, first);
+        plan_pass(first, belt::end_of_pass(path_, first));
+        first = pass_.end;
         scale_feeds(measured.feed_factor);
         add(measured);
     }
 }
 
-void BeltLearning::begin_pass(const belt::BeltGrinding& grinding, std::size_t first, std::size_t end)
+bool BeltLearning::simulate(const belt::BeltGrinding& grinding)
 {
-    pass_ = {first, end, surfels_.displacement, {}, 1, 1};
-    const double work = grinding.run().work;
-    pass_.feed_factor = feed_factor(work);
-    scale_feeds(pass_.feed_factor);
-    const double depth_factor = std::pow(pass_.feed_factor, 1 - wheel_.law.feed_exponent);
-    pass_.ratio = depth_factor; // the belief's, within kMaxFeedFactor
-
-    belt::Surfels surfels = surfels_;
-    belt::ContactWheel wheel = wheel_;
-    wheel.law.coefficient *= pass_.ratio;
     belt::BeltOptions options = options_;
-    options.prior_work += work;
-    const std::vector<belt::BeltPoint> points(path_.begin() + std::ptrdiff_t(first),
-                                              path_.begin() + std::ptrdiff_t(end));
+    options.prior_work += grinding.run().work;
+    const std::vector<belt::BeltPoint> points(path_.begin() + std::ptrdiff_t(pass_.first),
+                                              path_.begin() + std::ptrdiff_t(pass_.end));
     try {
-        belt::BeltGrinding simulation(surfels, wheel, points, options);
-        simulation.set_contact_grid(grinding.contact_grid()); // cells of another size would take another depth
-        while (!simulation.is_done()) simulation.step();
-        pass_.simulated = simulation.run();
+        pass_.simulated = simulate_pass(surfels_, pass_.wheel, points, options, grinding.contact_grid());
+        return pass_.simulated.run.removed.sum() > 0;
     } catch (const core::InputError&) {
         pass_.simulated = {}; // the pass itself will say what is wrong, and at which point
+        return false;
+    }
+}
+
+void BeltLearning::begin_pass(const belt::BeltGrinding& grinding, std::size_t first, std::size_t end)
+{
+    plan_pass(first, end);
+    pass_.before = surfels_.displacement;
+    const double work = grinding.run().work;
+    double pressure = law_ ? record_.passes.back().force : 1, planned_feed = mean_feed(pass_.planned);
+    // The pressures are those of the last pass until this one is simulated.
+    constexpr int kRounds = 3;
+    constexpr double kMaxChange = 0.01; // of the factor
+    for (int round = 0; round < kRounds; ++round) {
+        const double factor = feed_factor(pressure, planned_feed, work);
+        if (round > 0 && std::abs(factor / pass_.feed_factor - 1) < kMaxChange) break;
+        scale_feeds(factor);
+        pass_.wheel = known_wheel(pressure, factor * planned_feed, work);
+        if (!simulate(grinding)) break;
+        pressure = pass_.simulated.pressure;
+        planned_feed = pass_.simulated.feed / factor;
     }
 }
 
@@ -158,22 +186,28 @@ MeasuredPass BeltLearning::end_pass(const belt::BeltRun& run)
 {
     MeasuredPass measured;
     measured.feed_factor = pass_.feed_factor;
-    PassSums sums;
+    double impulse = 0, length = 0; // N s, mm
     for (std::size_t k = pass_.first; k < pass_.end; ++k) {
         const belt::BeltTrace& at = run.trace[k];
         if (std::isnan(at.force)) continue;
-        sums.impulse += at.force * at.duration;
-        sums.time += at.duration;
-        sums.length += lengths_[Index(k)];
+        impulse += at.force * at.duration;
+        length += lengths_[Index(k)];
     }
-    measured.work = sums.impulse * wheel_.belt_speed;
+    measured.work = impulse * wheel_.belt_speed;
+    const double work = std::max(0.0, run.work - measured.work); // before the first pass, but for rounding
+    const SimulatedPass& simulated = pass_.simulated;
     const VectorXd lost = pass_.before - surfels_.displacement;
-    const double depth = lost.array().isFinite().select(lost, 0).sum();
-    const double simulated = pass_.simulated.removed.size() > 0 ? pass_.simulated.removed.sum() : 0;
-    if (sums.length > 0 && depth > 0 && simulated > 0) {
-        measured.trial = trial_at(sums.force(), sums.feed(), run.work - measured.work);
-        measured.trial.volume *= pass_.ratio * depth / simulated;
-        measured.contact_volume = pass_.simulated.removed_volume * depth / simulated / measured.trial.volume;
+    const double depth = lost.array().isFinite().select(lost, 0).sum(), expected = simulated.run.removed.sum();
+    if (length > 0 && depth > 0 && expected > 0) {
+        measured.trial = trial_at(pass_.wheel, simulated.pressure, simulated.feed, work);
+        measured.sensitivity = simulated.pass_sensitivity;
+        measured.trial.volume *= std::pow(depth / expected, 1 / measured.sensitivity);
+        measured.contact_volume = simulated.run.removed_volume * depth / expected / measured.trial.volume;
+        for (const PassPart& part : divide_pass(simulated, lost)) {
+            RemovalTrial& trial = measured.parts.emplace_back(trial_at(pass_.wheel, part.pressure, part.feed, work));
+            trial.volume *= part.ratio;
+            trial.deviation = kLinearizationShare * std::abs(std::log(part.ratio));
+        }
     }
     add(measured);
     return measured;
@@ -191,7 +225,8 @@ void BeltLearning::add(const MeasuredPass& measured)
         record_.pass_work = measured.work;
         law_.emplace(LearntLaw{LawBelief(trial, measured.work), {}});
     }
-    learn_pass(*law_, trial);
+    learn_pass(*law_, trial, measured.parts);
+    for (const RemovalTrial& part : measured.parts) record_.parts.push_back({record_.passes.size(), part});
     record_.passes.push_back(trial);
     passes_.push_back(pass);
 }
@@ -204,7 +239,7 @@ std::vector<std::string> BeltLearning::warnings() const
         if (!judged.has_change) continue;
         const RunPass& pass = passes_[k];
         judged.pass.volume *= pass.measured.contact_volume;
-        judged.predicted = as_measured(judged.predicted, pass.measured.contact_volume);
+        judged.predicted = as_measured(judged.predicted, pass.measured);
         lines.push_back(change_message(judged, pass.number));
     }
     return lines;
@@ -221,20 +256,25 @@ json::Value BeltLearning::report() const
             .set("volume", measured.trial.volume * measured.contact_volume)
             .set("feed_factor", measured.feed_factor);
         if (predicted) {
-            const Prediction volumes = as_measured(*predicted, measured.contact_volume);
+            const Prediction volumes = as_measured(*predicted, measured);
             value.set("expected", volumes.volume).set("lower", volumes.lower).set("upper", volumes.upper);
         }
         predictions.push_back(value.set("change", law_->passes[known_passes_ + k].has_change));
     }
+    const belt::BeltLaw next = next_wheel().law;
+    const ParameterMatrix covariance = law_->belief.posterior().covariance;
     return run_report(*law_, known_passes_, next_pass(record_))
-        .set("coefficient", wheel_.law.coefficient * expected_ratio())
+        .set("coefficient", next.coefficient)
+        .set("pressure_exponent", next.pressure_exponent)
+        .set("pressure_exponent_sigma", std::sqrt(covariance(Parameter::force, Parameter::force)))
+        .set("feed_exponent", next.feed_exponent)
+        .set("feed_exponent_sigma", std::sqrt(covariance(Parameter::feed, Parameter::feed)))
         .set("predictions", predictions);
 }
 
 json::Value BeltLearning::file() const
 {
-    belt::ContactWheel learnt = wheel_;
-    learnt.law.coefficient *= expected_ratio();
+    ContactWheel learnt = next_wheel();
     learnt.law_source = "fettle-belt --learn";
     return belt::to_json(learnt).set("learnt", to_json(*law_).set("record", to_json(record_)));
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "belt/belt_journal.h"
+#include "calibrate/belt_pass.h"
 #include "calibrate/law_record.h"
 
 #include <optional>
@@ -9,10 +10,11 @@
 
 namespace fettle::calibrate {
 
-/// What a belt learns while it grinds, pass by pass. Before a pass the simulation by the wheel's law, as far as it is
-/// known, says what it will remove from the surfels as they are; the belief says how much more or less that will be,
-/// with an interval, and the feeds of the pass are changed by that so that it removes what its path was planned for.
-/// After it, the surfels say what it was. The trials are those of measure_belt (belt_run.h).
+/// What a belt learns while it grinds, pass by pass. Before a pass the simulation by the law, as far as it is known,
+/// says what it will remove from the surfels as they are, the belief within which interval, and the feeds of the pass
+/// are changed so that it removes what its path was planned for. After it, the surfels say what it was: the pass as a
+/// whole, which is judged, and by parts of like pressure and feed (divide_pass()), which tell the exponents, too. The
+/// trials are those of measure_belt (belt_run.h); their base is the law of the first wheel.
 class BeltLearning : public belt::PassSupervisor {
   public:
     /// Keeps references to all but the file's name and the options.
@@ -34,10 +36,11 @@ class BeltLearning : public belt::PassSupervisor {
     bool is_informed() const { return law_.has_value(); }
     /// A line for each pass of this run that the law does not explain, with its number on the path.
     std::vector<std::string> warnings() const;
-    /// As RunLearning::report(), the coefficient being the wheel's; and `predictions`: of each pass of this run its
-    /// volume, mm³, its feed_factor, what was expected of it (expected, lower, upper), and whether it has a change.
+    /// As RunLearning::report(), with coefficient and exponents of the law that is expected of the next pass; and
+    /// `predictions`: of each pass of this run its volume, mm³, its feed_factor, what was expected of it (expected,
+    /// lower, upper), and whether it has a change.
     json::Value report() const;
-    /// The wheel with the coefficient that is expected of the next pass, and the record; only if something is known.
+    /// The wheel with that law, and the record; only if something is known.
     json::Value file() const;
 
   private:
@@ -50,19 +53,23 @@ class BeltLearning : public belt::PassSupervisor {
     /// The pass that is being ground.
     struct CurrentPass {
         std::size_t first = 0, end = 0;
-        Eigen::VectorXd before; ///< displacements of the surfels, mm
-        belt::BeltRun simulated;
-        double ratio = 1; ///< of the simulation's coefficient to the wheel's
+        std::vector<belt::BeltPoint> planned;
+        Eigen::VectorXd before;   ///< displacements of the surfels, mm
+        belt::ContactWheel wheel; ///< with the law that is known
+        SimulatedPass simulated;  ///< by it
         double feed_factor = 1;
     };
 
-    /// Conditions, and the volume by the wheel's law.  @param work  of this run before, N mm
-    belt::RemovalTrial trial_at(double force, double feed, double work) const;
-    /// Expected volume over that by the wheel's law.
-    double coefficient_ratio(const belt::RemovalTrial& conditions) const;
-    double expected_ratio() const;
-    double feed_factor(double work) const;
+    /// Conditions, and the volume by a wheel's law.  @param work  of this run before, N mm
+    belt::RemovalTrial trial_at(const belt::ContactWheel& wheel, double pressure, double feed, double work) const;
+    /// The wheel with the law that is known, as fast under these conditions as is expected of it.
+    belt::ContactWheel known_wheel(double pressure, double feed, double work) const;
+    belt::ContactWheel next_wheel() const;
+    /// The factor for the feeds of the pass by which it removes as much as its path was planned for.
+    double feed_factor(double pressure, double planned_feed, double work) const;
+    void plan_pass(std::size_t first, std::size_t end);
     void scale_feeds(double factor);
+    bool simulate(const belt::BeltGrinding& grinding);
     void add(const belt::MeasuredPass& measured);
 
     const belt::ContactWheel& wheel_;

@@ -1,6 +1,7 @@
 #include "calibrate/belt_run.h"
 
 #include "belt/belt_path.h"
+#include "calibrate/belt_pass.h"
 #include "core/cholesky.h"
 #include "core/error.h"
 #include "geometry/quantiles.h"
@@ -123,12 +124,14 @@ VectorXd weights_of(const VectorXd& residuals, double& sigma)
 }
 
 /// Trials of the passes from the measured depths, shared as the simulation by the fitted law shares them.
-/// @param run, given_run  simulated by the fitted law and by the wheel's
-void add_passes(const std::vector<belt::BeltPoint>& path, const belt::BeltRun& run, const belt::BeltRun& given_run,
-                const VectorXd& measured, const belt::ContactWheel& wheel, BeltRunLaw& result)
+/// @param run, stepped_run  simulated by the fitted law, and with kExponentStep more that is as fast at `pressure`, MPa
+/// @param wheel  with the fitted law
+void add_passes(const std::vector<belt::BeltPoint>& path, const belt::BeltRun& run, const belt::BeltRun& stepped_run,
+                double pressure, const VectorXd& measured, const belt::ContactWheel& wheel, const TrialBase& base,
+                BeltRunLaw& result)
 {
     struct Sums {
-        double impulse = 0, time = 0, length = 0, measured = 0, simulated = 0;
+        double impulse = 0, length = 0, measured = 0, simulated = 0, log_feed = 0, stepped = 0;
     };
     std::vector<Sums> passes;
     std::vector<std::size_t> pass_of(path.size());
@@ -140,20 +143,24 @@ void add_passes(const std::vector<belt::BeltPoint>& path, const belt::BeltRun& r
         const belt::BeltTrace& at = run.trace[k];
         Sums& pass = passes.back();
         pass.impulse += at.force * at.duration;
-        pass.time += at.duration;
         pass.length += lengths[k];
     }
     for (const belt::SurfelRemoval& loss : run.removals) {
         const double share = loss.depth / run.removed[loss.surfel];
         if (!(share > 0) || !std::isfinite(measured[loss.surfel])) continue;
-        passes[pass_of[loss.point]].measured += share * measured[loss.surfel];
+        Sums& pass = passes[pass_of[loss.point]];
+        pass.measured += share * measured[loss.surfel];
+        pass.simulated += loss.depth;
+        pass.log_feed += loss.depth * std::log(path[loss.point].feed);
     }
-    for (const belt::SurfelRemoval& loss : given_run.removals)
-        if (std::isfinite(measured[loss.surfel])) passes[pass_of[loss.point]].simulated += loss.depth;
+    for (const belt::SurfelRemoval& loss : stepped_run.removals)
+        if (std::isfinite(measured[loss.surfel])) passes[pass_of[loss.point]].stepped += loss.depth;
     double work = 0;
     for (const Sums& pass : passes) {
         if (!(pass.length > 0 && pass.measured > 0 && pass.simulated > 0)) continue; // or it only stood
-        belt::RemovalTrial trial = expected_trial(wheel, pass.impulse / pass.time, pass.length / pass.time, work);
+        belt::RemovalTrial trial =
+            expected_trial(wheel, base, pressure * std::pow(pass.stepped / pass.simulated, 1 / kExponentStep),
+                           std::exp(pass.log_feed / pass.simulated), work);
         trial.volume *= pass.measured / pass.simulated;
         result.passes.push_back(trial);
         work += pass.impulse * wheel.belt_speed;
@@ -163,16 +170,25 @@ void add_passes(const std::vector<belt::BeltPoint>& path, const belt::BeltRun& r
 
 } // namespace
 
-belt::RemovalTrial expected_trial(const belt::ContactWheel& wheel, double force, double feed, double prior_work)
+belt::RemovalTrial expected_trial(const belt::ContactWheel& wheel, const TrialBase& base, double pressure, double feed,
+                                  double prior_work)
 {
     constexpr double kUnrecorded = std::numeric_limits<double>::quiet_NaN();
     const double rate = wheel.law.coefficient * std::pow(wheel.belt_speed, wheel.law.speed_exponent);
-    return {.force = force,
-            .speed = kUnrecorded,
-            .feed = feed,
-            .duration = kUnrecorded,
-            .prior_work = prior_work,
-            .volume = rate * force / feed};
+    const belt::RemovalTrial preston{.force = pressure,
+                                     .speed = kUnrecorded,
+                                     .feed = feed,
+                                     .duration = kUnrecorded,
+                                     .prior_work = prior_work,
+                                     .volume = rate * pressure / feed};
+    return rebased(preston, {wheel.law.pressure_exponent, wheel.law.feed_exponent}, base);
+}
+
+belt::RemovalTrial rebased(belt::RemovalTrial trial, const TrialBase& from, const TrialBase& to)
+{
+    trial.volume *= std::pow(trial.force, from.pressure_exponent - to.pressure_exponent) *
+                    std::pow(trial.feed, from.feed_exponent - to.feed_exponent);
+    return trial;
 }
 
 BeltRunLaw measure_belt(const cloud::Cloud& trace, const belt::ContactWheel& wheel, const belt::Surfels& before,
@@ -236,7 +252,12 @@ BeltRunLaw measure_belt(const cloud::Cloud& trace, const belt::ContactWheel& whe
     result.reference_pressure = map.pressure;
     result.reference_feed = map.feed;
     result.surfels = count;
-    add_passes(path, fit.simulate(result.law, true), fit.simulate(wheel.law, true), measured, wheel, result);
+    const belt::BeltLaw stepped =
+        with_pressure_exponent(result.law, result.law.pressure_exponent + kExponentStep, map.pressure);
+    belt::ContactWheel fitted = wheel;
+    fitted.law = result.law;
+    add_passes(path, fit.simulate(result.law, true), fit.simulate(stepped, true), map.pressure, measured, fitted,
+               {wheel.law.pressure_exponent, wheel.law.feed_exponent}, result);
     if (result.passes.empty()) throw core::InputError("no pass removed anything");
     return result;
 }

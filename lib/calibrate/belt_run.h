@@ -2,6 +2,7 @@
 
 #include "belt/belt_grinding.h"
 #include "belt/removal_fit.h"
+#include "calibrate/law_record.h"
 #include "cloud/cloud.h"
 #include "core/progress.h"
 
@@ -12,13 +13,16 @@
 
 namespace fettle::calibrate {
 
-/// The trial of a belt's pass as its wheel's law expects it. It is one of a contact without shape: its volume, of a
-/// millimetre of way, is what Preston's law would remove that is as fast as the wheel's law at 1 MPa and 1 mm/s.
-/// Measured, that is multiplied by the measured over the simulated volume of the pass. So a law whose coefficient alone
-/// is unknown has Preston's exponents, whatever its own are and wherever on the part the wheel is, and the trial does
-/// not change if the wheel's file gets another coefficient. For Preston's law it is the volume itself.
-/// @param force  mean, N   @param feed  mean, mm/s   @param prior_work  of the belt, N mm
-belt::RemovalTrial expected_trial(const belt::ContactWheel& wheel, double force, double feed, double prior_work);
+/// The trial of a belt's pass as its wheel's law expects it. It is one of a square millimetre of contact, whose force
+/// in N is the pressure in MPa: its volume is that of a millimetre of way, over pressure and feed to the powers by
+/// which the base's exponents differ from Preston's. Measured, that is multiplied by the measured over the simulated
+/// volume of the pass. So a law whose exponents are the base's has Preston's in its trials, wherever on the part the
+/// wheel is, and a trial does not change with the law by which it was simulated.
+/// @param pressure  at which the pass removed, MPa   @param feed  mm/s   @param prior_work  of the belt, N mm
+belt::RemovalTrial expected_trial(const belt::ContactWheel& wheel, const TrialBase& base, double pressure, double feed,
+                                  double prior_work);
+/// A trial relative to another base.
+belt::RemovalTrial rebased(belt::RemovalTrial trial, const TrialBase& from, const TrialBase& to);
 
 /// What a run of a belt says of its wheel's law.
 struct BeltRunLaw {
@@ -31,8 +35,8 @@ struct BeltRunLaw {
     double reference_pressure = 0, reference_feed = 0; ///< MPa, mm/s
     double depth_error = 0;                            ///< standard deviation of measured minus fitted depth, mm
     Eigen::Index surfels = 0;                          ///< that were compared
-    /// A trial (expected_trial) for each run of the path that has a length. Measured depths are shared among the passes
-    /// as the fitted law shares them.
+    /// A trial (expected_trial), relative to the exponents that were given, for each run of the path that has a length.
+    /// Measured depths are shared among the passes as the fitted law shares them.
     std::vector<belt::RemovalTrial> passes;
     double pass_work = 0; ///< mean work of a pass, N mm
 };

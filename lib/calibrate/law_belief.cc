@@ -177,16 +177,24 @@ Prediction LawBelief::predict(const RemovalTrial& next, double probability) cons
     return prediction;
 }
 
-void LawBelief::update(const RemovalTrial& pass)
+void LawBelief::update(const std::vector<RemovalTrial>& parts)
 {
-    check(reference_, pass);
-    if (!(pass.volume > 0)) throw core::InputError("the volume of a pass is not positive");
-    const Parameters x = regressors(pass);
-    const double y = std::log(pass.volume);
+    for (const RemovalTrial& part : parts) {
+        check(reference_, part);
+        if (!(part.volume > 0)) throw core::InputError("the volume of a pass is not positive");
+    }
+    for (LawModel& model : models_) model.covariance(level, level) += model.drift * model.drift;
+    for (const RemovalTrial& part : parts) observe(part);
+}
+
+void LawBelief::observe(const RemovalTrial& part)
+{
+    const Parameters x = regressors(part);
+    const double y = std::log(part.volume);
     for (LawModel& model : models_) {
-        model.covariance(level, level) += model.drift * model.drift;
         const Parameters Px = model.covariance * x;
-        const double noise = model.scatter * model.scatter, error = y - x.dot(model.mean);
+        const double noise = model.scatter * model.scatter + part.deviation * part.deviation,
+                     error = y - x.dot(model.mean);
         double variance = x.dot(Px) + noise;
         model.log_score += log_density(error, variance, model.has_heavy_tails);
         if (model.has_heavy_tails) {

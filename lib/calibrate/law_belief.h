@@ -75,7 +75,9 @@ class LawBelief {
     /// @param probability  of the interval
     Prediction predict(const belt::RemovalTrial& next, double probability = 0.95) const;
     /// Learns from a pass. @throws InputError for a value that is not positive
-    void update(const belt::RemovalTrial& pass);
+    void update(const belt::RemovalTrial& pass) { update(std::vector{pass}); }
+    /// Learns from a pass of parts under different conditions, between which the level does not wander.
+    void update(const std::vector<belt::RemovalTrial>& parts);
     /// The level may have changed by a factor of 2 or so, with a new belt, or a wheel that went blunt; what is known of
     /// the exponents is kept.
     void loosen_level();
@@ -94,6 +96,8 @@ class LawBelief {
     Parameters regressors(const belt::RemovalTrial& trial) const;
 
   private:
+    void observe(const belt::RemovalTrial& part);
+
     belt::RemovalTrial reference_;
     double pass_work_;
     std::vector<LawModel> models_;

@@ -23,14 +23,14 @@ LawRecord read_law(const std::string& path)
     return read_record(learnt.object("record"));
 }
 
-LawRecord continued(LawRecord record, const std::vector<belt::RemovalTrial>& passes, const std::string& source)
+LawRecord continued(LawRecord record, const LawRecord& more, const std::string& source)
 {
-    for (const belt::RemovalTrial& pass : passes) {
+    for (const belt::RemovalTrial& pass : more.passes) {
         for (const Factor& factor : kFactors)
             if (std::isnan(pass.*factor.value) != std::isnan(record.passes.front().*factor.value))
                 throw core::InputError(source, std::string("records other conditions than the known law: ") +
                                                    kParameterNames[factor.parameter]);
-        record.passes.push_back(pass);
+        record.passes.push_back(rebased(pass, more.base, record.base));
     }
     return record;
 }

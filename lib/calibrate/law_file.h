@@ -16,9 +16,9 @@ json::Value law_file(const json::Value& learnt);
 /// @throws InputError if it is none
 LawRecord read_law(const std::string& path);
 
-/// A record with more passes. @param source  of the passes, for messages
+/// A record with the passes of another. @param source  of those, for messages
 /// @throws InputError if they record other quantities than those before
-LawRecord continued(LawRecord record, const std::vector<belt::RemovalTrial>& passes, const std::string& source);
+LawRecord continued(LawRecord record, const LawRecord& more, const std::string& source);
 
 /// The law for a wheel's file, from trials of a belt at rest: the pressure is the force over the contact.
 /// @param area  of the contact, mm²   @param travel  of the belt in a unit of the trials' speed and a minute, mm

@@ -23,8 +23,12 @@ Bounds bounds_of(const LearntLaw& law, double RemovalTrial::*value)
 {
     Bounds bounds{std::numeric_limits<double>::infinity(), 0};
     for (const JudgedPass& judged : law.passes) {
-        bounds.min = std::min(bounds.min, judged.pass.*value);
-        bounds.max = std::max(bounds.max, judged.pass.*value);
+        const auto add = [&](const RemovalTrial& trial) {
+            bounds.min = std::min(bounds.min, trial.*value);
+            bounds.max = std::max(bounds.max, trial.*value);
+        };
+        add(judged.pass);
+        for (const RemovalTrial& part : judged.parts) add(part);
     }
     return bounds;
 }

@@ -36,7 +36,8 @@ belt::BeltCheckpoint ground()
     state.run.removed[1] = 0.05;
     state.run.trace = {{1, 1, 10, 0.1, 0.2, 30, 4}, {2, 1, 11, 0.1, 0.2, 31, 5}};
     state.run.errors = {{0, 1, 1, 0.1, 0.1, 0.1}, {0, 2, 0, 0.1, 0.1, 0.1}};
-    state.run.passes = {{{10, std::numeric_limits<double>::quiet_NaN(), 4, 0, 1e5, 3}, 7, 1e5, 0.8}};
+    const belt::RemovalTrial trial{10, std::numeric_limits<double>::quiet_NaN(), 4, 0, 1e5, 3, 0.01};
+    state.run.passes = {{trial, 7, 0.9, 1e5, 0.8, {trial}}};
     state.contact.grid = {{1, 2}, kCells, kCells};
     state.contact.pressure = Eigen::Matrix2d::Constant(0.3);
     return checkpoint;
@@ -76,6 +77,8 @@ TEST(BeltJournal, ReadsWhatWasWritten)
     ASSERT_EQ(found.state.run.passes.size(), 1u);
     EXPECT_TRUE(std::isnan(found.state.run.passes[0].trial.speed));
     EXPECT_EQ(found.state.run.passes[0].feed_factor, 0.8);
+    ASSERT_EQ(found.state.run.passes[0].parts.size(), 1u);
+    EXPECT_EQ(found.state.run.passes[0].parts[0].deviation, 0.01);
     EXPECT_EQ(found.state.contact.pressure, ground().state.contact.pressure);
     EXPECT_EQ(belt::encode_journal(kDigest, found), journal);
     EXPECT_FALSE(is_refused(belt::encode_journal(kDigest, initial())));
