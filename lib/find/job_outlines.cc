@@ -14,8 +14,8 @@ namespace {
 constexpr double kEdgeCells = 2.5;
 // Pixels, of half a cell: around polygons; of an edge's least size, as single cells are outliers of the noise; of S's
 // and B's simplified outlines.
-constexpr int kMargin = 8, kMinEdgePixels = 4, kEdgePixels = int(2 * kEdgeCells);
-constexpr double kSamplingTolerance = 1.5, kBoundaryTolerance = 0.8;
+constexpr int kMarginPixels = 8, kMinEdgePixels = 4, kEdgePixels = int(2 * kEdgeCells);
+constexpr double kSamplingPixels = 1.5, kBoundaryPixels = 0.8;
 // The part ends at B if it does so within this of it: as far as B is clipped, and as its outline is simplified.
 constexpr int kOpenSidePixels = 4;
 // Less of B than this share beside the part is no edge.
@@ -32,20 +32,20 @@ struct HalfCells {
     {
         const Eigen::Vector2d high = a.rowwise().maxCoeff().cwiseMax(b.rowwise().maxCoeff());
         const Eigen::Vector2d pixels = (high - low) / pixel;
-        size = {int(pixels.x()) + 2 * kMargin + 1, int(pixels.y()) + 2 * kMargin + 1};
+        size = {int(pixels.x()) + 2 * kMarginPixels + 1, int(pixels.y()) + 2 * kMarginPixels + 1};
     }
 
     Eigen::Vector2d place(const cv::Point& p) const
     {
-        return low + pixel * Eigen::Vector2d(p.x - kMargin, p.y - kMargin);
+        return low + pixel * Eigen::Vector2d(p.x - kMarginPixels, p.y - kMarginPixels);
     }
 
     Mask inside(const Eigen::Matrix2Xd& polygon) const
     {
         std::vector<cv::Point> places;
         for (const auto& corner : polygon.colwise())
-            places.emplace_back(cvRound((corner.x() - low.x()) / pixel) + kMargin,
-                                cvRound((corner.y() - low.y()) / pixel) + kMargin);
+            places.emplace_back(cvRound((corner.x() - low.x()) / pixel) + kMarginPixels,
+                                cvRound((corner.y() - low.y()) / pixel) + kMarginPixels);
         Mask mask(size, std::uint8_t(0));
         cv::fillPoly(mask, std::vector<std::vector<cv::Point>>{places}, 255);
         return mask;
@@ -114,7 +114,7 @@ Eigen::Matrix2Xd clipped_to_part(const Eigen::Matrix2Xd& boundary, const HeightM
     const HalfCells cells(boundary, boundary, map.cell);
     const Mask inside = cells.inside(boundary), beside = beside_part(cells, inside, map);
     if (cv::countNonZero(inside & beside) <= kMinClippedShare * cv::countNonZero(inside)) return boundary;
-    const Eigen::Matrix2Xd clipped = cells.outline(opened(inside & ~dilated(beside, 2), 3), kBoundaryTolerance);
+    const Eigen::Matrix2Xd clipped = cells.outline(opened(inside & ~dilated(beside, 2), 3), kBoundaryPixels);
     return clipped.cols() >= 3 ? clipped : boundary;
 }
 
@@ -137,8 +137,8 @@ Eigen::Matrix2Xd sampling_before_edges(const FoundAnomaly& anomaly, const Height
     const Mask metal = opened(outer & ~edges, 3);
     // Where the part ends, what is left between B and its edge is the anomaly's, and no metal to touch.
     if (cv::countNonZero(beside_part(cells, core, map) & dilated(core, kOpenSidePixels)) == 0)
-        return cells.outline(metal | dilated(core, 1), kSamplingTolerance);
-    return job::joined(cells.outline(metal | core, kSamplingTolerance), anomaly.boundary);
+        return cells.outline(metal | dilated(core, 1), kSamplingPixels);
+    return job::joined(cells.outline(metal | core, kSamplingPixels), anomaly.boundary);
 }
 
 } // namespace fettle::find
