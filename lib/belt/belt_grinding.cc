@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -37,17 +38,52 @@ MatrixXd spread_over_rectangle(const MatrixXd& pressure)
     return result;
 }
 
+/// A depth on the cells of a contact, at surfels.
+///
+/// A surfel represents the square around it, and squares that tile the plane share all that is removed. But the mean
+/// over a square of side s is s²/24 times the second derivatives less than the depth in its middle: on a narrow contact
+/// a good part of it. That over a square three times as wide shows by how much. Where squares reach over the border of
+/// the workpiece, the means are of what lies inside.
+class SurfelDepth {
+  public:
+    /// @param depth  mm   @param coverage  of the cells   @param spacing  of the surfels, mm
+    SurfelDepth(const ContactGrid& grid, const MatrixXd& depth, const MatrixXd& coverage, double spacing)
+        : depth_(grid, depth.cwiseProduct(coverage)), spacing_(spacing)
+    {
+        if ((coverage.array() < 1).any()) uncovered_.emplace(grid, (1 - coverage.array()).matrix());
+    }
+
+    /// Largest distance from a surfel at which it loses something, along each axis, mm.
+    double reach() const { return 1.5 * spacing_; }
+    double square_mean(const Eigen::Vector2d& place) const { return mean(place, spacing_); }
+    /// @param square_mean  at the place
+    double in_the_middle(const Eigen::Vector2d& place, double square_mean) const
+    {
+        return std::max((9 * square_mean - mean(place, 3 * spacing_)) / 8, 0.0);
+    }
+
+  private:
+    double mean(const Eigen::Vector2d& place, double side) const
+    {
+        constexpr double kMinCovered = 0.05; // less is the rounding of the border to cells
+        const double inside = uncovered_ ? 1 - uncovered_->mean_around(place, side) : 1;
+        return inside < kMinCovered ? 0 : depth_.mean_around(place, side) / inside;
+    }
+
+    BoxAverage depth_;
+    std::optional<BoxAverage> uncovered_;
+    double spacing_;
+};
+
 /// Depths that the surfels under the last contact lose at a point of the path.
 /// @param depth  normal to the tangent plane, on the cells of the contact, mm
-std::vector<SurfelRemoval> surfel_removals(const WheelContactSolver& solver, const ContactGrid& grid,
+std::vector<SurfelRemoval> surfel_removals(const WheelContactSolver& solver, const WheelContact& contact,
                                            const MatrixXd& depth, const Surfels& surfels, const Eigen::Vector3d& up,
                                            std::size_t point)
 {
-    // A surfel represents the square around it, whose side is the mean spacing.
     const Eigen::Matrix3Xd& coordinates = solver.surfel_coordinates();
-    const double side = mean_spacing(coordinates);
-    const BoxAverage mean_depth(grid, depth, side);
-    const Eigen::Vector2d reach = solver.contact_extent().array() + side / 2;
+    const SurfelDepth surfel_depth(contact.grid, depth, contact.coverage, mean_spacing(coordinates));
+    const Eigen::Vector2d reach = solver.contact_extent().array() + surfel_depth.reach();
     std::vector<SurfelRemoval> removals;
     std::vector<Index> in_contact;
     for (Index i = 0; i < coordinates.cols(); ++i) {
@@ -57,11 +93,22 @@ std::vector<SurfelRemoval> surfel_removals(const WheelContactSolver& solver, con
     }
     constexpr std::size_t kGrainSize = 1024; // surfels for one task
     using Range = tbb::blocked_range<std::size_t>;
+    std::vector<double> square_means(removals.size());
     tbb::parallel_for(Range(0, in_contact.size(), kGrainSize), [&](const Range& range) {
-        for (std::size_t k = range.begin(); k < range.end(); ++k)
-            removals[k].depth = mean_depth.mean_around(coordinates.col(in_contact[k]).head<2>()) *
-                                surfels.normal.col(removals[k].surfel).dot(up);
+        for (std::size_t k = range.begin(); k < range.end(); ++k) {
+            const Eigen::Vector2d place = coordinates.col(in_contact[k]).head<2>();
+            square_means[k] = surfel_depth.square_mean(place);
+            removals[k].depth = surfel_depth.in_the_middle(place, square_means[k]);
+        }
     });
+    // Beside the contact the depth would be a little below 0 and is 0: by as much the others are less.
+    double all = 0, found = 0;
+    for (std::size_t k = 0; k < removals.size(); ++k) {
+        all += square_means[k];
+        found += removals[k].depth;
+    }
+    for (SurfelRemoval& removal : removals)
+        removal.depth *= found > 0 ? all / found * surfels.normal.col(removal.surfel).dot(up) : 0;
     return removals;
 }
 
@@ -70,7 +117,7 @@ std::vector<SurfelRemoval> surfel_removals(const WheelContactSolver& solver, con
 BeltGrinding::BeltGrinding(Surfels& surfels, const ContactWheel& wheel, const std::vector<BeltPoint>& path,
                            const BeltOptions& options)
     : surfels_(surfels), wheel_(wheel), path_(path), options_(options), tributary_lengths_(tributary_lengths(path)),
-      solver_(surfels, wheel, options.contact)
+      solver_(surfels, wheel, options.contact, &state_.run.removed)
 {
     state_.run.removed.setZero(surfels.size());
     if (options.range) state_.error = running_error(surfels.displacement, *options.range);
@@ -104,7 +151,7 @@ void BeltGrinding::remove_material(const WheelContact& contact, const MatrixXd& 
     BeltRun& run = state_.run;
     const Eigen::Vector3d up = path_[state_.next_point].T_part_tool.linear().col(2);
     const std::vector<SurfelRemoval> removals =
-        surfel_removals(solver_, contact.grid, depth, surfels_, up, state_.next_point);
+        surfel_removals(solver_, contact, depth, surfels_, up, state_.next_point);
     for (const SurfelRemoval& removal : removals) {
         const double before = surfels_.displacement[removal.surfel];
         surfels_.displacement[removal.surfel] -= removal.depth;
@@ -113,7 +160,9 @@ void BeltGrinding::remove_material(const WheelContact& contact, const MatrixXd& 
     }
     if (options_.keep_removals) run.removals.insert(run.removals.end(), removals.begin(), removals.end());
     const Contact& found = contact.contact;
-    const double volume = depth.sum() * contact.grid.cell_size.prod();
+    const bool is_local = options_.model == BeltModel::local;
+    const double volume =
+        (is_local ? depth.cwiseProduct(contact.coverage) : depth).sum() * contact.grid.cell_size.prod();
     run.removed_volume += volume;
     run.work += found.force * wheel_.belt_speed * duration;
     run.near_edge += contact.is_near_edge ? 1 : 0;
@@ -142,9 +191,9 @@ void BeltGrinding::step()
             throw core::InputError("point " + std::to_string(k), error.what());
         }
         const auto depth_at = [&](double p) { return removal.depth(p); };
-        const MatrixXd& pressure = contact->contact.pressure;
         remove_material(*contact,
-                        is_local ? pressure.unaryExpr(depth_at) : spread_over_rectangle(pressure).unaryExpr(depth_at),
+                        is_local ? contact->workpiece_pressure().unaryExpr(depth_at)
+                                 : spread_over_rectangle(contact->contact.pressure).unaryExpr(depth_at),
                         moving_time + point.dwell);
     } else {
         constexpr double kNan = std::numeric_limits<double>::quiet_NaN();

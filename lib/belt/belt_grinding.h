@@ -85,14 +85,16 @@ struct BeltState {
 /// Grinds along a path, point by point. At each point the surfels under the contact lose depth along their normals by
 /// the wheel's law; the time is that for the point's tributary length (belt_path.h) plus the dwell. The law gives the
 /// depth normal to the tangent plane, so that the integral of the pressure is the force whatever the surfels' normals
-/// are (Ren et al. 2006, 4). The pressure is that at the end of the point, when its removal has made room
-/// (layer_contact.h): so ripples shrink, and with force F the volume is that of F all the same. Ripples that the grid
-/// does not resolve stay (BeltRun::coarse_grids). The global model takes the pressure at the beginning.
+/// are (Ren et al. 2006, 4). The pressure is that when a share of the point's removal has made room, between half and
+/// all (press.cc): so ripples shrink, and with force F the volume is that of F all the same. Ripples that the grid does
+/// not resolve stay (BeltRun::coarse_grids). The global model takes the pressure at the beginning.
 class BeltGrinding {
   public:
     /// Keeps references to all arguments except the options.
     BeltGrinding(Surfels& surfels, const ContactWheel& wheel, const std::vector<BeltPoint>& path,
                  const BeltOptions& options);
+    BeltGrinding(const BeltGrinding&) = delete;
+    BeltGrinding& operator=(const BeltGrinding&) = delete;
 
     bool is_done() const { return state_.next_point == path_.size(); }
     /// Share of the points that are ground, of a path that has some.
@@ -121,8 +123,8 @@ class BeltGrinding {
     const std::vector<BeltPoint>& path_;
     BeltOptions options_;
     Eigen::VectorXd tributary_lengths_; ///< of the points, mm
-    WheelContactSolver solver_;
     BeltState state_;
+    WheelContactSolver solver_; ///< refers to the state
 };
 
 /// Grinds the whole path.

@@ -164,8 +164,11 @@ bool is_consistent(const WheelContactState& contact, Index cells)
     const auto is_on_grid = [&](const Eigen::MatrixXd& pressure) {
         return pressure.size() == 0 || (pressure.rows() == grid.rows && pressure.cols() == grid.columns);
     };
-    const bool has_grid =
-        grid.rows == cells && grid.columns == cells && grid.cell_size.allFinite() && grid.cell_size.minCoeff() > 0;
+    // Of a long contact the grid may have twice as many rows (press.cc), of multiples of eight.
+    constexpr Index kMaxStretch = 2, kMaxRounding = 4;
+    const bool has_grid = grid.rows > 0 && grid.rows <= kMaxStretch * cells + kMaxRounding && grid.columns > 0 &&
+                          grid.columns <= cells + kMaxRounding && grid.cell_size.allFinite() &&
+                          grid.cell_size.minCoeff() > 0;
     return (has_grid || (grid.rows == 0 && grid.columns == 0)) && is_on_grid(contact.pressure) &&
            is_on_grid(contact.previous);
 }

@@ -10,6 +10,12 @@ double RemovalStep::depth(double p) const
     return exponent == 1 ? scale * (p - threshold) : scale * std::pow(p - threshold, exponent);
 }
 
+double RemovalStep::slope(double p) const
+{
+    if (exponent == 1) return scale;
+    return p > threshold ? scale * exponent * std::pow(p - threshold, exponent - 1) : 0;
+}
+
 RemovalStep removal_step(const BeltLaw& law, double belt_speed, double feed, double duration, double prior_work)
 {
     const double sharpness = law.wear_work > 0 ? std::exp(-prior_work / law.wear_work) : 1;

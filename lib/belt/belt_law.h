@@ -14,7 +14,7 @@ struct BeltLaw {
     double wear_work = 0; ///< N mm; 0: the belt does not wear
 };
 
-/// Removal during one contact as a function of the pressure at its end: depth = scale · (p - threshold)^exponent. It
+/// Removal during one contact as a function of the pressure in it: depth = scale · (p - threshold)^exponent. It
 /// grows with p, so that the contact with removal has one solution as the contact without has (layer_contact.h).
 struct RemovalStep {
     double scale = 0; ///< mm / MPa^exponent; 0: nothing is removed
@@ -24,6 +24,10 @@ struct RemovalStep {
     bool is_linear() const { return exponent == 1 && threshold == 0; }
     /// Depth, mm.  @param p  MPa; below the threshold nothing is removed
     double depth(double p) const;
+    /// Derivative of the depth, mm/MPa.
+    double slope(double p) const;
+    /// A share of the removal.
+    RemovalStep scaled(double share) const { return {scale * share, exponent, threshold}; }
 };
 
 /// Removal by a law in `duration`.

@@ -79,7 +79,7 @@ class Planner {
     Simulation find_constant(std::vector<BeltPoint>& path) const
     {
         constexpr int kMaxIterations = 6;
-        constexpr double kRelativeTolerance = 0.005;
+        constexpr double kRelativeTolerance = 0.001;
         double value = std::clamp(mean_value(path), variable_.min(), variable_.max());
         for (int iteration = 1;; ++iteration) {
             for (BeltPoint& point : path)

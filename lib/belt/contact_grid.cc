@@ -48,29 +48,61 @@ Eigen::Matrix3Xd select_facing_surfels(const Surfels& surfels, std::vector<Index
     return points.leftCols(count);
 }
 
-BoxAverage::BoxAverage(const ContactGrid& grid, const Eigen::MatrixXd& field, double side)
-    : grid_(grid), cells_per_mm_(1 / grid.cell_size.array()), half_grid_(grid.half_size().array() * cells_per_mm_),
-      half_side_(side / 2 * cells_per_mm_), sums_(Eigen::MatrixXd::Zero(grid.rows + 1, grid.columns + 1))
+namespace {
+
+/// Slope per cell that keeps between the neighbours' values.
+double limited_slope(double before, double here, double after)
 {
-    for (Index j = 0; j < grid.columns; ++j) {
+    const double left = here - before, right = after - here;
+    if (!(left * right > 0)) return 0;
+    const double size = std::min(std::abs(left + right) / 2, 2 * std::min(std::abs(left), std::abs(right)));
+    return std::copysign(size, left);
+}
+
+} // namespace
+
+BoxAverage::BoxAverage(const ContactGrid& grid, const Eigen::MatrixXd& field)
+    : grid_(grid), cells_per_mm_(1 / grid.cell_size.array()), half_grid_(grid.half_size().array() * cells_per_mm_),
+      sums_(Eigen::MatrixXd::Zero(grid.rows + 1, grid.columns + 1)), x_slopes_(sums_), y_slopes_(sums_)
+{
+    const Index rows = grid.rows, columns = grid.columns;
+    const auto value = [&](Index i, Index j) { return i >= 0 && i < rows && j >= 0 && j < columns ? field(i, j) : 0; };
+    for (Index j = 0; j < columns; ++j) {
         double column_sum = 0;
-        for (Index i = 0; i < grid.rows; ++i) {
-            column_sum += field(i, j);
+        for (Index i = 0; i < rows; ++i) {
+            const double here = field(i, j);
+            double x_slope = 0, y_slope = 0;
+            if (here > 0) {
+                column_sum += here;
+                x_slope = limited_slope(value(i - 1, j), here, value(i + 1, j));
+                y_slope = limited_slope(value(i, j - 1), here, value(i, j + 1));
+                const double drop = (std::abs(x_slope) + std::abs(y_slope)) / 2; // at a corner of the cell
+                if (drop > here) {
+                    x_slope *= here / drop;
+                    y_slope *= here / drop;
+                }
+            }
             sums_(i + 1, j + 1) = sums_(i + 1, j) + column_sum;
+            x_slopes_(i, j + 1) = x_slopes_(i, j) + x_slope;
+            y_slopes_(i + 1, j) = y_slopes_(i, j) + y_slope;
         }
     }
 }
 
-/// Integral of the field, in cells, from the corner of the grid to a point: bilinear in the table.
+/// Integral of the field, in cells, from the corner of the grid to a point.
 double BoxAverage::integral_to(const CellCoordinate& x, const CellCoordinate& y) const
 {
-    const double* column = sums_.data() + y.cell * sums_.rows() + x.cell;
-    const double* next = column + sums_.rows();
-    return (1 - y.fraction) * ((1 - x.fraction) * column[0] + x.fraction * column[1]) +
-           y.fraction * ((1 - x.fraction) * next[0] + x.fraction * next[1]);
+    const Index at = y.cell * sums_.rows() + x.cell, above = at + sums_.rows();
+    const double* sums = sums_.data();
+    const auto between = [](double first, double last, double share) { return first + share * (last - first); };
+    // Whole cells have their means; of the last ones, cut across a slope, the part below the cut is less or more.
+    return between(between(sums[at], sums[at + 1], x.fraction), between(sums[above], sums[above + 1], x.fraction),
+                   y.fraction) +
+           x.parabola() * between(x_slopes_.data()[at], x_slopes_.data()[above], y.fraction) +
+           y.parabola() * between(y_slopes_.data()[at], y_slopes_.data()[at + 1], x.fraction);
 }
 
-double BoxAverage::mean_around(const Vector2d& center) const
+double BoxAverage::mean_around(const Vector2d& center, double side) const
 {
     const auto coordinate = [](double x, Index count) {
         const double inside = std::clamp(x, 0.0, static_cast<double>(count));
@@ -78,12 +110,12 @@ double BoxAverage::mean_around(const Vector2d& center) const
         return CellCoordinate{cell, inside - static_cast<double>(cell)};
     };
     const Eigen::Array2d middle = center.array() * cells_per_mm_ + half_grid_;
-    const Eigen::Array2d first = middle - half_side_, last = middle + half_side_;
+    const Eigen::Array2d half_side = side / 2 * cells_per_mm_, first = middle - half_side, last = middle + half_side;
     const CellCoordinate left = coordinate(first.x(), grid_.rows), right = coordinate(last.x(), grid_.rows);
     const CellCoordinate low = coordinate(first.y(), grid_.columns), high = coordinate(last.y(), grid_.columns);
     const double sum =
         integral_to(right, high) - integral_to(left, high) - integral_to(right, low) + integral_to(left, low);
-    return std::max(sum, 0.0) / (4 * half_side_.prod()); // rounding may make the sum negative
+    return std::max(sum, 0.0) / (4 * half_side.prod()); // rounding may make the sum negative
 }
 
 double mean_spacing(const Eigen::Matrix3Xd& points)

@@ -35,26 +35,30 @@ Eigen::Matrix3Xd select_facing_surfels(const Surfels& surfels, std::vector<Eigen
 /// Mean distance between neighbours of evenly spread points, projected along z, mm.
 double mean_spacing(const Eigen::Matrix3Xd& points);
 
-/// Averages of a cell-wise constant field over axis-parallel squares, from a summed-area table (Crow 1984). The field
-/// is 0 outside the grid. Squares that tile the plane preserve the integral of the field, however small the cells are.
+/// Averages of a field over axis-parallel squares, from summed-area tables (Crow 1984). The cells' values are means; in
+/// each cell the field is linear, with monotonized central slopes (van Leer 1977), so that averages over squares of any
+/// size are of second order and none is negative. The field is 0 outside the grid. Squares that tile the plane preserve
+/// the integral of the field.
 class BoxAverage {
   public:
-    /// @param side  of the squares, mm
-    BoxAverage(const ContactGrid& grid, const Eigen::MatrixXd& field, double side);
-    /// @param center  of the square, tool frame, mm
-    double mean_around(const Eigen::Vector2d& center) const;
+    /// @param field  per cell, ≥ 0
+    BoxAverage(const ContactGrid& grid, const Eigen::MatrixXd& field);
+    /// @param center  of the square, tool frame, mm   @param side  mm
+    double mean_around(const Eigen::Vector2d& center, double side) const;
 
   private:
     /// A coordinate along one axis: its cell, and the fraction of the cell below it.
     struct CellCoordinate {
         Eigen::Index cell;
         double fraction;
+        double parabola() const { return fraction * (fraction - 1) / 2; } ///< integral of a slope of 1 about the middle
     };
     double integral_to(const CellCoordinate& x, const CellCoordinate& y) const;
 
     ContactGrid grid_;
-    Eigen::Array2d cells_per_mm_, half_grid_, half_side_; ///< the latter two in cells
-    Eigen::MatrixXd sums_;                                ///< summed-area table at the corners of the cells
+    Eigen::Array2d cells_per_mm_, half_grid_; ///< the latter in cells
+    Eigen::MatrixXd sums_;                    ///< summed-area table at the corners of the cells
+    Eigen::MatrixXd x_slopes_, y_slopes_;     ///< per cell, summed along y and along x: at the cells' lower corners
 };
 
 } // namespace fettle::belt

@@ -2,12 +2,14 @@
 
 #include "geometry/planar_grid.h"
 
+#include <Eigen/Cholesky>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 namespace fettle::belt {
@@ -44,13 +46,16 @@ struct Nearest {
 /// around it. A geometry::PointIndex would break ties otherwise, and surfels on a lattice have many.
 class Buckets {
   public:
-    explicit Buckets(const Matrix3Xd& points)
+    Buckets(const Matrix3Xd& points, const Eigen::VectorXd& removed)
         : grid_(geometry::planar_grid(points.topRows<2>(), kPointsPerBucket)), points_(points(Eigen::all, grid_.order))
     {
+        if (removed.size() > 0) removed_ = removed(grid_.order);
     }
 
     /// The points in the order of the buckets, row by row.
     const Matrix3Xd& points() const { return points_; }
+    /// Depth that they lost, in the same order; empty: unknown.
+    const Eigen::VectorXd& removed() const { return removed_; }
 
     /// The nearest points within `max_distance`, mm.
     Nearest nearest(const Vector2d& query, double max_distance) const
@@ -94,6 +99,7 @@ class Buckets {
 
     geometry::PlanarGrid grid_;
     Matrix3Xd points_;
+    Eigen::VectorXd removed_;
 };
 
 /// Is the query in the convex hull of its neighbours, so that its height is interpolated and not extrapolated? It is
@@ -144,6 +150,11 @@ class KrigingOfFour {
             y_[k][lane] = points(1, i) - query.y();
             z_[k][lane] = points(2, i);
         }
+    }
+    /// Adds what the points lost to the heights that were set.
+    void add(Index lane, const Nearest& near, const Eigen::VectorXd& removed)
+    {
+        for (Index k = 0; k < kMaxGridNeighbours; ++k) z_[k][lane] += removed[near.index[k < near.count ? k : 0]];
     }
 
     /// Uses the covariance c(d) = 2 (max. distance) - d instead of the variogram: the weights are the same, and the
@@ -204,46 +215,144 @@ class KrigingOfFour {
     Lanes4 C_[kMaxGridNeighbours][kMaxGridNeighbours];                             ///< lower triangle
 };
 
+/// The ground surface at a query between points that a wheel has touched and others, beside the kink between them.
+struct BesideKink {
+    double ground;   ///< height of the plane through the touched points, mm
+    double min, max; ///< of the depths that the points lost, mm
+    double height(double before) const { return before - std::clamp(before - ground, min, max); }
+};
+
+/// @return  empty away from a kink, and where the touched points do not determine a plane
+std::optional<BesideKink> beside_kink(const Vector2d& query, const Nearest& near, const Buckets& buckets)
+{
+    constexpr double kMinTouchedShare = 0.1; // of the deepest: squares that a contact only grazes lost less
+    const Eigen::VectorXd& removed = buckets.removed();
+    if (removed.size() == 0) return std::nullopt;
+    BesideKink found{0, removed[near.index[0]], removed[near.index[0]]};
+    for (Index k = 1; k < near.count; ++k) {
+        found.min = std::min(found.min, removed[near.index[k]]);
+        found.max = std::max(found.max, removed[near.index[k]]);
+    }
+    if (!(found.min < kMinTouchedShare * found.max) || near.squared_distance[0] == 0) return std::nullopt;
+    Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d right = Eigen::Vector3d::Zero();
+    for (Index k = 0; k < near.count; ++k) {
+        const Index i = near.index[k];
+        if (removed[i] < kMinTouchedShare * found.max) continue;
+        const Eigen::Vector3d point = buckets.points().col(i), row(1, point.x() - query.x(), point.y() - query.y());
+        const double weight = near.squared_distance[0] / near.squared_distance[k];
+        normal += weight * row * row.transpose();
+        right += weight * point.z() * row;
+    }
+    const Eigen::LDLT<Eigen::Matrix3d> solver(normal);
+    constexpr double kMinPivotShare = 1e-6; // points in a row have none but rounding
+    if (!(solver.vectorD().minCoeff() > kMinPivotShare * solver.vectorD().maxCoeff())) return std::nullopt;
+    found.ground = solver.solve(right)[0];
+    return found;
+}
+
+/// The area over the workpiece.
+class Outline {
+  public:
+    Outline(const Buckets& buckets, double spacing) : buckets_(buckets), spacing_(spacing) {}
+
+    Nearest nearest(const Vector2d& query) const
+    {
+        constexpr double kSearchRadiusSpacings = 3;
+        return buckets_.nearest(query, kSearchRadiusSpacings * spacing_);
+    }
+
+    /// A surfel stands for a square of one spacing. The part ends where those of its last surfels do: discs of this
+    /// radius reach half a spacing, on average, beyond a straight row of them. A gap between surfels is bridged, up to
+    /// a width.
+    bool contains(const Vector2d& query, const Nearest& near) const
+    {
+        constexpr double kSurfelRadiusSpacings = 0.583, kMaxBridgeSpacings = 2;
+        if (near.count == 0) return false;
+        const double nearest = std::sqrt(near.squared_distance[0]) / spacing_;
+        return nearest <= kSurfelRadiusSpacings ||
+               (nearest <= kMaxBridgeSpacings && is_surrounded(query, near, buckets_.points()));
+    }
+
+    /// Share of a cell, from samples no two of which share a row or a column of its 16 x 16 pieces.
+    double coverage(const Vector2d& center, const Vector2d& cell_size) const
+    {
+        constexpr Index kSamples = 16, kStride = 7; // 7 has no factor in common with 16
+        Index inside = 0;
+        for (Index k = 0; k < kSamples; ++k) {
+            const Eigen::Array2d place(static_cast<double>(k), static_cast<double>(k * kStride % kSamples));
+            const Vector2d sample = center.array() + cell_size.array() * ((place + 0.5) / kSamples - 0.5);
+            inside += contains(sample, nearest(sample)) ? 1 : 0;
+        }
+        return static_cast<double>(inside) / kSamples;
+    }
+
+  private:
+    const Buckets& buckets_;
+    double spacing_;
+};
+
+/// Coverage of the cells along the workpiece's border; of the others, whether their centre is inside.
+Eigen::MatrixXd cell_coverage(const ContactGrid& grid, const Outline& outline, const Eigen::MatrixXd& center_inside)
+{
+    Eigen::MatrixXd coverage = center_inside;
+    const auto is_at_border = [&](Index row, Index column) {
+        const Index top = std::max<Index>(row - 1, 0), left = std::max<Index>(column - 1, 0);
+        const auto around = center_inside.block(top, left, std::min(row + 2, grid.rows) - top,
+                                                std::min(column + 2, grid.columns) - left);
+        return around.minCoeff() != around.maxCoeff();
+    };
+    tbb::parallel_for(Index{0}, grid.columns, [&](Index column) {
+        for (Index row = 0; row < grid.rows; ++row)
+            if (is_at_border(row, column))
+                coverage(row, column) = outline.coverage(grid.cell_center(row, column), grid.cell_size);
+    });
+    return coverage;
+}
+
 } // namespace
 
-Eigen::MatrixXd interpolate_heights(const ContactGrid& grid, const Matrix3Xd& points, Gridding gridding)
+GriddedHeights interpolate_heights(const ContactGrid& grid, const Matrix3Xd& points, Gridding gridding,
+                                   const Eigen::VectorXd& removed)
 {
     constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-    Eigen::MatrixXd heights = Eigen::MatrixXd::Constant(grid.rows, grid.columns, kNan);
-    if (points.cols() == 0) return heights;
-    const Buckets buckets(points);
-    const double spacing = mean_spacing(points);
-    // A surfel stands for a square of one spacing. The part ends where those of its last surfels do: discs of this
-    // radius reach half a spacing, on average, beyond a straight row of them. A cell that is half beyond still carries
-    // load. A gap between surfels is bridged, up to a width.
-    constexpr double kSurfelRadiusSpacings = 0.583, kMaxBridgeSpacings = 2, kSearchRadiusSpacings = 3;
-    const double max_distance = kSurfelRadiusSpacings * spacing + grid.cell_size.maxCoeff() / 2;
+    GriddedHeights result{Eigen::MatrixXd::Constant(grid.rows, grid.columns, kNan),
+                          Eigen::MatrixXd::Zero(grid.rows, grid.columns)};
+    if (points.cols() == 0) return result;
+    const Buckets buckets(points, removed);
+    const Outline outline(buckets, mean_spacing(points));
+    // Beside the workpiece the height is that of its border, for cells that lie partly over it.
+    Eigen::MatrixXd center_inside = result.coverage;
     tbb::parallel_for(Index{0}, grid.columns, [&](Index column) {
         KrigingOfFour kriging;
         Index rows[KrigingOfFour::kLanes], lanes = 0;
+        std::optional<BesideKink> kinks[KrigingOfFour::kLanes];
         const auto solve_lanes = [&] {
             const Lanes4 results = kriging.heights();
-            for (Index lane = 0; lane < lanes; ++lane) heights(rows[lane], column) = results[lane];
+            for (Index lane = 0; lane < lanes; ++lane)
+                result.height(rows[lane], column) = kinks[lane] ? kinks[lane]->height(results[lane]) : results[lane];
             lanes = 0;
         };
         for (Index row = 0; row < grid.rows; ++row) {
             const Vector2d center = grid.cell_center(row, column);
-            const Nearest near = buckets.nearest(center, kSearchRadiusSpacings * spacing);
+            const Nearest near = outline.nearest(center);
             if (near.count == 0) continue;
-            const double nearest = std::sqrt(near.squared_distance[0]);
-            if (!(nearest <= std::max(kMaxBridgeSpacings * spacing, max_distance))) continue;
-            if (nearest > max_distance && !is_surrounded(center, near, buckets.points())) continue;
+            center_inside(row, column) = outline.contains(center, near) ? 1 : 0;
             if (gridding == Gridding::shepard) {
-                heights(row, column) = shepard(near, buckets.points());
+                result.height(row, column) = shepard(near, buckets.points());
                 continue;
             }
             kriging.set(lanes, center, near, buckets.points());
+            kinks[lanes] = beside_kink(center, near, buckets);
+            if (kinks[lanes]) kriging.add(lanes, near, buckets.removed());
             rows[lanes++] = row;
             if (lanes == KrigingOfFour::kLanes) solve_lanes();
         }
         if (lanes > 0) solve_lanes();
     });
-    return heights;
+    result.coverage = cell_coverage(grid, outline, center_inside);
+    result.height = (result.coverage.array() > 0).select(result.height, kNan);
+    return result;
 }
 
 } // namespace fettle::belt

@@ -21,6 +21,15 @@ struct LayerContact::Window {
     auto block(MatrixXd& field) const { return field.block(row, column, rows, columns); }
 };
 
+/// What the cells of a window lie over.
+struct LayerContact::Workpiece {
+    RemovalStep removal;
+    ArrayXXd coverage;   ///< 1 where there is no workpiece; empty: 1 everywhere
+    ArrayXXd compliance; ///< of partly covered cells, beyond that of whole ones, mm/MPa; empty as the coverage
+
+    bool yields() const { return removal.scale > 0 || coverage.size() > 0; }
+};
+
 namespace {
 
 constexpr int kMaxIterations = 1000;
@@ -113,35 +122,56 @@ MatrixXd LayerContact::initial_pressure(const MatrixXd& gap, const Contact& give
     return p * (given.force / (p.sum() * cell_area_));
 }
 
-ArrayXXd LayerContact::removed_depth(const RemovalStep& removal, const ArrayXXd& pressure) const
+/// The layer's displacement over the part f of a cell that carries its load, less that over the whole cell: those of
+/// strips of a half-space, side 1 and f (Love 1929), of which the latter is the influence of the cell on itself.
+ArrayXXd LayerContact::border_compliance(const ArrayXXd& coverage) const
 {
-    if (removal.is_linear()) {
-        if (!fem_) return removal.scale * pressure;
-        return (removal.scale * pressure).colwise() / fem_->tilt_cosines().square();
-    }
-    const auto depth = [&](double p) { return removal.depth(p); };
-    if (!fem_) return pressure.unaryExpr(depth);
-    const auto cosines = fem_->tilt_cosines();
-    return (pressure.colwise() / cosines).unaryExpr(depth).colwise() / cosines;
+    const double cell = (1 - layer_.poisson * layer_.poisson) / (std::numbers::pi * layer_.young) *
+                        std::sqrt(cell_area_) * 2 * std::asinh(1) * 2;
+    return coverage.unaryExpr([&](double f) {
+        return f > 0 && f < 1 ? cell * ((std::asinh(1 / f) + std::asinh(f) / f) / (2 * std::asinh(1)) - 1) : 0;
+    });
 }
 
-double LayerContact::step_length(const ArrayXXd& pressure, const MatrixXd& step, const RemovalStep& removal,
+ArrayXXd LayerContact::own_gap(const Workpiece& workpiece, const ArrayXXd& pressure) const
+{
+    const RemovalStep& removal = workpiece.removal;
+    const bool is_whole = workpiece.coverage.size() == 0;
+    ArrayXXd depth;
+    if (fem_) {
+        const auto cosines = fem_->tilt_cosines();
+        depth = pressure.colwise() / cosines;
+        if (!is_whole) depth /= workpiece.coverage;
+        depth = depth.unaryExpr([&](double p) { return removal.depth(p); }).colwise() / cosines;
+    } else if (removal.is_linear()) {
+        if (is_whole) return removal.scale * pressure;
+        return (removal.scale / workpiece.coverage + workpiece.compliance) * pressure;
+    } else if (is_whole) {
+        return pressure.unaryExpr([&](double p) { return removal.depth(p); });
+    } else {
+        depth = (pressure / workpiece.coverage).unaryExpr([&](double p) { return removal.depth(p); });
+    }
+    if (!is_whole) depth += workpiece.compliance * pressure;
+    return depth;
+}
+
+double LayerContact::step_length(const ArrayXXd& pressure, const MatrixXd& step, const Workpiece& workpiece,
                                  double slope, double curvature) const
 {
-    const ArrayXXd before = removed_depth(removal, pressure), s = step.array();
-    const auto removal_slope = [&](double length) {
-        return ((removed_depth(removal, pressure + length * s) - before) * s).sum();
+    const ArrayXXd before = own_gap(workpiece, pressure), s = step.array();
+    const auto own_slope = [&](double length) {
+        return ((own_gap(workpiece, pressure + length * s) - before) * s).sum();
     };
-    if (removal.is_linear()) return -slope / (curvature + removal_slope(1));
+    if (workpiece.removal.is_linear()) return -slope / (curvature + own_slope(1));
     // The slope of the energy grows along the step, so that the minimum is bracketed from the elastic solution down.
     constexpr int kMaxIterations = 30;
     constexpr double kRelativeTolerance = 1e-3; // the step's direction is not better than this
     double low = 0, high = -slope / curvature, slope_low = slope;
-    double slope_high = removal_slope(high); // the elastic part is 0 there
+    double slope_high = own_slope(high); // the elastic part is 0 there
     for (int k = 0; k < kMaxIterations && high - low > kRelativeTolerance * high; ++k) {
         const bool bisect = k % 3 == 2; // regula falsi alone may keep one end
         const double length = bisect ? (low + high) / 2 : low + (high - low) * slope_low / (slope_low - slope_high);
-        const double found = slope + length * curvature + removal_slope(length);
+        const double found = slope + length * curvature + own_slope(length);
         if (std::abs(found) <= kRelativeTolerance * std::abs(slope)) return length;
         (found < 0 ? low : high) = length;
         (found < 0 ? slope_low : slope_high) = found;
@@ -151,13 +181,18 @@ double LayerContact::step_length(const ArrayXXd& pressure, const MatrixXd& step,
 
 /// Solves in the window and ignores the cells outside. @return  whether it converged
 bool LayerContact::iterate(const MatrixXd& gap, const Window& window, double tolerance, const RemovalStep& removal,
-                           bool is_force_known, int max_iterations, Contact& contact)
+                           const MatrixXd& coverage, bool is_force_known, int max_iterations, Contact& contact)
 {
     const ArrayXXd undeformed = window.block(gap).array();
     const Mask has_workpiece = undeformed.isFinite();
     MatrixXd pressure = window.block(contact.pressure), displacement, step_displacement;
     MatrixXd step = MatrixXd::Zero(window.rows, window.columns);
-    const bool is_grinding = removal.scale > 0;
+    Workpiece workpiece{removal, {}, {}};
+    if (coverage.size() > 0) {
+        const ArrayXXd share = window.block(coverage).array();
+        workpiece.coverage = (share > 0).select(share, 1);
+        workpiece.compliance = border_compliance(workpiece.coverage);
+    }
     double last_squares = 0; // sum of squared gaps; 0: restart along the gradient
     bool is_displacement_valid = false;
     for (; contact.iterations < max_iterations; ++contact.iterations) {
@@ -165,7 +200,7 @@ bool LayerContact::iterate(const MatrixXd& gap, const Window& window, double tol
         if (!is_displacement_valid) compute_displacement(pressure, displacement);
         is_displacement_valid = true;
         ArrayXXd open = has_workpiece.select(undeformed + displacement.array(), std::numeric_limits<double>::max());
-        if (is_grinding) open += removed_depth(removal, p);
+        if (workpiece.yields()) open += own_gap(workpiece, p);
         if (is_force_known) contact.indentation = (p > 0).select(open, 0).sum() / (p > 0).count();
         const ArrayXXd g = open - contact.indentation;
         if ((p * g).abs().maxCoeff() <= tolerance * p.maxCoeff() * contact.indentation &&
@@ -182,7 +217,8 @@ bool LayerContact::iterate(const MatrixXd& gap, const Window& window, double tol
         if (is_force_known) gradient_change -= active.select(gradient_change, 0).sum() / active.count();
         const double slope = (active.select(g, 0) * step.array()).sum();
         const double curvature = (gradient_change * step.array()).sum();
-        const double length = is_grinding ? step_length(p, step, removal, slope, curvature) : -slope / curvature;
+        const double length =
+            workpiece.yields() ? step_length(p, step, workpiece, slope, curvature) : -slope / curvature;
         pressure += length * step;
         if (pressure.minCoeff() < 0) {
             pressure = pressure.cwiseMax(0);
@@ -202,7 +238,7 @@ bool LayerContact::iterate(const MatrixXd& gap, const Window& window, double tol
 }
 
 Contact LayerContact::solve(const MatrixXd& input_gap, const Contact& given, double tolerance, const MatrixXd& start,
-                            const RemovalStep& removal, bool is_force_known)
+                            const RemovalStep& removal, const MatrixXd& coverage, bool is_force_known)
 {
     Contact contact = given;
     MatrixXd gap = input_gap;
@@ -235,7 +271,7 @@ Contact LayerContact::solve(const MatrixXd& input_gap, const Contact& given, dou
         } else if (!fem_) {
             std::tie(window.row, window.rows) = window_side(may_touch.rowwise().any());
         }
-        contact.converged = iterate(gap, window, tolerance, removal, is_force_known,
+        contact.converged = iterate(gap, window, tolerance, removal, coverage, is_force_known,
                                     start.size() > 0 ? kMaxIterationsFromStart : kMaxIterations, contact);
         const double bulge = min_influence_ * contact.pressure.sum(); // lower bound of the displacement at any cell
         const double open = contact.indentation * (1 - tolerance) - bulge;
@@ -245,47 +281,52 @@ Contact LayerContact::solve(const MatrixXd& input_gap, const Contact& given, dou
         };
         if (!outside_window(gap.array() < open).any()) break;
         const Mask interpenetrating =
-            outside_window(signed_gap(gap, contact).array() < -tolerance * contact.indentation);
+            outside_window(signed_gap(gap, contact, coverage).array() < -tolerance * contact.indentation);
         if (!interpenetrating.any()) break;
         may_touch = may_touch || interpenetrating;
     }
-    if (!contact.converged && start.size() > 0) return solve(input_gap, given, tolerance, {}, removal, is_force_known);
+    if (!contact.converged && start.size() > 0)
+        return solve(input_gap, given, tolerance, {}, removal, coverage, is_force_known);
     contact.indentation += first_touch;
     contact.force = contact.pressure.sum() * cell_area_;
     if (fem_) contact.pressure.array().colwise() /= fem_->tilt_cosines();
     return contact;
 }
 
-MatrixXd LayerContact::signed_gap(const MatrixXd& gap, const Contact& contact)
+MatrixXd LayerContact::signed_gap(const MatrixXd& gap, const Contact& contact, const MatrixXd& coverage)
 {
-    if (fem_)
-        return gap + fem_->displacement(contact.pressure) -
-               (contact.indentation * fem_->tilt_cosines()).matrix().replicate(1, gap.cols());
     MatrixXd displacement;
-    compute_displacement(contact.pressure, displacement);
-    return gap + (displacement.array() - contact.indentation).matrix();
+    ArrayXXd indentation = ArrayXXd::Constant(gap.rows(), gap.cols(), contact.indentation);
+    if (fem_) {
+        displacement = fem_->displacement(contact.pressure);
+        indentation.colwise() *= fem_->tilt_cosines();
+    } else {
+        compute_displacement(contact.pressure, displacement);
+    }
+    if (coverage.size() > 0) displacement.array() += border_compliance(coverage.array()) * contact.pressure.array();
+    return gap + (displacement.array() - indentation).matrix();
 }
 
-MatrixXd LayerContact::residual_gap(const MatrixXd& gap, const Contact& contact)
+MatrixXd LayerContact::residual_gap(const MatrixXd& gap, const Contact& contact, const MatrixXd& coverage)
 {
-    return signed_gap(gap, contact).cwiseMax(0);
+    return signed_gap(gap, contact, coverage).cwiseMax(0);
 }
 
 Contact LayerContact::solve_by_indentation(const MatrixXd& gap, double indentation, double tolerance,
-                                           const MatrixXd& start, const RemovalStep& removal)
+                                           const MatrixXd& start, const RemovalStep& removal, const MatrixXd& coverage)
 {
     Contact contact;
     contact.indentation = indentation;
-    return solve(gap, contact, tolerance, start, removal, false);
+    return solve(gap, contact, tolerance, start, removal, coverage, false);
 }
 
 Contact LayerContact::solve_by_force(const MatrixXd& gap, double force, double tolerance, const MatrixXd& start,
-                                     const RemovalStep& removal)
+                                     const RemovalStep& removal, const MatrixXd& coverage)
 {
     if (!gap.array().isFinite().any()) throw core::InputError("contact", "no workpiece under the wheel");
     Contact contact;
     contact.force = force;
-    return solve(gap, contact, tolerance, start, removal, true);
+    return solve(gap, contact, tolerance, start, removal, coverage, true);
 }
 
 } // namespace fettle::belt

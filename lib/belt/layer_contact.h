@@ -50,32 +50,40 @@ class LayerContact {
     /// @param gap  before deformation with the hub at indentation 0, mm; infinite where there is no workpiece
     /// @param start  initial pressure, such as that of the previous contact point; empty: none
     /// @param removal  by a belt during the contact
+    /// @param coverage  share of each cell's area over the workpiece, > 0 where the gap is finite; empty: all of it.
+    /// Pressures are means of the whole cells; what lies over the workpiece carries them.
     Contact solve_by_indentation(const Eigen::MatrixXd& gap, double indentation, double tolerance,
-                                 const Eigen::MatrixXd& start = {}, const RemovalStep& removal = {});
+                                 const Eigen::MatrixXd& start = {}, const RemovalStep& removal = {},
+                                 const Eigen::MatrixXd& coverage = {});
     /// Solves for a given force.
     /// @param force  N, > 0
     /// @throws InputError if no gap is finite
     Contact solve_by_force(const Eigen::MatrixXd& gap, double force, double tolerance,
-                           const Eigen::MatrixXd& start = {}, const RemovalStep& removal = {});
+                           const Eigen::MatrixXd& start = {}, const RemovalStep& removal = {},
+                           const Eigen::MatrixXd& coverage = {});
 
     /// Gap after deformation, without removal, mm, ≥ 0; 0 in contact.
-    Eigen::MatrixXd residual_gap(const Eigen::MatrixXd& gap, const Contact& contact);
+    Eigen::MatrixXd residual_gap(const Eigen::MatrixXd& gap, const Contact& contact,
+                                 const Eigen::MatrixXd& coverage = {});
 
   private:
     struct Window;
+    struct Workpiece;
     Contact solve(const Eigen::MatrixXd& gap, const Contact& given, double tolerance, const Eigen::MatrixXd& start,
-                  const RemovalStep& removal, bool is_force_known);
+                  const RemovalStep& removal, const Eigen::MatrixXd& coverage, bool is_force_known);
     bool iterate(const Eigen::MatrixXd& gap, const Window& window, double tolerance, const RemovalStep& removal,
-                 bool is_force_known, int max_iterations, Contact& contact);
-    /// Depth that the cells lose along the radius at the middle.
-    Eigen::ArrayXXd removed_depth(const RemovalStep& removal, const Eigen::ArrayXXd& pressure) const;
+                 const Eigen::MatrixXd& coverage, bool is_force_known, int max_iterations, Contact& contact);
+    /// Gap that opens in each cell under its own pressure beside the layer's displacement, along the radius at the
+    /// middle: what is removed, and how much deeper a narrow border of the workpiece goes into the layer.
+    Eigen::ArrayXXd own_gap(const Workpiece& workpiece, const Eigen::ArrayXXd& pressure) const;
     /// Length of the step to the minimum of the energy along it. @param slope  of the energy, < 0  @param curvature  of
     /// its elastic part
-    double step_length(const Eigen::ArrayXXd& pressure, const Eigen::MatrixXd& step, const RemovalStep& removal,
+    double step_length(const Eigen::ArrayXXd& pressure, const Eigen::MatrixXd& step, const Workpiece& workpiece,
                        double slope, double curvature) const;
+    Eigen::ArrayXXd border_compliance(const Eigen::ArrayXXd& coverage) const;
     Eigen::MatrixXd initial_pressure(const Eigen::MatrixXd& gap, const Contact& given, bool is_force_known) const;
     /// Gap after deformation; negative where the surfaces interpenetrate.
-    Eigen::MatrixXd signed_gap(const Eigen::MatrixXd& gap, const Contact& contact);
+    Eigen::MatrixXd signed_gap(const Eigen::MatrixXd& gap, const Contact& contact, const Eigen::MatrixXd& coverage);
     Convolution& convolution(Eigen::Index rows, Eigen::Index columns);
     void compute_displacement(const Eigen::MatrixXd& pressure, Eigen::MatrixXd& displacement);
 

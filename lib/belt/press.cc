@@ -27,6 +27,20 @@ Vector2d initial_half_size(const ContactWheel& wheel)
 
 ContactGrid square_grid(const Vector2d& half, Index count) { return {2 * half / count, count, count}; }
 
+/// As many cells as a grid of count x count, but more along a contact that is long in the direction of the feed, as on
+/// a bead: up to twice as many, in multiples of the sizes for which convolutions are quick.
+ContactGrid fitted_grid(const Vector2d& half, Index count)
+{
+    constexpr double kMaxCellRatio = 4, kMaxStretch = 2; // the pressure varies less along the longer side
+    constexpr Index kSizeMultiple = 8;
+    const double stretch = std::clamp(std::sqrt(half.x() / half.y() / kMaxCellRatio), 1.0, kMaxStretch);
+    const auto multiple = [](double size) { return kSizeMultiple * std::max(1L, std::lround(size / kSizeMultiple)); };
+    const Index rows = multiple(static_cast<double>(count) * stretch);
+    const Index columns = multiple(static_cast<double>(count) / stretch);
+    if (rows == multiple(static_cast<double>(count))) return square_grid(half, count);
+    return {{2 * half.x() / static_cast<double>(rows), 2 * half.y() / static_cast<double>(columns)}, rows, columns};
+}
+
 /// Does what reaches so far from the middle of the width come near the layer's sides? At this distance from a side
 /// rubber of ν = 0.49 yields 0.5 % more than without one, at a sixth of it 5 %.
 bool is_near_edge(double extent, const ContactWheel& wheel)
@@ -48,8 +62,9 @@ void unroll_arc(double radius, Eigen::Matrix3Xd& points)
 } // namespace
 
 WheelContactSolver::WheelContactSolver(const Surfels& surfels, const ContactWheel& wheel,
-                                       const WheelContactOptions& options)
-    : surfels_(surfels), wheel_(wheel), options_(options), index_(surfels, initial_half_size(wheel).minCoeff() / 4),
+                                       const WheelContactOptions& options, const Eigen::VectorXd* removed)
+    : surfels_(surfels), wheel_(wheel), removed_(removed), options_(options),
+      index_(surfels, initial_half_size(wheel).minCoeff() / 4),
       max_displacement_(surfels.displacement.array().isNaN().select(0, surfels.displacement.array().abs()).maxCoeff())
 {
 }
@@ -112,7 +127,11 @@ void WheelContactSolver::solve_on_grid(const Eigen::Isometry3d& T_part_tool, con
         unroll_arc(wheel_.radius, surfel_coordinates_);
         wheel.radius = std::numeric_limits<double>::infinity();
     }
-    contact_.height = interpolate_heights(grid, surfel_coordinates_, gridding);
+    Eigen::VectorXd removed;
+    if (removed_) removed = (*removed_)(surfels_in_grid_);
+    GriddedHeights workpiece = interpolate_heights(grid, surfel_coordinates_, gridding, removed);
+    contact_.height = std::move(workpiece.height);
+    contact_.coverage = std::move(workpiece.coverage);
     gap_.resize(grid.rows, grid.columns);
     for (Index j = 0; j < grid.columns; ++j)
         for (Index i = 0; i < grid.rows; ++i) {
@@ -122,12 +141,33 @@ void WheelContactSolver::solve_on_grid(const Eigen::Isometry3d& T_part_tool, con
                                             : wheel_profile(wheel, center.x(), center.y()) - height;
         }
     if (!gap_.array().isFinite().any()) throw core::InputError("there is nothing under the wheel");
+    const RemovalStep step = removal.scaled(implicit_share(removal));
     MatrixXd start = contact_.contact.pressure;
     if (previous_pressure_.size() > 0) start = (2 * start - previous_pressure_).eval();
     previous_pressure_ = contact_.contact.pressure;
-    contact_.contact = load.by_force ? layer_->solve_by_force(gap_, load.value, tolerance, start, removal)
-                                     : layer_->solve_by_indentation(gap_, load.value, tolerance, start, removal);
+    const MatrixXd coverage = partial_coverage();
+    contact_.contact = load.by_force ? layer_->solve_by_force(gap_, load.value, tolerance, start, step, coverage)
+                                     : layer_->solve_by_indentation(gap_, load.value, tolerance, start, step, coverage);
     if (!contact_.contact.converged) throw core::InputError("the contact did not converge to the tolerance");
+}
+
+MatrixXd WheelContactSolver::partial_coverage() const
+{
+    const auto coverage = contact_.coverage.array();
+    return (coverage > 0 && coverage < 1).any() ? contact_.coverage : MatrixXd();
+}
+
+/// With z = r'(p) / C the share 1/(1 - exp(-z)) - 1/z gives a wave of compliance C the exact factor exp(-z) in each
+/// step (Liniger and Willoughby 1970). C is that of the shortest ripple that surfels can have, less by its mean over a
+/// surfel's square: longer ones, of larger C, decay without changing sign.
+double WheelContactSolver::implicit_share(const RemovalStep& removal) const
+{
+    if (contact_.contact.pressure.size() == 0) return 1; // the pressure is not known yet
+    const ElasticLayer& layer = wheel_.layer;
+    const double z = removal.slope(contact_.contact.pressure.maxCoeff()) * layer.young /
+                     ((1 - layer.poisson * layer.poisson) * mean_spacing(surfel_coordinates_));
+    constexpr double kSmallRatio = 1e-3; // below it the limit is as good as the difference
+    return z > kSmallRatio ? 1 / -std::expm1(-z) - 1 / z : 0.5;
 }
 
 Vector2d WheelContactSolver::contact_extent() const
@@ -152,7 +192,8 @@ void WheelContactSolver::find_grid(const Eigen::Isometry3d& T_part_tool, const C
                                    const RemovalStep& removal)
 {
     constexpr double kGridPerExtent = 1.3;
-    constexpr double kCoarseTolerance = 1e-3;
+    constexpr double kCoarseTolerance = 1e-3, kMinShrinkage = 0.5;
+    constexpr int kMaxRefinements = 3;
     const Vector2d max_half(kMaxRadiusShare * wheel_.radius, wheel_.width / 2);
     Vector2d half = layer_ ? Vector2d(1.5 * contact_.grid.half_size()) : initial_half_size(wheel_);
     for (;; half *= 2) {
@@ -161,8 +202,16 @@ void WheelContactSolver::find_grid(const Eigen::Isometry3d& T_part_tool, const C
         solve_on_grid(T_part_tool, load, Gridding::shepard, kCoarseTolerance, removal);
         if (!is_at_border()) break;
     }
-    half = (kGridPerExtent * contact_extent() + contact_.grid.cell_size).cwiseMin(max_half);
-    set_grid(square_grid(half, options_.cells_per_side), options_.solver, true);
+    // The extent is known to a cell: on a grid that is much larger than the contact, not well enough.
+    for (int k = 0; k < kMaxRefinements; ++k) {
+        const Vector2d fitting = (kGridPerExtent * contact_extent() + contact_.grid.cell_size).cwiseMin(half);
+        const bool is_close = (fitting.array() > kMinShrinkage * half.array()).all();
+        half = fitting;
+        if (is_close) break;
+        set_grid(square_grid(half, kCoarseCells), LayerSolver::layer, false);
+        solve_on_grid(T_part_tool, load, Gridding::shepard, kCoarseTolerance, removal);
+    }
+    set_grid(fitted_grid(half, options_.cells_per_side), options_.solver, true);
 }
 
 const WheelContact& WheelContactSolver::solve(const Eigen::Isometry3d& T_part_tool, const ContactLoad& load,
@@ -178,9 +227,17 @@ const WheelContact& WheelContactSolver::solve(const Eigen::Isometry3d& T_part_to
     return contact_;
 }
 
-MatrixXd WheelContactSolver::residual_gap() { return layer_->residual_gap(gap_, contact_.contact); }
+MatrixXd WheelContactSolver::residual_gap() { return layer_->residual_gap(gap_, contact_.contact, partial_coverage()); }
 
-double WheelContact::area() const { return (contact.pressure.array() > 0).count() * grid.cell_size.prod(); }
+double WheelContact::area() const
+{
+    return (contact.pressure.array() > 0).select(coverage, 0).sum() * grid.cell_size.prod();
+}
+
+MatrixXd WheelContact::workpiece_pressure() const
+{
+    return (coverage.array() > 0).select(contact.pressure.cwiseQuotient(coverage), 0);
+}
 
 cloud::Cloud to_cloud(const WheelContact& press, const MatrixXd& gap_left, const Eigen::Isometry3d& T_part_tool)
 {

@@ -37,11 +37,14 @@ struct WheelContact {
     /// Radius of the wheel's arc along which rows lie and from which heights are measured inwards, mm. Infinite: rows
     /// lie in the tangent plane through the contact point.
     double arc_radius = std::numeric_limits<double>::infinity();
-    Eigen::MatrixXd height; ///< of the workpiece, mm; NaN: no surfels
+    Eigen::MatrixXd height;   ///< of the workpiece, mm; NaN: no surfels
+    Eigen::MatrixXd coverage; ///< share of each cell's area over the workpiece
     Contact contact;
     /// The contact is nearer than 1.5 thicknesses to the layer's free edge, where it is softer than elsewhere.
     bool is_near_edge = false;
-    double area() const; ///< of the cells in contact, mm²
+    double area() const; ///< of the workpiece in contact, mm²
+    /// Pressure on the workpiece, MPa: Contact::pressure is the mean over the cell, also where it sticks out.
+    Eigen::MatrixXd workpiece_pressure() const;
 };
 
 /// State from which the next contact starts.
@@ -55,8 +58,9 @@ struct WheelContactState {
 /// extrapolation of the last two.
 class WheelContactSolver {
   public:
-    /// Keeps references to the surfels and the wheel.
-    WheelContactSolver(const Surfels& surfels, const ContactWheel& wheel, const WheelContactOptions& options);
+    /// Keeps references to the surfels, the wheel, and what the surfels lost so far, mm; null: unknown.
+    WheelContactSolver(const Surfels& surfels, const ContactWheel& wheel, const WheelContactOptions& options,
+                       const Eigen::VectorXd* removed = nullptr);
 
     /// Solves the contact at a pose.
     /// @param removal  by the belt during the contact
@@ -84,9 +88,12 @@ class WheelContactSolver {
     void solve_on_grid(const Eigen::Isometry3d& T_part_tool, const ContactLoad& load, Gridding gridding,
                        double tolerance, const RemovalStep& removal);
     bool is_at_border() const;
+    Eigen::MatrixXd partial_coverage() const; ///< empty: there are no partly covered cells
+    double implicit_share(const RemovalStep& removal) const;
 
     const Surfels& surfels_;
     const ContactWheel& wheel_;
+    const Eigen::VectorXd* removed_;
     WheelContactOptions options_;
     SurfelIndex index_;
     double max_displacement_;             ///< absolute, of the surfels, mm

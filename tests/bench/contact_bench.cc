@@ -107,7 +107,7 @@ void gridding(benchmark::State& state, belt::Gridding method)
         points.col(i) << x, y, ground(x, y);
     }
     MatrixXd heights;
-    for (auto _ : state) heights = belt::interpolate_heights(cells, points, method);
+    for (auto _ : state) heights = belt::interpolate_heights(cells, points, method).height;
     double squares = 0;
     for (Index j = 0; j < kCells; ++j)
         for (Index i = 0; i < kCells; ++i) {

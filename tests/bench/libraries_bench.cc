@@ -247,9 +247,9 @@ void kriging_by_ldlt(benchmark::State& state)
     tbb::parallel_for(Index{0}, kCells * kCells, [&](Index c) {
         near[std::size_t(c)] = nearest(points, cells.cell_center(c % kCells, c / kCells));
     });
-    const auto ours = [&] { return belt::interpolate_heights(cells, points, belt::Gridding::kriging); };
+    const auto ours = [&] { return belt::interpolate_heights(cells, points, belt::Gridding::kriging).height; };
     const auto by_ldlt = [&] {
-        MatrixXd heights = belt::interpolate_heights(cells, points, belt::Gridding::shepard);
+        MatrixXd heights = belt::interpolate_heights(cells, points, belt::Gridding::shepard).height;
         tbb::parallel_for(Index{0}, kCells, [&](Index column) {
             for (Index row = 0; row < kCells; ++row)
                 heights(row, column) =

@@ -19,15 +19,15 @@ path() { # SPACING
 grind() { # SPACING OF SURFELS AND POINTS, HEIGHT, RIPPLE
     plate "$1" "$3" "$4" > plate.pcd
     path "$2" > path.pcd
-    fettle-belt plate.pcd --path path.pcd --wheel "$SAMPLES/wheels/${wheel:-crowned}_preston.json" --force 20 --feed 2 --cells $cells -q --ascii
+    fettle-belt plate.pcd --path path.pcd --wheel "$SAMPLES/wheels/$wheel.json" --force 20 --feed 2 ${cells:+--cells $cells} -q --ascii
 }
-# The large wheel of rubber lies across the whole plate, whose edges take part; its grid is as fine as the surfels, too.
-for case in crowned:68:0.3 crowned:68:1 crowned:68:3 crowned:68:6 rubber:136:0.3 rubber:136:1; do
-    IFS=: read -r wheel cells height <<<"$case"
+# By default cells are larger here than the surfels under the large wheel are apart. On its narrowest contact that is not enough: the warning names it.
+for case in {crowned,rubber}_preston:{0.3,1,3} crowned_preston:6 rubber_preston:6:68 crowned:0.3 rubber:{3,6}; do
+    IFS=: read -r wheel height cells <<<"$case"
     grind 0.7 1 $height 0 > coarse.pcd
     grind 0.35 0.5 $height 0 > fine.pcd
     # Away from the ends of the path, at the places of the coarse surfels.
-    awk -v height=$height -v min="$([ $case = rubber:136:0.3 ] && echo 0.3 || echo 0.5)" '
+    awk -v height=$height -v min="$([ $case = rubber_preston:0.3 ] && echo 0.3 || echo 0.5)" '
         FNR == 1 { ++file }
         /^DATA/ { body[file] = 1; next }
         !body[file] || $1 > 7 || $1 < -7 { next }
@@ -36,7 +36,7 @@ for case in crowned:68:0.3 crowned:68:1 crowned:68:3 crowned:68:6 rubber:136:0.3
         place in removed { sum += (removed[place] - $8) ^ 2; all += $8 ^ 2; ++n; if ($8 > max) max = $8 }
         END { printf "%s mm: %.4f of up to %.2f mm\n", height, sqrt(sum / all), max; exit !(n > 800 && max > min && sum / all <= 0.02 ^ 2) }' coarse.pcd fine.pcd
 done
-wheel=crowned cells=68
+wheel=crowned_preston cells=68
 grind 0.7 1 0 0.05 > ripple.pcd
 # Second differences along x of the surfels under the middle of the wheel: 4 amplitudes each.
 awk '/^DATA/ { body = 1; next } body && $2 > -1 && $2 < 1 && $1 > -7 && $1 < 7 { z[$2, n[$2]++] = $7; rows[$2] = 1 }

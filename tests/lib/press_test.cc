@@ -39,9 +39,9 @@ TEST(Gridding, KeepsTheSurfelsAndTheLevel)
     const belt::ContactGrid cells{{1, 1}, 11, 11};
     for (const belt::Gridding gridding : kBoth) {
         Eigen::Matrix3Xd points = spread(400, 14, [](double, double) { return 3.0; });
-        EXPECT_LE((belt::interpolate_heights(cells, points, gridding).array() - 3).abs().maxCoeff(), 1e-12);
+        EXPECT_LE((belt::interpolate_heights(cells, points, gridding).height.array() - 3).abs().maxCoeff(), 1e-12);
         points.col(7) << cells.cell_center(4, 9), 5;
-        EXPECT_NEAR(belt::interpolate_heights(cells, points, gridding)(4, 9), 5, 1e-12);
+        EXPECT_NEAR(belt::interpolate_heights(cells, points, gridding).height(4, 9), 5, 1e-12);
     }
 }
 
@@ -51,8 +51,8 @@ TEST(Gridding, WeighsTwoSurfels)
     Eigen::Matrix3Xd points(3, 2);
     points << -1, 3, 0, 0, 10, 20;
     const belt::ContactGrid one{{1, 1}, 1, 1};
-    EXPECT_NEAR(belt::interpolate_heights(one, points, belt::Gridding::kriging)(0, 0), 12.5, 1e-12);
-    EXPECT_NEAR(belt::interpolate_heights(one, points, belt::Gridding::shepard)(0, 0), 11, 1e-12);
+    EXPECT_NEAR(belt::interpolate_heights(one, points, belt::Gridding::kriging).height(0, 0), 12.5, 1e-12);
+    EXPECT_NEAR(belt::interpolate_heights(one, points, belt::Gridding::shepard).height(0, 0), 11, 1e-12);
 }
 
 // Kriging's system with a mirror: two surfels on either side at distance 1, weight w each, a third across, weight v.
@@ -63,20 +63,53 @@ TEST(Gridding, WeighsThreeSurfels)
     const belt::ContactGrid one{{1, 1}, 1, 1};
     // Symmetry: w0 = w1 = w. 2 w + √2 v + μ = 1;  2 √2 w + μ = 1;  2 w + v = 1.
     const double root = std::sqrt(2.0), w = root / (4 * root - 2), v = 1 - 2 * w;
-    EXPECT_NEAR(belt::interpolate_heights(one, points, belt::Gridding::kriging)(0, 0), 3 * w + 6 * v, 1e-12);
+    EXPECT_NEAR(belt::interpolate_heights(one, points, belt::Gridding::kriging).height(0, 0), 3 * w + 6 * v, 1e-12);
 }
 
-// The part ends half a spacing and half a cell beyond its last surfels, and goes on over a gap of one.
+// The part ends half a spacing beyond its last surfels, however large the cells are and wherever they lie, and goes on
+// over a gap of one.
 TEST(Gridding, StopsBesideTheLastSurfels)
 {
     Eigen::Matrix3Xd points(3, 11 * 11 - 1);
     for (Index i = 0, k = 0; i < 11; ++i)
         for (Index j = 0; j < 11; ++j)
             if (i != 5 || j != 5) points.col(k++) = Eigen::Vector3d(double(i) - 5, double(j) - 5, 1);
-    const MatrixXd heights = belt::interpolate_heights({{0.125, 0.125}, 160, 160}, points, belt::Gridding::kriging);
-    const auto covered = static_cast<double>(heights.array().isFinite().count());
-    EXPECT_NEAR(covered * 0.125 * 0.125, 11.125 * 11.125, 0.02 * 11 * 11);
-    EXPECT_NEAR(heights(80, 80), 1, 1e-9);
+    for (const double side : {0.125, 0.9, 1.3, 1.7}) {
+        const Index cells = 2 * static_cast<Index>(10 / side);
+        const belt::GriddedHeights found =
+            belt::interpolate_heights({{side, side}, cells, cells}, points, belt::Gridding::kriging);
+        EXPECT_NEAR(found.coverage.sum() * side * side, 11 * 11, 0.03 * 11 * 11) << side;
+        EXPECT_TRUE(((found.coverage.array() > 0) == found.height.array().isFinite()).all());
+        EXPECT_NEAR(found.height(cells / 2, cells / 2), 1, 1e-9);
+        EXPECT_EQ(found.coverage(cells / 2, cells / 2), 1);
+    }
+}
+
+// A plane is ground to half of a roof's side: between the last surfel that was touched and the next one the kink is
+// where the two planes meet, not half-way.
+TEST(Gridding, KeepsTheKinkWhereGrindingEnds)
+{
+    constexpr double kKink = 0.3, kSlope = -0.8;
+    const auto before = [](double x) { return kSlope * (x - kKink); };
+    Eigen::Matrix3Xd points(3, 21 * 21);
+    Eigen::VectorXd removed(21 * 21);
+    for (Index i = 0, k = 0; i < 21; ++i)
+        for (Index j = 0; j < 21; ++j, ++k) {
+            const double x = double(i) - 10;
+            removed[k] = std::max(before(x), 0.0);
+            points.col(k) << x, double(j) - 10, before(x) - removed[k];
+        }
+    const belt::ContactGrid cells{{0.1, 0.1}, 20, 20};
+    const MatrixXd known = belt::interpolate_heights(cells, points, belt::Gridding::kriging, removed).height,
+                   rounded = belt::interpolate_heights(cells, points, belt::Gridding::kriging).height;
+    double error = 0, rounding = 0;
+    for (Index i = 0; i < cells.rows; ++i) {
+        const double exact = std::min(before(cells.cell_center(i, 10).x()), 0.0);
+        error = std::max(error, std::abs(known(i, 10) - exact));
+        rounding = std::max(rounding, std::abs(rounded(i, 10) - exact));
+    }
+    EXPECT_LE(error, 0.35 * rounding);
+    EXPECT_GE(rounding, 0.1);
 }
 
 TEST(Gridding, StopsWhereThereAreNoSurfels)
@@ -84,7 +117,7 @@ TEST(Gridding, StopsWhereThereAreNoSurfels)
     Eigen::Matrix3Xd points = spread(900, 30, [](double x, double) { return 0.1 * x; });
     points.row(0) = points.row(0).array() / 2 + 7.5; // x from 0 to 15
     for (const belt::Gridding gridding : kBoth) {
-        const MatrixXd heights = belt::interpolate_heights({{1, 1}, 20, 20}, points, gridding);
+        const MatrixXd heights = belt::interpolate_heights({{1, 1}, 20, 20}, points, gridding).height;
         EXPECT_TRUE(heights.topRows(8).array().isNaN().all());
         EXPECT_TRUE(heights.bottomRows(10).array().isFinite().all());
     }
