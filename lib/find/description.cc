@@ -132,8 +132,9 @@ std::vector<Index> CellPoints::in(const cv::Point& cell) const
 
 namespace {
 
-/// Points of a region with their heights over the surface beneath: those of its cells that lie on the map's surface,
-/// and those of its cells and the ones beside them that stand over the surface beneath by themselves.
+/// Points of a region with their heights over the surface beneath: those of its cells that lie on the map's surface
+/// and not at the foot of a wall, and those of its cells and the ones beside them that stand over the surface beneath
+/// by themselves.
 std::vector<std::pair<Index, double>> points_of(const mesh::CloudMesh& part, const SeenSide& side,
                                                 const CellPoints& cells, const Verified& find,
                                                 const Eigen::Vector3d& up)
@@ -157,7 +158,10 @@ std::vector<std::pair<Index, double>> points_of(const mesh::CloudMesh& part, con
                 const double own = up.dot(p - foot) / up.z();
                 const bool is_on_map = std::abs(p.z() - map.z(cell)) <= tolerance;
                 const bool stands = !side.is_along_normal && own > own_limit && own < 2 * find.evidence.height;
-                if (find.mask(y, x) && is_on_map)
+                // Of a cell at a wall the points at its foot are metal around.
+                const bool is_at_foot = !side.is_along_normal && own < own_limit &&
+                                        own < std::min(height / 2, height - kOwnSigmas * map.sigma);
+                if (find.mask(y, x) && is_on_map && !is_at_foot)
                     points.emplace_back(i, (side.is_along_normal ? 1 : up.z()) * height);
                 else if (stands)
                     points.emplace_back(i, up.z() * own);
