@@ -146,16 +146,15 @@ std::vector<Candidate> candidates_of_opening(const HeightMap& map, double width,
     return candidates;
 }
 
-/// True if two regions cover nearly the same cells.
-bool are_duplicates(const Candidate& a, const Candidate& b)
+} // namespace
+
+double overlap_of(const Candidate& a, const Candidate& b)
 {
     const cv::Rect common = a.box & b.box;
-    if (common.empty()) return false;
+    if (common.empty()) return 0;
     const int both = cv::countNonZero(a.mask(common - a.box.tl()) & b.mask(common - b.box.tl()));
-    return both > kDuplicateOverlap * (cv::countNonZero(a.mask) + cv::countNonZero(b.mask) - both);
+    return double(both) / std::max(1, cv::countNonZero(a.mask) + cv::countNonZero(b.mask) - both);
 }
-
-} // namespace
 
 std::vector<Candidate> find_candidates(const HeightMap& map, const SearchBounds& bounds)
 {
@@ -172,7 +171,8 @@ std::vector<Candidate> find_candidates(const HeightMap& map, const SearchBounds&
     std::ranges::stable_sort(all, std::greater{}, &Candidate::rank);
     for (Candidate& candidate : all) {
         if (unique.size() == kMaxCandidates) break;
-        if (std::ranges::none_of(unique, [&](const Candidate& other) { return are_duplicates(candidate, other); }))
+        if (std::ranges::none_of(
+                unique, [&](const Candidate& other) { return overlap_of(candidate, other) > kDuplicateOverlap; }))
             unique.push_back(std::move(candidate));
     }
     return unique;

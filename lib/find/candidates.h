@@ -15,6 +15,9 @@ struct Candidate {
     double texture = 0; ///< robust standard deviation of the smoothed residual of its sheet, by the filter's width, mm
 };
 
+/// Cells that two candidates have in common, as a share of those that any has.
+double overlap_of(const Candidate& a, const Candidate& b);
+
 /// Regions that stand out of the surfaces of filters at several scales: of each sheet of the map by
 /// regression_filter(), of the map by ball_opening(). Not one threshold cuts them out, but each of a rising row:
 /// features of the part inflate a single one. Highest rank first; of near duplicates the first.

@@ -5,6 +5,8 @@
 
 #include "core/error.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <limits>
 #include <optional>
@@ -57,7 +59,8 @@ std::vector<Entry> without_overlaps(std::vector<Entry> entries, Index points)
 
 void set_all_outlines(std::vector<Entry>& entries)
 {
-    for (Entry& entry : entries) {
+    tbb::parallel_for(std::size_t{0}, entries.size(), [&](std::size_t i) {
+        Entry& entry = entries[i];
         Mask others(entry.side->surface.z.size(), 0);
         for (const Entry& other : entries)
             if (other.side == entry.side && &other != &entry) {
@@ -65,7 +68,7 @@ void set_all_outlines(std::vector<Entry>& entries)
                 window |= other.find->with_rim;
             }
         set_outlines(entry.found, *entry.side, *entry.find, others);
-    }
+    });
 }
 
 void search(SeenSide& side, const FindOptions& options)
@@ -83,7 +86,10 @@ FindResult merge(const mesh::CloudMesh& part, const std::vector<SeenSide>& sides
     for (const SeenSide& side : sides) {
         if (side.finds.empty()) continue;
         const CellPoints cells = points_by_cell(part, side);
-        for (const Verified& find : side.finds) entries.push_back({&find, &side, describe(part, side, cells, find)});
+        const std::size_t first = entries.size();
+        for (const Verified& find : side.finds) entries.push_back({&find, &side, {}});
+        tbb::parallel_for(first, entries.size(),
+                          [&](std::size_t i) { entries[i].found = describe(part, side, cells, *entries[i].find); });
     }
     std::erase_if(entries, [&](const Entry& entry) { return entry.found.height < min_height; });
     entries = without_overlaps(std::move(entries), part.points.size());

@@ -1,6 +1,7 @@
 #include "find/height_map.h"
 
 #include <opencv2/imgproc.hpp>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -25,7 +26,7 @@ constexpr double kMinSigmaCells = 1e-4;
 Image slope_of(const Image& z)
 {
     Image slope(z.size(), 0.F);
-    for (int y = 0; y < z.rows; ++y)
+    tbb::parallel_for(0, z.rows, [&](int y) {
         for (int x = 0; x < z.cols; ++x) {
             const auto change = [&](int dx, int dy) {
                 const int x0 = std::max(0, x - dx), x1 = std::min(z.cols - 1, x + dx);
@@ -36,6 +37,7 @@ Image slope_of(const Image& z)
             const float size = std::hypot(change(1, 0), change(0, 1));
             if (std::isfinite(size)) slope(y, x) = size;
         }
+    });
     return slope;
 }
 

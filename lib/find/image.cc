@@ -125,7 +125,7 @@ Image coarsened(const Image& z, int factor)
 {
     if (factor == 1) return z.clone();
     Image result((z.rows + factor - 1) / factor, (z.cols + factor - 1) / factor);
-    for (int y = 0; y < result.rows; ++y)
+    tbb::parallel_for(0, result.rows, [&](int y) {
         for (int x = 0; x < result.cols; ++x) {
             double sum = 0;
             int count = 0;
@@ -134,6 +134,7 @@ Image coarsened(const Image& z, int factor)
                     if (std::isfinite(z(v, u))) sum += z(v, u), ++count;
             result(y, x) = 4 * count >= factor * factor ? static_cast<float>(sum / count) : kUnseen;
         }
+    });
     return result;
 }
 

@@ -23,9 +23,12 @@ constexpr double kBoundaryTolerance = 0.6, kSamplingTolerance = 0.8; // of simpl
 /// The outline of the mask's largest component.
 Eigen::Matrix2Xd polygon_of(const Mask& mask, double tolerance)
 {
+    const cv::Rect box = cv::boundingRect(mask);
+    if (box.empty()) return {};
     Mask large;
-    cv::resize(mask, large, {}, kUpscale, kUpscale, cv::INTER_NEAREST);
-    cv::copyMakeBorder(large, large, kUpscale, kUpscale, kUpscale, kUpscale, cv::BORDER_CONSTANT, 0);
+    cv::resize(mask(box), large, {}, kUpscale, kUpscale, cv::INTER_NEAREST);
+    constexpr int kBorder = 2 * kUpscale; // more than the blur's reach
+    cv::copyMakeBorder(large, large, kBorder, kBorder, kBorder, kBorder, cv::BORDER_CONSTANT, 0);
     cv::GaussianBlur(large, large, {}, kUpscale * kOutlineBlur);
     std::vector<std::vector<cv::Point>> contours;
     cv::findContours(large > 127, contours, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
@@ -36,8 +39,8 @@ Eigen::Matrix2Xd polygon_of(const Mask& mask, double tolerance)
     cv::approxPolyDP(*largest, corners, tolerance * kUpscale, true);
     Eigen::Matrix2Xd polygon(2, Eigen::Index(corners.size()));
     for (std::size_t k = 0; k < corners.size(); ++k)
-        polygon.col(Eigen::Index(k)) << (corners[k].x - kUpscale + 0.5) / kUpscale - 0.5,
-            (corners[k].y - kUpscale + 0.5) / kUpscale - 0.5;
+        polygon.col(Eigen::Index(k)) << box.x + (corners[k].x - kBorder + 0.5) / kUpscale - 0.5,
+            box.y + (corners[k].y - kBorder + 0.5) / kUpscale - 0.5;
     return polygon;
 }
 

@@ -9,8 +9,6 @@
 namespace fettle::find {
 namespace {
 
-constexpr int kMaxIterations = 6;
-constexpr double kStableOverlap = 0.97; // intersection over union of two regions in a row
 constexpr int kMinRegionCells = 12;
 constexpr int kMinRing = 50; // cells
 
@@ -36,7 +34,8 @@ constexpr double kTrimShare = 0.04, kTrimSmoothShare = 0.25;
 double thickness_of(const Mask& mask)
 {
     double max = 0;
-    cv::minMaxLoc(depth_of(mask), nullptr, &max);
+    if (const cv::Rect box = cv::boundingRect(mask); !box.empty())
+        cv::minMaxLoc(depth_of(mask(box)), nullptr, &max); // beyond its box the mask has no cell
     return 2 * max;
 }
 
@@ -64,18 +63,21 @@ Mask Refinement::trimmed() const
     return cv::countNonZero(trimmed) >= kMinRegionCells ? largest(trimmed) : region_;
 }
 
-bool Refinement::run()
+Refinement::Progress Refinement::step()
 {
-    for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
-        if (!fit_beneath()) return false;
-        const Mask next = region_over_surface();
-        const int count = cv::countNonZero(next);
-        if (count < kMinRegionCells || count * cell_ * cell_ > bounds_.max_area) return false;
-        const double overlap = double(cv::countNonZero(next & region_)) / cv::countNonZero(next | region_);
-        region_ = next;
-        if (overlap > kStableOverlap) break;
-    }
-    return true;
+    if (!fit_beneath()) return Progress::none;
+    const Mask next = region_over_surface();
+    const int count = cv::countNonZero(next);
+    if (count < kMinRegionCells || count * cell_ * cell_ > bounds_.max_area) return Progress::none;
+    const double overlap = double(cv::countNonZero(next & region_)) / cv::countNonZero(next | region_);
+    region_ = next;
+    return overlap > kStableOverlap ? Progress::settled : Progress::moved;
+}
+
+Candidate Refinement::region() const
+{
+    const cv::Rect box = cv::boundingRect(region_);
+    return {box + window_.tl(), region_(box).clone(), 0, 0};
 }
 
 Mask Refinement::ring_of(const Image& distance, double width) const
@@ -162,29 +164,34 @@ Mask Refinement::region_over_surface() const
 
 Mask Refinement::connected_to(const Mask& mask, const Mask& seeds)
 {
-    const Components parts = components(mask);
-    std::vector<char> is_kept(std::size_t(parts.count) + 1, 0);
-    for (int y = 0; y < mask.rows; ++y)
-        for (int x = 0; x < mask.cols; ++x)
-            if (seeds(y, x)) is_kept[std::size_t(parts.labels(y, x))] = 1;
-    is_kept[0] = 0;
     Mask result(mask.size(), 0);
-    for (int y = 0; y < mask.rows; ++y)
-        for (int x = 0; x < mask.cols; ++x)
-            if (is_kept[std::size_t(parts.labels(y, x))]) result(y, x) = 255;
+    const cv::Rect box = cv::boundingRect(mask);
+    if (box.empty()) return result;
+    const Components parts = components(mask(box));
+    std::vector<std::uint8_t> kept(std::size_t(parts.count) + 1, 0);
+    for (int y = 0; y < box.height; ++y)
+        for (int x = 0; x < box.width; ++x)
+            if (seeds(y + box.y, x + box.x)) kept[std::size_t(parts.labels(y, x))] = 255;
+    kept[0] = 0;
+    for (int y = 0; y < box.height; ++y)
+        for (int x = 0; x < box.width; ++x) result(y + box.y, x + box.x) = kept[std::size_t(parts.labels(y, x))];
     return result;
 }
 
 Mask Refinement::largest(const Mask& mask) const
 {
-    const Components parts = components(mask, 8);
+    const cv::Rect box = cv::boundingRect(mask);
+    if (box.empty()) return mask;
+    const Components parts = components(mask(box), 8);
     if (parts.count <= 1) return mask;
     std::vector<double> volume(std::size_t(parts.count) + 1, 0);
-    for (int y = 0; y < mask.rows; ++y)
-        for (int x = 0; x < mask.cols; ++x)
-            if (mask(y, x)) volume[std::size_t(parts.labels(y, x))] += std::max(0.F, beneath_.smooth(y, x));
+    const Image heights = beneath_.smooth(box);
+    for (int y = 0; y < box.height; ++y)
+        for (int x = 0; x < box.width; ++x) volume[std::size_t(parts.labels(y, x))] += std::max(0.F, heights(y, x));
     volume[0] = -1;
-    return parts.labels == int(std::ranges::max_element(volume) - volume.begin());
+    Mask result(mask.size(), 0);
+    result(box).setTo(255, parts.labels == int(std::ranges::max_element(volume) - volume.begin()));
+    return result;
 }
 
 } // namespace fettle::find

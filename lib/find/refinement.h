@@ -11,6 +11,8 @@ namespace fettle::find {
 inline constexpr double kRingVariance = 0.35;
 inline constexpr double kRingGap = 2; ///< the ring begins beyond the region's rounded foot, cells
 
+inline constexpr double kStableOverlap = 0.97; ///< intersection over union of two regions that count as the same
+
 /// Thickness of a region: the diameter of its largest inscribed circle, cells.
 double thickness_of(const Mask& mask);
 
@@ -33,10 +35,23 @@ class Refinement {
     /// The region without the rim that only smoothing has raised.
     Mask trimmed() const;
 
-    /// @return  false if no region remains
-    bool run();
+    /// How a region stands after it was taken anew.
+    enum class Progress {
+        none,   ///< no region remains
+        moved,  ///< it differs from the one before
+        settled ///< it is nearly the one before
+    };
+    /// Fits the surface beneath the region, and takes the region anew from what stands over it.
+    Progress step();
 
+    /// The region as a candidate in the map.
+    Candidate region() const;
+
+    /// The find, once the region is taken for final.
     Verified result(double texture) const;
+
+    /// Frees what step() makes anew.
+    void release() { beneath_ = {}; }
 
     /// The surface beneath, all over the window.
     Image surface() const;

@@ -1,6 +1,7 @@
 #include "find/sheets.h"
 
 #include <opencv2/imgproc.hpp>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -27,7 +28,7 @@ cv::Mat3f normals_of(const HeightMap& map)
 {
     const Image z = filled(smoothed(map.z, map.seen, kSmoothing));
     cv::Mat3f normals(z.size());
-    for (int y = 0; y < z.rows; ++y)
+    tbb::parallel_for(0, z.rows, [&](int y) {
         for (int x = 0; x < z.cols; ++x) {
             const int x0 = std::max(0, x - 1), x1 = std::min(z.cols - 1, x + 1);
             const int y0 = std::max(0, y - 1), y1 = std::min(z.rows - 1, y + 1);
@@ -36,6 +37,7 @@ cv::Mat3f normals_of(const HeightMap& map)
             const double scale = 1 / std::sqrt(1 + dx * dx + dy * dy);
             normals(y, x) = {float(-dx * scale), float(-dy * scale), float(scale)};
         }
+    });
     return normals;
 }
 
@@ -43,7 +45,7 @@ cv::Mat3f normals_of(const HeightMap& map)
 Image turn_of(const cv::Mat3f& normals)
 {
     Image turn(normals.size());
-    for (int y = 0; y < normals.rows; ++y)
+    tbb::parallel_for(0, normals.rows, [&](int y) {
         for (int x = 0; x < normals.cols; ++x) {
             const auto clamp_x = [&](int u) { return std::clamp(u, 0, normals.cols - 1); };
             const auto clamp_y = [&](int v) { return std::clamp(v, 0, normals.rows - 1); };
@@ -51,6 +53,7 @@ Image turn_of(const cv::Mat3f& normals)
             const float along_y = normals(clamp_y(y - kNormalStep), x).dot(normals(clamp_y(y + kNormalStep), x));
             turn(y, x) = std::acos(std::clamp(std::min(along_x, along_y), -1.F, 1.F));
         }
+    });
     return turn;
 }
 

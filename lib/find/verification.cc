@@ -1,153 +1,14 @@
 #include "find/verification.h"
 
-#include "core/cholesky.h"
 #include "find/refinement.h"
 
 #include <opencv2/imgproc.hpp>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace fettle::find {
-namespace {
-
-// The shell around a region in which the surface should lie open: from 1.5 to 4 cells off, and how far off the surface
-// it may be: noise, or a share of the height, which a rounded foot reaches.
-constexpr double kShellFrom = 1.5, kShellTo = 4;
-constexpr double kShellSds = 4, kShellShare = 0.15;
-
-} // namespace
-
-void Refinement::measure_shell(Evidence& evidence) const
-{
-    const int margin = 6;
-    Mask padded;
-    cv::copyMakeBorder(region_, padded, margin, margin, margin, margin, cv::BORDER_CONSTANT, 0);
-    const Image distance = distance_to(padded);
-    int all = 0, level = 0, below = 0, above = 0, unseen = 0;
-    for (int y = 0; y < padded.rows; ++y)
-        for (int x = 0; x < padded.cols; ++x) {
-            if (distance(y, x) <= kShellFrom || distance(y, x) > kShellTo) continue;
-            ++all;
-            const cv::Point place(x - margin, y - margin);
-            if (!cv::Rect({0, 0}, seen_.size()).contains(place) || !seen_(place)) {
-                ++unseen;
-                continue;
-            }
-            const double sd = std::hypot(std::sqrt(kRingVariance) * beneath_.fit.sd, beneath_.sd(place));
-            const double tolerance = std::max(kShellSds * sd, kShellShare * evidence.height);
-            const double value = beneath_.smooth(place);
-            level += std::abs(value) < tolerance;
-            below += value < -2 * tolerance;
-            above += value > tolerance;
-        }
-    evidence.enclosure = double(level) / all;
-    evidence.drop = double(below) / all;
-    evidence.rise = double(above) / all;
-    evidence.unseen = double(unseen) / all;
-}
-
-/// Refits the surface with each quadrant of the ring left out, and measures how much it moves beneath the region.
-void Refinement::measure_stability(Evidence& evidence) const
-{
-    const cv::Rect box = cv::boundingRect(region_);
-    const double x0 = box.x + box.width / 2.0, y0 = box.y + box.height / 2.0;
-    std::vector<cv::Point> places;
-    cv::findNonZero(region_, places);
-    std::vector<double> squares(places.size(), 0);
-    int fits = 0;
-    for (int quadrant = 0; quadrant < 4; ++quadrant) {
-        Mask partial = beneath_.ring.clone();
-        for (int y = 0; y < partial.rows; ++y)
-            for (int x = 0; x < partial.cols; ++x)
-                if (((x - x0 > y - y0) ? 1 : 0) + ((x - x0 > -(y - y0)) ? 2 : 0) == quadrant) partial(y, x) = 0;
-        const auto other = fit(partial, beneath_.distance, beneath_.width, 3);
-        if (!other) continue;
-        ++fits;
-        for (std::size_t k = 0; k < places.size(); ++k) {
-            const double d = other->z_at(places[k].x, places[k].y) - beneath_.fit.z_at(places[k].x, places[k].y);
-            squares[k] += d * d;
-        }
-    }
-    evidence.instability = fits == 0 ? evidence.height : std::sqrt(quantile_of(squares, 0.75) / fits);
-    Eigen::MatrixXd A(Eigen::Index(places.size()), 3);
-    Eigen::VectorXd z(A.rows());
-    for (std::size_t k = 0; k < places.size(); ++k) {
-        A.row(Eigen::Index(k)) << 1, places[k].x - x0, places[k].y - y0;
-        z[Eigen::Index(k)] = beneath_.fit.z_at(places[k].x, places[k].y);
-    }
-    const Eigen::Vector3d plane = core::solve_ldlt(A.transpose() * A, A.transpose() * z);
-    evidence.sag = std::sqrt((z - A * plane).squaredNorm() / double(places.size()));
-}
-
-namespace {
-
-constexpr double kMinSignificance = 4;
-constexpr int kMaxGrowth = 6;
-constexpr double kCorrelatedShellCells = 6; // that stand for an independent one
-
-} // namespace
-
-/// Shells around the region whose mean stands over the surface by more than chance.
-int Refinement::growth() const
-{
-    for (int k = 1; k <= kMaxGrowth; ++k) {
-        const Mask shell = (beneath_.distance > float(k - 1)) & (beneath_.distance <= float(k)) & seen_ &
-                           ~(others_ & (beneath_.distance > 3));
-        const std::vector<double> values = values_in(beneath_.residual, shell);
-        if (values.size() < 5) return k - 1;
-        const double sd = beneath_.fit.sd;
-        double sum = 0;
-        for (const double value : values) sum += std::clamp(value, -3 * sd, 3 * sd);
-        const auto count = double(values.size());
-        if (sum / count <= std::max(0.5 * sd * std::sqrt(kCorrelatedShellCells / count), 0.25 * sd)) return k - 1;
-    }
-    return kMaxGrowth;
-}
-
-Verified Refinement::result(double texture) const
-{
-    Verified verified{window_, trimmed(), region_, beneath_.residual, {}, 1, growth(), 0};
-    Evidence& e = verified.evidence;
-    const Mask inside = region_ & seen_;
-    e.height = quantile_of(values_in(beneath_.residual, inside), 0.9);
-    e.ring_sd = beneath_.fit.sd;
-    e.prediction_sd = quantile_of(values_in(beneath_.sd, region_), 0.5);
-    e.noise = sigma_;
-    e.texture = texture;
-    e.inliers = beneath_.fit.inliers;
-    e.cell = cell_;
-    double reach = 0;
-    cv::minMaxLoc(beneath_.distance, nullptr, &reach, nullptr, nullptr, beneath_.ring);
-    e.ring_width = reach - kRingGap;
-    e.degree = beneath_.fit.degree;
-    e.cells = cv::countNonZero(region_);
-    e.thickness = thickness_of(region_);
-    if (e.height < bounds_.min_height || e.significance() < kMinSignificance) return verified; // no evidence needed
-    const Mask inner_ring = beneath_.ring & (beneath_.distance <= std::max(0.5 * beneath_.width, 4.0) + kRingGap);
-    if (const auto inner = fit(inner_ring, beneath_.distance, 1e9, 3)) {
-        std::vector<double> differences;
-        for (int y = 0; y < region_.rows; ++y)
-            for (int x = 0; x < region_.cols; ++x)
-                if (region_(y, x)) differences.push_back(std::abs(inner->z_at(x, y) - beneath_.fit.z_at(x, y)));
-        e.disagreement = quantile_of(differences, 0.75);
-    }
-    measure_stability(e);
-    measure_shell(e);
-    const Image depth = depth_of(region_);
-    const std::vector<double> within = values_in(beneath_.residual, (depth > 1) & (depth <= 3) & seen_);
-    const std::vector<double> without =
-        values_in(beneath_.residual, (beneath_.distance > 1) & (beneath_.distance <= 3) & seen_);
-    if (!within.empty() && !without.empty())
-        e.sharpness = (quantile_of(within, 0.5) - quantile_of(without, 0.5)) / e.height;
-    e.pits = double(cv::countNonZero(beneath_.ring & (beneath_.residual < float(-5 * e.ring_sd)))) /
-             cv::countNonZero(beneath_.ring);
-    verified.probability = probability_of(e);
-    return verified;
-}
-
 namespace {
 
 /// A mask of cells `factor` times as long in the map's own.
@@ -178,20 +39,6 @@ Verified in_cells_of(const HeightMap& map, Verified coarse, const Image& surface
     return fine;
 }
 
-} // namespace
-
-std::optional<Verified> verify(const HeightMap& map, const Candidate& candidate, const Mask& others,
-                               const SearchBounds& bounds)
-{
-    Refinement refinement(map, candidate, others, bounds);
-    if (!refinement.run()) return std::nullopt;
-    Verified verified = refinement.result(candidate.texture);
-    if (!is_plausible(verified.evidence, bounds)) return std::nullopt;
-    return verified;
-}
-
-namespace {
-
 // A candidate is verified in cells twice as long, and again, as long as it remains thicker than this many of them; a
 // long one, whose window would be large, than the other number.
 constexpr double kMinCoarseThickness = 40, kMinLongThickness = 12;
@@ -203,6 +50,7 @@ struct Level {
     Mask others;
 };
 
+/// How often the cells in which a candidate is verified are doubled.
 int level_of(const Candidate& candidate)
 {
     double thickness = thickness_of(candidate.mask), extent = std::max(candidate.box.width, candidate.box.height);
@@ -212,10 +60,10 @@ int level_of(const Candidate& candidate)
     return level;
 }
 
-/// A candidate in the cells of a level.
-Candidate at_level(const Candidate& candidate, int level, const cv::Size& size)
+/// A candidate in cells `factor` times as long.
+Candidate in_longer_cells(const Candidate& candidate, int factor, const cv::Size& size)
 {
-    const int factor = 1 << level;
+    if (factor == 1) return candidate;
     const cv::Point corner(candidate.box.x / factor, candidate.box.y / factor);
     Mask aligned;
     cv::copyMakeBorder(candidate.mask, aligned, candidate.box.y % factor, 0, candidate.box.x % factor, 0,
@@ -225,17 +73,78 @@ Candidate at_level(const Candidate& candidate, int level, const cv::Size& size)
     return coarse;
 }
 
-std::optional<Verified> verify_at(int level, const std::vector<Level>& levels, const Candidate& candidate,
-                                  const SearchBounds& bounds)
+/// A candidate on its way to a find.
+struct Attempt {
+    int level = 0;
+    std::optional<Refinement> refinement; ///< nothing once it has ended
+    Refinement::Progress progress = Refinement::Progress::moved;
+    Candidate region;
+    bool is_repetition = false; ///< ended where another had been
+};
+
+Attempt attempt_at(int level, const std::vector<Level>& levels, const Candidate& candidate, const SearchBounds& bounds)
 {
     const Level& at = levels[std::size_t(level)];
-    if (level == 0) return verify(at.map, candidate, at.others, bounds);
-    Refinement refinement(at.map, at_level(candidate, level, at.map.z.size()), at.others, bounds);
-    if (!refinement.run()) return std::nullopt;
-    Verified verified = refinement.result(candidate.texture);
-    if (!is_plausible(verified.evidence, bounds)) return std::nullopt;
-    return in_cells_of(levels[0].map, std::move(verified), refinement.surface(), 1 << level);
+    return {level, Refinement(at.map, candidate, at.others, bounds)};
 }
+
+/// Takes the region anew; one that has grown thick goes on in longer cells, if it goes on.
+void step(Attempt& attempt, const std::vector<Level>& levels, const SearchBounds& bounds, bool goes_on)
+{
+    attempt.progress = attempt.refinement->step();
+    if (attempt.progress == Refinement::Progress::none) {
+        attempt.refinement.reset();
+        return;
+    }
+    attempt.region = attempt.refinement->region();
+    if (!goes_on || attempt.progress == Refinement::Progress::settled) return;
+    const int level = std::min(attempt.level + level_of(attempt.region), int(levels.size()) - 1);
+    if (level > attempt.level) {
+        Candidate region =
+            in_longer_cells(attempt.region, 1 << (level - attempt.level), levels[std::size_t(level)].map.z.size());
+        attempt = attempt_at(level, levels, region, bounds);
+        attempt.region = std::move(region);
+    }
+}
+
+// Two regions that overlap by this are of one place.
+constexpr double kSamePlace = 0.93;
+
+/// A region that an attempt has come to.
+struct Visit {
+    const Attempt* attempt;
+    int level;
+    Candidate region;
+};
+
+/// Ends attempts that have come to where another has been: they would go the same way. Of two that come to one place
+/// together, that with the higher rank goes on.
+void end_repetitions(std::vector<Attempt>& attempts, std::vector<Visit>& visits)
+{
+    for (Attempt& attempt : attempts) {
+        if (!attempt.refinement) continue;
+        attempt.is_repetition = std::ranges::any_of(visits, [&](const Visit& visit) {
+            return visit.attempt != &attempt && !visit.attempt->is_repetition && visit.level == attempt.level &&
+                   overlap_of(visit.region, attempt.region) > kSamePlace;
+        });
+        if (attempt.is_repetition)
+            attempt.refinement.reset();
+        else
+            visits.push_back({&attempt, attempt.level, attempt.region});
+    }
+}
+
+/// The find that a region is, in the map's own cells; nothing if its evidence is not plausible.
+std::optional<Verified> find_of(const Attempt& attempt, const std::vector<Level>& levels, double texture,
+                                const SearchBounds& bounds)
+{
+    Verified verified = attempt.refinement->result(texture);
+    if (!is_plausible(verified.evidence, bounds)) return std::nullopt;
+    if (attempt.level == 0) return verified;
+    return in_cells_of(levels[0].map, std::move(verified), attempt.refinement->surface(), 1 << attempt.level);
+}
+
+constexpr int kMaxIterations = 6;
 
 // Candidates larger than this share of the largest anomaly, or of a lower rank, do not keep cells out of others' rings.
 constexpr double kMaxOtherArea = 0.3;
@@ -252,14 +161,36 @@ std::vector<Verified> verify_all(const HeightMap& map, const std::vector<Candida
         if (candidate.rank > kMinOtherRank && cv::countNonZero(candidate.mask) < max_cells)
             others(candidate.box) |= candidate.mask;
     std::vector<int> levels_of(candidates.size());
-    std::ranges::transform(candidates, levels_of.begin(), level_of);
-    std::vector<Level> levels{{map, others}};
-    const int top = levels_of.empty() ? 0 : std::ranges::max(levels_of);
-    for (int level = 1; level <= top; ++level)
-        levels.push_back({coarsened(map, 1 << level), coarsened(others, 1 << level)});
-    std::vector<std::optional<Verified>> results(candidates.size());
     tbb::parallel_for(std::size_t{0}, candidates.size(),
-                      [&](std::size_t i) { results[i] = verify_at(levels_of[i], levels, candidates[i], bounds); });
+                      [&](std::size_t i) { levels_of[i] = level_of(candidates[i]); });
+    // A region may grow thicker than its candidate.
+    std::vector<Level> levels(candidates.empty() ? 0 : std::size_t(std::ranges::max(levels_of)) + 2);
+    tbb::parallel_for(std::size_t{0}, levels.size(), [&](std::size_t level) {
+        levels[level] = {coarsened(map, 1 << level), coarsened(others, 1 << level)};
+    });
+    std::vector<Attempt> attempts(candidates.size());
+    std::vector<std::optional<Verified>> results(candidates.size());
+    std::vector<Visit> visits;
+    for (int iteration = 1; iteration <= kMaxIterations; ++iteration) {
+        tbb::parallel_for(std::size_t{0}, attempts.size(), [&](std::size_t i) {
+            const int level = levels_of[i];
+            if (iteration == 1)
+                attempts[i] = attempt_at(
+                    level, levels, in_longer_cells(candidates[i], 1 << level, levels[std::size_t(level)].map.z.size()),
+                    bounds);
+            if (attempts[i].refinement) step(attempts[i], levels, bounds, iteration < kMaxIterations);
+        });
+        end_repetitions(attempts, visits);
+        tbb::parallel_for(std::size_t{0}, attempts.size(), [&](std::size_t i) {
+            Attempt& attempt = attempts[i];
+            if (!attempt.refinement) return;
+            if (iteration == kMaxIterations || attempt.progress == Refinement::Progress::settled) {
+                results[i] = find_of(attempt, levels, candidates[i].texture, bounds);
+                attempt.refinement.reset();
+            } else
+                attempt.refinement->release();
+        });
+    }
     std::vector<Verified> verified;
     for (auto& result : results)
         if (result) verified.push_back(std::move(*result));

@@ -20,15 +20,12 @@ struct Verified {
     double probability = 0;
 };
 
-/// Fits the surface beneath a candidate to the ring around it, takes the region anew from what stands over that
-/// surface, and repeats both until the region stays (at most six times). Then the evidence is measured.
-/// @param others  cells of all candidates, which are kept out of rings
-/// @return  nothing if no region remains, or its evidence is not plausible
-std::optional<Verified> verify(const HeightMap& map, const Candidate& candidate, const Mask& others,
-                               const SearchBounds& bounds);
-
-/// Verifies all candidates, in parallel, each in cells of which some dozens lie across it: finer ones say no more about
-/// the surface beneath, and cost time by their square. @return  those that remain, in the candidates' order
+/// Verifies all candidates, in parallel: fits the surface beneath each to the ring around it, takes the region anew
+/// from what stands over that surface, and repeats both until the region stays (at most six times). Then the evidence
+/// is measured. What comes to a region where another of a higher rank has been is that one again. Each is verified in
+/// cells of which some dozens lie across it: finer ones say no more about the surface beneath, and cost time by their
+/// square.
+/// @return  those that remain and whose evidence is plausible, in the candidates' order
 std::vector<Verified> verify_all(const HeightMap& map, const std::vector<Candidate>& candidates,
                                  const SearchBounds& bounds);
 

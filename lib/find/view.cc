@@ -5,6 +5,8 @@
 #include "core/error.h"
 #include "geometry/bounding_box.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -19,6 +21,7 @@ constexpr int kDirections = 200;        // tried: neighbours are about 14 degree
 constexpr double kMinCosine = 0.5;      // of the angle between normal and view: 60 degrees
 constexpr double kSeenShare = 0.98;     // of what any direction sees
 constexpr double kMinGain = 0.01;       // a view that adds less is none
+constexpr double kOwnSideShare = 0.5;   // of a cloud without normals: then no other side is looked at
 constexpr double kFaceCosine = 0.9;     // normals within 26 degrees of a direction are of one face
 constexpr int kShifts = 4;              // after which the mean hardly moves
 constexpr double kMaxSideCells = 1000;  // of a part: bounds the memory where one point lies far off
@@ -107,34 +110,50 @@ Eigen::Vector3d towards_face(const Samples& samples, Eigen::Vector3d direction, 
     return direction;
 }
 
+/// How much of the samples a direction would add to what is covered: a face seen along its normal has weight 1, one
+/// seen at 60 degrees 1/16.
+double gain_of(const Samples& samples, const Eigen::Vector3d& direction, const std::vector<char>& is_seen,
+               const std::vector<char>& is_covered)
+{
+    double gain = 0;
+    for (std::size_t i = 0; i < is_seen.size(); ++i)
+        if (is_seen[i] && !is_covered[i]) gain += std::pow(samples.points.normals.col(Index(i)).dot(direction), 4);
+    return gain;
+}
+
+/// Whether a cloud without normals is seen from this direction alone: nothing says that what lies under it is a
+/// surface.
+bool is_own_side(const Samples& samples, const Eigen::Vector3d& direction)
+{
+    const std::vector<char> is_seen = seen_from(samples, direction);
+    const auto count = double(is_seen.size());
+    return gain_of(samples, direction, is_seen, std::vector<char>(is_seen.size(), 0)) >= kMinGain * count &&
+           double(std::ranges::count(is_seen, 1)) > kOwnSideShare * count;
+}
+
 } // namespace
 
 std::vector<View> choose_views(const mesh::CloudMesh& part)
 {
     const Samples samples = samples_of(part);
     const std::vector<Eigen::Vector3d> all = directions();
+    if (!samples.is_outward && is_own_side(samples, all[0])) return {view_from(all[0])};
     std::vector<std::vector<char>> seen(all.size());
-    for (std::size_t d = 0; d < all.size(); ++d) seen[d] = seen_from(samples, all[d]);
+    tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t d) { seen[d] = seen_from(samples, all[d]); });
     const auto count = std::size_t(samples.points.xyz.cols());
     std::vector<char> is_covered(count, 0);
     std::size_t coverable = 0, covered = 0;
     for (std::size_t i = 0; i < count; ++i)
         coverable += std::ranges::any_of(seen, [&](const std::vector<char>& one) { return one[i]; });
     std::vector<View> views;
-    // A face seen along its normal has weight 1, one seen at 60 degrees 1/16.
-    const auto gain_of = [&](std::size_t d) {
-        double gain = 0;
-        for (std::size_t i = 0; i < count; ++i)
-            if (seen[d][i] && !is_covered[i]) gain += std::pow(samples.points.normals.col(Index(i)).dot(all[d]), 4);
-        return gain;
-    };
     while (double(covered) < kSeenShare * double(coverable)) {
         std::size_t best = 0;
-        double best_gain = gain_of(0);
+        double best_gain = gain_of(samples, all[0], seen[0], is_covered);
         // A cloud's own direction is +z.
         if (samples.is_outward || !views.empty() || best_gain < kMinGain * double(count))
             for (std::size_t d = 1; d < all.size(); ++d)
-                if (const double gain = gain_of(d); gain > best_gain) best = d, best_gain = gain;
+                if (const double gain = gain_of(samples, all[d], seen[d], is_covered); gain > best_gain)
+                    best = d, best_gain = gain;
         if (best_gain < kMinGain * double(count)) break;
         const Eigen::Vector3d direction = samples.is_outward ? towards_face(samples, all[best], is_covered) : all[best];
         const std::vector<char> is_seen = seen_from(samples, direction);
@@ -145,8 +164,7 @@ std::vector<View> choose_views(const mesh::CloudMesh& part)
         }
         if (covered == before) break;
         views.push_back(view_from(direction));
-        // Without normals nothing says that what lies under it is a surface.
-        if (views.size() == 1 && !samples.is_outward && double(covered) > 0.5 * double(count)) break;
+        if (views.size() == 1 && !samples.is_outward && double(covered) > kOwnSideShare * double(count)) break;
     }
     if (views.empty()) views.push_back(View::Identity());
     return views;
