@@ -16,9 +16,9 @@ constexpr double kSamplingPerThickness = 0.6;
 constexpr double kMinSampling = 5.5, kMaxSampling = 45; // width of S around B, cells
 constexpr double kEdgeGap = 1.5;                        // S keeps off edges, cells
 
-constexpr int kUpscale = 4;                                          // of masks before their outline is taken
-constexpr double kOutlineBlur = 0.7;                                 // cells, takes the stairs out
-constexpr double kBoundaryTolerance = 0.6, kSamplingTolerance = 0.8; // of simplified outlines, cells
+constexpr int kUpscale = 4;                                    // of masks before their outline is taken
+constexpr double kOutlineBlur = 0.7;                           // cells, takes the stairs out
+constexpr double kBoundaryDetail = 0.6, kSamplingDetail = 0.8; // of simplified outlines, cells
 
 /// The outline of the mask's largest component.
 Eigen::Matrix2Xd polygon_of(const Mask& mask, double tolerance)
@@ -119,8 +119,8 @@ Outlines outlines_of(const HeightMap& map, const Mask& region, const Mask& other
     const Mask sampling = with_holes_filled(with_seed(opened(ring_in_sight(inside, good, width + 1) | inside, 2), own));
     Outlines result;
     const Eigen::Vector2d shift(box.x - margin, box.y - margin);
-    result.boundary = polygon_of(inside, kBoundaryTolerance).colwise() + shift;
-    result.sampling = polygon_of(sampling | inside, kSamplingTolerance).colwise() + shift;
+    result.boundary = polygon_of(inside, kBoundaryDetail).colwise() + shift;
+    result.sampling = polygon_of(sampling | inside, kSamplingDetail).colwise() + shift;
     result.inside = Mask(region.size(), 0);
     inside(cv::Rect(margin, margin, box.width, box.height)).copyTo(result.inside(box));
     return result;

@@ -85,7 +85,7 @@ struct Attempt {
 Attempt attempt_at(int level, const std::vector<Level>& levels, const Candidate& candidate, const SearchBounds& bounds)
 {
     const Level& at = levels[std::size_t(level)];
-    return {level, Refinement(at.map, candidate, at.others, bounds)};
+    return {level, Refinement(at.map, candidate, at.others, bounds), Refinement::Progress::moved, {}, false};
 }
 
 /// Takes the region anew; one that has grown thick goes on in longer cells, if it goes on.
