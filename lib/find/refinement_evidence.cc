@@ -1,4 +1,4 @@
-#include "core/decompositions.h"
+#include "core/cholesky.h"
 #include "find/refinement.h"
 
 #include <opencv2/imgproc.hpp>
