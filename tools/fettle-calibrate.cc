@@ -107,7 +107,10 @@ Measurement measure_belt_trace(const Options& o, const belt::ContactWheel& wheel
 /// The passes of the input, after those of the law that is known.
 calibrate::LawRecord record_of(const Options& o, const Measurement& measured)
 {
-    calibrate::LawRecord record{.pass_work = measured.pass_work, .passes = measured.passes, .base = measured.base};
+    calibrate::LawRecord record;
+    record.pass_work = measured.pass_work;
+    record.passes = measured.passes;
+    record.base = measured.base;
     if (!o.known.empty())
         record = calibrate::continued(calibrate::read_law(o.known), record, core::display_name(o.input));
     if (measured.machine == "gantry") calibrate::add_wear(record, measured.wear);

@@ -14,7 +14,9 @@ constexpr int kMaxFemCells = 256; // along a side: memory grows with the cube, 1
 ContactOptions::ContactOptions(cli::Tool& tool, int default_cells, double default_tolerance)
     : gridding(tool.choice<Gridding>("--gridding", {{"kriging", Gridding::kriging}, {"shepard", Gridding::shepard}},
                                      "How heights between surfels are estimated")),
-      cells(tool.count("--cells", default_cells, "Number of cells along each side of the grid", 8, 512)),
+      cells(tool.count("--cells", default_cells,
+                       "Number of cells along each side of the grid; up to twice as many along a long contact", 8,
+                       512)),
       tolerance(tool.number("--tolerance", default_tolerance, "SHARE",
                             "Maximum of pressure times gap, as a share of peak pressure times indentation",
                             core::Range::between(kMinContactTolerance, kMaxContactTolerance))),

@@ -1,6 +1,7 @@
 #include "belt/gridding.h"
 
-#include "geometry/planar_grid.h"
+#include "belt/kriging_of_four.h"
+#include "belt/point_buckets.h"
 
 #include <Eigen/Cholesky>
 #include <tbb/parallel_for.h>
@@ -19,92 +20,10 @@ namespace {
 using Eigen::Index;
 using Eigen::Matrix3Xd;
 using Eigen::Vector2d;
-using Lanes4 = Eigen::Array4d;
-
-constexpr Index kMaxGridNeighbours = 8;
-constexpr double kPointsPerBucket = 3;
-
-/// The points nearest to a query, nearest first.
-struct Nearest {
-    Index count = 0;
-    std::array<double, kMaxGridNeighbours> squared_distance; ///< mm²
-    std::array<Index, kMaxGridNeighbours> index;
-
-    void insert(double squared, Index point)
-    {
-        Index k = count < kMaxGridNeighbours ? count++ : kMaxGridNeighbours - 1;
-        for (; k > 0 && squared_distance[k - 1] > squared; --k) {
-            squared_distance[k] = squared_distance[k - 1];
-            index[k] = index[k - 1];
-        }
-        squared_distance[k] = squared;
-        index[k] = point;
-    }
-};
-
-/// The points in square buckets of about three, so that the nearest ones are usually in the query's bucket or the eight
-/// around it. A geometry::PointIndex would break ties otherwise, and surfels on a lattice have many.
-class Buckets {
-  public:
-    Buckets(const Matrix3Xd& points, const Eigen::VectorXd& removed)
-        : grid_(geometry::planar_grid(points.topRows<2>(), kPointsPerBucket)), points_(points(Eigen::all, grid_.order))
-    {
-        if (removed.size() > 0) removed_ = removed(grid_.order);
-    }
-
-    /// The points in the order of the buckets, row by row.
-    const Matrix3Xd& points() const { return points_; }
-    /// Depth that they lost, in the same order; empty: unknown.
-    const Eigen::VectorXd& removed() const { return removed_; }
-
-    /// The nearest points within `max_distance`, mm.
-    Nearest nearest(const Vector2d& query, double max_distance) const
-    {
-        Nearest found;
-        const double side = grid_.side;
-        const Eigen::Array2d uv = (query - grid_.min) / side;
-        const auto u = static_cast<Index>(std::floor(uv.x())), v = static_cast<Index>(std::floor(uv.y()));
-        const Eigen::Array2d offset = (uv - Eigen::Array2d(double(u), double(v))) * side;
-        const double border = std::min(offset.minCoeff(), side - offset.maxCoeff()); // to the sides of the own bucket
-        double max_squared = max_distance * max_distance;
-        search(u - 1, u + 1, v - 1, v + 1, query, max_squared, found);
-        for (Index ring = 2; border + (ring - 1) * side < std::sqrt(max_squared); ++ring) {
-            search(u - ring, u + ring, v - ring, v - ring, query, max_squared, found);
-            search(u - ring, u - ring, v - ring + 1, v + ring - 1, query, max_squared, found);
-            search(u + ring, u + ring, v - ring + 1, v + ring - 1, query, max_squared, found);
-            search(u - ring, u + ring, v + ring, v + ring, query, max_squared, found);
-        }
-        return found;
-    }
-
-  private:
-    /// Searches a range of buckets.
-    /// @param max_squared  square of the search radius, mm²; shrinks to the last neighbour's once there are enough
-    void search(Index first_u, Index last_u, Index first_v, Index last_v, const Vector2d& query, double& max_squared,
-                Nearest& found) const
-    {
-        first_u = std::max<Index>(first_u, 0);
-        last_u = std::min<Index>(last_u, grid_.count.x() - 1);
-        if (first_u > last_u) return;
-        for (Index v = std::max<Index>(first_v, 0); v <= std::min<Index>(last_v, grid_.count.y() - 1); ++v) {
-            const Index row = v * grid_.count.x(), end = grid_.begin[row + last_u + 1];
-            for (Index i = grid_.begin[row + first_u]; i < end; ++i) {
-                const double x = points_(0, i) - query.x(), y = points_(1, i) - query.y(), squared = x * x + y * y;
-                if (!(squared < max_squared)) continue;
-                found.insert(squared, i);
-                if (found.count == kMaxGridNeighbours) max_squared = found.squared_distance.back();
-            }
-        }
-    }
-
-    geometry::PlanarGrid grid_;
-    Matrix3Xd points_;
-    Eigen::VectorXd removed_;
-};
 
 /// Is the query in the convex hull of its neighbours, so that its height is interpolated and not extrapolated? It is
 /// not if all lie on one side of a line through it and one of them.
-bool is_surrounded(const Vector2d& query, const Nearest& near, const Matrix3Xd& points)
+bool is_surrounded(const Vector2d& query, const NearestPoints& near, const Matrix3Xd& points)
 {
     std::array<Vector2d, kMaxGridNeighbours> offsets;
     for (Index k = 0; k < near.count; ++k) offsets[k] = points.col(near.index[k]).head<2>() - query;
@@ -119,7 +38,7 @@ bool is_surrounded(const Vector2d& query, const Nearest& near, const Matrix3Xd& 
     return true;
 }
 
-double shepard(const Nearest& near, const Matrix3Xd& points)
+double shepard(const NearestPoints& near, const Matrix3Xd& points)
 {
     double sum = 0, weights = 0;
     for (Index k = 0; k < near.count; ++k) {
@@ -131,90 +50,6 @@ double shepard(const Nearest& near, const Matrix3Xd& points)
     return sum / weights;
 }
 
-/// Ordinary kriging at four points at once, one in each SIMD lane.
-class KrigingOfFour {
-  public:
-    static constexpr Index kLanes = 4;
-
-    KrigingOfFour()
-    {
-        for (Index k = 0; k < kMaxGridNeighbours; ++k) x_[k] = y_[k] = z_[k] = Lanes4::Zero();
-    }
-
-    /// Sets the query of a lane. If it has fewer than kMaxGridNeighbours neighbours, the nearest one is repeated.
-    void set(Index lane, const Vector2d& query, const Nearest& near, const Matrix3Xd& points)
-    {
-        for (Index k = 0; k < kMaxGridNeighbours; ++k) {
-            const Index i = near.index[k < near.count ? k : 0];
-            x_[k][lane] = points(0, i) - query.x();
-            y_[k][lane] = points(1, i) - query.y();
-            z_[k][lane] = points(2, i);
-        }
-    }
-    /// Adds what the points lost to the heights that were set.
-    void add(Index lane, const Nearest& near, const Eigen::VectorXd& removed)
-    {
-        for (Index k = 0; k < kMaxGridNeighbours; ++k) z_[k][lane] += removed[near.index[k < near.count ? k : 0]];
-    }
-
-    /// Uses the covariance c(d) = 2 (max. distance) - d instead of the variogram: the weights are the same, and the
-    /// matrix C, C_ij = c(|p_i - p_j|), is definite. With b_i = c(|p_i - query|) and the heights z the estimate is b
-    /// C⁻¹z + (1 - b C⁻¹1) (1 C⁻¹z) / (1 C⁻¹1); by C = L D Lᵀ, b C⁻¹z = (L⁻¹b) D⁻¹ (L⁻¹z).
-    Lanes4 heights()
-    {
-        Lanes4 one[kMaxGridNeighbours], b[kMaxGridNeighbours];
-        covariances(one, b);
-        Lanes4 bz = Lanes4::Zero(), b1 = bz, z1 = bz, ones = bz;
-        for (Index j = 0; j < kMaxGridNeighbours; ++j) {
-            // Column j of C_ is that of L D. It is eliminated from the columns after it.
-            const Lanes4 inverse_pivot = 1 / C_[j][j];
-            bz += b[j] * z_[j] * inverse_pivot;
-            b1 += b[j] * one[j] * inverse_pivot;
-            z1 += z_[j] * one[j] * inverse_pivot;
-            ones += one[j] * one[j] * inverse_pivot;
-            for (Index i = j + 1; i < kMaxGridNeighbours; ++i) {
-                const Lanes4 factor = C_[i][j] * inverse_pivot;
-                for (Index k = j + 1; k <= i; ++k) C_[i][k] -= factor * C_[k][j];
-                b[i] -= factor * b[j];
-                z_[i] -= factor * z_[j];
-                one[i] -= factor * one[j];
-            }
-        }
-        return bz + (1 - b1) * z1 / ones;
-    }
-
-  private:
-    /// Computes C_, and decouples points that coincide with an earlier one.
-    /// @param one  1; 0 for a decoupled point
-    /// @param b    covariances with the query
-    void covariances(Lanes4* one, Lanes4* b)
-    {
-        constexpr double kMinDistance = 1e-9; // mm, for a single point at the query
-        Lanes4 max_distance = Lanes4::Constant(kMinDistance);
-        for (Index i = 0; i < kMaxGridNeighbours; ++i) {
-            Lanes4 min_distance = Lanes4::Ones();
-            for (Index j = 0; j < i; ++j) {
-                C_[i][j] = ((x_[i] - x_[j]).square() + (y_[i] - y_[j]).square()).sqrt();
-                max_distance = max_distance.max(C_[i][j]);
-                min_distance = min_distance.min(C_[i][j]);
-            }
-            one[i] = (min_distance > 0).select(Lanes4::Ones(), Lanes4::Zero());
-            b[i] = (x_[i].square() + y_[i].square()).sqrt();
-            max_distance = max_distance.max(b[i]);
-        }
-        const Lanes4 variance = 2 * max_distance;
-        for (Index i = 0; i < kMaxGridNeighbours; ++i) {
-            for (Index j = 0; j < i; ++j) C_[i][j] = one[i] * one[j] * (variance - C_[i][j]);
-            C_[i][i] = one[i] * variance + (1 - one[i]);
-            b[i] = one[i] * (variance - b[i]);
-            z_[i] *= one[i];
-        }
-    }
-
-    Lanes4 x_[kMaxGridNeighbours], y_[kMaxGridNeighbours], z_[kMaxGridNeighbours]; ///< from the query; height
-    Lanes4 C_[kMaxGridNeighbours][kMaxGridNeighbours];                             ///< lower triangle
-};
-
 /// The ground surface at a query between points that a wheel has touched and others, beside the kink between them.
 struct BesideKink {
     double ground;   ///< height of the plane through the touched points, mm
@@ -223,7 +58,7 @@ struct BesideKink {
 };
 
 /// @return  empty away from a kink, and where the touched points do not determine a plane
-std::optional<BesideKink> beside_kink(const Vector2d& query, const Nearest& near, const Buckets& buckets)
+std::optional<BesideKink> beside_kink(const Vector2d& query, const NearestPoints& near, const PointBuckets& buckets)
 {
     constexpr double kMinTouchedShare = 0.1; // of the deepest: squares that a contact only grazes lost less
     const Eigen::VectorXd& removed = buckets.removed();
@@ -254,9 +89,9 @@ std::optional<BesideKink> beside_kink(const Vector2d& query, const Nearest& near
 /// The area over the workpiece.
 class Outline {
   public:
-    Outline(const Buckets& buckets, double spacing) : buckets_(buckets), spacing_(spacing) {}
+    Outline(const PointBuckets& buckets, double spacing) : buckets_(buckets), spacing_(spacing) {}
 
-    Nearest nearest(const Vector2d& query) const
+    NearestPoints nearest(const Vector2d& query) const
     {
         constexpr double kSearchRadiusSpacings = 3;
         return buckets_.nearest(query, kSearchRadiusSpacings * spacing_);
@@ -265,7 +100,7 @@ class Outline {
     /// A surfel stands for a square of one spacing. The part ends where those of its last surfels do: discs of this
     /// radius reach half a spacing, on average, beyond a straight row of them. A gap between surfels is bridged, up to
     /// a width.
-    bool contains(const Vector2d& query, const Nearest& near) const
+    bool contains(const Vector2d& query, const NearestPoints& near) const
     {
         constexpr double kSurfelRadiusSpacings = 0.583, kMaxBridgeSpacings = 2;
         if (near.count == 0) return false;
@@ -288,7 +123,7 @@ class Outline {
     }
 
   private:
-    const Buckets& buckets_;
+    const PointBuckets& buckets_;
     double spacing_;
 };
 
@@ -319,7 +154,7 @@ GriddedHeights interpolate_heights(const ContactGrid& grid, const Matrix3Xd& poi
     GriddedHeights result{Eigen::MatrixXd::Constant(grid.rows, grid.columns, kNan),
                           Eigen::MatrixXd::Zero(grid.rows, grid.columns)};
     if (points.cols() == 0) return result;
-    const Buckets buckets(points, removed);
+    const PointBuckets buckets(points, removed);
     const Outline outline(buckets, mean_spacing(points));
     // Beside the workpiece the height is that of its border, for cells that lie partly over it.
     Eigen::MatrixXd center_inside = result.coverage;
@@ -328,14 +163,14 @@ GriddedHeights interpolate_heights(const ContactGrid& grid, const Matrix3Xd& poi
         Index rows[KrigingOfFour::kLanes], lanes = 0;
         std::optional<BesideKink> kinks[KrigingOfFour::kLanes];
         const auto solve_lanes = [&] {
-            const Lanes4 results = kriging.heights();
+            const KrigingOfFour::Lanes4 results = kriging.heights();
             for (Index lane = 0; lane < lanes; ++lane)
                 result.height(rows[lane], column) = kinks[lane] ? kinks[lane]->height(results[lane]) : results[lane];
             lanes = 0;
         };
         for (Index row = 0; row < grid.rows; ++row) {
             const Vector2d center = grid.cell_center(row, column);
-            const Nearest near = outline.nearest(center);
+            const NearestPoints near = outline.nearest(center);
             if (near.count == 0) continue;
             center_inside(row, column) = outline.contains(center, near) ? 1 : 0;
             if (gridding == Gridding::shepard) {

@@ -24,7 +24,6 @@ namespace {
 
 using Eigen::Isometry3d, Eigen::Vector3d;
 
-constexpr double kMmPerMetre = 1000;
 // A joint without limits that turns for ever, degrees either way: what cables stand.
 constexpr double kContinuousDegrees = 360;
 // Shapes of a robot or its cell are smaller, mm: the largest arms reach 4.7 m, a mesh in mm taken as m is 1000 times as

@@ -20,7 +20,6 @@ namespace {
 
 using Eigen::Isometry3d, Eigen::Vector3d;
 
-constexpr double kMmPerMetre = 1000;
 // What URDFs leave of a right angle (1.570796327) and of a zero (-1.9e-11 m): rad, and m.
 constexpr double kQuarterTurnTolerance = 1e-9, kLengthRounding = 1e-10;
 

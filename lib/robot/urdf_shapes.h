@@ -14,6 +14,8 @@ class Pose;
 
 namespace fettle::robot {
 
+inline constexpr double kMmPerMetre = 1000; ///< lengths in a URDF are in metres
+
 /// Where the mesh of a link is looked for.
 struct UrdfFiles {
     const std::string& source;                          ///< the URDF; a relative name is relative to its folder

@@ -31,7 +31,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
             learn_from(calibrate::read_record(json::Reader::parse(text, "file").object("learnt").object("record")));
         } else {
             const auto trials = calibrate::read_trials(text, "file").exact;
-            learn_from({calibrate::typical_pass_work(trials.front()), trials, {}, 0});
+            calibrate::LawRecord record;
+            record.pass_work = calibrate::typical_pass_work(trials.front());
+            record.passes = trials;
+            learn_from(record);
         }
     });
     return 0;
