@@ -55,7 +55,7 @@ for place in 5 30 100 152 160 $((size / 3)) $((size / 2)) $((size - 1)); do
     refused 'broken.journal: ' fettle-belt plate.pcd --wheel wheel.json --path path.pcd --feed 0.003 --cells 64 \
         --lower 0.1 --upper 0.2 --watch broken.csv --journal broken.journal
 done
-sed '1s/3/2/' run.journal > older.journal
+sed '1s/journal [0-9]*/journal 0/' run.journal > older.journal
 refused 'older.journal: the journal is corrupt, or of another version' fettle-belt plate.pcd --wheel wheel.json --path path.pcd --feed 0.003 --journal older.journal
 { cat run.journal; printf '\0\0\0\0\0\0\0\0'; } > long.journal
 refused 'long.journal: the journal is corrupt' fettle-belt plate.pcd --wheel wheel.json --path path.pcd --feed 0.003 --cells 64 \

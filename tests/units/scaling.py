@@ -26,7 +26,7 @@ DIMENSIONS = [
     ((0, 1), """*force, *force.min, *force.max, *force.down"""),
     ((-1, 1), """*force.stiffness"""),
     ((-2, 1), """*pressure"""),
-    ((-1, 0), """*.curvature"""),
+    ((-1, 0), """*.curvature, *.shape.form"""),
     ((3, -1), """*removal.coefficient"""),
     ((3, 0), """*volume"""),
     ((2, 0), """*area"""),
