@@ -12,7 +12,7 @@ FUZZ_SOURCES := $(wildcard $(addprefix lib/,$(addsuffix /*.cc,core geometry unit
     $(addprefix calibrate/,law_belief law_record trials_csv) belt/removal_fit \
     $(addprefix machining/,nc_block nc_arc nc_program nc_writer cutter_path cutter limits tilt) \
     $(addprefix part/,spec surface anomalies outline profile) $(addprefix sampling/,noise scan point_surface triangle_grid) \
-    $(addprefix report/,summary_reader tool_reports) $(addprefix robot/,robot body_json mesh_body workpiece clearance deepest_point depth placed_solid round_solid hull_points simplex urdf urdf_shapes srdf dh_from_axes arm arm_newton arm_parallel)))
+    $(addprefix report/,summary_reader tool_reports) $(addprefix robot/,robot body_json mesh_body workpiece workpiece_search clearance deepest_point depth placed_solid round_solid hull_points simplex urdf urdf_model urdf_shapes srdf dh_from_axes arm arm_newton arm_parallel)))
 # Not what belongs to the command line: a bundle is linked as a whole.
 FUZZ_SOURCES := $(filter-out $(shell grep -l '"cli/' $(FUZZ_SOURCES) /dev/null),$(FUZZ_SOURCES))
 # Compiled in bundles, as the library is.
