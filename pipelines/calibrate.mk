@@ -7,8 +7,8 @@
 # measured rows; part1/N.json those of Wang's part 1, ground on a gantry that removes HIDDEN of what its job says, from the first covering of
 # its trace, with forces 5 % and heights 0.02 mm (a standard deviation each) off. like/PART-LAYER1.csv has PARTS like parts of Wang's, one after the other,
 # whose coefficient falls by 30 %, ground with fettle-grind --learn and without. edge.json compares the free sides of a wheel by its layer and by finite elements;
-# exponents.csv has the exponents that fettle-belt --learn finds, halving.txt what half the spacing changes.
-# BELT= leaves these two out.
+# exponents.csv has the exponents that fettle-belt --learn finds, halving.txt what half the spacing changes, speed.txt the seconds that 10,000 contacts
+# on a million surfels take, which mean something on a quiet machine of two cores. BELT= leaves these out.
 
 B         ?= build
 SERIES    ?= 200
@@ -19,7 +19,7 @@ PARTS     ?= 10
 LIKE      ?= 1-force 2-force 1-constant
 CALIBRATE ?= $(B)/calibrate/$(SERIES)-$(RUNS)/$(SEED)
 TRIALS    ?= samples/removal
-BELT      ?= exponents.csv halving.txt
+BELT      ?= exponents.csv halving.txt speed.txt
 LAWS      := preston power tails threshold wearing
 PART      := $(CALIBRATE)/part1
 
@@ -40,6 +40,9 @@ $(CALIBRATE)/exponents.csv: pipelines/calibrate-exponents samples/wheels/crowned
 $(CALIBRATE)/halving.txt: tests/fettle-belt/halving.sh $(B)/bin/fettle-belt
 	@mkdir -p $(@D)/halving
 	$(call step,(cd $(@D)/halving && PATH="$(abspath $(B)/bin):$$PATH" SAMPLES="$(abspath samples)" bash -e $(abspath $<)) > $@.part || true)
+
+$(CALIBRATE)/speed.txt: pipelines/calibrate-speed samples/wheels/crowned_preston.json $(B)/bin/fettle-clean $(B)/bin/fettle-belt
+	$(call step,$< $(B)/bin > $@.part)
 
 $(LAWS:%=$(CALIBRATE)/%.csv): $(CALIBRATE)/%.csv: $(B)/study/law-series
 	$(call step,$< $* $(SERIES) $(SEED) > $@.part)

@@ -8,12 +8,14 @@ fettle-part --without-anomaly "$SAMPLES/parts/wang3.json" > desired.stl
 jq '.anomaly = [[0.65, 0.7, 0.9], [1.4, 0.7, 0.9], [1.4, 1.45, 0.9], [0.65, 1.45, 0.9]] | .safe_height = 1.6 |
     .sampling = [[0.3, 0.3, 0.6], [1.9, 0.3, 0.6], [1.9, 1.9, 0.6], [0.3, 1.9, 0.6]]' "$SAMPLES/jobs/wang3.json" > job.json
 fettle-sample job.json --on desired.stl | fettle-fit job.json | fettle-plan job.json > plan.json
-fettle-stock-linuxcnc plan.json --stock part.stl > before
+# The material is removed .7 times as easily as the job says.
+jq '.job.removal.coefficient *= 0.7' plan.json > hidden.json
+fettle-stock-linuxcnc hidden.json --stock part.stl > before
 start before
-fettle-grind plan.json --stock part.stl --layer-1 feed --gantry "exec:$(driver plan.json)" --report driven.json -v > seen.pcd
+fettle-grind plan.json --stock part.stl --layer-1 feed --gantry "exec:$(driver plan.json)" --trace trace.pcd --report driven.json -v > seen.pcd
 stop
-fettle-stock-linuxcnc plan.json --stock part.stl --after machine/run/stock.ground --ascii > ground.pcd
-fettle-grind plan.json --stock part.stl --layer-1 feed --gantry virtual --report virtual.json --ascii > virtual.pcd
+fettle-stock-linuxcnc hidden.json --stock part.stl --after machine/run/stock.ground --ascii > ground.pcd
+fettle-grind plan.json --stock part.stl --layer-1 feed --gantry virtual --removal-factor 0.7 --report virtual.json --ascii > virtual.pcd
 jq -c '[.finished, .machine_time, .layers, .raises, .re_cuts, .strokes, .steps, .peak_force, .removed_volume]' driven.json virtual.json
 jq -e '.finished' driven.json > finished
 points() { sed '1,/^DATA/d' "$1"; }
@@ -26,3 +28,8 @@ differences 1 | statistics
 differences '$1 > 0.65 && $1 < 1.4 && $2 > 0.7 && $2 < 1.45' > patch
 statistics < patch
 awk '{ d[NR] = $1 } END { exit !(NR > 10000 && d[int(NR * 0.99)] <= 0.05) }' patch
+# From the trace and the part before and after come the coefficient and the exponent of the law that the head obeys.
+fettle-calibrate trace.pcd --job job.json --before part.stl --after ground.pcd --report law.json > learnt.json
+jq -c '[.gantry.coefficient, (.parameters[] | select(.name == "force") | .mean)]' law.json
+jq -e --slurpfile job job.json '(.gantry.coefficient / (0.7 * $job[0].removal.coefficient * pow(25.4; 3) / 4.4482216152605) - 1 | fabs) < 0.05' law.json > ok
+jq -e '.parameters[] | select(.name == "force") | (.mean - 1 | fabs) < 0.1' law.json > ok
