@@ -14,4 +14,6 @@ fettle-part "$part" -o out --report - | jq -e 'type == "object"' >report
 # Names may hold what moves a terminal's cursor; the message does not.
 status=0
 fettle-part $'no\e[2J\nwhere' 2>err || status=$?
-[ $status -eq 2 ] && [ "$(wc -l <err)" -eq 1 ] && ! grep -q $'\e' err
+[ $status -eq 2 ]
+[ "$(wc -l <err)" -eq 1 ]
+if grep -q $'\e' err; then exit 1; fi

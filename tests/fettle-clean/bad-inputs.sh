@@ -30,4 +30,5 @@ refuses 'left.stl: a cloud is written as PCD, PLY, CSV or VTK, not as stl' row.x
 refuses 'left.pcd: a mesh is written as STL or PLY, not as pcd' facet.off -o left.pcd
 refuses '--format: a mesh is written as STL or PLY, not as csv' facet.off --format csv
 refuses '--ascii: goes with PCD' row.xyz --ascii --format ply
-[ ! -e left.stl ] && [ ! -e left.pcd ]
+[ ! -e left.stl ]
+[ ! -e left.pcd ]

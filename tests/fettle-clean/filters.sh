@@ -35,11 +35,13 @@ awk 'BEGIN { for (x = 0; x < 10; ++x) for (y = 0; y < 10; ++y) print x, y, 0; pr
 for filter in statistical:4,3 radius:1.1,2; do
     fettle-clean grid.xyz --outliers $filter --ascii --report report.json | sed '1,/^DATA/d' > left
     jq -e '.outliers == 1' report.json > ok
-    [ "$(wc -l < left)" = 100 ] && ! grep -q 40 left
+    [ "$(wc -l < left)" = 100 ]
+    if grep -q 40 left; then exit 1; fi
 done
 # Cubes of 2 mm hold four points at the same distance from their mean: the first stays. Points of a grid that are 2 mm apart stay by spacing.
 fettle-clean grid.xyz --crop box:0,0,0,9,9,1 --thin 2 --ascii | sed '1,/^DATA/d' > left
-[ "$(wc -l < left)" = 25 ] && [ "$(head -n 2 left | tr '\n' ' ')" = '0 0 0 0 2 0 ' ]
+[ "$(wc -l < left)" = 25 ]
+[ "$(head -n 2 left | tr '\n' ' ')" = '0 0 0 0 2 0 ' ]
 fettle-clean grid.xyz --crop box:0,0,0,9,9,1 --thin spacing:2 --ascii | sed '1,/^DATA/d' > spaced
 cmp left spaced
 

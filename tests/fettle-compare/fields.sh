@@ -9,5 +9,6 @@ fettle-compare test.xyz --to plate.obj --within job.json --fields foot,facet,reg
 cut -d , -f 1-3,7-12 fields.csv
 status=0
 fettle-compare test.xyz --to plate.obj --fields region -o out 2>err || status=$?
-[ $status -eq 2 ] && cat err
+[ $status -eq 2 ]
+cat err
 fettle-compare test.xyz --to plate.obj --fields feet -o out 2>err || cat err

@@ -19,4 +19,6 @@ at=$(grep -a -b '^LOOKUP_TABLE' errors.vtk | head -n 1 | cut -d : -f 1)
 tail -c +$((at + 22)) errors.vtk | head -c 12 | od -An -t x1
 status=0
 fettle-compare test.xyz --to plate.obj --format ply --ascii >out 2>err || status=$?
-[ $status -eq 2 ] && [ ! -s out ] && cat err
+[ $status -eq 2 ]
+[ ! -s out ]
+cat err

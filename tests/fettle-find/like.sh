@@ -6,7 +6,8 @@ settings=$SAMPLES/jobs/hammer.json
 hammer -o yesterday.stl
 fettle-find yesterday.stl --jobs jobs --template "$settings" --min-height 1 --report yesterday.json -o found.pcd || [ $? = 1 ]
 count=$(jq '[.anomalies[] | select(.job != "")] | length' yesterday.json)
-[ "$count" -ge 1 ] && [ -s jobs/part.pcd ]
+[ "$count" -ge 1 ]
+[ -s jobs/part.pcd ]
 turn="--turn x,20,z,35"
 # shellcheck disable=SC2086 # words
 fettle-place yesterday.stl $turn -o today.stl

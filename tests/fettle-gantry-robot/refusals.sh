@@ -38,7 +38,8 @@ refused "${frame}the table would turn while the wheel grinds: it has to stand st
 refuses() { "$HERE/../refuses" "$1" fettle-grind plan.json --stock stock.stl --cell 0.2 "${@:2}"; }
 status=0
 fettle-grind plan.json --stock stock.stl --cell 0.2 --gantry "exec:$(robot "$ROBOT")" > out 2> message || status=$?
-[ $status = 2 ] && grep -q 'reports: the robot does not know where the job lies: no frame was given' message
+[ $status = 2 ]
+grep -q 'reports: the robot does not know where the job lies: no frame was given' message
 printf '1 0 0 0\n0 1 0 0\n0 0 -1 0\n0 0 0 1\n' > mirror.txt
 refuses 'mirror.txt: is a reflection' --gantry "exec:$(robot "$ROBOT")" --place mirror.txt
 refuses '--place: goes with --gantry exec:COMMAND' --place place.txt

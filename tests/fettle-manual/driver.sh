@@ -14,7 +14,8 @@ cmp direct.pcd driven.pcd
 status=0
 fettle-manual job.json --stock stock.stl --cell 0.1 --lowest 4 --trace fault.pcd --ascii --steer steer.txt --report fault.json 2>message >fault-ground.pcd \
     --gantry "exec:echo 1 ok fettle-gantry 1 -500 500 -500 500 -500 500 100 999; echo 2 ok 15; echo 3 ok 0 0 0 30 0 0 0; echo 4 error no air; sleep 1" || status=$?
-[ $status = 1 ] && grep -q 'reports: no air' message
+[ $status = 1 ]
+grep -q 'reports: no air' message
 awk '/^FIELDS/ { for (i = 2; i <= NF; i++) if ($i == "event") event = i - 1 } /^DATA/ { body = 1; next } body { last = $event } END { exit last != 12 }' fault.pcd
 fettle-manual job.json --stock stock.stl --cell 0.1 --machine "$machine" --steer steer.txt --lowest 7 --force 14 --trace high.pcd --ascii > ground.pcd
 awk '/^DATA/ { body = 1; next } body && $9 > 0 { n++; if ($3 < 6.99) exit 1 } END { exit n < 50 }' high.pcd

@@ -3,7 +3,8 @@
 printf 'G21 G0 X5 Y15 Z20\nX25\nZ8\nG1 Y14 F100\nG0 Z20\n' > rapid.nc
 status=0
 fettle-mill rapid.nc --stock box:0,0,0,30,30,11 --cutter flat:4 --step 0.5 --report rapid.json > part.stl 2> message || status=$?
-[ $status = 1 ] && [ -s part.stl ]
+[ $status = 1 ]
+[ -s part.stl ]
 jq -e '.rapid_cuts == {"moves": 1, "first_place": 3, "depth": 3} and .holder_collisions.moves == 0 and
        (.rapid_volume / 37.7 - 1 | fabs) < 0.1' rapid.json > ok
 cat message

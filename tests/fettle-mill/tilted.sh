@@ -29,10 +29,12 @@ fettle-mill flat.nc $axis --stock box:-4,-4,-4,4,4,6 --cutter flat:4 --step 0.2 
 awk '/^DATA/ { body = 1; next } body && $4 > 1e-6 { n++; h = 0.6 * $1 + 0.8 * $3; if (h < 4 - 1e-5 || h > 4 + 1e-5) exit 1 } END { if (n < 50) exit 1 }' box.pcd
 status=0
 fettle-mill tilted.pcd --axis 0,0,0 --stock tilted-stock.off $mill > part.stl 2> message || status=$?
-[ $status = 2 ] && grep -q -- '--axis' message
+[ $status = 2 ]
+grep -q -- '--axis' message
 printf 'x y z qw qx qy qz\n0 0 9 1 0 0 0\n1 0 9 1 0 0 0\n' > upright.xyz
 status=0
 fettle-mill upright.xyz $axis --stock tilted-stock.off $mill > part.stl 2> message || status=$?
-[ $status = 2 ] && grep -q "point 1: the cutter's axis is 0, 0, 1, expected 0.6, 0, 0.8" message
+[ $status = 2 ]
+grep -q "point 1: the cutter's axis is 0, 0, 1, expected 0.6, 0, 0.8" message
 printf 'x y z qw qx qy qz\n0 0 9 0.9486832980505138 0 0.31622776601683794 0\n1 0 9 0.9486832980505138 0 0.31622776601683794 0\n' > along.xyz
 fettle-mill along.xyz $axis --stock tilted-stock.off $mill > part.stl

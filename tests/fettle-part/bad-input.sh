@@ -39,5 +39,7 @@ refused 'nowhere.stl' '.scan.file = "nowhere.stl"' hammer
 for content in '' '{' '[]' '{"kind": "part", "kind": "part"}'; do
     status=0
     printf '%s' "$content" | fettle-part >out 2>err || status=$?
-    [ $status -eq 2 ] && [ ! -s out ] && [ "$(wc -l <err)" -eq 1 ]
+    [ $status -eq 2 ]
+    [ ! -s out ]
+    [ "$(wc -l <err)" -eq 1 ]
 done

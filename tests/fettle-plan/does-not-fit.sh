@@ -5,7 +5,9 @@ refused() { # RADIUS AXIS
         point: [1.5, 1.5, 0.75], normal: [0, 0, 1], axis: $2, curvature: (-1 / $1)}}" > surface.json
     status=0
     fettle-plan job.json surface.json > out 2> message || status=$?
-    [ $status = 2 ] && [ ! -s out ] && [ "$(wc -l < message)" = 1 ]
+    [ $status = 2 ]
+    [ ! -s out ]
+    [ "$(wc -l < message)" = 1 ]
     cat message
 }
 jq '.wheel.radius = 3' "$SAMPLES/jobs/wang1.json" > job.json

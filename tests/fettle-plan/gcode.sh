@@ -17,4 +17,6 @@ for dialect in linuxcnc grbl; do
 done
 status=0
 fettle-plan "$SAMPLES/jobs/wang1.json" plane.json --gcode fanuc > out 2> message || status=$?
-[ $status = 2 ] && [ ! -s out ] && [ "$(wc -l < message)" = 1 ]
+[ $status = 2 ]
+[ ! -s out ]
+[ "$(wc -l < message)" = 1 ]

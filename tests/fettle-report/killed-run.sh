@@ -13,7 +13,8 @@ fettle-grind plan.json --stock stock.stl --cell 0.4 --trace whole.pcd --ascii > 
 sed '1,/^DATA/d' whole.pcd | awk 'NR <= 100' > rows
 { head_with 100 whole.pcd; cat rows; } > done.pcd
 page done.pcd > expected
-[ -s expected ] && [ ! -s message ]
+[ -s expected ]
+[ ! -s message ]
 same_page() { # FILE WORDS
     page "$1" > values
     cmp values expected

@@ -13,7 +13,8 @@ done
 fettle-sample job.json --strategy adaptive --max-touches 8 --report report.json -q \
     --on "gantry:exec:tee lines | $driver" > adaptive.pcd
 touches=$(jq .touches report.json)
-[ "$(grep -c ' probe ' lines)" -le $((touches + 2)) ] && [ "$(grep -c ' probe ' lines)" -ge "$touches" ]
+[ "$(grep -c ' probe ' lines)" -le $((touches + 2)) ]
+[ "$(grep -c ' probe ' lines)" -ge "$touches" ]
 
 # The head turns to θ before the first touch.
 jq '.frame.theta_deg = 30' job.json > turned.json

@@ -8,7 +8,8 @@ verdict() { # CLASS STATUS ARGUMENT...
     local class=$1 expected=$2 status=0
     shift 2
     fettle-verify "$@" --design design.off --report report.json > patches.pcd || status=$?
-    [ $status = "$expected" ] && jq -e --arg class "$class" '.classes[$class].count == 200' report.json > ok
+    [ $status = "$expected" ]
+    jq -e --arg class "$class" '.classes[$class].count == 200' report.json > ok
 }
 verdict serious_under_cut 0 high.off --tolerance 0.1
 verdict slight_under_cut 0 high.off --tolerance 0.1 --outer-tolerance 0.3

@@ -16,4 +16,5 @@ jq -e '.least_squares * 25.4 < 0.926' chain/1/wang2/cylindricity.json
 jq -es 'map(.shape.type) == ["plane", "swept", "griddata"] and .[0].shift == 0.005 and (.[2].touches | length) == 24' chain/1/wang{1,2,3}/desired.json
 status=0
 make --no-print-directory -s -C "$root" -f pipelines/casting.mk METHOD=else demo 2>message || status=$?
-[ $status = 2 ] && grep -F 'METHOD is default, wang or adaptive, not else' message
+[ $status = 2 ]
+grep -F 'METHOD is default, wang or adaptive, not else' message

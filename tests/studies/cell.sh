@@ -6,7 +6,8 @@ unset MAKEFLAGS MFLAGS MAKELEVEL
 make --no-print-directory -s -C "$root" -f pipelines/cell.mk B="$build" CELL="$PWD/cell" > table 2> warnings || { cat table warnings; exit 1; }
 cat table
 rows=$(jq '[.anomalies[] | select(.job != "")] | length' cell/found.json)
-[ "$rows" -ge 2 ] && [ "$(grep -c ': ground$' table)" = "$rows" ]
+[ "$rows" -ge 2 ]
+[ "$(grep -c ': ground$' table)" = "$rows" ]
 [ "$(grep -c '^  PROC ' cell/program.mod)" = $((rows + 1)) ]
 head -n 1 cell/program.mod | grep -q '! checked: clearance'
 awk '/^# checked/ { exit !($8 > 15) }' cell/checked.pcd
@@ -17,7 +18,8 @@ fettle-place cell/path.pcd --into "cell/jobs/$row.json" -o back.csv
 columns() { awk -F , -v want="$1" -v row="$row" 'NR == 1 { for (i = 1; i <= NF; ++i) c[$i] = i; print "x,y,z"; next } $c["anomaly"] == row && $c["motion"] == 0 && $c["layer"] == want { print $c["x"] "," $c["y"] "," $c["z"] }' back.csv; }
 columns 1 > tips.csv
 columns 2 > above.csv
-[ "$(wc -l < tips.csv)" -gt 100 ] && [ "$(wc -l < tips.csv)" = "$(wc -l < above.csv)" ]
+[ "$(wc -l < tips.csv)" -gt 100 ]
+[ "$(wc -l < tips.csv)" = "$(wc -l < above.csv)" ]
 fettle-mesh "cell/$row/desired.json" --at tips.csv -o surface.csv
 paste -d , tips.csv surface.csv above.csv | awk -F , 'NR > 1 { d = $3 - $6; if (d < -0.01 || d > 0.2) exit 1 }'
 # The strategy on the robot, at the smallest anomaly: it leaves the part of the gantry, within the ranges of the joints, and nothing collides. That a changed part would be told: one of which a

@@ -23,10 +23,11 @@ grep -E '^recall, 12 sigma high and 8 cells wide, off edges +20 +0.950 +>= 0.95 
 grep -E '^recall, the same, at edges +20 +0.850 +>= 0.85  reached$' exact.txt
 grep -x 'all figures reached' exact.txt
 # One false alarm in two controls is too many.
-echo 'find,0,0.6,1,9,' >> exact/b_c0/score.csv
+echo 'find,0,0.9,1,9,' >> exact/b_c0/score.csv
 status=0
 "$root/pipelines/find-table" exact > worse.txt || status=$?
-[ $status = 1 ] && grep -x '1 figures missed' worse.txt
+[ $status = 1 ]
+grep -x '1 figures missed' worse.txt
 
 # Reference: found jobs that leave 1, 1 and 1.2 times the operators' errors, and one that runs where the operator's is refused.
 printf '%s\n' '1,0.02,0.02' '2,0.03,0.03' '3,0.024,0.02' '4,0.01,' > chain.csv
@@ -37,4 +38,5 @@ grep -x 'all figures reached' chain.txt
 echo '5,,0.02' >> chain.csv
 status=0
 "$root/pipelines/find-chain-table" chain.csv > chain.txt || status=$?
-[ $status = 1 ] && grep -x '1 figures missed' chain.txt
+[ $status = 1 ]
+grep -x '1 figures missed' chain.txt

@@ -10,6 +10,7 @@ cat table
 row=$(jq '.anomalies | max_by(.height) | .anomaly' raw/hammer/found.json)
 grep -E "^ +$row .* within  .*/$row/report.html$" table
 jq -e '.verdict == "within" and .regions.inside.count > 10000' "raw/hammer/$row/errors.json" > ok
-[ -s "raw/hammer/$row/found.png" ] && [ -s "raw/hammer/$row/report.html" ]
+[ -s "raw/hammer/$row/found.png" ]
+[ -s "raw/hammer/$row/report.html" ]
 jq -r '.anomalies[] | select(.job == "") | .doubt' raw/hammer/found.json | while read -r doubt; do grep -q "$doubt\$" table || exit 1; done
 [ "$(wc -l < table)" = $((1 + $(jq '.anomalies | length' raw/hammer/found.json))) ]

@@ -31,8 +31,10 @@ draw 3 bad mm within 0.3 0.04
 grep -E '^good +3/3 +12 \( 13\) +0.051 \(0.076\) +0.152 \(0.229\) +0.000 \( 0.025\) +3.0 \( +3.0\) +50 \( +75\) +reached$' good.txt
 status=0
 "$root/pipelines/seeds-table" chain 3 good bad >bad.txt || status=$?
-[ $status = 1 ] && grep -E '^bad +2/3 +12 .* MISSED$' bad.txt
+[ $status = 1 ]
+grep -E '^bad +2/3 +12 .* MISSED$' bad.txt
 draw 2 bad mm within 0.2 0
 status=0
 "$root/pipelines/seeds-table" chain 3 bad >over.txt || status=$?
-[ $status = 1 ] && grep -E '^bad +3/3 .*0.000 \( 0.040\).* MISSED$' over.txt
+[ $status = 1 ]
+grep -E '^bad +3/3 .*0.000 \( 0.040\).* MISSED$' over.txt

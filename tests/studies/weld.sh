@@ -32,4 +32,5 @@ jq '.regions.inside.p01 = -0.1' chain/1/holdout/-30_30.json >worse.json
 mv worse.json chain/1/holdout/-30_30.json
 status=0
 "$root/pipelines/holdout-table" chain 1 '-30_30 -60_-25' >table || status=$?
-[ $status = 1 ] && [ "$(grep -c MISSED table)" = 1 ]
+[ $status = 1 ]
+[ "$(grep -c MISSED table)" = 1 ]
