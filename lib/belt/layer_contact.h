@@ -28,10 +28,11 @@ struct Contact {
 /// pressure with the influence coefficients, on a window just larger than the contact. Not thread-safe.
 ///
 /// While a belt grinds, the workpiece recedes by what the pressure removes. Taking the pressure at the end of the step
-/// for all of it (the implicit Euler method) adds that depth r(p) to the gap: g = gap + K p + r(p) - indentation. A
-/// ripple of the workpiece whose pressure the layer resists with the compliance C then shrinks by C / (C + r'(p)) in
-/// each step, whatever the step's length; with the pressure at the beginning (explicit) it would change by
-/// 1 - r'(p) / C, and grow where r' > 2 C: short waves, for which rubber is stiffest.
+/// for a depth r(p) of it adds that depth to the gap: g = gap + K p + r(p) - indentation. With r all of the step's
+/// removal (the implicit Euler method) a ripple of the workpiece whose pressure the layer resists with the compliance C
+/// shrinks by C / (C + r'(p)) in each step, whatever the step's length; with the pressure at the beginning (explicit)
+/// it would change by 1 - r'(p) / C, and grow where r' > 2 C: short waves, for which rubber is stiffest. A share of the
+/// removal (press.cc, implicit_share()) shrinks it as the exact exponential does.
 class LayerContact {
   public:
     /// Uses the compliance of a flat layer without edges.
