@@ -207,7 +207,11 @@ int main(int argc, char** argv)
         note_times(t, run.trace.back().time, begun);
         if (const std::string doubt = strategy::peak_warning(run.force, plan.job); !doubt.empty())
             t.warn(core::display_name(o.plan) + ": " + doubt);
-        if (!run.finished) t.warn(core::display_name(o.plan) + ": " + run.failure);
+        const std::string failure = core::display_name(o.plan) + ": " + run.failure;
+        if (run.faulted)
+            t.fault(failure);
+        else if (!run.finished)
+            t.warn(failure);
         return run.finished ? cli::Verdict::yes : cli::Verdict::no;
     });
 }

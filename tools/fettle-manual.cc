@@ -88,7 +88,7 @@ int main(int argc, char** argv)
             strategy::write_trace(t.output_file(o.trace), run.trace, units, encoding, {{}, job.frame()});
         t.report() = strategy::to_json(run, removal::volume_between(stock, ground), o.out.units(units));
         t.report().set("dropped_facets", dropped);
-        if (!run.failure.empty()) t.warn(run.failure);
+        if (!run.failure.empty()) t.fault(run.failure);
         return run.failure.empty() ? cli::Verdict::yes : cli::Verdict::no;
     });
 }

@@ -127,7 +127,7 @@ int main(int argc, char** argv)
             result = station::run_station(job, steering, options);
         }
         for (const std::string& warning : result.warnings) t.warn(warning);
-        if (!result.failure.empty()) t.warn(result.failure);
+        if (!result.failure.empty()) t.fault(result.failure);
         t.report() = result.report;
         return result.is_complete ? cli::Verdict::yes : cli::Verdict::no;
     });

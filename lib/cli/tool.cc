@@ -140,6 +140,8 @@ json::Value& Tool::report() { return state_->report; }
 
 void Tool::warn(const std::string& message) const { state_->warnings.push_back(one_line(message)); }
 
+void Tool::fault(const std::string& message) const { state_->faults.push_back(one_line(message)); }
+
 void Tool::note(const std::string& message) const
 {
     if (state_->verbose) std::cerr << state_->name << ": " << one_line(message) << '\n';
@@ -158,8 +160,9 @@ void Tool::finish()
     State& s = *state_;
     if (!s.report_path.empty()) output_file(s.report_path) << s.report;
     s.outputs.commit();
-    if (s.quiet) return;
-    for (const std::string& warning : s.warnings) std::cerr << s.name << ": warning: " << warning << '\n';
+    if (!s.quiet)
+        for (const std::string& warning : s.warnings) std::cerr << s.name << ": warning: " << warning << '\n';
+    for (const std::string& fault : s.faults) std::cerr << s.name << ": " << fault << '\n';
 }
 
 int tool_main(int argc, char** argv, const std::string& description, const std::function<Verdict(Tool&)>& body)

@@ -128,6 +128,9 @@ class Tool {
     /// Prints a warning on stderr, unless -q is given. Warnings are printed at the end and only if the tool succeeds,
     /// so that an error is a single line.
     void warn(const std::string& message) const;
+    /// Prints a machine's fault on stderr, with -q, too: the tool has written what was done until then, and its verdict
+    /// is no. Faults are printed after the warnings.
+    void fault(const std::string& message) const;
     /// Prints a line on stderr if -v is given.
     void note(const std::string& message) const;
     /// True if stderr is a terminal, and -q is not given.

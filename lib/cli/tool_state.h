@@ -62,6 +62,7 @@ struct Tool::State {
     const std::string* main_input = nullptr;
     bool has_output = true;
     std::vector<std::string> warnings;
+    std::vector<std::string> faults;
 };
 
 } // namespace fettle::cli

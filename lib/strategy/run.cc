@@ -59,6 +59,7 @@ void Runner::fail(const Action& action, const gantry::GantryFault& fault)
 {
     machine_.record_fault(mark(action, Event::fault));
     result_.failure = fault.what();
+    result_.faulted = true;
 }
 
 void Runner::retract(const Action& action)

@@ -66,6 +66,7 @@ struct RunOptions {
 struct GrindRun {
     bool finished = false;
     bool stopped = false; ///< by the operator (gantry::Interrupted): the wheel is at the safe height
+    bool faulted = false; ///< the machine has stopped, by the fault that `failure` says
     std::string failure;  ///< the limit that was reached, and the state; or the machine's fault
     StrategyCounts counts;
     ForceRecord force;

@@ -1,5 +1,5 @@
-# A driver at fault, in one of six ways, 20 times each at different answers: every time status 1, one line that names the
-# driver and the fault, a trace that ends in event 12 and holds what was done, a readable part, and no process left behind. From
+# A driver at fault, in one of six ways, 20 times each at different answers: every time status 1, one line (with -q, too) that
+# names the driver and the fault, a trace that ends in event 12 and holds what was done, a readable part, and no process left behind. From
 # every trace the work goes on to its end, here on a simulated machine.
 # shellcheck source=tests/fettle-grind/stock.bash
 . "$HERE/stock.bash"
@@ -10,7 +10,7 @@ fettle-grind plan.json --stock stock.stl --cell 0.4 --gantry virtual:dynamic --m
 check() { # FAULT N MESSAGE
     status=0
     fettle-grind plan.json --stock stock.stl --cell 0.4 --patience 1 --trace trace.pcd --ascii \
-        --gantry "exec:exec $HERE/faulty-driver $1 $2 $driver" > ground.pcd 2> message || status=$?
+        -q --gantry "exec:exec $HERE/faulty-driver $1 $2 $driver" > ground.pcd 2> message || status=$?
     [ $status = 1 ] || { echo "$1 $2: status $status"; cat message; exit 1; }
     [ "$(wc -l < message)" = 1 ] && grep -q "faulty-driver $1 .*$3.*; stopped" message || { echo "$1 $2:"; cat message; exit 1; }
     [ "$(tail -n 1 trace.pcd | cut -d ' ' -f 7)" = 12 ]
