@@ -21,8 +21,10 @@ int main(int argc, char** argv)
         "allowance.\n"
         "A grinding simulation (fettle-belt) says what each point takes from each surfel; the best feeds or forces "
         "within the limits are a bounded least-squares problem, solved anew with the simulation of its answer until "
-        "the error shrinks no more. Out: the path with force (or depth) and feed. Report: the error (rms over the "
-        "surfels that the path reaches) before grinding, with the best constant, and as planned.";
+        "the error shrinks no more, and with --lower and --upper on, until no larger share of the area comes within. "
+        "Out: the path with force (or depth) and feed. Report: the error (rms over the "
+        "surfels that the path reaches), and the share within of all, before grinding, with the best constant, and as "
+        "planned.";
     return cli::tool_main(argc, argv, description, [](cli::Tool& t) {
         const std::string& path_file = t.main_input("PATH", "contact points with poses (fettle-path), PCD");
         const std::string& points = t.required_file_option("--on", "SURFELS", "Surfels with their displacement, PCD");
@@ -35,6 +37,11 @@ int main(int argc, char** argv)
         const belt::GrindingOptions grinding(t);
         const double& target =
             t.number("--wanted", 0, "LENGTH", "Displacement to be left", core::Range::between(-kMaxLength, kMaxLength));
+        const auto& lower_error = t.optional_number("--lower", "LENGTH", "With --upper: what is left from here …",
+                                                    core::Range::between(-kMaxLength, kMaxLength));
+        const auto& upper_error = t.optional_number(
+            "--upper", "LENGTH", "… to here is within: as much of the area as can be, not the least error",
+            core::Range::between(-kMaxLength, kMaxLength));
         const auto& smoothness = t.optional_number(
             "--smoothness", "LENGTH",
             "A change by the mean from a point to the next counts as this error of a surfel [0.01 mm]",
@@ -46,7 +53,7 @@ int main(int argc, char** argv)
                   "-o keel.pcd && fettle-feed paths/keel.pcd --on keel.pcd --wheel wheels/rubber.json --force 20 "
                   "--wanted -0.01 --report plan.json > planned.pcd",
                   "0.01 mm off the keel");
-        t.reference("Ren et al. 2006, eq. 5; Moré & Toraldo 1991");
+        t.reference("Ren et al. 2006, eq. 5; Moré & Toraldo 1991; Holland & Welsch 1977 (share of the area)");
         t.parse();
         contact.check();
 
@@ -63,6 +70,12 @@ int main(int argc, char** argv)
         if (upper) options.max = *upper * unit;
         if (options.min > options.max) throw core::InputError("--min", "is above --max");
         options.target_displacement = target * mm;
+        if (lower_error.has_value() != upper_error.has_value())
+            throw core::InputError("--lower and --upper go together");
+        if (lower_error) {
+            if (!(*lower_error < *upper_error)) throw core::InputError("--lower", "is not below --upper");
+            options.tolerance = {*lower_error * mm, *upper_error * mm};
+        }
         if (smoothness) options.smoothness = *smoothness * mm;
         options.max_rounds = rounds;
         const belt::BeltPlan plan = cli::with_error_prefix(core::display_name(path_file), [&] {

@@ -1,4 +1,5 @@
 #include "belt/contact_path.h"
+#include "belt/path_filter.h"
 #include "belt/path_links.h"
 #include "belt/path_report.h"
 #include "cli/tool.h"
@@ -52,6 +53,10 @@ struct Options {
         t.choice("--orientation", "auto", {"auto", "fixed", "along"},
                  "The tool's x. fixed: on every row to the same side, so that a path there and back does not turn the "
                  "tool; along: along the feed; auto: fixed on rows, along a spiral");
+    const std::optional<double>& above = t.optional_number(
+        "--above", "MM", "Only points less than a --step-over from stock that stands higher over the design", {});
+    const std::string& room_for = t.optional_file(
+        "--room-for", "WHEEL", "Only points where this wheel (JSON), less its layer, is not in the design");
     const std::optional<double>& clearance = t.optional_number(
         "--clearance", "MM", "Join the strokes, on the way at least so far off the part", core::Range::positive());
     const std::optional<double>& approach =
@@ -102,7 +107,10 @@ try {
     }
     if (!cloud::has_poses(cloud)) {
         const belt::Surfels surfels = belt::surfels_from_cloud(cloud, source);
-        const belt::ContactPath path = belt::contact_path(surfels, path_options(o));
+        belt::ContactPath path = belt::contact_path(surfels, path_options(o));
+        if (o.above) path = belt::select_points(path, belt::select_high_stock(surfels, path, o.step_over, *o.above));
+        if (!o.room_for.empty())
+            path = belt::select_points(path, belt::select_by_room(surfels, path, belt::read_contact_wheel(o.room_for)));
         for (const int patch : path.skipped_patches)
             o.t.warn(source + ": too few surfels on patch " + std::to_string(patch) + ": no path there");
         cloud = belt::to_cloud(path);
@@ -110,6 +118,8 @@ try {
             part = belt::outer_positions(surfels);
             links.uncertainty += surfels.radius.size() > 0 ? surfels.radius.maxCoeff() : 0;
         }
+    } else if (o.above || !o.room_for.empty()) {
+        throw core::InputError("--above and --room-for go with surfels");
     } else if (o.spacing) {
         cloud = belt::interpolate_path(cloud, *o.spacing);
     }

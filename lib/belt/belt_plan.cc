@@ -117,8 +117,9 @@ class Planner {
     }
 
     /// Solves the problem linearised about the last simulation.
+    /// @param weights  of the surfels' squared errors
     std::vector<BeltPoint> improved(const std::vector<BeltPoint>& path, const Simulation& last,
-                                    const Mask& reached) const
+                                    const VectorXd& weights) const
     {
         // The unknowns are the variables relative to their current values: 1 changes nothing. Points off the part have
         // an empty column, so their value is arbitrary.
@@ -127,9 +128,13 @@ class Planner {
         for (Index k = 0; k < count; ++k)
             if (path[k].is_on_part()) current[k] = variable_.value(path[k]);
         const double mean = mean_value(path);
-        std::vector<Eigen::Triplet<double>> entries = jacobian(path, last, reached);
-        VectorXd b = reached.select(last.residual.array(), 0);
+        std::vector<Eigen::Triplet<double>> entries = jacobian(path, last, weights.array() > 0);
+        VectorXd b = last.residual;
         for (const Eigen::Triplet<double>& entry : entries) b[entry.row()] += entry.value();
+        const VectorXd scales = weights.cwiseSqrt();
+        b = b.cwiseProduct(scales);
+        for (Eigen::Triplet<double>& entry : entries)
+            entry = {entry.row(), entry.col(), scales[entry.row()] * entry.value()};
         Index row = b.size();
         for (Index k = 1; k < count; ++k) {
             if (path[k].touches_down || !path[k].is_on_part()) continue;
@@ -190,6 +195,39 @@ double rms(const VectorXd& residual, const Mask& reached)
     return std::sqrt(reached.select(residual.array().square(), 0).sum() / reached.count());
 }
 
+/// The share of the area within a tolerance, as the aim of a plan.
+class ShareWithin {
+  public:
+    ShareWithin(const Surfels& surfels, const ToleranceRange& range, double target)
+        : areas_(surfels.area.size() > 0 ? ArrayXd(surfels.area) : ArrayXd(ArrayXd::Ones(surfels.size()))),
+          has_stock_(!surfels.displacement.array().isNaN()), lower_(range.lower - target), upper_(range.upper - target)
+    {
+    }
+
+    double share(const VectorXd& residual) const
+    {
+        const auto is_within = has_stock_ && residual.array() >= lower_ && residual.array() <= upper_;
+        return is_within.select(areas_, 0).sum() / areas_.sum();
+    }
+
+    /// Weights of the squared errors (plan_belt()).
+    /// @param counted  surfels   @param scale  of the errors at least, in their root mean squares
+    VectorXd weights(const VectorXd& residual, const Mask& counted, double scale) const
+    {
+        constexpr double kWeightInside = 0.1; // keeps what lies in the middle from drifting to the limits
+        const ArrayXd areas = counted.select(areas_, 0), error = residual.array() - (lower_ + upper_) / 2;
+        const double rms = std::sqrt((areas * error.square()).sum() / areas.sum());
+        const ArrayXd square = (error / std::max((upper_ - lower_) / 2, scale * rms)).square();
+        const ArrayXd slope = 4 * square / (1 + square.square()).square();
+        return areas * (static_cast<double>((areas > 0).count()) / areas.sum()) * (kWeightInside + slope);
+    }
+
+  private:
+    ArrayXd areas_;
+    Mask has_stock_;
+    double lower_, upper_; ///< limits of the residual, mm
+};
+
 } // namespace
 
 BeltPlan plan_belt(const Surfels& surfels, const ContactWheel& wheel, const std::vector<BeltPoint>& path,
@@ -201,30 +239,53 @@ BeltPlan plan_belt(const Surfels& surfels, const ContactWheel& wheel, const std:
                                    ": is pressed to a depth, so no force can be planned");
     if (std::none_of(path.begin(), path.end(), [](const BeltPoint& p) { return p.is_on_part(); }))
         throw core::InputError("no point is on the part");
-    constexpr double kMinDecrease = 0.01; // of the error; less is not worth another simulation
     const Planner planner(surfels, wheel, options);
     BeltPlan plan;
     std::vector<BeltPoint> current = path;
     Simulation simulation = planner.find_constant(current);
-    const Mask reached = reached_surfels(simulation.run.removed) && !surfels.displacement.array().isNaN();
+    const Mask has_stock = !surfels.displacement.array().isNaN();
+    const Mask touched = simulation.run.removed.array() > 0 && has_stock;
+    const Mask reached = reached_surfels(simulation.run.removed) && has_stock;
+    const VectorXd before = planner.residual(surfels);
     plan.touched = (simulation.run.removed.array() > 0).count();
     plan.reached = reached.count();
-    plan.rms_before = rms(planner.residual(surfels), reached);
+    plan.rms_before = rms(before, reached);
     plan.rms_planned = plan.rms_constant = rms(simulation.residual, reached);
     plan.time_planned = plan.time_constant = simulation.run.trace.back().time;
+    std::optional<ShareWithin> within;
+    if (options.tolerance) {
+        within.emplace(surfels, *options.tolerance, options.target_displacement);
+        const double constant = within->share(simulation.residual);
+        plan.within = {within->share(before), constant, constant};
+    }
     plan.path = current;
     for (const BeltPoint& point : current)
         if (point.is_on_part()) plan.constant = planner.variable().setting(planner.variable().value(point));
+    // Of the error, and of the share within: less is not worth another simulation.
+    constexpr double kMinDecrease = 0.01, kMinGain = 0.0005;
+    int idle_rounds = 0;
+    bool is_close = false; // to the largest share: now also the rim counts, and what is out of reach does not
+    const auto weights = [&](const VectorXd& residual) -> VectorXd {
+        if (!within) return reached.cast<double>();
+        return within->weights(residual, is_close ? touched : reached, is_close ? 1 : 2);
+    };
     while (plan.rounds < options.max_rounds && !plan.converged) {
         core::report_progress(progress, static_cast<double>(plan.rounds++) / options.max_rounds);
-        current = planner.improved(current, simulation, reached);
+        current = planner.improved(current, simulation, weights(simulation.residual));
         simulation = planner.simulate(current);
         const double error = rms(simulation.residual, reached);
-        plan.converged = error > (1 - kMinDecrease) * plan.rms_planned;
-        if (error > plan.rms_planned) break;
-        plan.rms_planned = error;
-        plan.time_planned = simulation.run.trace.back().time;
-        plan.path = current;
+        const double share = within ? within->share(simulation.residual) : 0;
+        const bool is_idle =
+            within ? share < plan.within->planned + kMinGain : error > (1 - kMinDecrease) * plan.rms_planned;
+        if (within ? share > plan.within->planned : error <= plan.rms_planned) {
+            plan.rms_planned = error;
+            if (within) plan.within->planned = share;
+            plan.time_planned = simulation.run.trace.back().time;
+            plan.path = current;
+        }
+        idle_rounds = is_idle ? idle_rounds + 1 : 0;
+        plan.converged = is_idle && (!within || (is_close && idle_rounds > 1));
+        is_close = is_close || is_idle;
     }
     for (const BeltPoint& point : plan.path)
         if (point.is_on_part()) {

@@ -1,7 +1,9 @@
 #pragma once
 
+#include "belt/assess.h"
 #include "belt/belt_grinding.h"
 
+#include <optional>
 #include <vector>
 
 namespace fettle::belt {
@@ -13,6 +15,8 @@ struct BeltPlanOptions {
     double target_displacement = 0; ///< target displacement after grinding, mm
     double smoothness = 0.01;       ///< weight of the smoothing term, mm: see plan_belt()
     int max_rounds = 8;             ///< max. number of iterations
+    /// The share of the area within is what counts; without it the root mean square of the error.
+    std::optional<ToleranceRange> tolerance;
 };
 
 /// A path whose removal meets the allowance as well as its limits allow.
@@ -22,6 +26,11 @@ struct BeltPlan {
     /// Root mean square of displacement - target over the surfels reached, mm: before grinding, after grinding with the
     /// constant, and as planned.
     double rms_before = 0, rms_constant = 0, rms_planned = 0;
+    /// Share of the area of all surfels that is within BeltPlanOptions::tolerance.
+    struct Within {
+        double before, constant, planned;
+    };
+    std::optional<Within> within;               ///< without a tolerance nothing
     double time_constant = 0, time_planned = 0; ///< of the path, s
     Eigen::Index touched = 0;                   ///< surfels with any removal
     /// Surfels that lose at least a quarter of the median removal with the constant. The rest of those touched lie at
@@ -36,6 +45,12 @@ struct BeltPlan {
 /// which for small changes is linear in the force, or in the inverse feed. The best values within the limits therefore
 /// solve a bounded least-squares problem: Σ (displacement - target)² over the surfels reached + Σ smoothness² (change
 /// from a point to the next one of its run / mean)². Simulation and solution alternate until the error stops falling.
+///
+/// With a tolerance the squares get weights (iteratively re-weighted least squares, Holland & Welsch 1977): the area of
+/// the surfel, times the derivative of the loss x⁴ / (1 + x⁴) by x², with the error x in half widths of the range from
+/// its middle, or in multiples of the root mean square if that is more. It is largest at the limits: what lies well
+/// within has little to gain, and what no feed brings back does not spoil its neighbours. What is kept is the largest
+/// share of the area of all surfels within.
 /// @param surfels  before grinding
 /// @throws InputError as grind(), if forces are planned for a point with a given depth, and if nothing is removed
 BeltPlan plan_belt(const Surfels& surfels, const ContactWheel& wheel, const std::vector<BeltPoint>& path,

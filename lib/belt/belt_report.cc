@@ -49,15 +49,19 @@ json::Value to_json(const BeltPlan& plan, bool by_force, const units::Units& uni
 {
     const double mm = units.mm();
     json::Value report;
-    return report.set("points", plan.path.size())
+    report.set("points", plan.path.size())
         .set("touched", plan.touched)
         .set("reached", plan.reached)
         .set("constant", plan.constant / (by_force ? units.newton() : mm))
         .set("rms_before", plan.rms_before / mm)
         .set("rms_constant", plan.rms_constant / mm)
         .set("rms_planned", plan.rms_planned / mm)
-        .set("ratio", plan.rms_planned / plan.rms_constant)
-        .set("time_constant", plan.time_constant)
+        .set("ratio", plan.rms_planned / plan.rms_constant);
+    if (plan.within)
+        report.set("within_before", plan.within->before)
+            .set("within_constant", plan.within->constant)
+            .set("within_planned", plan.within->planned);
+    return report.set("time_constant", plan.time_constant)
         .set("time_planned", plan.time_planned)
         .set("at_min", plan.at_min)
         .set("at_max", plan.at_max)

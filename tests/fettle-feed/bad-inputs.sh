@@ -12,6 +12,8 @@ refused 'path.pcd: no field force or depth' fettle-feed path.pcd --on plate.pcd 
 refused 'one of them' fettle-feed path.pcd --on plate.pcd --wheel wheel.json --force 1 --depth 1
 refused 'path.pcd: point 0: is pressed to a depth' fettle-feed path.pcd --on plate.pcd --wheel wheel.json --depth 0.2 --vary force
 refused 'is above --max' fettle-feed path.pcd --on plate.pcd --wheel wheel.json --force 1 --min 5 --max 4
+refused '--lower and --upper go together' fettle-feed path.pcd --on plate.pcd --wheel wheel.json --force 1 --lower 0
+refused 'is not below --upper' fettle-feed path.pcd --on plate.pcd --wheel wheel.json --force 1 --lower 0.1 --upper 0.1
 refused '--min' fettle-feed path.pcd --on plate.pcd --wheel wheel.json --force 1 --min 0
 refused 'off.pcd: no point is on the part' fettle-feed off.pcd --on plate.pcd --wheel wheel.json --force 1
 refused 'empty.pcd: no point is on the part' fettle-feed empty.pcd --on plate.pcd --wheel wheel.json --force 1
