@@ -59,17 +59,31 @@ Turn turn_about_x(const Eigen::Vector3d& point)
     return static_cast<Turn>(static_cast<std::int32_t>(std::floor(turns * (1 << kTurnBits))));
 }
 
-/// The bin of an angle by its cosine: comparisons take a tenth of an arc cosine's time.
+/// The bin of an angle by its cosine, from a table of cosines: an arc cosine takes ten times as long.
 int angle_bin(double cosine)
 {
-    static const auto bounds = [] {
-        std::array<double, kAngleBins - 1> cosines{};
-        for (int k = 1; k < kAngleBins; ++k) cosines[std::size_t(k) - 1] = std::cos(k * std::numbers::pi / kAngleBins);
-        return cosines;
+    struct Cell {
+        double bound; ///< the cosine in this cell at which the next bin begins; -2: none
+        int bin;      ///< of the largest cosines in it
+    };
+    constexpr int kCells = 256; // at most one bound falls into one: the narrowest bins are .022 wide
+    static const auto cells = [] {
+        std::array<Cell, kCells> table{};
+        for (int c = 0; c < kCells; ++c) {
+            const double low = 2.0 * c / kCells - 1, high = 2.0 * (c + 1) / kCells - 1;
+            table[std::size_t(c)] = {-2, 0};
+            for (int k = 1; k < kAngleBins; ++k) {
+                const double bound = std::cos(k * std::numbers::pi / kAngleBins);
+                if (bound >= high)
+                    table[std::size_t(c)].bin = k;
+                else if (bound >= low)
+                    table[std::size_t(c)].bound = bound;
+            }
+        }
+        return table;
     }();
-    int bin = 0;
-    for (const double bound : bounds) bin += cosine <= bound;
-    return bin;
+    const int c = std::clamp(static_cast<int>((cosine + 1) * (kCells / 2)), 0, kCells - 1);
+    return cells[std::size_t(c)].bin + (cosine <= cells[std::size_t(c)].bound);
 }
 
 /// Pairs of points with equal features, by the bin of their features.
@@ -94,13 +108,14 @@ class PairTable {
         for (std::size_t b = 1; b < first_.size(); ++b) first_[b] += first_[b - 1];
         entries_.resize(first_.back());
         std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
-        for (Eigen::Index i = 0; i < n; ++i) {
-            const Eigen::Isometry3d frame = to_origin(model.xyz.col(i), model.normals.col(i));
-            for (Eigen::Index j = 0; j < n; ++j)
+        std::vector<Eigen::Isometry3d> frames;
+        for (Eigen::Index i = 0; i < n; ++i) frames.push_back(to_origin(model.xyz.col(i), model.normals.col(i)));
+        // In a bin other first points follow each other: their votes do not wait for the sum before them.
+        for (Eigen::Index j = 0; j < n; ++j)
+            for (Eigen::Index i = 0; i < n; ++i)
                 if (i != j)
                     entries_[next[bins[i * n + j]]++] = {static_cast<std::uint16_t>(i),
-                                                         turn_about_x(frame * model.xyz.col(j))};
-        }
+                                                         turn_about_x(frames[std::size_t(i)] * model.xyz.col(j))};
     }
 
     /// Largest distance between two points, mm.
@@ -136,7 +151,8 @@ Pose best_pose(const PairTable& table, const OrientedPoints& model, const Orient
 {
     const Eigen::Isometry3d frame = to_origin(scene.xyz.col(point), scene.normals.col(point));
     // Single precision, so that the votes stay near the processor: this loop is most of the search's time.
-    Eigen::ArrayXXf votes = Eigen::ArrayXXf::Zero(kTurnBins, model.xyz.cols());
+    using Votes = Eigen::Array<float, kTurnBins, Eigen::Dynamic>;
+    Votes votes = Votes::Zero(kTurnBins, model.xyz.cols());
     for (const Eigen::Index other : neighbours) {
         if (other == point) continue;
         const std::span<const PairTable::Entry> pairs = table.equal_pairs(scene, point, other);
@@ -149,15 +165,16 @@ Pose best_pose(const PairTable& table, const OrientedPoints& model, const Orient
     }
     Eigen::Index best = 0, best_bin = 0;
     float max_sum = -1;
-    for (Eigen::Index m = 0; m < votes.cols(); ++m)
-        for (Eigen::Index b = 0; b < kTurnBins; ++b) { // with its neighbours: a turn may lie between two bins
-            const float sum =
-                votes(b, m) + (votes((b + 1) % kTurnBins, m) + votes((b + kTurnBins - 1) % kTurnBins, m)) / 2;
-            if (sum <= max_sum) continue;
-            max_sum = sum;
-            best = m;
-            best_bin = b;
-        }
+    for (Eigen::Index m = 0; m < votes.cols(); ++m) {
+        Eigen::Array<float, kTurnBins + 2, 1> around; // a full turn, and the bin before and after it
+        around << votes(kTurnBins - 1, m), votes.col(m), votes(0, m);
+        // With its neighbours: a turn may lie between two bins.
+        const Eigen::Array<float, kTurnBins, 1> sums =
+            votes.col(m) + (around.tail<kTurnBins>() + around.head<kTurnBins>()) / 2;
+        if (sums.maxCoeff() <= max_sum) continue;
+        max_sum = sums.maxCoeff(&best_bin);
+        best = m;
+    }
     const double turn = 2 * std::numbers::pi * (best_bin + 0.5) / kTurnBins;
     const Eigen::Isometry3d to_model = to_origin(model.xyz.col(best), model.normals.col(best));
     return {frame.inverse() * Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitX()) * to_model, max_sum};
@@ -214,17 +231,26 @@ OrientedPoints thinned(const OrientedPoints& points, Eigen::Index count)
     return thin;
 }
 
+/// The points no farther than `reach` from a point, which are most of them: a tree would take longer.
+std::vector<Eigen::Index> points_within(const Eigen::Matrix3Xd& xyz, const Eigen::Vector3d& point, double reach)
+{
+    std::vector<Eigen::Index> within;
+    within.reserve(static_cast<std::size_t>(xyz.cols()));
+    for (Eigen::Index i = 0; i < xyz.cols(); ++i)
+        if ((xyz.col(i) - point).squaredNorm() <= reach * reach) within.push_back(i);
+    return within;
+}
+
 std::vector<Eigen::Isometry3d> match(const OrientedPoints& model, const OrientedPoints& scene)
 {
     const PairTable table(model);
-    const geometry::PointIndex<3> index(scene.xyz);
     // Without known outer sides the normals of a scan may all point the other way.
     const bool has_two_sides = !(model.outward && scene.outward);
     const OrientedPoints turned{scene.xyz, -scene.normals, scene.outward};
     const Eigen::Index count = scene.xyz.cols();
     std::vector<Pose> poses(static_cast<std::size_t>((has_two_sides ? 2 : 1) * count));
     tbb::parallel_for(Eigen::Index{0}, count, [&](Eigen::Index i) {
-        const std::vector<Eigen::Index> neighbours = index.radius_search(scene.xyz.col(i), table.reach());
+        const std::vector<Eigen::Index> neighbours = points_within(scene.xyz, scene.xyz.col(i), table.reach());
         poses[i] = best_pose(table, model, scene, i, neighbours);
         if (has_two_sides) poses[count + i] = best_pose(table, model, turned, i, neighbours);
     });

@@ -77,6 +77,9 @@ MergedPoint merged_point(std::uint32_t point, const AllPoints& all, const VoxelG
     MergedPoint merged{p};
     if (n.isZero(0)) return merged;
     std::vector<Sight> sights(noises.size());
+    std::vector<double> limits; // of the heights of each scan
+    for (const double noise : noises)
+        limits.push_back(std::max(kMaxHeightSigmas * std::hypot(noises[own], noise), kMaxHeightReaches * reach));
     sights[own] = {0, 0};
     for (const std::size_t v : grid.around(p))
         for (const std::uint32_t i : grid.points(v)) {
@@ -85,9 +88,7 @@ MergedPoint merged_point(std::uint32_t point, const AllPoints& all, const VoxelG
             const Eigen::Vector3d d = all.xyz.col(i) - p;
             const double height = d.dot(n), sideways = d.squaredNorm() - height * height;
             if (sideways >= std::min(sights[s].sideways_squared, reach * reach)) continue;
-            const double limit =
-                std::max(kMaxHeightSigmas * std::hypot(noises[own], noises[s]), kMaxHeightReaches * reach);
-            if (std::abs(height) <= limit && all.normals.col(i).dot(n) >= kMinSameSideCosine)
+            if (std::abs(height) <= limits[s] && all.normals.col(i).dot(n) >= kMinSameSideCosine)
                 sights[s] = {sideways, height};
         }
     double weights = 0, sum = 0, count = 0, squares = 0;
