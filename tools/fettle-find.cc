@@ -70,6 +70,10 @@ struct Options {
         t.optional_file("--template", "JOB",
                         "Job with the machine's values for --jobs: probe, tolerance, wheel, forces, feed, removal; "
                         "what stands no higher than its tolerance is left out");
+    const std::vector<std::string>& wheels = t.file_list(
+        "--wheels",
+        "Jobs with other wheels: where the surface is too curved for the template's, the first that fits is "
+        "taken, with its forces, feed and removal; if none does, the job says what would");
     const mesh::PartOutput out{t, cloud::cloud_formats()}; // STL has no fields: what was found would be lost
 };
 
@@ -77,6 +81,7 @@ struct Options {
 struct Settings {
     std::vector<find::EarlierJob> earlier;
     std::optional<job::Job> machine;
+    std::vector<job::Job> wheels; ///< jobs whose wheels may be taken in place of the machine's
 
     const job::Job* of(const find::FoundAnomaly& anomaly) const
     {
@@ -100,9 +105,11 @@ bool write_jobs(const Options& o, find::FindResult& result, const mesh::CloudMes
             continue;
         }
         try {
-            const job::Job job = find::job_for(anomaly, part, result.noise, *machine);
+            const find::FoundJob found = find::job_for(anomaly, part, result.noise, *machine, settings.wheels);
             anomaly.job = o.jobs + "/" + std::to_string(anomaly.number) + ".json";
-            o.t.output_file(anomaly.job) << job::to_json(job);
+            anomaly.wheel = found.wheel;
+            if (!found.wheel.empty()) o.t.warn(anomaly.job + ": " + found.wheel);
+            o.t.output_file(anomaly.job) << job::to_json(found.job);
             written.insert(anomaly.job);
         } catch (const core::InputError& error) {
             anomaly.doubt = error.what();
@@ -193,6 +200,7 @@ void check(const Options& o)
 {
     if (o.against.empty() && o.like.empty() && (!o.transform_in.empty() || !o.transform_out.empty() || o.against_unit))
         throw core::InputError("--against", "is needed by --transform-in, --transform-out and --against-units");
+    if (o.jobs.empty() && !o.wheels.empty()) throw core::InputError("--wheels", "--jobs and --wheels go together");
     if (o.jobs.empty() && !o.settings.empty())
         throw core::InputError("--template", "--jobs and --template go together");
     if (!o.jobs.empty() && o.settings.empty() && o.like.empty())
@@ -227,6 +235,7 @@ int main(int argc, char** argv)
         if (!o.like.empty())
             settings.earlier = cli::with_error_prefix("--like", [&] { return find::read_earlier_jobs(o.like); });
         if (!o.settings.empty()) settings.machine = job::read_job(o.settings);
+        for (const std::string& file : o.wheels) settings.wheels.push_back(job::read_job(file));
         const std::vector<int> keep = parse_rows("--keep", o.keep), drop = parse_rows("--drop", o.drop);
 
         mesh::CloudMeshFile file = mesh::read_cloud_mesh(o.path, mesh::resolve_file_units(o.unit));

@@ -24,6 +24,7 @@ struct FoundAnomaly {
     double significance = 0; ///< height in standard deviations of the surface beneath
     std::string doubt;       ///< why an operator should check it; empty: none
     std::string job;         ///< file of its job; empty: it has none
+    std::string wheel;       ///< why the wheel of its job is not the template's; empty: it is
     std::string like;        ///< file of the job of an earlier casting that has it, too; empty: none
 
     Eigen::Isometry3d T_anomaly_part; ///< its own frame: origin on the surface beneath, whose mean normal is +z

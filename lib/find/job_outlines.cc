@@ -76,22 +76,21 @@ struct HalfCells {
     }
 };
 
-/// The half cells beside the part: not seen, but for holes inside of a mask.
-Mask beside_part(const HalfCells& cells, const Mask& inside, const HeightMap& map)
+/// The half cells beside the part, but for holes inside of a mask.
+Mask beside_part(const HalfCells& cells, const Mask& inside, const HeightMap& map, const Mask& part)
 {
-    const Mask seen = closed(finite(map.z), 1);
-    const Mask unseen = cells.where([&](const Eigen::Vector2d& place) {
+    const Mask off = cells.where([&](const Eigen::Vector2d& place) {
         const cv::Point cell = map.cell_of(place);
-        return !cv::Rect({0, 0}, seen.size()).contains(cell) || !seen(cell);
+        return !cv::Rect({0, 0}, part.size()).contains(cell) || !part(cell);
     });
-    const Components pieces = components(unseen);
+    const Components pieces = components(off);
     std::vector<bool> goes_on(std::size_t(pieces.count) + 1, false);
-    for (int y = 0; y < unseen.rows; ++y)
-        for (int x = 0; x < unseen.cols; ++x)
+    for (int y = 0; y < off.rows; ++y)
+        for (int x = 0; x < off.cols; ++x)
             if (!inside(y, x)) goes_on[std::size_t(pieces.labels(y, x))] = true;
-    Mask beside(unseen.size(), std::uint8_t(0));
-    for (int y = 0; y < unseen.rows; ++y)
-        for (int x = 0; x < unseen.cols; ++x)
+    Mask beside(off.size(), std::uint8_t(0));
+    for (int y = 0; y < off.rows; ++y)
+        for (int x = 0; x < off.cols; ++x)
             if (const int piece = pieces.labels(y, x); piece > 0 && goes_on[std::size_t(piece)]) beside(y, x) = 255;
     return opened(beside, kMinEdgePixels);
 }
@@ -109,16 +108,16 @@ Eigen::Vector2d nearest_on(const Eigen::Matrix2Xd& polygon, const Eigen::Vector2
     return nearest;
 }
 
-Eigen::Matrix2Xd clipped_to_part(const Eigen::Matrix2Xd& boundary, const HeightMap& map)
+Eigen::Matrix2Xd clipped_to_part(const Eigen::Matrix2Xd& boundary, const HeightMap& map, const Mask& part)
 {
     const HalfCells cells(boundary, boundary, map.cell);
-    const Mask inside = cells.inside(boundary), beside = beside_part(cells, inside, map);
+    const Mask inside = cells.inside(boundary), beside = beside_part(cells, inside, map, part);
     if (cv::countNonZero(inside & beside) <= kMinClippedShare * cv::countNonZero(inside)) return boundary;
     const Eigen::Matrix2Xd clipped = cells.outline(opened(inside & ~dilated(beside, 2), 3), kBoundaryPixels);
     return clipped.cols() >= 3 ? clipped : boundary;
 }
 
-Eigen::Matrix2Xd sampling_before_edges(const FoundAnomaly& anomaly, const HeightMap& map,
+Eigen::Matrix2Xd sampling_before_edges(const FoundAnomaly& anomaly, const HeightMap& map, const Mask& part,
                                        const std::function<bool(const Eigen::Vector2d&)>& is_good)
 {
     Eigen::Matrix2Xd sampling = anomaly.sampling;
@@ -136,9 +135,9 @@ Eigen::Matrix2Xd sampling_before_edges(const FoundAnomaly& anomaly, const Height
     const Mask edges = dilated(opened(~core & ~cells.where(is_good), kMinEdgePixels), kEdgePixels);
     const Mask metal = opened(outer & ~edges, 3);
     // Where the part ends, what is left between B and its edge is the anomaly's, and no metal to touch.
-    if (cv::countNonZero(beside_part(cells, core, map) & dilated(core, kOpenSidePixels)) == 0)
-        return cells.outline(metal | dilated(core, 1), kSamplingPixels);
-    return job::joined(cells.outline(metal | core, kSamplingPixels), anomaly.boundary);
+    const bool is_open = cv::countNonZero(beside_part(cells, core, map, part) & dilated(core, kOpenSidePixels)) > 0;
+    const Mask all = metal | (is_open ? core : dilated(core, 1));
+    return job::joined(cells.outline(all, kSamplingPixels), anomaly.boundary); // simplified, it may cut corners of B
 }
 
 } // namespace fettle::find

@@ -12,13 +12,13 @@ Eigen::Vector2d nearest_on(const Eigen::Matrix2Xd& polygon, const Eigen::Vector2
 
 /// B without what juts out over an edge of the part or of the scan, where there is nothing to grind; B itself if that
 /// is none of it. Holes that lie inside of it stay.
-/// @param map  of the part, in the anomaly's frame
-Eigen::Matrix2Xd clipped_to_part(const Eigen::Matrix2Xd& boundary, const HeightMap& map);
+/// @param map  of the part, in the anomaly's frame   @param part  its cells that are seen and not beyond an edge
+Eigen::Matrix2Xd clipped_to_part(const Eigen::Matrix2Xd& boundary, const HeightMap& map, const Mask& part);
 
 /// S, each corner drawn towards B until no edge, fillet or hole lies between. Where the part ends at B, so does S.
-/// @param map  of the part, in the anomaly's frame
+/// @param map, part  as for clipped_to_part()
 /// @param is_good  whether the part goes on at a place as the surface around B does
-Eigen::Matrix2Xd sampling_before_edges(const FoundAnomaly& anomaly, const HeightMap& map,
+Eigen::Matrix2Xd sampling_before_edges(const FoundAnomaly& anomaly, const HeightMap& map, const Mask& part,
                                        const std::function<bool(const Eigen::Vector2d&)>& is_good);
 
 } // namespace fettle::find

@@ -1,6 +1,7 @@
 #include "find/jobs.h"
 
 #include "core/constants.h"
+#include "core/text.h"
 #include "find/job_outlines.h"
 #include "find/ring_fit.h"
 #include "find/view.h"
@@ -25,6 +26,9 @@ constexpr double kPlaneNoises = 1.5;
 // The part leaves a surface where it is off it by so many standard deviations of the metal around.
 constexpr double kLeavingSds = 4;
 constexpr int kMaxDegree = 3; // of that surface: one more would follow a fillet
+
+// Beyond an edge the part lies below that surface by this and by more cells than a slope of the surface falls.
+constexpr double kFallCells = 2;
 
 // Cells that are needed to tell whether a face is a plane: ten times as many as a quadric has coefficients.
 constexpr Eigen::Index kMinPlaneCells = 60;
@@ -71,10 +75,25 @@ std::optional<RingFit> surface_beneath(const FoundAnomaly& anomaly, const Height
     return fit_ring({metal.topRows<2>(), metal.row(2), weights}, map.sigma, kMaxDegree);
 }
 
+/// The cells that are seen, with the single ones between them, but for the sides of the part beyond its edges.
+Mask cells_of_part(const HeightMap& map, const std::optional<RingFit>& surface)
+{
+    Mask part = closed(finite(map.z), 1);
+    if (!surface) return part;
+    const double fall = std::max(kLeavingSds * std::max(surface->sd, map.sigma), kFallCells * map.cell);
+    for (int y = 0; y < part.rows; ++y)
+        for (int x = 0; x < part.cols; ++x) {
+            const Eigen::Vector2d place = map.point_at(x, y);
+            if (double(map.z(y, x)) < surface->z_at(place.x(), place.y()) - fall) part(y, x) = 0; // false for NaN
+        }
+    return part;
+}
+
 /// S, each corner drawn towards B until no edge, fillet or hole lies between: a place where nothing is seen, or where
 /// the part leaves the surface that goes on from B, the robust one through the metal between B and S. What was found in
 /// a view may lie askew to it, with its edges at other places than where that view showed them.
-Eigen::Matrix2Xd before_edges(const FoundAnomaly& anomaly, const HeightMap& map, const RingFit& surface)
+Eigen::Matrix2Xd before_edges(const FoundAnomaly& anomaly, const HeightMap& map, const Mask& part,
+                              const RingFit& surface)
 {
     const double limit = kLeavingSds * std::max(surface.sd, map.sigma);
     const auto is_on_surface = [&](const Eigen::Vector2d& place) {
@@ -82,7 +101,7 @@ Eigen::Matrix2Xd before_edges(const FoundAnomaly& anomaly, const HeightMap& map,
         if (!cv::Rect({0, 0}, map.z.size()).contains(cell)) return false;
         return std::abs(double(map.z(cell)) - surface.z_at(place.x(), place.y())) <= limit; // false for NaN
     };
-    return sampling_before_edges(anomaly, map, is_on_surface);
+    return sampling_before_edges(anomaly, map, part, is_on_surface);
 }
 
 /// Whether the metal around an anomaly is a plane, as far as its noise tells.
@@ -124,9 +143,16 @@ double theta_along(const Eigen::Matrix2Xd& boundary, char feed_axis)
 constexpr double kSagShare = 0.6, kRadiusShare = 0.8;
 constexpr int kCurvaturePoints = 12; // along the longer side of B
 
-/// Takes the narrower wheel, and the smaller one, that the surface's curvature asks for (as plan/wheel_fit.h): over the
-/// width the surface may sag by the tolerance, and no hollow may be sharper than the wheel.
-void fit_wheel(job::Job& job, const RingFit& surface)
+/// The largest wheel that fits a surface; infinity: any does.
+struct WheelLimits {
+    double width = core::kInfinity, radius = core::kInfinity; ///< mm
+
+    bool allow(const job::GrindingWheel& wheel) const { return wheel.width <= width && wheel.radius <= radius; }
+};
+
+/// The limits of a job's wheel (as plan/wheel_fit.h): over the width the surface may sag by the tolerance, and no
+/// hollow may be sharper than the wheel.
+WheelLimits wheel_limits(const job::Job& job, const RingFit& surface)
 {
     const job::Polygon boundary = job::working_boundaries(job).anomaly;
     const Eigen::Matrix2d R = job::rotation_working_machine(job.theta).transpose(); // columns: the wheel's axis, feed
@@ -145,37 +171,71 @@ void fit_wheel(job::Job& job, const RingFit& surface)
             across = std::max(across, std::abs(curvature(at, R.col(0), job.wheel.width / 2)));
             hollow = std::max(hollow, curvature(at, R.col(1), step));
         }
-    const double width = across > 0 ? std::sqrt(8 * kSagShare * job.tolerance / across) : job.wheel.width;
-    if (const double ratio = width / job.wheel.width; ratio < 1) {
-        job.wheel.width *= ratio;
-        job.feed.step_over *= ratio;
+    WheelLimits limits;
+    if (across > 0) limits.width = std::sqrt(8 * kSagShare * job.tolerance / across);
+    if (hollow > 0) limits.radius = kRadiusShare / hollow;
+    return limits;
+}
+
+void take_wheel_of(const job::Job& other, job::Job& job)
+{
+    job.wheel = other.wheel;
+    job.feed.rate = other.feed.rate;
+    job.feed.step_over = other.feed.step_over;
+    job.force = other.force;
+    job.removal_coefficient = other.removal_coefficient;
+}
+
+/// Chooses the first wheel that fits; if none does, the template's becomes as narrow and as small as it must be.
+/// @return  why it is not the template's own; empty: it is
+std::string fit_wheel(job::Job& job, const RingFit& surface, std::span<const job::Job> others)
+{
+    const auto in_units = [&](double length) {
+        return core::to_short_text(length / job.units.mm()) + " " + units::to_string(job.units.length);
+    };
+    const WheelLimits limits = wheel_limits(job, surface);
+    if (limits.allow(job.wheel)) return "";
+    const std::string why = limits.width < job.wheel.width
+                                ? "the surface bends too much across a wheel " + in_units(job.wheel.width) + " wide"
+                                : "the surface is too hollow for a wheel of radius " + in_units(job.wheel.radius);
+    for (const job::Job& other : others) {
+        job::Job tried = job;
+        take_wheel_of(other, tried);
+        if (!wheel_limits(tried, surface).allow(tried.wheel)) continue;
+        job = tried;
+        return why + ": that of " + other.source + " fits";
     }
-    if (const double ratio = kRadiusShare / (hollow * job.wheel.radius); hollow > 0 && ratio < 1) {
-        job.wheel.radius *= ratio;
-        job.wheel.min_radius *= ratio;
-    }
+    const double narrower = std::min(1.0, limits.width / job.wheel.width),
+                 smaller = std::min(1.0, limits.radius / job.wheel.radius);
+    job.wheel.width *= narrower;
+    job.feed.step_over *= narrower;
+    job.wheel.radius *= smaller;
+    job.wheel.min_radius *= smaller;
+    return why + ": it takes one of radius " + in_units(job.wheel.radius) + " and width " + in_units(job.wheel.width);
 }
 
 } // namespace
 
-job::Job job_for(const FoundAnomaly& found, const mesh::CloudMesh& part, double noise, const job::Job& settings)
+FoundJob job_for(const FoundAnomaly& found, const mesh::CloudMesh& part, double noise, const job::Job& settings,
+                 std::span<const job::Job> others)
 {
     FoundAnomaly anomaly = found;
     HeightMap map = height_map(part, anomaly.T_anomaly_part);
     clean(map, !part.is_mesh()); // single holes are no edges
-    anomaly.boundary = clipped_to_part(anomaly.boundary, map);
     const std::optional<RingFit> beneath = surface_beneath(anomaly, map);
-    if (beneath) anomaly.sampling = before_edges(anomaly, map, *beneath);
+    const Mask seen = cells_of_part(map, beneath);
+    anomaly.boundary = clipped_to_part(anomaly.boundary, map, seen);
+    if (beneath) anomaly.sampling = before_edges(anomaly, map, seen, *beneath);
     job::Job job = settings;
     job.T_part_job = anomaly.T_anomaly_part.inverse();
     job.theta = theta_along(anomaly.boundary, settings.feed.axis);
     job.surface = is_plane(metal_around(anomaly, map), noise) ? job::SurfaceType::plane : job::SurfaceType::freeform;
     job.anomaly = with_heights(anomaly.boundary, map);
     job.sampling = with_heights(anomaly.sampling, map);
-    if (beneath) fit_wheel(job, *beneath);
+    const std::string wheel = beneath ? fit_wheel(job, *beneath, others) : "";
     job.is_safe_height_known = true;
-    job.safe_height = highest_under_way(anomaly, map, settings.wheel.radius) + job::kTravelClearance;
-    return job::validated(job, "row " + std::to_string(anomaly.number));
+    job.safe_height = highest_under_way(anomaly, map, job.wheel.radius) + job::kTravelClearance;
+    return {job::validated(job, "row " + std::to_string(anomaly.number)), wheel};
 }
 
 } // namespace fettle::find

@@ -4,15 +4,25 @@
 #include "job/job.h"
 #include "mesh/cloud_mesh.h"
 
+#include <span>
+#include <string>
+
 namespace fettle::find {
 
+struct FoundJob {
+    job::Job job;
+    std::string wheel; ///< why its wheel is not the template's; empty: it is
+};
+
 /// The job of an anomaly. Its frame is the anomaly's own; B and S are the anomaly's, with the heights of the part's
-/// metal at their corners where that is seen. A surface is a plane if the metal between B and S is one within its
-/// noise, else free-form. The passes run along B's longer side. The wheel travels above all of the part that lies under
-/// its way. Probe, tolerance, wheel, forces, feed and removal are those of `settings`; a surface that is too curved for
-/// its wheel gets a narrower or a smaller one in its place, and the step-over that goes with it.
-/// @param part   in which the anomaly was found   @param noise  standard deviation of its points, mm
+/// metal at their corners where that is seen; neither goes over an edge of the part. A surface is a plane if the metal
+/// between B and S is one within its noise, else free-form. The passes run along B's longer side. The wheel travels
+/// above all of the part that lies under its way. Probe, tolerance, wheel, forces, feed and removal are those of
+/// `settings`. A surface that is too curved for its wheel gets that of the first of `others` that fits, with the
+/// forces, feed and removal that go with it; without one, a narrower or smaller one than the template's.
+/// @param part  in which the anomaly was found   @param noise  standard deviation of its points, mm
 /// @throws InputError as job::validated(), if the boundaries bound nothing
-job::Job job_for(const FoundAnomaly& anomaly, const mesh::CloudMesh& part, double noise, const job::Job& settings);
+FoundJob job_for(const FoundAnomaly& anomaly, const mesh::CloudMesh& part, double noise, const job::Job& settings,
+                 std::span<const job::Job> others = {});
 
 } // namespace fettle::find

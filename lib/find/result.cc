@@ -59,6 +59,7 @@ void set_report(json::Value& report, const FindResult& result, const units::Unit
             .set("significance", found.significance)
             .set("doubt", found.doubt)
             .set("job", found.job);
+        if (!found.wheel.empty()) row.set("wheel", found.wheel);
         if (!found.like.empty()) row.set("like", found.like);
         rows.push_back(row);
     }

@@ -117,12 +117,14 @@ Eigen::Matrix3Xd planned_points(const sampling::TouchPlan& plan)
 
 constexpr int kEdgeSteps = 100; // from a touch to the border of the scan's box
 
-/// Whether a part ends between the anomaly and a place: there is no surface beyond it, either. Beyond a hole there is.
-bool is_over_edge(const sampling::Scan& scan, const Eigen::Vector2d& middle, const Eigen::Vector2d& place)
+/// Whether a part ends between the anomaly and a place: there is no surface beyond it, either, or only a side of the
+/// part below all touches. Beyond a hole there is.
+bool is_over_edge(const sampling::Scan& scan, const Eigen::Vector2d& middle, const Eigen::Vector2d& place,
+                  double lowest_touch)
 {
     const Eigen::Vector2d away = (place - middle).normalized() * scan.bounds().diagonal().norm() / kEdgeSteps;
     for (int k = 0; k <= kEdgeSteps; ++k)
-        if (scan.height(place + k * away)) return false;
+        if (const std::optional<double> z = scan.height(place + k * away); z && *z >= lowest_touch) return false;
     return true;
 }
 
@@ -131,10 +133,11 @@ bool misses_at_edge(const JobTouches& result, const job::Job& job, const Touched
 {
     if (!part.scan || result.touches.row(2).array().isNaN().all()) return false;
     const Eigen::Vector2d middle = job.anomaly.topRows<2>().rowwise().mean();
+    const double lowest = result.touches.row(2).minCoeff<Eigen::PropagateNumbers>();
     bool is_any = false;
     for (Eigen::Index i = 0; i < result.plan.size(); ++i)
         if (std::isnan(result.touches(2, i))) {
-            if (!is_over_edge(*part.scan, middle, result.plan.xy.col(i))) return false;
+            if (!is_over_edge(*part.scan, middle, result.plan.xy.col(i), lowest)) return false;
             is_any = true;
         }
     return is_any;

@@ -78,6 +78,9 @@ std::optional<double> robust_height(const Points& points, const Vector2d& xy, do
         near[i] = distance_weight(uv.norm());
         z[i] = point.z();
     }
+    // Points on both sides of a wall may fix the quadratic only by what is far off: farther above or below them than
+    // they lie apart there is no surface.
+    const double reach = kFitRadiusSpacings * spacing, lowest = z.minCoeff() - reach, highest = z.maxCoeff() + reach;
     const double middle = z.mean(); // subtracted, or digits are lost far from z = 0
     z -= middle;
     Eigen::ArrayXd weights = near;
@@ -104,7 +107,8 @@ std::optional<double> robust_height(const Points& points, const Vector2d& xy, do
                                   kRoundoffSpacings * spacing);
     weights = near * (residuals <= limit).cast<double>();
     if ((weights > 0).count() < kUnknowns || !solve()) return std::nullopt;
-    return middle + coefficients[0];
+    const double height = middle + coefficients[0];
+    return height >= lowest && height <= highest ? std::optional(height) : std::nullopt;
 }
 
 // The points of the highest sheet that surrounds the vertical line; empty if there is none.
