@@ -22,6 +22,9 @@ constexpr int kCornerReach = 1;
 // A face is a plane if its cells scatter about the plane of least squares by no more than this many times the noise:
 // the plane's own uncertainty, and what a scan's errors have in common.
 constexpr double kPlaneNoises = 1.5;
+// The robust surface through that metal, with as many terms as it shows, may leave the plane inside of B by this much:
+// of many cells a bend is plain that is lost in the noise of each.
+constexpr double kMaxBendNoises = 0.5;
 
 // The part leaves a surface where it is off it by so many standard deviations of the metal around.
 constexpr double kLeavingSds = 4;
@@ -104,15 +107,24 @@ Eigen::Matrix2Xd before_edges(const FoundAnomaly& anomaly, const HeightMap& map,
     return sampling_before_edges(anomaly, map, part, is_on_surface);
 }
 
-/// Whether the metal around an anomaly is a plane, as far as its noise tells.
-bool is_plane(const Eigen::Matrix3Xd& metal, double noise)
+/// Whether the metal around an anomaly is a plane, as far as its noise tells, and the surface beneath hardly bends.
+bool is_plane(const FoundAnomaly& anomaly, const HeightMap& map, const std::optional<RingFit>& beneath, double noise)
 {
+    const Eigen::Matrix3Xd metal = metal_around(anomaly, map);
     if (metal.cols() < kMinPlaneCells) return false;
     Eigen::MatrixX3d A(metal.cols(), 3);
     A << Eigen::VectorXd::Ones(metal.cols()), metal.row(0).transpose(), metal.row(1).transpose();
     const Eigen::VectorXd z = metal.row(2);
-    const Eigen::VectorXd residuals = A * A.colPivHouseholderQr().solve(z) - z;
-    return std::sqrt(residuals.squaredNorm() / double(metal.cols())) <= kPlaneNoises * noise;
+    const Eigen::Vector3d plane = A.colPivHouseholderQr().solve(z);
+    const double sd = (A * plane - z).norm() / std::sqrt(double(metal.cols()));
+    if (sd > kPlaneNoises * noise) return false;
+    const auto bend = [&](const Eigen::Vector2d& place) {
+        return std::abs(beneath->z_at(place.x(), place.y()) - plane[0] - plane.tail<2>().dot(place));
+    };
+    if (!beneath) return true;
+    double largest = bend(anomaly.boundary.rowwise().mean());
+    for (const Eigen::Vector2d& corner : anomaly.boundary.colwise()) largest = std::max(largest, bend(corner));
+    return largest <= kMaxBendNoises * noise;
 }
 
 /// What the wheel may meet on its way: the part within its radius about S.
@@ -229,7 +241,7 @@ FoundJob job_for(const FoundAnomaly& found, const mesh::CloudMesh& part, double 
     job::Job job = settings;
     job.T_part_job = anomaly.T_anomaly_part.inverse();
     job.theta = theta_along(anomaly.boundary, settings.feed.axis);
-    job.surface = is_plane(metal_around(anomaly, map), noise) ? job::SurfaceType::plane : job::SurfaceType::freeform;
+    job.surface = is_plane(anomaly, map, beneath, noise) ? job::SurfaceType::plane : job::SurfaceType::freeform;
     job.anomaly = with_heights(anomaly.boundary, map);
     job.sampling = with_heights(anomaly.sampling, map);
     const std::string wheel = beneath ? fit_wheel(job, *beneath, others) : "";
