@@ -2,6 +2,7 @@
 
 #include "core/decompositions.h"
 #include "core/error.h"
+#include "margin/waves.h"
 #include "surface/precision.h"
 
 #include <algorithm>
@@ -78,19 +79,30 @@ struct Component {
     double freedom;         ///< degrees of freedom of its size
 };
 
+/// Adds waves about a family, the last of the components, which gives them their share.
+void add_waves(std::vector<Component>& all, const surface::WeightedShape& member, const surface::Surface& surface,
+               const Eigen::Matrix2Xd& xy)
+{
+    const Component family = all.back();
+    for (Waves& one : waves_about(member, surface, xy)) {
+        if (!one.root.allFinite() || !one.offset.allFinite()) continue;
+        all.back().weight -= one.probability * family.weight;
+        all.insert(all.end() - 1,
+                   {one.probability * family.weight, family.offset + one.offset, std::move(one.root), family.freedom});
+    }
+}
+
 } // namespace
 
 Eigen::MatrixXd draw_fields(const surface::Surface& surface, const Eigen::Matrix2Xd& xy, int draws, std::uint64_t seed,
-                            Tails tails)
+                            Tails tails, WavesOfFamilies waves)
 {
     const Eigen::VectorXd mean = surface::heights(surface, xy).array() - surface.shift;
     std::vector<Component> all;
-    double sum = 0;
     if (surface.precision) {
         const Eigen::MatrixXd covariance =
             surface::height_covariance(std::get<surface::Bspline>(surface.shape), *surface.precision, xy);
         all.push_back({1, Eigen::VectorXd::Zero(xy.cols()), covariance_root(covariance), surface.touch_sigma_dof});
-        sum = 1;
     }
     for (const surface::WeightedShape& member : surface::weighted_shapes(surface)) {
         if (member.covariance.size() == 0) continue;
@@ -102,8 +114,10 @@ Eigen::MatrixXd draw_fields(const surface::Surface& surface, const Eigen::Matrix
                        is_process && tails == Tails::student
                            ? std::min(surface.touch_sigma_dof, process_freedom(surface))
                            : surface.touch_sigma_dof});
-        sum += member.weight;
+        if (waves == WavesOfFamilies::possible && !is_process) add_waves(all, member, surface, xy);
     }
+    double sum = 0;
+    for (const Component& one : all) sum += one.weight;
     if (!(sum > 0) || !std::isfinite(sum)) // heights whose squares no number holds
         throw core::InputError("touches", "the surface fitted to them has no finite covariance, so its error cannot be "
                                           "predicted");

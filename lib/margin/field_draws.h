@@ -16,12 +16,15 @@ enum class Tails {
     student
 };
 
+/// Waves about the families of a fit, too low for the touches to show (margin/waves.h).
+enum class WavesOfFamilies { none, possible };
+
 /// Draws height errors from the posterior of a fit: from its covariance and its alternatives by their weight, relative
 /// to their common mean. Antithetic draws, of opposite sign about a member's mean, follow each other.
 /// @param xy  2xN, M, mm   @param draws  even
 /// @return  N x draws, mm; members that are not defined at all of xy are left out
 /// @throws core::InputError if no member has a finite covariance
 Eigen::MatrixXd draw_fields(const surface::Surface& surface, const Eigen::Matrix2Xd& xy, int draws, std::uint64_t seed,
-                            Tails tails = Tails::normal);
+                            Tails tails = Tails::normal, WavesOfFamilies waves = WavesOfFamilies::none);
 
 } // namespace fettle::margin

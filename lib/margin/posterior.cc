@@ -21,6 +21,15 @@ namespace {
 constexpr int kAnomalyCells = 16;
 constexpr int kDraws = 8192; // their 99 % quantile has a relative standard deviation of about 1 %
 
+/// A free-form surface of which nobody has said the family may have waves about it. A scan shows them, and has no
+/// goodness of fit.
+WavesOfFamilies possible_waves(const surface::Surface& surface, const job::Job& job, Tails tails)
+{
+    const bool may_wave = tails == Tails::student && job.surface == job::SurfaceType::freeform &&
+                          !surface.alternatives.empty() && std::isfinite(surface.goodness);
+    return may_wave ? WavesOfFamilies::possible : WavesOfFamilies::none;
+}
+
 /// @throws InputError if the most probable shape is not defined all over B
 void check_coverage(const surface::Surface& surface, const Eigen::Matrix2Xd& grid, const units::Units& units,
                     const std::string& source)
@@ -57,7 +66,7 @@ surface::Prediction predict_by_posterior(const surface::Surface& surface, const 
         throw core::InputError(source, "the covariance of an interpolant (" + surface.method +
                                            ") holds the touches' noise, not what it misses between them, so its error "
                                            "cannot be predicted; use the method wang");
-    const Eigen::MatrixXd fields = draw_fields(surface, grid, kDraws, seed, tails);
+    const Eigen::MatrixXd fields = draw_fields(surface, grid, kDraws, seed, tails, possible_waves(surface, job, tails));
     std::vector<double> shifts, bands;
     for (const auto& field : fields.colwise()) {
         shifts.push_back(field.maxCoeff()); // the fitted surface's error is the negative field
