@@ -84,7 +84,7 @@ FCL    := -lfcl -lccd
 URDF   := -lurdfdom_model -lconsole_bridge -ltinyxml
 PCL    := -lpcl_kdtree -lpcl_common
 # Segmentation needs more of PCL.
-PLACE  := $(PCL) -lpcl_segmentation -lpcl_sample_consensus -lpcl_search
+PLACE  := $(PCL) -lpcl_sample_consensus -lpcl_search
 # OpenCASCADE: readers with names and colours, triangulation, sewing, and what these call.
 OCCT_LIBS := $(addprefix -lTK,XDESTEP XDEIGES XCAF IGES STEP STEPBase STEPAttr XSBase LCAF CAF CDF Mesh ShHealing TopAlgo GeomAlgo BRep GeomBase G3d G2d Math ernel)
 LDLIBS_ALL := -llzf -ltbb -lminizip -lexpat -lz
