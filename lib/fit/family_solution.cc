@@ -163,7 +163,9 @@ std::optional<Attempt> best_attempt(const TouchSet& touches, const TouchIndices&
             for (const double angle : {kQuarterTurn / 2, 1.5 * kQuarterTurn})
                 try_start(angle, start.max_curvature, along);
     }
-    if (best) best->solution.iterations = iterations;
+    if (!best) return best;
+    refine_round(kFamily, best->problem, best->solution);
+    best->solution.iterations = iterations;
     return best;
 }
 

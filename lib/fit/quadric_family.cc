@@ -171,9 +171,9 @@ std::optional<FamilySolution> solve(const TouchSet& touched, const TouchIndices&
     const Eigen::Matrix3Xd all = frame.axes.transpose() * (touched.xyz.colwise() - frame.point) / frame.extent;
     const VerticalErrors errors{all(Eigen::all, kept), frame.axes.row(2), frame.extent / touched.sigma, basis};
     // The identity stands in the rows of a family's free parameters, which come first.
-    const Minimum best =
-        levenberg_marquardt({static_cast<int>(kept.size()), static_cast<int>(basis.cols()), std::cref(errors)},
-                            initial_parameters(paraboloid, frame).head(basis.cols()));
+    const ResidualFunction residuals{static_cast<int>(kept.size()), static_cast<int>(basis.cols()), std::cref(errors)};
+    Minimum best = levenberg_marquardt(residuals, initial_parameters(paraboloid, frame).head(basis.cols()));
+    best.x = refine_minimum(residuals, best.x);
     if (!best.x.allFinite()) return std::nullopt;
     const Form form{Parameters(basis * best.x)};
     if (!is_determined(form, errors, all, best.x)) return std::nullopt;

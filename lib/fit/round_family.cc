@@ -67,6 +67,38 @@ struct WeightedDistances {
     }
 };
 
+/// The problem with lengths in units of the touches' extent.
+struct ScaledProblem {
+    WeightedDistances distances;
+    double extent; ///< mm
+
+    ResidualFunction residuals() const
+    {
+        return {static_cast<int>(distances.points.cols()), static_cast<int>(distances.free.size()),
+                std::cref(distances)};
+    }
+};
+
+ScaledProblem scaled(RoundFamily family, const RoundProblem& problem)
+{
+    ScaledProblem result{{family, free_parameters(family, problem.given_direction), {}, {}}, 0};
+    Matrix3Xd& points = result.distances.points;
+    points = problem.frame.axes.transpose() * (problem.touches.colwise() - problem.frame.point);
+    result.extent = points.cwiseAbs().maxCoeff();
+    points /= result.extent;
+    result.distances.weight = problem.weight * result.extent;
+    return result;
+}
+
+/// Parameters of lengths in mm from those of lengths in another unit, and the other way with its inverse.
+VectorXd in_unit(VectorXd theta, double unit)
+{
+    theta[surface::kOffset] *= unit;
+    theta[surface::kCurvatureAround] /= unit;
+    theta[surface::kCurvatureAlong] /= unit;
+    return theta;
+}
+
 } // namespace
 
 int parameter_count(RoundFamily family, bool given_direction)
@@ -76,28 +108,27 @@ int parameter_count(RoundFamily family, bool given_direction)
 
 RoundSolution solve_round(RoundFamily family, const RoundProblem& problem, double around, double along)
 {
-    WeightedDistances distances{family, free_parameters(family, problem.given_direction), {}, {}};
-    distances.points = problem.frame.axes.transpose() * (problem.touches.colwise() - problem.frame.point);
-    const double extent = distances.points.cwiseAbs().maxCoeff();
-    distances.points /= extent;
-    distances.weight = problem.weight * extent;
+    const ScaledProblem in_extent = scaled(family, problem);
     surface::RevolutionParameters start = surface::RevolutionParameters::Zero();
-    start[surface::kCurvatureAround] = around * extent;
-    start[surface::kCurvatureAlong] = along * extent;
-
-    const ResidualFunction residuals{static_cast<int>(distances.points.cols()), static_cast<int>(distances.free.size()),
-                                     std::cref(distances)};
-    const Minimum minimum = levenberg_marquardt(residuals, start(distances.free));
+    start[surface::kCurvatureAround] = around * in_extent.extent;
+    start[surface::kCurvatureAlong] = along * in_extent.extent;
+    const Minimum minimum = levenberg_marquardt(in_extent.residuals(), start(in_extent.distances.free));
 
     RoundSolution solution;
-    solution.theta = distances.theta(minimum.x.data());
-    solution.theta[surface::kOffset] *= extent;
-    solution.theta[surface::kCurvatureAround] /= extent;
-    solution.theta[surface::kCurvatureAlong] /= extent;
+    solution.theta = in_unit(in_extent.distances.theta(minimum.x.data()), in_extent.extent);
     solution.cost = minimum.x.allFinite() ? minimum.cost : std::numeric_limits<double>::infinity();
     solution.converged = minimum.converged;
     solution.iterations = minimum.iterations;
     return solution;
+}
+
+void refine_round(RoundFamily family, const RoundProblem& problem, RoundSolution& solution)
+{
+    const ScaledProblem in_extent = scaled(family, problem);
+    const VectorXd start = in_unit(solution.theta, 1 / in_extent.extent)(in_extent.distances.free);
+    const VectorXd x = refine_minimum(in_extent.residuals(), start);
+    solution.theta = in_unit(in_extent.distances.theta(x.data()), in_extent.extent);
+    if (!x.allFinite()) solution.cost = std::numeric_limits<double>::infinity();
 }
 
 surface::Shape round_shape(RoundFamily family, const RoundFrame& frame, const VectorXd& theta)

@@ -35,6 +35,8 @@ struct RoundSolution {
 /// Least squares of weighted orthogonal distances by Levenberg and Marquardt (Ceres).
 /// @param around, along  initial curvatures, 1/mm
 RoundSolution solve_round(RoundFamily family, const RoundProblem& problem, double around, double along);
+/// Refines a solution to rounding accuracy.
+void refine_round(RoundFamily family, const RoundProblem& problem, RoundSolution& solution);
 
 /// The number of free parameters of a family.
 int parameter_count(RoundFamily family, bool given_direction);

@@ -27,10 +27,29 @@ struct TinySolverFunction {
     }
 };
 
-/// Refines a solution beyond relative changes of 1e-8, which the solver cannot see since it compares rounded costs, by
-/// Gauss-Newton steps. These do not converge where the residuals are large; one Newton step, with second derivatives by
-/// central differences, then replaces them.
-VectorXd refine(const ResidualFunction& residuals, VectorXd x)
+} // namespace
+
+Minimum levenberg_marquardt(const ResidualFunction& residuals, const VectorXd& start)
+{
+    constexpr double kCostTolerance = 1e-10;     // relative; refine_minimum() removes the remaining error
+    constexpr double kRoundingTolerance = 1e-12; // for the parameters and the gradient
+    constexpr int kMaxIterations = 50;           // ten are common; tori on a sphere's touches do not converge
+    using Solver = ceres::TinySolver<TinySolverFunction>;
+    Solver solver;
+    solver.options.max_num_iterations = kMaxIterations;
+    solver.options.function_tolerance = kCostTolerance;
+    solver.options.parameter_tolerance = kRoundingTolerance;
+    solver.options.gradient_tolerance = kRoundingTolerance;
+    solver.options.cost_threshold = kRoundingTolerance * kRoundingTolerance;
+    VectorXd x = start;
+    const Solver::Summary& summary = solver.Solve(TinySolverFunction{residuals}, &x);
+    return {x, summary.final_cost, summary.status != Solver::HIT_MAX_ITERATIONS, summary.iterations};
+}
+
+// The solver cannot see relative changes below 1e-8 since it compares rounded costs: Gauss-Newton steps. These do not
+// converge where the residuals are large; one Newton step, with second derivatives by central differences, then
+// replaces them.
+VectorXd refine_minimum(const ResidualFunction& residuals, VectorXd x)
 {
     constexpr int kMaxSteps = 4;
     constexpr double kMaxStep = 1e-5; // larger steps are not refinements; each must be smaller than the one before
@@ -60,25 +79,6 @@ VectorXd refine(const ResidualFunction& residuals, VectorXd x)
     const VectorXd step = core::least_squares_by_qr(hessian, gradient(x)).x;
     if (step.norm() < kMaxStep) x -= step;
     return x;
-}
-
-} // namespace
-
-Minimum levenberg_marquardt(const ResidualFunction& residuals, const VectorXd& start)
-{
-    constexpr double kCostTolerance = 1e-10;     // relative; refine() removes the remaining error
-    constexpr double kRoundingTolerance = 1e-12; // for the parameters and the gradient
-    constexpr int kMaxIterations = 50;           // ten are common; tori on a sphere's touches do not converge
-    using Solver = ceres::TinySolver<TinySolverFunction>;
-    Solver solver;
-    solver.options.max_num_iterations = kMaxIterations;
-    solver.options.function_tolerance = kCostTolerance;
-    solver.options.parameter_tolerance = kRoundingTolerance;
-    solver.options.gradient_tolerance = kRoundingTolerance;
-    solver.options.cost_threshold = kRoundingTolerance * kRoundingTolerance;
-    VectorXd x = start;
-    const Solver::Summary& summary = solver.Solve(TinySolverFunction{residuals}, &x);
-    return {refine(residuals, x), summary.final_cost, summary.status != Solver::HIT_MAX_ITERATIONS, summary.iterations};
 }
 
 } // namespace fettle::fit

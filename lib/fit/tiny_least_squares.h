@@ -22,8 +22,11 @@ struct Minimum {
     int iterations = 0;
 };
 
-/// Least squares of few parameters by Levenberg and Marquardt (ceres::TinySolver), then refined to rounding accuracy.
+/// Least squares of few parameters by Levenberg and Marquardt (ceres::TinySolver), but for the last digits.
 /// @param residuals  dimensionless, of parameters of the order of 1
 Minimum levenberg_marquardt(const ResidualFunction& residuals, const Eigen::VectorXd& start);
+
+/// Refines a solution beyond relative changes of 1e-8, to rounding accuracy.
+Eigen::VectorXd refine_minimum(const ResidualFunction& residuals, Eigen::VectorXd x);
 
 } // namespace fettle::fit
