@@ -38,12 +38,8 @@ MatrixXd spread_over_rectangle(const MatrixXd& pressure)
     return result;
 }
 
-/// A depth on the cells of a contact, at surfels.
-///
-/// A surfel represents the square around it, and squares that tile the plane share all that is removed. But the mean
-/// over a square of side s is s²/24 times the second derivatives less than the depth in its middle: on a narrow contact
-/// a good part of it. That over a square three times as wide shows by how much. Where squares reach over the border of
-/// the workpiece, the means are of what lies inside.
+/// A depth on the cells of a contact, at surfels, from means over squares around them. Where squares reach over the
+/// border of the workpiece, the means are of what lies inside.
 class SurfelDepth {
   public:
     /// @param depth  mm   @param coverage  of the cells   @param spacing  of the surfels, mm
@@ -55,11 +51,20 @@ class SurfelDepth {
 
     /// Largest distance from a surfel at which it loses something, along each axis, mm.
     double reach() const { return 1.5 * spacing_; }
+    /// Mean over the square that a surfel represents: squares that tile the plane share all that is removed.
     double square_mean(const Eigen::Vector2d& place) const { return mean(place, spacing_); }
-    /// @param square_mean  at the place
-    double in_the_middle(const Eigen::Vector2d& place, double square_mean) const
+    /// Depth at the surfel. Of a smooth depth the mean over a square of side s is s²/24 times the second derivatives
+    /// less, on a narrow contact a good part of it; that over a square three times as wide shows by how much. Beside
+    /// the border of the contact the depth is a ramp instead, which begins within the square: a ramp that begins t
+    /// sides before the surfel has the means s (t + 1/2)² / 2 and s (t + 3/2)² / 6 times its slope.
+    double in_the_middle(const Eigen::Vector2d& place) const
     {
-        return std::max((9 * square_mean - mean(place, 3 * spacing_)) / 8, 0.0);
+        const double narrow = mean(place, spacing_), wide = mean(place, 3 * spacing_);
+        if (!(narrow > 0)) return 0;
+        const double smooth = (9 * narrow - wide) / 8, root = std::sqrt(narrow / (3 * wide));
+        const double t = (3 * root - 1) / (2 * (1 - root));
+        if (t >= 0.5) return smooth;
+        return t > 0 ? std::min(narrow * 2 * t / ((t + 0.5) * (t + 0.5)), smooth) : 0;
     }
 
   private:
@@ -77,9 +82,10 @@ class SurfelDepth {
 
 /// Depths that the surfels under the last contact lose at a point of the path.
 /// @param depth  normal to the tangent plane, on the cells of the contact, mm
+/// @param model  the global one's depth ends in a step, which surfels share
 std::vector<SurfelRemoval> surfel_removals(const WheelContactSolver& solver, const WheelContact& contact,
-                                           const MatrixXd& depth, const Surfels& surfels, const Eigen::Vector3d& up,
-                                           std::size_t point)
+                                           const MatrixXd& depth, BeltModel model, const Surfels& surfels,
+                                           const Eigen::Vector3d& up, std::size_t point)
 {
     const Eigen::Matrix3Xd& coordinates = solver.surfel_coordinates();
     const SurfelDepth surfel_depth(contact.grid, depth, contact.coverage, mean_spacing(coordinates));
@@ -93,22 +99,14 @@ std::vector<SurfelRemoval> surfel_removals(const WheelContactSolver& solver, con
     }
     constexpr std::size_t kGrainSize = 1024; // surfels for one task
     using Range = tbb::blocked_range<std::size_t>;
-    std::vector<double> square_means(removals.size());
     tbb::parallel_for(Range(0, in_contact.size(), kGrainSize), [&](const Range& range) {
         for (std::size_t k = range.begin(); k < range.end(); ++k) {
             const Eigen::Vector2d place = coordinates.col(in_contact[k]).head<2>();
-            square_means[k] = surfel_depth.square_mean(place);
-            removals[k].depth = surfel_depth.in_the_middle(place, square_means[k]);
+            const double lost =
+                model == BeltModel::local ? surfel_depth.in_the_middle(place) : surfel_depth.square_mean(place);
+            removals[k].depth = lost * surfels.normal.col(removals[k].surfel).dot(up);
         }
     });
-    // Beside the contact the depth would be a little below 0 and is 0: by as much the others are less.
-    double all = 0, found = 0;
-    for (std::size_t k = 0; k < removals.size(); ++k) {
-        all += square_means[k];
-        found += removals[k].depth;
-    }
-    for (SurfelRemoval& removal : removals)
-        removal.depth *= found > 0 ? all / found * surfels.normal.col(removal.surfel).dot(up) : 0;
     return removals;
 }
 
@@ -151,7 +149,7 @@ void BeltGrinding::remove_material(const WheelContact& contact, const MatrixXd& 
     BeltRun& run = state_.run;
     const Eigen::Vector3d up = path_[state_.next_point].T_part_tool.linear().col(2);
     const std::vector<SurfelRemoval> removals =
-        surfel_removals(solver_, contact, depth, surfels_, up, state_.next_point);
+        surfel_removals(solver_, contact, depth, options_.model, surfels_, up, state_.next_point);
     for (const SurfelRemoval& removal : removals) {
         const double before = surfels_.displacement[removal.surfel];
         surfels_.displacement[removal.surfel] -= removal.depth;

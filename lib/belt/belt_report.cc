@@ -83,8 +83,8 @@ std::string coarse_grid_warning(const BeltRun& run, int cells_per_side)
     if (run.coarse_grids == 0) return "";
     const int enough = static_cast<int>(std::ceil(cells_per_side * run.max_cell_spacings / kMaxCellSpacings));
     return std::to_string(run.coarse_grids) +
-           " contacts have cells larger than the surfels are apart: ripples from surfel to surfel that the stock had "
-           "stay; --cells " +
+           " contacts have cells larger than the surfels are apart: ripples from surfel to surfel may stay or "
+           "arise; --cells " +
            std::to_string(enough) + " grinds them off, or take fewer surfels";
 }
 
