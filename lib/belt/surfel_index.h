@@ -27,11 +27,17 @@ class SurfelIndex {
   private:
     using Cell = Eigen::Matrix<std::int64_t, 3, 1>;
     Cell cell_of(const Eigen::Vector3d& p) const { return (p / side_).array().floor().cast<std::int64_t>(); }
-    static std::uint64_t key(const Cell& cell);
+    static std::uint64_t column_key(const Cell& cell);
 
+    /// The cells that lie over each other are looked up at once: few of a box's cells have surfels.
+    struct FilledCell {
+        std::int64_t z;
+        std::size_t begin, end; ///< in order_
+    };
     double side_;
-    std::vector<Eigen::Index> order_;                                               ///< surfels sorted by cell
-    std::unordered_map<std::uint64_t, std::pair<std::size_t, std::size_t>> ranges_; ///< by key, in order_
+    std::vector<Eigen::Index> order_;                                                ///< surfels sorted by cell
+    std::vector<FilledCell> cells_;                                                  ///< by column, ascending in z
+    std::unordered_map<std::uint64_t, std::pair<std::size_t, std::size_t>> columns_; ///< by key, in cells_
 };
 
 } // namespace fettle::belt
