@@ -54,80 +54,36 @@ std::pair<Index, Index> window_side(const Eigen::Array<bool, Eigen::Dynamic, 1>&
 
 } // namespace
 
-LayerContact::LayerContact(const ElasticLayer& layer, const Eigen::Vector2d& cell, Index rows, Index columns)
-    : layer_(layer), cell_area_(cell.prod()), influence_(influence_coefficients(layer, cell, rows, columns)),
-      min_influence_(std::min(influence_.minCoeff(), 0.0))
-{
-}
-
-LayerContact::LayerContact(const ElasticLayer& layer, const EdgeCompliance& edges, const Eigen::Vector2d& cell,
-                           Index rows, Index columns)
-    : LayerContact(layer, cell, rows, columns)
-{
-    MatrixXd spectrum(columns * columns, rows + 1);
-    const MatrixXd transform = wave_transform(influence_);
-    for (Index f = 0; f <= rows; ++f)
-        for (Index j = 0; j < columns; ++j)
-            for (Index i = 0; i < columns; ++i) spectrum(i + j * columns, f) = transform(f, std::abs(i - j));
-    edges.add_to(spectrum, cell, rows, columns);
-    waves_.emplace(rows, columns, spectrum);
-}
-
-LayerContact::LayerContact(const LayerMesh& mesh, Index rows)
-    : layer_(mesh.layer), cell_area_(mesh.cell_size.prod()), min_influence_(0), fem_(std::in_place, mesh, rows)
-{
-}
-
-Convolution& LayerContact::convolution(Index rows, Index columns)
-{
-    const auto found = convolutions_.find({rows, columns});
-    if (found != convolutions_.end()) return found->second;
-    return convolutions_.emplace(std::pair(rows, columns), Convolution(influence_.topLeftCorner(rows, columns)))
-        .first->second;
-}
-
-/// Displacement along the radius at the middle. The finite elements' pressure and displacement are projected between
-/// that radius and each row's own.
-void LayerContact::compute_displacement(const MatrixXd& pressure, MatrixXd& displacement)
-{
-    if (waves_) {
-        displacement = waves_->displacement(pressure);
-        return;
-    }
-    if (!fem_) return convolution(pressure.rows(), pressure.cols())(pressure, displacement);
-    const auto cosines = fem_->tilt_cosines();
-    displacement = fem_->displacement((pressure.array().colwise() / cosines).matrix());
-    displacement.array().colwise() /= cosines;
-}
-
 /// Winkler foundation with the stiffness of the layer under a pressure of the same extent.
 MatrixXd LayerContact::initial_pressure(const MatrixXd& gap, const Contact& given, bool is_force_known) const
 {
+    const ElasticLayer& layer = surface_.layer();
     const auto winkler = [&](double depth) {
         const ArrayXXd compression = (depth - gap.array()).max(0);
-        const double radius = std::sqrt((compression > 0).count() * cell_area_ / std::numbers::pi);
+        const double radius = std::sqrt((compression > 0).count() * surface_.cell_area() / std::numbers::pi);
         const double half_space =
-            (1 - layer_.poisson * layer_.poisson) / layer_.young * radius * 16 / (3 * std::numbers::pi);
-        return MatrixXd(compression / std::min(half_space, layer_.thickness / layer_.young));
+            (1 - layer.poisson * layer.poisson) / layer.young * radius * 16 / (3 * std::numbers::pi);
+        return MatrixXd(compression / std::min(half_space, layer.thickness / layer.young));
     };
     if (!is_force_known) return winkler(given.indentation);
     const double min_gap = gap.minCoeff();
-    double high = layer_.thickness < 1 ? layer_.thickness : 1, low = 0; // bracket of the depth, mm
-    while (winkler(min_gap + high).sum() * cell_area_ < given.force) high *= 2;
+    double high = std::min(layer.thickness, 1.0), low = 0; // bracket of the depth, mm
+    while (winkler(min_gap + high).sum() * surface_.cell_area() < given.force) high *= 2;
     for (int i = 0; i < 12; ++i) {
         const double middle = (high + low) / 2;
-        (winkler(min_gap + middle).sum() * cell_area_ < given.force ? low : high) = middle;
+        (winkler(min_gap + middle).sum() * surface_.cell_area() < given.force ? low : high) = middle;
     }
     const MatrixXd p = winkler(min_gap + high);
-    return p * (given.force / (p.sum() * cell_area_));
+    return p * (given.force / (p.sum() * surface_.cell_area()));
 }
 
 /// The layer's displacement over the part f of a cell that carries its load, less that over the whole cell: those of
 /// strips of a half-space, side 1 and f (Love 1929), of which the latter is the influence of the cell on itself.
 ArrayXXd LayerContact::border_compliance(const ArrayXXd& coverage) const
 {
-    const double cell = (1 - layer_.poisson * layer_.poisson) / (std::numbers::pi * layer_.young) *
-                        std::sqrt(cell_area_) * 2 * std::asinh(1) * 2;
+    const ElasticLayer& layer = surface_.layer();
+    const double cell = (1 - layer.poisson * layer.poisson) / (std::numbers::pi * layer.young) *
+                        std::sqrt(surface_.cell_area()) * 2 * std::asinh(1) * 2;
     return coverage.unaryExpr([&](double f) {
         return f > 0 && f < 1 ? cell * ((std::asinh(1 / f) + std::asinh(f) / f) / (2 * std::asinh(1)) - 1) : 0;
     });
@@ -138,8 +94,8 @@ ArrayXXd LayerContact::own_gap(const Workpiece& workpiece, const ArrayXXd& press
     const RemovalStep& removal = workpiece.removal;
     const bool is_whole = workpiece.coverage.size() == 0;
     ArrayXXd depth;
-    if (fem_) {
-        const auto cosines = fem_->tilt_cosines();
+    if (const FemLayer* fem = surface_.fem()) {
+        const auto cosines = fem->tilt_cosines();
         depth = pressure.colwise() / cosines;
         if (!is_whole) depth /= workpiece.coverage;
         depth = depth.unaryExpr([&](double p) { return removal.depth(p); }).colwise() / cosines;
@@ -155,23 +111,31 @@ ArrayXXd LayerContact::own_gap(const Workpiece& workpiece, const ArrayXXd& press
     return depth;
 }
 
-double LayerContact::step_length(const ArrayXXd& pressure, const MatrixXd& step, const Workpiece& workpiece,
-                                 double slope, double curvature) const
+double LayerContact::step_length(const ArrayXXd& pressure, const ArrayXXd& own, const MatrixXd& step,
+                                 const Workpiece& workpiece, double slope, double curvature) const
 {
-    const ArrayXXd before = own_gap(workpiece, pressure), s = step.array();
-    const auto own_slope = [&](double length) {
-        return ((own_gap(workpiece, pressure + length * s) - before) * s).sum();
+    const auto s = step.array();
+    if (workpiece.removal.is_linear())
+        return -slope / (curvature + ((own_gap(workpiece, pressure + s) - own) * s).sum());
+    const auto slope_at = [&](double length) {
+        return slope + length * curvature + ((own_gap(workpiece, pressure + length * s) - own) * s).sum();
     };
-    if (workpiece.removal.is_linear()) return -slope / (curvature + own_slope(1));
-    // The slope of the energy grows along the step, so that the minimum is bracketed from the elastic solution down.
     constexpr int kMaxIterations = 30;
     constexpr double kRelativeTolerance = 1e-3; // the step's direction is not better than this
-    double low = 0, high = -slope / curvature, slope_low = slope;
-    double slope_high = own_slope(high); // the elastic part is 0 there
+    // The first length is that of Newton's method: a power of the pressure has its exponent times the power over the
+    // pressure for a slope. Where the steps are short it is good enough.
+    const double own_curvature =
+        workpiece.removal.exponent * (pressure > 0).select(own / pressure * s.square(), 0).sum();
+    double length = -slope / (curvature + own_curvature), found = slope_at(length);
+    if (std::abs(found) <= kRelativeTolerance * std::abs(slope)) return length;
+    // The slope of the energy grows along the step, so that the minimum is bracketed from the elastic solution down.
+    double low = 0, high = -slope / curvature, slope_low = slope, slope_high = found < 0 ? slope_at(high) : found;
+    (found < 0 ? low : high) = length;
+    if (found < 0) slope_low = found;
     for (int k = 0; k < kMaxIterations && high - low > kRelativeTolerance * high; ++k) {
         const bool bisect = k % 3 == 2; // regula falsi alone may keep one end
-        const double length = bisect ? (low + high) / 2 : low + (high - low) * slope_low / (slope_low - slope_high);
-        const double found = slope + length * curvature + own_slope(length);
+        length = bisect ? (low + high) / 2 : low + (high - low) * slope_low / (slope_low - slope_high);
+        found = slope_at(length);
         if (std::abs(found) <= kRelativeTolerance * std::abs(slope)) return length;
         (found < 0 ? low : high) = length;
         (found < 0 ? slope_low : slope_high) = found;
@@ -183,8 +147,8 @@ double LayerContact::step_length(const ArrayXXd& pressure, const MatrixXd& step,
 bool LayerContact::iterate(const MatrixXd& gap, const Window& window, double tolerance, const RemovalStep& removal,
                            const MatrixXd& coverage, bool is_force_known, int max_iterations, Contact& contact)
 {
-    const ArrayXXd undeformed = window.block(gap).array();
-    const Mask has_workpiece = undeformed.isFinite();
+    const ArrayXXd undeformed =
+        window.block(gap).array().isFinite().select(window.block(gap).array(), std::numeric_limits<double>::max());
     MatrixXd pressure = window.block(contact.pressure), displacement, step_displacement;
     MatrixXd step = MatrixXd::Zero(window.rows, window.columns);
     Workpiece workpiece{removal, {}, {}};
@@ -197,10 +161,10 @@ bool LayerContact::iterate(const MatrixXd& gap, const Window& window, double tol
     bool is_displacement_valid = false;
     for (; contact.iterations < max_iterations; ++contact.iterations) {
         auto p = pressure.array();
-        if (!is_displacement_valid) compute_displacement(pressure, displacement);
+        if (!is_displacement_valid) displacement = surface_.of_window(pressure);
         is_displacement_valid = true;
-        ArrayXXd open = has_workpiece.select(undeformed + displacement.array(), std::numeric_limits<double>::max());
-        if (workpiece.yields()) open += own_gap(workpiece, p);
+        ArrayXXd open = undeformed + displacement.array(), own;
+        if (workpiece.yields()) open += own = own_gap(workpiece, p);
         if (is_force_known) contact.indentation = (p > 0).select(open, 0).sum() / (p > 0).count();
         const ArrayXXd g = open - contact.indentation;
         if ((p * g).abs().maxCoeff() <= tolerance * p.maxCoeff() * contact.indentation &&
@@ -212,13 +176,13 @@ bool LayerContact::iterate(const MatrixXd& gap, const Window& window, double tol
         const double squares = active.select(g.square(), 0).sum();
         step = active.select((last_squares > 0 ? squares / last_squares : 0) * step.array() - g, 0).matrix();
         last_squares = squares;
-        compute_displacement(step, step_displacement);
+        step_displacement = surface_.of_window(step);
         ArrayXXd gradient_change = step_displacement.array();
         if (is_force_known) gradient_change -= active.select(gradient_change, 0).sum() / active.count();
         const double slope = (active.select(g, 0) * step.array()).sum();
         const double curvature = (gradient_change * step.array()).sum();
         const double length =
-            workpiece.yields() ? step_length(p, step, workpiece, slope, curvature) : -slope / curvature;
+            workpiece.yields() ? step_length(p, own, step, workpiece, slope, curvature) : -slope / curvature;
         pressure += length * step;
         if (pressure.minCoeff() < 0) {
             pressure = pressure.cwiseMax(0);
@@ -228,7 +192,7 @@ bool LayerContact::iterate(const MatrixXd& gap, const Window& window, double tol
             displacement += length * step_displacement;
         }
         if (is_force_known) {
-            const double scale = contact.force / (pressure.sum() * cell_area_);
+            const double scale = contact.force / (pressure.sum() * surface_.cell_area());
             pressure *= scale;
             displacement *= scale;
         }
@@ -242,7 +206,8 @@ Contact LayerContact::solve(const MatrixXd& input_gap, const Contact& given, dou
 {
     Contact contact = given;
     MatrixXd gap = input_gap;
-    if (fem_) gap.array().colwise() /= fem_->tilt_cosines();
+    const FemLayer* fem = surface_.fem();
+    if (fem) gap.array().colwise() /= fem->tilt_cosines();
     const double first_touch = gap.minCoeff(); // indentation
     gap.array() -= first_touch;
     contact.indentation -= first_touch;
@@ -253,27 +218,29 @@ Contact LayerContact::solve(const MatrixXd& input_gap, const Contact& given, dou
         return contact;
     }
     contact.pressure = start.size() > 0 ? start.cwiseMax(0).eval() : initial_pressure(gap, contact, is_force_known);
-    if (fem_ && start.size() > 0) contact.pressure.array().colwise() *= fem_->tilt_cosines();
+    if (fem && start.size() > 0) contact.pressure.array().colwise() *= fem->tilt_cosines();
     contact.pressure = gap.array().isFinite().select(contact.pressure, 0);
     if (is_force_known) {
         if (!(contact.pressure.sum() > 0)) contact.pressure = initial_pressure(gap, contact, is_force_known);
-        contact.pressure *= contact.force / (contact.pressure.sum() * cell_area_);
+        contact.pressure *= contact.force / (contact.pressure.sum() * surface_.cell_area());
     }
     Mask may_touch = contact.pressure.array() > 0;
     if (!is_force_known) may_touch = may_touch || gap.array() < contact.indentation;
     contact.converged = true;
     while (contact.converged) {
         Window window{0, 0, gap.rows(), gap.cols()};
-        if (!fem_) std::tie(window.column, window.columns) = window_side(may_touch.colwise().any().transpose());
-        if (waves_) { // as wide on either side of the middle
+        if (!fem) {
+            std::tie(window.row, window.rows) = window_side(may_touch.rowwise().any());
+            std::tie(window.column, window.columns) = window_side(may_touch.colwise().any().transpose());
+        }
+        if (surface_.has_sides()) { // as wide on either side of the middle
             window.column = std::min(window.column, gap.cols() - window.column - window.columns);
             window.columns = gap.cols() - 2 * window.column;
-        } else if (!fem_) {
-            std::tie(window.row, window.rows) = window_side(may_touch.rowwise().any());
         }
         contact.converged = iterate(gap, window, tolerance, removal, coverage, is_force_known,
                                     start.size() > 0 ? kMaxIterationsFromStart : kMaxIterations, contact);
-        const double bulge = min_influence_ * contact.pressure.sum(); // lower bound of the displacement at any cell
+        const double bulge =
+            surface_.min_influence() * contact.pressure.sum(); // lower bound of the displacement at any cell
         const double open = contact.indentation * (1 - tolerance) - bulge;
         const auto outside_window = [&](Mask mask) {
             mask.block(window.row, window.column, window.rows, window.columns) = false;
@@ -288,21 +255,16 @@ Contact LayerContact::solve(const MatrixXd& input_gap, const Contact& given, dou
     if (!contact.converged && start.size() > 0)
         return solve(input_gap, given, tolerance, {}, removal, coverage, is_force_known);
     contact.indentation += first_touch;
-    contact.force = contact.pressure.sum() * cell_area_;
-    if (fem_) contact.pressure.array().colwise() /= fem_->tilt_cosines();
+    contact.force = contact.pressure.sum() * surface_.cell_area();
+    if (fem) contact.pressure.array().colwise() /= fem->tilt_cosines();
     return contact;
 }
 
 MatrixXd LayerContact::signed_gap(const MatrixXd& gap, const Contact& contact, const MatrixXd& coverage)
 {
-    MatrixXd displacement;
+    MatrixXd displacement = surface_.radial(contact.pressure);
     ArrayXXd indentation = ArrayXXd::Constant(gap.rows(), gap.cols(), contact.indentation);
-    if (fem_) {
-        displacement = fem_->displacement(contact.pressure);
-        indentation.colwise() *= fem_->tilt_cosines();
-    } else {
-        compute_displacement(contact.pressure, displacement);
-    }
+    if (const FemLayer* fem = surface_.fem()) indentation.colwise() *= fem->tilt_cosines();
     if (coverage.size() > 0) displacement.array() += border_compliance(coverage.array()) * contact.pressure.array();
     return gap + (displacement.array() - indentation).matrix();
 }

@@ -1,16 +1,9 @@
 #pragma once
 
 #include "belt/belt_law.h"
-#include "belt/convolution.h"
-#include "belt/edge_compliance.h"
-#include "belt/fem_layer.h"
-#include "belt/layer_compliance.h"
+#include "belt/layer_displacement.h"
 
 #include <Eigen/Core>
-
-#include <map>
-#include <optional>
-#include <utility>
 
 namespace fettle::belt {
 
@@ -24,8 +17,8 @@ struct Contact {
 };
 
 /// Frictionless unilateral contact (Signorini) of a layer with a workpiece: pressure ≥ 0, gap ≥ 0, pressure · gap = 0.
-/// Solved by constrained conjugate gradients (after Polonsky and Keer 1999). A step costs one convolution of the
-/// pressure with the influence coefficients, on a window just larger than the contact. Not thread-safe.
+/// Solved by constrained conjugate gradients (after Polonsky and Keer 1999). A step costs the
+/// displacement under one pressure, on a window just larger than the contact. Not thread-safe.
 ///
 /// While a belt grinds, the workpiece recedes by what the pressure removes. Taking the pressure at the end of the step
 /// for a depth r(p) of it adds that depth to the gap: g = gap + K p + r(p) - indentation. With r all of the step's
@@ -38,13 +31,19 @@ class LayerContact {
     /// Uses the compliance of a flat layer without edges.
     /// @param cell  size, mm
     /// @throws InputError as influence() does
-    LayerContact(const ElasticLayer& layer, const Eigen::Vector2d& cell, Eigen::Index rows, Eigen::Index columns);
+    LayerContact(const ElasticLayer& layer, const Eigen::Vector2d& cell, Eigen::Index rows, Eigen::Index columns)
+        : surface_(layer, cell, rows, columns)
+    {
+    }
     /// The same with the free sides of a wheel; the grid is in the middle of its width.
     LayerContact(const ElasticLayer& layer, const EdgeCompliance& edges, const Eigen::Vector2d& cell, Eigen::Index rows,
-                 Eigen::Index columns);
+                 Eigen::Index columns)
+        : surface_(layer, edges, cell, rows, columns)
+    {
+    }
     /// Uses finite elements. Rows lie along the wheel's arc with the lowest point in the middle. Pressure and gap are
     /// radial; force and indentation are along the radius at the middle.
-    LayerContact(const LayerMesh& mesh, Eigen::Index rows);
+    LayerContact(const LayerMesh& mesh, Eigen::Index rows) : surface_(mesh, rows) {}
 
     /// Solves for a given indentation, until pressure · gap ≤ `tolerance` · peak pressure · approach and all gaps
     /// ≥ -tolerance · approach. The approach is the displacement of the hub since first touch.
@@ -77,24 +76,16 @@ class LayerContact {
     /// Gap that opens in each cell under its own pressure beside the layer's displacement, along the radius at the
     /// middle: what is removed, and how much deeper a narrow border of the workpiece goes into the layer.
     Eigen::ArrayXXd own_gap(const Workpiece& workpiece, const Eigen::ArrayXXd& pressure) const;
-    /// Length of the step to the minimum of the energy along it. @param slope  of the energy, < 0  @param curvature  of
-    /// its elastic part
-    double step_length(const Eigen::ArrayXXd& pressure, const Eigen::MatrixXd& step, const Workpiece& workpiece,
-                       double slope, double curvature) const;
+    /// Length of the step to the minimum of the energy along it. @param own  own_gap() of the pressure  @param slope of
+    /// the energy, < 0  @param curvature  of its elastic part
+    double step_length(const Eigen::ArrayXXd& pressure, const Eigen::ArrayXXd& own, const Eigen::MatrixXd& step,
+                       const Workpiece& workpiece, double slope, double curvature) const;
     Eigen::ArrayXXd border_compliance(const Eigen::ArrayXXd& coverage) const;
     Eigen::MatrixXd initial_pressure(const Eigen::MatrixXd& gap, const Contact& given, bool is_force_known) const;
     /// Gap after deformation; negative where the surfaces interpenetrate.
     Eigen::MatrixXd signed_gap(const Eigen::MatrixXd& gap, const Contact& contact, const Eigen::MatrixXd& coverage);
-    Convolution& convolution(Eigen::Index rows, Eigen::Index columns);
-    void compute_displacement(const Eigen::MatrixXd& pressure, Eigen::MatrixXd& displacement);
 
-    ElasticLayer layer_;
-    double cell_area_; ///< mm²
-    Eigen::MatrixXd influence_;
-    double min_influence_; ///< < 0 where rubber bulges beside the contact
-    std::map<std::pair<Eigen::Index, Eigen::Index>, Convolution> convolutions_; ///< by size
-    std::optional<WaveOperator> waves_; ///< with the wheel's sides: replaces the convolutions
-    std::optional<FemLayer> fem_;       ///< replaces the influence coefficients
+    LayerDisplacement surface_;
 };
 
 } // namespace fettle::belt

@@ -1,7 +1,5 @@
 #include "belt/wave_operator.h"
 
-#include <opencv2/core.hpp>
-
 #include <cmath>
 #include <numbers>
 
@@ -33,10 +31,8 @@ WaveOperator::WaveOperator(Index rows, Index columns, const MatrixXd& spectrum)
       odd_count_(is_symmetric_ ? columns / 2 : 0), even_count_(columns - odd_count_),
       even_(even_count_ * even_count_, rows + 1), odd_(odd_count_ * odd_count_, rows + 1)
 {
+    const double factor = is_symmetric_ ? 0.5 : 1; // the parts are sums of two
     for (Index f = 0; f <= rows; ++f) {
-        // A real inverse transform counts the waves between the first and the last one twice; the parts are sums of
-        // two.
-        const double factor = (f == 0 || f == rows ? 1 : 0.5) * (is_symmetric_ ? 0.5 : 1);
         const Eigen::Map<const MatrixXd> wave(spectrum.col(f).data(), columns, columns);
         const MatrixXd reversed = wave.rowwise().reverse();
         MatrixXd even = factor * wave.topLeftCorner(even_count_, even_count_);
@@ -46,43 +42,64 @@ WaveOperator::WaveOperator(Index rows, Index columns, const MatrixXd& spectrum)
     }
 }
 
+/// Cosines and sines of each wave (column) at the rows of the first half, from the middle of `count` rows.
+const WaveOperator::Waves& WaveOperator::waves(Index count) const
+{
+    Waves& waves = waves_[count];
+    if (waves.cosines.size() > 0) return waves;
+    waves.cosines.resize(count - count / 2, rows_ + 1);
+    waves.sines.resize(count / 2, rows_ + 1);
+    for (Index f = 0; f <= rows_; ++f)
+        for (Index i = 0; i < waves.cosines.rows(); ++i) {
+            const double phase = pi * static_cast<double>(f * (2 * i + 1 - count)) / (2.0 * static_cast<double>(rows_));
+            waves.cosines(i, f) = std::cos(phase);
+            if (i < waves.sines.rows()) waves.sines(i, f) = std::sin(phase);
+        }
+    return waves;
+}
+
 MatrixXd WaveOperator::displacement(const MatrixXd& pressure) const
 {
-    // A series a row: OpenCV's matrices are row-major. Its packed spectrum begins with the real first wave, goes on
-    // with the real and imaginary part of each, and ends with the real last one.
-    const int length = static_cast<int>(2 * rows_), count = static_cast<int>(pressure.cols());
-    const Index half = is_symmetric_ ? count / 2 : 0, even_half = count - half, first = (columns_ - count) / 2;
-    using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-    cv::Mat padded = cv::Mat::zeros(count, length, CV_64F), transformed;
-    Eigen::Map<RowMajor> series(padded.ptr<double>(), count, length);
-    const MatrixXd reversed = pressure.rowwise().reverse();
-    if (is_symmetric_)
-        series.topLeftCorner(even_half, rows_) = (pressure + reversed).leftCols(even_half).transpose();
-    else
-        series.leftCols(rows_) = pressure.transpose();
-    series.bottomLeftCorner(half, rows_) = (pressure - reversed).leftCols(half).transpose();
-    cv::dft(padded, transformed, cv::DFT_ROWS);
-    Eigen::Map<RowMajor> packed(transformed.ptr<double>(), count, length);
-    const MatrixXd amplitudes = packed;
-    MatrixXd result(count, length);
-    for (Index k = 0; k < length; ++k) {
-        const Index f = (k + 1) / 2;
-        const Eigen::Map<const MatrixXd> even(even_.col(f).data(), even_count_, even_count_);
-        const Eigen::Map<const MatrixXd> odd(odd_.col(f).data(), odd_count_, odd_count_);
-        result.col(k).head(even_half).noalias() =
-            even.block(first, first, even_half, even_half) * amplitudes.col(k).head(even_half);
-        result.col(k).tail(half).noalias() = odd.block(first, first, half, half) * amplitudes.col(k).tail(half);
+    const Index rows = pressure.rows(), columns = pressure.cols(), first = (columns_ - columns) / 2;
+    const Index odd_rows = rows / 2, even_rows = rows - odd_rows;
+    const Index odd = is_symmetric_ ? columns / 2 : 0, even = columns - odd;
+    const Waves& waves = this->waves(rows);
+    // Sums and differences of the columns of either half, then of the rows; a middle row is a sum of one.
+    MatrixXd across(rows, columns), folded(rows, columns);
+    across.leftCols(even) = pressure.leftCols(even);
+    if (is_symmetric_) across.leftCols(even) += pressure.rightCols(even).rowwise().reverse();
+    across.rightCols(odd) = pressure.leftCols(odd) - pressure.rightCols(odd).rowwise().reverse();
+    folded.topRows(even_rows) = across.topRows(even_rows);
+    folded.topRows(odd_rows) += across.bottomRows(odd_rows).colwise().reverse();
+    folded.bottomRows(odd_rows) = across.topRows(odd_rows) - across.bottomRows(odd_rows).colwise().reverse();
+    // Of each wave a column of cosines and one of sines.
+    const Index count = rows_ + 1;
+    MatrixXd pressures(columns, 2 * count), displacements(columns, 2 * count);
+    const auto part = [&](MatrixXd& all, Index k) {
+        return Eigen::Map<MatrixXd, 0, Eigen::OuterStride<>>(all.col(k).data(), columns, count,
+                                                             Eigen::OuterStride<>(2 * columns));
+    };
+    part(pressures, 0).noalias() = folded.topRows(even_rows).transpose() * waves.cosines;
+    part(pressures, 1).noalias() = folded.bottomRows(odd_rows).transpose() * waves.sines;
+    for (Index f = 0; f < count; ++f) {
+        const Eigen::Map<const MatrixXd> even_part(even_.col(f).data(), even_count_, even_count_);
+        const Eigen::Map<const MatrixXd> odd_part(odd_.col(f).data(), odd_count_, odd_count_);
+        for (const Index k : {2 * f, 2 * f + 1}) {
+            displacements.col(k).head(even).noalias() =
+                even_part.block(first, first, even, even) * pressures.col(k).head(even);
+            displacements.col(k).tail(odd).noalias() =
+                odd_part.block(first, first, odd, odd) * pressures.col(k).tail(odd);
+        }
     }
-    packed = result;
-    cv::dft(transformed, padded, cv::DFT_INVERSE | cv::DFT_ROWS | cv::DFT_REAL_OUTPUT);
-    MatrixXd displacement(rows_, count);
-    const Eigen::Map<const RowMajor> summed(padded.ptr<double>(), count, length);
-    const MatrixXd even = summed.topLeftCorner(even_half, rows_).transpose(),
-                   odd = summed.bottomLeftCorner(half, rows_).transpose();
-    displacement.leftCols(even_half) = even;
-    displacement.rightCols(half) = even.leftCols(half).rowwise().reverse();
-    displacement.leftCols(half) += odd;
-    displacement.rightCols(half) -= odd.rowwise().reverse();
+    folded.topRows(even_rows).noalias() = waves.cosines * part(displacements, 0).transpose();
+    folded.bottomRows(odd_rows).noalias() = waves.sines * part(displacements, 1).transpose();
+    across.topRows(even_rows) = folded.topRows(even_rows);
+    across.bottomRows(odd_rows) = (folded.topRows(odd_rows) - folded.bottomRows(odd_rows)).colwise().reverse();
+    across.topRows(odd_rows) += folded.bottomRows(odd_rows);
+    MatrixXd displacement(rows, columns);
+    displacement.leftCols(even) = across.leftCols(even);
+    displacement.rightCols(odd) = (across.leftCols(odd) - across.rightCols(odd)).rowwise().reverse();
+    displacement.leftCols(odd) += across.rightCols(odd);
     return displacement;
 }
 
