@@ -80,6 +80,9 @@ struct Options {
         t.text("--thin", "", "LENGTH",
                "Keep one point, as it was measured, of each cube with this edge: the one nearest to their mean; with "
                "spacing:LENGTH, points no nearer to each other than that");
+    const bool& keeps_organised = t.flag(
+        "--keep-organised", "Keep the rows and columns of an organised cloud (PCD, PTX): what is left out leaves "
+                            "NaN at its place");
     const mesh::PartOutput out{t};
 };
 
@@ -92,6 +95,7 @@ clean::StatedRegion parse_crop(const std::string& text)
 clean::CleanRequest parse_request(const Options& o, double mm)
 {
     clean::CleanRequest request;
+    request.keeps_organised = o.keeps_organised;
     const auto parse = [](const std::string& name, const std::string& text, const auto& parser) {
         return cli::with_error_prefix(name, [&] { return parser(text); });
     };
@@ -137,7 +141,7 @@ int main(int argc, char** argv)
         const clean::CleanResult result = cli::with_error_prefix(
             name, [&] { return clean::clean_part(std::move(file.part), parse_request(o, file.units.mm())); });
         for (const clean::FilterCount& filter : result.filters) t.report().set(filter.name, filter.removed);
-        t.report().set("points_left", result.part.points.size()).set("triangles_left", result.part.triangles.cols());
+        t.report().set("points_left", result.points_left).set("triangles_left", result.part.triangles.cols());
         o.out.write(result.part, file.units);
         return cli::Verdict::yes;
     });

@@ -50,6 +50,22 @@ std::vector<std::string> file_warnings(const AlignRequest& request, const mesh::
     return list;
 }
 
+/// That a scan begins farther from the reference than both are long together: the nearest points say nothing there, and
+/// steps towards them lead nowhere and take long. Empty: it begins nearer.
+std::string distance_warning(const Eigen::Matrix3Xd& scan, const Eigen::Isometry3d& start,
+                             const Eigen::Matrix3Xd& reference, const units::Units& units)
+{
+    const Eigen::AlignedBox3d there = geometry::finite_bounding_box(scan).transformed(start),
+                              here = geometry::finite_bounding_box(reference);
+    const double distance = there.exteriorDistance(here), limit = there.sizes().norm() + here.sizes().norm();
+    if (!(distance > limit)) return "";
+    const auto in_units = [&](double length) {
+        return core::to_short_text(length / units.mm()) + " " + units::to_string(units.length);
+    };
+    return "begins " + in_units(distance) + " from the reference, which with it is " + in_units(limit) +
+           " long: begin nearer, or let it be searched";
+}
+
 } // namespace
 
 AlignRun align_files(const AlignRequest& request)
@@ -71,6 +87,11 @@ AlignRun align_files(const AlignRequest& request)
         job::require_no_stray_point(mesh::coordinates_of(target.shape), target.units,
                                     core::display_name(request.reference));
     }
+    std::string too_far;
+    if (options.start && !applies_start)
+        too_far =
+            distance_warning(scan.part.points.xyz, *options.start, mesh::coordinates_of(target.shape), scan.units);
+    if (!too_far.empty()) options.icp.max_iterations = 1; // to say how it lies there
     const auto reference = core::with_error_prefix(core::display_name(request.reference), [&] {
         return std::visit([](const auto& shape) { return std::make_unique<AlignReference>(shape); }, target.shape);
     });
@@ -90,6 +111,7 @@ AlignRun align_files(const AlignRequest& request)
         to_json(alignment, run.transform, cloud::transformed(sample, run.transform, mm).xyz, *reference, run.units);
     if (!scan.part.is_mesh()) run.report.set("dropped", scan.part.points.size() - points.xyz.cols());
     run.warnings = file_warnings(request, scan, target);
+    if (!too_far.empty()) run.warnings.push_back(scan_name + ": " + too_far);
     scan.part.points.frame = mesh::frame_of(target.shape);
     if (request.max_distance && !is_limit)
         run.warnings.push_back(scan_name + ": is " + core::to_short_text(length_of(points.xyz) / mm) +

@@ -1,5 +1,6 @@
 #include "clean/clean.h"
 
+#include "core/constants.h"
 #include "core/error.h"
 
 #include <Eigen/Geometry>
@@ -16,7 +17,7 @@ using mesh::CloudMesh;
 /// Takes filter after filter to the part that the one before has left.
 class Cleaner {
   public:
-    explicit Cleaner(CloudMesh part) : result_{std::move(part), {}} {}
+    explicit Cleaner(CloudMesh part) : result_{std::move(part), {}, 0} {}
 
     const CloudMesh& part() const { return result_.part; }
     CleanResult result() { return std::move(result_); }
@@ -99,10 +100,35 @@ void remove_facing_away(Cleaner& cleaner, const Eigen::Vector3d& direction)
     }
 }
 
+// Field by which points know their places while others are taken away; no file's field has a space in its name.
+const std::string kPlaceField = "organised place";
+
+/// The cloud as it came with NaN at the places of what was taken away (as PCL's setKeepOrganized).
+cloud::Cloud at_their_places(const cloud::Cloud& left, cloud::Cloud all)
+{
+    all.xyz.setConstant(core::kNaN);
+    const Eigen::VectorXd places = cloud::field(left, kPlaceField);
+    for (Eigen::Index i = 0; i < left.size(); ++i) all.xyz.col(static_cast<Eigen::Index>(places[i])) = left.xyz.col(i);
+    return all;
+}
+
+CleanResult clean_organised(CloudMesh part, CleanRequest request)
+{
+    if (part.is_mesh() || part.points.width == 0)
+        throw core::InputError("--keep-organised", "the cloud has no rows and columns");
+    request.keeps_organised = false;
+    cloud::Cloud all = part.points;
+    cloud::set_field(part.points, kPlaceField, Eigen::VectorXd::LinSpaced(all.size(), 0, double(all.size() - 1)));
+    CleanResult result = clean_part(std::move(part), request);
+    result.part.points = at_their_places(result.part.points, std::move(all));
+    return result;
+}
+
 } // namespace
 
 CleanResult clean_part(CloudMesh part, const CleanRequest& request)
 {
+    if (request.keeps_organised) return clean_organised(std::move(part), request);
     if (request.thinning && part.is_mesh())
         throw core::InputError("--thin", "goes with clouds: a mesh's triangles need all of its vertices");
     Cleaner cleaner(std::move(part));
@@ -123,7 +149,9 @@ CleanResult clean_part(CloudMesh part, const CleanRequest& request)
         const std::vector<char> stays = core::with_error_prefix("--thin", [&] { return thin(xyz, *request.thinning); });
         cleaner.filter_points("thinned", [&](Eigen::Index i) { return stays[std::size_t(i)] == 0; });
     }
-    return cleaner.result();
+    CleanResult result = cleaner.result();
+    result.points_left = result.part.points.size();
+    return result;
 }
 
 } // namespace fettle::clean

@@ -21,6 +21,7 @@ struct CleanRequest {
     std::optional<Eigen::Vector3d> facing; ///< what faces away from this direction is left out
     std::optional<OutlierFilter> outliers;
     std::optional<Thinning> thinning;
+    bool keeps_organised = false; ///< what is taken away from an organised cloud leaves NaN at its place
 };
 
 /// A filter and what it took away.
@@ -32,11 +33,13 @@ struct FilterCount {
 struct CleanResult {
     mesh::CloudMesh part;
     std::vector<FilterCount> filters; ///< in the order of their work
+    Eigen::Index points_left = 0;
 };
 
 /// Cleans a cloud or a mesh. Points keep their order and their fields. A triangle stays if its three corners do; a mesh
 /// faces a direction with its triangles, a cloud with its normals.
-/// @throws InputError if nothing is left, for --facing with a cloud without normals, and for thinning of a mesh
+/// @throws InputError if nothing is left, for --facing with a cloud without normals, for thinning of a mesh, and to keep
+/// what is not organised
 CleanResult clean_part(mesh::CloudMesh part, const CleanRequest& request);
 
 } // namespace fettle::clean

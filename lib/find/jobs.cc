@@ -24,7 +24,7 @@ constexpr int kCornerReach = 1;
 constexpr double kPlaneNoises = 1.5;
 // The robust surface through that metal, with as many terms as it shows, may leave the plane inside of B by this much:
 // of many cells a bend is plain that is lost in the noise of each.
-constexpr double kMaxBendNoises = 0.5;
+constexpr double kMaxBendNoises = 1.5;
 
 // The part leaves a surface where it is off it by so many standard deviations of the metal around.
 constexpr double kLeavingSds = 4;
@@ -152,7 +152,7 @@ double theta_along(const Eigen::Matrix2Xd& boundary, char feed_axis)
 }
 
 // A fitted surface bends more than this one here and there: shares of the sag and the radius that are allowed.
-constexpr double kSagShare = 0.6, kRadiusShare = 0.8;
+constexpr double kSagShare = 0.4, kRadiusShare = 0.8;
 constexpr int kCurvaturePoints = 12; // along the longer side of B
 
 /// The largest wheel that fits a surface; infinity: any does.

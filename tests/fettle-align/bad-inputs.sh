@@ -46,3 +46,9 @@ status=0
 fettle-align far.xyz --to good.xyz --near --max-distance 1 -o /dev/null -q --report r.json || status=$?
 test $status -eq 1
 jq -e '.overlap == 0 and .median == null and (.converged | not)' r.json >/dev/null
+# begun 500 m away: told after one step
+awk '{ print $1 + 500000, $2, $3 }' good.xyz >away.xyz
+status=0
+fettle-align away.xyz --to good.xyz --near -o /dev/null 2>said || status=$?
+test $status -eq 1
+grep -q 'fettle-align: warning: away.xyz: begins .* mm from the reference' said

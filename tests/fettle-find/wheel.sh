@@ -17,5 +17,5 @@ jq '.wheel.width = 8' jobs/1.json > refused.json
 "$HERE/../refuses" 'refused.json: wheel.width: 8 across a curvature of radius' fettle-plan refused.json desired.json
 # Without another wheel the job says what would fit: √(8 · 0.1 · 30) is 4.9 mm.
 fettle-find part.xyz --file-units mm --jobs alone --template wide.json --keep 1 -q -o found.pcd
-jq -e '.wheel.width > 2.5 and .wheel.width < 4.9' alone/1.json
+jq -e '.wheel.width > 2 and .wheel.width < 4.9' alone/1.json
 "$HERE/../refuses" '--wheels: --jobs and --wheels go together' fettle-find part.xyz --file-units mm --wheels narrow.json
