@@ -38,8 +38,8 @@ struct CleanResult {
 
 /// Cleans a cloud or a mesh. Points keep their order and their fields. A triangle stays if its three corners do; a mesh
 /// faces a direction with its triangles, a cloud with its normals.
-/// @throws InputError if nothing is left, for --facing with a cloud without normals, for thinning of a mesh, and to keep
-/// what is not organised
+/// @throws InputError if nothing is left, for --facing with a cloud without normals, for thinning of a mesh, and to
+/// keep what is not organised
 CleanResult clean_part(mesh::CloudMesh part, const CleanRequest& request);
 
 } // namespace fettle::clean
