@@ -6,6 +6,7 @@
 #include "core/digest.h"
 #include "core/error.h"
 #include "core/file.h"
+#include "core/text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -63,6 +64,14 @@ BeltLearning::BeltLearning(const std::string& file, const belt::ContactWheel& wh
     const RemovalTrial& first = record_.passes.front();
     if (!std::isnan(first.speed) || std::isnan(first.feed) || !std::isnan(first.duration))
         throw core::InputError(core::display_name(file), "is no law of a belt that moves along paths");
+    // A layer under its own modulus would be pressed through to the hub. Laws that were written before the release of
+    // this version hold forces in N.
+    for (const RemovalTrial& pass : record_.passes)
+        if (pass.force > wheel.layer.young)
+            throw core::InputError(core::display_name(file),
+                                   "a pass has a pressure of " + core::to_short_text(pass.force) +
+                                       " MPa, more than the modulus of the wheel's layer, " +
+                                       core::to_short_text(wheel.layer.young) + ": it may be a force in N; learn anew");
     law_ = learn(record_);
     known_passes_ = record_.passes.size();
     known_work_ = next_pass(record_).prior_work;

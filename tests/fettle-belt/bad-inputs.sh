@@ -22,3 +22,6 @@ refused '--path' fettle-belt plate.pcd --wheel wheel.json --force 1
 refused 'missing/trace.pcd' fettle-belt plate.pcd --wheel wheel.json --path path.pcd --force 1 --trace /missing/trace.pcd
 sed 's/"preston"/"power"/' wheel.json > power.json
 refused 'power.json: law.pressure_exponent' fettle-belt plate.pcd --wheel power.json --path path.pcd --force 1
+# Laws of a belt that were written before the release hold forces, not pressures.
+echo '{"kind": "law", "learnt": {"record": {"pass_work": 1e6, "passes": [[20, 0, 10, 0, 0, 1]]}}}' > old.json
+refused 'old.json: a pass has a pressure of 20 MPa, more than the modulus' fettle-belt plate.pcd --wheel wheel.json --path path.pcd --force 1 --learn old.json
