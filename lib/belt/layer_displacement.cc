@@ -9,7 +9,8 @@ using Eigen::MatrixXd;
 
 namespace {
 
-/// Larger windows are convolved by Fourier transforms, of which the time grows with less than the cube of the side.
+/// Larger windows without sides are convolved by Fourier transforms, of which the time grows with less than the cube of
+/// the side.
 constexpr Index kMaxWaveCells = 80;
 
 /// Compliance of each wave along the rows (column) between each two columns, of a layer without sides.
@@ -38,7 +39,7 @@ LayerDisplacement::LayerDisplacement(const ElasticLayer& layer, const EdgeCompli
 {
     MatrixXd spectrum = flat_spectrum(influence_);
     edges.add_to(spectrum, cell, rows, columns);
-    waves_.emplace(rows, columns, spectrum);
+    side_influence_ = influence_of_waves(spectrum);
 }
 
 LayerDisplacement::LayerDisplacement(const LayerMesh& mesh, Index rows)
@@ -53,18 +54,28 @@ MatrixXd LayerDisplacement::of_window(const MatrixXd& pressure)
         const MatrixXd displacement = fem_->displacement((pressure.array().colwise() / cosines).matrix());
         return displacement.array().colwise() / cosines;
     }
-    if (waves_) return waves_->displacement(pressure);
     const Size size(pressure.rows(), pressure.cols());
-    const auto influence = influence_.topLeftCorner(size.first, size.second);
-    if (std::max(size.first, size.second) > kMaxWaveCells) {
+    if (!has_sides() && std::max(size.first, size.second) > kMaxWaveCells) {
         MatrixXd displacement;
-        convolutions_.try_emplace(size, influence).first->second(pressure, displacement);
+        const auto found = convolutions_.try_emplace(size, influence_.topLeftCorner(size.first, size.second)).first;
+        found->second(pressure, displacement);
         return displacement;
     }
-    const auto found = flat_waves_.find(size);
-    if (found != flat_waves_.end()) return found->second.displacement(pressure);
-    return flat_waves_.try_emplace(size, size.first, size.second, flat_spectrum(influence))
-        .first->second.displacement(pressure);
+    auto found = waves_.find(size);
+    if (found == waves_.end()) found = waves_.emplace(size, window_waves(size.first, size.second)).first;
+    return found->second.displacement(pressure);
+}
+
+WaveOperator LayerDisplacement::window_waves(Index rows, Index columns) const
+{
+    if (!has_sides()) return {rows, columns, flat_spectrum(influence_.topLeftCorner(rows, columns))};
+    const Index all = influence_.cols(), first = (all - columns) / 2;
+    MatrixXd influence(rows, columns * columns);
+    for (Index m = 0; m < rows; ++m) {
+        const Eigen::Map<const MatrixXd> between(side_influence_.col(m).data(), all, all);
+        influence.row(m) = MatrixXd(between.block(first, first, columns, columns)).reshaped().transpose();
+    }
+    return {rows, columns, wave_transform(influence).transpose()};
 }
 
 MatrixXd LayerDisplacement::radial(const MatrixXd& pressure)

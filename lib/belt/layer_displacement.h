@@ -37,19 +37,21 @@ class LayerDisplacement {
     double cell_area() const { return cell_area_; } ///< mm²
     /// Influence of a cell's pressure at the cell that it lifts most, mm/MPa: < 0 where rubber bulges.
     double min_influence() const { return min_influence_; }
-    bool has_sides() const { return waves_.has_value(); }
+    bool has_sides() const { return side_influence_.size() > 0; }
     /// Finite elements of a round layer; null: the layer is flat.
     const FemLayer* fem() const { return fem_ ? &*fem_ : nullptr; }
 
   private:
+    WaveOperator window_waves(Eigen::Index rows, Eigen::Index columns) const;
+
     ElasticLayer layer_;
     double cell_area_;
-    Eigen::MatrixXd influence_;
+    Eigen::MatrixXd influence_; ///< of a cell on others so many rows and columns away
     double min_influence_;
+    Eigen::MatrixXd side_influence_; ///< with the wheel's sides, of each column on each (row), rows away (column)
     using Size = std::pair<Eigen::Index, Eigen::Index>;
-    std::map<Size, WaveOperator> flat_waves_;  ///< by the size of the window
-    std::map<Size, Convolution> convolutions_; ///< the same, of large ones
-    std::optional<WaveOperator> waves_;        ///< with the wheel's sides: replaces both
+    std::map<Size, WaveOperator> waves_;       ///< by the size of the window
+    std::map<Size, Convolution> convolutions_; ///< the same, of large ones without sides
     std::optional<FemLayer> fem_;              ///< replaces the influence coefficients
 };
 

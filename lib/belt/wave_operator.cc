@@ -114,6 +114,15 @@ MatrixXd wave_transform(const MatrixXd& influence)
     return transform * influence;
 }
 
+MatrixXd influence_of_waves(const MatrixXd& spectrum)
+{
+    const Index rows = spectrum.cols() - 1;
+    MatrixXd cosines(rows + 1, rows);
+    for (Index m = 0; m < rows; ++m)
+        for (Index f = 0; f <= rows; ++f) cosines(f, m) = std::cos(pi * (f * m) / rows);
+    return spectrum * cosines;
+}
+
 MatrixXd wave_weights(const std::vector<std::pair<double, double>>& nodes, Index rows)
 {
     MatrixXd influence(rows, std::ssize(nodes));

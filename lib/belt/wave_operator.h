@@ -45,4 +45,8 @@ Eigen::MatrixXd wave_weights(const std::vector<std::pair<double, double>>& nodes
 /// @param influence  on rows 0, 1, …; a sequence a column   @return  a wave a row
 Eigen::MatrixXd wave_transform(const Eigen::MatrixXd& influence);
 
+/// The inverse of wave_transform() for influences that are rows.
+/// @param spectrum  a wave a column   @return  from row to row, a distance a column
+Eigen::MatrixXd influence_of_waves(const Eigen::MatrixXd& spectrum);
+
 } // namespace fettle::belt
