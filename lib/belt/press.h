@@ -22,7 +22,8 @@ struct WheelContactOptions {
     Eigen::Index elements = 8; ///< of LayerSolver::fem from the surface to the hub
 };
 
-/// Cells along each side up to which LayerSolver::layer sees the wheel's sides: memory grows with the cube, some 40 MB here.
+/// Cells along each side up to which LayerSolver::layer sees the wheel's sides: memory grows with the cube, to 40 MB
+/// here.
 inline constexpr Eigen::Index kMaxEdgeCells = 128;
 
 /// Load on the wheel: a force, or a depth of its lowest point below the contact point.
