@@ -16,8 +16,9 @@ constexpr double kSamplingPerThickness = 0.6;
 constexpr double kMinSampling = 5.5, kMaxSampling = 45; // width of S around B, cells
 constexpr double kEdgeGap = 1.5;                        // S keeps off edges, cells
 
-constexpr int kUpscale = 4;                                    // of masks before their outline is taken
-constexpr double kOutlineBlur = 0.7;                           // cells, takes the stairs out
+constexpr int kOutlineCells = 4;     // around what an outline surrounds, for its blur and simplification, cells
+constexpr int kUpscale = 4;          // of masks before their outline is taken
+constexpr double kOutlineBlur = 0.7; // cells, takes the stairs out
 constexpr double kBoundaryDetail = 0.6, kSamplingDetail = 0.8; // of simplified outlines, cells
 
 /// The outline of the mask's largest component.
@@ -102,11 +103,15 @@ Mask with_seed(const Mask& mask, const Mask& seed)
 
 Outlines outlines_of(const HeightMap& map, const Mask& region, const Mask& others, int growth)
 {
-    const int margin = int(kMaxSampling) + 15;
-    const cv::Rect box = grown_box(cv::boundingRect(region), margin, region.size());
+    const cv::Rect own_box = cv::boundingRect(region);
+    const double max_thickness = 2 * (max_depth(region(own_box)) + kClosing);
+    const int reach = growth + int(std::ceil(kGrowth)) + kClosing + kOutlineCells;
+    const int margin =
+        reach + int(std::ceil(std::clamp(kSamplingPerThickness * max_thickness, kMinSampling, kMaxSampling)));
+    const cv::Rect box = grown_box(own_box, margin, region.size());
     const auto around = [&](const Mask& mask) { // cells beyond the map are not seen
         Mask result;
-        cv::copyMakeBorder(mask(box), result, margin, margin, margin, margin, cv::BORDER_CONSTANT, 0);
+        cv::copyMakeBorder(mask(box), result, reach, reach, reach, reach, cv::BORDER_CONSTANT, 0);
         return result;
     };
     const Mask own = with_holes_filled(closed(around(region), kClosing)), other = around(others),
@@ -118,11 +123,11 @@ Outlines outlines_of(const HeightMap& map, const Mask& region, const Mask& other
     const double width = std::clamp(kSamplingPerThickness * thickness, kMinSampling, kMaxSampling);
     const Mask sampling = with_holes_filled(with_seed(opened(ring_in_sight(inside, good, width + 1) | inside, 2), own));
     Outlines result;
-    const Eigen::Vector2d shift(box.x - margin, box.y - margin);
+    const Eigen::Vector2d shift(box.x - reach, box.y - reach);
     result.boundary = polygon_of(inside, kBoundaryDetail).colwise() + shift;
     result.sampling = polygon_of(sampling | inside, kSamplingDetail).colwise() + shift;
     result.inside = Mask(region.size(), 0);
-    inside(cv::Rect(margin, margin, box.width, box.height)).copyTo(result.inside(box));
+    inside(cv::Rect(reach, reach, box.width, box.height)).copyTo(result.inside(box));
     return result;
 }
 

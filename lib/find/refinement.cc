@@ -25,6 +25,13 @@ constexpr double kRegionSds = 2.5, kRegionShare = 0.08;
 constexpr double kMinSds = 0.25; // of the noise
 constexpr double kHeightSmoothing = 0.8;
 
+// A crease that is beneath the region shows at once, or once the region has been taken anew.
+constexpr int kMaxCreaseSearches = 2;
+// Cells: what is thinner may be the part's own, as ridges are rounded and curve.
+constexpr double kMinCreaseThickness = 7;
+// Slopes on both sides differ by more than where a sheet ends (15 degrees), and less than beside a wall (60).
+constexpr double kMinBend = 0.27, kMaxBend = 1.7;
+
 // A cell of the region belongs to its rim if its own height is below noise and this share of the region's, and its
 // smoothed height below the other.
 constexpr double kTrimShare = 0.04, kTrimSmoothShare = 0.25;
@@ -88,7 +95,8 @@ Mask Refinement::ring_of(const Image& distance, double width) const
     return 2 * count >= cv::countNonZero(ring) && count > kMinRing + 10 ? free : ring;
 }
 
-std::optional<RingFit> Refinement::fit(const Mask& ring, const Image& distance, double width, int max_degree) const
+std::optional<RingFit> Refinement::fit(const Mask& ring, const Image& distance, double width, int max_degree,
+                                       const CreaseSearch& creases) const
 {
     const int count = cv::countNonZero(ring);
     if (count < kMinRing) return std::nullopt;
@@ -102,19 +110,29 @@ std::optional<RingFit> Refinement::fit(const Mask& ring, const Image& distance, 
                 points.weights[k++] = -0.5 * distance(y, x) * distance(y, x) / (width * width);
             }
     points.weights = points.weights.array().exp();
-    return fit_ring(points, sigma_, max_degree);
+    return fit_ring(points, sigma_, max_degree, creases);
+}
+
+CreaseSearch Refinement::creases(bool is_sought) const
+{
+    return {is_sought, crease_, kMinBend * cell_, kMaxBend * cell_};
 }
 
 bool Refinement::fit_beneath()
 {
     const cv::Rect box = cv::boundingRect(region_);
-    const double width = std::clamp(
-        kRingPerThickness * std::max(thickness_of(region_), kRingPerExtent * (std::max(box.width, box.height) - 1)),
-        kMinRingWidth, kMaxRingWidth);
+    const double thickness = thickness_of(region_);
+    const double width =
+        std::clamp(kRingPerThickness * std::max(thickness, kRingPerExtent * (std::max(box.width, box.height) - 1)),
+                   kMinRingWidth, kMaxRingWidth);
     const Image distance = distance_to(region_);
     const Mask ring = ring_of(distance, width);
-    std::optional<RingFit> fitted = fit(ring, distance, width, 4);
+    if (thickness < kMinCreaseThickness) crease_.reset();
+    const bool is_sought = thickness >= kMinCreaseThickness && (crease_ || crease_searches_ < kMaxCreaseSearches);
+    std::optional<RingFit> fitted = fit(ring, distance, width, 4, creases(is_sought));
     if (!fitted) return false;
+    crease_searches_ += is_sought;
+    crease_ = fitted->crease_in_place();
     beneath_ = {std::move(*fitted), ring, distance, width, {}, {}, {}};
     evaluate();
     return true;

@@ -59,7 +59,10 @@ class Refinement {
   private:
     Mask ring_of(const Image& distance, double width) const;
 
-    std::optional<RingFit> fit(const Mask& ring, const Image& distance, double width, int max_degree) const;
+    std::optional<RingFit> fit(const Mask& ring, const Image& distance, double width, int max_degree,
+                               const CreaseSearch& creases) const;
+
+    CreaseSearch creases(bool is_sought) const;
 
     bool fit_beneath();
 
@@ -84,6 +87,8 @@ class Refinement {
     Image z_;
     Mask seen_, others_, region_, core_;
     Beneath beneath_;
+    std::optional<Crease> crease_; ///< beneath the region
+    int crease_searches_ = 0;
 };
 
 } // namespace fettle::find

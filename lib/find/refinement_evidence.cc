@@ -60,7 +60,7 @@ void Refinement::measure_stability(Evidence& evidence) const
         for (int y = 0; y < partial.rows; ++y)
             for (int x = 0; x < partial.cols; ++x)
                 if (((x - x0 > y - y0) ? 1 : 0) + ((x - x0 > -(y - y0)) ? 2 : 0) == quadrant) partial(y, x) = 0;
-        const auto other = fit(partial, beneath_.distance, beneath_.width, 3);
+        const auto other = fit(partial, beneath_.distance, beneath_.width, 3, creases(false));
         if (!other) continue;
         ++fits;
         for (std::size_t k = 0; k < places.size(); ++k) {
@@ -106,7 +106,7 @@ int Refinement::growth() const
 
 Verified Refinement::result(double texture) const
 {
-    Verified verified{window_, trimmed(), region_, beneath_.residual, {}, 1, growth(), 0};
+    Verified verified{window_, trimmed(), region_, beneath_.residual, {}, 1, growth(), 0, crease_.has_value()};
     Evidence& e = verified.evidence;
     const Mask inside = region_ & seen_;
     e.height = quantile_of(values_in(beneath_.residual, inside), 0.9);
@@ -124,7 +124,7 @@ Verified Refinement::result(double texture) const
     e.thickness = thickness_of(region_);
     if (e.height < bounds_.min_height || e.significance() < kMinSignificance) return verified; // no evidence needed
     const Mask inner_ring = beneath_.ring & (beneath_.distance <= std::max(0.5 * beneath_.width, 4.0) + kRingGap);
-    if (const auto inner = fit(inner_ring, beneath_.distance, 1e9, 3)) {
+    if (const auto inner = fit(inner_ring, beneath_.distance, 1e9, 3, creases(false))) {
         std::vector<double> differences;
         for (int y = 0; y < region_.rows; ++y)
             for (int x = 0; x < region_.cols; ++x)

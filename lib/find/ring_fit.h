@@ -1,5 +1,7 @@
 #pragma once
 
+#include "find/ring_basis.h"
+
 #include <Eigen/Core>
 
 #include <optional>
@@ -15,27 +17,23 @@ struct RingPoints {
     Eigen::VectorXd weights; ///< by the distance to the candidate, to 1
 };
 
-/// A polynomial of total degree `degree` in coordinates scaled to [-1, 1] about the ring's centroid.
-struct RingPolynomial {
-    int degree;
-    Eigen::VectorXd coefficients;
-    Eigen::MatrixXd covariance_root; ///< L of L Lᵀ, the coefficients' covariance, mm²
-    double sd;                       ///< of the points about it, mm
-    double inliers;                  ///< share of points with a weight
-    double share;                    ///< in the average
-};
-
-/// Surface beneath a candidate: polynomials of rising degree, fitted robustly, averaged by the Bayesian information
-/// criterion (Hoeting et al. 1999, 2.1), with as many independent points as the noise's correlation leaves.
+/// Surface beneath a candidate: polynomials of rising degree, and pairs of them that meet in a crease, fitted robustly,
+/// averaged by the Bayesian information criterion (Hoeting et al. 1999, 2.1), with as many independent points as the
+/// noise's correlation leaves.
 struct RingFit {
-    Eigen::Vector2d centre;
-    double scale = 1;
-    double height = 0; ///< of z = 0 of the polynomials, mm
-    std::vector<RingPolynomial> polynomials;
-    Eigen::VectorXd mean; ///< coefficients of their average
-    double sd = 0;        ///< of the points about the surface, mm
-    double inliers = 0;   ///< share of points with a weight
-    int degree = 1;       ///< of the polynomial with the largest share
+    Eigen::Vector2d centre; ///< of the scaled coordinates: the ring's centroid
+    double scale = 1;       ///< so that they go from -1 to 1
+    double height = 0;      ///< of z = 0, mm
+    int highest_degree = 1;
+    std::optional<Crease> crease; ///< in scaled coordinates
+    Eigen::VectorXd mean;         ///< coefficients of the monomials up to that degree, then of the crease's terms
+    Eigen::MatrixXd covariance;   ///< of these, about the average, mm²
+    double sd = 0;                ///< of the points about the surface, mm
+    double inliers = 0;           ///< share of points with a weight
+    int degree = 1;               ///< of the polynomial with the largest share
+
+    /// The crease in the points' own coordinates.
+    std::optional<Crease> crease_in_place() const;
 
     /// Height of the surface and its standard deviation at a place, mm.
     struct Value {
@@ -47,8 +45,16 @@ struct RingFit {
     void add_row(double y, double factor, std::span<float> row) const;
 };
 
+/// Whether a crease, the ridge of a roof, may run beneath a candidate, and where.
+struct CreaseSearch {
+    bool is_sought = false;      ///< near `known`, or anywhere; else there is none but that one
+    std::optional<Crease> known; ///< in the points' coordinates
+    double min_bend = 0;         ///< of the slope across it, mm in the points' unit; below it no roof
+    double max_bend = 0;         ///< beyond it a wall
+};
+
 /// @param sigma  of the noise, mm   @param max_degree  1 to 4
 /// @return  nothing if the points are too few for a plane
-std::optional<RingFit> fit_ring(const RingPoints& ring, double sigma, int max_degree);
+std::optional<RingFit> fit_ring(const RingPoints& ring, double sigma, int max_degree, const CreaseSearch& creases = {});
 
 } // namespace fettle::find

@@ -18,6 +18,7 @@ struct Verified {
     int factor = 1; ///< a thick candidate is verified in cells so many times as long
     int growth = 0; ///< of those cells around the mask: their mean still stands over the surface
     double probability = 0;
+    bool has_crease = false; ///< in the surface beneath
 };
 
 /// Verifies all candidates, in parallel: fits the surface beneath each to the ring around it, takes the region anew

@@ -16,16 +16,17 @@ namespace {
 
 using Eigen::Index;
 
-constexpr Index kMaxViewPoints = 20000; // samples of a surface from which views are chosen
-constexpr int kDirections = 200;        // tried: neighbours are about 14 degrees apart
-constexpr double kMinCosine = 0.5;      // of the angle between normal and view: 60 degrees
-constexpr double kSeenShare = 0.98;     // of what any direction sees
-constexpr double kMinGain = 0.01;       // a view that adds less is none
-constexpr double kOwnSideShare = 0.5;   // of a cloud without normals: then no other side is looked at
-constexpr double kFaceCosine = 0.9;     // normals within 26 degrees of a direction are of one face
-constexpr int kShifts = 4;              // after which the mean hardly moves
-constexpr double kMaxSideCells = 1000;  // of a part: bounds the memory where one point lies far off
-constexpr double kOcclusionCells = 3;   // what lies deeper beneath what is seen is hidden
+constexpr Index kMaxViewPoints = 20000;   // samples of a surface from which views are chosen
+constexpr Index kMaxOwnSidePoints = 4000; // of a cloud without normals, whose normals are estimated first
+constexpr int kDirections = 200;          // tried: neighbours are about 14 degrees apart
+constexpr double kMinCosine = 0.5;        // of the angle between normal and view: 60 degrees
+constexpr double kSeenShare = 0.98;       // of what any direction sees
+constexpr double kMinGain = 0.01;         // a view that adds less is none
+constexpr double kOwnSideShare = 0.5;     // of a cloud without normals: then no other side is looked at
+constexpr double kFaceCosine = 0.9;       // normals within 26 degrees of a direction are of one face
+constexpr int kShifts = 4;                // after which the mean hardly moves
+constexpr double kMaxSideCells = 1000;    // of a part: bounds the memory where one point lies far off
+constexpr double kOcclusionCells = 3;     // what lies deeper beneath what is seen is hidden
 
 struct Samples {
     align::OrientedPoints points;
@@ -40,10 +41,10 @@ Samples samples_of(const mesh::CloudMesh& part)
         samples.points = align::oriented_points({part.points.xyz, part.triangles}, kMaxViewPoints);
         samples.is_outward = true;
     } else {
-        const cloud::Cloud some =
-            cloud::select_points(part.points, align::scattered_indices(part.points.size(), kMaxViewPoints));
-        samples.points = align::oriented_points(some);
         samples.is_outward = cloud::has_normals(part.points);
+        const Index max_points = samples.is_outward ? kMaxViewPoints : kMaxOwnSidePoints;
+        samples.points = align::oriented_points(
+            cloud::select_points(part.points, align::scattered_indices(part.points.size(), max_points)));
     }
     const Index count = samples.points.xyz.cols();
     if (count < 3) throw core::InputError("no surface: fewer than three points are finite");

@@ -123,6 +123,48 @@ TEST(RingFit, ReproducesACubicBesideAnEdge)
     EXPECT_FALSE(fit_ring({Eigen::Matrix2Xd(2, 0), Eigen::VectorXd(0), Eigen::VectorXd(0)}, 1, 4));
 }
 
+// A roof with a curved ridge line's heights, seen askew: quadratics on both sides of a line. Smooth polynomials cut its
+// ridge off by a millimetre.
+TEST(RingFit, FollowsARidgeBeneathTheRegion)
+{
+    std::mt19937 random(3);
+    std::normal_distribution<double> noise(0, 0.02);
+    const auto surface = [](double x, double y) {
+        const double across = 0.6 * y - 0.8 * x + 2, along = 0.8 * y + 0.6 * x;
+        return 0.05 * along - 0.003 * along * along + 0.1 * across - 0.5 * std::max(0.0, across);
+    };
+    std::vector<Eigen::Vector3d> points;
+    for (int y = -20; y <= 20; ++y)
+        for (int x = -20; x <= 20; ++x)
+            if (const double r = std::hypot(x, y); r > 9 && r < 20)
+                points.emplace_back(x, y, surface(x, y) + noise(random));
+    RingPoints ring{Eigen::Matrix2Xd(2, points.size()), Eigen::VectorXd(points.size()),
+                    Eigen::VectorXd::Ones(points.size())};
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        ring.xy.col(Eigen::Index(i)) = points[i].head<2>();
+        ring.z[Eigen::Index(i)] = points[i].z();
+    }
+    const auto error = [&](const RingFit& fit) {
+        double max = 0;
+        for (int y = -8; y <= 8; y += 2)
+            for (int x = -8; x <= 8; x += 2) max = std::max(max, std::abs(fit.z_at(x, y) - surface(x, y)));
+        return max;
+    };
+    const auto smooth = fit_ring(ring, 0.02, 4), creased = fit_ring(ring, 0.02, 4, {true, {}, 0.27, 1.7});
+    ASSERT_TRUE(smooth && creased && creased->crease);
+    EXPECT_GT(error(*smooth), 0.5);
+    EXPECT_LT(error(*creased), 0.1);
+    const Crease line = *creased->crease_in_place();
+    EXPECT_NEAR(std::abs(line.across.dot(Eigen::Vector2d(-0.8, 0.6))), 1, 0.01);
+    EXPECT_NEAR(std::abs(line.offset), 2, 0.4);
+    std::vector<float> row(41, 0.F);
+    creased->add_row(3, 1, row);
+    EXPECT_NEAR(row[7], creased->z_at(7, 3), 1e-5);
+    EXPECT_NEAR(creased->at(7, 3).z, creased->z_at(7, 3), 1e-9);
+    EXPECT_FALSE(fit_ring(ring, 0.02, 4, {true, {}, 0.6, 1.7})->crease); // it bends by 0.5
+    EXPECT_FALSE(smooth->crease);
+}
+
 TEST(Outline, SurroundsTheRegionAndKeepsToTheMap)
 {
     HeightMap map{Image(100, 100, 0.F), 1, {0, 0}, Mask(100, 100, uchar(255)), 0.1};
