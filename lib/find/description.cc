@@ -31,6 +31,8 @@ constexpr double kMinOpenShare = 0.6;
 // A boss by design has a flat top, and an outline that is a rectangle or an ellipse: shares of height and area.
 constexpr double kFlatTop = 0.05, kRegularOutline = 0.06;
 constexpr double kTopDepth = 3; // cells inside of the region's outline
+// Nothing on the part tells a boss by design from an anomaly of that shape: no more is said of its probability.
+constexpr double kMaxBossProbability = 0.9;
 
 /// Heights of the surface beneath, in the view.
 Image beneath(const SeenSide& side, const Verified& find)
@@ -91,15 +93,16 @@ bool looks_designed(const Verified& find)
     return filled > 1 - kRegularOutline || std::abs(filled - CV_PI / 4) < kRegularOutline * CV_PI / 4;
 }
 
-std::string doubts_of(const Verified& find)
+std::string doubts_of(const Verified& find, bool is_boss)
 {
     const Evidence& e = find.evidence;
     std::vector<std::string> doubts;
-    if (find.probability < kSureProbability) doubts.push_back("it may be a feature of the part");
+    if (!is_boss && find.probability < kSureProbability) doubts.push_back("it may be a feature of the part");
     if (e.enclosure < kMinOpenShare) doubts.push_back("it stands at an edge, or beside another feature");
     if (e.thickness > kMaxThicknessPerRing * e.ring_width)
         doubts.push_back("it is wider than the good metal around it");
-    if (looks_designed(find)) doubts.push_back("with its flat top and regular outline it may be a boss by design");
+    if (find.has_crease) doubts.push_back("a crease of the part runs beneath it");
+    if (is_boss) doubts.push_back("with its flat top and regular outline it may be a boss by design");
     return core::join(doubts, "; ");
 }
 
@@ -178,9 +181,11 @@ FoundAnomaly describe(const mesh::CloudMesh& part, const SeenSide& side, const C
     const double along_normal = side.is_along_normal ? 1 : up.z();
     const double cell_area = side.surface.cell * side.surface.cell / up.z();
     FoundAnomaly found;
-    found.probability = find.probability;
+    const bool is_boss = looks_designed(find);
+    found.probability =
+        is_boss && !side.is_along_normal ? std::min(find.probability, kMaxBossProbability) : find.probability;
     found.significance = find.evidence.significance();
-    found.doubt = doubts_of(find);
+    found.doubt = doubts_of(find, is_boss);
     found.cell = side.surface.cell;
     found.T_anomaly_part = core::rotation_between(side.view.linear().transpose() * up, Eigen::Vector3d::UnitZ());
     found.T_anomaly_part.pretranslate(-(found.T_anomaly_part * (side.view.inverse() * middle_beneath(side, find))));

@@ -30,7 +30,7 @@ struct Entry {
 /// shows all of it: one that sees half of it from beside has an edge around that half.
 double rank_in_part(const Entry& entry)
 {
-    const double probability = entry.found.probability;
+    const double probability = entry.find->probability;
     return entry.side->is_along_normal ? probability * entry.find->evidence.enclosure : probability;
 }
 
