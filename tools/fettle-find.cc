@@ -8,6 +8,7 @@
 #include "find/earlier.h"
 #include "find/find.h"
 #include "find/jobs.h"
+#include "find/profile_order.h"
 #include "find/registration.h"
 #include "job/plausible.h"
 #include "job/shape_warnings.h"
@@ -230,7 +231,8 @@ const std::string kDescription =
     "Find the anomalies of a part: excess material that stands over the surface around it.\n"
     "Out: the part with all its fields and triangles, and the fields anomaly (0 none, else the row of the report) and "
     "height over the surface beneath. Without --against the part itself says what belongs to it: smooth metal around a "
-    "region is continued beneath it, and the region judged by how far and how plainly it stands over that. The report "
+    "region is continued beneath it, and the region judged by how far and how plainly it stands over that. Points of a "
+    "laser profiler, in its order, are joined to triangles first if its profiles lie far apart. The report "
     "has a row for each anomaly: probability, height, area, volume, significance (height in standard deviations of the "
     "surface beneath), and a doubt where a person should look. Each job has a frame of its own in which its anomaly "
     "faces up. Exit 1 if an anomaly has no job: without --jobs, or for a doubt that --keep or --drop decides.";
@@ -256,6 +258,8 @@ int main(int argc, char** argv)
 
         mesh::CloudMeshFile file = mesh::read_cloud_mesh(o.path, mesh::resolve_file_units(o.unit));
         const std::string name = core::display_name(o.path);
+        if (cli::with_error_prefix(name, [&] { return find::join_profiles(file.part); }))
+            t.note(name + ": a profiler's list, searched as triangles between its profiles");
         o.out.format_for(o.out.format == "ply" && file.part.is_mesh());
         const bool registers = o.transform_in.empty() && !(o.against.empty() && o.like.empty());
         if (registers) job::require_no_stray_point(file.part.points.xyz, file.units, name);

@@ -162,13 +162,16 @@ void draw(HeightMap& map, const Eigen::Matrix3d& corners)
         }
 }
 
-HeightMap map_of_mesh(const mesh::CloudMesh& part, const Eigen::Matrix3Xd& placed, const Eigen::AlignedBox2d& box)
+HeightMap map_of_mesh(const mesh::CloudMesh& part, const Eigen::Matrix3Xd& placed)
 {
     std::vector<double> edges;
+    Eigen::AlignedBox2d box; // of the triangles: other vertices are no surface
     for (Index t = 0; t < part.triangles.cols(); ++t)
-        for (int k = 0; k < 3; ++k)
-            edges.push_back(
-                (placed.col(part.triangles(k, t)) - placed.col(part.triangles((k + 1) % 3, t))).head<2>().norm());
+        for (int k = 0; k < 3; ++k) {
+            const Eigen::Vector2d corner = placed.col(part.triangles(k, t)).head<2>();
+            box.extend(corner);
+            edges.push_back((corner - placed.col(part.triangles((k + 1) % 3, t)).head<2>()).norm());
+        }
     const double diagonal = box.diagonal().norm();
     HeightMap map =
         empty_map(box, std::clamp(geometry::median(edges), diagonal / kMaxMeshCells, diagonal / kMinMeshCells));
@@ -202,8 +205,8 @@ HeightMap height_map(const mesh::CloudMesh& part, const View& view)
         throw core::InputError(std::to_string(placed.cols()) + " points are more than a map of " +
                                std::to_string(int(kMaxCells / 1e6)) +
                                " million cells shows: thin them first (fettle-clean --thin)");
+    if (part.is_mesh()) return map_of_mesh(part, placed);
     const Eigen::AlignedBox2d box(placed.topRows<2>().rowwise().minCoeff(), placed.topRows<2>().rowwise().maxCoeff());
-    if (part.is_mesh()) return map_of_mesh(part, placed, box);
     const Spacing spacing = spacing_of(placed.topRows<2>());
     for (double cell = spacing.median;; cell *= kCellRatio) {
         HeightMap map = map_of_points(placed, box, cell);
