@@ -3,15 +3,16 @@
 #   make -f pipelines/belt.mk                                      the blade that the project makes itself, by planned feeds
 #   make -f pipelines/belt.mk PLANNED=no BELT=build/belt-constant  the same by one constant feed
 #   make -f pipelines/belt.mk PARTS='blade nasa handle edge' DATA=DIR
-#       and DIR/nasa_blade_a.stl, DIR/handle.off, and of EDGE=DIR/../before_after a leading edge before and after, LE_mesh.ply and LE_mesh_grinded.ply
+#       every piece of DIR/nasa_blade_a.stl and DIR/handle.off, and of EDGE=DIR/../before_after a leading edge before and after, LE_mesh.ply and LE_mesh_grinded.ply
 #   make -f pipelines/belt.mk plan                                 feeds, and forces, that meet the blade's allowance
 #   make -f pipelines/belt.mk held                                 the robot holds the blade and leads it along a fixed belt; exit 1 if something collides
 #   make -f pipelines/belt.mk law                                  the removal law from measured trials; exit 1 if a figure is missed
 #
 # BELT/PART/stock.stl is the design with an allowance of 0.2 to 0.6 mm that varies over it, work.pcd the surfels, errors.pcd what
-# would be left without grinding, surface.pcd the stock's surface with its normals, rows.pcd a path, planned.pcd with its feeds; ground.pcd the surfels after it,
+# would be left without grinding, surface.pcd the stock's surface with its normals, rows.pcd a path, planned.pcd with its feeds, once.pcd the surfels after it;
+# rest.pcd a path over what then stands over the tolerance, twice.pcd the surfels after it; narrow.pcd that of a belt file; ground.pcd the surfels after all,
 # watch.csv the errors on the way, left.pcd what is left. At one contact point: contact.png, the gap before anything gives way less what gave
-# way, pressure.png and removal.png; three.png: removed after three points; whole.png: after the path; errors.png and left.png: the error before
+# way, pressure.png and removal.png; three.png: removed after three points; whole.png: by the first path; errors.png and left.png: the error before
 # and after; cell.png: part, wheel and robot. report.html holds the numbers.
 
 B       ?= build
@@ -30,8 +31,24 @@ FEED    ?= 6
 WHEEL   ?= samples/wheels/crowned.json
 # Distance of the points along a row, mm; limits of planned feeds.
 STEP    ?= 1.25
+# Distance of the rows, mm.
+OVER    ?= 2
 LIMITS_feed := --min 0.5 --max 200
 PLANNED ?= yes
+# What the first path leaves for the second, mm, which takes a tenth as much and so errs by less; its force, N; and a belt file for what the wheel has
+# no room for, such as the handle's bore of 12 mm. Over most of the leading edge nothing is to be ground.
+SPARE ?= 0.03
+PRESS_AGAIN ?= 3
+NARROW ?= samples/wheels/file.json
+$(BELT)/edge/%: SPARE = 0
+# At sharp edges a part of the wheel alone is on the metal: less force, so that the highest feed does not take too much, and closer rows.
+$(BELT)/nasa/%: PRESS = 5
+$(BELT)/nasa/%: STEP = 2
+$(BELT)/nasa/%: OVER = 1.25
+# The handle is large.
+$(BELT)/handle/%: SPACING = 0.8
+$(BELT)/handle/%: STEP = 2
+$(BELT)/handle/%: OVER = 3
 
 PICTURES := contact pressure removal three whole errors left cell
 .PHONY: belt
@@ -42,14 +59,15 @@ belt: $(foreach part,$(PARTS),$(PICTURES:%=$(BELT)/$(part)/%.png) $(BELT)/$(part
 $(BELT)/blade/design: pipelines/blade-design
 	@mkdir -p $(@D)
 	$< > $@
-$(BELT)/nasa/design: $(DATA)/nasa_blade_a.stl
+# Around its round end the sheets of NASA's blade lie in folds: its outlines are traced anew by a disc of the wheel's radius.
+$(BELT)/nasa/design: $(DATA)/nasa_blade_a.stl pipelines/blade-sections $(B)/bin/fettle-clean
 	@mkdir -p $(@D)
-	cp $< $@
+	$(B)/bin/fettle-clean $< --file-units m --units mm -q -o $(@D)/mesh.ply
+	pipelines/blade-sections $(@D)/mesh.ply 20 > $@
 # The handle is 1 unit long; so it becomes 100 mm.
 $(BELT)/handle/design: $(DATA)/handle.off
 	@mkdir -p $(@D)
 	awk 'FNR > 2 && NF == 3 && !faces { print $$1 * 100, $$2 * 100, $$3 * 100; next } FNR > 2 && NF > 3 { faces = 1 } { print }' $< > $@
-$(BELT)/nasa/%: UNITS = --file-units m
 # The facets of the leading edge look inwards.
 $(BELT)/edge/design: $(EDGE)/LE_mesh_grinded.ply $(B)/study/stock
 	@mkdir -p $(@D)
@@ -57,8 +75,6 @@ $(BELT)/edge/design: $(EDGE)/LE_mesh_grinded.ply $(B)/study/stock
 $(BELT)/edge/stock.stl: $(EDGE)/LE_mesh.ply $(B)/study/stock
 	@mkdir -p $(@D)
 	$(B)/study/stock $< --turned --min 0 --max 0 -o $@
-# It has half a millimetre at its tip alone, and so little time.
-$(BELT)/edge/ground.pcd: FEED = 40
 
 # --- the removal law from measured trials ----------------------------------------------------------------------------------
 TRIALS ?= samples/removal
@@ -79,13 +95,10 @@ $(BELT)/law/wheel.json: $(BELT)/law/static.json samples/wheels/rubber.json
 
 # --- stages ---------------------------------------------------------------------------------------------------------------
 $(BELT)/%/stock.stl: $(BELT)/%/design $(B)/study/stock
-	$(B)/study/stock $< $(UNITS) --min 0.2 --max 0.6 -o $@
+	$(B)/study/stock $< --min 0.2 --max 0.6 -o $@
 
-# Only the piece of a third-party mesh with the most surfels is used: at the edges of the other pieces facets overlap.
-KEEP = cat
-$(BELT)/nasa/work.pcd $(BELT)/handle/work.pcd: KEEP = pipelines/belt-points largest
-$(BELT)/%/work.pcd: $(BELT)/%/design $(BELT)/%/stock.stl $(B)/bin/fettle-surfel pipelines/belt-points
-	$(B)/bin/fettle-surfel $< $(UNITS) --stock $(@D)/stock.stl --spacing $(SPACING) --reach 2 -q --ascii --report $(@D)/work.json | $(KEEP) > $@
+$(BELT)/%/work.pcd: $(BELT)/%/design $(BELT)/%/stock.stl $(B)/bin/fettle-surfel
+	$(B)/bin/fettle-surfel $< --stock $(@D)/stock.stl --spacing $(SPACING) --reach 2 -q --ascii --report $(@D)/work.json -o $@
 
 # Exit status 1 of the judge is an answer, which the table shows.
 ASSESS = $(B)/bin/fettle-assess $< --lower $(LOWER) --upper $(UPPER) -q
@@ -96,23 +109,49 @@ $(BELT)/%/surface.pcd: $(BELT)/%/work.pcd $(B)/bin/fettle-assess
 $(BELT)/%/left.pcd: $(BELT)/%/ground.pcd $(B)/bin/fettle-assess
 	$(ASSESS) --report $(@D)/left.json --ascii -o $@ || test $$? = 1
 
-$(BELT)/%/rows.pcd: $(BELT)/%/work.pcd $(B)/bin/fettle-path
-	$(B)/bin/fettle-path $< --step-over 2 --spacing $(STEP) --ascii --report $(@D)/rows.json -o $@
+# Rows where stock stands over the tolerance and the wheel has room.
+ROWS = $(B)/bin/fettle-path $< --above $(UPPER) --ascii
+$(BELT)/%/rows.pcd: $(BELT)/%/work.pcd $(WHEEL) $(B)/bin/fettle-path
+	$(ROWS) --room-for $(WHEEL) --step-over $(OVER) --spacing $(STEP) --report $(@D)/rows.json -o $@
 
-# Feeds that leave the middle of the tolerance everywhere; PLANNED=no: the constant FEED.
+# Feeds that leave as much of the area as they can within the tolerance: the first path all of it higher by SPARE. PLANNED=no: the constant FEED.
+# FEEDS(spare)
+more = $(shell awk 'BEGIN { print $(1) + $(2) }')
+FEEDS = $(B)/bin/fettle-feed $< $(LIMITS_feed) --rounds 6 --feed $(FEED) --wanted $(call more,$(MIDDLE),$(1)) --lower $(call more,$(LOWER),$(1)) --upper $(call more,$(UPPER),$(1)) --ascii -q
 MIDDLE := $(shell awk 'BEGIN { print ($(LOWER) + $(UPPER)) / 2 }')
 $(BELT)/%/planned.pcd: $(BELT)/%/rows.pcd $(BELT)/%/work.pcd $(WHEEL) $(B)/bin/fettle-feed
-	$(if $(filter no,$(PLANNED)),cp $< $@,$(B)/bin/fettle-feed $< --on $(@D)/work.pcd --wheel $(WHEEL) $(LIMITS_feed) --force $(PRESS) --feed $(FEED) \
-	    --wanted $(MIDDLE) --ascii -q --report $(@D)/plan.json -o $@)
+	$(if $(filter no,$(PLANNED)),cp $< $@,$(call FEEDS,$(SPARE)) --on $(@D)/work.pcd --wheel $(WHEEL) --force $(PRESS) --report $(@D)/plan.json -o $@)
 
 GRIND = $(B)/bin/fettle-belt $< --wheel $(WHEEL) --force $(PRESS) --feed $(FEED)
-GRIND_PLANNED = $(B)/bin/fettle-belt $< --wheel $(WHEEL) $(if $(filter no,$(PLANNED)),--force $(PRESS) --feed $(FEED))
-$(BELT)/%/ground.pcd: $(BELT)/%/work.pcd $(BELT)/%/planned.pcd $(WHEEL) $(B)/bin/fettle-belt
-	$(GRIND_PLANNED) --path $(@D)/planned.pcd --journal $(@D)/journal --watch $(@D)/watch.csv --lower $(LOWER) --upper $(UPPER) --trace $(@D)/trace.pcd \
-	    --report $(@D)/ground.json -o $@
+# $< is to be ground, --wheel and --path follow.
+GRIND_PLANNED = $(B)/bin/fettle-belt $< $(if $(filter no,$(PLANNED)),--force $(PRESS) --feed $(FEED)) --lower $(LOWER) --upper $(UPPER) --ascii
+$(BELT)/%/once.pcd: $(BELT)/%/work.pcd $(BELT)/%/planned.pcd $(WHEEL) $(B)/bin/fettle-belt
+	$(GRIND_PLANNED) --wheel $(WHEEL) --path $(@D)/planned.pcd --journal $(@D)/journal --watch $(@D)/once.csv --trace $(@D)/trace.pcd \
+	    --report $(@D)/once.json -o $@
 	rm -f $(@D)/journal
 
-APART := $(shell awk 'BEGIN { print int(8 / $(STEP) + 0.5) }')
+# Where what is left stands over the tolerance it is ground once more, by less force; then what the wheel has no room for, by a belt file. Not where
+# nothing is, where no more is foreseen to be within (the path is empty then), nor with a constant feed.
+$(BELT)/%/rest_rows.pcd: $(BELT)/%/once.pcd $(WHEEL) $(B)/bin/fettle-path
+	$(ROWS) --room-for $(WHEEL) --step-over $(OVER) --spacing $(STEP) --report $(@D)/rest_rows.json -q -o $@ || test $$? = 1
+$(BELT)/%/narrow_rows.pcd: $(BELT)/%/twice.pcd $(WHEEL) $(NARROW) $(B)/bin/fettle-path
+	$(ROWS) --room-for $(NARROW) --no-room-for $(WHEEL) --step-over 1.2 --spacing 0.8 --report $(@D)/narrow_rows.json -q -o $@ || test $$? = 1
+PLAN_AGAIN = if jq -e '.points > 1 and "$(PLANNED)" != "no"' $(@:.pcd=_rows.json) > /dev/null; then \
+	    $(call FEEDS,0) --on $(word 2,$^) --force $(PRESS_AGAIN) --report $(@:.pcd=_plan.json) -o $@ && \
+	    { jq -e '.within_planned > .within_before + 0.001' $(@:.pcd=_plan.json) > /dev/null || : > $@; }; else : > $@; fi
+$(BELT)/%/rest.pcd: $(BELT)/%/rest_rows.pcd $(BELT)/%/once.pcd $(B)/bin/fettle-feed
+	$(subst --force,--wheel $(WHEEL) --force,$(PLAN_AGAIN))
+$(BELT)/%/narrow.pcd: $(BELT)/%/narrow_rows.pcd $(BELT)/%/twice.pcd $(B)/bin/fettle-feed
+	$(subst --force,--wheel $(NARROW) --force,$(PLAN_AGAIN))
+# GRIND_AGAIN(path, wheel)
+GRIND_AGAIN = rm -f $(@D)/$(1).csv $(@D)/$(1).json; if [ -s $(@D)/$(1).pcd ]; then $(GRIND_PLANNED) --wheel $(2) --path $(@D)/$(1).pcd --watch $(@D)/$(1).csv --report $(@D)/$(1).json -o $@; else cp $< $@; fi
+$(BELT)/%/twice.pcd: $(BELT)/%/once.pcd $(BELT)/%/rest.pcd $(B)/bin/fettle-belt
+	$(call GRIND_AGAIN,rest,$(WHEEL))
+$(BELT)/%/ground.pcd: $(BELT)/%/twice.pcd $(BELT)/%/narrow.pcd $(B)/bin/fettle-belt
+	$(call GRIND_AGAIN,narrow,$(NARROW))
+	awk -F, -v OFS=, 'FNR == 1 && NR > 1 { end = last; next } FNR > 1 { $$2 += end; last = $$2 } { print }' $$(for path in once rest narrow; do ls $(@D)/$$path.csv 2> /dev/null; done) > $(@D)/watch.csv
+
+APART = $(shell awk 'BEGIN { print int(8 / $(STEP) + 0.5) }')
 # --- one contact point, three, and the whole path --------------------------------------------------------------------------
 $(BELT)/%/one.pcd: $(BELT)/%/rows.pcd pipelines/belt-points
 	pipelines/belt-points middle 1 0 < $< > $@
@@ -139,8 +178,8 @@ $(BELT)/%/removal.png: $(BELT)/%/at-one.pcd $(B)/bin/fettle-render
 	$(RENDER) --field removed $(ALONG) --title '$*: removed at one contact point'
 $(BELT)/%/three.png: $(BELT)/%/at-three.pcd $(BELT)/%/one.pcd $(B)/bin/fettle-render
 	$(RENDER) --field removed $(ALONG) --title '$*: removed after three points'
-$(BELT)/%/whole.png: $(BELT)/%/ground.pcd $(B)/bin/fettle-render
-	$(RENDER) --field removed --scale 0.8 --from 1,-2,0.5 --title '$*: removed after the whole path'
+$(BELT)/%/whole.png: $(BELT)/%/once.pcd $(B)/bin/fettle-render
+	$(RENDER) --field removed --scale 0.8 --from 1,-2,0.5 --title '$*: removed by the first path'
 $(BELT)/%/errors.png: $(BELT)/%/errors.pcd $(B)/bin/fettle-render
 	$(RENDER) --scale 0.6 --from 1,-2,0.5 --title "$*: before grinding $$($(WITHIN) $(@D)/errors.json)"
 $(BELT)/%/left.png: $(BELT)/%/left.pcd $(B)/bin/fettle-render
@@ -153,14 +192,17 @@ WHEEL_FOR_BALL = $$wheel[0] as $$w | .bodies |= map(select(.name | IN("ball", "s
 $(BELT)/cell.json: samples/robots/irb1400_vise.json $(WHEEL)
 	jq --slurpfile wheel $(WHEEL) '$(WHEEL_FOR_BALL)' $< > $@
 $(BELT)/%/placed.stl: $(BELT)/%/design $(BELT)/%/one.pcd $(B)/study/stock
-	$(B)/study/stock $< $(UNITS) --min 0.4 --max 0.4 --at "$$(pipelines/belt-points under $(SPOT) < $(@D)/one.pcd)" -o $@
+	$(B)/study/stock $< --min 0.4 --max 0.4 --at "$$(pipelines/belt-points under $(SPOT) < $(@D)/one.pcd)" -o $@
 $(BELT)/spot.pcd:
 	printf '# units mm\nVERSION 0.7\nFIELDS x y z qw qx qy qz\nSIZE 4 4 4 4 4 4 4\nTYPE F F F F F F F\nCOUNT 1 1 1 1 1 1 1\nWIDTH 1\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 1\nDATA ascii\n%s 1 0 0 0\n' "$$(echo $(SPOT) | tr , ' ')" > $@
 # Exit status 1 says that the rigid wheel of the picture is in the part by more than the tolerance, as on a nose beside the contact point.
 $(BELT)/%/cell.png: $(BELT)/%/placed.stl $(BELT)/cell.json $(BELT)/spot.pcd $(B)/bin/fettle-collide
 	$(B)/bin/fettle-collide $(BELT)/cell.json $(BELT)/spot.pcd --workpiece $< --tolerance 1 --picture $@ --report $(@D)/cell.json -q -o /dev/null || test $$? = 1
 
-$(BELT)/%/report.html: $(BELT)/%/ground.pcd $(BELT)/%/left.pcd $(BELT)/%/errors.pcd $(BELT)/%/surface.pcd pipelines/belt-page
+$(BELT)/%/remains.txt: $(BELT)/%/work.pcd $(BELT)/%/left.pcd pipelines/belt-remains
+	pipelines/belt-remains $(@D) > $@
+
+$(BELT)/%/report.html: $(BELT)/%/remains.txt $(BELT)/%/errors.pcd $(BELT)/%/surface.pcd pipelines/belt-page
 	pipelines/belt-page $(@D) > $@
 
 # --- the robot holds the part: a belt over a wheel on a stand, whose contact point is at AT with the part above it ---------------

@@ -57,6 +57,8 @@ struct Options {
         "--above", "MM", "Only points less than a --step-over from stock that stands higher over the design", {});
     const std::string& room_for = t.optional_file(
         "--room-for", "WHEEL", "Only points where this wheel (JSON), less its layer, is not in the design");
+    const std::string& no_room_for =
+        t.optional_file("--no-room-for", "WHEEL", "Only points where this one is: for a smaller wheel");
     const std::optional<double>& clearance = t.optional_number(
         "--clearance", "MM", "Join the strokes, on the way at least so far off the part", core::Range::positive());
     const std::optional<double>& approach =
@@ -94,6 +96,20 @@ belt::ContactPathOptions path_options(const Options& o)
     return options;
 }
 
+/// The points that --above, --room-for and --no-room-for leave.
+belt::ContactPath select_points(const Options& o, const belt::Surfels& surfels, belt::ContactPath path)
+{
+    if (o.above) path = belt::select_points(path, belt::select_high_stock(surfels, path, o.step_over, *o.above));
+    for (const bool has_room : {true, false}) {
+        const std::string& wheel = has_room ? o.room_for : o.no_room_for;
+        if (wheel.empty()) continue;
+        belt::PathSelection selection = belt::select_by_room(surfels, path, belt::read_contact_wheel(wheel));
+        if (!has_room) selection.flip();
+        path = belt::select_points(path, selection);
+    }
+    return path;
+}
+
 /// The contact path over surfels, or the given path with points inserted, its strokes joined if that is asked for.
 cloud::Cloud make_path(const Options& o, cloud::Cloud cloud, const std::string& source)
 try {
@@ -108,9 +124,7 @@ try {
     if (!cloud::has_poses(cloud)) {
         const belt::Surfels surfels = belt::surfels_from_cloud(cloud, source);
         belt::ContactPath path = belt::contact_path(surfels, path_options(o));
-        if (o.above) path = belt::select_points(path, belt::select_high_stock(surfels, path, o.step_over, *o.above));
-        if (!o.room_for.empty())
-            path = belt::select_points(path, belt::select_by_room(surfels, path, belt::read_contact_wheel(o.room_for)));
+        path = select_points(o, surfels, std::move(path));
         for (const int patch : path.skipped_patches)
             o.t.warn(source + ": too few surfels on patch " + std::to_string(patch) + ": no path there");
         cloud = belt::to_cloud(path);
@@ -118,8 +132,8 @@ try {
             part = belt::outer_positions(surfels);
             links.uncertainty += surfels.radius.size() > 0 ? surfels.radius.maxCoeff() : 0;
         }
-    } else if (o.above || !o.room_for.empty()) {
-        throw core::InputError("--above and --room-for go with surfels");
+    } else if (o.above || !o.room_for.empty() || !o.no_room_for.empty()) {
+        throw core::InputError("--above, --room-for and --no-room-for go with surfels");
     } else if (o.spacing) {
         cloud = belt::interpolate_path(cloud, *o.spacing);
     }

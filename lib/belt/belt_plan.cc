@@ -79,7 +79,7 @@ class Planner {
     Simulation find_constant(std::vector<BeltPoint>& path) const
     {
         constexpr int kMaxIterations = 6;
-        constexpr double kRelativeTolerance = 0.001;
+        const double relative_tolerance = options_.tolerance ? 0.02 : 0.001; // where it is only the start
         double value = std::clamp(mean_value(path), variable_.min(), variable_.max());
         for (int iteration = 1;; ++iteration) {
             for (BeltPoint& point : path)
@@ -89,7 +89,7 @@ class Planner {
             if (removed.isZero(0)) return current;
             const double correction = removed.dot(current.residual) / removed.squaredNorm();
             const double next = std::clamp(value * std::max(1 + correction, 0.1), variable_.min(), variable_.max());
-            if (iteration == kMaxIterations || std::abs(next / value - 1) < kRelativeTolerance) return current;
+            if (iteration == kMaxIterations || std::abs(next / value - 1) < relative_tolerance) return current;
             value = next;
         }
     }

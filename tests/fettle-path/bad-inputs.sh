@@ -15,7 +15,7 @@ refused 'coarse.pcd: too few surfels on patch 0' fettle-path coarse.pcd --patch 
 refused '--approach and --part go with --clearance' fettle-path work.pcd --approach 3
 refused '--clearance: over a path it needs the --part' fettle-path <(fettle-path work.pcd --patch 1) --clearance 5
 refused 'joined already' fettle-path <(fettle-path work.pcd --patch 1 --clearance 5) --clearance 5 --part box.off
-refused '--above and --room-for go with surfels' fettle-path <(fettle-path work.pcd --patch 1) --above 0.1
+refused '--above, --room-for and --no-room-for go with surfels' fettle-path <(fettle-path work.pcd --patch 1) --above 0.1
 refused 'work.pcd' fettle-path work.pcd --room-for work.pcd
 refused '--held part and --wheel' fettle-path work.pcd --held part
 refused '--held part and --wheel' fettle-path work.pcd --wheel 0,0,0,1,0,0,0

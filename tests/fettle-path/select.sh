@@ -27,3 +27,8 @@ fettle-path corner.pcd --step-over 2 --spacing 1 --ascii > all.pcd
 fettle-path corner.pcd --step-over 2 --spacing 1 --room-for "$SAMPLES/wheels/crowned_preston.json" --ascii > room.pcd
 [ "$(farthest all.pcd)" = 60 ]
 [ "$(farthest room.pcd)" = 43 ]
+# What has no room is the rest.
+fettle-path corner.pcd --step-over 2 --spacing 1 --no-room-for "$SAMPLES/wheels/crowned_preston.json" --ascii > no-room.pcd
+count() { sed -n 's/^POINTS //p' "$1"; }
+[ $(($(count room.pcd) + $(count no-room.pcd))) = "$(count all.pcd)" ]
+awk 'data && $3 > 4.999 && $3 < 5.001 && $4 > 0.999 && $1 < 43.5 { exit 1 } $1 == "DATA" { data = 1 }' no-room.pcd
