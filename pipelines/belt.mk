@@ -182,8 +182,8 @@ $(BELT)/%/whole.png: $(BELT)/%/once.pcd $(B)/bin/fettle-render
 	$(RENDER) --field removed --scale 0.8 --from 1,-2,0.5 --title '$*: removed by the first path'
 $(BELT)/%/errors.png: $(BELT)/%/errors.pcd $(B)/bin/fettle-render
 	$(RENDER) --scale 0.6 --from 1,-2,0.5 --title "$*: before grinding $$($(WITHIN) $(@D)/errors.json)"
-$(BELT)/%/left.png: $(BELT)/%/left.pcd $(B)/bin/fettle-render
-	$(RENDER) --scale 0.6 --from 1,-2,0.5 --title "$*: after grinding $$($(WITHIN) $(@D)/left.json)"
+$(BELT)/%/left.png: $(BELT)/%/left.pcd $(BELT)/%/remains.txt $(B)/bin/fettle-render
+	$(RENDER) --scale 0.6 --from 1,-2,0.5 --title "$*: after grinding $$(awk '$$1 == "all:" { print 100 * $$2 }' $(@D)/remains.txt) % of the area within the tolerance"
 
 # The robot holds the wheel; the part is before it so that the contact point is at SPOT with the wheel above it.
 SPOT = 1000,950,520
