@@ -113,7 +113,7 @@ Eigen::Matrix2Xd clipped_to_part(const Eigen::Matrix2Xd& boundary, const HeightM
     const HalfCells cells(boundary, boundary, map.cell);
     const Mask inside = cells.inside(boundary), beside = beside_part(cells, inside, map, part);
     if (cv::countNonZero(inside & beside) <= kMinClippedShare * cv::countNonZero(inside)) return boundary;
-    const Eigen::Matrix2Xd clipped = cells.outline(opened(inside & ~dilated(beside, 2), 3), kBoundaryPixels);
+    const Eigen::Matrix2Xd clipped = cells.outline(opened(inside & ~dilated(beside, 3), 3), kBoundaryPixels);
     return clipped.cols() >= 3 ? clipped : boundary;
 }
 
