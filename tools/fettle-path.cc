@@ -56,9 +56,9 @@ struct Options {
     const std::optional<double>& above = t.optional_number(
         "--above", "MM", "Only points less than a --step-over from stock that stands higher over the design", {});
     const std::string& room_for = t.optional_file(
-        "--room-for", "WHEEL", "Only points where this wheel (JSON), less its layer, is not in the design");
-    const std::string& no_room_for =
-        t.optional_file("--no-room-for", "WHEEL", "Only points where this one is: for a smaller wheel");
+        "--room-for", "FILE", "Only points where the wheel of this file (JSON), less its layer, is not in the design");
+    const std::string& no_room_for = t.optional_file(
+        "--no-room-for", "FILE", "Only points where the wheel of this file is in the design: for a smaller one");
     const std::optional<double>& clearance = t.optional_number(
         "--clearance", "MM", "Join the strokes, on the way at least so far off the part", core::Range::positive());
     const std::optional<double>& approach =

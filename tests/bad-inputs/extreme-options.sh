@@ -27,6 +27,8 @@ company_of() { # NAME OPTION: changes `command`
     'compare --direction') command+=(--mode direction) ;;
     'compare --bins') command+=(--histogram histogram.csv) ;;
     'contact --depth' | 'feed --depth') without --force ;;
+    'feed --lower') command+=(--upper 1000) ;;
+    'feed --upper') command+=(--lower -1) ;;
     'belt --depth') without --force && command+=(--watch watch.csv) ;;
     'belt '*) command+=(--watch watch.csv) ;; # --lower and --upper are for it
     'contact --elements') command+=(--solver fem --cells 8) ;;
@@ -83,7 +85,8 @@ within_bounds() { # COMMAND…: sets `status`; complains of anything but an answ
     (ulimit -v $kMemory -t 10; exec timeout 20 "$@") >out 2>err <<<"$lines" || status=$?
     mapfile lines_of_err <err
     case $status in
-    0 | 1) [ ${#lines_of_err[@]} = 0 ] || say "status $status with ${lines_of_err[*]}" "$@" ;;
+    # A machine's fault is said, with -q too.
+    0 | 1) [ ${#lines_of_err[@]} = 0 ] || [[ $status = 1 && ${#lines_of_err[@]} = 1 && ${lines_of_err[0]} == *'; stopped'* ]] || say "status $status with ${lines_of_err[*]}" "$@" ;;
     2)
         if [ ${#lines_of_err[@]} != 1 ] || [ -s out ]; then say "refused in ${#lines_of_err[@]} lines, $(stat -c %s out) bytes on stdout" "$@"
         elif [[ ${lines_of_err[0]} == *'out of memory'* || ${lines_of_err[0]} == *'internal error'* ]]; then say "${lines_of_err[0]%$'\n'}" "$@"
