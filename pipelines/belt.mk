@@ -202,8 +202,8 @@ $(BELT)/%/cell.png: $(BELT)/%/placed.stl $(BELT)/cell.json $(BELT)/spot.pcd $(B)
 $(BELT)/%/remains.txt: $(BELT)/%/work.pcd $(BELT)/%/left.pcd pipelines/belt-remains
 	pipelines/belt-remains $(@D) > $@
 
-$(BELT)/%/report.html: $(BELT)/%/remains.txt $(BELT)/%/errors.pcd $(BELT)/%/surface.pcd pipelines/belt-page
-	pipelines/belt-page $(@D) > $@
+$(BELT)/%/report.html: $(BELT)/%/remains.txt $(BELT)/%/errors.pcd $(BELT)/%/surface.pcd $(WHEEL) pipelines/belt-page
+	pipelines/belt-page $(@D) $(WHEEL) > $@
 
 # --- the robot holds the part: a belt over a wheel on a stand, whose contact point is at AT with the part above it ---------------
 # BELT/held: path.pcd are the strokes joined off the part, as the tool's poses in the cell; checked.pcd their joints and clearances: of the
