@@ -12,7 +12,7 @@ awk '$1 == "all:" { share = $2 } $1 == "patch" { ++patches } END { exit !(share 
 for file in work.pcd errors.pcd surface.pcd rows.pcd once.pcd twice.pcd ground.pcd remains.txt report.html {contact,pressure,removal,three,whole,errors,left,cell}.png; do
     test -s out/blade/$file
 done
-grep -q 'by Preston’s law' out/blade/report.html
+grep -q 'by the law of Preston' out/blade/report.html
 for picture in $(grep -o 'src="[a-z]*.png"' out/blade/report.html | cut -d'"' -f2); do test -s "out/blade/$picture"; done
 # Preston's law takes C V_b F t, over either path; few contacts come near the edge of the wheel.
 jq -e -n --slurpfile once out/blade/once.json --slurpfile rest out/blade/rest.json '[$once[0] + {force: 10}, $rest[0] + {force: 3}] |
