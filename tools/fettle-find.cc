@@ -4,7 +4,6 @@
 #include "cloud/cloud_output.h"
 #include "cloud/pcd.h"
 #include "core/file.h"
-#include "core/text.h"
 #include "find/earlier.h"
 #include "find/find.h"
 #include "find/jobs.h"
@@ -122,21 +121,6 @@ bool write_jobs(const Options& o, find::FindResult& result, const mesh::CloudMes
             entry.path().extension() == ".json" && !written.contains(file))
             o.t.warn(file + ": not of this run");
     return written.size() == result.anomalies.size();
-}
-
-/// Metal that scatters about the surface through it by more than the job's tolerance does not show what is to be ground
-/// to.
-void doubt_scatter(find::FindResult& result, const job::Job& machine)
-{
-    const double mm = machine.units.mm();
-    for (find::FoundAnomaly& anomaly : result.anomalies) {
-        const double sd = anomaly.height / anomaly.significance;
-        if (!(sd > machine.tolerance)) continue;
-        anomaly.doubt += (anomaly.doubt.empty() ? "" : "; ") + std::string("the metal around scatters by ") +
-                         core::to_short_text(sd / mm) + ", more than the tolerance of --template, " +
-                         core::to_short_text(machine.tolerance / mm) + " " + units::to_string(machine.units.length) +
-                         ": merge more scans, or state a larger tolerance";
-    }
 }
 
 find::FindOptions find_options(const Options& o, const Settings& settings, double mm)
@@ -268,7 +252,7 @@ int main(int argc, char** argv)
         const units::Units units = o.out.units(cloud::measured_units(file.units, std::nullopt));
         const find::FindOptions options = find_options(o, settings, units.mm());
         find::FindResult result = search(o, options, settings, file, name);
-        if (settings.machine) doubt_scatter(result, *settings.machine);
+        if (settings.machine) find::doubt_scatter(result, *settings.machine);
         find::judge(result, keep, drop);
         const bool all_have_jobs =
             o.jobs.empty() ? result.anomalies.empty() : write_jobs(o, result, file.part, settings);

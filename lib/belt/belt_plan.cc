@@ -79,7 +79,9 @@ class Planner {
     Simulation find_constant(std::vector<BeltPoint>& path) const
     {
         constexpr int kMaxIterations = 6;
-        const double relative_tolerance = options_.tolerance ? 0.02 : 0.001; // where it is only the start
+        constexpr double kStartTolerance = 0.02,
+                         kOwnTolerance = 0.001; // relative: where it is only the start, or the answer too
+        const double relative_tolerance = options_.tolerance ? kStartTolerance : kOwnTolerance;
         double value = std::clamp(mean_value(path), variable_.min(), variable_.max());
         for (int iteration = 1;; ++iteration) {
             for (BeltPoint& point : path)

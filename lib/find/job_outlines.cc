@@ -18,6 +18,8 @@ constexpr int kMarginPixels = 8, kMinEdgePixels = 4, kEdgePixels = int(2 * kEdge
 constexpr double kSamplingPixels = 1.5, kBoundaryPixels = 0.8;
 // The part ends at B if it does so within this of it: as far as B is clipped, and as its outline is simplified.
 constexpr int kOpenSidePixels = 4;
+// B ends so far before the part's edge, where a stock still has a surface.
+constexpr int kEdgeGapPixels = 3;
 // Less of B than this share beside the part is no edge.
 constexpr double kMinClippedShare = 0.005;
 
@@ -113,7 +115,8 @@ Eigen::Matrix2Xd clipped_to_part(const Eigen::Matrix2Xd& boundary, const HeightM
     const HalfCells cells(boundary, boundary, map.cell);
     const Mask inside = cells.inside(boundary), beside = beside_part(cells, inside, map, part);
     if (cv::countNonZero(inside & beside) <= kMinClippedShare * cv::countNonZero(inside)) return boundary;
-    const Eigen::Matrix2Xd clipped = cells.outline(opened(inside & ~dilated(beside, 3), 3), kBoundaryPixels);
+    const Eigen::Matrix2Xd clipped =
+        cells.outline(opened(inside & ~dilated(beside, kEdgeGapPixels), 3), kBoundaryPixels);
     return clipped.cols() >= 3 ? clipped : boundary;
 }
 

@@ -228,6 +228,19 @@ std::string fit_wheel(job::Job& job, const RingFit& surface, std::span<const job
 
 } // namespace
 
+void doubt_scatter(FindResult& result, const job::Job& settings)
+{
+    const double mm = settings.units.mm();
+    for (FoundAnomaly& anomaly : result.anomalies) {
+        const double sd = anomaly.height / anomaly.significance;
+        if (!(sd > settings.tolerance)) continue;
+        anomaly.doubt += (anomaly.doubt.empty() ? "" : "; ") + std::string("the metal around scatters by ") +
+                         core::to_short_text(sd / mm) + ", more than the tolerance of --template, " +
+                         core::to_short_text(settings.tolerance / mm) + " " + units::to_string(settings.units.length) +
+                         ": merge more scans, or state a larger tolerance";
+    }
+}
+
 FoundJob job_for(const FoundAnomaly& found, const mesh::CloudMesh& part, double noise, const job::Job& settings,
                  std::span<const job::Job> others)
 {

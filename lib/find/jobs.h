@@ -14,6 +14,10 @@ struct FoundJob {
     std::string wheel; ///< why its wheel is not the template's; empty: it is
 };
 
+/// Adds a doubt to anomalies where the metal around scatters about the surface through it by more than the tolerance of
+/// `settings`: it does not show what is to be ground to.
+void doubt_scatter(FindResult& result, const job::Job& settings);
+
 /// The job of an anomaly. Its frame is the anomaly's own; B and S are the anomaly's, with the heights of the part's
 /// metal at their corners where that is seen; neither goes over an edge of the part. A surface is a plane if the metal
 /// between B and S is one within its noise, else free-form. The passes run along B's longer side. The wheel travels

@@ -39,3 +39,7 @@ fettle-find worn.stl --jobs jobs --template "$settings" --report found.json -o f
 grep -q 'jobs/99.json: not of this run' said
 "$HERE/../refuses" '--jobs: --jobs and --template go together' fettle-find worn.stl --jobs jobs
 "$HERE/../refuses" '--template: --jobs and --template go together' fettle-find worn.stl --template "$settings"
+# Metal that scatters by more than the tolerance does not show what is to be ground to.
+jq '.tolerance = 0.001' "$settings" > fine.json
+fettle-find worn.stl --min-height 0.5 --jobs fine --template fine.json --report fine-found.json -o found.pcd || [ $? = 1 ]
+jq -e '.anomalies | length > 0 and all(.[]; (.doubt | test("scatters by .* more than the tolerance of --template, 0.001 mm")) and .job == "")' fine-found.json > ok
