@@ -10,12 +10,22 @@ Eigen::ArrayXd correlation_at(const Correlation& correlation, const Eigen::Array
     return (1 + r + r.square() / 3) * (-r).exp();
 }
 
+Eigen::MatrixXd squared_distances(const Eigen::Matrix2Xd& a, const Eigen::Matrix2Xd& b)
+{
+    Eigen::MatrixXd result(a.cols(), b.cols());
+    for (Eigen::Index j = 0; j < b.cols(); ++j) result.col(j) = (a.colwise() - b.col(j)).colwise().squaredNorm();
+    return result;
+}
+
+Eigen::MatrixXd correlation_matrix(const Correlation& correlation, const Eigen::MatrixXd& squared_distances)
+{
+    return correlation_at(correlation, squared_distances.reshaped())
+        .reshaped(squared_distances.rows(), squared_distances.cols());
+}
+
 Eigen::MatrixXd correlation_matrix(const Correlation& correlation, const Eigen::Matrix2Xd& a, const Eigen::Matrix2Xd& b)
 {
-    Eigen::MatrixXd K(a.cols(), b.cols());
-    for (Eigen::Index j = 0; j < b.cols(); ++j)
-        K.col(j) = correlation_at(correlation, (a.colwise() - b.col(j)).colwise().squaredNorm().transpose());
-    return K;
+    return correlation_matrix(correlation, squared_distances(a, b));
 }
 
 } // namespace fettle::fit

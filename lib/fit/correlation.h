@@ -17,7 +17,11 @@ struct Correlation {
 /// The correlation at distances given by their squares, mm²: exp(-|Δ|²/2ℓ²), or Matérn's.
 Eigen::ArrayXd correlation_at(const Correlation& correlation, const Eigen::ArrayXd& squared_distances);
 
-/// @param a, b  places in x-y, mm  @return  a row for each of a, a column for each of b
+/// @param a, b  places in x-y, mm  @return  mm², a row for each of a, a column for each of b
+Eigen::MatrixXd squared_distances(const Eigen::Matrix2Xd& a, const Eigen::Matrix2Xd& b);
+
+/// Correlations of places, from their squared_distances() or from themselves.
+Eigen::MatrixXd correlation_matrix(const Correlation& correlation, const Eigen::MatrixXd& squared_distances);
 Eigen::MatrixXd correlation_matrix(const Correlation& correlation, const Eigen::Matrix2Xd& a,
                                    const Eigen::Matrix2Xd& b);
 

@@ -94,11 +94,12 @@ struct FamilyFit {
     int iterations = 0;
 };
 
+/// @param near  minima for almost the same touches   @param iterations  of the fits before
 std::optional<FamilyFit> fit_kept(const std::string& name, const TouchSet& touches, std::vector<char> is_kept,
-                                  int iterations)
+                                  const std::vector<RoundMinimum>& near, int iterations)
 {
     const TouchIndices kept = indices_of(is_kept, 1);
-    std::optional<FamilySolution> solution = solve_family(name, touches, kept);
+    std::optional<FamilySolution> solution = solve_family(name, touches, kept, near);
     if (!solution) return std::nullopt;
     std::optional<Evaluation> evaluation = evaluate(*solution, touches, kept);
     if (!evaluation) return std::nullopt;
@@ -151,7 +152,8 @@ std::optional<FamilyFit> reject_outliers(const std::string& name, const TouchSet
         }
         if (outliers > max_outliers && fit.is_kept[i] != 0) return std::nullopt;
         fit.is_kept[i] ^= 1;
-        std::optional<FamilyFit> next = fit_kept(name, touches, std::move(fit.is_kept), fit.iterations);
+        std::optional<FamilyFit> next =
+            fit_kept(name, touches, std::move(fit.is_kept), fit.solution.minima, fit.iterations);
         if (!next) return std::nullopt;
         fit = std::move(*next);
     }
@@ -188,7 +190,7 @@ std::optional<FitCandidate> fit_family(const std::string& name, const TouchSet& 
     const std::size_t n = touches.xyz.cols();
     std::vector<char> is_kept(n, 0);
     for (const Index i : kept) is_kept[i] = 1;
-    std::optional<FamilyFit> start = fit_kept(name, touches, is_kept, 0);
+    std::optional<FamilyFit> start = fit_kept(name, touches, is_kept, {}, 0);
     std::optional<FamilyFit> best = start ? reject_outliers(name, touches, *start) : std::nullopt;
     if (!best && start && kept.size() == n) best = std::move(start);
     if (!best) return std::nullopt;

@@ -4,10 +4,12 @@
 #include "fit/quadric_family.h"
 #include "fit/round_start.h"
 #include "geometry/bounding_box.h"
+#include "surface/revolution.h"
 #include "surface/shapes.h"
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -54,26 +56,29 @@ std::optional<surface::Polynomial> fit_polynomial(const TouchSet& touches, const
 }
 
 template <int kDegree>
-std::optional<FamilySolution> polynomial(const TouchSet& touches, const TouchIndices& kept)
+std::optional<FamilySolution> polynomial(const TouchSet& touches, const TouchIndices& kept,
+                                         const std::vector<RoundMinimum>&)
 {
     const std::optional<surface::Polynomial> fitted = fit_polynomial(touches, kept, kDegree);
     if (!fitted) return std::nullopt;
     return FamilySolution{*fitted, surface::height_gradients(*fitted, touches.xyz.topRows(2)), {}, true, 1};
 }
 
-std::optional<FamilySolution> quadric(const TouchSet& touches, const TouchIndices& kept)
+std::optional<FamilySolution> quadric(const TouchSet& touches, const TouchIndices& kept,
+                                      const std::vector<RoundMinimum>&)
 {
     const std::optional<surface::Polynomial> paraboloid = fit_polynomial(touches, kept, 2);
     return paraboloid ? solve_quadric(touches, kept, *paraboloid) : std::nullopt;
 }
 
-std::optional<FamilySolution> ellipsoid(const TouchSet& touches, const TouchIndices& kept)
+std::optional<FamilySolution> ellipsoid(const TouchSet& touches, const TouchIndices& kept,
+                                        const std::vector<RoundMinimum>&)
 {
     const std::optional<surface::Polynomial> paraboloid = fit_polynomial(touches, kept, 2);
     return paraboloid ? solve_ellipsoid(touches, kept, *paraboloid) : std::nullopt;
 }
 
-std::optional<FamilySolution> plane(const TouchSet& touches, const TouchIndices& kept)
+std::optional<FamilySolution> plane(const TouchSet& touches, const TouchIndices& kept, const std::vector<RoundMinimum>&)
 {
     const std::optional<surface::Polynomial> fitted = fit_polynomial(touches, kept, 1);
     if (!fitted) return std::nullopt;
@@ -131,50 +136,86 @@ bool is_plausible(const surface::Shape& shape, const Eigen::Matrix3Xd& touches)
     return std::visit(is_plausible_round, shape);
 }
 
-/// The best solution from several initial frames.
-template <RoundFamily kFamily>
-std::optional<Attempt> best_attempt(const TouchSet& touches, const TouchIndices& kept)
+Attempt attempt(RoundFamily family, const RoundProblem& problem, double angle, const VectorXd& start)
+{
+    Attempt result{problem, {}};
+    result.problem.frame = rotated(problem.frame, angle);
+    result.solution = solve_round(family, result.problem, start);
+    return result;
+}
+
+/// Solutions from the curvatures of the quadratic, in several frames.
+std::vector<Attempt> attempts_from_quadratic(RoundFamily family, const RoundStart& start)
 {
     constexpr double kQuarterTurn = std::numbers::pi / 2;
-    const RoundStart start = round_start(touches, kept, centred_polynomial(touches.xyz(Eigen::all, kept), 2));
-    const int num_free = parameter_count(kFamily, touches.given_direction);
-    if (static_cast<int>(kept.size()) < num_free) return std::nullopt;
-    std::optional<Attempt> best;
-    int iterations = 0;
+    const bool given_direction = start.problem.given_direction;
+    std::vector<Attempt> all;
     const auto try_start = [&](double angle, double around, double along) {
-        RoundProblem problem = start.problem;
-        problem.frame = rotated(problem.frame, angle);
-        RoundSolution solution = solve_round(kFamily, problem, around, along);
-        iterations += solution.iterations;
-        if (std::isfinite(solution.cost) && (!best || solution.cost < best->solution.cost))
-            best = Attempt{std::move(problem), std::move(solution)};
+        VectorXd theta = surface::RevolutionParameters::Zero();
+        theta[surface::kCurvatureAround] = around;
+        theta[surface::kCurvatureAlong] = along;
+        all.push_back(attempt(family, start.problem, angle, theta));
     };
-    if (kFamily == RoundFamily::sphere) {
+    if (family == RoundFamily::sphere) {
         const double mean = (start.min_curvature + start.max_curvature) / 2;
         try_start(0, mean, mean);
-    } else {
-        const double along = kFamily == RoundFamily::torus ? start.min_curvature : 0;
-        const double across = kFamily == RoundFamily::torus ? start.max_curvature : 0;
-        try_start(0, start.max_curvature, along);
-        // A solution with straight rulings that fits is the only one; tori bend both ways and may have two minima.
-        const bool found = kFamily != RoundFamily::torus && best && fits_to_noise(*best, num_free);
-        if (!touches.given_direction && !found) try_start(kQuarterTurn, start.min_curvature, across);
-        if (!start.is_determined && !touches.given_direction && !found)
-            for (const double angle : {kQuarterTurn / 2, 1.5 * kQuarterTurn})
-                try_start(angle, start.max_curvature, along);
+        return all;
     }
-    if (!best) return best;
-    refine_round(kFamily, best->problem, best->solution);
-    best->solution.iterations = iterations;
-    return best;
+    const double along = family == RoundFamily::torus ? start.min_curvature : 0;
+    const double across = family == RoundFamily::torus ? start.max_curvature : 0;
+    try_start(0, start.max_curvature, along);
+    // A solution with straight rulings that fits is the only one; tori bend both ways and may have two minima.
+    const bool found =
+        family != RoundFamily::torus && fits_to_noise(all.front(), parameter_count(family, given_direction));
+    if (given_direction || found) return all;
+    try_start(kQuarterTurn, start.min_curvature, across);
+    if (start.is_determined) return all;
+    for (const double angle : {kQuarterTurn / 2, 1.5 * kQuarterTurn}) try_start(angle, start.max_curvature, along);
+    return all;
+}
+
+/// Solutions from minima for almost the same touches.
+std::vector<Attempt> attempts_from_minima(RoundFamily family, const RoundProblem& problem,
+                                          const std::vector<RoundMinimum>& minima)
+{
+    std::vector<Attempt> all;
+    for (const RoundMinimum& minimum : minima) {
+        const Eigen::Vector3d axis = problem.frame.axes.transpose() * minimum.first_axis;
+        const double angle = problem.given_direction ? 0 : std::atan2(axis.y(), axis.x());
+        all.push_back(attempt(family, problem, angle, minimum.theta));
+    }
+    return all;
+}
+
+/// The minima that may become the least one if a touch is added or left out; `best` always is one.
+std::vector<RoundMinimum> competing_minima(const std::vector<Attempt>& attempts, const Attempt& best)
+{
+    constexpr double kMaxCostRatio = 2;       // to the least one: one touch seldom makes up for more
+    constexpr double kSameMinimum = 1 + 1e-6; // ratio of costs: the solver's tolerance is smaller
+    std::vector<RoundMinimum> minima;
+    for (const Attempt& one : attempts) {
+        const double ratio = one.solution.cost / best.solution.cost;
+        const bool competes = one.solution.converged && ratio > kSameMinimum && ratio < kMaxCostRatio;
+        if (&one == &best || competes) minima.push_back({one.problem.frame.axes.col(0), one.solution.theta});
+    }
+    return minima;
 }
 
 template <RoundFamily kFamily>
-std::optional<FamilySolution> round(const TouchSet& touches, const TouchIndices& kept)
+std::optional<FamilySolution> round(const TouchSet& touches, const TouchIndices& kept,
+                                    const std::vector<RoundMinimum>& near)
 {
-    const std::optional<Attempt> best = best_attempt<kFamily>(touches, kept);
-    if (!best) return std::nullopt;
+    if (static_cast<int>(kept.size()) < parameter_count(kFamily, touches.given_direction)) return std::nullopt;
+    const RoundStart start = round_start(touches, kept, centred_polynomial(touches.xyz(Eigen::all, kept), 2));
+    std::vector<Attempt> attempts =
+        near.empty() ? attempts_from_quadratic(kFamily, start) : attempts_from_minima(kFamily, start.problem, near);
+    const auto best = std::min_element(attempts.begin(), attempts.end(), [](const Attempt& a, const Attempt& b) {
+        return a.solution.cost < b.solution.cost;
+    });
+    if (!std::isfinite(best->solution.cost)) return std::nullopt;
     FamilySolution result;
+    result.minima = competing_minima(attempts, *best);
+    refine_round(kFamily, best->problem, best->solution);
     result.shape = round_shape(kFamily, best->problem.frame, best->solution.theta);
     if (!is_plausible(result.shape, touches.xyz)) return std::nullopt;
     result.gradients = surface::height_gradients(result.shape, touches.xyz.topRows(2));
@@ -182,13 +223,13 @@ std::optional<FamilySolution> round(const TouchSet& touches, const TouchIndices&
         cylinder != nullptr && touches.given_direction)
         result.free_directions = directions_keeping_heading(*cylinder);
     result.converged = best->solution.converged;
-    result.iterations = best->solution.iterations;
+    for (const Attempt& one : attempts) result.iterations += one.solution.iterations;
     return result;
 }
 
 // --- straight swept surfaces (Wang 2007, 4.4.2 and 4.4.4): a cubic section carried along the rulings -----------------
 
-std::optional<FamilySolution> swept(const TouchSet& touches, const TouchIndices& kept)
+std::optional<FamilySolution> swept(const TouchSet& touches, const TouchIndices& kept, const std::vector<RoundMinimum>&)
 {
     surface::Swept swept;
     swept.ruling = {std::cos(touches.direction), std::sin(touches.direction)};
@@ -216,9 +257,11 @@ const std::vector<std::string>& family_names()
     return names;
 }
 
-std::optional<FamilySolution> solve_family(const std::string& name, const TouchSet& touches, const TouchIndices& kept)
+std::optional<FamilySolution> solve_family(const std::string& name, const TouchSet& touches, const TouchIndices& kept,
+                                           const std::vector<RoundMinimum>& near)
 {
-    using Solver = std::optional<FamilySolution> (*)(const TouchSet&, const TouchIndices&);
+    using Solver =
+        std::optional<FamilySolution> (*)(const TouchSet&, const TouchIndices&, const std::vector<RoundMinimum>&);
     static const std::map<std::string, Solver> solvers = {
         {"plane", plane},
         {"sphere", round<RoundFamily::sphere>},
@@ -232,7 +275,7 @@ std::optional<FamilySolution> solve_family(const std::string& name, const TouchS
         {"quartic", polynomial<4>},
         {"swept", swept},
     };
-    return solvers.at(name)(touches, kept);
+    return solvers.at(name)(touches, kept, near);
 }
 
 } // namespace fettle::fit

@@ -23,6 +23,12 @@ struct TouchSet {
     double freedom = std::numeric_limits<double>::infinity(); ///< degrees of freedom of sigma, if it is an estimate
 };
 
+/// A local minimum of a round family's sum of squares.
+struct RoundMinimum {
+    Eigen::Vector3d first_axis; ///< of the parameters' frame, M
+    Eigen::VectorXd theta;      ///< RevolutionParameters, mm
+};
+
 /// The least-squares member of a family.
 struct FamilySolution {
     surface::Shape shape;
@@ -30,6 +36,8 @@ struct FamilySolution {
     Eigen::MatrixXd free_directions; ///< columns span the allowed changes of θ; empty: all changes
     bool converged = true;
     int iterations = 0;
+    std::vector<RoundMinimum> minima =
+        {}; ///< of a round family: those that may be the least one of almost the same touches
 };
 
 /// plane, sphere, cylinder, cone, torus, ellipsoid, quadric; quadratic, cubic, quartic (polynomials); swept.
@@ -37,7 +45,9 @@ const std::vector<std::string>& family_names();
 
 /// Least squares of the vertical errors of the kept touches. The round families use the orthogonal distances over n_z
 /// of the quadratic through them instead, which are the same to first order.
+/// @param near  minima of the same family for almost the same touches, to start from; none: the quadratic's curvatures
 /// @return  nothing if the touches do not determine a surface
-std::optional<FamilySolution> solve_family(const std::string& name, const TouchSet& touches, const TouchIndices& kept);
+std::optional<FamilySolution> solve_family(const std::string& name, const TouchSet& touches, const TouchIndices& kept,
+                                           const std::vector<RoundMinimum>& near = {});
 
 } // namespace fettle::fit

@@ -7,6 +7,8 @@
 #include "fit/process_weights.h"
 #include "surface/shapes.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -30,17 +32,18 @@ LeaveOneOut leave_one_out(const std::vector<Spectrum>& all)
 {
     const Index n = all.front().E.rows(), models = static_cast<Index>(all.size()) * kNumRatios;
     LeaveOneOut result{Eigen::MatrixXd(n, models), Eigen::MatrixXd(n, models), Eigen::MatrixXd(n, models)};
-    Index k = 0;
-    for (const Spectrum& s : all) {
-        const Eigen::MatrixXd squares = s.E.cwiseAbs2();
-        for (int i = 0; i < kNumRatios; ++i, ++k) {
-            const VectorXd d = precision(s, amplitude_ratio(i));
-            const Eigen::ArrayXd P = (squares * d).array(), Pz = (s.E * d.cwiseProduct(s.y)).array();
-            result.deviation.col(k) = Pz / P;
-            result.variance.col(k) = P.inverse();
-            result.log_weight.col(k) = (Pz.square() / P - P.log() - s.score[i]) / 2;
-        }
-    }
+    tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t k) {
+        const Spectrum& s = all[k];
+        Eigen::MatrixXd d(s.lambda.size(), kNumRatios);
+        for (int i = 0; i < kNumRatios; ++i) d.col(i) = precision(s, amplitude_ratio(i));
+        const Eigen::ArrayXXd P = (s.E.cwiseAbs2() * d).array(), Pz = (s.E * (s.y.asDiagonal() * d)).array();
+        const auto columns = Eigen::seqN(static_cast<Index>(k) * kNumRatios, Eigen::fix<kNumRatios>);
+        result.deviation(Eigen::all, columns) = (Pz / P).matrix();
+        result.variance(Eigen::all, columns) = P.inverse().matrix();
+        result.log_weight(Eigen::all, columns) = ((Pz.square() / P - P.log()) / 2).matrix();
+        for (int i = 0; i < kNumRatios; ++i)
+            result.log_weight.col(static_cast<Index>(k) * kNumRatios + i).array() -= s.score[i] / 2;
+    });
     return result;
 }
 
@@ -96,10 +99,9 @@ std::optional<FitCandidate> fit_gaussian_process(const TouchSet& touches, const 
     const ControlHeights controls(spline);
     const Eigen::MatrixXd trend_controls =
         controls.from_values(surface::height_gradients(trend->shape, controls.nodes()).transpose());
-    ProcessMixture mixture(inliers, controls, trend_controls);
-    for (std::size_t k = 0; k < spectra.size(); ++k) mixture.add(spectra[k], weights.relative[k]);
     VectorXd heights;
-    std::tie(heights, candidate.covariance) = mixture.result();
+    std::tie(heights, candidate.covariance) =
+        mix_processes(inliers, controls, trend_controls, spectra, weights.relative);
     spline.heights = heights.reshaped(spline.heights.rows(), spline.heights.cols());
     candidate.shape = std::move(spline);
     return candidate;

@@ -3,7 +3,9 @@
 #include "core/decompositions.h"
 
 #include <Eigen/Geometry>
+#include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <utility>
@@ -76,76 +78,121 @@ void ControlHeights::add_block_toeplitz(MatrixXd& sum, const MatrixXd& by_offset
                     sum(other * rows_ + i, column * rows_ + row) += by_offset(std::abs(i - row), other - column);
 }
 
-ProcessMixture::ProcessMixture(const ProcessTouches& touches, const ControlHeights& controls, const MatrixXd& trend)
-    : touches_(touches), controls_(controls)
-{
-    core::QrFactors F = core::householder_qr(touches.F, touches.F.cols());
-    Q_ = std::move(F.Q);
-    F_ = F.R.transpose().triangularView<Eigen::Lower>().solve(trend.transpose()).transpose();
-    trend_ = F_ * (Q_.transpose() * touches.z);
-}
+namespace {
 
-void ProcessMixture::add(const Spectrum& s, const std::array<double, kNumRatios>& weights)
-{
-    double sum = 0, tau2 = 0;
-    const double sigma = touches_.sigma;
-    VectorXd mean = VectorXd::Zero(s.y.size()), explained = mean;
-    MatrixXd spread = MatrixXd::Zero(s.y.size(), s.y.size());
-    for (int i = 0; i < kNumRatios; ++i) {
-        const double weight = weights[i];
-        if (weight == 0) continue;
-        const double ratio = amplitude_ratio(i), t2 = std::pow(ratio * sigma, 2);
-        const VectorXd d = precision(s, ratio), v = t2 / sigma * d.cwiseProduct(s.y);
-        sum += weight;
-        tau2 += weight * t2;
-        explained += weight * t2 * ratio * ratio * d;
-        mean += weight * v;
-        spread.noalias() += weight * v * v.transpose();
+/// What the correlations of a mixture share.
+struct Trend {
+    MatrixXd Q, F; ///< F: control heights
+    VectorXd mean; ///< F Qᵀ z
+
+    Trend(const ProcessTouches& touches, const MatrixXd& controls)
+    {
+        core::QrFactors factors = core::householder_qr(touches.F, touches.F.cols());
+        Q = std::move(factors.Q);
+        F = factors.R.transpose().triangularView<Eigen::Lower>().solve(controls.transpose()).transpose();
+        mean = F * (Q.transpose() * touches.z);
     }
-    if (sum == 0) return;
-    mean /= sum;
-    spread.noalias() -= sum * mean * mean.transpose();
-    spread.diagonal() -= explained;
+};
 
-    const MatrixXd C = controls_.from_values(correlation_matrix(s.correlation, controls_.nodes(), touches_.xy));
-    const MatrixXd QK = Q_.transpose() * correlation_matrix(s.correlation, touches_.xy, touches_.xy);
-    const MatrixXd B = (C - F_ * QK) * s.E;
-    const MatrixXd cross = tau2 * (F_ * (QK * Q_) / 2 - C * Q_) + sum * sigma * sigma / 2 * F_;
-    Part part{sum, trend_ + B * mean, MatrixXd(B.rows(), B.cols() + 2 * F_.cols()), {}};
-    part.right.resizeLike(part.left);
-    part.left << B * spread, cross, F_;
-    part.right << B, F_, cross;
-    parts_.push_back(std::move(part));
-    if (by_offset_.size() == 0)
-        by_offset_ = tau2 * controls_.correlation_by_offset(s.correlation);
-    else
-        by_offset_ += tau2 * controls_.correlation_by_offset(s.correlation);
+/// One correlation's moments over its amplitudes: of v, and Σ weight τ².
+struct Amplitudes {
+    double weight = 0, tau2 = 0;
+    VectorXd mean;   ///< of v
+    MatrixXd spread; ///< Σ weight ((v - mean) (v - mean)ᵀ - τ⁴ (σ² + τ² λ)⁻¹)
+
+    Amplitudes(const Spectrum& s, double sigma, const std::array<double, kNumRatios>& weights)
+        : mean(VectorXd::Zero(s.y.size())), spread(MatrixXd::Zero(s.y.size(), s.y.size()))
+    {
+        VectorXd explained = mean;
+        for (int i = 0; i < kNumRatios; ++i) {
+            if (weights[i] == 0) continue;
+            const double ratio = amplitude_ratio(i), t2 = std::pow(ratio * sigma, 2);
+            const VectorXd d = precision(s, ratio), v = t2 / sigma * d.cwiseProduct(s.y);
+            weight += weights[i];
+            tau2 += weights[i] * t2;
+            explained += weights[i] * t2 * ratio * ratio * d;
+            mean += weights[i] * v;
+            spread.noalias() += weights[i] * v * v.transpose();
+        }
+        if (weight == 0) return;
+        mean /= weight;
+        spread.noalias() -= weight * mean * mean.transpose();
+        spread.diagonal() -= explained;
+    }
+};
+
+/// A correlation's share of the mixture. Its covariance is that of B v, cross Fᵀ + F crossᵀ and that by offset.
+struct Part {
+    double weight = 0;
+    VectorXd mean;
+    MatrixXd B, spread; ///< of v
+    MatrixXd cross;
+    MatrixXd by_offset; ///< Σ weight τ² correlation_by_offset()
+};
+
+/// Sums left rightᵀ, the sum being symmetric, and the correlations by offset.
+MatrixXd symmetric_product(const MatrixXd& left, const MatrixXd& right, const ControlHeights& controls,
+                           const MatrixXd& by_offset)
+{
+    constexpr Index kStrip = 32; // columns a task: a strip's part above the diagonal is computed in vain
+    const Index n = left.rows();
+    MatrixXd sum(n, n);
+    tbb::parallel_for(Index{0}, (n + kStrip - 1) / kStrip, [&](Index k) {
+        const Index first = k * kStrip, below = n - first, count = std::min(kStrip, below);
+        sum.block(first, first, below, count).noalias() =
+            left.bottomRows(below) * right.middleRows(first, count).transpose();
+    });
+    controls.add_block_toeplitz(sum, by_offset);
+    return sum.selfadjointView<Eigen::Lower>();
 }
 
-std::pair<VectorXd, MatrixXd> ProcessMixture::result() const
+} // namespace
+
+std::pair<VectorXd, MatrixXd> mix_processes(const ProcessTouches& touches, const ControlHeights& controls,
+                                            const MatrixXd& trend_controls, const std::vector<Spectrum>& spectra,
+                                            const std::vector<std::array<double, kNumRatios>>& weights)
 {
-    VectorXd mean = VectorXd::Zero(controls_.size());
+    const Trend trend(touches, trend_controls);
+    const MatrixXd among_touches = squared_distances(touches.xy, touches.xy);
+    const MatrixXd from_nodes = squared_distances(controls.nodes(), touches.xy);
+    std::vector<Part> parts(spectra.size());
+    tbb::parallel_for(std::size_t{0}, spectra.size(), [&](std::size_t k) {
+        const Spectrum& s = spectra[k];
+        Amplitudes amplitudes(s, touches.sigma, weights[k]);
+        if (amplitudes.weight == 0) return;
+        const MatrixXd C = controls.from_values(correlation_matrix(s.correlation, from_nodes));
+        const MatrixXd QK = trend.Q.transpose() * correlation_matrix(s.correlation, among_touches);
+        Part& part = parts[k];
+        part.weight = amplitudes.weight;
+        part.B = (C - trend.F * QK) * s.E;
+        part.spread = std::move(amplitudes.spread);
+        part.mean = trend.mean + part.B * amplitudes.mean;
+        part.cross = amplitudes.tau2 * (trend.F * (QK * trend.Q) / 2 - C * trend.Q) +
+                     part.weight * touches.sigma * touches.sigma / 2 * trend.F;
+        part.by_offset = amplitudes.tau2 * controls.correlation_by_offset(s.correlation);
+    });
+    std::erase_if(parts, [](const Part& part) { return part.weight == 0; });
+
+    VectorXd mean = VectorXd::Zero(controls.size());
+    MatrixXd cross = MatrixXd::Zero(trend.F.rows(), trend.F.cols()), by_offset = 0 * parts.front().by_offset;
     double sum = 0;
-    Index columns = 0;
-    for (const Part& part : parts_) {
+    for (const Part& part : parts) {
         mean += part.weight * part.mean;
+        cross += part.cross;
+        by_offset += part.by_offset;
         sum += part.weight;
-        columns += part.left.cols() + 1;
     }
     mean /= sum;
-    MatrixXd left(controls_.size(), columns), right(controls_.size(), columns);
-    Index k = 0;
-    for (const Part& part : parts_) {
-        const Index count = part.left.cols();
-        left.middleCols(k, count + 1) << part.left, part.weight * (part.mean - mean);
-        right.middleCols(k, count + 1) << part.right, part.mean - mean;
-        k += count + 1;
-    }
-    MatrixXd covariance = MatrixXd::Zero(controls_.size(), controls_.size());
-    covariance.triangularView<Eigen::Lower>() += left * right.transpose();
-    controls_.add_block_toeplitz(covariance, by_offset_);
-    covariance = MatrixXd(covariance.selfadjointView<Eigen::Lower>()) / sum;
-    return {mean, covariance};
+    const Index p = trend.F.cols(), columns = spectra.front().E.cols() + 1;
+    MatrixXd left(controls.size(), 2 * p + columns * parts.size()), right(left.rows(), left.cols());
+    left.leftCols(2 * p) << cross, trend.F;
+    right.leftCols(2 * p) << trend.F, cross;
+    tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t k) {
+        const Part& part = parts[k];
+        left.middleCols(2 * p + columns * k, columns) << part.B * part.spread, part.weight * (part.mean - mean);
+        right.middleCols(2 * p + columns * k, columns) << part.B, part.mean - mean;
+    });
+    return {mean, symmetric_product(left, right, controls, by_offset) / sum};
 }
 
 } // namespace fettle::fit

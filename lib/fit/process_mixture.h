@@ -39,32 +39,12 @@ class ControlHeights {
 /// touches, C that of the control heights with the touches and F_c the trend's control heights times R⁻¹,
 ///     mean = F_c Qᵀ z + B v,   v = (τ²/σ) (1 + (τ/σ)² λ)⁻¹ y,   B = (C - F_c Qᵀ K) E,
 ///     covariance = τ² (correlation - C Q F_cᵀ - F_c Qᵀ Cᵀ + F_c Qᵀ K Q F_cᵀ) + σ² F_c F_cᵀ - B τ⁴ (σ² + τ² λ)⁻¹ Bᵀ.
-class ProcessMixture {
-  public:
-    /// @param trend  control heights of the trend's functions, one column each
-    /// The touches and the control heights are kept by reference.
-    ProcessMixture(const ProcessTouches& touches, const ControlHeights& controls, const Eigen::MatrixXd& trend);
-
-    /// @param weights  of the amplitudes; they need not sum to 1
-    void add(const Spectrum& s, const std::array<double, kNumRatios>& weights);
-
-    /// @return  mean and covariance
-    std::pair<Eigen::VectorXd, Eigen::MatrixXd> result() const;
-
-  private:
-    /// A correlation's share of the covariance, left rightᵀ. result() sums all shares in one product.
-    struct Part {
-        double weight;
-        Eigen::VectorXd mean;
-        Eigen::MatrixXd left, right;
-    };
-
-    const ProcessTouches& touches_;
-    const ControlHeights& controls_;
-    Eigen::MatrixXd Q_, F_;
-    Eigen::VectorXd trend_;
-    Eigen::MatrixXd by_offset_; ///< Σ τ² correlation_by_offset()
-    std::vector<Part> parts_;
-};
+/// @param trend    control heights of the trend's functions, one column each
+/// @param weights  of each spectrum's amplitudes; they need not sum to 1
+/// @return  mean and covariance
+std::pair<Eigen::VectorXd, Eigen::MatrixXd> mix_processes(const ProcessTouches& touches, const ControlHeights& controls,
+                                                          const Eigen::MatrixXd& trend,
+                                                          const std::vector<Spectrum>& spectra,
+                                                          const std::vector<std::array<double, kNumRatios>>& weights);
 
 } // namespace fettle::fit

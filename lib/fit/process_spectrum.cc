@@ -3,6 +3,7 @@
 #include "core/decompositions.h"
 
 #include <Eigen/Core>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -52,24 +53,25 @@ VectorXd precision(const Spectrum& s, double ratio) { return (1 + ratio * ratio 
 
 std::vector<Spectrum> compute_spectra(const ProcessTouches& touches)
 {
-    std::vector<Spectrum> all;
     const double radius = radius_of(touches.xy);
     const Index n = touches.F.rows(), p = touches.F.cols();
     const MatrixXd Q = core::householder_qr(touches.F, n).Q;
     const MatrixXd rest = Q.rightCols(n - p);
-    for (const Kernel kernel : {Kernel::squared_exponential, Kernel::matern52})
-        for (const double length : kRelativeLengths) {
-            Spectrum s;
-            s.correlation = {kernel, length * radius};
-            const MatrixXd K = correlation_matrix(s.correlation, touches.xy, touches.xy);
-            const core::SymmetricEigen<Eigen::Dynamic> eigen =
-                core::symmetric_eigen<Eigen::Dynamic>(rest.transpose() * K * rest);
-            s.E = rest * eigen.vectors;
-            s.lambda = eigen.values.cwiseMax(0);
-            s.y = s.E.transpose() * touches.z / touches.sigma;
-            set_scores(s, 1, p);
-            all.push_back(std::move(s));
-        }
+    const MatrixXd squared = squared_distances(touches.xy, touches.xy);
+    constexpr std::size_t kLengths = kRelativeLengths.size();
+    std::vector<Spectrum> all(2 * kLengths);
+    tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t k) {
+        Spectrum& s = all[k];
+        s.correlation = {k < kLengths ? Kernel::squared_exponential : Kernel::matern52,
+                         kRelativeLengths[k % kLengths] * radius};
+        const MatrixXd K = correlation_matrix(s.correlation, squared);
+        const core::SymmetricEigen<Eigen::Dynamic> eigen =
+            core::symmetric_eigen<Eigen::Dynamic>(rest.transpose() * K * rest);
+        s.E = rest * eigen.vectors;
+        s.lambda = eigen.values.cwiseMax(0);
+        s.y = s.E.transpose() * touches.z / touches.sigma;
+        set_scores(s, 1, p);
+    });
     return all;
 }
 

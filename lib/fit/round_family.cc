@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <utility>
 
 namespace fettle::fit {
 
@@ -106,17 +107,16 @@ int parameter_count(RoundFamily family, bool given_direction)
     return static_cast<int>(free_parameters(family, given_direction).size());
 }
 
-RoundSolution solve_round(RoundFamily family, const RoundProblem& problem, double around, double along)
+RoundSolution solve_round(RoundFamily family, const RoundProblem& problem, VectorXd start)
 {
     const ScaledProblem in_extent = scaled(family, problem);
-    surface::RevolutionParameters start = surface::RevolutionParameters::Zero();
-    start[surface::kCurvatureAround] = around * in_extent.extent;
-    start[surface::kCurvatureAlong] = along * in_extent.extent;
+    start = in_unit(std::move(start), 1 / in_extent.extent);
     const Minimum minimum = levenberg_marquardt(in_extent.residuals(), start(in_extent.distances.free));
 
     RoundSolution solution;
     solution.theta = in_unit(in_extent.distances.theta(minimum.x.data()), in_extent.extent);
-    solution.cost = minimum.x.allFinite() ? minimum.cost : std::numeric_limits<double>::infinity();
+    const bool is_finite = minimum.x.allFinite() && std::isfinite(minimum.cost);
+    solution.cost = is_finite ? minimum.cost : std::numeric_limits<double>::infinity();
     solution.converged = minimum.converged;
     solution.iterations = minimum.iterations;
     return solution;

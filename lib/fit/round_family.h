@@ -33,8 +33,8 @@ struct RoundSolution {
 };
 
 /// Least squares of weighted orthogonal distances by Levenberg and Marquardt (Ceres).
-/// @param around, along  initial curvatures, 1/mm
-RoundSolution solve_round(RoundFamily family, const RoundProblem& problem, double around, double along);
+/// @param start  RevolutionParameters, mm; those that the family fixes are not read
+RoundSolution solve_round(RoundFamily family, const RoundProblem& problem, Eigen::VectorXd start);
 /// Refines a solution to rounding accuracy.
 void refine_round(RoundFamily family, const RoundProblem& problem, RoundSolution& solution);
 

@@ -6,6 +6,8 @@
 #include "fit/process.h"
 #include "fit/trimmed_touches.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -37,8 +39,12 @@ bool is_sufficient(const FitCandidate* best, Eigen::Index touches)
 void fit_families(const TouchSet& touches, const std::vector<std::string>& names, const TouchIndices& kept,
                   std::vector<FitCandidate>& candidates)
 {
-    for (const std::string& name : names) {
-        std::optional<FitCandidate> candidate = fit_family(name, touches, kept);
+    std::vector<std::optional<FitCandidate>> fitted(names.size());
+    tbb::parallel_for(std::size_t{0}, names.size(),
+                      [&](std::size_t k) { fitted[k] = fit_family(names[k], touches, kept); });
+    for (std::size_t k = 0; k < names.size(); ++k) {
+        const std::string& name = names[k];
+        std::optional<FitCandidate>& candidate = fitted[k];
         if (!candidate || !candidate->converged) continue;
         candidate->score += prior_penalty(name);
         const auto same = std::find_if(candidates.begin(), candidates.end(),

@@ -4,10 +4,14 @@
 #include "core/decompositions.h"
 #include "fit/family.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <limits>
 #include <numeric>
 #include <random>
+#include <utility>
+#include <vector>
 
 namespace fettle::fit {
 
@@ -17,50 +21,69 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+/// A subset of the touches, whose polynomial is to be fitted to.
+struct Subset {
+    TouchIndices touches;
+    double sum = std::numeric_limits<double>::infinity(); ///< of squared residuals
+};
+
 /// A concentration step: replaces the touches by the three quarters nearest to their fit.
-/// @param basis  orthonormal functions of the polynomial at the touches   @return  the sum of their squared residuals
-double concentrate(const MatrixXd& basis, const VectorXd& z, TouchIndices& touches)
+/// @param basis  orthonormal functions of the polynomial at the touches, a column for each touch
+void concentrate(const MatrixXd& basis, const VectorXd& z, Subset& subset)
 {
-    const MatrixXd chosen = basis(touches, Eigen::all);
-    const VectorXd theta = core::solve_ldlt(chosen.transpose() * chosen, chosen.transpose() * z(touches));
-    const VectorXd squares = (z - basis * theta).cwiseAbs2();
-    touches.resize(z.size());
-    std::iota(touches.begin(), touches.end(), Index{0});
-    const auto end = touches.begin() + (3 * z.size() + 3) / 4;
-    std::nth_element(touches.begin(), end - 1, touches.end(),
-                     [&](Index a, Index b) { return squares[a] < squares[b] || (squares[a] == squares[b] && a < b); });
-    touches.erase(end, touches.end());
-    return squares(touches).sum();
+    MatrixXd A = MatrixXd::Zero(basis.rows(), basis.rows()); // lower half
+    VectorXd b = VectorXd::Zero(basis.rows());
+    for (const Index touch : subset.touches) {
+        for (Index k = 0; k < basis.rows(); ++k)
+            A.col(k).tail(basis.rows() - k) += basis(k, touch) * basis.col(touch).tail(basis.rows() - k);
+        b += z[touch] * basis.col(touch);
+    }
+    const VectorXd theta = core::solve_ldlt(A, b);
+    const VectorXd squares = (z - basis.transpose() * theta).cwiseAbs2();
+    subset.touches.resize(z.size());
+    std::iota(subset.touches.begin(), subset.touches.end(), Index{0});
+    const auto end = subset.touches.begin() + (3 * z.size() + 3) / 4;
+    std::nth_element(subset.touches.begin(), end - 1, subset.touches.end(),
+                     [&](Index i, Index k) { return squares[i] < squares[k] || (squares[i] == squares[k] && i < k); });
+    subset.touches.erase(end, subset.touches.end());
+    subset.sum = squares(subset.touches).sum();
+}
+
+/// Random subsets of `size` of `count` touches.
+std::vector<Subset> random_subsets(Index count, Index size)
+{
+    constexpr int kSubsets = 300; // one in seven subsets of 7 of 16 touches has none of 3 outliers
+    std::mt19937_64 random(1);
+    std::vector<Subset> all(kSubsets);
+    for (Subset& subset : all) {
+        subset.touches.resize(count);
+        std::iota(subset.touches.begin(), subset.touches.end(), Index{0});
+        for (Index i = 0; i < size; ++i)
+            std::swap(subset.touches[i], subset.touches[i + random() % (subset.touches.size() - i)]);
+        subset.touches.resize(size);
+    }
+    return all;
 }
 
 /// Least trimmed squares of a polynomial from random subsets with concentration steps.
 TouchIndices least_trimmed_squares(const MatrixXd& basis, const VectorXd& z)
 {
-    constexpr int kSubsets = 300;          // one in seven subsets of 7 of 16 touches has none of 3 outliers
     constexpr int kConcentrationSteps = 3; // they suffice to recognise a bad subset
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    const std::size_t subset_size = basis.cols() + 1;
-    std::mt19937_64 random(1);
-    TouchIndices best;
-    double min_sum = kInfinity;
-    for (int subset = 0; subset < kSubsets; ++subset) {
-        TouchIndices touches(z.size());
-        std::iota(touches.begin(), touches.end(), Index{0});
-        for (std::size_t i = 0; i < subset_size; ++i)
-            std::swap(touches[i], touches[i + random() % (touches.size() - i)]);
-        touches.resize(subset_size);
-        double sum = 0;
-        for (int step = 0; step < kConcentrationSteps; ++step) sum = concentrate(basis, z, touches);
-        if (!(sum < min_sum)) continue;
-        for (double before = kInfinity; sum < before;) {
-            before = sum;
-            sum = concentrate(basis, z, touches);
+    std::vector<Subset> subsets = random_subsets(z.size(), basis.rows() + 1);
+    tbb::parallel_for(std::size_t{0}, subsets.size(), [&](std::size_t k) {
+        for (int step = 0; step < kConcentrationSteps; ++step) concentrate(basis, z, subsets[k]);
+    });
+    Subset best;
+    for (Subset& subset : subsets) {
+        if (!(subset.sum < best.sum)) continue;
+        for (double before = std::numeric_limits<double>::infinity(); subset.sum < before;) {
+            before = subset.sum;
+            concentrate(basis, z, subset);
         }
-        min_sum = sum;
-        best = touches;
+        best = std::move(subset);
     }
-    std::sort(best.begin(), best.end());
-    return best;
+    std::sort(best.touches.begin(), best.touches.end());
+    return best.touches;
 }
 
 } // namespace
@@ -72,7 +95,7 @@ TouchIndices trimmed_touches(const TouchSet& touches)
         const std::optional<FamilySolution> design = solve_family(name, touches, all);
         if (design && 2 * design->gradients.rows() <= touches.xyz.cols())
             return least_trimmed_squares(
-                core::householder_qr(design->gradients.transpose(), design->gradients.rows()).Q,
+                core::householder_qr(design->gradients.transpose(), design->gradients.rows()).Q.transpose(),
                 touches.xyz.row(2).transpose());
     }
     return all;

@@ -92,11 +92,9 @@ std::optional<FitCandidate> spline_with_waves(const FamilySolution& family, cons
     const VectorXd heights = surface::heights(family.shape, controls.nodes());
     if (!gradients.allFinite() || !heights.allFinite()) return std::nullopt;
     const MatrixXd trend = controls.from_values(allowed_gradients(family, gradients));
-    ProcessMixture mixture(touches, controls, trend);
-    for (std::size_t k = 0; k < spectra.size(); ++k) mixture.add(spectra[k], weights.relative[k]);
     FitCandidate candidate;
     VectorXd above;
-    std::tie(above, candidate.covariance) = mixture.result();
+    std::tie(above, candidate.covariance) = mix_processes(touches, controls, trend, spectra, weights.relative);
     const VectorXd sum = controls.from_values(heights) + above;
     spline.heights = sum.reshaped(spline.heights.rows(), spline.heights.cols());
     candidate.shape = std::move(spline);
