@@ -3,7 +3,7 @@
 #include "belt/belt_report.h"
 #include "belt/belt_watch.h"
 #include "belt/stock_frames.h"
-#include "calibrate/belt_learning.h"
+#include "belt_calibrate/belt_learning.h"
 #include "cli/tool.h"
 #include "cloud/cloud_output.h"
 #include "core/file.h"
@@ -79,7 +79,7 @@ belt::BeltOptions belt_options(const Options& given, double mm)
 
 belt::BeltRun grind(cli::Tool& t, Options& given, const belt::BeltOptions& options, belt::Surfels& surfels,
                     const belt::ContactWheel& wheel, const std::vector<belt::BeltPoint>& path, double mm,
-                    const std::string& path_file, calibrate::BeltLearning* learning)
+                    const std::string& path_file, belt_calibrate::BeltLearning* learning)
 {
     std::optional<belt::BeltErrorLog> log;
     if (given.lower) log.emplace(given.watch, mm);
@@ -114,7 +114,7 @@ belt::ContactWheel actual_wheel(const Options& options, belt::ContactWheel wheel
 
 /// Hands the law on, and warns of the passes that it does not explain.
 void write_law(cli::Tool& t, const Options& options, const std::string& path_file,
-               const calibrate::BeltLearning& learning)
+               const belt_calibrate::BeltLearning& learning)
 {
     for (const std::string& line : learning.warnings()) t.warn(core::display_name(path_file) + ": " + line);
     t.report().set("learnt", learning.report());
@@ -167,7 +167,7 @@ int main(int argc, char** argv)
             return belt::belt_path(path.cloud, options.grinding.settings(units.mm()));
         });
         const belt::BeltOptions belt_options = ::belt_options(options, units.mm());
-        std::optional<calibrate::BeltLearning> learning;
+        std::optional<belt_calibrate::BeltLearning> learning;
         if (!options.learn.empty()) {
             core::OutputFile{options.learn}; // where it cannot be written, that is said before the part is ground
             learning.emplace(options.learn, wheel, belt_options, ground.surfels, belt_points);

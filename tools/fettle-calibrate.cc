@@ -1,6 +1,7 @@
 #include "belt/contact_wheel.h"
 #include "belt/surfel.h"
-#include "calibrate/belt_run.h"
+#include "belt_calibrate/belt_run.h"
+#include "belt_calibrate/wheel_law.h"
 #include "calibrate/gantry_passes.h"
 #include "calibrate/law_file.h"
 #include "calibrate/law_report.h"
@@ -53,7 +54,7 @@ struct Options {
 
 /// What the input says: the passes, and what only traces tell.
 struct Measurement {
-    std::vector<belt::RemovalTrial> passes;
+    std::vector<removal::RemovalTrial> passes;
     double pass_work = 0;
     std::string machine; ///< gantry or belt: the name of `traced`; empty: rows
     json::Value traced;
@@ -92,13 +93,13 @@ Measurement measure_belt_trace(const Options& o, const belt::ContactWheel& wheel
 {
     const cloud::Cloud trace = cloud::read_cloud(o.input).cloud;
     const belt::Surfels before = belt::read_surfels(o.before).surfels, after = belt::read_surfels(o.after).surfels;
-    const calibrate::BeltRunLaw law = cli::with_error_prefix(core::display_name(o.input), [&] {
-        return calibrate::measure_belt(trace, wheel, before, after, o.t.progress("fitting"));
+    const belt_calibrate::BeltRunLaw law = cli::with_error_prefix(core::display_name(o.input), [&] {
+        return belt_calibrate::measure_belt(trace, wheel, before, after, o.t.progress("fitting"));
     });
     return {law.passes,
             law.pass_work,
             "belt",
-            calibrate::to_json(law),
+            belt_calibrate::to_json(law),
             law.law,
             {},
             {wheel.law.pressure_exponent, wheel.law.feed_exponent}};
@@ -156,7 +157,8 @@ int main(int argc, char** argv)
         t.report() = learnt;
         learnt.set("record", calibrate::to_json(record));
         if (wheel) {
-            wheel->law = measured.wheel_law ? *measured.wheel_law : calibrate::belt_law(law, *wheel, o.area, o.travel);
+            wheel->law =
+                measured.wheel_law ? *measured.wheel_law : belt_calibrate::belt_law(law, *wheel, o.area, o.travel);
             wheel->law_source = "fettle-calibrate";
             t.output() << belt::to_json(*wheel).set("learnt", learnt);
         } else {

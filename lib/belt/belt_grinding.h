@@ -2,9 +2,9 @@
 
 #include "belt/belt_path.h"
 #include "belt/press.h"
-#include "belt/removal_fit.h"
 #include "belt/running_error.h"
 #include "core/progress.h"
+#include "removal/removal_fit.h"
 
 #include <Eigen/Core>
 
@@ -52,12 +52,12 @@ struct BeltError {
 
 /// What was measured of a pass of a path: the path from a touchdown to the next.
 struct MeasuredPass {
-    RemovalTrial trial;        ///< volume 0: the pass has no length, or removed nothing
-    double contact_volume = 0; ///< volume of the pass, mm³, per volume of the trial
-    double sensitivity = 1;    ///< derivative of the logarithm of the pass's volume by that of the law's coefficient
-    double work = 0;           ///< of the belt, N mm
-    double feed_factor = 1;    ///< by which the feeds of the path were multiplied
-    std::vector<RemovalTrial> parts; ///< of the pass, if its pressure or feed varied
+    removal::RemovalTrial trial; ///< volume 0: the pass has no length, or removed nothing
+    double contact_volume = 0;   ///< volume of the pass, mm³, per volume of the trial
+    double sensitivity = 1;      ///< derivative of the logarithm of the pass's volume by that of the law's coefficient
+    double work = 0;             ///< of the belt, N mm
+    double feed_factor = 1;      ///< by which the feeds of the path were multiplied
+    std::vector<removal::RemovalTrial> parts; ///< of the pass, if its pressure or feed varied
 };
 
 /// Results of a grinding run.

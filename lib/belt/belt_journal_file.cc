@@ -116,7 +116,7 @@ void serialize(Archive& archive, RunningError& error)
     archive.serialize_all(error.sum, error.sum_squares, error.min);
 }
 
-void serialize(Archive& archive, RemovalTrial& trial)
+void serialize(Archive& archive, removal::RemovalTrial& trial)
 {
     archive.serialize_all(trial.force, trial.speed, trial.feed, trial.duration, trial.prior_work, trial.volume,
                           trial.deviation);
@@ -126,7 +126,7 @@ void serialize(Archive& archive, MeasuredPass& pass)
 {
     serialize(archive, pass.trial);
     archive.serialize_all(pass.contact_volume, pass.sensitivity, pass.work, pass.feed_factor);
-    archive.serialize(pass.parts, [&](RemovalTrial& part) { serialize(archive, part); });
+    archive.serialize(pass.parts, [&](removal::RemovalTrial& part) { serialize(archive, part); });
 }
 
 void serialize(Archive& archive, BeltCheckpoint& checkpoint)

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "belt/removal_fit.h"
 #include "job/job.h"
 #include "removal/height_field.h"
+#include "removal/removal_fit.h"
 #include "strategy/run.h"
 
 #include <optional>
@@ -25,7 +25,7 @@ struct WearInterval {
 struct GantryLaw {
     /// A pass is some consecutive strokes of the wheel: mean force; the volume of a second of contact, since volumes
     /// add up along a stroke; the prior work is ∫F dt of the passes before.
-    std::vector<belt::RemovalTrial> passes;
+    std::vector<removal::RemovalTrial> passes;
     double pass_work = 0;                       ///< ∫F dt of a pass, about, N s
     std::optional<Measured> coefficient;        ///< Preston's: volume per ∫F dt, mm³/(N s)
     std::optional<Measured> preload, stiffness; ///< of the spring: N, N/mm; none if the deflection was always the same

@@ -10,9 +10,9 @@
 namespace fettle::calibrate {
 namespace {
 
-using belt::RemovalTrial;
 using Eigen::Index;
 using Eigen::VectorXd;
+using removal::RemovalTrial;
 
 /// Of Student's t: few enough for tails that outliers fit in, and the variance is finite.
 constexpr double kDegreesOfFreedom = 4;

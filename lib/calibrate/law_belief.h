@@ -1,6 +1,6 @@
 #pragma once
 
-#include "belt/removal_fit.h"
+#include "removal/removal_fit.h"
 
 #include <Eigen/Core>
 
@@ -23,13 +23,13 @@ using ParameterMatrix = Eigen::Matrix<double, parameter_count, parameter_count>;
 /// A condition of a pass that the volume depends on.
 struct Factor {
     Parameter parameter; ///< its exponent
-    double belt::RemovalTrial::*value;
+    double removal::RemovalTrial::*value;
     double preston_exponent;
 };
-inline constexpr Factor kFactors[] = {{force, &belt::RemovalTrial::force, 1},
-                                      {speed, &belt::RemovalTrial::speed, 1},
-                                      {feed, &belt::RemovalTrial::feed, -1},
-                                      {duration, &belt::RemovalTrial::duration, 1}};
+inline constexpr Factor kFactors[] = {{force, &removal::RemovalTrial::force, 1},
+                                      {speed, &removal::RemovalTrial::speed, 1},
+                                      {feed, &removal::RemovalTrial::feed, -1},
+                                      {duration, &removal::RemovalTrial::duration, 1}};
 
 /// One of the models that are averaged. Its parameters have a normal distribution, which a Kalman filter updates.
 struct LawModel {
@@ -69,15 +69,15 @@ class LawBelief {
     /// @param reference  conditions of the reference pass; what is NaN in it was not recorded, and is ignored in all
     /// @param pass_work  work of a typical pass W_0, in the unit of the passes' prior work
     /// @throws InputError for a value that is not positive
-    LawBelief(const belt::RemovalTrial& reference, double pass_work);
+    LawBelief(const removal::RemovalTrial& reference, double pass_work);
 
     /// Predicts the volume of a pass under its conditions, and judges its volume if that is positive.
     /// @param probability  of the interval
-    Prediction predict(const belt::RemovalTrial& next, double probability = 0.95) const;
+    Prediction predict(const removal::RemovalTrial& next, double probability = 0.95) const;
     /// Learns from a pass. @throws InputError for a value that is not positive
-    void update(const belt::RemovalTrial& pass) { update(std::vector{pass}); }
+    void update(const removal::RemovalTrial& pass) { update(std::vector{pass}); }
     /// Learns from a pass of parts under different conditions, between which the level does not wander.
-    void update(const std::vector<belt::RemovalTrial>& parts);
+    void update(const std::vector<removal::RemovalTrial>& parts);
     /// The level may have changed by a factor of 2 or so, with a new belt, or a wheel that went blunt; what is known of
     /// the exponents is kept.
     void loosen_level();
@@ -85,20 +85,20 @@ class LawBelief {
     Posterior posterior() const;
     /// Variance of the log volume under these conditions over that of a single pass's scatter: how much the pass would
     /// tell.
-    double information(const belt::RemovalTrial& next) const;
+    double information(const removal::RemovalTrial& next) const;
     /// Shares of the models, which sum up to 1.
     Eigen::VectorXd weights() const;
     const std::vector<LawModel>& models() const { return models_; }
-    const belt::RemovalTrial& reference() const { return reference_; }
+    const removal::RemovalTrial& reference() const { return reference_; }
     double pass_work() const { return pass_work_; }
 
     /// Derivatives of the log volume by the parameters.
-    Parameters regressors(const belt::RemovalTrial& trial) const;
+    Parameters regressors(const removal::RemovalTrial& trial) const;
 
   private:
-    void observe(const belt::RemovalTrial& part);
+    void observe(const removal::RemovalTrial& part);
 
-    belt::RemovalTrial reference_;
+    removal::RemovalTrial reference_;
     double pass_work_;
     std::vector<LawModel> models_;
 };
@@ -107,6 +107,6 @@ class LawBelief {
 Parameters preston_exponents();
 
 /// True if a pass of the reference's kind records the parameter's factor.
-bool is_recorded(const belt::RemovalTrial& reference, Parameter parameter);
+bool is_recorded(const removal::RemovalTrial& reference, Parameter parameter);
 
 } // namespace fettle::calibrate

@@ -9,7 +9,7 @@
 namespace fettle::calibrate {
 namespace {
 
-using belt::RemovalTrial;
+using removal::RemovalTrial;
 
 /// Passes with a smaller two-sided probability of tail have a change. One false alarm in 200 passes is allowed; some
 /// law in five has heavier tails than any model here.
@@ -71,6 +71,13 @@ void read_parts(json::Reader& reader, LawRecord& record)
 }
 
 } // namespace
+
+removal::RemovalTrial rebased(removal::RemovalTrial trial, const TrialBase& from, const TrialBase& to)
+{
+    trial.volume *= std::pow(trial.force, from.pressure_exponent - to.pressure_exponent) *
+                    std::pow(trial.feed, from.feed_exponent - to.feed_exponent);
+    return trial;
+}
 
 void learn_pass(LearntLaw& law, const RemovalTrial& pass, const std::vector<RemovalTrial>& parts)
 {

@@ -9,7 +9,7 @@
 namespace fettle::calibrate {
 namespace {
 
-using belt::RemovalTrial;
+using removal::RemovalTrial;
 
 /// Factors that differ by less were meant to be the same, and say nothing of the exponent.
 constexpr double kMinRatio = 1.02;

@@ -18,7 +18,7 @@ std::vector<IndistinctPair> indistinct_pairs(const LearntLaw& law);
 
 /// Conditions of the pass that would tell most: each factor at the least or the greatest of the passes so far, or
 /// 1.5 times beyond if they had but one.
-belt::RemovalTrial most_informative_pass(const LearntLaw& law);
+removal::RemovalTrial most_informative_pass(const LearntLaw& law);
 
 /// How well the passes were predicted, from the first that was judged on.
 struct PredictionQuality {
@@ -29,7 +29,7 @@ PredictionQuality prediction_quality(const LearntLaw& law);
 
 /// Numbers about the last run that a law was learnt from: passes, known (before it), judged, covered, changes,
 /// median_error, and the relative standard deviation of what is expected of the next pass.
-json::Value run_report(LearntLaw law, std::size_t known_passes, const belt::RemovalTrial& next);
+json::Value run_report(LearntLaw law, std::size_t known_passes, const removal::RemovalTrial& next);
 
 /// The law: mean, covariance, determination of each parameter, indistinct pairs, the next pass, the quality, changes.
 json::Value to_json(const LearntLaw& law);

@@ -11,7 +11,7 @@
 
 namespace fettle::calibrate {
 
-using belt::RemovalTrial;
+using removal::RemovalTrial;
 
 namespace {
 

@@ -11,7 +11,7 @@
 namespace fettle::calibrate {
 namespace {
 
-using belt::RemovalTrial;
+using removal::RemovalTrial;
 
 struct Column {
     const char* name;

@@ -64,31 +64,40 @@ struct Patch {
     Eigen::Vector2d intersection(const Eigen::Vector3d& point, const Eigen::Vector3d& direction) const;
 };
 
-// Least squares, then `robust_passes` re-weighted ones. Returns whether the points determine a quadratic. Their number
-// is fixed, so Eigen unrolls the products; geometry::QuadraticEquations sums over any number, in another order.
+// Least squares, then `robust_passes` re-weighted ones. Returns whether the points determine a quadratic. The sums run
+// point by point: products of matrices of a fixed size of 24 are unrolled by Eigen, which takes the compiler half a minute.
 bool fit_quadratic(Patch& patch, int robust_passes)
 {
     const Neighbourhood& local = patch.neighbours;
-    Eigen::Matrix<double, kNeighbours, 6> A;
-    for (int i = 0; i < kNeighbours; ++i) A.row(i) = geometry::quadratic_terms(local(0, i), local(1, i)).transpose();
-    const Eigen::Matrix<double, kNeighbours, 1> z = local.row(2).transpose();
-    Eigen::Matrix<double, kNeighbours, 1> weight = Eigen::Matrix<double, kNeighbours, 1>::Ones();
+    Eigen::Matrix<double, 6, kNeighbours> terms;
+    for (int i = 0; i < kNeighbours; ++i) terms.col(i) = geometry::quadratic_terms(local(0, i), local(1, i));
+    std::array<double, kNeighbours> weights, residuals, sizes;
+    weights.fill(1);
     for (int pass = 0; pass <= robust_passes; ++pass) {
-        const Eigen::Matrix<double, 6, 6> normal = A.transpose() * weight.asDiagonal() * A;
+        Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();
+        geometry::QuadraticTerms right = geometry::QuadraticTerms::Zero();
+        for (int i = 0; i < kNeighbours; ++i) {
+            const geometry::QuadraticTerms weighted = weights[i] * terms.col(i);
+            normal += weighted * terms.col(i).transpose();
+            right += local(2, i) * weighted;
+        }
         const Eigen::LDLT<Eigen::Matrix<double, 6, 6>> solver(normal);
         // A well spread neighbourhood of radius 1 has pivots near 1; rounding of float coordinates leaves 1e-7.
         constexpr double kMinPivot = 1e-7;
         if (!(solver.vectorD().minCoeff() > kMinPivot)) return false;
-        patch.c = solver.solve(A.transpose() * (weight.asDiagonal() * z));
+        patch.c = solver.solve(right);
         if (robust_passes == 0) return true;
-        const Eigen::Matrix<double, kNeighbours, 1> residual = z - A * patch.c;
-        std::array<double, kNeighbours> sizes;
-        for (int i = 0; i < kNeighbours; ++i) sizes[i] = std::abs(residual[i]);
+        for (int i = 0; i < kNeighbours; ++i) {
+            residuals[i] = local(2, i) - patch.c.dot(terms.col(i));
+            sizes[i] = std::abs(residuals[i]);
+        }
         const double sigma = geometry::kMedianToSigma * geometry::median(sizes);
         patch.covariance = sigma * sigma * solver.solve(Eigen::Matrix<double, 6, 6>::Identity());
         if (!(sigma > 0)) break;
-        const auto relative = (residual.array() / (geometry::kTukeyCutoff * sigma)).square();
-        weight = (relative < 1).select((1 - relative).square(), 0);
+        for (int i = 0; i < kNeighbours; ++i) {
+            const double relative = residuals[i] / (geometry::kTukeyCutoff * sigma);
+            weights[i] = std::abs(relative) < 1 ? std::pow(1 - relative * relative, 2) : 0;
+        }
     }
     return true;
 }

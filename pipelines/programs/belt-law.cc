@@ -1,11 +1,11 @@
 // The removal law of a belt from measured trials, and how well it predicts trials that it was not fitted to.
 
 #include "belt/contact_wheel.h"
-#include "belt/removal_fit.h"
 #include "calibrate/trials_csv.h"
 #include "cli/tool.h"
 #include "core/file.h"
 #include "core/text.h"
+#include "removal/removal_fit.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,14 +19,14 @@ namespace {
 
 /// Is the recorded work a state that trials hand on? How many trials there are with one that begins where they end,
 /// within `kShareTolerance` of their own work, and how many by chance: where no belt ever ends.
-json::Value work_carried(const std::vector<belt::RemovalTrial>& trials)
+json::Value work_carried(const std::vector<removal::RemovalTrial>& trials)
 {
     constexpr double kShareTolerance = 0.02; // work was summed with set values; force, speed and duration are means
     const auto followed = [&](double share) {
         std::size_t count = 0;
-        for (const belt::RemovalTrial& trial : trials) {
+        for (const removal::RemovalTrial& trial : trials) {
             const double own = trial.force * trial.speed * trial.duration;
-            const auto follows = [&](const belt::RemovalTrial& other) {
+            const auto follows = [&](const removal::RemovalTrial& other) {
                 return std::abs((other.prior_work - trial.prior_work) / own - share) <= kShareTolerance;
             };
             count += std::any_of(trials.begin(), trials.end(), follows) ? 1 : 0;
@@ -36,10 +36,11 @@ json::Value work_carried(const std::vector<belt::RemovalTrial>& trials)
     return json::Value().set("handed_on", followed(1)).set("by_chance", followed(0.9)).set("trials", trials.size());
 }
 
-json::Value score_of(const char* name, const std::vector<belt::RemovalTrial>& trials, const belt::RemovalTerms& terms)
+json::Value score_of(const char* name, const std::vector<removal::RemovalTrial>& trials,
+                     const removal::RemovalTerms& terms)
 {
-    const belt::RemovalScore score = belt::score_removal(trials, terms);
-    const belt::RemovalLaw& law = score.law;
+    const removal::RemovalScore score = removal::score_removal(trials, terms);
+    const removal::RemovalLaw& law = score.law;
     return json::Value()
         .set("name", name)
         .set("r2", score.r2)
@@ -56,7 +57,7 @@ json::Value score_of(const char* name, const std::vector<belt::RemovalTrial>& tr
 
 /// As a wheel's file has it: pressure is force over `area`, mm²; the belt goes `travel` mm in a unit of the trials'
 /// speed and a second.
-json::Value wheels_law(const belt::RemovalLaw& law, double area, double travel)
+json::Value wheels_law(const removal::RemovalLaw& law, double area, double travel)
 {
     return json::Value()
         .set("type", "power")
@@ -98,7 +99,7 @@ int main(int argc, char** argv)
         if (is_static) {
             constexpr double kSeconds = 60; // in a minute
             out.set("work", work_carried(all))
-                .set("law", wheels_law(belt::fit_removal(exact, {true, true, false}), area, travel / kSeconds));
+                .set("law", wheels_law(removal::fit_removal(exact, {true, true, false}), area, travel / kSeconds));
         }
         t.output() << out;
         return cli::Verdict::yes;

@@ -57,7 +57,7 @@ calibrate::LawRecord draw_series(const HiddenLaw& law, std::mt19937_64& random)
         record.passes.push_back({F, n, std::numeric_limits<double>::quiet_NaN(), t, work, std::exp(log_volume)});
         work += F * n * t;
     }
-    const belt::RemovalTrial& first = record.passes.front();
+    const removal::RemovalTrial& first = record.passes.front();
     record.pass_work = first.force * first.speed * first.duration;
     return record;
 }

@@ -9,7 +9,7 @@ FUZZ_SOURCES := $(wildcard $(addprefix lib/,$(addsuffix /*.cc,core geometry unit
     $(addprefix gantry/,protocol serve driver driver_checks driver_halt head_check child machine virtual_gantry quasi_static) \
     $(addprefix strategy/,trace trace_file run_identity steering joystick keys) align/rigid compare/comparison_report \
     $(addprefix belt/,contact_wheel belt_journal_file assess running_error) \
-    $(addprefix calibrate/,law_belief law_record trials_csv) belt/removal_fit \
+    $(addprefix calibrate/,law_belief law_record trials_csv) \
     $(addprefix machining/,nc_block nc_arc nc_program nc_writer cutter_path cutter limits tilt) \
     $(addprefix part/,spec surface anomalies outline profile) $(addprefix sampling/,noise scan point_surface triangle_grid) \
     $(addprefix report/,summary_reader tool_reports) $(addprefix robot/,robot body_json mesh_body workpiece workpiece_search clearance deepest_point depth placed_solid round_solid hull_points simplex urdf urdf_model urdf_shapes srdf dh_from_axes arm arm_newton arm_parallel)))

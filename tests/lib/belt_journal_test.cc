@@ -36,7 +36,7 @@ belt::BeltCheckpoint ground()
     state.run.removed[1] = 0.05;
     state.run.trace = {{1, 1, 10, 0.1, 0.2, 30, 4}, {2, 1, 11, 0.1, 0.2, 31, 5}};
     state.run.errors = {{0, 1, 1, 0.1, 0.1, 0.1}, {0, 2, 0, 0.1, 0.1, 0.1}};
-    const belt::RemovalTrial trial{10, std::numeric_limits<double>::quiet_NaN(), 4, 0, 1e5, 3, 0.01};
+    const removal::RemovalTrial trial{10, std::numeric_limits<double>::quiet_NaN(), 4, 0, 1e5, 3, 0.01};
     state.run.passes = {{trial, 7, 0.9, 1e5, 0.8, {trial}}};
     state.contact.grid = {{1, 2}, kCells, kCells};
     state.contact.pressure = Eigen::Matrix2d::Constant(0.3);

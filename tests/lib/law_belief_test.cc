@@ -21,7 +21,7 @@ LawRecord drawn(int count)
 {
     LawRecord record{5 * 10, {}};
     for (int k = 0; k < count; ++k) {
-        belt::RemovalTrial pass{3.0 + k % 7, kNone, kNone, 5.0 + 3 * (k % 5), 50.0 * k, 0};
+        removal::RemovalTrial pass{3.0 + k % 7, kNone, kNone, 5.0 + 3 * (k % 5), 50.0 * k, 0};
         pass.volume = 0.1 * pass.force * pass.force * pass.duration * std::exp(-0.01 * k);
         record.passes.push_back(pass);
     }
@@ -46,7 +46,7 @@ TEST(LawBelief, FindsTheLawAgain)
 TEST(LawBelief, DoesNotDependOnUnits)
 {
     LawRecord record = drawn(12), other = record;
-    for (belt::RemovalTrial& pass : other.passes) {
+    for (removal::RemovalTrial& pass : other.passes) {
         pass.force *= 4.448;
         pass.duration /= 60;
         pass.prior_work *= 7;
@@ -73,7 +73,7 @@ TEST(LawBelief, TellsABluntWheel)
 TEST(LawBelief, AsksForAnotherForce)
 {
     LawRecord record = drawn(20);
-    for (belt::RemovalTrial& pass : record.passes) {
+    for (removal::RemovalTrial& pass : record.passes) {
         pass.volume *= 16 / (pass.force * pass.force);
         pass.force = 4;
     }

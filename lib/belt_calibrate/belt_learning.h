@@ -1,14 +1,14 @@
 #pragma once
 
 #include "belt/belt_journal.h"
-#include "calibrate/belt_pass.h"
+#include "belt_calibrate/belt_pass.h"
 #include "calibrate/law_record.h"
 
 #include <optional>
 #include <string>
 #include <vector>
 
-namespace fettle::calibrate {
+namespace fettle::belt_calibrate {
 
 /// What a belt learns while it grinds, pass by pass. Before a pass the simulation by the law, as far as it is known,
 /// says what it will remove from the surfels as they are, the belief within which interval, and the feeds of the pass
@@ -47,8 +47,8 @@ class BeltLearning : public belt::PassSupervisor {
     /// A pass of this run.
     struct RunPass {
         belt::MeasuredPass measured;
-        std::size_t number;                  ///< on the path, from 1
-        std::optional<Prediction> predicted; ///< of the trial's volume; none: nothing was known
+        std::size_t number;                             ///< on the path, from 1
+        std::optional<calibrate::Prediction> predicted; ///< of the trial's volume; none: nothing was known
     };
     /// The pass that is being ground.
     struct CurrentPass {
@@ -61,7 +61,7 @@ class BeltLearning : public belt::PassSupervisor {
     };
 
     /// Conditions, and the volume by a wheel's law.  @param work  of this run before, N mm
-    belt::RemovalTrial trial_at(const belt::ContactWheel& wheel, double pressure, double feed, double work) const;
+    removal::RemovalTrial trial_at(const belt::ContactWheel& wheel, double pressure, double feed, double work) const;
     /// The wheel with the law that is known, as fast under these conditions as is expected of it.
     belt::ContactWheel known_wheel(double pressure, double feed, double work) const;
     belt::ContactWheel next_wheel() const;
@@ -77,13 +77,13 @@ class BeltLearning : public belt::PassSupervisor {
     const belt::Surfels& surfels_;
     std::vector<belt::BeltPoint>& path_;
     Eigen::VectorXd lengths_; ///< tributary, of the points, mm
-    LawRecord record_;
-    std::optional<LearntLaw> law_; ///< none: there is no pass in the record
-    std::size_t known_passes_ = 0; ///< before this run
-    double known_work_ = 0;        ///< of the belt before this run, N mm
-    std::size_t path_passes_ = 0;  ///< ground in this run
+    calibrate::LawRecord record_;
+    std::optional<calibrate::LearntLaw> law_; ///< none: there is no pass in the record
+    std::size_t known_passes_ = 0;            ///< before this run
+    double known_work_ = 0;                   ///< of the belt before this run, N mm
+    std::size_t path_passes_ = 0;             ///< ground in this run
     std::vector<RunPass> passes_;
     CurrentPass pass_;
 };
 
-} // namespace fettle::calibrate
+} // namespace fettle::belt_calibrate

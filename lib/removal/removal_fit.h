@@ -2,7 +2,7 @@
 
 #include <vector>
 
-namespace fettle::belt {
+namespace fettle::removal {
 
 /// A measured trial: the wheel pressed on the part at rest, or moved over it once. A quantity that was not recorded is
 /// NaN in all trials.
@@ -52,4 +52,4 @@ struct RemovalScore {
 /// @throws InputError as fit_removal(), also without one of the trials
 RemovalScore score_removal(const std::vector<RemovalTrial>& trials, const RemovalTerms& terms);
 
-} // namespace fettle::belt
+} // namespace fettle::removal

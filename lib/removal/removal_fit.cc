@@ -1,4 +1,4 @@
-#include "belt/removal_fit.h"
+#include "removal/removal_fit.h"
 
 #include "core/decompositions.h"
 #include "core/error.h"
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <string>
 
-namespace fettle::belt {
+namespace fettle::removal {
 
 namespace {
 
@@ -173,4 +173,4 @@ RemovalScore score_removal(const std::vector<RemovalTrial>& trials, const Remova
     return score;
 }
 
-} // namespace fettle::belt
+} // namespace fettle::removal

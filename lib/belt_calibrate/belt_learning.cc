@@ -1,6 +1,6 @@
-#include "calibrate/belt_learning.h"
+#include "belt_calibrate/belt_learning.h"
 
-#include "calibrate/belt_run.h"
+#include "belt_calibrate/belt_run.h"
 #include "calibrate/law_file.h"
 #include "calibrate/law_report.h"
 #include "core/digest.h"
@@ -14,14 +14,14 @@
 #include <sstream>
 #include <utility>
 
-namespace fettle::calibrate {
+namespace fettle::belt_calibrate {
 namespace {
 
 using belt::ContactWheel;
 using belt::MeasuredPass;
-using belt::RemovalTrial;
 using Eigen::Index;
 using Eigen::VectorXd;
+using removal::RemovalTrial;
 
 /// A belt that is so many times as sharp or as blunt as its wheel's file says is another belt.
 constexpr double kMaxFeedFactor = 4;
@@ -43,7 +43,7 @@ double mean_feed(const std::vector<belt::BeltPoint>& points)
 }
 
 /// The predicted volumes of a trial as those of its pass.
-Prediction as_measured(Prediction predicted, const MeasuredPass& measured)
+calibrate::Prediction as_measured(calibrate::Prediction predicted, const MeasuredPass& measured)
 {
     for (double* volume : {&predicted.volume, &predicted.lower, &predicted.upper})
         *volume = measured.contact_volume * measured.trial.volume *
@@ -60,7 +60,7 @@ BeltLearning::BeltLearning(const std::string& file, const belt::ContactWheel& wh
     options_.range.reset();
     record_.base = {wheel.law.pressure_exponent, wheel.law.feed_exponent};
     if (!std::filesystem::exists(file)) return;
-    record_ = read_law(file);
+    record_ = calibrate::read_law(file);
     const RemovalTrial& first = record_.passes.front();
     if (!std::isnan(first.speed) || std::isnan(first.feed) || !std::isnan(first.duration))
         throw core::InputError(core::display_name(file), "is no law of a belt that moves along paths");
@@ -93,10 +93,11 @@ ContactWheel BeltLearning::known_wheel(double pressure, double feed, double work
 {
     ContactWheel wheel = wheel_;
     if (!law_) return wheel;
-    const Parameters offset = law_->belief.posterior().mean - preston_exponents();
+    const calibrate::Parameters offset = law_->belief.posterior().mean - calibrate::preston_exponents();
     // The ranges of a wheel's file.
-    wheel.law.pressure_exponent = std::clamp(record_.base.pressure_exponent + offset[Parameter::force], 0.0, 5.0);
-    wheel.law.feed_exponent = std::clamp(record_.base.feed_exponent + offset[Parameter::feed], -5.0, 5.0);
+    wheel.law.pressure_exponent =
+        std::clamp(record_.base.pressure_exponent + offset[calibrate::Parameter::force], 0.0, 5.0);
+    wheel.law.feed_exponent = std::clamp(record_.base.feed_exponent + offset[calibrate::Parameter::feed], -5.0, 5.0);
     const RemovalTrial planned = trial_at(wheel_, pressure, feed, work);
     const double ratio = law_->belief.predict(planned).volume / planned.volume;
     wheel.law.coefficient *= std::clamp(ratio, 1 / kMaxFeedFactor, kMaxFeedFactor) * planned.volume /
@@ -232,7 +233,7 @@ void BeltLearning::add(const MeasuredPass& measured)
         pass.predicted = law_->belief.predict(trial);
     } else {
         record_.pass_work = measured.work;
-        law_.emplace(LearntLaw{LawBelief(trial, measured.work), {}});
+        law_.emplace(calibrate::LearntLaw{calibrate::LawBelief(trial, measured.work), {}});
     }
     learn_pass(*law_, trial, measured.parts);
     for (const RemovalTrial& part : measured.parts) record_.parts.push_back({record_.passes.size(), part});
@@ -244,12 +245,12 @@ std::vector<std::string> BeltLearning::warnings() const
 {
     std::vector<std::string> lines;
     for (std::size_t k = 0; k < passes_.size(); ++k) {
-        JudgedPass judged = law_->passes[known_passes_ + k];
+        calibrate::JudgedPass judged = law_->passes[known_passes_ + k];
         if (!judged.has_change) continue;
         const RunPass& pass = passes_[k];
         judged.pass.volume *= pass.measured.contact_volume;
         judged.predicted = as_measured(judged.predicted, pass.measured);
-        lines.push_back(change_message(judged, pass.number));
+        lines.push_back(calibrate::change_message(judged, pass.number));
     }
     return lines;
 }
@@ -265,19 +266,19 @@ json::Value BeltLearning::report() const
             .set("volume", measured.trial.volume * measured.contact_volume)
             .set("feed_factor", measured.feed_factor);
         if (predicted) {
-            const Prediction volumes = as_measured(*predicted, measured);
+            const calibrate::Prediction volumes = as_measured(*predicted, measured);
             value.set("expected", volumes.volume).set("lower", volumes.lower).set("upper", volumes.upper);
         }
         predictions.push_back(value.set("change", law_->passes[known_passes_ + k].has_change));
     }
     const belt::BeltLaw next = next_wheel().law;
-    const ParameterMatrix covariance = law_->belief.posterior().covariance;
-    return run_report(*law_, known_passes_, next_pass(record_))
+    const calibrate::ParameterMatrix covariance = law_->belief.posterior().covariance;
+    return calibrate::run_report(*law_, known_passes_, next_pass(record_))
         .set("coefficient", next.coefficient)
         .set("pressure_exponent", next.pressure_exponent)
-        .set("pressure_exponent_sigma", std::sqrt(covariance(Parameter::force, Parameter::force)))
+        .set("pressure_exponent_sigma", std::sqrt(covariance(calibrate::Parameter::force, calibrate::Parameter::force)))
         .set("feed_exponent", next.feed_exponent)
-        .set("feed_exponent_sigma", std::sqrt(covariance(Parameter::feed, Parameter::feed)))
+        .set("feed_exponent_sigma", std::sqrt(covariance(calibrate::Parameter::feed, calibrate::Parameter::feed)))
         .set("predictions", predictions);
 }
 
@@ -288,4 +289,4 @@ json::Value BeltLearning::file() const
     return belt::to_json(learnt).set("learnt", to_json(*law_).set("record", to_json(record_)));
 }
 
-} // namespace fettle::calibrate
+} // namespace fettle::belt_calibrate

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace fettle::calibrate {
+namespace fettle::belt_calibrate {
 
 /// A law with another pressure exponent that is as fast at a pressure, MPa.
 belt::BeltLaw with_pressure_exponent(belt::BeltLaw law, double exponent, double pressure);
@@ -44,4 +44,4 @@ struct PassPart {
 /// @param lost  by each surfel, mm; NaN: it was not measured
 std::vector<PassPart> divide_pass(const SimulatedPass& pass, const Eigen::VectorXd& lost);
 
-} // namespace fettle::calibrate
+} // namespace fettle::belt_calibrate

@@ -1,11 +1,11 @@
-#include "calibrate/belt_pass.h"
+#include "belt_calibrate/belt_pass.h"
 
 #include <cmath>
 #include <limits>
 #include <map>
 #include <utility>
 
-namespace fettle::calibrate {
+namespace fettle::belt_calibrate {
 namespace {
 
 using Eigen::Index;
@@ -121,4 +121,4 @@ std::vector<PassPart> divide_pass(const SimulatedPass& pass, const VectorXd& los
     return result;
 }
 
-} // namespace fettle::calibrate
+} // namespace fettle::belt_calibrate

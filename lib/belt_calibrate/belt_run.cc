@@ -1,7 +1,7 @@
-#include "calibrate/belt_run.h"
+#include "belt_calibrate/belt_run.h"
 
 #include "belt/belt_path.h"
-#include "calibrate/belt_pass.h"
+#include "belt_calibrate/belt_pass.h"
 #include "core/cholesky.h"
 #include "core/error.h"
 #include "geometry/quantiles.h"
@@ -10,7 +10,7 @@
 #include <cmath>
 #include <limits>
 
-namespace fettle::calibrate {
+namespace fettle::belt_calibrate {
 namespace {
 
 using Eigen::Index;
@@ -127,8 +127,8 @@ VectorXd weights_of(const VectorXd& residuals, double& sigma)
 /// @param run, stepped_run  simulated by the fitted law, and with kExponentStep more that is as fast at `pressure`, MPa
 /// @param wheel  with the fitted law
 void add_passes(const std::vector<belt::BeltPoint>& path, const belt::BeltRun& run, const belt::BeltRun& stepped_run,
-                double pressure, const VectorXd& measured, const belt::ContactWheel& wheel, const TrialBase& base,
-                BeltRunLaw& result)
+                double pressure, const VectorXd& measured, const belt::ContactWheel& wheel,
+                const calibrate::TrialBase& base, BeltRunLaw& result)
 {
     struct Sums {
         double impulse = 0, length = 0, measured = 0, simulated = 0, log_feed = 0, stepped = 0;
@@ -158,7 +158,7 @@ void add_passes(const std::vector<belt::BeltPoint>& path, const belt::BeltRun& r
     double work = 0;
     for (const Sums& pass : passes) {
         if (!(pass.length > 0 && pass.measured > 0 && pass.simulated > 0)) continue; // or it only stood
-        belt::RemovalTrial trial =
+        removal::RemovalTrial trial =
             expected_trial(wheel, base, pressure * std::pow(pass.stepped / pass.simulated, 1 / kExponentStep),
                            std::exp(pass.log_feed / pass.simulated), work);
         trial.volume *= pass.measured / pass.simulated;
@@ -170,25 +170,18 @@ void add_passes(const std::vector<belt::BeltPoint>& path, const belt::BeltRun& r
 
 } // namespace
 
-belt::RemovalTrial expected_trial(const belt::ContactWheel& wheel, const TrialBase& base, double pressure, double feed,
-                                  double prior_work)
+removal::RemovalTrial expected_trial(const belt::ContactWheel& wheel, const calibrate::TrialBase& base, double pressure,
+                                     double feed, double prior_work)
 {
     constexpr double kUnrecorded = std::numeric_limits<double>::quiet_NaN();
     const double rate = wheel.law.coefficient * std::pow(wheel.belt_speed, wheel.law.speed_exponent);
-    const belt::RemovalTrial preston{.force = pressure,
-                                     .speed = kUnrecorded,
-                                     .feed = feed,
-                                     .duration = kUnrecorded,
-                                     .prior_work = prior_work,
-                                     .volume = rate * pressure / feed};
+    const removal::RemovalTrial preston{.force = pressure,
+                                        .speed = kUnrecorded,
+                                        .feed = feed,
+                                        .duration = kUnrecorded,
+                                        .prior_work = prior_work,
+                                        .volume = rate * pressure / feed};
     return rebased(preston, {wheel.law.pressure_exponent, wheel.law.feed_exponent}, base);
-}
-
-belt::RemovalTrial rebased(belt::RemovalTrial trial, const TrialBase& from, const TrialBase& to)
-{
-    trial.volume *= std::pow(trial.force, from.pressure_exponent - to.pressure_exponent) *
-                    std::pow(trial.feed, from.feed_exponent - to.feed_exponent);
-    return trial;
 }
 
 BeltRunLaw measure_belt(const cloud::Cloud& trace, const belt::ContactWheel& wheel, const belt::Surfels& before,
@@ -262,4 +255,4 @@ BeltRunLaw measure_belt(const cloud::Cloud& trace, const belt::ContactWheel& whe
     return result;
 }
 
-} // namespace fettle::calibrate
+} // namespace fettle::belt_calibrate

@@ -1,17 +1,17 @@
 #pragma once
 
 #include "belt/belt_grinding.h"
-#include "belt/removal_fit.h"
 #include "calibrate/law_record.h"
 #include "cloud/cloud.h"
 #include "core/progress.h"
+#include "removal/removal_fit.h"
 
 #include <Eigen/Core>
 
 #include <string>
 #include <vector>
 
-namespace fettle::calibrate {
+namespace fettle::belt_calibrate {
 
 /// The trial of a belt's pass as its wheel's law expects it. It is one of a square millimetre of contact, whose force
 /// in N is the pressure in MPa: its volume is that of a millimetre of way, over pressure and feed to the powers by
@@ -19,10 +19,8 @@ namespace fettle::calibrate {
 /// volume of the pass. So a law whose exponents are the base's has Preston's in its trials, wherever on the part the
 /// wheel is, and a trial does not change with the law by which it was simulated.
 /// @param pressure  at which the pass removed, MPa   @param feed  mm/s   @param prior_work  of the belt, N mm
-belt::RemovalTrial expected_trial(const belt::ContactWheel& wheel, const TrialBase& base, double pressure, double feed,
-                                  double prior_work);
-/// A trial relative to another base.
-belt::RemovalTrial rebased(belt::RemovalTrial trial, const TrialBase& from, const TrialBase& to);
+removal::RemovalTrial expected_trial(const belt::ContactWheel& wheel, const calibrate::TrialBase& base, double pressure,
+                                     double feed, double prior_work);
 
 /// What a run of a belt says of its wheel's law.
 struct BeltRunLaw {
@@ -37,7 +35,7 @@ struct BeltRunLaw {
     Eigen::Index surfels = 0;                          ///< that were compared
     /// A trial (expected_trial), relative to the exponents that were given, for each run of the path that has a length.
     /// Measured depths are shared among the passes as the fitted law shares them.
-    std::vector<belt::RemovalTrial> passes;
+    std::vector<removal::RemovalTrial> passes;
     double pass_work = 0; ///< mean work of a pass, N mm
 };
 
@@ -50,4 +48,4 @@ struct BeltRunLaw {
 BeltRunLaw measure_belt(const cloud::Cloud& trace, const belt::ContactWheel& wheel, const belt::Surfels& before,
                         const belt::Surfels& after, const core::Progress& progress = {});
 
-} // namespace fettle::calibrate
+} // namespace fettle::belt_calibrate
