@@ -22,9 +22,10 @@ constexpr int kCornerReach = 1;
 // A face is a plane if its cells scatter about the plane of least squares by no more than this many times the noise:
 // the plane's own uncertainty, and what a scan's errors have in common.
 constexpr double kPlaneNoises = 1.5;
-// The robust surface through that metal, with as many terms as it shows, may leave the plane inside of B by this much:
-// of many cells a bend is plain that is lost in the noise of each.
-constexpr double kMaxBendNoises = 1.5;
+// The robust surface through that metal, with as many terms as it shows, may leave the plane inside of B by this share
+// of the tolerance, root mean square; the rest is left to touches and wheel. The largest bend, at one of B's corners,
+// would be the error of a single term: two outlines of one anomaly would get different surfaces.
+constexpr double kMaxBendShare = 0.5;
 
 // The part leaves a surface where it is off it by so many standard deviations of the metal around.
 constexpr double kLeavingSds = 4;
@@ -108,7 +109,9 @@ Eigen::Matrix2Xd before_edges(const FoundAnomaly& anomaly, const HeightMap& map,
 }
 
 /// Whether the metal around an anomaly is a plane, as far as its noise tells, and the surface beneath hardly bends.
-bool is_plane(const FoundAnomaly& anomaly, const HeightMap& map, const std::optional<RingFit>& beneath, double noise)
+/// @param max_bend  root mean square over B, mm
+bool is_plane(const FoundAnomaly& anomaly, const HeightMap& map, const std::optional<RingFit>& beneath, double noise,
+              double max_bend)
 {
     const Eigen::Matrix3Xd metal = metal_around(anomaly, map);
     if (metal.cols() < kMinPlaneCells) return false;
@@ -118,13 +121,17 @@ bool is_plane(const FoundAnomaly& anomaly, const HeightMap& map, const std::opti
     const Eigen::Vector3d plane = A.colPivHouseholderQr().solve(z);
     const double sd = (A * plane - z).norm() / std::sqrt(double(metal.cols()));
     if (sd > kPlaneNoises * noise) return false;
-    const auto bend = [&](const Eigen::Vector2d& place) {
-        return std::abs(beneath->z_at(place.x(), place.y()) - plane[0] - plane.tail<2>().dot(place));
-    };
     if (!beneath) return true;
-    double largest = bend(anomaly.boundary.rowwise().mean());
-    for (const Eigen::Vector2d& corner : anomaly.boundary.colwise()) largest = std::max(largest, bend(corner));
-    return largest <= kMaxBendNoises * noise;
+    double squares = 0, count = 0;
+    for (int y = 0; y < map.z.rows; ++y)
+        for (int x = 0; x < map.z.cols; ++x) {
+            const Eigen::Vector2d p = map.point_at(x, y);
+            if (!job::contains(anomaly.boundary, p)) continue;
+            const double bend = beneath->z_at(p.x(), p.y()) - plane[0] - plane.tail<2>().dot(p);
+            squares += bend * bend;
+            ++count;
+        }
+    return squares <= max_bend * max_bend * count;
 }
 
 /// What the wheel may meet on its way: the part within its radius about S.
@@ -254,7 +261,9 @@ FoundJob job_for(const FoundAnomaly& found, const mesh::CloudMesh& part, double 
     job::Job job = settings;
     job.T_part_job = anomaly.T_anomaly_part.inverse();
     job.theta = theta_along(anomaly.boundary, settings.feed.axis);
-    job.surface = is_plane(anomaly, map, beneath, noise) ? job::SurfaceType::plane : job::SurfaceType::freeform;
+    job.surface = is_plane(anomaly, map, beneath, noise, kMaxBendShare * settings.tolerance)
+                      ? job::SurfaceType::plane
+                      : job::SurfaceType::freeform;
     job.anomaly = with_heights(anomaly.boundary, map);
     job.sampling = with_heights(anomaly.sampling, map);
     const std::string wheel = beneath ? fit_wheel(job, *beneath, others) : "";

@@ -1,0 +1,23 @@
+# The surface of a job is a plane where the metal around is one, or bends so little that the plane takes no more than half of the tolerance.
+# Reference: the sheet's own bend, z = c x², under a bump of 2 mm: with c = 0.0008 it
+# leaves the plane there by some 0.02 mm. Noise of 0.02 mm by a linear congruential generator.
+sheet() { # C
+    LC_ALL=C awk -v c="$1" 'function uniform() { state = (state * 16807) % 2147483647; return state / 2147483647 }
+        BEGIN { state = 1
+            for (y = -25; y <= 25; y += 0.4) for (x = -25; x <= 25; x += 0.4) {
+                noise = 0; for (k = 0; k < 12; ++k) noise += uniform()
+                r = (x * x + y * y) / 16
+                printf "%.3f %.3f %.4f\n", x, y, c * x * x + 0.02 * (noise - 6) + (r < 1 ? 2 * (1 - r) : 0) } }'
+}
+surface() { # TOLERANCE SHEET.xyz
+    jq ".tolerance = $1" "$SAMPLES/jobs/hammer.json" > template.json
+    fettle-find "$2" --jobs "jobs$1" --template template.json --report found.json -o found.pcd || [ $? = 1 ]
+    jq -r .surface.type "jobs$1/$(jq '.anomalies | max_by(.height) | .anomaly' found.json).json"
+}
+sheet 0 > plane.xyz
+sheet 0.0008 > bent.xyz
+sheet 0.01 > curved.xyz
+[ "$(surface 0.1 plane.xyz)" = plane ]
+[ "$(surface 0.1 bent.xyz)" = plane ]
+[ "$(surface 0.025 bent.xyz)" = freeform ]
+[ "$(surface 0.1 curved.xyz)" = freeform ]
