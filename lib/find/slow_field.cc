@@ -16,7 +16,11 @@ constexpr int kFieldDegree = 5;
 constexpr Index kMonomials = 56; // of three variables, up to that degree
 constexpr int kFieldIterations = 8;
 // Ridge as a share of the mean diagonal: motions along the surface, which no distance shows, stay small.
-constexpr double kFieldRidge = 1e-4, kMinRidge = 1e-12;         // the latter where no point has a weight
+constexpr double kFieldRidge = 1e-4, kMinRidge = 1e-12; // the latter where no point has a weight
+// Strains have this standard deviation, and count together as much as so many points: what a few points on the walls
+// and ledges of a plate leave open follows from it, and what thousands show, such as shrinkage, does not.
+constexpr double kStrainSd = 0.01, kStrainWeight = 50;
+constexpr Index kStrainPoints = 500;                            // at which the strains are taken
 constexpr double kMinFieldScale = 1e-9, kMinFieldCutoff = 1e-9; // mm: points at one place, residuals all 0
 
 using Monomials = Eigen::Matrix<double, kMonomials, 1>;
@@ -32,6 +36,47 @@ Monomials monomials_of(const Eigen::Vector3d& p)
         for (int a = 0; a <= total; ++a)
             for (int b = 0; a + b <= total; ++b) result[k++] = powers(0, a) * powers(1, b) * powers(2, total - a - b);
     return result;
+}
+
+/// Partial derivative of the monomials along an axis.
+Monomials derivative_of_monomials(const Eigen::Vector3d& p, int axis)
+{
+    Monomials result;
+    Index k = 0;
+    for (int total = 0; total <= kFieldDegree; ++total)
+        for (int a = 0; a <= total; ++a)
+            for (int b = 0; a + b <= total; ++b) {
+                Eigen::Vector3i powers(a, b, total - a - b);
+                const int factor = powers[axis]--;
+                double term = factor;
+                for (int i = 0; i < 3 && factor > 0; ++i) term *= std::pow(p[i], powers[i]);
+                result[k++] = term;
+            }
+    return result;
+}
+
+/// Metal bends, and hardly strains: the quadratic form, in the coefficients of x of all monomials, y, z, whose value is
+/// the sum over some of the points of the squared strains (Frobenius norm of the symmetric gradient).
+Eigen::MatrixXd strain_energy(const Eigen::Matrix3Xd& points, const SlowField& field)
+{
+    const Index step = std::max<Index>(1, points.cols() / kStrainPoints), count = (points.cols() + step - 1) / step;
+    Eigen::MatrixXd strains = Eigen::MatrixXd::Zero(3 * kMonomials, 6 * count);
+    Index row = 0;
+    for (Index i = 0; i < points.cols(); i += step) {
+        const Eigen::Vector3d p = (points.col(i) - field.centre) / field.scale;
+        Eigen::Matrix<double, kMonomials, 3> gradient;
+        for (int axis = 0; axis < 3; ++axis) gradient.col(axis) = derivative_of_monomials(p, axis) / field.scale;
+        for (int a = 0; a < 3; ++a)
+            for (int b = 0; b <= a; ++b, ++row) {
+                // A shear stands twice in the symmetric gradient, as the mean of two derivatives.
+                const double factor = a == b ? 1 : std::sqrt(0.5);
+                strains.col(row).segment(a * kMonomials, kMonomials) += factor * gradient.col(b);
+                if (a != b) strains.col(row).segment(b * kMonomials, kMonomials) += factor * gradient.col(a);
+            }
+    }
+    Eigen::MatrixXd energy = Eigen::MatrixXd::Zero(3 * kMonomials, 3 * kMonomials);
+    energy.selfadjointView<Eigen::Lower>().rankUpdate(strains);
+    return energy / double(count);
 }
 
 /// Robust standard deviation of the residuals that there are; 0 without any.
@@ -89,6 +134,7 @@ SlowField fit_slow_field(const Eigen::Matrix3Xd& points, const compare::Referenc
     Eigen::Matrix<double, kMonomials, Eigen::Dynamic> basis(kMonomials, points.cols());
     for (Index i = 0; i < points.cols(); ++i) basis.col(i) = monomials_of((points.col(i) - field.centre) / field.scale);
     field.coefficients = Eigen::Matrix3Xd::Zero(3, kMonomials);
+    const Eigen::MatrixXd stiffness = kStrainWeight / (kStrainSd * kStrainSd) * strain_energy(points, field);
     for (int iteration = 0; iteration < kFieldIterations; ++iteration) {
         const Eigen::Matrix3Xd shifts = field.coefficients * basis;
         const compare::ErrorMap map = reference(points - shifts);
@@ -104,12 +150,13 @@ SlowField fit_slow_field(const Eigen::Matrix3Xd& points, const compare::Referenc
         }
         Eigen::MatrixXd N = Eigen::MatrixXd::Zero(A.rows(), A.rows());
         N.selfadjointView<Eigen::Lower>().rankUpdate(A);
+        field.sd = spread_of(map.error);
+        N += field.sd * field.sd * stiffness;
         N.diagonal().array() += kFieldRidge * N.trace() / double(A.rows()) + kMinRidge;
         // LLT: the ridge makes the matrix definite.
         const core::Cholesky cholesky(N);
         const Eigen::VectorXd solution = cholesky.solve(A * b);
         field.root = cholesky.L();
-        field.sd = spread_of(map.error);
         for (int axis = 0; axis < 3; ++axis)
             field.coefficients.row(axis) = solution.segment(axis * kMonomials, kMonomials).transpose();
     }

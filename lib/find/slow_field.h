@@ -22,8 +22,8 @@ struct SlowField {
 };
 
 /// Fits the field so that points, taken back by it, lie on the reference: weighted least squares of the distances along
-/// the normals, iterated with Tukey's weights, so that anomalies do not bend it (a smooth non-rigid ICP; compare
-/// Amberg, Romdhani & Vetter 2007, who hold neighbours together where here the polynomial does).
+/// the normals, and of strains, iterated with Tukey's weights, so that anomalies do not bend it (a smooth non-rigid
+/// ICP; compare Amberg, Romdhani & Vetter 2007, who hold neighbours together where here the polynomial does).
 /// @param points  3xN, mm, registered; some thousands, evenly over the part
 SlowField fit_slow_field(const Eigen::Matrix3Xd& points, const compare::Reference& reference);
 
