@@ -40,6 +40,9 @@ constexpr int kFaceSteps = 24;
 constexpr double kMaxSlope = 0.58;
 constexpr double kMaxSlopeChange = 0.3;
 constexpr int kInside = 31; // places along each side of B at which fit and scan are compared
+// Steps between such places by which the smooth surface goes on beyond B, a sixth of its sides. At the border of what a
+// polynomial is fitted to it follows the scanner's noise: there 0.8 of a place's weight is its own, inside 0.2 at most.
+constexpr int kAround = 5;
 constexpr int kMaxTries = 2000;
 constexpr double kTolerance = 0.8; // of the job over the probe's accuracy, as in samples/jobs/hammer.json
 
@@ -155,6 +158,13 @@ std::optional<Cell> try_cell(const Shape& all, double min, double max, std::mt19
     return cell;
 }
 
+/// A place inside B, or beyond it for a number below 0 or above kInside - 1.
+Eigen::Vector2d place(const Cell& cell, int i, int j)
+{
+    constexpr double kWithin = 1 - 1e-9; // of rounding at the edge of B
+    return kWithin * Eigen::Vector2d((i / (kInside - 1.0) - 0.5) * cell.a, (j / (kInside - 1.0) - 0.5) * cell.b);
+}
+
 job::Job job_of(const Cell& cell)
 {
     job::Job job;
@@ -170,16 +180,29 @@ job::Job job_of(const Cell& cell)
     return job;
 }
 
-/// Heights over the places inside B by products of Legendre polynomials up to the sixth degree.
-Eigen::VectorXd smoothed(const Eigen::VectorXd& z)
+/// The scan's heights at the places inside B and `around` steps beyond it.
+Eigen::MatrixXd heights(const Cell& cell, int around)
 {
-    constexpr int kDegree = 6;
-    Eigen::MatrixXd P(kInside, kDegree + 1);
-    for (int i = 0; i < kInside; ++i)
+    const int n = kInside + 2 * around;
+    Eigen::MatrixXd z(n, n);
+    for (int j = 0; j < n; ++j)
+        for (int i = 0; i < n; ++i) z(i, j) = cell.on->height(place(cell, i - around, j - around)).value_or(NAN);
+    return z;
+}
+
+/// The scan without its skin inside B: products of Legendre polynomials up to the eighth degree, fitted to B and a
+/// sixth of its sides around it, so that they follow waves of a sixth of B and longer.
+Eigen::VectorXd smooth_heights(const Cell& cell)
+{
+    constexpr int kDegree = 8;
+    constexpr int kPlaces = kInside + 2 * kAround;
+    Eigen::MatrixXd P(kPlaces, kDegree + 1);
+    for (int i = 0; i < kPlaces; ++i)
         for (int k = 0; k <= kDegree; ++k)
-            P(i, k) = std::legendre(static_cast<unsigned>(k), 2.0 * i / (kInside - 1) - 1);
+            P(i, k) = std::legendre(static_cast<unsigned>(k), 2.0 * i / (kPlaces - 1) - 1);
     const Eigen::MatrixXd Q = core::householder_qr(P, kDegree + 1).Q;
-    return (Q * (Q.transpose() * z.reshaped(kInside, kInside) * Q) * Q.transpose()).reshaped();
+    const Eigen::MatrixXd inside = Q.middleRows(kAround, kInside);
+    return (inside * (Q.transpose() * heights(cell, kAround) * Q) * inside.transpose()).reshaped();
 }
 
 void compare(const Cell& cell, const std::string& name, const gantry::JobTouches& touched, const job::Job& job,
@@ -192,17 +215,13 @@ void compare(const Cell& cell, const std::string& name, const gantry::JobTouches
     const surface::Surface surface = fit::fit_surface(input, "auto").surface;
     const auto predict = [&](double confidence) { return margin::predict_by_posterior(surface, job, confidence, 1); };
     Eigen::Matrix2Xd xy(2, kInside * kInside);
-    Eigen::VectorXd truth(xy.cols());
     for (int j = 0, k = 0; j < kInside; ++j)
-        for (int i = 0; i < kInside; ++i, ++k) {
-            xy.col(k) << (i / (kInside - 1.0) - 0.5) * cell.a * (1 - 1e-9),
-                (j / (kInside - 1.0) - 0.5) * cell.b * (1 - 1e-9);
-            truth[k] = cell.on->height(xy.col(k)).value_or(NAN);
-        }
+        for (int i = 0; i < kInside; ++i, ++k) xy.col(k) = place(cell, i, j);
+    const Eigen::VectorXd truth = heights(cell, 0).reshaped();
     const Eigen::VectorXd error = surface::heights(surface, xy) - truth, sigma = surface::sigmas(surface, xy);
     const double covered = (error.array().abs() <= 1.959964 * sigma.array()).cast<double>().mean();
     // What a wheel rests on: without the skin, which is finer than a sixth of B.
-    const Eigen::VectorXd smooth_error = error + truth - smoothed(truth);
+    const Eigen::VectorXd smooth_error = error + truth - smooth_heights(cell);
     const auto percentile = [](Eigen::VectorXd values, double share) {
         std::sort(values.begin(), values.end());
         return values[static_cast<Eigen::Index>(share * (values.size() - 1))];
