@@ -65,7 +65,8 @@ struct Patch {
 };
 
 // Least squares, then `robust_passes` re-weighted ones. Returns whether the points determine a quadratic. The sums run
-// point by point: products of matrices of a fixed size of 24 are unrolled by Eigen, which takes the compiler half a minute.
+// point by point: products of matrices of a fixed size of 24 are unrolled by Eigen, which takes the compiler half a
+// minute.
 bool fit_quadratic(Patch& patch, int robust_passes)
 {
     const Neighbourhood& local = patch.neighbours;
