@@ -52,6 +52,8 @@ class Runner {
     static std::vector<Eigen::Vector3d> beyond(std::vector<Eigen::Vector3d> way, double feed);
     Eigen::Vector3d off_the_way() const;
     double feed_to(const Action& action, const Eigen::Vector3d& reference);
+    double feed_along_pass(const Action& action, const Eigen::Vector3d& reference) const;
+    double feed_in_air(std::vector<Eigen::Vector3d> way) const;
     bool is_wall_ahead(double feed) const;
     double wall_slope() const;
     double force_after_step(double feed, double slope) const;
@@ -81,7 +83,7 @@ class Runner {
     StockBound bound_;
     double climb_ = 0;                              ///< steepest slope that the wheel has climbed lately
     bool is_climbing_ = false;                      ///< on a wall, in the last step
-    double feed_share_ = 1;                         ///< above layer 1: of the job's feed
+    double feed_share_ = 1;                         ///< of the job's feed
     double crossing_share_ = 1;                     ///< the same from one pass to the next
     Eigen::Vector3d tip_ = Eigen::Vector3d::Zero(); ///< the wheel's, at the end of the last move
     GrindRun result_;
@@ -94,6 +96,7 @@ class Runner {
     double height_error_ = 0;   ///< how far the drives are above their target, mm
     double grinding_time_ = 0, last_touch_off_ = 0; ///< s, and its value at the last touch-off
     double last_time_ = 0, last_force_ = 0;         ///< of the machine at the end of the last move
+    double last_feed_ = 0;                          ///< of the last move, mm/s; 0: it did not grind
 };
 
 } // namespace fettle::strategy

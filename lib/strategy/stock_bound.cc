@@ -96,6 +96,25 @@ double StockBound::max_force(const std::vector<Eigen::Vector3d>& path, double ra
     return max_force;
 }
 
+double StockBound::free_length(const std::vector<Eigen::Vector3d>& path, double radius, double allowance) const
+{
+    removal::HeightField stock = cut_out(path, radius);
+    removal::WheelInStock wheel(stock, width_);
+    double length = 0;
+    bool is_free = true;
+    for (std::size_t i = 1; i < path.size() && is_free; ++i) {
+        Eigen::Vector3d last = path[i - 1];
+        visit_positions(path[i - 1], path[i], [&](const Eigen::Vector3d& at) {
+            if (!is_free) return;
+            wheel.place(R_working_machine_ * at.head<2>(), radius, at.z());
+            is_free = wheel.touch() <= at.z() + allowance;
+            if (is_free) length += (at - last).norm();
+            last = at;
+        });
+    }
+    return length;
+}
+
 double StockBound::free_height(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double radius) const
 {
     removal::HeightField stock = cut_out({from, to}, radius);

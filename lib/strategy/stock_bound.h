@@ -33,6 +33,9 @@ class StockBound {
     /// @param hardness  of the stock, relative to what the job says
     double max_force(const std::vector<Eigen::Vector3d>& path, double radius, double feed,
                      double hardness = kMaxHardness) const;
+    /// How far the wheel goes along a polyline of commanded tool points before the bound stands higher above its rim
+    /// than `allowance`, mm; the whole length if it nowhere does.
+    double free_length(const std::vector<Eigen::Vector3d>& path, double radius, double allowance) const;
     /// Height at which the wheel moves from one place to another and touches nothing, mm: the safe height if it has to
     /// go where it has not been in B, or across a notch of B.
     double free_height(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double radius) const;

@@ -119,6 +119,39 @@ INSTANTIATE_TEST_SUITE_P(Parts, ForceLimit,
                                           testing::Values(strategy::Layer1::constant, strategy::Layer1::feed,
                                                           strategy::Layer1::force)));
 
+/// Layer 1 goes faster than the job's feed where the wheel has been and has left nothing, and only there: at that feed
+/// v, and straight on within the way v² / 2a to a stop, it meets nothing higher than a quarter of the tolerance, which
+/// no covering needs to grind, on the ideal gantry; on drives with errors, and a noisy transducer, no more than F_min.
+class AirInLayer1 : public testing::TestWithParam<bool> {};
+
+TEST_P(AirInLayer1, IsCrossedAsFastAsTheDrivesCanStop)
+{
+    const bool dynamic = GetParam();
+    const Work work = stubs(0);
+    const job::Job& job = work.plan.job;
+    const strategy::GrindRun run = grind(work, dynamic, 1, strategy::Layer1::constant);
+    const double ridge = 0.001; // mm: what the bound's grid does not know
+    const double limit = dynamic ? job.force.min : job.force.stiffness * (job.tolerance / 4 + ridge);
+    const double deceleration = 1000; // mm/s²
+    double fast_way = 0;
+    for (std::size_t i = 1; i < run.trace.size(); ++i) {
+        const strategy::TraceRow& row = run.trace[i];
+        if (row.layer != 1 || !(row.feed > 1.001 * job.feed.rate)) continue;
+        EXPECT_LE(row.feed, 2.001 * job.feed.rate);
+        const Eigen::Vector3d step = row.tool - run.trace[i - 1].tool;
+        fast_way += step.norm();
+        const double room = row.feed * row.feed / (2 * deceleration);
+        for (std::size_t j = i; j < run.trace.size() && run.trace[j].feed > 0; ++j) {
+            const Eigen::Vector3d on = run.trace[j].tool - row.tool, last = run.trace[j].tool - run.trace[j - 1].tool;
+            if (on.norm() > room || last.dot(step) < 0.5 * last.norm() * step.norm()) break; // it turns
+            EXPECT_LE(run.trace[j].peak_force, limit) << i << ", " << j << ": " << row.tool.transpose();
+        }
+    }
+    EXPECT_GT(fast_way, 3 * 60); // three of the passes over B
+}
+
+INSTANTIATE_TEST_SUITE_P(Gantries, AirInLayer1, testing::Bool());
+
 TEST(ForceRecord, WarnsWithThePlace)
 {
     strategy::ForceRecord record;
@@ -148,6 +181,13 @@ TEST(StockBound, KnowsWhereTheWheelHasBeen)
     EXPECT_EQ(bound.free_height(a, beside, radius), job.safe_height);
     EXPECT_GT(bound.max_force({Eigen::Vector3d(0, 0, 1), beside}, radius, 25.4), 3 * job.force.max);
     EXPECT_EQ(bound.free_height(a, outside, radius), job.safe_height);
+    // It is free to go along the path, as deep as the allowance, but not on, where metal may stand before its rim.
+    const Eigen::Vector3d deeper(0, 0, -0.1), on(0, 30, 1);
+    EXPECT_DOUBLE_EQ(bound.free_length({a, b}, radius, 0.001), 40);
+    EXPECT_DOUBLE_EQ(bound.free_length({a + deeper, b + deeper}, radius, 0.11), 40);
+    EXPECT_EQ(bound.free_length({a + deeper, b + deeper}, radius, 0.09), 0);
+    EXPECT_DOUBLE_EQ(bound.free_length({a, b, on}, radius, 0.1), 40);
+    EXPECT_EQ(bound.free_length({beside, b + beside - Eigen::Vector3d(0, 0, 1)}, radius, 0.1), 0);
     // What is predicted a little deeper is what a gantry meets in metal twice as hard, to a tenth.
     removal::HeightField ground = stock([](double, double) { return 1.0; }, 0.1);
     gantry::QuasiStaticOptions hard;
