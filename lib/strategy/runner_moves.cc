@@ -78,8 +78,9 @@ void Runner::grind(const Action& action, const Eigen::Vector3d& reference)
     }
 }
 
-/// Above layer 1 the force of the last step sets the feed of the next: faster where there is little to grind, if even a
-/// wall that the rim begins to climb does not take F_max within the step; slower near F_max.
+/// In layer 1 the feed along a pass depends on known air. Above it the force of the last step sets the feed of the
+/// next: faster where there is little to grind, if even a wall that the rim begins to climb does not take F_max within
+/// the step; slower near F_max.
 double Runner::feed_to(const Action& action, const Eigen::Vector3d& reference)
 {
     const job::ForceRange& limits = plan_.job.force;
