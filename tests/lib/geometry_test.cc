@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace fettle {
@@ -30,6 +31,27 @@ TEST(Quantiles, AreOrderStatistics)
         EXPECT_EQ(geometry::quantile(numbers, 1), sorted.back());
         EXPECT_EQ(geometry::quantile(numbers, 0.3), sorted[static_cast<std::size_t>(0.3 * (count - 1.0))]);
     }
+    // Many, of which some are the same, some far off, and one is infinite.
+    for (const double share : {0.0, 0.01, 0.5, 0.9}) {
+        std::vector<double> numbers(5000);
+        for (double& number : numbers) {
+            number = std::floor(1000 * geometry::draw_normal(random, 1)) / 1000;
+            if (geometry::draw_uniform(random) < share) number *= 1e6;
+        }
+        for (const double last : {1.0, std::numeric_limits<double>::infinity()}) {
+            numbers.back() = last;
+            std::vector<double> sorted = numbers;
+            std::ranges::sort(sorted);
+            for (const std::size_t rank : {0u, 1u, 700u, 2500u, 4900u, 4999u}) {
+                std::vector<double> some = numbers;
+                EXPECT_EQ(geometry::nth_smallest(some, rank), sorted[rank]);
+                std::ranges::sort(some);
+                EXPECT_EQ(some, sorted);
+            }
+        }
+    }
+    std::vector<double> same(100, 0.1);
+    EXPECT_EQ(geometry::median(same), 0.1);
     EXPECT_EQ(geometry::median_absolute(Eigen::Vector4d(-5, 1, -2, 3)), 3);
     EXPECT_EQ(geometry::median_absolute(Eigen::VectorXd()), 0);
 }
