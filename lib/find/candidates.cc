@@ -108,7 +108,7 @@ std::vector<Candidate> cut_out(const Image& residual, const Mask& domain, const 
                 region.mask.copyTo(mask(region.box - around.tl()));
                 if (const double rank = rank_of(residual(around), domain(around), mask, map.sigma, bounds.min_height);
                     rank > 0)
-                    candidates.push_back({around, mask, rank * std::pow(region.area, 0.25), 0});
+                    candidates.push_back({around, mask, rank * std::pow(region.area, 0.25), region.area});
             }
         }
         below = std::move(regions);
@@ -148,12 +148,12 @@ std::vector<Candidate> candidates_of_opening(const HeightMap& map, double width,
 
 } // namespace
 
-double overlap_of(const Candidate& a, const Candidate& b)
+bool overlap(const Candidate& a, const Candidate& b, double share)
 {
     const cv::Rect common = a.box & b.box;
-    if (common.empty()) return 0;
-    const int both = cv::countNonZero(a.mask(common - a.box.tl()) & b.mask(common - b.box.tl()));
-    return double(both) / std::max(1, cv::countNonZero(a.mask) + cv::countNonZero(b.mask) - both);
+    const auto is_more = [&](int both) { return both > share * std::max(1, a.cells + b.cells - both); };
+    if (common.empty() || !is_more(std::min({a.cells, b.cells, common.area()}))) return false;
+    return is_more(cv::countNonZero(a.mask(common - a.box.tl()) & b.mask(common - b.box.tl())));
 }
 
 std::vector<Candidate> find_candidates(const HeightMap& map, const SearchBounds& bounds)
@@ -171,8 +171,8 @@ std::vector<Candidate> find_candidates(const HeightMap& map, const SearchBounds&
     std::ranges::stable_sort(all, std::greater{}, &Candidate::rank);
     for (Candidate& candidate : all) {
         if (unique.size() == kMaxCandidates) break;
-        if (std::ranges::none_of(
-                unique, [&](const Candidate& other) { return overlap_of(candidate, other) > kDuplicateOverlap; }))
+        if (std::ranges::none_of(unique,
+                                 [&](const Candidate& other) { return overlap(candidate, other, kDuplicateOverlap); }))
             unique.push_back(std::move(candidate));
     }
     return unique;

@@ -35,26 +35,37 @@ struct Sides {
     double bend; ///< of the slope across the line, at its middle
 };
 
-/// Quadratics on both sides of a line.
-Sides fit_sides(const Ring& ring, const Crease& crease)
-{
-    const Eigen::MatrixXd A = basis(ring.xy, kSearchDegree, crease);
-    const Eigen::VectorXd all = Eigen::VectorXd::Ones(ring.z.size());
-    Eigen::VectorXd weights = all, coefficients;
-    Sides sides;
-    for (int iteration = 0; iteration < kRobustIterations; ++iteration) {
-        coefficients = solve_weighted(A, ring.z, weights.cwiseProduct(ring.near));
-        sides.residuals = ring.z - A * coefficients;
-        reweigh(weights, sides.residuals, all, std::max(kMinRingSigmas * ring.sigma, kMinRingSpread));
+/// Quadratics on both sides of lines.
+class SidesOfLines {
+  public:
+    explicit SidesOfLines(const Ring& ring) : ring_(ring), basis_(ring.xy, kSearchDegree) {}
+
+    Sides operator()(const Crease& crease)
+    {
+        basis_.set_crease(ring_.xy, crease);
+        const RingColumns columns = basis_.of(kSearchDegree, true);
+        const Eigen::VectorXd all = Eigen::VectorXd::Ones(ring_.z.size());
+        Eigen::VectorXd weights = all;
+        RingCoefficients coefficients;
+        Sides sides;
+        for (int iteration = 0; iteration < kRobustIterations; ++iteration) {
+            coefficients = columns.solve(ring_.z, weights.cwiseProduct(ring_.near));
+            sides.residuals = columns.residuals(ring_.z, coefficients);
+            if (iteration + 1 < kRobustIterations)
+                reweigh(weights, sides.residuals, all, std::max(kMinRingSigmas * ring_.sigma, kMinRingSpread));
+        }
+        sides.bend = coefficients[0];
+        return sides;
     }
-    sides.bend = coefficients[terms_of(kSearchDegree)];
-    return sides;
-}
+
+  private:
+    const Ring& ring_;
+    RingBasis basis_;
+};
 
 /// How badly a line fits; without end where it is no ridge.
-double misfit(const Ring& ring, const Line& line)
+double misfit(const Sides& sides)
 {
-    const Sides sides = fit_sides(ring, line.crease());
     return sides.bend < 0 ? quantile_of_sizes(sides.residuals, kSearchQuantile)
                           : std::numeric_limits<double>::infinity();
 }
@@ -71,9 +82,10 @@ std::optional<Crease> find_crease(const Ring& ring, const std::optional<Crease>&
     const double reach = std::min(kOffsetPerRadius * radius, kMaxOffset);
     Line best{0, 0};
     double min = std::numeric_limits<double>::infinity();
+    SidesOfLines sides_of(some);
     const auto try_line = [&](const Line& line) {
         if (std::abs(line.offset) > reach) return;
-        if (const double own = misfit(some, line); own < min) min = own, best = line;
+        if (const double own = misfit(sides_of(line.crease())); own < min) min = own, best = line;
     };
     double turn = std::numbers::pi / kSearchDirections, shift = 2 * reach / kSearchOffsets;
     if (near)
@@ -95,7 +107,7 @@ std::optional<Crease> find_crease(const Ring& ring, const std::optional<Crease>&
 
 Eigen::VectorXd crease_weights(const Ring& ring, const Crease& crease)
 {
-    const Eigen::VectorXd residuals = fit_sides(ring, crease).residuals;
+    const Eigen::VectorXd residuals = SidesOfLines(ring)(crease).residuals;
     const double sd = std::max(
         {geometry::kMedianToSigma * quantile_of_sizes(residuals, 0.5), kMinRingSigmas * ring.sigma, kMinRingSpread});
     return (1 - (residuals.array() / (kRingStartCutoff * sd)).square()).max(0).square();

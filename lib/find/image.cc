@@ -92,16 +92,27 @@ Image nan_median(const Image& z, int radius)
     return result;
 }
 
-Image smoothed(const Image& z, const Mask& mask, double sigma)
+Image smoothing_weight(const Mask& mask, double sigma)
 {
-    Image weight(z.size(), 0.F), sum(z.size(), 0.F), result;
+    Image weight(mask.size(), 0.F);
     weight.setTo(1, mask);
-    z.copyTo(sum, mask);
     cv::GaussianBlur(weight, weight, {}, sigma, sigma, cv::BORDER_REFLECT);
+    return cv::max(weight, kMinKernelWeight);
+}
+
+Image smoothed(const Image& z, const Mask& mask, double sigma, const Image& weight)
+{
+    Image sum(z.size(), 0.F), result;
+    z.copyTo(sum, mask);
     cv::GaussianBlur(sum, sum, {}, sigma, sigma, cv::BORDER_REFLECT);
-    cv::divide(sum, cv::max(weight, kMinKernelWeight), result);
+    cv::divide(sum, weight, result);
     result.setTo(kUnseen, ~mask);
     return result;
+}
+
+Image smoothed(const Image& z, const Mask& mask, double sigma)
+{
+    return smoothed(z, mask, sigma, smoothing_weight(mask, sigma));
 }
 
 Image filled(const Image& z)

@@ -26,6 +26,9 @@ Image nan_median(const Image& z, int radius);
 /// Gaussian smoothing of the cells of a mask by those of the mask alone (normalized convolution, Knutsson & Westin
 /// 1993); NaN elsewhere. @param sigma  cells
 Image smoothed(const Image& z, const Mask& mask, double sigma);
+/// The same with what the mask's cells weigh, which several images of one mask share.
+Image smoothed(const Image& z, const Mask& mask, double sigma, const Image& weight);
+Image smoothing_weight(const Mask& mask, double sigma);
 
 /// Each cell without a value gets that of the nearest cell that has one. @throws cv::Exception if none has
 Image filled(const Image& z);

@@ -24,6 +24,9 @@ constexpr double kSeedSds = 4.5, kSeedShare = 0.2;
 constexpr double kRegionSds = 2.5, kRegionShare = 0.08;
 constexpr double kMinSds = 0.25; // of the noise
 constexpr double kHeightSmoothing = 0.8;
+// Around the ring, cells: the shell around a region that has grown to the ring's edge, and smoothing.
+constexpr int kReachBeyondRing = 8;
+constexpr float kVeryLow = -1e9; // mm: no region
 
 // A crease that is beneath the region shows at once, or once the region has been taken anew.
 constexpr int kMaxCreaseSearches = 2;
@@ -47,14 +50,15 @@ double thickness_of(const Mask& mask)
 }
 
 Refinement::Refinement(const HeightMap& map, const Candidate& candidate, const Mask& others, const SearchBounds& bounds)
-    : bounds_(bounds), cell_(map.cell), sigma_(map.sigma)
+    : bounds_(bounds), cell_(map.cell), sigma_(map.sigma), thickness_(thickness_of(candidate.mask))
 {
     const double extent = std::max(candidate.box.width, candidate.box.height);
-    const double width = kRingPerThickness * std::max(thickness_of(candidate.mask), extent / 2);
+    const double width = kRingPerThickness * std::max(thickness_, extent / 2);
     window_ = grown_box(candidate.box, int(std::clamp(width, kMinRingWidth, double(kMaxMargin))) + kMarginBeyond,
                         map.z.size());
     z_ = map.z(window_);
     seen_ = map.seen(window_);
+    seen_weight_ = smoothing_weight(seen_, kHeightSmoothing);
     others_ = others(window_);
     region_ = Mask(z_.size(), 0);
     candidate.mask.copyTo(region_(candidate.box - window_.tl()));
@@ -78,13 +82,14 @@ Refinement::Progress Refinement::step()
     if (count < kMinRegionCells || count * cell_ * cell_ > bounds_.max_area) return Progress::none;
     const double overlap = double(cv::countNonZero(next & region_)) / cv::countNonZero(next | region_);
     region_ = next;
+    thickness_ = thickness_of(region_);
     return overlap > kStableOverlap ? Progress::settled : Progress::moved;
 }
 
 Candidate Refinement::region() const
 {
     const cv::Rect box = cv::boundingRect(region_);
-    return {box + window_.tl(), region_(box).clone(), 0, 0};
+    return {box + window_.tl(), region_(box).clone(), 0, cv::countNonZero(region_), 0};
 }
 
 Mask Refinement::ring_of(const Image& distance, double width) const
@@ -102,8 +107,9 @@ std::optional<RingFit> Refinement::fit(const Mask& ring, const Image& distance, 
     if (count < kMinRing) return std::nullopt;
     RingPoints points{Eigen::Matrix2Xd(2, count), Eigen::VectorXd(count), Eigen::VectorXd(count)};
     Eigen::Index k = 0;
-    for (int y = 0; y < ring.rows; ++y)
-        for (int x = 0; x < ring.cols; ++x)
+    const cv::Rect box = cv::boundingRect(ring);
+    for (int y = box.y; y < box.y + box.height; ++y)
+        for (int x = box.x; x < box.x + box.width; ++x)
             if (ring(y, x)) {
                 points.xy.col(k) << x, y;
                 points.z[k] = z_(y, x);
@@ -121,19 +127,20 @@ CreaseSearch Refinement::creases(bool is_sought) const
 bool Refinement::fit_beneath()
 {
     const cv::Rect box = cv::boundingRect(region_);
-    const double thickness = thickness_of(region_);
     const double width =
-        std::clamp(kRingPerThickness * std::max(thickness, kRingPerExtent * (std::max(box.width, box.height) - 1)),
+        std::clamp(kRingPerThickness * std::max(thickness_, kRingPerExtent * (std::max(box.width, box.height) - 1)),
                    kMinRingWidth, kMaxRingWidth);
-    const Image distance = distance_to(region_);
+    const cv::Rect reach = grown_box(box, int(std::ceil(width + kRingGap)) + kReachBeyondRing, z_.size());
+    Image distance(z_.size(), float(z_.rows + z_.cols));
+    distance_to(region_(reach)).copyTo(distance(reach));
     const Mask ring = ring_of(distance, width);
-    if (thickness < kMinCreaseThickness) crease_.reset();
-    const bool is_sought = thickness >= kMinCreaseThickness && (crease_ || crease_searches_ < kMaxCreaseSearches);
+    if (thickness_ < kMinCreaseThickness) crease_.reset();
+    const bool is_sought = thickness_ >= kMinCreaseThickness && (crease_ || crease_searches_ < kMaxCreaseSearches);
     std::optional<RingFit> fitted = fit(ring, distance, width, 4, creases(is_sought));
     if (!fitted) return false;
     crease_searches_ += is_sought;
     crease_ = fitted->crease_in_place();
-    beneath_ = {std::move(*fitted), ring, distance, width, {}, {}, {}};
+    beneath_ = {std::move(*fitted), ring, reach, distance, width, {}, {}, {}};
     evaluate();
     return true;
 }
@@ -143,37 +150,48 @@ void Refinement::evaluate()
     const int step = std::max(1, std::max(z_.rows, z_.cols) / 24);
     Image coarse((z_.rows + step - 1) / step, (z_.cols + step - 1) / step);
     for (int y = 0; y < coarse.rows; ++y)
-        for (int x = 0; x < coarse.cols; ++x)
-            coarse(y, x) = float(beneath_.fit.at((x + 0.5) * step - 0.5, (y + 0.5) * step - 0.5).sd);
+        beneath_.fit.sd_row(0.5 * step - 0.5, (y + 0.5) * step - 0.5, step, {coarse[y], std::size_t(coarse.cols)});
     beneath_.sd = refined(coarse, step, z_.size());
-    beneath_.residual = z_.clone();
-    for (int y = 0; y < z_.rows; ++y) beneath_.fit.add_row(y, -1, {beneath_.residual[y], std::size_t(z_.cols)});
-    beneath_.residual.setTo(std::numeric_limits<float>::quiet_NaN(), ~seen_);
-    beneath_.smooth = smoothed(beneath_.residual, seen_, kHeightSmoothing);
-    beneath_.smooth.setTo(-1e9, ~seen_);
+    const cv::Rect& reach = beneath_.reach;
+    beneath_.residual = Image(z_.size(), std::numeric_limits<float>::quiet_NaN());
+    residual_in(reach).copyTo(beneath_.residual(reach));
+    Image smooth = smoothed(beneath_.residual(reach), seen_(reach), kHeightSmoothing, seen_weight_(reach));
+    smooth.setTo(kVeryLow, ~seen_(reach));
+    beneath_.smooth = Image(z_.size(), kVeryLow);
+    smooth.copyTo(beneath_.smooth(reach));
+}
+
+Image Refinement::residual_in(const cv::Rect& box) const
+{
+    Image residual = z_(box).clone();
+    for (int y = 0; y < box.height; ++y)
+        beneath_.fit.add_row(box.x, box.y + y, -1, {residual[y], std::size_t(box.width)});
+    residual.setTo(std::numeric_limits<float>::quiet_NaN(), ~seen_(box));
+    return residual;
 }
 
 Image Refinement::surface() const
 {
     Image surface(z_.size(), 0.F);
-    for (int y = 0; y < z_.rows; ++y) beneath_.fit.add_row(y, 1, {surface[y], std::size_t(z_.cols)});
+    for (int y = 0; y < z_.rows; ++y) beneath_.fit.add_row(0, y, 1, {surface[y], std::size_t(z_.cols)});
     return surface;
 }
 
 Mask Refinement::region_over_surface() const
 {
     const double height = quantile_of(values_in(beneath_.smooth, region_ & seen_), 0.85);
+    const double ring_variance = kRingVariance * beneath_.fit.sd * beneath_.fit.sd;
+    const double least = std::max(kRegionSds * kMinSds * sigma_, kRegionShare * height);
+    const cv::Rect& reach = beneath_.reach;
     Mask seeds(z_.size(), 0), low(z_.size(), 0);
-    for (int y = 0; y < z_.rows; ++y)
-        for (int x = 0; x < z_.cols; ++x) {
-            const double sd = std::max(
-                std::sqrt(kRingVariance * beneath_.fit.sd * beneath_.fit.sd + beneath_.sd(y, x) * beneath_.sd(y, x)),
-                kMinSds * sigma_);
+    for (int y = reach.y; y < reach.y + reach.height; ++y)
+        for (int x = reach.x; x < reach.x + reach.width; ++x) {
             const double value = beneath_.smooth(y, x);
+            if (!(value > least)) continue; // most cells
+            const double sd =
+                std::max(std::sqrt(ring_variance + beneath_.sd(y, x) * beneath_.sd(y, x)), kMinSds * sigma_);
             if (value > std::max(kSeedSds * sd, kSeedShare * height) && core_(y, x)) seeds(y, x) = 255;
-            if (value > std::max(kRegionSds * sd, kRegionShare * height) &&
-                beneath_.distance(y, x) < beneath_.width + kRingGap)
-                low(y, x) = 255;
+            if (value > kRegionSds * sd && beneath_.distance(y, x) < beneath_.width + kRingGap) low(y, x) = 255;
         }
     // Steep sides hide cells: a few unseen ones within do not cut a region in two.
     low |= closed(low, 1) & ~seen_;

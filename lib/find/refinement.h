@@ -20,10 +20,11 @@ double thickness_of(const Mask& mask);
 struct Beneath {
     RingFit fit;
     Mask ring;
-    Image distance; ///< from the region
+    cv::Rect reach; ///< of the ring, and what smoothing needs around it: the images are right in it
+    Image distance; ///< from the region; large beyond the ring's reach
     double width;   ///< of the ring
-    Image residual; ///< over the surface
-    Image smooth;   ///< the same, smoothed; very low where nothing is seen
+    Image residual; ///< over the surface; NaN beyond
+    Image smooth;   ///< the same, smoothed; very low beyond, and where nothing is seen
     Image sd;       ///< of the surface
 };
 
@@ -46,6 +47,8 @@ class Refinement {
 
     /// The region as a candidate in the map.
     Candidate region() const;
+    /// Of the region, cells.
+    double thickness() const { return thickness_; }
 
     /// The find, once the region is taken for final.
     Verified result(double texture) const;
@@ -69,6 +72,9 @@ class Refinement {
     /// Heights over the surface, and its standard deviation, which is smooth: at every few cells it is computed.
     void evaluate();
 
+    /// What is seen in a box of the window, over the surface; NaN elsewhere.
+    Image residual_in(const cv::Rect& box) const;
+
     Mask region_over_surface() const;
 
     /// Components of a mask that hold a seed.
@@ -86,6 +92,8 @@ class Refinement {
     cv::Rect window_;
     Image z_;
     Mask seen_, others_, region_, core_;
+    Image seen_weight_; ///< of smoothing
+    double thickness_;
     Beneath beneath_;
     std::optional<Crease> crease_; ///< beneath the region
     int crease_searches_ = 0;

@@ -53,6 +53,8 @@ void Refinement::measure_stability(Evidence& evidence) const
     const double x0 = box.x + box.width / 2.0, y0 = box.y + box.height / 2.0;
     std::vector<cv::Point> places;
     cv::findNonZero(region_, places);
+    Eigen::VectorXd z(Eigen::Index(places.size()));
+    for (std::size_t k = 0; k < places.size(); ++k) z[Eigen::Index(k)] = beneath_.fit.z_at(places[k].x, places[k].y);
     std::vector<double> squares(places.size(), 0);
     int fits = 0;
     for (int quadrant = 0; quadrant < 4; ++quadrant) {
@@ -64,17 +66,13 @@ void Refinement::measure_stability(Evidence& evidence) const
         if (!other) continue;
         ++fits;
         for (std::size_t k = 0; k < places.size(); ++k) {
-            const double d = other->z_at(places[k].x, places[k].y) - beneath_.fit.z_at(places[k].x, places[k].y);
+            const double d = other->z_at(places[k].x, places[k].y) - z[Eigen::Index(k)];
             squares[k] += d * d;
         }
     }
     evidence.instability = fits == 0 ? evidence.height : std::sqrt(quantile_of(squares, 0.75) / fits);
     Eigen::MatrixXd A(Eigen::Index(places.size()), 3);
-    Eigen::VectorXd z(A.rows());
-    for (std::size_t k = 0; k < places.size(); ++k) {
-        A.row(Eigen::Index(k)) << 1, places[k].x - x0, places[k].y - y0;
-        z[Eigen::Index(k)] = beneath_.fit.z_at(places[k].x, places[k].y);
-    }
+    for (std::size_t k = 0; k < places.size(); ++k) A.row(Eigen::Index(k)) << 1, places[k].x - x0, places[k].y - y0;
     const Eigen::Vector3d plane = core::solve_ldlt(A.transpose() * A, A.transpose() * z);
     evidence.sag = std::sqrt((z - A * plane).squaredNorm() / double(places.size()));
 }
@@ -106,7 +104,8 @@ int Refinement::growth() const
 
 Verified Refinement::result(double texture) const
 {
-    Verified verified{window_, trimmed(), region_, beneath_.residual, {}, 1, growth(), 0, crease_.has_value()};
+    const cv::Rect all({0, 0}, window_.size());
+    Verified verified{window_, trimmed(), region_, residual_in(all), {}, 1, growth(), 0, crease_.has_value()};
     Evidence& e = verified.evidence;
     const Mask inside = region_ & seen_;
     e.height = quantile_of(values_in(beneath_.residual, inside), 0.9);
@@ -121,7 +120,7 @@ Verified Refinement::result(double texture) const
     e.ring_width = reach - kRingGap;
     e.degree = beneath_.fit.degree;
     e.cells = cv::countNonZero(region_);
-    e.thickness = thickness_of(region_);
+    e.thickness = thickness_;
     if (e.height < bounds_.min_height || e.significance() < kMinSignificance) return verified; // no evidence needed
     const Mask inner_ring = beneath_.ring & (beneath_.distance <= std::max(0.5 * beneath_.width, 4.0) + kRingGap);
     if (const auto inner = fit(inner_ring, beneath_.distance, 1e9, 3, creases(false))) {

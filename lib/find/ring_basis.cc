@@ -1,12 +1,13 @@
 #include "find/ring_basis.h"
 
-#include "core/cholesky.h"
 #include "core/simd.h"
 #include "geometry/quantiles.h"
 
+#include <Eigen/Cholesky>
+
 #include <algorithm>
 #include <cmath>
-#include <vector>
+#include <span>
 
 namespace fettle::find {
 
@@ -29,14 +30,22 @@ void monomials(double x, double y, int degree, double* row)
     }
 }
 
-Eigen::MatrixXd basis(const Eigen::Matrix2Xd& xy, int degree, const std::optional<Crease>& crease)
+RingBasis::RingBasis(const Eigen::Matrix2Xd& xy, int degree) : columns_(xy.cols(), kCreaseTerms + terms_of(degree))
 {
-    Eigen::MatrixXd transposed(terms_of(degree) + (crease ? kCreaseTerms : 0), xy.cols());
-    for (Index i = 0; i < xy.cols(); ++i) {
-        monomials(xy(0, i), xy(1, i), degree, transposed.col(i).data());
-        if (crease) transposed.col(i).tail<kCreaseTerms>() = crease->terms(xy(0, i), xy(1, i));
+    const auto x = xy.row(0).transpose().array(), y = xy.row(1).transpose().array();
+    Index k = kCreaseTerms;
+    columns_.col(k++).setOnes();
+    for (int total = 1; total <= degree; ++total) { // as monomials()
+        const Index above = k - total;
+        for (int b = 0; b < total; ++b) columns_.col(k++).array() = columns_.col(above + b).array() * x;
+        columns_.col(k++).array() = columns_.col(above + total - 1).array() * y;
     }
-    return transposed.transpose();
+}
+
+void RingBasis::set_crease(const Eigen::Matrix2Xd& xy, const Crease& crease)
+{
+    for (Index i = 0; i < xy.cols(); ++i)
+        columns_.row(i).head<kCreaseTerms>() = crease.terms(xy(0, i), xy(1, i)).transpose();
 }
 
 namespace {
@@ -84,41 +93,63 @@ FETTLE_CLONES void weighted_products(const double* A, const double* weights, con
     }
 }
 
-struct NormalEquations {
-    Eigen::MatrixXd matrix;
-    Eigen::VectorXd right;
-};
-
-NormalEquations normal_equations(const Eigen::MatrixXd& A, const Eigen::VectorXd& z, const Eigen::VectorXd& weights)
+/// z - A c
+FETTLE_CLONES void rest(const double* A, const double* z, const double* c, Index rows, Index columns, double* residuals)
 {
-    NormalEquations equations{Eigen::MatrixXd(A.cols(), A.cols()), Eigen::VectorXd(A.cols())};
-    Eigen::MatrixXd& G = equations.matrix;
-    Eigen::VectorXd weighted(A.rows());
-    weighted_products(A.data(), weights.data(), z.data(), A.rows(), A.cols(), weighted.data(), G.data(),
-                      equations.right.data());
-    G.triangularView<Eigen::StrictlyUpper>() = G.transpose();
-    G.diagonal().array() += kRingRidge * std::max(G.trace(), kRingRidge);
-    return equations;
+    for (Index r = 0; r < rows; r += 4) {
+        Double4 sum = lanes(z + r);
+        for (Index j = 0; j < columns; ++j) sum -= core::broadcast(c[j]) * lanes(A + j * rows + r);
+        *reinterpret_cast<Double4*>(residuals + r) = sum;
+    }
+}
+
+/// With the ridge that makes it definite.
+Eigen::LLT<RingMatrix> factors(RingMatrix matrix)
+{
+    matrix.diagonal().array() += kRingRidge * std::max(matrix.trace(), kRingRidge);
+    return Eigen::LLT<RingMatrix>(matrix);
 }
 
 } // namespace
 
-Eigen::MatrixXd normal_matrix(const Eigen::MatrixXd& A, const Eigen::VectorXd& weights)
+RingColumns::NormalEquations RingColumns::normal_equations(const Eigen::VectorXd& z,
+                                                           const Eigen::VectorXd& weights) const
 {
-    return normal_equations(A, weights, weights).matrix;
+    NormalEquations equations{RingMatrix(count_, count_), RingCoefficients(count_)};
+    Eigen::VectorXd weighted(rows_);
+    weighted_products(data_, weights.data(), z.data(), rows_, count_, weighted.data(), equations.matrix.data(),
+                      equations.right.data());
+    return equations;
 }
 
-Eigen::VectorXd solve_weighted(const Eigen::MatrixXd& A, const Eigen::VectorXd& z, const Eigen::VectorXd& weights)
+RingColumns::NormalEquations RingColumns::NormalEquations::head(Index count) const
 {
-    const NormalEquations equations = normal_equations(A, z, weights);
-    return core::solve_ldlt(equations.matrix, equations.right); // LDLT: the ridge makes the matrix definite
+    return {matrix.topLeftCorner(count, count), right.head(count)};
 }
+
+RingCoefficients RingColumns::NormalEquations::solution() const { return factors(matrix).solve(right); }
+
+RingMatrix RingColumns::NormalEquations::inverse() const
+{
+    return factors(matrix).solve(RingMatrix::Identity(matrix.rows(), matrix.cols()));
+}
+
+Eigen::VectorXd RingColumns::residuals(const Eigen::VectorXd& z, const RingCoefficients& coefficients) const
+{
+    Eigen::VectorXd result(rows_);
+    rest(data_, z.data(), coefficients.data(), rows_, count_, result.data());
+    return result;
+}
+
+double ChosenSizes::quantile(double share) { return geometry::quantile(std::span(sizes_.data(), count_), share); }
+
+double ChosenSizes::median() { return geometry::median(std::span(sizes_.data(), count_)); }
 
 double quantile_of_sizes(const Eigen::VectorXd& residuals, double share)
 {
-    std::vector<double> sizes(residuals.begin(), residuals.end());
-    for (double& size : sizes) size = std::abs(size);
-    return geometry::quantile(sizes, share);
+    ChosenSizes sizes(residuals.size());
+    for (const double residual : residuals) sizes.add(residual, true);
+    return sizes.quantile(share);
 }
 
 Ring thinned(const Ring& ring, Index max_count)
@@ -137,10 +168,9 @@ Ring thinned(const Ring& ring, Index max_count)
 void reweigh(Eigen::VectorXd& weights, const Eigen::VectorXd& residuals, const Eigen::VectorXd& chosen,
              double min_spread)
 {
-    std::vector<double> sizes;
-    for (Index i = 0; i < residuals.size(); ++i)
-        if (chosen[i] > 0) sizes.push_back(std::abs(residuals[i]));
-    const double spread = std::max(geometry::kMedianToSigma * geometry::median(sizes), min_spread);
+    ChosenSizes sizes(residuals.size());
+    for (Index i = 0; i < residuals.size(); ++i) sizes.add(residuals[i], chosen[i] > 0);
+    const double spread = std::max(geometry::kMedianToSigma * sizes.median(), min_spread);
     weights.array() /= (residuals.array().abs() / spread).max(1);
 }
 

@@ -3,13 +3,14 @@
 #include <Eigen/Core>
 
 #include <optional>
+#include <vector>
 
 /// What the files of RingFit share: the points of a ring, scaled, and linear least squares on them.
 namespace fettle::find {
 
 inline constexpr std::size_t kHighestDegree = 4;
 inline constexpr Eigen::Index kMaxTerms = 15;   ///< of a polynomial of that degree
-inline constexpr Eigen::Index kCreaseTerms = 3; ///< of a crease, after the polynomial's
+inline constexpr Eigen::Index kCreaseTerms = 3; ///< of a crease
 inline constexpr double kRingStartCutoff = 5;   ///< Tukey's, of the weights to start from, standard deviations
 inline constexpr double kMinRingSigmas = 0.5;   ///< a residual spread below half the noise is chance
 inline constexpr double kMinRingSpread =
@@ -46,17 +47,81 @@ inline Eigen::Index terms_of(int degree) { return Eigen::Index(degree + 1) * (de
 /// Monomials x^a y^b of total degree up to `degree`; those of a lower degree come first.
 void monomials(double x, double y, int degree, double* row);
 
-/// A row for each point: the monomials, then the crease's terms, if there is one.
-Eigen::MatrixXd basis(const Eigen::Matrix2Xd& xy, int degree, const std::optional<Crease>& crease = {});
+// Functions of a ring's points, and their coefficients: no more than these, so that they need no memory of their own.
+inline constexpr int kMaxRingTerms = int(kMaxTerms + kCreaseTerms);
+using RingCoefficients = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxRingTerms, 1>;
+using RingMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMaxRingTerms, kMaxRingTerms>;
 
-Eigen::MatrixXd normal_matrix(const Eigen::MatrixXd& A, const Eigen::VectorXd& weights);
+/// A surface's functions at a ring's points, a column each: the crease's terms, if it has one, then the monomials.
+class RingColumns {
+  public:
+    RingColumns(const double* data, Eigen::Index rows, Eigen::Index count) : data_(data), rows_(rows), count_(count) {}
 
-/// Weighted least squares.
-Eigen::VectorXd solve_weighted(const Eigen::MatrixXd& A, const Eigen::VectorXd& z, const Eigen::VectorXd& weights);
+    Eigen::Index count() const { return count_; }
+
+    struct NormalEquations {
+        RingMatrix matrix; ///< lower half
+        RingCoefficients right;
+
+        /// Those of the first columns alone.
+        NormalEquations head(Eigen::Index count) const;
+        RingCoefficients solution() const;
+        RingMatrix inverse() const;
+    };
+    NormalEquations normal_equations(const Eigen::VectorXd& z, const Eigen::VectorXd& weights) const;
+
+    /// Weighted least squares.
+    RingCoefficients solve(const Eigen::VectorXd& z, const Eigen::VectorXd& weights) const
+    {
+        return normal_equations(z, weights).solution();
+    }
+
+    /// z less the functions.
+    Eigen::VectorXd residuals(const Eigen::VectorXd& z, const RingCoefficients& coefficients) const;
+
+  private:
+    const double* data_;
+    Eigen::Index rows_, count_;
+};
+
+/// The functions of all surfaces up to a degree: those of one are columns next to each other.
+class RingBasis {
+  public:
+    RingBasis(const Eigen::Matrix2Xd& xy, int degree);
+    void set_crease(const Eigen::Matrix2Xd& xy, const Crease& crease);
+
+    RingColumns of(int degree, bool is_creased) const
+    {
+        const Eigen::Index first = is_creased ? 0 : kCreaseTerms;
+        return {columns_.col(first).data(), columns_.rows(), kCreaseTerms + terms_of(degree) - first};
+    }
+
+  private:
+    Eigen::MatrixXd columns_;
+};
+
+/// Sizes of residuals, chosen one by one.
+class ChosenSizes {
+  public:
+    explicit ChosenSizes(Eigen::Index max_count) : sizes_(std::size_t(max_count)) {}
+
+    void add(double residual, bool is_chosen)
+    {
+        sizes_[count_] = std::abs(residual);
+        count_ += is_chosen; // without a branch, which would be mispredicted
+    }
+    bool empty() const { return count_ == 0; }
+    double quantile(double share);
+    double median();
+
+  private:
+    std::vector<double> sizes_;
+    std::size_t count_ = 0;
+};
 
 double quantile_of_sizes(const Eigen::VectorXd& residuals, double share);
 
-/// Weights for the next solve_weighted() after residuals, by Huber, with the spread of the chosen points.
+/// Weights for the next fit after residuals, by Huber, with the spread of the chosen points.
 /// @param chosen  1 or 0   @param min_spread  mm
 void reweigh(Eigen::VectorXd& weights, const Eigen::VectorXd& residuals, const Eigen::VectorXd& chosen,
              double min_spread);

@@ -2,8 +2,6 @@
 
 #include "find/crease.h"
 
-#include "core/cholesky.h"
-#include "core/decompositions.h"
 #include "geometry/quantiles.h"
 
 #include <algorithm>
@@ -32,6 +30,7 @@ constexpr double kPartialGain = 0.85;
 constexpr int kStartIterations = 3, kRefineIterations = 6;
 // The start is a quadratic from so many independent points on, and then a plane's or a quadratic's terms have at least
 // so many points each: half of them may be outliers.
+constexpr int kMaxStartDegree = 2;
 constexpr double kMinQuadraticPoints = 15, kMinStartPointsPerTerm = 3;
 // The first refinements measure the spread of the start's inliers; by then the residuals can tell inliers themselves.
 constexpr int kStartInlierIterations = 2;
@@ -42,8 +41,7 @@ constexpr double kMinWeight = 0.05;                // below it a point is an out
 // A crease is sought where the best polynomial leaves more than this multiple of the noise, or points out.
 constexpr double kMinCreaseSigmas = 1.5, kMaxSmoothInliers = 0.85;
 constexpr int kMaxCreasedDegree = 3;
-constexpr double kMinShare = 1e-3;        // of a polynomial in the average
-constexpr double kMinEigenvalue = 1e-300; // above 0: the inverse stays finite where all weights are 0
+constexpr double kMinShare = 1e-3; // of a polynomial in the average
 
 Eigen::VectorXd biweights(const Eigen::VectorXd& residuals, double cutoff)
 {
@@ -60,36 +58,39 @@ Eigen::VectorXd outside_sector(const Ring& ring, int sector)
 }
 
 /// Coefficients that fit the chosen points, by Huber's weights.
-Eigen::VectorXd robust_coefficients(const Ring& ring, const Eigen::MatrixXd& A, const Eigen::VectorXd& chosen)
+RingCoefficients robust_coefficients(const Ring& ring, const RingColumns& A, const Eigen::VectorXd& chosen)
 {
-    Eigen::VectorXd weights = chosen, coefficients;
+    Eigen::VectorXd weights = chosen;
+    RingCoefficients coefficients;
     for (int iteration = 0; iteration < kStartIterations; ++iteration) {
-        coefficients = solve_weighted(A, ring.z, weights.cwiseProduct(ring.near));
+        coefficients = A.solve(ring.z, weights.cwiseProduct(ring.near));
         if (iteration + 1 < kStartIterations)
-            reweigh(weights, ring.z - A * coefficients, chosen, std::max(kMinRingSigmas * ring.sigma, kMinRingSpread));
+            reweigh(weights, A.residuals(ring.z, coefficients), chosen,
+                    std::max(kMinRingSigmas * ring.sigma, kMinRingSpread));
     }
     return coefficients;
 }
 
 /// Weights to start from.
-Eigen::VectorXd start_weights(const Ring& whole)
+Eigen::VectorXd start_weights(const Ring& whole, const RingBasis& basis)
 {
     const Ring ring = thinned(whole, kMaxStartPoints);
-    const int degree = ring.independent > kMinQuadraticPoints ? 2 : 1;
-    const Eigen::MatrixXd A = basis(ring.xy, degree);
-    Eigen::VectorXd best;
+    const int degree = ring.independent > kMinQuadraticPoints ? kMaxStartDegree : 1;
+    const RingBasis own(ring.xy, degree);
+    const RingColumns A = own.of(degree, false);
+    RingCoefficients best;
     double best_quantile = std::numeric_limits<double>::infinity();
     for (int sector = -1; sector < kSectors; ++sector) {
         const Eigen::VectorXd chosen = sector < 0 ? Eigen::VectorXd::Ones(ring.z.size()) : outside_sector(ring, sector);
-        if (chosen.sum() < kMinStartPointsPerTerm * double(A.cols())) continue;
-        const Eigen::VectorXd coefficients = robust_coefficients(ring, A, chosen);
-        const double quantile = quantile_of_sizes(ring.z - A * coefficients, kStartQuantile);
+        if (chosen.sum() < kMinStartPointsPerTerm * double(A.count())) continue;
+        const RingCoefficients coefficients = robust_coefficients(ring, A, chosen);
+        const double quantile = quantile_of_sizes(A.residuals(ring.z, coefficients), kStartQuantile);
         if (quantile >= best_quantile * (sector < 0 ? 1 : kPartialGain)) continue;
         best_quantile = quantile;
         best = coefficients;
     }
     if (best.size() == 0) return {};
-    const Eigen::VectorXd residuals = whole.z - basis(whole.xy, degree) * best;
+    const Eigen::VectorXd residuals = basis.of(degree, false).residuals(whole.z, best);
     const double sd = std::max({geometry::kMedianToSigma * quantile_of_sizes(residuals, 0.5),
                                 kMinRingSigmas * ring.sigma, best_quantile / kQuantilePerSigma});
     return biweights(residuals, kRingStartCutoff * sd);
@@ -99,11 +100,11 @@ Eigen::VectorXd start_weights(const Ring& whole)
 struct RingPolynomial {
     int degree;
     bool is_creased;
-    Eigen::VectorXd coefficients; ///< of the monomials, then of the crease's terms
-    Eigen::MatrixXd covariance;   ///< of these, mm²
-    double sd;                    ///< of the points about it, mm
-    double inliers;               ///< share of points with a weight
-    double share;                 ///< in the average
+    RingCoefficients coefficients; ///< of the crease's terms, then of the monomials
+    RingMatrix covariance;         ///< of these, mm²
+    double sd;                     ///< of the points about it, mm
+    double inliers;                ///< share of points with a weight
+    double share;                  ///< in the average
 };
 
 struct FittedPolynomial {
@@ -111,44 +112,57 @@ struct FittedPolynomial {
     Eigen::VectorXd residuals, weights;
 };
 
-FittedPolynomial fit_polynomial(const Ring& ring, int degree, const std::optional<Crease>& crease,
-                                Eigen::VectorXd weights)
+/// Weights to start from, and the normal equations by them of the highest degree, which hold those of the lower ones.
+struct RingStart {
+    Eigen::VectorXd weights;
+    RingColumns::NormalEquations equations;
+
+    RingStart(const Ring& ring, const RingColumns& highest, Eigen::VectorXd start)
+        : weights(std::move(start)), equations(highest.normal_equations(ring.z, weights.cwiseProduct(ring.near)))
+    {
+    }
+};
+
+FittedPolynomial fit_polynomial(const Ring& ring, const RingBasis& basis, int degree, bool is_creased,
+                                const RingStart& start)
 {
-    const Eigen::MatrixXd A = basis(ring.xy, degree, crease);
-    FittedPolynomial fit{{degree, crease.has_value(), {}, {}, 0, 0, 0}, {}, {}};
+    const RingColumns A = basis.of(degree, is_creased);
+    FittedPolynomial fit{{degree, is_creased, start.equations.head(A.count()).solution(), {}, 0, 0, 0}, {}, {}};
+    fit.weights = start.weights;
     double sd = 0;
     for (int iteration = 0; iteration < kRefineIterations; ++iteration) {
-        fit.polynomial.coefficients = solve_weighted(A, ring.z, weights.cwiseProduct(ring.near));
-        fit.residuals = ring.z - A * fit.polynomial.coefficients;
-        std::vector<double> sizes;
-        for (Index i = 0; i < weights.size(); ++i) {
-            const double size = std::abs(fit.residuals[i]);
-            if (iteration < kStartInlierIterations ? weights[i] > kMinWeight : size < kInlierCutoff * sd)
-                sizes.push_back(size);
-        }
-        const double spread = sizes.empty() ? sd : geometry::kMedianToSigma * geometry::median(sizes);
+        if (iteration > 0) fit.polynomial.coefficients = A.solve(ring.z, fit.weights.cwiseProduct(ring.near));
+        fit.residuals = A.residuals(ring.z, fit.polynomial.coefficients);
+        ChosenSizes sizes(fit.weights.size());
+        for (Index i = 0; i < fit.weights.size(); ++i)
+            sizes.add(fit.residuals[i], iteration < kStartInlierIterations
+                                            ? fit.weights[i] > kMinWeight
+                                            : std::abs(fit.residuals[i]) < kInlierCutoff * sd);
+        const double spread = sizes.empty() ? sd : geometry::kMedianToSigma * sizes.median();
         const double before = std::exchange(sd, std::max({spread, kMinRingSigmas * ring.sigma, kMinRingSpread}));
-        weights = biweights(fit.residuals, kCutoff * sd);
+        fit.weights = biweights(fit.residuals, kCutoff * sd);
         if (iteration > kStartInlierIterations && std::abs(sd - before) < kSettledChange * sd) break;
     }
-    fit.weights = weights;
     fit.polynomial.sd = sd;
-    fit.polynomial.inliers = double((weights.array() > kMinWeight).count()) / double(weights.size());
+    fit.polynomial.inliers = double((fit.weights.array() > kMinWeight).count()) / double(fit.weights.size());
     return fit;
 }
 
 /// Sets the coefficients' covariance.
-void set_covariance(FittedPolynomial& fit, const Ring& ring, const std::optional<Crease>& crease)
+void set_covariance(FittedPolynomial& fit, const Ring& ring, const RingBasis& basis)
 {
-    const Eigen::MatrixXd A =
-        basis(ring.xy, fit.polynomial.degree, fit.polynomial.is_creased ? crease : std::optional<Crease>());
+    const RingColumns A = basis.of(fit.polynomial.degree, fit.polynomial.is_creased);
     const double repeats = double(ring.z.size()) / ring.independent;
-    // Semidefinite where few points are left: the root by eigenvalues exists for any.
-    const auto [values, vectors] =
-        core::symmetric_eigen<Eigen::Dynamic>(normal_matrix(A, fit.weights.cwiseProduct(ring.near)));
-    const Eigen::VectorXd variances = repeats / (values.array().max(kRingRidge * values.maxCoeff() + kMinEigenvalue));
-    fit.polynomial.covariance =
-        fit.polynomial.sd * fit.polynomial.sd * vectors * variances.asDiagonal() * vectors.transpose();
+    fit.polynomial.covariance = fit.polynomial.sd * fit.polynomial.sd * repeats *
+                                A.normal_equations(ring.z, fit.weights.cwiseProduct(ring.near)).inverse();
+}
+
+/// The highest degree up to `max_degree` whose terms, and `more`, have enough independent points each; 0: none has.
+int affordable_degree(const Ring& ring, int max_degree, Index more)
+{
+    int degree = 0;
+    while (degree < max_degree && ring.independent >= kMinPointsPerTerm * double(terms_of(degree + 1) + more)) ++degree;
+    return degree;
 }
 
 /// Shares by the Bayesian information criterion, with residuals cut off at the same size for all.
@@ -211,7 +225,7 @@ void set_average(RingFit& fit, const std::vector<FittedPolynomial>& fits)
         const RingPolynomial& polynomial = fitted.polynomial;
         std::vector<Index>& place = places.emplace_back(std::size_t(polynomial.coefficients.size()));
         for (Index k = 0; k < Index(place.size()); ++k)
-            place[std::size_t(k)] = k < terms_of(polynomial.degree) ? k : k - terms_of(polynomial.degree) + monomials;
+            place[std::size_t(k)] = !polynomial.is_creased ? k : k < kCreaseTerms ? monomials + k : k - kCreaseTerms;
         fit.mean(place) += polynomial.share * polynomial.coefficients;
         fit.sd += polynomial.share * polynomial.sd;
         fit.inliers += polynomial.share * polynomial.inliers;
@@ -228,8 +242,8 @@ void set_average(RingFit& fit, const std::vector<FittedPolynomial>& fits)
 }
 
 /// Fits polynomials on both sides of a crease, where one alone leaves more than noise.
-void add_creased(std::vector<FittedPolynomial>& fits, const Ring& ring, int max_degree, const CreaseSearch& creases,
-                 RingFit& fit)
+void add_creased(std::vector<FittedPolynomial>& fits, const Ring& ring, RingBasis& basis, int max_degree,
+                 const CreaseSearch& creases, RingFit& fit)
 {
     if (!creases.is_sought && !creases.known) return;
     const auto best = std::ranges::min_element(fits, {}, [](const FittedPolynomial& f) { return f.polynomial.sd; });
@@ -238,12 +252,13 @@ void add_creased(std::vector<FittedPolynomial>& fits, const Ring& ring, int max_
         fit.crease =
             Crease{creases.known->across, (creases.known->offset - creases.known->across.dot(fit.centre)) / fit.scale};
     if (creases.is_sought) fit.crease = find_crease(ring, fit.crease);
-    if (!fit.crease) return;
-    const Eigen::VectorXd weights = crease_weights(ring, *fit.crease);
-    for (int degree = 1; degree <= std::min(max_degree, kMaxCreasedDegree); ++degree) {
-        if (ring.independent < kMinPointsPerTerm * double(terms_of(degree) + kCreaseTerms + 2)) break;
-        FittedPolynomial fitted = fit_polynomial(ring, degree, fit.crease, weights);
-        const double bend = -fitted.polynomial.coefficients[terms_of(degree)] / fit.scale;
+    const int highest = affordable_degree(ring, std::min(max_degree, kMaxCreasedDegree), kCreaseTerms + 2);
+    if (!fit.crease || highest == 0) return;
+    basis.set_crease(ring.xy, *fit.crease);
+    const RingStart start(ring, basis.of(highest, true), crease_weights(ring, *fit.crease));
+    for (int degree = 1; degree <= highest; ++degree) {
+        FittedPolynomial fitted = fit_polynomial(ring, basis, degree, true, start);
+        const double bend = -fitted.polynomial.coefficients[0] / fit.scale;
         if (bend > creases.min_bend && bend < creases.max_bend) fits.push_back(std::move(fitted));
     }
 }
@@ -255,18 +270,18 @@ std::optional<RingFit> fit_ring(const RingPoints& points, double sigma, int max_
     if (count_in_lanes(points.z.size()) == 0) return std::nullopt;
     RingFit fit;
     const Ring ring = scaled_ring(points, sigma, fit);
-    const Eigen::VectorXd start = start_weights(ring);
-    if (start.size() == 0) return std::nullopt;
+    RingBasis basis(ring.xy, std::max(max_degree, kMaxStartDegree));
+    const int highest = affordable_degree(ring, max_degree, 0);
+    if (highest == 0) return std::nullopt;
+    Eigen::VectorXd weights = start_weights(ring, basis);
+    if (weights.size() == 0) return std::nullopt;
+    const RingStart start(ring, basis.of(highest, false), std::move(weights));
     std::vector<FittedPolynomial> fits;
-    for (int degree = 1; degree <= max_degree; ++degree) {
-        if (ring.independent < kMinPointsPerTerm * double(terms_of(degree))) break;
-        fits.push_back(fit_polynomial(ring, degree, {}, start));
-    }
-    if (fits.empty()) return std::nullopt;
-    add_creased(fits, ring, max_degree, creases, fit);
+    for (int degree = 1; degree <= highest; ++degree) fits.push_back(fit_polynomial(ring, basis, degree, false, start));
+    add_creased(fits, ring, basis, max_degree, creases, fit);
     set_shares(fits, ring.independent);
     std::erase_if(fits, [](const FittedPolynomial& fitted) { return fitted.polynomial.share == 0; });
-    for (FittedPolynomial& fitted : fits) set_covariance(fitted, ring, fit.crease);
+    for (FittedPolynomial& fitted : fits) set_covariance(fitted, ring, basis);
     set_average(fit, fits);
     return fit;
 }

@@ -35,14 +35,12 @@ struct RingFit {
     /// The crease in the points' own coordinates.
     std::optional<Crease> crease_in_place() const;
 
-    /// Height of the surface and its standard deviation at a place, mm.
-    struct Value {
-        double z, sd;
-    };
-    Value at(double x, double y) const;
+    /// Height of the surface at a place, mm.
     double z_at(double x, double y) const;
-    /// Adds `factor` times the heights at (0, y), (1, y), … to a row of numbers: many places cost less together.
-    void add_row(double y, double factor, std::span<float> row) const;
+    /// Standard deviations at (x, y), (x + step, y), …: many places cost less together.
+    void sd_row(double x, double y, double step, std::span<float> row) const;
+    /// Adds `factor` times the heights at (x, y), (x + 1, y), … to a row of numbers.
+    void add_row(double x, double y, double factor, std::span<float> row) const;
 };
 
 /// Whether a crease, the ridge of a roof, may run beneath a candidate, and where.

@@ -51,9 +51,10 @@ struct Level {
 };
 
 /// How often the cells in which a candidate is verified are doubled.
-int level_of(const Candidate& candidate)
+/// @param box  of its cells   @param thickness  cells
+int level_of(const cv::Rect& box, double thickness)
 {
-    double thickness = thickness_of(candidate.mask), extent = std::max(candidate.box.width, candidate.box.height);
+    double extent = std::max(box.width, box.height);
     int level = 0;
     while (thickness >= 2 * (extent > kMaxExtent ? kMinLongThickness : kMinCoarseThickness))
         thickness /= 2, extent /= 2, ++level;
@@ -68,7 +69,8 @@ Candidate in_longer_cells(const Candidate& candidate, int factor, const cv::Size
     Mask aligned;
     cv::copyMakeBorder(candidate.mask, aligned, candidate.box.y % factor, 0, candidate.box.x % factor, 0,
                        cv::BORDER_CONSTANT, 0);
-    Candidate coarse{cv::Rect(corner, cv::Size()), coarsened(aligned, factor), candidate.rank, candidate.texture};
+    Candidate coarse{cv::Rect(corner, cv::Size()), coarsened(aligned, factor), candidate.rank, 0, candidate.texture};
+    coarse.cells = cv::countNonZero(coarse.mask);
     coarse.box = cv::Rect(corner, coarse.mask.size()) & cv::Rect({0, 0}, size);
     return coarse;
 }
@@ -98,7 +100,8 @@ void step(Attempt& attempt, const std::vector<Level>& levels, const SearchBounds
     }
     attempt.region = attempt.refinement->region();
     if (!goes_on || attempt.progress == Refinement::Progress::settled) return;
-    const int level = std::min(attempt.level + level_of(attempt.region), int(levels.size()) - 1);
+    const int level =
+        std::min(attempt.level + level_of(attempt.region.box, attempt.refinement->thickness()), int(levels.size()) - 1);
     if (level > attempt.level) {
         Candidate region =
             in_longer_cells(attempt.region, 1 << (level - attempt.level), levels[std::size_t(level)].map.z.size());
@@ -125,7 +128,7 @@ void end_repetitions(std::vector<Attempt>& attempts, std::vector<Visit>& visits)
         if (!attempt.refinement) continue;
         attempt.is_repetition = std::ranges::any_of(visits, [&](const Visit& visit) {
             return visit.attempt != &attempt && !visit.attempt->is_repetition && visit.level == attempt.level &&
-                   overlap_of(visit.region, attempt.region) > kSamePlace;
+                   overlap(visit.region, attempt.region, kSamePlace);
         });
         if (attempt.is_repetition)
             attempt.refinement.reset();
@@ -158,11 +161,11 @@ std::vector<Verified> verify_all(const HeightMap& map, const std::vector<Candida
     Mask others(map.z.size(), 0);
     const double max_cells = kMaxOtherArea * bounds.max_area / (map.cell * map.cell);
     for (const Candidate& candidate : candidates)
-        if (candidate.rank > kMinOtherRank && cv::countNonZero(candidate.mask) < max_cells)
-            others(candidate.box) |= candidate.mask;
+        if (candidate.rank > kMinOtherRank && candidate.cells < max_cells) others(candidate.box) |= candidate.mask;
     std::vector<int> levels_of(candidates.size());
-    tbb::parallel_for(std::size_t{0}, candidates.size(),
-                      [&](std::size_t i) { levels_of[i] = level_of(candidates[i]); });
+    tbb::parallel_for(std::size_t{0}, candidates.size(), [&](std::size_t i) {
+        levels_of[i] = level_of(candidates[i].box, thickness_of(candidates[i].mask));
+    });
     // A region may grow thicker than its candidate.
     std::vector<Level> levels(candidates.empty() ? 0 : std::size_t(std::ranges::max(levels_of)) + 2);
     tbb::parallel_for(std::size_t{0}, levels.size(), [&](std::size_t level) {

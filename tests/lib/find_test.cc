@@ -119,7 +119,10 @@ TEST(RingFit, ReproducesACubicBesideAnEdge)
     const auto fit = fit_ring(ring, 1e-3, 4);
     ASSERT_TRUE(fit);
     for (int x = -8; x <= 8; x += 4) EXPECT_NEAR(fit->z_at(x, 3), surface(x, 3), 2e-3);
-    EXPECT_NEAR(fit->at(2, 1).z, fit->z_at(2, 1), 1e-9);
+    std::vector<float> sds(7); // at the centroid the polynomial is its constant term
+    fit->sd_row(fit->centre.x() - 3 * 2.5, fit->centre.y(), 2.5, sds);
+    EXPECT_NEAR(sds[3], std::sqrt(fit->covariance(0, 0)), 1e-6 * sds[3]);
+    EXPECT_GT(sds[0], 0);
     EXPECT_FALSE(fit_ring({Eigen::Matrix2Xd(2, 0), Eigen::VectorXd(0), Eigen::VectorXd(0)}, 1, 4));
 }
 
@@ -158,9 +161,14 @@ TEST(RingFit, FollowsARidgeBeneathTheRegion)
     EXPECT_NEAR(std::abs(line.across.dot(Eigen::Vector2d(-0.8, 0.6))), 1, 0.01);
     EXPECT_NEAR(std::abs(line.offset), 2, 0.4);
     std::vector<float> row(41, 0.F);
-    creased->add_row(3, 1, row);
-    EXPECT_NEAR(row[7], creased->z_at(7, 3), 1e-5);
-    EXPECT_NEAR(creased->at(7, 3).z, creased->z_at(7, 3), 1e-9);
+    creased->add_row(-20, 3, 1, row);
+    for (int k = 0; k < 41; ++k) EXPECT_NEAR(row[std::size_t(k)], creased->z_at(k - 20, 3), 1e-5);
+    std::vector<float> sds(9), sd(1); // four places at a time: the same as one by one
+    creased->sd_row(-20, 3, 5, sds);
+    for (int k = 0; k < 9; ++k) {
+        creased->sd_row(-20 + 5 * k, 3, 1, sd);
+        EXPECT_EQ(sd[0], sds[std::size_t(k)]);
+    }
     EXPECT_FALSE(fit_ring(ring, 0.02, 4, {true, {}, 0.6, 1.7})->crease); // it bends by 0.5
     EXPECT_FALSE(smooth->crease);
 }
