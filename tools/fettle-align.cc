@@ -41,9 +41,7 @@ int main(int argc, char** argv)
         "vote; then iterative closest points, point to plane, trimmed and robust, minimises the distances. Without "
         "--overlap or --max-distance at least a third of the scan must lie on the reference. Out: the points of the "
         "scan moved by the matrix that is reported, bit for bit, with all their fields; a mesh where the suffix of -o "
-        "is "
-        "stl or ply, else its vertices. "
-        "Exit 1 if the steps did not converge on the reference.";
+        "is stl or ply, else its vertices. Exit 1 if the steps did not converge on the reference.";
     return cli::tool_main(argc, argv, description, [](cli::Tool& t) {
         const std::string& scan_path = t.main_input("SCAN", "What is moved");
         const std::string& reference_path = t.required_file_option("--to", "FILE", "The reference, which stays");

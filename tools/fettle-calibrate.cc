@@ -125,13 +125,11 @@ int main(int argc, char** argv)
     const std::string description =
         "Learn the removal law of a machine from what it ground.\n"
         "Of a belt, from rows of trials: coefficient, and exponents of force, speed, feed and time, with the wear; "
-        "from "
-        "its trace and the surfels before and after: coefficient, and exponents of pressure and feed. Of a gantry, "
-        "from "
-        "its trace and the part before and after: Preston's coefficient, the exponent of the force, the spring, the "
-        "grinding ratio, the machine's yielding. Out: the law with its covariance, how each part of it is determined, "
-        "what could not be told apart, the pass that would tell most, and the passes, from which it can be learned on. "
-        "Rows are taken in the order of the belt's work.";
+        "from its trace and the surfels before and after: coefficient, and exponents of pressure and feed. Of a "
+        "gantry, from its trace and the part before and after: Preston's coefficient, the exponent of the force, the "
+        "spring, the grinding ratio, the machine's yielding. Out: the law with its covariance, how each part of it is "
+        "determined, what could not be told apart, the pass that would tell most, and the passes, from which it can "
+        "be learned on. Rows are taken in the order of the belt's work.";
     return cli::tool_main(argc, argv, description, [](cli::Tool& t) {
         const Options o{t};
         t.example("fettle-calibrate removal/static.csv > law.json", "the law of a belt from 24 measured trials");

@@ -118,10 +118,9 @@ int main(int argc, char** argv)
     const std::string description =
         "Clean a raw scan: take away what is no part, and change nothing that stays.\n"
         "Points that are not finite, several points at exactly (0, 0, 0), points where another one is, and triangles "
-        "drawn "
-        "twice always go; then what the options name, in the order crop, facing, outliers, thin. Points keep their "
-        "order "
-        "and all their fields; a triangle stays if its three corners do. The report counts what each filter took away.";
+        "drawn twice always go; then what the options name, in the order crop, facing, outliers, thin. Points keep "
+        "their order and all their fields; a triangle stays if its three corners do. The report counts what each "
+        "filter took away.";
     return cli::tool_main(argc, argv, description, [](cli::Tool& t) {
         const Options o{t};
         t.example("fettle-clean scans/hammer.stl --crop jobs/hammer.json --facing 0,0,1 -o cheek.stl",

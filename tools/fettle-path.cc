@@ -18,17 +18,14 @@ namespace {
 
 const std::string kDescription =
     "Plan contact paths over a patch of surfels, or make a path denser.\n"
-    "From surfels: rows or a spiral over each patch; points with position and quaternion (+z the outward normal), pass "
-    "and stroke. From a path: points inserted where the distance of two exceeds --spacing, positions by lerp, "
-    "orientations by slerp along the shorter arc. With --clearance the strokes are joined off the part: along the "
-    "tool's axis away from it, from stroke to stroke over the part's convex hull, grown by the clearance, and along "
-    "the "
-    "axis back; a tool no part of which lies below its tip stays that far off. stroke is then -1 between strokes, and "
-    "motion says how the tool comes to a point: 0 on the part, 1 near it along the axis, 2 farther off along it, 3 "
-    "from "
-    "stroke to stroke. With --held part the field way is the contact's way along the part, which fettle-arm's --feed "
-    "is "
-    "along. Lengths in mm. Exit 1 if the path has no point.";
+    "From surfels: rows or a spiral over each patch; points with position and quaternion (+z the outward normal), "
+    "pass and stroke. From a path: points inserted where the distance of two exceeds --spacing, positions by "
+    "lerp, orientations by slerp along the shorter arc. With --clearance the strokes are joined off the part: "
+    "along the tool's axis away from it, from stroke to stroke over the part's convex hull, grown by the "
+    "clearance, and along the axis back; a tool no part of which lies below its tip stays that far off. stroke is "
+    "then -1 between strokes, and motion says how the tool comes to a point: 0 on the part, 1 near it along the "
+    "axis, 2 farther off along it, 3 from stroke to stroke. With --held part the field way is the contact's way "
+    "along the part, which fettle-arm's --feed is along. Lengths in mm. Exit 1 if the path has no point.";
 
 constexpr double kMinSpacing = 1e-3; // mm: below what any machine resolves; keeps the number of points bounded
 

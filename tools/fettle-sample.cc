@@ -44,12 +44,11 @@ struct Options {
          {"wang", gantry::TouchStrategy::wang},
          {"adaptive", gantry::TouchStrategy::adaptive},
          {"hillclimb", gantry::TouchStrategy::hillclimb}},
-        "wang: by his rules; adaptive: one after the other, each where it lowers the predicted error band most, until "
-        "that meets the job's tolerance; extended: by his rules, then adaptive while the band exceeds the tolerance, "
-        "adaptive alone where his rules find no room on one side of the anomaly, or go over an edge of the part; "
-        "without "
-        "--on by his rules alone; hillclimb: by his Appendix A the best subset of many candidates, for a "
-        "SURFACE that is known beneath the anomaly, too");
+        "wang: by his rules; adaptive: one after the other, each where it lowers the predicted error band most, "
+        "until that meets the job's tolerance; extended: by his rules, then adaptive while the band exceeds the "
+        "tolerance, adaptive alone where his rules find no room on one side of the anomaly, or go over an edge of "
+        "the part; without --on by his rules alone; hillclimb: by his Appendix A the best subset of many candidates, "
+        "for a SURFACE that is known beneath the anomaly, too");
     const int& max_touches =
         t.count("--max-touches", 60, "Extended, adaptive: maximum number of touches", 6, kMaxTouches);
     const int& touches =
