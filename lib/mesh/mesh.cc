@@ -7,8 +7,10 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <compare>
+#include <cstdint>
+#include <numeric>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -16,34 +18,21 @@ namespace fettle::mesh {
 
 namespace {
 
-/// Hash of three corners that does not depend on their order. @param size  a power of two   @return  below `size`
-std::size_t corner_hash(const Eigen::Vector3i& corners, std::size_t size)
-{
-    std::uint64_t sum = 0;
-    for (const int corner : corners) { // the finalizer of SplitMix64 (Steele, Lea & Flood 2014) for each
-        std::uint64_t z = (static_cast<std::uint64_t>(corner) + 1) * 0x9e3779b97f4a7c15;
-        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9;
-        z = (z ^ (z >> 27)) * 0x94d049bb133111eb;
-        sum += z ^ (z >> 31);
-    }
-    return sum & (size - 1);
-}
+/// A triangle by its corners except for the lowest.
+struct OtherCorners {
+    int middle, highest;
+    std::uint32_t triangle;
 
-/// Triangles of which another may have the same corners, in any order: all that have one, and a few more, ascending.
-std::vector<std::uint32_t> sharing_corners(const Eigen::Matrix3Xi& triangles)
+    auto operator<=>(const OtherCorners&) const = default;
+    bool same_as(const OtherCorners& o) const { return middle == o.middle && highest == o.highest; }
+};
+
+/// Whether a triangle runs from its lowest corner to its highest, not to the middle one.
+bool runs_down(const Eigen::Vector3i& corners)
 {
-    constexpr std::size_t kBitsPerTriangle = 16; // so that one in 16 triangles meets another's bit by chance
-    const std::size_t size = std::bit_ceil(kBitsPerTriangle * static_cast<std::size_t>(triangles.cols()));
-    std::vector<bool> seen(size, false), repeated(size, false);
-    for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
-        const std::size_t hash = corner_hash(triangles.col(t), size);
-        if (seen[hash]) repeated[hash] = true;
-        seen[hash] = true;
-    }
-    std::vector<std::uint32_t> sharing;
-    for (Eigen::Index t = 0; t < triangles.cols(); ++t)
-        if (repeated[corner_hash(triangles.col(t), size)]) sharing.push_back(static_cast<std::uint32_t>(t));
-    return sharing;
+    int lowest;
+    corners.minCoeff(&lowest);
+    return corners[(lowest + 1) % 3] > corners[(lowest + 2) % 3];
 }
 
 } // namespace
@@ -89,26 +78,29 @@ Eigen::Matrix3Xi unique_triangles(const Eigen::Matrix3Xi& triangles)
 
 std::vector<std::uint32_t> opposite_triangles(const Eigen::Matrix3Xi& triangles)
 {
-    struct Key {
-        std::array<int, 3> corners; ///< ascending
-        std::uint32_t index;
-        bool reversed; ///< the triangle runs through its corners in descending order
-
-        auto operator<=>(const Key&) const = default;
-    };
-    std::vector<Key> keys;
-    for (const std::uint32_t t : sharing_corners(triangles)) {
-        std::array<int, 3> c = {triangles(0, t), triangles(1, t), triangles(2, t)};
-        std::rotate(c.begin(), std::ranges::min_element(c), c.end());
-        const bool reversed = c[1] > c[2];
-        if (reversed) std::swap(c[1], c[2]);
-        if (c[0] != c[1] && c[1] != c[2]) keys.push_back({c, t, reversed}); // the others have no area
+    if (triangles.cols() == 0) return {};
+    // Counting sort by the lowest corner, which few triangles share. Each start advances to the start of the next
+    // corner while the entries are filled in.
+    std::vector<std::uint32_t> starts(triangles.maxCoeff() + 2, 0);
+    for (const auto& corners : triangles.colwise()) ++starts[corners.minCoeff() + 1];
+    std::partial_sum(starts.begin(), starts.end(), starts.begin());
+    std::vector<OtherCorners> others(triangles.cols());
+    for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
+        const int a = triangles(0, t), b = triangles(1, t), c = triangles(2, t);
+        const int lowest = std::min({a, b, c}), highest = std::max({a, b, c}), middle = a ^ b ^ c ^ lowest ^ highest;
+        others[starts[lowest]++] = {middle, highest, static_cast<std::uint32_t>(t)};
     }
-    std::ranges::sort(keys);
     std::vector<std::uint32_t> opposite;
-    for (std::size_t i = 0, first = 0; i < keys.size(); ++i) {
-        if (keys[i].corners != keys[first].corners) first = i;
-        if (keys[i].reversed != keys[first].reversed) opposite.push_back(keys[i].index);
+    for (std::size_t corner = 0, begin = 0; corner + 1 < starts.size(); begin = starts[corner++]) {
+        const std::span<OtherCorners> here(others.data() + begin, others.data() + starts[corner]);
+        std::ranges::sort(here);
+        for (std::size_t i = 1, first = 0; i < here.size(); ++i) {
+            if (!here[i].same_as(here[first]))
+                first = i;
+            else if (static_cast<int>(corner) != here[i].middle && here[i].middle != here[i].highest && // has an area
+                     runs_down(triangles.col(here[i].triangle)) != runs_down(triangles.col(here[first].triangle)))
+                opposite.push_back(here[i].triangle);
+        }
     }
     std::ranges::sort(opposite);
     return opposite;
