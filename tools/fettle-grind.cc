@@ -45,8 +45,8 @@ struct Options {
         {{"constant", strategy::Layer1::constant},
          {"feed", strategy::Layer1::feed},
          {"force", strategy::Layer1::force}},
-        "Layer 1 at the job's feed, covering after covering; or pass after pass, with controlled feed or controlled "
-        "force");
+        "Layer 1 at the job's feed, up to twice as fast where nothing is known to stand, covering after covering; or "
+        "pass after pass, with controlled feed or controlled force");
     const double& removal_factor = gantry::declare_removal_factor(t);
     const std::string& trace =
         t.optional_output("--trace", "What the machine did and why, PCD, written ahead", {"pcd"});
