@@ -1,5 +1,7 @@
 #include "belt/wave_operator.h"
 
+#include "core/simd.h"
+
 #include <cmath>
 #include <numbers>
 
@@ -58,6 +60,71 @@ const WaveOperator::Waves& WaveOperator::waves(Index count) const
     return waves;
 }
 
+namespace {
+
+using core::Double4;
+constexpr Index kLanes = 4;
+
+/// The columns of a matrix, one after the other.
+struct Columns {
+    const double* data;
+    Index stride; ///< from a column to the next
+};
+
+/// A matrix by its transposed or itself.
+struct Strided {
+    const double* data;
+    Index row, column; ///< strides
+};
+
+/// kBlocks times four rows of kColumns columns of A B.
+template <int kBlocks, int kColumns>
+FETTLE_INLINE void product_block(const Columns& A, const Strided& B, Index inner, double* C, Index stride)
+{
+    Double4 sums[kBlocks][kColumns] = {};
+    for (Index k = 0; k < inner; ++k)
+#pragma GCC unroll 4 // keeps the sums in registers
+        for (int j = 0; j < kColumns; ++j) {
+            const Double4 factor = core::broadcast(B.data[k * B.row + j * B.column]);
+#pragma GCC unroll 4
+            for (int i = 0; i < kBlocks; ++i)
+                sums[i][j] += *reinterpret_cast<const Double4*>(A.data + k * A.stride + i * kLanes) * factor;
+        }
+#pragma GCC unroll 4
+    for (int j = 0; j < kColumns; ++j)
+#pragma GCC unroll 4
+        for (int i = 0; i < kBlocks; ++i) *reinterpret_cast<Double4*>(C + j * stride + i * kLanes) = sums[i][j];
+}
+
+template <int kColumns>
+FETTLE_INLINE void product_of_columns(Columns A, const Strided& B, Index rows, Index inner, double* C, Index stride)
+{
+    const auto advance = [&](Index count) { A.data += count, C += count, rows -= count; };
+    for (; rows >= 4 * kLanes; advance(4 * kLanes)) product_block<4, kColumns>(A, B, inner, C, stride);
+    for (; rows >= 2 * kLanes; advance(2 * kLanes)) product_block<2, kColumns>(A, B, inner, C, stride);
+    for (; rows >= kLanes; advance(kLanes)) product_block<1, kColumns>(A, B, inner, C, stride);
+    for (Index i = 0; i < rows; ++i)
+        for (int j = 0; j < kColumns; ++j) {
+            double sum = 0;
+            for (Index k = 0; k < inner; ++k) sum += A.data[k * A.stride + i] * B.data[k * B.row + j * B.column];
+            C[j * stride + i] = sum;
+        }
+}
+
+/// C = A B. With four lanes where the processor has them, which Eigen, compiled for all, does not use.
+FETTLE_CLONES void multiply(const Columns& A, const Strided& B, Index rows, Index inner, Index columns, double* C,
+                            Index stride)
+{
+    Index j = 0;
+    for (; j + 2 <= columns; j += 2)
+        product_of_columns<2>(A, {B.data + j * B.column, B.row, B.column}, rows, inner, C + j * stride, stride);
+    if (j < columns)
+        product_of_columns<1>(A, {B.data + j * B.column, B.row, B.column}, rows, inner, C + j * stride, stride);
+}
+
+} // namespace
+
+/// Fields are transposed here: cells of a row lie one after the other.
 MatrixXd WaveOperator::displacement(const MatrixXd& pressure) const
 {
     const Index rows = pressure.rows(), columns = pressure.cols(), first = (columns_ - columns) / 2;
@@ -65,42 +132,42 @@ MatrixXd WaveOperator::displacement(const MatrixXd& pressure) const
     const Index odd = is_symmetric_ ? columns / 2 : 0, even = columns - odd;
     const Waves& waves = this->waves(rows);
     // Sums and differences of the columns of either half, then of the rows; a middle row is a sum of one.
-    MatrixXd across(rows, columns), folded(rows, columns);
-    across.leftCols(even) = pressure.leftCols(even);
-    if (is_symmetric_) across.leftCols(even) += pressure.rightCols(even).rowwise().reverse();
-    across.rightCols(odd) = pressure.leftCols(odd) - pressure.rightCols(odd).rowwise().reverse();
-    folded.topRows(even_rows) = across.topRows(even_rows);
-    folded.topRows(odd_rows) += across.bottomRows(odd_rows).colwise().reverse();
-    folded.bottomRows(odd_rows) = across.topRows(odd_rows) - across.bottomRows(odd_rows).colwise().reverse();
+    const MatrixXd transposed = pressure.transpose();
+    MatrixXd across(columns, rows), folded(columns, rows);
+    double* const odd_folded = folded.data() + columns * even_rows;
+    across.topRows(even) = transposed.topRows(even);
+    if (is_symmetric_) across.topRows(even) += transposed.bottomRows(even).colwise().reverse();
+    across.bottomRows(odd) = transposed.topRows(odd) - transposed.bottomRows(odd).colwise().reverse();
+    folded.leftCols(even_rows) = across.leftCols(even_rows);
+    folded.leftCols(odd_rows) += across.rightCols(odd_rows).rowwise().reverse();
+    folded.rightCols(odd_rows) = across.leftCols(odd_rows) - across.rightCols(odd_rows).rowwise().reverse();
     // Of each wave a column of cosines and one of sines.
-    const Index count = rows_ + 1;
+    const Index count = rows_ + 1, pair = 2 * columns;
     MatrixXd pressures(columns, 2 * count), displacements(columns, 2 * count);
-    const auto part = [&](MatrixXd& all, Index k) {
-        return Eigen::Map<MatrixXd, 0, Eigen::OuterStride<>>(all.col(k).data(), columns, count,
-                                                             Eigen::OuterStride<>(2 * columns));
-    };
-    part(pressures, 0).noalias() = folded.topRows(even_rows).transpose() * waves.cosines;
-    part(pressures, 1).noalias() = folded.bottomRows(odd_rows).transpose() * waves.sines;
+    multiply({folded.data(), columns}, {waves.cosines.data(), 1, even_rows}, columns, even_rows, count,
+             pressures.data(), pair);
+    multiply({odd_folded, columns}, {waves.sines.data(), 1, odd_rows}, columns, odd_rows, count,
+             pressures.data() + columns, pair);
     for (Index f = 0; f < count; ++f) {
-        const Eigen::Map<const MatrixXd> even_part(even_.col(f).data(), even_count_, even_count_);
-        const Eigen::Map<const MatrixXd> odd_part(odd_.col(f).data(), odd_count_, odd_count_);
-        for (const Index k : {2 * f, 2 * f + 1}) {
-            displacements.col(k).head(even).noalias() =
-                even_part.block(first, first, even, even) * pressures.col(k).head(even);
-            displacements.col(k).tail(odd).noalias() =
-                odd_part.block(first, first, odd, odd) * pressures.col(k).tail(odd);
-        }
+        const double* from = pressures.data() + f * pair;
+        double* to = displacements.data() + f * pair;
+        multiply({even_.col(f).data() + first * (even_count_ + 1), even_count_}, {from, 1, columns}, even, even, 2, to,
+                 columns);
+        multiply({odd_.col(f).data() + first * (odd_count_ + 1), odd_count_}, {from + even, 1, columns}, odd, odd, 2,
+                 to + even, columns);
     }
-    folded.topRows(even_rows).noalias() = waves.cosines * part(displacements, 0).transpose();
-    folded.bottomRows(odd_rows).noalias() = waves.sines * part(displacements, 1).transpose();
-    across.topRows(even_rows) = folded.topRows(even_rows);
-    across.bottomRows(odd_rows) = (folded.topRows(odd_rows) - folded.bottomRows(odd_rows)).colwise().reverse();
-    across.topRows(odd_rows) += folded.bottomRows(odd_rows);
-    MatrixXd displacement(rows, columns);
-    displacement.leftCols(even) = across.leftCols(even);
-    displacement.rightCols(odd) = (across.leftCols(odd) - across.rightCols(odd)).rowwise().reverse();
-    displacement.leftCols(odd) += across.rightCols(odd);
-    return displacement;
+    multiply({displacements.data(), pair}, {waves.cosines.data(), even_rows, 1}, columns, count, even_rows,
+             folded.data(), columns);
+    multiply({displacements.data() + columns, pair}, {waves.sines.data(), odd_rows, 1}, columns, count, odd_rows,
+             odd_folded, columns);
+    across.leftCols(even_rows) = folded.leftCols(even_rows);
+    across.rightCols(odd_rows) = (folded.leftCols(odd_rows) - folded.rightCols(odd_rows)).rowwise().reverse();
+    across.leftCols(odd_rows) += folded.rightCols(odd_rows);
+    MatrixXd displacement(columns, rows);
+    displacement.topRows(even) = across.topRows(even);
+    displacement.bottomRows(odd) = (across.topRows(odd) - across.bottomRows(odd)).colwise().reverse();
+    displacement.topRows(odd) += across.bottomRows(odd);
+    return displacement.transpose();
 }
 
 MatrixXd wave_transform(const MatrixXd& influence)
