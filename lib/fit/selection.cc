@@ -7,6 +7,7 @@
 #include "fit/trimmed_touches.h"
 
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <cmath>
@@ -142,16 +143,24 @@ Fit fit_auto(const FitInput& input)
     std::vector<FitCandidate> candidates;
     fit_families(touches, names, all_touches(touches), candidates);
     const Eigen::Index n = touches.xyz.cols();
-    if (!is_sufficient(best_of(candidates), n)) fit_families(touches, names, trimmed_touches(touches), candidates);
+    // With estimated noise a process fits any touches.
+    const bool may_be_process = input.job.surface == job::SurfaceType::freeform && !input.estimate_noise;
+    const auto process = [&] { return fit_gaussian_process(touches, spline_grid(input, surface.touches)); };
+    std::optional<FitCandidate> smooth;
+    const bool seems_sufficient = is_sufficient(best_of(candidates), n);
+    if (!seems_sufficient) // then a process is needed, unless the touches of a family were hidden by outliers
+        tbb::parallel_invoke([&] { fit_families(touches, names, trimmed_touches(touches), candidates); },
+                             [&] { smooth = may_be_process ? process() : std::nullopt; });
     penalise_rare_families(candidates, n);
-    // A rare family also fits some surfaces that belong to no family. With estimated noise a process fits any touches.
+    // A rare family also fits some surfaces that belong to no family.
     const FitCandidate* best = best_of(candidates);
-    if (input.job.surface == job::SurfaceType::freeform && !input.estimate_noise &&
-        (!is_sufficient(best, n) || is_rare(best->method)))
-        if (std::optional<FitCandidate> smooth = fit_gaussian_process(touches, spline_grid(input, surface.touches))) {
+    if (may_be_process && (!is_sufficient(best, n) || is_rare(best->method))) {
+        if (seems_sufficient) smooth = process();
+        if (smooth) {
             smooth->score += prior_penalty(smooth->method);
             candidates.push_back(std::move(*smooth));
         }
+    }
     if (candidates.empty()) refuse_undetermined(touches, surface.method + " surface", input.source);
     std::stable_sort(candidates.begin(), candidates.end(),
                      [](const FitCandidate& a, const FitCandidate& b) { return a.score < b.score; });

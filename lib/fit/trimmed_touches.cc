@@ -10,6 +10,7 @@
 #include <limits>
 #include <numeric>
 #include <random>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -27,16 +28,19 @@ struct Subset {
     double sum = std::numeric_limits<double>::infinity(); ///< of squared residuals
 };
 
-/// A concentration step: replaces the touches by the three quarters nearest to their fit.
+/// A concentration step: replaces the touches by the three quarters nearest to their fit, in ascending order.
 /// @param basis  orthonormal functions of the polynomial at the touches, a column for each touch
 void concentrate(const MatrixXd& basis, const VectorXd& z, Subset& subset)
 {
-    MatrixXd A = MatrixXd::Zero(basis.rows(), basis.rows()); // lower half
-    VectorXd b = VectorXd::Zero(basis.rows());
+    const Index terms = basis.rows();
+    MatrixXd A = MatrixXd::Zero(terms, terms); // lower half
+    VectorXd b = VectorXd::Zero(terms);
     for (const Index touch : subset.touches) {
-        for (Index k = 0; k < basis.rows(); ++k)
-            A.col(k).tail(basis.rows() - k) += basis(k, touch) * basis.col(touch).tail(basis.rows() - k);
-        b += z[touch] * basis.col(touch);
+        const double* const functions = basis.col(touch).data();
+        for (Index k = 0; k < terms; ++k) {
+            for (Index i = k; i < terms; ++i) A(i, k) += functions[k] * functions[i];
+            b[k] += z[touch] * functions[k];
+        }
     }
     const VectorXd theta = core::solve_ldlt(A, b);
     const VectorXd squares = (z - basis.transpose() * theta).cwiseAbs2();
@@ -46,7 +50,15 @@ void concentrate(const MatrixXd& basis, const VectorXd& z, Subset& subset)
     std::nth_element(subset.touches.begin(), end - 1, subset.touches.end(),
                      [&](Index i, Index k) { return squares[i] < squares[k] || (squares[i] == squares[k] && i < k); });
     subset.touches.erase(end, subset.touches.end());
+    std::sort(subset.touches.begin(), subset.touches.end());
     subset.sum = squares(subset.touches).sum();
+}
+
+/// Leaves out subsets that have become one before them: they would go the same way.
+void erase_repetitions(std::vector<Subset>& subsets)
+{
+    std::set<TouchIndices> seen;
+    std::erase_if(subsets, [&](const Subset& subset) { return !seen.insert(subset.touches).second; });
 }
 
 /// Random subsets of `size` of `count` touches.
@@ -70,9 +82,10 @@ TouchIndices least_trimmed_squares(const MatrixXd& basis, const VectorXd& z)
 {
     constexpr int kConcentrationSteps = 3; // they suffice to recognise a bad subset
     std::vector<Subset> subsets = random_subsets(z.size(), basis.rows() + 1);
-    tbb::parallel_for(std::size_t{0}, subsets.size(), [&](std::size_t k) {
-        for (int step = 0; step < kConcentrationSteps; ++step) concentrate(basis, z, subsets[k]);
-    });
+    for (int step = 0; step < kConcentrationSteps; ++step) {
+        if (step > 0) erase_repetitions(subsets);
+        tbb::parallel_for(std::size_t{0}, subsets.size(), [&](std::size_t k) { concentrate(basis, z, subsets[k]); });
+    }
     Subset best;
     for (Subset& subset : subsets) {
         if (!(subset.sum < best.sum)) continue;
@@ -82,7 +95,6 @@ TouchIndices least_trimmed_squares(const MatrixXd& basis, const VectorXd& z)
         }
         best = std::move(subset);
     }
-    std::sort(best.touches.begin(), best.touches.end());
     return best.touches;
 }
 

@@ -52,8 +52,13 @@ Eigen::VectorXd height_gradient(const Polynomial& polynomial, const Eigen::Vecto
 {
     const Eigen::Vector2d p = scaled(polynomial, xy);
     Eigen::VectorXd gradient(polynomial.coefficients.size());
-    for_each_monomial(degree(polynomial),
-                      [&](Eigen::Index k, int i, int j) { gradient[k] = std::pow(p[0], i) * std::pow(p[1], j); });
+    gradient[0] = 1;
+    const int highest = degree(polynomial);
+    for (int total = 1, k = 1; total <= highest; ++total) { // the monomials of a degree from those of the one below it
+        const int above = k - total;
+        for (int j = 0; j < total; ++j) gradient[k++] = gradient[above + j] * p[0];
+        gradient[k++] = gradient[above + total - 1] * p[1];
+    }
     return gradient;
 }
 

@@ -76,12 +76,17 @@ struct ParameterPowers {
     Powers operator()(const Griddata& griddata) const { return Powers::Ones(griddata.points.cols()); }
 };
 
+constexpr std::size_t kGrain = 512; // points per task; below that, starting a thread takes longer than the work
+
 /// Evaluates a function of x and y at the columns of `xy`, in parallel.
+/// @param grain  points per task
 template <typename Function>
-Eigen::VectorXd evaluate(const Eigen::Matrix2Xd& xy, const Function& function)
+Eigen::VectorXd evaluate(const Eigen::Matrix2Xd& xy, std::size_t grain, const Function& function)
 {
     Eigen::VectorXd values(xy.cols());
-    tbb::parallel_for(Eigen::Index{0}, xy.cols(), [&](Eigen::Index i) { values[i] = function(xy.col(i)); });
+    tbb::parallel_for(tbb::blocked_range<Eigen::Index>(0, xy.cols(), grain), [&](const auto& part) {
+        for (Eigen::Index i = part.begin(); i < part.end(); ++i) values[i] = function(xy.col(i));
+    });
     return values;
 }
 
@@ -109,12 +114,12 @@ double height(const Surface& surface, const Eigen::Vector2d& xy)
 
 Eigen::VectorXd heights(const Surface& surface, const Eigen::Matrix2Xd& xy)
 {
-    return evaluate(xy, [&](const Eigen::Vector2d& point) { return height(surface, point); });
+    return evaluate(xy, kGrain, [&](const Eigen::Vector2d& point) { return height(surface, point); });
 }
 
 Eigen::VectorXd heights(const Shape& shape, const Eigen::Matrix2Xd& xy)
 {
-    return evaluate(xy, [&](const Eigen::Vector2d& point) { return height_of(shape, point); });
+    return evaluate(xy, kGrain, [&](const Eigen::Vector2d& point) { return height_of(shape, point); });
 }
 
 Eigen::Vector3d normal(const Surface& surface, const Eigen::Vector2d& xy)
@@ -158,14 +163,13 @@ double sigma(const Surface& surface, const Eigen::Vector2d& xy)
 Eigen::VectorXd sigmas(const Surface& surface, const Eigen::Matrix2Xd& xy)
 {
     if (surface.precision) return sigmas(std::get<Bspline>(surface.shape), *surface.precision, xy);
-    return evaluate(xy, [&](const Eigen::Vector2d& point) { return sigma(surface, point); });
+    return evaluate(xy, 1, [&](const Eigen::Vector2d& point) { return sigma(surface, point); });
 }
 
 Eigen::MatrixXd height_gradients(const Shape& shape, const Eigen::Matrix2Xd& xy)
 {
     const Eigen::VectorXi powers = parameter_powers(shape);
     Eigen::MatrixXd gradients(powers.size(), xy.cols());
-    constexpr std::size_t kGrain = 512; // points per task; below that, starting a thread takes longer than the work
     tbb::parallel_for(tbb::blocked_range<Eigen::Index>(0, xy.cols(), kGrain), [&](const auto& part) {
         for (Eigen::Index i = part.begin(); i < part.end(); ++i) gradients.col(i) = gradient_of(shape, xy.col(i));
     });
