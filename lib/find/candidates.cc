@@ -5,6 +5,7 @@
 
 #include <opencv2/imgproc.hpp>
 #include <tbb/parallel_for.h>
+#include <tbb/task_group.h>
 
 #include <algorithm>
 #include <array>
@@ -159,13 +160,17 @@ bool overlap(const Candidate& a, const Candidate& b, double share)
 std::vector<Candidate> find_candidates(const HeightMap& map, const SearchBounds& bounds)
 {
     const std::vector<double> widths = filter_widths(map, bounds.max_width);
+    std::vector<std::vector<Candidate>> found, of_openings(std::min<std::size_t>(2, widths.size()));
+    tbb::task_group openings; // while the sheets, which they do not need, are found
+    for (std::size_t i = 0; i < of_openings.size(); ++i)
+        openings.run([&, i] { of_openings[i] = candidates_of_opening(map, widths[widths.size() - 1 - i], bounds); });
     const std::vector<Sheet> sheets = find_sheets(map, bounds.max_width / map.cell / 2);
-    const std::size_t filters = sheets.size() * widths.size(), openings = std::min<std::size_t>(2, widths.size());
-    std::vector<std::vector<Candidate>> found(filters + openings);
+    found.resize(sheets.size() * widths.size());
     tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t i) {
-        found[i] = i < filters ? candidates_of(map, sheets[i / widths.size()], widths[i % widths.size()], bounds)
-                               : candidates_of_opening(map, widths[widths.size() - 1 - (i - filters)], bounds);
+        found[i] = candidates_of(map, sheets[i / widths.size()], widths[i % widths.size()], bounds);
     });
+    openings.wait();
+    std::ranges::move(of_openings, std::back_inserter(found));
     std::vector<Candidate> all, unique;
     for (std::vector<Candidate>& some : found) std::ranges::move(some, std::back_inserter(all));
     std::ranges::stable_sort(all, std::greater{}, &Candidate::rank);
