@@ -22,7 +22,7 @@ SCANS  ?= $(B)/scans/cells-$(CELLS)/$(SEED)
 
 .PHONY: scans
 scans: $(NAMES:%=$(SCANS)/%.csv)
-	@pipelines/scans-table $(SCANS) "$(NAMES)" "$(OTHERS)" "$(STRATEGIES)"
+	@pipelines/scans-table $(SCANS) "$(NAMES)" "$(filter-out $(LEARNT),$(NAMES))" "$(STRATEGIES)"
 
 include pipelines/step.mk
 
