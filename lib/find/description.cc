@@ -184,6 +184,8 @@ FoundAnomaly describe(const mesh::CloudMesh& part, const SeenSide& side, const C
     const bool is_boss = looks_designed(find);
     found.probability =
         is_boss && !side.is_along_normal ? std::min(find.probability, kMaxBossProbability) : find.probability;
+    found.score = find.score;
+    found.doubtful_others = find.doubtful_others;
     found.significance = find.evidence.significance();
     found.doubt = doubts_of(find, is_boss);
     found.cell = side.surface.cell;

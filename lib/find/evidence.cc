@@ -42,15 +42,18 @@ constexpr Term kModelTerms[] = {
 #include "find/weights.inc"
 };
 
-// The model's log odds, so that of the finds on parts that it did not learn from as many are right as is said:
-// pipelines/programs/find-calibration.cc.
-constexpr double kCalibrationSlope = 1.06, kCalibrationOffset = 1.38;
+// Log odds by the score and by what else the view shows, so that of the finds on parts that they were not fitted to as
+// many are right as is said: pipelines/programs/find-calibration.cc.
+constexpr double kCalibrationSlope = 1.47, kCalibrationOffset = 1.85, kCalibrationOthers = -0.62;
+// Scores of doubtful finds, which are said .015 to .48 where no other is.
+constexpr double kMinDoubtful = -4.1, kMaxDoubtful = -1.3;
 
-// Against a reference: log odds of 0 before the same calibration, and the standard deviations over which they change
-// by 1.
+// Against a reference: slope and offset of the log odds of what stands out by so many standard deviations, and those
+// over which they change by 1.
+constexpr double kReferenceSlope = 1.06, kReferenceOffset = 1.38;
 constexpr double kEvenStanding = 6, kStandingScale = 1;
 
-double calibrated(double log_odds) { return 1 / (1 + std::exp(-kCalibrationSlope * log_odds - kCalibrationOffset)); }
+double logistic(double log_odds) { return 1 / (1 + std::exp(-log_odds)); }
 
 double log_ratio(double a, double b)
 {
@@ -82,18 +85,27 @@ Features features_of(const Evidence& e)
     return f;
 }
 
-double probability_of(const Evidence& evidence)
+double score_of(const Evidence& evidence)
 {
     const Features features = features_of(evidence);
     double score = 0;
     for (const Term& term : kModelTerms) score += term.weight * std::min(features[term.feature], term.knot);
-    return calibrated(score);
+    return score;
+}
+
+bool is_doubtful(double score) { return score >= kMinDoubtful && score < kMaxDoubtful; }
+
+double probability_of(double score, int doubtful_others)
+{
+    const double log_odds =
+        kCalibrationSlope * score + kCalibrationOffset + kCalibrationOthers * std::log1p(doubtful_others);
+    return (1 - kUnforeseenShare) * logistic(log_odds);
 }
 
 double probability_against(const Evidence& e)
 {
     const double standing = std::min(e.significance(), e.height / e.noise);
-    return calibrated((standing - kEvenStanding) / kStandingScale);
+    return logistic(kReferenceSlope * (standing - kEvenStanding) / kStandingScale + kReferenceOffset);
 }
 
 bool is_plausible(const Evidence& e, const SearchBounds& bounds)

@@ -43,9 +43,21 @@ using Features = Eigen::Matrix<double, kFeatures, 1>;
 /// Features of the logistic model; the first is 1.
 Features features_of(const Evidence& evidence);
 
-/// Probability that the candidate is an anomaly: logistic regression on features_of(), whose weights and their origin
-/// docs/methods/find.md describes.
-double probability_of(const Evidence& evidence);
+/// Score of the candidate by its own evidence, which rises with the probability that it is an anomaly: a linear model
+/// of features_of(), whose weights and their origin docs/methods/find.md describes.
+double score_of(const Evidence& evidence);
+
+/// Whether a find of this score may be a feature of the part as well as an anomaly, or is rather one.
+bool is_doubtful(double score);
+
+/// Share of finds that are features by design, however sure the evidence: of a kind that no part had to which the
+/// probabilities were fitted.
+inline constexpr double kUnforeseenShare = 0.005;
+
+/// Probability that a find is an anomaly, at most 1 - kUnforeseenShare. A part that shows many doubtful finds has
+/// features of its own of that kind.
+/// @param doubtful_others  doubtful finds beside it, in the same view
+double probability_of(double score, int doubtful_others);
 
 /// Probability that a departure from a reference is an anomaly. The reference has the part's own features, so that
 /// significance and height over the noise suffice.

@@ -1,6 +1,7 @@
 #include "find/find.h"
 
 #include "find/description.h"
+#include "find/doubtful.h"
 #include "find/refinement.h"
 
 #include "core/error.h"
@@ -76,6 +77,8 @@ void search(SeenSide& side, const FindOptions& options)
     side.finds = verify_all(side.searched, find_candidates(side.searched, options.bounds), options.bounds);
     if (side.is_along_normal)
         for (Verified& find : side.finds) find.probability = probability_against(find.evidence);
+    else
+        set_probabilities(side.finds);
     std::erase_if(side.finds, [&](const Verified& find) { return find.probability < options.min_probability; });
 }
 

@@ -10,6 +10,7 @@ namespace {
 
 constexpr int kClosing = 3;        // cells: dents of B that no wheel follows
 constexpr double kGrowth = 3.2;    // beyond the region: its foot, and what simplifying the outline takes off
+constexpr double kFootGap = 1.7;   // beyond a foot that was measured: what simplifying takes off, and a cell
 constexpr double kOthersGap = 1.5; // between B and another anomaly, cells
 
 constexpr double kSamplingPerThickness = 0.6;
@@ -103,9 +104,10 @@ Mask with_seed(const Mask& mask, const Mask& seed)
 
 Outlines outlines_of(const HeightMap& map, const Mask& region, const Mask& others, int growth)
 {
+    const double beyond = std::max(kGrowth, growth + kFootGap);
     const cv::Rect own_box = cv::boundingRect(region);
     const double max_thickness = 2 * (max_depth(region(own_box)) + kClosing);
-    const int reach = growth + int(std::ceil(kGrowth)) + kClosing + kOutlineCells;
+    const int reach = int(std::ceil(beyond)) + kClosing + kOutlineCells;
     const int margin =
         reach + int(std::ceil(std::clamp(kSamplingPerThickness * max_thickness, kMinSampling, kMaxSampling)));
     const cv::Rect box = grown_box(own_box, margin, region.size());
@@ -118,8 +120,8 @@ Outlines outlines_of(const HeightMap& map, const Mask& region, const Mask& other
                seen = around(map.seen);
     const double thickness = 2 * max_depth(own);
     const Image to_others = distance_to(other);
-    const Mask inside = with_seed((distance_to(own) <= growth + kGrowth) & ((to_others >= kOthersGap) | own), own);
-    const Mask good = seen & (to_others > growth + kGrowth + 1) & (depth_of(closed(seen, 1)) > kEdgeGap);
+    const Mask inside = with_seed((distance_to(own) <= beyond) & ((to_others >= kOthersGap) | own), own);
+    const Mask good = seen & (to_others > beyond + 1) & (depth_of(closed(seen, 1)) > kEdgeGap);
     const double width = std::clamp(kSamplingPerThickness * thickness, kMinSampling, kMaxSampling);
     const Mask sampling = with_holes_filled(with_seed(opened(ring_in_sight(inside, good, width + 1) | inside, 2), own));
     Outlines result;

@@ -105,7 +105,7 @@ int Refinement::growth() const
 Verified Refinement::result(double texture) const
 {
     const cv::Rect all({0, 0}, window_.size());
-    Verified verified{window_, trimmed(), region_, residual_in(all), {}, 1, growth(), 0, crease_.has_value()};
+    Verified verified{window_, trimmed(), region_, residual_in(all), {}, 1, growth(), {}, {}, {}, crease_.has_value()};
     Evidence& e = verified.evidence;
     const Mask inside = region_ & seen_;
     e.height = quantile_of(values_in(beneath_.residual, inside), 0.9);
@@ -140,7 +140,7 @@ Verified Refinement::result(double texture) const
         e.sharpness = (quantile_of(within, 0.5) - quantile_of(without, 0.5)) / e.height;
     e.pits = double(cv::countNonZero(beneath_.ring & (beneath_.residual < float(-5 * e.ring_sd)))) /
              cv::countNonZero(beneath_.ring);
-    verified.probability = probability_of(e);
+    verified.score = score_of(e);
     return verified;
 }
 

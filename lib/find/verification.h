@@ -15,8 +15,10 @@ struct Verified {
     Mask with_rim;   ///< the same with cells around that only smoothing may have raised: B goes around them
     Image height;    ///< over the surface beneath, all over the window, mm; NaN: nothing seen
     Evidence evidence;
-    int factor = 1; ///< a thick candidate is verified in cells so many times as long
-    int growth = 0; ///< of those cells around the mask: their mean still stands over the surface
+    int factor = 1;          ///< a thick candidate is verified in cells so many times as long
+    int growth = 0;          ///< of those cells around the mask: their mean still stands over the surface
+    double score = 0;        ///< by its evidence alone
+    int doubtful_others = 0; ///< doubtful finds beside it; with the probability set by set_probabilities()
     double probability = 0;
     bool has_crease = false; ///< in the surface beneath
 };
@@ -26,7 +28,7 @@ struct Verified {
 /// is measured. What comes to a region where another of a higher rank has been is that one again. Each is verified in
 /// cells of which some dozens lie across it: finer ones say no more about the surface beneath, and cost time by their
 /// square.
-/// @return  those that remain and whose evidence is plausible, in the candidates' order
+/// @return  those that remain and whose evidence is plausible, in the candidates' order, without probabilities
 std::vector<Verified> verify_all(const HeightMap& map, const std::vector<Candidate>& candidates,
                                  const SearchBounds& bounds);
 

@@ -1,10 +1,12 @@
 // How honest the probabilities of fettle-find are:    find-calibration SCORE.csv...
 //
 // SCORE.csv are find-score's, in folders named PART_CASE; `under` and `side` after a part's name are views of it. A
-// line for each range of probabilities: finds said so, how many of them are right. Then the same after slope and offset
-// of the log odds were fitted to the finds (Platt 1999), each part's by the finds of all other parts, and slope and
-// offset from all of them. Exit 1 if of finds said 0.85 to 0.95 a share outside of that range is right.
+// line for each range of probabilities: finds said so, how many of them are right. Then the same after the log odds
+// were fitted to the finds, a slope for the score, one for the logarithm of how many doubtful others there are, and an
+// offset (Platt 1999), each part's by the finds of all other parts, and these three from all parts. Exit 1 if of finds
+// said 0.85 to 0.95 a share outside of that range is right.
 #include "core/error.h"
+#include "find/evidence.h"
 
 #include <Eigen/Cholesky>
 
@@ -22,19 +24,19 @@ using namespace fettle;
 
 namespace {
 
-constexpr double kMaxLogOdds = 12; // said 1 - 6e-6: what is written as 1
-
 struct Find {
     std::string part, view;
-    double log_odds;
+    double probability;
     bool is_right;
     double height, area;
+    Eigen::Vector3d terms; ///< of the log odds: score, log(1 + doubtful others), 1
 };
 
 struct Calibration {
-    double slope = 1, offset = 0;
+    Eigen::Vector3d weights{1, 0, 0}; ///< of these terms
 
-    double probability(const Find& find) const { return 1 / (1 + std::exp(-slope * find.log_odds - offset)); }
+    double sure(const Find& find) const { return 1 / (1 + std::exp(-weights.dot(find.terms))); }
+    double probability(const Find& find) const { return (1 - find::kUnforeseenShare) * sure(find); }
 };
 
 /// bestboatunder of FOLDER/bestboatunder_3/score.csv.
@@ -64,11 +66,11 @@ std::vector<Find> read_finds(const std::string& path)
         std::istringstream words(line);
         std::string kind;
         int is_right = 0;
-        double p = 0, height = 0, area = 0;
-        words >> kind >> is_right >> p >> height >> area;
+        double p = 0, height = 0, area = 0, score = 0, others = 0;
+        words >> kind >> is_right >> p >> height >> area >> score >> others;
         if (!words) throw core::InputError(path, "not a row of find-score: " + line);
-        finds.push_back({part_of(view_of(path)), view_of(path),
-                         std::clamp(std::log(p / (1 - p)), -kMaxLogOdds, kMaxLogOdds), is_right != 0, height, area});
+        finds.push_back({part_of(view_of(path)), view_of(path), p, is_right != 0, height, area,
+                         Eigen::Vector3d(score, std::log1p(others), 1)});
     }
     return finds;
 }
@@ -82,31 +84,32 @@ bool is_same_feature(const Find& a, const Find& b)
            std::abs(std::log(a.area / b.area)) < std::log(kAreaRatio);
 }
 
+constexpr double kMinProbability = 1e-12; // keeps a loss finite
+
 double loss_of(const std::vector<Find>& finds, const Calibration& calibration)
 {
     double loss = 0;
     for (const Find& find : finds) {
-        const double s = (calibration.slope * find.log_odds + calibration.offset) * (find.is_right ? 1 : -1);
-        loss += s > 0 ? std::log1p(std::exp(-s)) : std::log1p(std::exp(s)) - s;
+        const double p = std::max(calibration.probability(find), kMinProbability);
+        loss -= std::log(find.is_right ? p : 1 - p);
     }
     return loss;
 }
 
-/// By Newton's method with halved steps.
+/// By Fisher's scores with halved steps: dp/dw = p (1 - s) terms, where s is the probability without the unforeseen.
 Calibration fit(const std::vector<Find>& finds)
 {
     Calibration best;
     for (int step = 0; step < 50; ++step) {
-        Eigen::Vector2d gradient(0, 0);
-        Eigen::Matrix2d curvature = 1e-6 * Eigen::Matrix2d::Identity();
+        Eigen::Vector3d gradient(0, 0, 0);
+        Eigen::Matrix3d curvature = 1e-6 * Eigen::Matrix3d::Identity();
         for (const Find& find : finds) {
-            const double p = best.probability(find);
-            const Eigen::Vector2d d(find.log_odds, 1);
-            gradient += (p - find.is_right) * d;
-            curvature += p * (1 - p) * d * d.transpose();
+            const double p = std::max(best.probability(find), kMinProbability), change = p * (1 - best.sure(find));
+            gradient += (p - find.is_right) * change / (p * (1 - p)) * find.terms;
+            curvature += change * change / (p * (1 - p)) * find.terms * find.terms.transpose();
         }
-        Eigen::Vector2d change = curvature.ldlt().solve(gradient);
-        const auto changed = [&] { return Calibration{best.slope - change[0], best.offset - change[1]}; };
+        Eigen::Vector3d change = curvature.ldlt().solve(gradient);
+        const auto changed = [&] { return Calibration{best.weights - change}; };
         while (change.norm() > 1e-9 && loss_of(finds, changed()) > loss_of(finds, best)) change /= 2;
         best = changed();
     }
@@ -147,7 +150,7 @@ try {
                 finds.push_back(std::move(find));
         }
     std::vector<Said> said, left_out;
-    for (const Find& find : finds) said.emplace_back(Calibration().probability(find), find.is_right);
+    for (const Find& find : finds) said.emplace_back(find.probability, find.is_right);
     std::printf("%zu finds on %zu parts\n", finds.size(), parts.size());
     const bool is_honest = judge("as fettle-find says it", said);
     for (const std::string& part : parts) {
@@ -160,7 +163,8 @@ try {
     }
     judge("calibrated by other parts", left_out);
     const Calibration all = fit(finds);
-    std::printf("slope %.3f, offset %.3f of the log odds\n", all.slope, all.offset);
+    std::printf("log odds: %.3f of the score, %.3f of log(1 + doubtful others), %.3f\n", all.weights[0], all.weights[1],
+                all.weights[2]);
     return is_honest ? 0 : 1;
 } catch (const core::InputError& error) {
     std::fprintf(stderr, "find-calibration: %s\n", error.what());

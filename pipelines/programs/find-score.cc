@@ -4,7 +4,7 @@
 // beneath). A line for each anomaly: "true", number, points, height in noise, width in cells (the largest inscribed
 // circle's diameter), intersection over union of the points with the best find's, share of the points outside of that
 // find's B, its probability; then one for each find: "find", right (1: 0.3 of its points are on an anomaly),
-// probability, height, area, doubt; then "run", noise, seconds.
+// probability, height, area, score, doubtful others, doubt; then "run", noise, seconds.
 #include "cli/tool.h"
 #include "find/refinement.h"
 #include "find/registration.h"
@@ -93,7 +93,8 @@ int main(int argc, char** argv)
                     one.probability = found.probability;
             }
             t.output() << "find," << (on_anomaly > 0.3) << ',' << found.probability << ',' << found.height << ','
-                       << found.area << ',' << found.doubt << '\n';
+                       << found.area << ',' << found.score << ',' << found.doubtful_others << ',' << found.doubt
+                       << '\n';
         }
         for (const auto& [number, one] : scored)
             t.output() << "true," << number << ',' << one.points << ',' << one.height / result.noise << ',' << one.width

@@ -1,4 +1,5 @@
 #include "find/background.h"
+#include "find/doubtful.h"
 #include "find/find.h"
 #include "find/outline.h"
 #include "find/ring_fit.h"
@@ -183,6 +184,46 @@ TEST(Outline, SurroundsTheRegionAndKeepsToTheMap)
     EXPECT_GT(outlines.boundary.row(0).maxCoeff(), 61);
     EXPECT_LT(outlines.sampling.row(1).minCoeff(), outlines.boundary.row(1).minCoeff() - 3);
     EXPECT_GE(outlines.sampling.minCoeff(), 0);
+}
+
+// A foot that was measured replaces the one that B allows for; it is not added to it.
+TEST(Outline, GoesBeyondAMeasuredFoot)
+{
+    HeightMap map{Image(100, 100, 0.F), 1, {0, 0}, Mask(100, 100, uchar(255)), 0.1};
+    Mask region(100, 100, uchar(0));
+    region(cv::Rect(40, 40, 20, 12)) = 255;
+    const auto width = [&](int foot) {
+        const Eigen::Matrix2Xd boundary = outlines_of(map, region, Mask(100, 100, uchar(0)), foot).boundary;
+        return boundary.row(0).maxCoeff() - boundary.row(0).minCoeff();
+    };
+    EXPECT_NEAR(width(1), width(0), 1e-9);
+    for (const int foot : {3, 4, 6}) {
+        EXPECT_GE(width(foot), 20 + 2 * foot);
+        EXPECT_LE(width(foot), 20 + 2 * (foot + 2.2));
+    }
+}
+
+// Doubtful finds beside a find lower its probability, but not itself, nor the same again at one place.
+TEST(Find, DoubtfulOthersCount)
+{
+    const auto find_at = [](int x, double score) {
+        Verified find;
+        find.window = cv::Rect(x, 0, 10, 10);
+        find.mask = Mask(10, 10, uchar(255));
+        find.score = score;
+        return find;
+    };
+    std::vector<Verified> finds = {find_at(0, 1), find_at(100, -2), find_at(102, -2.5), find_at(200, -3),
+                                   find_at(300, -9)};
+    set_probabilities(finds);
+    EXPECT_EQ(finds[0].doubtful_others, 2);
+    EXPECT_EQ(finds[1].doubtful_others, 1);
+    EXPECT_EQ(finds[2].doubtful_others, 1);
+    EXPECT_EQ(finds[3].doubtful_others, 1);
+    EXPECT_EQ(finds[4].doubtful_others, 2);
+    EXPECT_EQ(finds[0].probability, probability_of(1, 2));
+    EXPECT_LT(probability_of(1, 2), probability_of(1, 0));
+    EXPECT_LT(probability_of(0.9, 2), probability_of(1, 2));
 }
 
 TEST(Find, PartsWithoutSurfaceAreRefused)
