@@ -26,6 +26,8 @@ AGAINST := $(foreach name,$(MESHES),$(CASES:%=$(FIND)/$(name)_%))
 WORN    := $(foreach name,$(NAMES),$(patsubst %,$(FIND)/$(name)_%,$(filter-out c%,$(CASES))))
 
 DOUBTFUL ?= f0 f1 f2 e0 e1
+# Draws of the touches' errors, of which the chain's errors are means.
+DRAWS ?= 3
 
 .PHONY: find chain calibration evidence
 find: $(ALL:%=%/score.csv) $(AGAINST:%=%/against.csv)
@@ -67,4 +69,4 @@ $(FIND)/%/against.csv: $(FIND)/%/bent.pcd $(B)/study/find-score
 	$(call step,$(B)/study/find-score $< --against $(@D)/design.stl -q > $@.part)
 
 $(FIND)/%/chain.csv: $(FIND)/%/worn.pcd $(TEMPLATE) $(B)/study/find-jobs pipelines/find-chain
-	$(call step,pipelines/find-chain $< $(TEMPLATE) $(@D)/chain > $@.part)
+	$(call step,pipelines/find-chain $< $(TEMPLATE) $(@D)/chain $(DRAWS) > $@.part)

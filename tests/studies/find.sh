@@ -29,8 +29,8 @@ status=0
 [ $status = 1 ]
 grep -x '1 figures missed' worse.txt
 
-# Reference: found jobs that leave 1, 1 and 1.2 times the operators' errors, and one that runs where the operator's is refused.
-printf '%s\n' '1,0.02,0.02' '2,0.03,0.03' '3,0.024,0.02' '4,0.01,' > chain.csv
+# Reference: found jobs that leave 1 (1.5 and .5 in two draws), 1 and 1.2 times the operators' errors, and one that runs where the operator's is refused.
+printf '%s\n' '1,0.03,0.02' '1,0.01,0.02' '2,0.03,0.03' '3,0.024,0.02' '4,0.01,' > chain.csv
 "$root/pipelines/find-chain-table" chain.csv > chain.txt
 grep -E '^mean error by the found job over the operator.s, median +3 +1.000 ' chain.txt
 grep -x 'all figures reached' chain.txt
