@@ -1,11 +1,9 @@
 #include "find/description.h"
 
-#include "core/cholesky.h"
 #include "core/direction.h"
 #include "core/text.h"
+#include "find/design.h"
 #include "find/outline.h"
-
-#include <opencv2/imgproc.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -28,9 +26,6 @@ constexpr double kSureProbability = 0.96;
 constexpr double kMaxThicknessPerRing = 2.5;
 // Share of the surroundings that is not the surface: an edge of the part, of the scan, or another feature.
 constexpr double kMinOpenShare = 0.6;
-// A boss by design has a flat top, and an outline that is a rectangle or an ellipse: shares of height and area.
-constexpr double kFlatTop = 0.05, kRegularOutline = 0.06;
-constexpr double kTopDepth = 3; // cells inside of the region's outline
 // Nothing on the part tells a boss by design from an anomaly of that shape: no more is said of its probability.
 constexpr double kMaxBossProbability = 0.9;
 
@@ -71,28 +66,6 @@ Eigen::Vector3d middle_beneath(const SeenSide& side, const Verified& find)
     return sum / std::max(1.0, count);
 }
 
-/// True for a region with a flat top and the outline of a rectangle or an ellipse.
-bool looks_designed(const Verified& find)
-{
-    const Mask top = (depth_of(find.mask) > float(kTopDepth)) & finite(find.height);
-    std::vector<cv::Point> places, all;
-    cv::findNonZero(top, places);
-    cv::findNonZero(find.mask, all);
-    if (places.size() < 12) return false;
-    Eigen::MatrixXd A(Index(places.size()), 3);
-    Eigen::VectorXd z(A.rows());
-    for (std::size_t k = 0; k < places.size(); ++k) {
-        A.row(Index(k)) << 1, places[k].x - places[0].x, places[k].y - places[0].y;
-        z[Index(k)] = find.height(places[k]);
-    }
-    const Eigen::Vector3d plane = core::solve_ldlt(A.transpose() * A, A.transpose() * z); // definite: cells of an area
-    if ((z - A * plane).norm() > kFlatTop * find.evidence.height * std::sqrt(double(places.size()))) return false;
-    const cv::RotatedRect rectangle = cv::minAreaRect(all);
-    const double width = rectangle.size.width + 1.0, height = rectangle.size.height + 1.0;
-    const double filled = double(all.size()) / (width * height);
-    return filled > 1 - kRegularOutline || std::abs(filled - CV_PI / 4) < kRegularOutline * CV_PI / 4;
-}
-
 std::string doubts_of(const Verified& find, bool is_boss)
 {
     const Evidence& e = find.evidence;
@@ -103,6 +76,7 @@ std::string doubts_of(const Verified& find, bool is_boss)
         doubts.push_back("it is wider than the good metal around it");
     if (find.has_crease) doubts.push_back("a crease of the part runs beneath it");
     if (is_boss) doubts.push_back("with its flat top and regular outline it may be a boss by design");
+    if (find.alike > 0) doubts.push_back("others of its height and size stand beside it, as in a pattern by design");
     return core::join(doubts, "; ");
 }
 

@@ -1,5 +1,7 @@
 #include "find/doubtful.h"
 
+#include "find/design.h"
+
 #include <algorithm>
 #include <functional>
 
@@ -8,6 +10,10 @@ namespace {
 
 // Two finds that share more than this of either's cells are at one place.
 constexpr double kMaxSharedCells = 0.1;
+
+// What each alike one takes from a score: a factor of 100 of the odds, if a boss by design has one as often as not, and
+// of pairs with an anomaly one in 240 has that height and size (docs/methods/find.md).
+constexpr double kAlikeScore = 3.1;
 
 bool is_one_place(const Verified& a, const Verified& b)
 {
@@ -21,18 +27,23 @@ bool is_one_place(const Verified& a, const Verified& b)
 
 void set_probabilities(std::vector<Verified>& finds)
 {
-    std::vector<const Verified*> order, taken, doubtful;
+    std::vector<const Verified*> order, places;
     for (const Verified& find : finds) order.push_back(&find);
-    // The surer ones of a place come first: a doubtful find there is the same again.
+    // The surer ones of a place come first: another find there is the same again.
     std::ranges::stable_sort(order, std::greater{}, &Verified::score);
-    for (const Verified* find : order) {
-        if (std::ranges::any_of(taken, [&](const Verified* other) { return is_one_place(*find, *other); })) continue;
-        taken.push_back(find);
-        if (is_doubtful(find->score)) doubtful.push_back(find);
+    for (const Verified* find : order)
+        if (std::ranges::none_of(places, [&](const Verified* other) { return is_one_place(*find, *other); }))
+            places.push_back(find);
+    for (Verified& find : finds) {
+        find.doubtful_others = find.alike = 0;
+        for (const Verified* other : places) {
+            if (other == &find || is_one_place(find, *other)) continue;
+            find.doubtful_others += is_doubtful(other->score);
+            find.alike += are_alike(find, *other);
+        }
     }
     for (Verified& find : finds) {
-        find.doubtful_others = int(std::ranges::count_if(
-            doubtful, [&](const Verified* other) { return other != &find && !is_one_place(find, *other); }));
+        find.score -= kAlikeScore * find.alike;
         find.probability = probability_of(find.score, find.doubtful_others);
     }
 }

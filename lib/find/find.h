@@ -18,7 +18,7 @@ namespace fettle::find {
 struct FoundAnomaly {
     int number = 0;          ///< row in the result and value of the field `anomaly`, from 1
     double probability = 0;  ///< that it is one, by the logistic model
-    double score = 0;        ///< by its evidence alone, of which that is made; without a reference
+    double score = 0;        ///< by its evidence and those alike, of which that is made; without a reference
     int doubtful_others = 0; ///< finds beside it of which that is made, too
     double height = 0;       ///< largest over the surface beneath, along its mean normal
     double area = 0;         ///< of the surface beneath, mm²

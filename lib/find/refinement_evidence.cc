@@ -105,7 +105,8 @@ int Refinement::growth() const
 Verified Refinement::result(double texture) const
 {
     const cv::Rect all({0, 0}, window_.size());
-    Verified verified{window_, trimmed(), region_, residual_in(all), {}, 1, growth(), {}, {}, {}, crease_.has_value()};
+    Verified verified{window_, trimmed(), region_, residual_in(all),    {}, 1, growth(),
+                      {},      {},        {},      crease_.has_value(), 0};
     Evidence& e = verified.evidence;
     const Mask inside = region_ & seen_;
     e.height = quantile_of(values_in(beneath_.residual, inside), 0.9);

@@ -226,6 +226,32 @@ TEST(Find, DoubtfulOthersCount)
     EXPECT_LT(probability_of(0.9, 2), probability_of(1, 2));
 }
 
+// Flat tops of one height and about one size are a pattern by design; domes of one height are none, nor is a flat top
+// of another height.
+TEST(Find, FlatTopsOfOneHeightAreAPattern)
+{
+    const auto find_at = [](int x, double height, double dome) {
+        Verified find;
+        find.window = cv::Rect(x, 0, 9, 9);
+        find.mask = Mask(9, 9, uchar(255));
+        find.height = Image(9, 9);
+        for (int i = 0; i < 9; ++i)
+            for (int k = 0; k < 9; ++k) find.height(i, k) = float(height - dome * std::hypot(i - 4, k - 4));
+        find.evidence.height = height;
+        find.evidence.cells = 81;
+        find.evidence.noise = 0.02;
+        find.score = 4;
+        return find;
+    };
+    std::vector<Verified> finds = {find_at(0, 5, 0),     find_at(100, 5.05, 0), find_at(200, 4.96, 0),
+                                   find_at(300, 5, 0.5), find_at(400, 5, 0.5),  find_at(500, 7, 0)};
+    set_probabilities(finds);
+    for (const int k : {0, 1, 2}) EXPECT_EQ(finds[std::size_t(k)].alike, 2);
+    for (const int k : {3, 4, 5}) EXPECT_EQ(finds[std::size_t(k)].alike, 0);
+    EXPECT_LT(finds[0].probability, 0.8);
+    EXPECT_EQ(finds[3].probability, probability_of(4, 0));
+}
+
 TEST(Find, PartsWithoutSurfaceAreRefused)
 {
     mesh::CloudMesh part;
