@@ -42,12 +42,13 @@ double max_same_distance(const Eigen::Matrix3Xd& points)
     return kMaxSameDistance * geometry::bounding_box(points).diagonal().norm();
 }
 
-/// Mean square distance of a part from its reference once the slow field between both is taken off, mm². Distances
-/// count up to a bound, the same for all poses: what has no counterpart on the reference tells poses of a nearly
-/// symmetric part apart, and anomalies, which are far off in all of them, do not rule.
+/// Mean square distance of a part from its reference once the slow field between both is taken off, mm². The field has
+/// no stiffness: in a wrong pose a bent part may lie flatter, and a stiff field leaves more of the bend in the right
+/// one. Distances count up to a bound, the same for all poses: what has no counterpart on the reference tells poses of
+/// a nearly symmetric part apart, and anomalies, which are far off in all of them, do not rule.
 double misfit_beyond_slow_field(const Eigen::Matrix3Xd& points, const compare::Reference& reference)
 {
-    const SlowField field = fit_slow_field(points, reference);
+    const SlowField field = fit_slow_field(points, reference, Stiffness::none);
     Eigen::Matrix3Xd unbent = points;
     for (auto point : unbent.colwise()) point -= field.at(point);
     const double bound = max_same_distance(points);

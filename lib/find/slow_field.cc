@@ -125,7 +125,7 @@ double SlowField::sd_along(const Eigen::Vector3d& point, const Eigen::Vector3d& 
     return sd * gradient.norm();
 }
 
-SlowField fit_slow_field(const Eigen::Matrix3Xd& points, const compare::Reference& reference)
+SlowField fit_slow_field(const Eigen::Matrix3Xd& points, const compare::Reference& reference, Stiffness stiffness)
 {
     SlowField field;
     const Eigen::AlignedBox3d box = geometry::bounding_box(points);
@@ -134,7 +134,8 @@ SlowField fit_slow_field(const Eigen::Matrix3Xd& points, const compare::Referenc
     Eigen::Matrix<double, kMonomials, Eigen::Dynamic> basis(kMonomials, points.cols());
     for (Index i = 0; i < points.cols(); ++i) basis.col(i) = monomials_of((points.col(i) - field.centre) / field.scale);
     field.coefficients = Eigen::Matrix3Xd::Zero(3, kMonomials);
-    const Eigen::MatrixXd stiffness = kStrainWeight / (kStrainSd * kStrainSd) * strain_energy(points, field);
+    Eigen::MatrixXd strains = Eigen::MatrixXd::Zero(3 * kMonomials, 3 * kMonomials);
+    if (stiffness == Stiffness::metal) strains = kStrainWeight / (kStrainSd * kStrainSd) * strain_energy(points, field);
     for (int iteration = 0; iteration < kFieldIterations; ++iteration) {
         const Eigen::Matrix3Xd shifts = field.coefficients * basis;
         const compare::ErrorMap map = reference(points - shifts);
@@ -151,7 +152,7 @@ SlowField fit_slow_field(const Eigen::Matrix3Xd& points, const compare::Referenc
         Eigen::MatrixXd N = Eigen::MatrixXd::Zero(A.rows(), A.rows());
         N.selfadjointView<Eigen::Lower>().rankUpdate(A);
         field.sd = spread_of(map.error);
-        N += field.sd * field.sd * stiffness;
+        N += field.sd * field.sd * strains;
         N.diagonal().array() += kFieldRidge * N.trace() / double(A.rows()) + kMinRidge;
         // LLT: the ridge makes the matrix definite.
         const core::Cholesky cholesky(N);

@@ -21,10 +21,14 @@ struct SlowField {
     double sd_along(const Eigen::Vector3d& point, const Eigen::Vector3d& direction) const;
 };
 
+/// Whether the field hardly strains, as metal, or takes any slow form.
+enum class Stiffness { metal, none };
+
 /// Fits the field so that points, taken back by it, lie on the reference: weighted least squares of the distances along
 /// the normals, and of strains, iterated with Tukey's weights, so that anomalies do not bend it (a smooth non-rigid
 /// ICP; compare Amberg, Romdhani & Vetter 2007, who hold neighbours together where here the polynomial does).
 /// @param points  3xN, mm, registered; some thousands, evenly over the part
-SlowField fit_slow_field(const Eigen::Matrix3Xd& points, const compare::Reference& reference);
+SlowField fit_slow_field(const Eigen::Matrix3Xd& points, const compare::Reference& reference,
+                         Stiffness stiffness = Stiffness::metal);
 
 } // namespace fettle::find
