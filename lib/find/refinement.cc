@@ -181,13 +181,13 @@ Mask Refinement::region_over_surface() const
 {
     const double height = quantile_of(values_in(beneath_.smooth, region_ & seen_), 0.85);
     const double ring_variance = kRingVariance * beneath_.fit.sd * beneath_.fit.sd;
-    const double least = std::max(kRegionSds * kMinSds * sigma_, kRegionShare * height);
+    const double min_height = std::max(kRegionSds * kMinSds * sigma_, kRegionShare * height);
     const cv::Rect& reach = beneath_.reach;
     Mask seeds(z_.size(), 0), low(z_.size(), 0);
     for (int y = reach.y; y < reach.y + reach.height; ++y)
         for (int x = reach.x; x < reach.x + reach.width; ++x) {
             const double value = beneath_.smooth(y, x);
-            if (!(value > least)) continue; // most cells
+            if (!(value > min_height)) continue; // as of most cells
             const double sd =
                 std::max(std::sqrt(ring_variance + beneath_.sd(y, x) * beneath_.sd(y, x)), kMinSds * sigma_);
             if (value > std::max(kSeedSds * sd, kSeedShare * height) && core_(y, x)) seeds(y, x) = 255;

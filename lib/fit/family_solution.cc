@@ -187,10 +187,10 @@ std::vector<Attempt> attempts_from_minima(RoundFamily family, const RoundProblem
     return all;
 }
 
-/// The minima that may become the least one if a touch is added or left out; `best` always is one.
+/// The local minima that may become the global one if a touch is added or left out; `best` always is one.
 std::vector<RoundMinimum> competing_minima(const std::vector<Attempt>& attempts, const Attempt& best)
 {
-    constexpr double kMaxCostRatio = 2;       // to the least one: one touch seldom makes up for more
+    constexpr double kMaxCostRatio = 2;       // to the global one: one touch seldom makes up for more
     constexpr double kSameMinimum = 1 + 1e-6; // ratio of costs: the solver's tolerance is smaller
     std::vector<RoundMinimum> minima;
     for (const Attempt& one : attempts) {
