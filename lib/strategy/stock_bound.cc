@@ -29,14 +29,20 @@ removal::HeightField grid_around(const job::Job& job)
 /// Which cells lie in B.
 Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> cells_of_B(const removal::HeightField& field, const job::Job& job)
 {
-    Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> inside(field.columns(), field.rows());
+    Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> inside =
+        Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic>::Constant(field.columns(), field.rows(), false);
     const Eigen::Matrix2d R_machine_working = job::rotation_working_machine(job.theta).transpose();
-    for (Eigen::Index j = 0; j < field.rows(); ++j) {
-        Eigen::Matrix3Xd row = Eigen::Matrix3Xd::Zero(3, field.columns());
-        for (Eigen::Index i = 0; i < field.columns(); ++i)
-            row.col(i).head<2>() = R_machine_working * field.centre(i, j);
+    // Most cells lie around B, where the wheel hangs over: only those in its box are looked at.
+    const Eigen::AlignedBox2d box = geometry::bounding_box(job::working_boundaries(job).anomaly);
+    const Eigen::Array2d count(field.columns(), field.rows());
+    const Eigen::Array2d first = ((box.min() - field.origin).array() / field.cell).floor().max(0).min(count),
+                         end = ((box.max() - field.origin).array() / field.cell).ceil().max(first).min(count);
+    const Eigen::Index left = Eigen::Index(first.x()), columns = Eigen::Index(end.x()) - left;
+    for (Eigen::Index j = Eigen::Index(first.y()); j < Eigen::Index(end.y()); ++j) {
+        Eigen::Matrix3Xd row = Eigen::Matrix3Xd::Zero(3, columns);
+        for (Eigen::Index i = 0; i < columns; ++i) row.col(i).head<2>() = R_machine_working * field.centre(left + i, j);
         const std::vector<job::Region> regions = job::classify_regions(job, row);
-        for (Eigen::Index i = 0; i < field.columns(); ++i) inside(i, j) = regions[i] == job::Region::inside;
+        for (Eigen::Index i = 0; i < columns; ++i) inside(left + i, j) = regions[i] == job::Region::inside;
     }
     return inside;
 }
@@ -98,16 +104,14 @@ double StockBound::max_force(const std::vector<Eigen::Vector3d>& path, double ra
 
 double StockBound::free_length(const std::vector<Eigen::Vector3d>& path, double radius, double allowance) const
 {
-    removal::HeightField stock = cut_out(path, radius);
-    removal::WheelInStock wheel(stock, width_);
     double length = 0;
     bool is_free = true;
     for (std::size_t i = 1; i < path.size() && is_free; ++i) {
         Eigen::Vector3d last = path[i - 1];
         visit_positions(path[i - 1], path[i], [&](const Eigen::Vector3d& at) {
             if (!is_free) return;
-            wheel.place(R_working_machine_ * at.head<2>(), radius, at.z());
-            is_free = wheel.touch() <= at.z() + allowance;
+            wheel_.place(R_working_machine_ * at.head<2>(), radius, at.z());
+            is_free = wheel_.touch() <= at.z() + allowance;
             if (is_free) length += (at - last).norm();
             last = at;
         });
@@ -117,13 +121,11 @@ double StockBound::free_length(const std::vector<Eigen::Vector3d>& path, double 
 
 double StockBound::free_height(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double radius) const
 {
-    removal::HeightField stock = cut_out({from, to}, radius);
-    removal::WheelInStock wheel(stock, width_);
     double height = std::min(from.z(), to.z()) - safe_height_;
     const Eigen::Vector3d a(from.x(), from.y(), height), b(to.x(), to.y(), height);
     const auto touch = [&](const Eigen::Vector3d& at) {
-        wheel.place(R_working_machine_ * at.head<2>(), radius, at.z());
-        height = std::max(height, is_off_the_work(at.head<2>()) ? safe_height_ : wheel.touch());
+        wheel_.place(R_working_machine_ * at.head<2>(), radius, at.z());
+        height = std::max(height, is_off_the_work(at.head<2>()) ? safe_height_ : wheel_.touch());
     };
     touch(a);
     if (a != b) visit_positions(a, b, touch);

@@ -48,7 +48,7 @@ class StockBound {
 
     removal::HeightField bound_;
     Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> inside_; ///< for each cell: in B
-    removal::WheelInStock wheel_;
+    mutable removal::WheelInStock wheel_;                       ///< its place is no part of the bound
     removal::Spring spring_;
     Eigen::Matrix2d R_working_machine_;
     double width_;       ///< of the wheel, mm
