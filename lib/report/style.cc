@@ -34,9 +34,9 @@ p { margin: .5rem 0; max-width: 46rem; }
 .verdict.force { border-left-color: var(--over); margin-top: .7rem; }
 .verdict.force .sign, .verdict.force strong, .verdict.force p { color: var(--over); }
 .verdict p { margin: .15rem 0 0; }
-.tiles { display: grid; grid-template-columns: repeat(auto-fill, minmax(8.2rem, 1fr)); gap: .7rem; margin: 1rem 0 0; padding: 0; list-style: none; }
-.tiles li { border: 1px solid var(--rule); padding: .5rem .75rem .55rem; }
-.tiles b { display: block; font-size: 1.22rem; font-weight: 600; line-height: 1.3; white-space: nowrap; }
+.tiles { display: grid; grid-template-columns: repeat(auto-fill, minmax(7.7rem, 1fr)); gap: .7rem; margin: 1rem 0 0; padding: 0; list-style: none; }
+.tiles li { border: 1px solid var(--rule); padding: .5rem .6rem .55rem; }
+.tiles b { display: block; font-size: 1.15rem; font-weight: 600; line-height: 1.3; white-space: nowrap; }
 .tiles span.label { color: var(--soft); font-size: .82rem; line-height: 1.3; display: block; }
 .columns { display: grid; grid-template-columns: 1fr 1fr; gap: 0 2.2rem; align-items: start; }
 table { border-collapse: collapse; width: 100%; margin: .4rem 0 .9rem; font-size: .92rem; }
