@@ -173,7 +173,8 @@ find::FindResult find_against(const Options& o, const find::FindOptions& options
     });
 }
 
-// What is less probable by itself is no anomaly, whatever stood there on an earlier casting.
+// What is less probable by itself is no anomaly, whatever stood there on an earlier casting. Whether it is one or a
+// feature by design was decided there.
 constexpr double kMinLikeProbability = 0.15;
 
 find::FindResult find_like(const Options& o, find::FindOptions options, const std::vector<find::EarlierJob>& jobs,
@@ -181,10 +182,9 @@ find::FindResult find_like(const Options& o, find::FindOptions options, const st
 {
     const find::Registration registration =
         registered(o, o.against.empty() ? o.like + "/part.pcd" : o.against, part, name).first;
-    const double alone = options.min_probability;
-    options.min_probability = std::min(alone, kMinLikeProbability);
+    options.min_by_evidence = kMinLikeProbability;
     find::FindResult result = cli::with_error_prefix(name, [&] { return find::find_anomalies(part.part, options); });
-    find::match_earlier(result, part.part, jobs, registration.T_reference_part, alone);
+    find::match_earlier(result, part.part, jobs, registration.T_reference_part, options.min_probability);
     for (const std::string& file : result.absent) o.t.note(file + ": nothing stands there");
     return result;
 }

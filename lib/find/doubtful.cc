@@ -28,7 +28,12 @@ bool is_one_place(const Verified& a, const Verified& b)
 void set_probabilities(std::vector<Verified>& finds)
 {
     std::vector<const Verified*> order, places;
-    for (const Verified& find : finds) order.push_back(&find);
+    std::vector<double> by_evidence;
+    for (Verified& find : finds) {
+        by_evidence.push_back(find.score);
+        find.score -= flat_top_score(find.evidence);
+        order.push_back(&find);
+    }
     // The surer ones of a place come first: another find there is the same again.
     std::ranges::stable_sort(order, std::greater{}, &Verified::score);
     for (const Verified* find : order)
@@ -42,9 +47,11 @@ void set_probabilities(std::vector<Verified>& finds)
             find.alike += are_alike(find, *other);
         }
     }
-    for (Verified& find : finds) {
+    for (std::size_t i = 0; i < finds.size(); ++i) {
+        Verified& find = finds[i];
         find.score -= kAlikeScore * find.alike;
         find.probability = probability_of(find.score, find.doubtful_others);
+        find.probability_by_evidence = probability_of(by_evidence[i], find.doubtful_others);
     }
 }
 

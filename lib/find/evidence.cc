@@ -44,9 +44,13 @@ constexpr Term kModelTerms[] = {
 
 // Log odds by the score and by what else the view shows, so that of the finds on parts that they were not fitted to as
 // many are right as is said: pipelines/programs/find-calibration.cc.
-constexpr double kCalibrationSlope = 1.47, kCalibrationOffset = 1.85, kCalibrationOthers = -0.62;
-// Scores of doubtful finds, which are said .015 to .48 where no other is.
-constexpr double kMinDoubtful = -4.1, kMaxDoubtful = -1.3;
+constexpr double kCalibrationSlope = 1.5, kCalibrationOffset = 2.6, kCalibrationOthers = -0.95;
+// Scores of doubtful finds, from kMinDoubtfulScore, are said .03 to .65 where no other is.
+constexpr double kMaxDoubtfulScore = -1.3;
+
+// Anomalies are seldom so plane on top that their height is exp(2.5), twelve times, the top's departure from a plane;
+// features by design are. What each factor of e beyond that takes from the score (docs/methods/find.md).
+constexpr double kFlatTopKnot = 2.5, kFlatTopScore = 4;
 
 // Against a reference: slope and offset of the log odds of what stands out by so many standard deviations, and those
 // over which they change by 1.
@@ -93,7 +97,13 @@ double score_of(const Evidence& evidence)
     return score;
 }
 
-bool is_doubtful(double score) { return score >= kMinDoubtful && score < kMaxDoubtful; }
+double flat_top_score(const Evidence& evidence)
+{
+    const double flatness = log_ratio(evidence.height, std::max(evidence.top_departure, evidence.noise));
+    return kFlatTopScore * std::max(flatness - kFlatTopKnot, 0.0);
+}
+
+bool is_doubtful(double score) { return score >= kMinDoubtfulScore && score < kMaxDoubtfulScore; }
 
 double probability_of(double score, int doubtful_others)
 {

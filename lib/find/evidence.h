@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/constants.h"
 #include "find/bounds.h"
 
 #include <Eigen/Core>
@@ -31,6 +32,8 @@ struct Evidence {
     double thickness = 0;      ///< largest inscribed circle's diameter, cells
     double cell = 1;           ///< mm
     double degree = 1;         ///< of the surface
+    /// Of its top from a plane: departure_from_plane(). Infinite: not measured, as of what is hardly an anomaly anyway.
+    double top_departure = core::kInfinity;
 
     /// Standard deviation of the surface beneath: of the mean of the metal around it, and of the surface itself.
     double surface_sd() const;
@@ -46,6 +49,12 @@ Features features_of(const Evidence& evidence);
 /// Score of the candidate by its own evidence, which rises with the probability that it is an anomaly: a linear model
 /// of features_of(), whose weights and their origin docs/methods/find.md describes.
 double score_of(const Evidence& evidence);
+
+/// What a flat top takes from that score: it is more often a feature by design. 0 if its departure is not measured.
+double flat_top_score(const Evidence& evidence);
+
+/// Least score of a doubtful find: what is below is hardly an anomaly.
+inline constexpr double kMinDoubtfulScore = -4.1;
 
 /// Whether a find of this score may be a feature of the part as well as an anomaly, or is rather one.
 bool is_doubtful(double score);

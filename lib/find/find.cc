@@ -79,7 +79,9 @@ void search(SeenSide& side, const FindOptions& options)
         for (Verified& find : side.finds) find.probability = probability_against(find.evidence);
     else
         set_probabilities(side.finds);
-    std::erase_if(side.finds, [&](const Verified& find) { return find.probability < options.min_probability; });
+    std::erase_if(side.finds, [&](const Verified& find) {
+        return find.probability < options.min_probability && find.probability_by_evidence < options.min_by_evidence;
+    });
 }
 
 /// @param min_height  along the normal of the surface beneath: a view overstates heights on walls

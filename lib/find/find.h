@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/constants.h"
 #include "find/bounds.h"
 #include "mesh/cloud_mesh.h"
 #include "units/units.h"
@@ -46,6 +47,8 @@ struct FindResult {
 struct FindOptions {
     SearchBounds bounds;
     double min_probability = 0.8; ///< less probable ones are left out
+    /// Unless they are so probable but for what speaks for a feature by design: flat tops, and others alike.
+    double min_by_evidence = core::kInfinity;
 };
 
 /// Finds anomalies of a part without a model: the metal around each candidate predicts the surface beneath it

@@ -1,4 +1,5 @@
 #include "core/cholesky.h"
+#include "find/flat_top.h"
 #include "find/refinement.h"
 
 #include <opencv2/imgproc.hpp>
@@ -105,8 +106,9 @@ int Refinement::growth() const
 Verified Refinement::result(double texture) const
 {
     const cv::Rect all({0, 0}, window_.size());
-    Verified verified{window_, trimmed(), region_, residual_in(all),    {}, 1, growth(),
-                      {},      {},        {},      crease_.has_value(), 0};
+    Verified verified{window_, trimmed(), region_, residual_in(all), {}};
+    verified.growth = growth();
+    verified.has_crease = crease_.has_value();
     Evidence& e = verified.evidence;
     const Mask inside = region_ & seen_;
     e.height = quantile_of(values_in(beneath_.residual, inside), 0.9);
@@ -142,6 +144,7 @@ Verified Refinement::result(double texture) const
     e.pits = double(cv::countNonZero(beneath_.ring & (beneath_.residual < float(-5 * e.ring_sd)))) /
              cv::countNonZero(beneath_.ring);
     verified.score = score_of(e);
+    if (verified.score >= kMinDoubtfulScore) e.top_departure = departure_from_plane(region_, beneath_.residual, z_);
     return verified;
 }
 

@@ -17,11 +17,12 @@ struct Verified {
     Evidence evidence;
     int factor = 1;          ///< a thick candidate is verified in cells so many times as long
     int growth = 0;          ///< of those cells around the mask: their mean still stands over the surface
-    double score = 0;        ///< by its evidence, less for those alike
+    double score = 0;        ///< by its evidence; set_probabilities() takes off what speaks for a feature by design
     int doubtful_others = 0; ///< doubtful finds beside it; with the probability set by set_probabilities()
     double probability = 0;
-    bool has_crease = false; ///< in the surface beneath
-    int alike = 0;           ///< finds beside it that are like it, a pattern of the part; set by set_probabilities()
+    double probability_by_evidence = 0; ///< if it is no feature by design; set by set_probabilities()
+    bool has_crease = false;            ///< in the surface beneath
+    int alike = 0; ///< finds beside it that are like it, a pattern of the part; set by set_probabilities()
 };
 
 /// Verifies all candidates, in parallel: fits the surface beneath each to the ring around it, takes the region anew

@@ -1,6 +1,7 @@
 #include "find/background.h"
 #include "find/doubtful.h"
 #include "find/find.h"
+#include "find/flat_top.h"
 #include "find/outline.h"
 #include "find/ring_fit.h"
 #include "find/slow_field.h"
@@ -240,16 +241,56 @@ TEST(Find, FlatTopsOfOneHeightAreAPattern)
         find.evidence.height = height;
         find.evidence.cells = 81;
         find.evidence.noise = 0.02;
+        find.evidence.top_departure = departure_from_plane(find.mask, find.height, find.height);
         find.score = 4;
         return find;
     };
-    std::vector<Verified> finds = {find_at(0, 5, 0),     find_at(100, 5.05, 0), find_at(200, 4.96, 0),
-                                   find_at(300, 5, 0.5), find_at(400, 5, 0.5),  find_at(500, 7, 0)};
+    std::vector<Verified> finds = {find_at(0, 5, 0),   find_at(100, 5.05, 0), find_at(200, 4.96, 0),
+                                   find_at(300, 5, 1), find_at(400, 5, 1),    find_at(500, 7, 0)};
     set_probabilities(finds);
     for (const int k : {0, 1, 2}) EXPECT_EQ(finds[std::size_t(k)].alike, 2);
     for (const int k : {3, 4, 5}) EXPECT_EQ(finds[std::size_t(k)].alike, 0);
-    EXPECT_LT(finds[0].probability, 0.8);
-    EXPECT_EQ(finds[3].probability, probability_of(4, 0));
+    EXPECT_LT(finds[0].probability, finds[5].probability); // others alike tell more than the flat top alone
+    EXPECT_LT(finds[5].probability, 0.8);
+    EXPECT_EQ(finds[3].probability, probability_of(4, finds[3].doubtful_others));
+    for (const Verified& find : finds) EXPECT_EQ(find.probability_by_evidence, probability_of(4, find.doubtful_others));
+}
+
+// A tilted plane with a hole and walls around is flat on top, and so are strokes two cells wide; a dome is not.
+TEST(Find, DepartureOfTopsFromAPlane)
+{
+    const Mask square(20, 20, uchar(255));
+    Image pad(20, 20), dome(20, 20);
+    for (int y = 0; y < 20; ++y)
+        for (int x = 0; x < 20; ++x) {
+            const double r = std::hypot(x - 9.5, y - 9.5);
+            pad(y, x) = std::max(std::abs(x - 9.5), std::abs(y - 9.5)) > 8 ? 0.5F : float(r < 2 ? 0.2 : 3 + 0.05 * x);
+            dome(y, x) = float(3 - 0.01 * r * r);
+        }
+    EXPECT_LT(departure_from_plane(square, pad, pad), 1e-5);
+    EXPECT_GT(departure_from_plane(square, dome, dome), 0.1);
+    Mask stroke(20, 20, uchar(0));
+    stroke(cv::Rect(2, 2, 2, 15)).setTo(255);
+    stroke(cv::Rect(2, 15, 12, 2)).setTo(255);
+    EXPECT_LT(departure_from_plane(stroke, Image(20, 20, 1.F), Image(20, 20, 1.F)), 1e-5);
+    EXPECT_EQ(departure_from_plane(Mask(20, 20, uchar(0)), pad, pad), std::numeric_limits<double>::infinity());
+}
+
+TEST(Find, FlatTopsTakeFromTheScore)
+{
+    Evidence evidence;
+    evidence.height = 3;
+    evidence.noise = 0.02;
+    EXPECT_EQ(flat_top_score(evidence), 0); // not measured
+    evidence.top_departure = 0.3;
+    EXPECT_EQ(flat_top_score(evidence), 0);
+    evidence.top_departure = 0.1;
+    const double flat = flat_top_score(evidence);
+    EXPECT_GT(flat, 0);
+    evidence.top_departure = 0.03;
+    EXPECT_GT(flat_top_score(evidence), flat);
+    evidence.noise = 0.3; // which hides how flat it is
+    EXPECT_EQ(flat_top_score(evidence), 0);
 }
 
 TEST(Find, PartsWithoutSurfaceAreRefused)
