@@ -3,11 +3,13 @@
 #include "core/cholesky.h"
 #include "core/decompositions.h"
 #include "fit/correlation.h"
+#include "fit/family.h"
 #include "surface/shapes.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <variant>
 
 namespace fettle::margin {
@@ -18,15 +20,14 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// What is believed of the waves about a family before it is touched.
-struct WavePrior {
-    double share;                     ///< of the parts that have some
-    std::array<double, 3> amplitudes; ///< over the standard deviation of a touch, all alike
-};
-constexpr WavePrior kCommonPrior = {0.08, {0.5, 1, 2}};
-constexpr WavePrior kCubicPrior = {0.9, {1, 2, 4}};
+// Shares of the parts that have waves of a given amplitude, among those and the parts that have none.
+constexpr double kShare = 0.25;
+constexpr double kCubicShare = 0.9;
+// Over the standard deviation of a touch. Lower waves do not matter beside the touches' error. The higher ones show at
+// touches so far off that the fit leaves them out.
+constexpr std::array kAmplitudes = {4.0, 8.0, 16.0, 32.0};
 constexpr std::array kLengths = {0.25, 0.5, 1.0}; // over the touches' radius, all alike
-/// Waves less probable than this change the margin by less than the scatter of the draws.
+// Waves less probable than this change the margin by less than the scatter of the draws.
 constexpr double kMinProbability = 1e-3;
 // Of the mean variance, added so that rounding leaves the covariance of neighbouring heights positive.
 constexpr double kJitter = 1e-6;
@@ -89,49 +90,75 @@ Kriging kriging(const MatrixXd& V, const Trend& trend)
     return result;
 }
 
-WavePrior prior_of(const surface::Shape& shape)
+double share_of(const surface::Shape& shape)
 {
     const auto* polynomial = std::get_if<surface::Polynomial>(&shape);
-    return polynomial != nullptr && polynomial->coefficients.size() > surface::monomial_count(2) ? kCubicPrior
-                                                                                                 : kCommonPrior;
+    const bool is_cubic = polynomial != nullptr && polynomial->coefficients.size() > surface::monomial_count(2);
+    return is_cubic ? kCubicShare : kShare;
 }
 
-/// Waves of one amplitude and one length.
+/// Touches, and the family at them.
+struct Touches {
+    Eigen::Matrix2Xd places;
+    Trend trend;
+    double log_prior; ///< that these are on good metal, and the others gross errors
+};
+
+bool is_usable(const Trend& trend)
+{
+    return trend.at_touches.cols() < trend.at_touches.rows() && trend.at_touches.allFinite() &&
+           trend.at_xy.allFinite() && trend.residuals.allFinite();
+}
+
+/// Waves of one amplitude and one length, seen by some touches.
 struct Model {
+    const Touches* touches;
     fit::Correlation correlation;
     double variance; ///< over that of a touch
     Kriging kriging;
     double probability = 0; ///< after the touches, if the part is of the family
 };
 
-std::vector<Model> models_of(const WavePrior& prior, const Eigen::Matrix2Xd& places, double radius, const Trend& trend)
+double log_evidence(const Model& model) { return model.kriging.log_likelihood + model.touches->log_prior; }
+
+void add_models(const Touches& touches, double amplitude, double radius, std::vector<Model>& models)
 {
-    const MatrixXd noise = MatrixXd::Identity(places.cols(), places.cols());
-    const double without = kriging(noise, trend).log_likelihood;
-    std::vector<Model> models;
-    double max = without;
+    const MatrixXd noise = MatrixXd::Identity(touches.places.cols(), touches.places.cols());
     for (const double length : kLengths) {
         const fit::Correlation correlation{fit::Kernel::matern52, length * radius};
-        const MatrixXd K = fit::correlation_matrix(correlation, places, places);
-        for (const double amplitude : prior.amplitudes) {
-            const double variance = amplitude * amplitude;
-            models.push_back({correlation, variance, kriging(variance * K + noise, trend)});
-            max = std::max(max, models.back().kriging.log_likelihood);
-        }
+        const double variance = amplitude * amplitude;
+        const MatrixXd K = fit::correlation_matrix(correlation, touches.places, touches.places);
+        models.push_back({&touches, correlation, variance, kriging(variance * K + noise, touches.trend)});
     }
-    double sum = (1 - prior.share) * std::exp(without - max);
+}
+
+/// @param inliers  touches that the fit kept   @param all  with those that it left out, nothing if there are none
+std::vector<Model> models_of(double share, const Touches& inliers, const std::optional<Touches>& all, double radius)
+{
+    const MatrixXd noise = MatrixXd::Identity(inliers.places.cols(), inliers.places.cols());
+    const double without = kriging(noise, inliers.trend).log_likelihood + inliers.log_prior;
+    std::vector<Model> models;
+    add_models(inliers, kAmplitudes.front(), radius, models);
+    if (all)
+        for (const double amplitude : kAmplitudes) add_models(*all, amplitude, radius, models);
+    double max = without;
+    for (const Model& model : models) max = std::max(max, log_evidence(model));
+    double sum = (1 - share) * std::exp(without - max);
     for (Model& model : models) {
-        model.probability = prior.share / double(models.size()) * std::exp(model.kriging.log_likelihood - max);
+        model.probability = share / kLengths.size() * std::exp(log_evidence(model) - max);
         sum += model.probability;
     }
     for (Model& model : models) model.probability /= sum;
     return models;
 }
 
-/// @param weights  of the touches' residuals in the waves at xy
-Waves waves_of(const Model& model, const Trend& trend, const MatrixXd& weights, const Eigen::Matrix2Xd& places,
-               const Eigen::Matrix2Xd& xy, double sigma)
+Waves waves_of(const Model& model, const Eigen::Matrix2Xd& xy, double sigma)
 {
+    const Eigen::Matrix2Xd& places = model.touches->places;
+    const Trend& trend = model.touches->trend;
+    // Of the touches' residuals in the waves at xy.
+    const MatrixXd weights =
+        model.variance * fit::correlation_matrix(model.correlation, xy, places) * model.kriging.inverse;
     const MatrixXd rest = trend.at_xy - weights * trend.at_touches;
     MatrixXd covariance = model.variance * fit::correlation_matrix(model.correlation, xy, xy) -
                           model.variance * weights * fit::correlation_matrix(model.correlation, places, xy) +
@@ -146,24 +173,23 @@ Waves waves_of(const Model& model, const Trend& trend, const MatrixXd& weights, 
 std::vector<Waves> waves_about(const surface::WeightedShape& member, const surface::Surface& surface,
                                const Eigen::Matrix2Xd& xy)
 {
-    const Eigen::Matrix3Xd touches = inliers(surface);
+    const Eigen::Matrix3Xd kept = inliers(surface);
     const double sigma = surface.touch_sigma;
-    if (touches.cols() == 0 || !(sigma > 0)) return {};
-    const Eigen::Matrix2Xd places = touches.topRows<2>();
+    if (kept.cols() == 0 || !(sigma > 0)) return {};
+    const Eigen::Matrix2Xd places = kept.topRows<2>();
     const double radius = (places.colwise() - places.rowwise().mean().eval()).colwise().norm().maxCoeff();
-    const Trend trend = trend_of(member, touches, sigma, xy);
-    if (trend.at_touches.cols() >= touches.cols() || !trend.at_touches.allFinite() || !trend.at_xy.allFinite() ||
-        !trend.residuals.allFinite() || !(radius > 0))
-        return {};
-    const std::vector<Model> models = models_of(prior_of(member.shape), places, radius, trend);
-    std::vector<Waves> all;
-    for (const Model& model : models) {
-        if (!(model.probability > kMinProbability)) continue;
-        const MatrixXd weights =
-            model.variance * fit::correlation_matrix(model.correlation, xy, places) * model.kriging.inverse;
-        all.push_back(waves_of(model, trend, weights, places, xy, sigma));
+    const double gross = -double(surface.outliers.size()) * fit::outlier_penalty(sigma) / 2;
+    const Touches inner{places, trend_of(member, kept, sigma, xy), gross};
+    if (!is_usable(inner.trend) || !(radius > 0)) return {};
+    std::optional<Touches> all;
+    if (!surface.outliers.empty()) {
+        all = Touches{surface.touches.topRows<2>(), trend_of(member, surface.touches, sigma, xy), 0};
+        if (!is_usable(all->trend)) all.reset();
     }
-    return all;
+    std::vector<Waves> result;
+    for (const Model& model : models_of(share_of(member.shape), inner, all, radius))
+        if (model.probability > kMinProbability) result.push_back(waves_of(model, xy, sigma));
+    return result;
 }
 
 } // namespace fettle::margin

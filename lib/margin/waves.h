@@ -16,12 +16,14 @@ struct Waves {
     Eigen::MatrixXd root;   ///< F with F Fᵀ the heights' covariance
 };
 
-/// Castings have waves of their own, and families none. So one part in twelve is taken to have some before it is
-/// touched: of half, once or twice the standard deviation of a touch, a quarter to all of the touches' radius long, all
-/// alike (Matérn, ν = 5/2). Lower ones do not matter beside the touches' error, higher ones are seen by the process
-/// of fit_auto(). No part is designed as a cubic: where one explains the touches, nine parts in ten have waves, of up
-/// to four times that deviation. The touches then say how likely which are, and how they go on inside the anomaly
+/// Castings have waves of their own, and families none. So one part in four is taken to have some before it is touched:
+/// of four times the standard deviation of a touch, the highest that a dozen touches may hide, a quarter to all of the
+/// touches' radius long, all alike (Matérn, ν = 5/2). No part is designed as a cubic: where one explains the touches,
+/// nine parts in ten have them. The touches then say how likely which are, and how they go on inside the anomaly
 /// (universal kriging: Cressie 1993, 3.4; restricted likelihood: Patterson and Thompson 1971).
+/// Touches that the fit left out may be gross errors (outlier_penalty()), or have seen waves: with them, waves of 8, 16
+/// and 32 times that deviation are weighed, too, each with the odds to none that those of four have. They would leave
+/// no family without such touches.
 /// @param member  a family fitted to the surface's touches   @param xy  2xN, M, mm
 /// @return  those that matter; their probabilities leave the rest to the family without waves. Nothing where the
 ///          touches leave no degree of freedom, or the family is not defined.

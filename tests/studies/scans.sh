@@ -54,6 +54,10 @@ table() { MIN_CELLS=${cells:-200} "$root/pipelines/scans-table" "$1" 'a b' "${2-
 table exact >exact.txt
 grep -E '^all +extended +200 +0.020 +20 +0.200 +0.150 +0.200 +1.00 +0.27 to +3.57 +10.00 +2.00 +0.200 +95.0  over 0.5 to 1.5: reached, an edge of the range lies in the interval$' exact.txt
 grep -x 'all figures reached' exact.txt
+# A cell with a hole in B is not judged.
+cp -r exact hole
+awk -F, -v OFS=, '$1 == 5 { $1 = 100; $20 = $21 = "-nan"; print }' exact/a.csv >>hole/a.csv
+table hole | cmp - exact.txt
 # Scans that nothing was learnt on are judged by themselves.
 cells=100 table exact b >others.txt
 grep -E '^others +wang +100 .*: reached' others.txt
