@@ -106,7 +106,7 @@ bool write_jobs(const Options& o, find::FindResult& result, const mesh::CloudMes
             continue;
         }
         try {
-            const find::FoundJob found = find::job_for(anomaly, part, result.noise, *machine, settings.wheels);
+            const find::FoundJob found = find::job_for(anomaly, part, *machine, settings.wheels);
             anomaly.job = o.jobs + "/" + std::to_string(anomaly.number) + ".json";
             anomaly.wheel = found.wheel;
             if (!found.wheel.empty()) o.t.warn(anomaly.job + ": " + found.wheel);

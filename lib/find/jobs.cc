@@ -6,6 +6,7 @@
 #include "find/ring_fit.h"
 #include "find/view.h"
 #include "job/boundary.h"
+#include "job/open_side.h"
 
 #include <opencv2/imgproc.hpp>
 
@@ -19,13 +20,12 @@ namespace {
 // Radius in cells of the square about a corner of a boundary whose median is the corner's height.
 constexpr int kCornerReach = 1;
 
-// A face is a plane if its cells scatter about the plane of least squares by no more than this many times the noise:
-// the plane's own uncertainty, and what a scan's errors have in common.
-constexpr double kPlaneNoises = 1.5;
-// The robust surface through that metal, with as many terms as it shows, may leave the plane inside of B by this share
-// of the tolerance, root mean square; the rest is left to touches and wheel. The largest bend, at one of B's corners,
-// would be the error of a single term: two outlines of one anomaly would get different surfaces.
-constexpr double kMaxBendShare = 0.5;
+// fettle-margin raises a plane through B's corners by this share of the probe's accuracy: .5 to 1 in find.mk's cases.
+constexpr double kPlaneRise = 0.7;
+// What a free-form job leaves on the mean where the metal is nearly plane: its touches go on until the band of its
+// margin meets the tolerance, and leave .6 to 1 of it (find.mk chain); with however poor a probe no less than a plane
+// would, and somewhat more.
+constexpr double kFreeformShare = 0.75, kFreeformRise = 1.2 * kPlaneRise;
 
 // The part leaves a surface where it is off it by so many standard deviations of the metal around.
 constexpr double kLeavingSds = 4;
@@ -34,8 +34,8 @@ constexpr int kMaxDegree = 3; // of that surface: one more would follow a fillet
 // Beyond an edge the part lies below that surface by this and by more cells than a slope of the surface falls.
 constexpr double kFallCells = 2;
 
-// Cells that are needed to tell whether a face is a plane: ten times as many as a quadric has coefficients.
-constexpr Eigen::Index kMinPlaneCells = 60;
+// Corners that a plane is touched at, as sampling/planar.h.
+constexpr std::size_t kMinPlaneCorners = 4;
 
 /// Corners with the height of the part at each; NaN where nothing is seen.
 Eigen::Matrix3Xd with_heights(const Eigen::Matrix2Xd& polygon, const HeightMap& map)
@@ -108,30 +108,39 @@ Eigen::Matrix2Xd before_edges(const FoundAnomaly& anomaly, const HeightMap& map,
     return sampling_before_edges(anomaly, map, part, is_on_surface);
 }
 
-/// Whether the metal around an anomaly is a plane, as far as its noise tells, and the surface beneath hardly bends.
-/// @param max_bend  root mean square over B, mm
-bool is_plane(const FoundAnomaly& anomaly, const HeightMap& map, const std::optional<RingFit>& beneath, double noise,
-              double max_bend)
+/// The plane z = p0 + p1 x + p2 y that a job touches: through a surface at the corners of B that are on metal.
+Eigen::Vector3d touched_plane(const FoundAnomaly& anomaly, const RingFit& surface)
 {
-    const Eigen::Matrix3Xd metal = metal_around(anomaly, map);
-    if (metal.cols() < kMinPlaneCells) return false;
-    Eigen::MatrixX3d A(metal.cols(), 3);
-    A << Eigen::VectorXd::Ones(metal.cols()), metal.row(0).transpose(), metal.row(1).transpose();
-    const Eigen::VectorXd z = metal.row(2);
-    const Eigen::Vector3d plane = A.colPivHouseholderQr().solve(z);
-    const double sd = (A * plane - z).norm() / std::sqrt(double(metal.cols()));
-    if (sd > kPlaneNoises * noise) return false;
-    if (!beneath) return true;
-    double squares = 0, count = 0;
+    std::vector<Eigen::Index> corners = job::corners_on_metal(anomaly.boundary, anomaly.sampling);
+    if (corners.size() < kMinPlaneCorners) corners = job::corners_on_metal(anomaly.boundary, {});
+    const auto n = Eigen::Index(corners.size());
+    Eigen::MatrixX3d A(n, 3);
+    Eigen::VectorXd z(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+        const Eigen::Vector2d corner = anomaly.boundary.col(corners[std::size_t(i)]);
+        A.row(i) << 1, corner.x(), corner.y();
+        z[i] = surface.z_at(corner.x(), corner.y());
+    }
+    return A.colPivHouseholderQr().solve(z);
+}
+
+/// Whether a plane is expected to leave no more than a free-form surface does, and to cut nothing by more than the
+/// tolerance. A limit on the bend alone would part two outlines of one anomaly whose errors differ by a factor of two.
+bool is_plane(const FoundAnomaly& anomaly, const HeightMap& map, const RingFit& beneath, const job::Job& settings)
+{
+    const Eigen::Vector3d plane = touched_plane(anomaly, beneath);
+    const double rise = kPlaneRise * settings.probe.accuracy;
+    double sum = 0, count = 0;
     for (int y = 0; y < map.z.rows; ++y)
         for (int x = 0; x < map.z.cols; ++x) {
             const Eigen::Vector2d p = map.point_at(x, y);
             if (!job::contains(anomaly.boundary, p)) continue;
-            const double bend = beneath->z_at(p.x(), p.y()) - plane[0] - plane.tail<2>().dot(p);
-            squares += bend * bend;
+            const double cut = beneath.z_at(p.x(), p.y()) - plane[0] - plane.tail<2>().dot(p) - rise;
+            if (cut > settings.tolerance) return false;
+            sum += std::abs(cut);
             ++count;
         }
-    return squares <= max_bend * max_bend * count;
+    return sum <= std::max(kFreeformShare * settings.tolerance, kFreeformRise * settings.probe.accuracy) * count;
 }
 
 /// What the wheel may meet on its way: the part within its radius about S.
@@ -248,7 +257,7 @@ void doubt_scatter(FindResult& result, const job::Job& settings)
     }
 }
 
-FoundJob job_for(const FoundAnomaly& found, const mesh::CloudMesh& part, double noise, const job::Job& settings,
+FoundJob job_for(const FoundAnomaly& found, const mesh::CloudMesh& part, const job::Job& settings,
                  std::span<const job::Job> others)
 {
     FoundAnomaly anomaly = found;
@@ -261,9 +270,8 @@ FoundJob job_for(const FoundAnomaly& found, const mesh::CloudMesh& part, double 
     job::Job job = settings;
     job.T_part_job = anomaly.T_anomaly_part.inverse();
     job.theta = theta_along(anomaly.boundary, settings.feed.axis);
-    job.surface = is_plane(anomaly, map, beneath, noise, kMaxBendShare * settings.tolerance)
-                      ? job::SurfaceType::plane
-                      : job::SurfaceType::freeform;
+    job.surface =
+        beneath && is_plane(anomaly, map, *beneath, settings) ? job::SurfaceType::plane : job::SurfaceType::freeform;
     job.anomaly = with_heights(anomaly.boundary, map);
     job.sampling = with_heights(anomaly.sampling, map);
     const std::string wheel = beneath ? fit_wheel(job, *beneath, others) : "";

@@ -106,7 +106,7 @@ int main(int argc, char** argv)
             const std::string name = folder + "/" + std::to_string(number);
             const auto write = [&](const find::FoundAnomaly& anomaly, const std::string& whose) {
                 try {
-                    const job::Job job = find::job_for(anomaly, part, result.noise, machine).job;
+                    const job::Job job = find::job_for(anomaly, part, machine).job;
                     t.output_file(name + whose) << job::to_json(job);
                 } catch (const core::InputError& error) {
                     t.warn(name + whose + ": " + error.what());

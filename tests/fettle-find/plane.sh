@@ -1,6 +1,8 @@
-# The surface of a job is a plane where the metal around is one, or bends so little that the plane takes no more than half of the tolerance.
-# Reference: the sheet's own bend, z = c x², under a bump of 2 mm: with c = 0.0008 it
-# leaves the plane there by some 0.02 mm. Noise of 0.02 mm by a linear congruential generator.
+# The surface of a job is a plane where the metal around is one, or bends so little that a plane is expected to leave no more than a free-form
+# surface, which leaves some three quarters of the tolerance, and to cut no deeper than the tolerance.
+# Reference: the sheet's own bend, z = c x², under a bump of 2 mm and 4 mm radius: about 8 c on the mean and 16 c at the
+# most stand out of a plane through its foot, which is raised by .7 of the probe's accuracy, half of the tolerance. With
+# c = 0.004 that leaves .01 mm at a tolerance of .1, .024 at .025. Noise of 0.02 mm by a linear congruential generator.
 sheet() { # C
     LC_ALL=C awk -v c="$1" 'function uniform() { state = (state * 16807) % 2147483647; return state / 2147483647 }
         BEGIN { state = 1
@@ -10,13 +12,13 @@ sheet() { # C
                 printf "%.3f %.3f %.4f\n", x, y, c * x * x + 0.02 * (noise - 6) + (r < 1 ? 2 * (1 - r) : 0) } }'
 }
 surface() { # TOLERANCE SHEET.xyz
-    jq ".tolerance = $1" "$SAMPLES/jobs/hammer.json" > template.json
+    jq ".tolerance = $1 | .probe.accuracy = $1 / 2" "$SAMPLES/jobs/hammer.json" > template.json
     fettle-find "$2" --jobs "jobs$1" --template template.json --report found.json -o found.pcd || [ $? = 1 ]
     jq -r .surface.type "jobs$1/$(jq '.anomalies | max_by(.height) | .anomaly' found.json).json"
 }
 sheet 0 > plane.xyz
-sheet 0.0008 > bent.xyz
-sheet 0.01 > curved.xyz
+sheet 0.004 > bent.xyz
+sheet 0.02 > curved.xyz
 [ "$(surface 0.1 plane.xyz)" = plane ]
 [ "$(surface 0.1 bent.xyz)" = plane ]
 [ "$(surface 0.025 bent.xyz)" = freeform ]
