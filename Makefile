@@ -314,7 +314,7 @@ lint:
 includes: deps $(VIEW_HEADER)
 	@.ci/install-packages packages-fuzz.txt
 	@.ci/includes $(B)/includes $(JOBS) $$(git ls-files '*.cc' '*.h' | grep -v -e precompiled -e linuxcnc $(if $(OCCT),,-e cad/ -e fettle-step -e cad_test)) \
-	    -- $(FUZZ_CXX) $(CPPFLAGS) -I$(B)/generated -isystem /usr/include/opencv4 -isystem /usr/include/opencascade \
+	    -- $(CXX) $(FUZZ_CXX) $(CPPFLAGS) -I$(B)/generated -isystem /usr/include/opencv4 -isystem /usr/include/opencascade \
 	    $(filter-out -O% --param ggc-%,$(CXXFLAGS)) -Itests/lib
 
 # --- installation: tools with manual pages and completion, and the library for other programs -------------------------
