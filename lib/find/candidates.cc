@@ -35,6 +35,11 @@ constexpr double kMinEnclosure = 0.3;
 constexpr double kFirstWidth = 10, kWidthRatio = 1.9; // of the filters, cells
 constexpr std::size_t kMaxCandidates = 200;
 
+// Candidates may be larger than what is reported by these factors: a low threshold takes in their surroundings.
+constexpr double kMaxAreaFactor = 1.5, kMaxExtentFactor = 2;
+constexpr double kAreaRankPower = 0.25;      // of two as distinct the larger one comes first
+constexpr float kBelowAllThresholds = -1e9F; // what is not seen
+
 // Two candidates are the same if they share this much of what both cover.
 constexpr double kDuplicateOverlap = 0.85;
 
@@ -90,8 +95,8 @@ void add_regions(const Image& residual, const Region& below, double threshold, s
 std::vector<Candidate> cut_out(const Image& residual, const Mask& domain, const HeightMap& map,
                                const SearchBounds& bounds)
 {
-    const double max_cells = 1.5 * bounds.max_area / (map.cell * map.cell),
-                 max_extent = 2 * bounds.max_width / map.cell;
+    const double max_cells = kMaxAreaFactor * bounds.max_area / (map.cell * map.cell),
+                 max_extent = kMaxExtentFactor * bounds.max_width / map.cell;
     std::vector<Candidate> candidates;
     std::vector<Region> below{{cv::Rect({0, 0}, residual.size()), Mask(residual.size(), 255), INT_MAX}};
     for (const double threshold : kThresholdSigmas) {
@@ -109,7 +114,7 @@ std::vector<Candidate> cut_out(const Image& residual, const Mask& domain, const 
                 region.mask.copyTo(mask(region.box - around.tl()));
                 if (const double rank = rank_of(residual(around), domain(around), mask, map.sigma, bounds.min_height);
                     rank > 0)
-                    candidates.push_back({around, mask, rank * std::pow(region.area, 0.25), region.area});
+                    candidates.push_back({around, mask, rank * std::pow(region.area, kAreaRankPower), region.area});
             }
         }
         below = std::move(regions);
@@ -127,7 +132,7 @@ std::vector<Candidate> candidates_of(const HeightMap& map, const Sheet& sheet, d
     const Image rest = part.z - regression_filter(part.z, smooth, map.sigma, width);
     Image residual = smoothed(rest, part.seen, kResidualSmoothing);
     const double texture = robust_sd(values_in(residual, smooth));
-    residual.setTo(-1e9, ~part.seen);
+    residual.setTo(kBelowAllThresholds, ~part.seen);
     std::vector<Candidate> candidates = cut_out(residual, part.seen, part, bounds);
     for (Candidate& candidate : candidates) {
         candidate.box += box.tl();
@@ -141,7 +146,7 @@ std::vector<Candidate> candidates_of_opening(const HeightMap& map, double width,
     const Image rest = map.z - ball_opening(map.z, map.cell, width);
     Image residual = smoothed(rest, map.seen, kResidualSmoothing);
     const double texture = robust_sd(values_in(residual, map.seen));
-    residual.setTo(-1e9, ~map.seen);
+    residual.setTo(kBelowAllThresholds, ~map.seen);
     std::vector<Candidate> candidates = cut_out(residual, map.seen, map, bounds);
     for (Candidate& candidate : candidates) candidate.texture = texture;
     return candidates;

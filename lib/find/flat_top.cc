@@ -35,17 +35,17 @@ double median_of(const Eigen::VectorXd& values)
 /// 1999). @param A  rows 1, x, y   @param kept  1: to begin with, 0: not
 double concentrated(const Eigen::MatrixXd& A, const Eigen::VectorXd& z, Eigen::VectorXd kept)
 {
-    double least = core::kInfinity;
+    double min_median = core::kInfinity;
     for (int step = 0; step < kMaxSteps; ++step) {
         const Eigen::MatrixXd K = kept.asDiagonal() * A;
         const Eigen::Vector3d plane = core::solve_ldlt(A.transpose() * K, K.transpose() * z);
         const Eigen::VectorXd distance = (z - A * plane).cwiseAbs();
         const double median = median_of(distance);
-        if (!(median < least)) break;
-        least = median;
+        if (!(median < min_median)) break;
+        min_median = median;
         kept = (distance.array() <= median).cast<double>();
     }
-    return least;
+    return min_median;
 }
 
 } // namespace
