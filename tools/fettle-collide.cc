@@ -77,7 +77,7 @@ struct Options {
     const std::string& picture = t.optional_output(
         "--picture", "Draw the cell at some poses, PNG; the workpiece as --method represents it", {"png"});
     const std::string& at =
-        t.text("--at", "", "N,…", "Indices of these poses, from 0 [that with the minimum clearance]");
+        t.text("--at", "", "N,...", "Indices of these poses, from 0 [that with the minimum clearance]");
     const std::string& from =
         t.text("--from", "1,-1,0.8", "X,Y,Z", "Direction from the cell to the eye, for the picture");
     const std::string& chart = t.optional_output("--chart", "Draw the clearances along the path, PNG", {"png"});

@@ -60,9 +60,9 @@ struct Options {
     const std::optional<double>& height = t.optional_number(
         "--min-height", "LENGTH", "Leave out what is lower; default: the tolerance of --template, else 0.2 mm",
         core::Range::at_least(0));
-    const std::string& keep =
-        t.text("--keep", "", "ROW,…", "These rows are anomalies: takes the doubt away that the run without it reports");
-    const std::string& drop = t.text("--drop", "", "ROW,…", "These rows belong to the part: leaves them out");
+    const std::string& keep = t.text("--keep", "", "ROW,...",
+                                     "These rows are anomalies: takes the doubt away that the run without it reports");
+    const std::string& drop = t.text("--drop", "", "ROW,...", "These rows belong to the part: leaves them out");
     const std::string& jobs =
         t.text("--jobs", "", "FOLDER",
                "Write a job for each anomaly without a doubt, FOLDER/ROW.json, and FOLDER/part.pcd, "

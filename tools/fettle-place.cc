@@ -34,7 +34,7 @@ struct Options {
     const std::string& matrix = t.optional_file(
         "--matrix", "FILE", "Move by this 4 x 4 matrix, as fettle-align writes it: lengths in the unit of IN");
     const std::string& turns =
-        t.text("--turn", "", "AXIS,DEG,…", "Turn about x, y or z, counter-clockwise, one turn after the other");
+        t.text("--turn", "", "AXIS,DEG,...", "Turn about x, y or z, counter-clockwise, one turn after the other");
     const std::string& up =
         t.text("--up", "", "plane|cylinder|PICKED",
                "Turn so that this faces up, +z: the largest plane or cylinder of the part, or the plane through points "

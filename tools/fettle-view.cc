@@ -20,7 +20,7 @@ struct Options {
         "PART",
         "Clouds with their fields (PCD, PLY, E57, PTX, XYZ) and meshes (STL, PLY, OBJ, OFF, 3MF): a layer each");
     const std::string& fields =
-        t.text("--field", "", "NAME,…",
+        t.text("--field", "", "NAME,...",
                "What to show: error, z, class, rgb, sigma, … [error if there is one, else z; and class]");
     const std::optional<double>& scale = t.optional_number(
         "--scale", "A", "Colours from -A to A (error), from the smallest value to A above it (others)",
