@@ -17,7 +17,7 @@ namespace {
 std::vector<place::Turn> parse_turns(const std::string& text)
 {
     const std::vector<std::string> words = cli::split_list(text);
-    if (words.size() % 2 != 0) throw core::InputError("expected AXIS,DEG,…, got '" + text + "'");
+    if (words.size() % 2 != 0) throw core::InputError("expected AXIS,DEG,..., got '" + text + "'");
     std::vector<place::Turn> turns;
     for (std::size_t i = 0; i < words.size(); i += 2) {
         const std::string& axis = cli::check_choice({"x", "y", "z"}, words[i]);

@@ -13,7 +13,7 @@ PathOptions::PathOptions(cli::Tool& tool)
                       "position if there is one")),
       table(tool.text("--table", PathArguments().table, "RULE",
                       "Angle of the table: DEG, follow:DEG (the tip's azimuth about its axis) or auto")),
-      start(tool.text("--start", PathArguments().start, "DEG,…", "The path begins nearest to these joints")),
+      start(tool.text("--start", PathArguments().start, "DEG,...", "The path begins nearest to these joints")),
       jump(tool.number("--jump", PathArguments().jump_threshold_deg, "DEG",
                        "A larger turn of a joint from pose to pose is a jump", core::Range::positive()))
 {

@@ -66,14 +66,14 @@ word_of() { # PLACEHOLDER VALUE: into `word`
     case $1 in
     CUTTER) word=ball:$2 ;;
     STOCK) [ "$2" = 5 ] && word=box:0,0,0,9,9,9 || word=box:0,0,0,$2,$2,$2 ;;
-    AXIS,DEG,…) word=x,$2 ;;
+    AXIS,DEG,...) word=x,$2 ;;
     REGION) word=sphere:15,15,5,$2 ;;
     FILTER) word=radius:$2,1 ;;
     uniform:A\|normal:A) word=normal:$2 ;;
     %) word=$2 ;;
     X,Y,Z,QW*) [ "$2" = 5 ] && word=15,15,5,1,0,0,0 || word=$2,$2,$2,$2,$2,$2,$2 ;;
-    DEG,…) word=$2,$2,$2,$2,$2,$2 ;;
-    *) word=$(sed -E "s/[A-Z][A-Z0-9]*/$2/g; s|/$2||; s/,…//" <<<"$1") ;;
+    DEG,...) word=$2,$2,$2,$2,$2,$2 ;;
+    *) word=$(sed -E "s/[A-Z][A-Z0-9]*/$2/g; s|/$2||; s/,\.\.\.//" <<<"$1") ;;
     esac
     [ -n "$2" ] || word=
 }
@@ -98,7 +98,7 @@ within_bounds() { # COMMAND…: sets `status`; complains of anything but an answ
 for name in $names; do
     tool=fettle-$name
     while IFS='= ' read -r option placeholder default; do
-        case $placeholder in FILE | FOLDER | LAW | DEVICE | PART | SCAN | REF | ROW* | SURFELS | SURFACE* | MESH | JOB | POINTS | PATH | TRACE | EVENTS | TEXT | NAME | NAME,… | LINK | LIST | AXES | RULE | exec:*) continue ;; esac
+        case $placeholder in FILE | FOLDER | LAW | DEVICE | PART | SCAN | REF | ROW* | SURFELS | SURFACE* | MESH | JOB | POINTS | PATH | TRACE | EVENTS | TEXT | NAME | NAME,... | LINK | LIST | AXES | RULE | exec:*) continue ;; esac
         [ "$name $option" != 'station --pace' ] || continue # it makes a simulated machine wait
         case $option:$placeholder in --threads:* | --seed:*) continue ;; *:uniform:A*) ;; *\|*) continue ;; esac # command-line.sh has them
         command_of "$name"

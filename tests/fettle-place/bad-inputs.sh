@@ -7,7 +7,7 @@ printf '2 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n' > scale.txt
 refuses 'scale.txt: is not a rotation' four.xyz --matrix scale.txt
 printf -- '-1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n' > mirror.txt
 refuses 'mirror.txt: is a reflection' four.xyz --matrix mirror.txt
-refuses "--turn: expected AXIS,DEG,…, got 'z'" four.xyz --turn z
+refuses "--turn: expected AXIS,DEG,..., got 'z'" four.xyz --turn z
 refuses "--turn: 'w' is none of" four.xyz --turn w,90
 refuses '--turn: ' four.xyz --turn z,much
 refuses 'nowhere.txt: cannot open' four.xyz --up nowhere.txt
