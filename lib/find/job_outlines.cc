@@ -1,10 +1,12 @@
 #include "find/job_outlines.h"
 
 #include "job/joined.h"
+#include "job/open_side.h"
 
 #include <opencv2/imgproc.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace fettle::find {
@@ -22,6 +24,8 @@ constexpr int kOpenSidePixels = 4;
 constexpr int kEdgeGapPixels = 3;
 // Less of B than this share beside the part is no edge.
 constexpr double kMinClippedShare = 0.005;
+
+constexpr double kSpacingStep = 0.9; // of corners, until there are enough of them
 
 /// A window of half cells around polygons, whose corners come to lie on them.
 struct HalfCells {
@@ -97,7 +101,34 @@ Mask beside_part(const HalfCells& cells, const Mask& inside, const HeightMap& ma
     return opened(beside, kMinEdgePixels);
 }
 
+/// A polygon whose sides are parted into equal pieces no longer than a spacing; of the new corners those with metal.
+Eigen::Matrix2Xd parted(const Eigen::Matrix2Xd& boundary, const Eigen::Matrix2Xd& sampling, double spacing)
+{
+    std::vector<Eigen::Vector2d> corners;
+    for (Eigen::Index k = 0; k < boundary.cols(); ++k) {
+        const Eigen::Vector2d from = boundary.col(k), along = boundary.col((k + 1) % boundary.cols()) - from;
+        const auto pieces = Eigen::Index(std::ceil(along.norm() / spacing));
+        Eigen::Matrix2Xd places(2, std::max<Eigen::Index>(pieces - 1, 0)); // between the side's ends
+        for (Eigen::Index i = 0; i < places.cols(); ++i) places.col(i) = from + double(i + 1) / double(pieces) * along;
+        corners.push_back(from);
+        for (const Eigen::Index i : job::corners_on_metal(places, sampling)) corners.emplace_back(places.col(i));
+    }
+    return job::columns_to_matrix(corners);
+}
+
 } // namespace
+
+Eigen::Matrix2Xd with_more_corners(const Eigen::Matrix2Xd& boundary, const Eigen::Matrix2Xd& sampling, double count,
+                                   double min_spacing)
+{
+    Eigen::Matrix2Xd result = boundary;
+    const double diagonal = (boundary.rowwise().maxCoeff() - boundary.rowwise().minCoeff()).norm();
+    for (double spacing = diagonal; spacing >= min_spacing; spacing *= kSpacingStep) {
+        if (double(job::corners_on_metal(result, sampling).size()) >= count) break;
+        result = parted(boundary, sampling, spacing);
+    }
+    return result;
+}
 
 Eigen::Vector2d nearest_on(const Eigen::Matrix2Xd& polygon, const Eigen::Vector2d& point)
 {

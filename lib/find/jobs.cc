@@ -20,12 +20,13 @@ namespace {
 // Radius in cells of the square about a corner of a boundary whose median is the corner's height.
 constexpr int kCornerReach = 1;
 
-// fettle-margin raises a plane through B's corners by this share of the probe's accuracy: .5 to 1 in find.mk's cases.
-constexpr double kPlaneRise = 0.7;
+// fettle-margin raises a plane through B's corners by about this share of the probe's accuracy: .36 to .55 mostly
+// (find.mk).
+constexpr double kPlaneRise = 0.5;
 // What a free-form job leaves on the mean where the metal is nearly plane: its touches go on until the band of its
-// margin meets the tolerance, and leave .6 to 1 of it (find.mk chain); with however poor a probe no less than a plane
-// would, and somewhat more.
-constexpr double kFreeformShare = 0.75, kFreeformRise = 1.2 * kPlaneRise;
+// margin meets the tolerance, and leave .5 to 3 of it, 1 in the middle (find.mk chain, where a plane would cut no
+// deeper than the tolerance); with however poor a probe no less than a plane would, and somewhat more.
+constexpr double kFreeformShare = 1, kFreeformRise = 0.84;
 
 // The part leaves a surface where it is off it by so many standard deviations of the metal around.
 constexpr double kLeavingSds = 4;
@@ -36,6 +37,12 @@ constexpr double kFallCells = 2;
 
 // Corners that a plane is touched at, as sampling/planar.h.
 constexpr std::size_t kMinPlaneCorners = 4;
+// A plane through n touches around B has a standard deviation of √(3/n) of one touch's at B's rim, three terms' worth.
+// It is to be this share of the tolerance, by no more touches than a free-form surface mostly has, and by none nearer
+// to each other than the scan's points.
+constexpr double kRimShare = 0.1;
+constexpr double kPlaneTerms = 3, kMaxPlaneCorners = 32, kCornerSpacing = 1; // the last: cells
+constexpr double kSigmasOfAccuracy = 2.576;                                  // 99 % of touches are within it
 
 /// Corners with the height of the part at each; NaN where nothing is seen.
 Eigen::Matrix3Xd with_heights(const Eigen::Matrix2Xd& polygon, const HeightMap& map)
@@ -106,6 +113,17 @@ Eigen::Matrix2Xd before_edges(const FoundAnomaly& anomaly, const HeightMap& map,
         return std::abs(double(map.z(cell)) - surface.z_at(place.x(), place.y())) <= limit; // false for NaN
     };
     return sampling_before_edges(anomaly, map, part, is_on_surface);
+}
+
+/// B with as many corners as its plane needs: what one touch is off by is the probe's error and, as far from the
+/// surface beneath as the metal around scatters, the place it falls on.
+Eigen::Matrix2Xd with_touches_of_plane(const FoundAnomaly& anomaly, const HeightMap& map, const RingFit& beneath,
+                                       const job::Job& settings)
+{
+    const double sd = std::hypot(settings.probe.accuracy / kSigmasOfAccuracy, beneath.sd);
+    const double count = kPlaneTerms * std::pow(sd / (kRimShare * settings.tolerance), 2);
+    return with_more_corners(anomaly.boundary, anomaly.sampling, std::min(count, kMaxPlaneCorners),
+                             kCornerSpacing * map.cell);
 }
 
 /// The plane z = p0 + p1 x + p2 y that a job touches: through a surface at the corners of B that are on metal.
@@ -270,8 +288,15 @@ FoundJob job_for(const FoundAnomaly& found, const mesh::CloudMesh& part, const j
     job::Job job = settings;
     job.T_part_job = anomaly.T_anomaly_part.inverse();
     job.theta = theta_along(anomaly.boundary, settings.feed.axis);
-    job.surface =
-        beneath && is_plane(anomaly, map, *beneath, settings) ? job::SurfaceType::plane : job::SurfaceType::freeform;
+    job.surface = job::SurfaceType::freeform;
+    if (beneath) {
+        FoundAnomaly touched = anomaly;
+        touched.boundary = with_touches_of_plane(anomaly, map, *beneath, settings);
+        if (is_plane(touched, map, *beneath, settings)) {
+            job.surface = job::SurfaceType::plane;
+            anomaly.boundary = touched.boundary;
+        }
+    }
     job.anomaly = with_heights(anomaly.boundary, map);
     job.sampling = with_heights(anomaly.sampling, map);
     const std::string wheel = beneath ? fit_wheel(job, *beneath, others) : "";

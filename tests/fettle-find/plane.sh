@@ -1,8 +1,8 @@
 # The surface of a job is a plane where the metal around is one, or bends so little that a plane is expected to leave no more than a free-form
-# surface, which leaves some three quarters of the tolerance, and to cut no deeper than the tolerance.
+# surface, which leaves about the tolerance, and to cut no deeper than the tolerance. It is touched as often as its tolerance needs.
 # Reference: the sheet's own bend, z = c x², under a bump of 2 mm and 4 mm radius: about 8 c on the mean and 16 c at the
-# most stand out of a plane through its foot, which is raised by .7 of the probe's accuracy, half of the tolerance. With
-# c = 0.004 that leaves .01 mm at a tolerance of .1, .024 at .025. Noise of 0.02 mm by a linear congruential generator.
+# most stand out of a plane through its foot, which is raised by half of the probe's accuracy, half of the tolerance. With
+# c = 0.004 that leaves .01 mm at a tolerance of .1, .026 at .025. Noise of 0.02 mm by a linear congruential generator.
 sheet() { # C
     LC_ALL=C awk -v c="$1" 'function uniform() { state = (state * 16807) % 2147483647; return state / 2147483647 }
         BEGIN { state = 1
@@ -23,3 +23,11 @@ sheet 0.02 > curved.xyz
 [ "$(surface 0.1 bent.xyz)" = plane ]
 [ "$(surface 0.025 bent.xyz)" = freeform ]
 [ "$(surface 0.1 curved.xyz)" = freeform ]
+# n touches, off by the scan's noise and by a probe of half the tolerance, move the plane's rim by √(3/n) of that: to keep it at a tenth of the
+# tolerance .1 takes 300 (.028 / .1)² = 24, of the tolerance 1 300 (.195 / 1)² = 12; sides have equal pieces, so some more.
+corners() { jq '.anomaly | length' "jobs$1/1.json"; }
+[ "$(surface 0.1 plane.xyz) $(surface 1 plane.xyz)" = 'plane plane' ]
+[ "$(corners 0.1)" -ge 22 ]
+[ "$(corners 0.1)" -le 29 ]
+[ "$(corners 1)" -ge 11 ]
+[ "$(corners 1)" -le 16 ]

@@ -2,12 +2,14 @@
 #include "find/doubtful.h"
 #include "find/find.h"
 #include "find/flat_top.h"
+#include "find/job_outlines.h"
 #include "find/outline.h"
 #include "find/ring_fit.h"
 #include "find/slow_field.h"
 #include "find/view.h"
 
 #include "core/error.h"
+#include "job/open_side.h"
 
 #include <gtest/gtest.h>
 
@@ -185,6 +187,28 @@ TEST(Outline, SurroundsTheRegionAndKeepsToTheMap)
     EXPECT_GT(outlines.boundary.row(0).maxCoeff(), 61);
     EXPECT_LT(outlines.sampling.row(1).minCoeff(), outlines.boundary.row(1).minCoeff() - 3);
     EXPECT_GE(outlines.sampling.minCoeff(), 0);
+}
+
+// A square whose side at x = 20 is open: its three other sides, 60 mm, take the corners, and its outline stays.
+TEST(Outline, GetsCornersWhereThereIsMetal)
+{
+    const Eigen::Matrix2Xd boundary{{0, 20, 20, 0}, {0, 0, 20, 20}}, sampling{{-9, 20, 20, -9}, {-9, -9, 29, 29}};
+    for (const int count : {4, 12, 24, 32}) {
+        const Eigen::Matrix2Xd more = with_more_corners(boundary, sampling, count, 0.1);
+        const auto on_metal = job::corners_on_metal(more, sampling).size();
+        EXPECT_GE(on_metal, std::size_t(count));
+        EXPECT_LE(on_metal, std::size_t(count) + 3);       // each side has equal pieces
+        EXPECT_EQ(std::size_t(more.cols()), on_metal + 2); // none but B's own at the open side
+        double area = 0;
+        for (Eigen::Index k = 0; k < more.cols(); ++k) {
+            const Eigen::Vector2d from = more.col(k), to = more.col((k + 1) % more.cols());
+            area += (from.x() * to.y() - to.x() * from.y()) / 2;
+            EXPECT_TRUE((from.x() == 20 && to.x() == 20) || (to - from).norm() <= 60.0 / count * 1.4);
+        }
+        EXPECT_NEAR(area, 400, 1e-9);
+    }
+    EXPECT_EQ(with_more_corners(boundary, {}, 4, 0.1), boundary); // it has them
+    EXPECT_LE(with_more_corners(boundary, {}, 1000, 5).cols(), 4 * 4);
 }
 
 // A foot that was measured replaces the one that B allows for; it is not added to it.
