@@ -12,6 +12,17 @@ done
 # A cell is the same in every batch, and by one strategy alone. Reference: the first one by itself.
 scans "$SAMPLES/scans/hammer.stl" mm 8 20 1 1 wang | cmp - <(head -n 2 all/hammer.csv)
 
+# Scans that nothing was chosen by take the place of the others. A plane of 60 x 60 mm, its points 0.5 mm apart, with lines in the header that are none of a PLY's.
+mkdir apart
+awk 'BEGIN {
+    print "ply\nformat ascii 1.0\nbye\nbye\nelement vertex 14641\nproperty float x\nproperty float y\nproperty float z\nend_header"
+    for (i = 0; i <= 120; ++i) for (j = 0; j <= 120; ++j) print i * 0.0005, j * 0.0005, 0
+}' >apart/happyStandRight_0.ply
+study APART="$PWD/apart" SCANS="$PWD/unseen" NAMES=happy STRATEGIES=wang >unseen.txt
+awk -F, 'NR > 1 { exit !($5 >= 6 && $5 <= 20 && $22 < 1e-6) }' unseen/happy.csv
+grep -cE '^(happy|all) +wang +2 ' unseen.txt | grep -x 2
+if grep '^others' unseen.txt; then exit 1; fi
+
 # Cells are cut where the scan knows the part. A plane of 90 x 90 mm in lines along y, DX apart, its points 2 mm apart along them.
 lines() { # DX
     awk -v dx="$1" 'BEGIN {
