@@ -53,7 +53,7 @@ OF_soup      = $(APART)/005_tomato_soup_can.obj m 10 30
 OF_meat      = $(APART)/010_potted_meat_can.obj m 10 30
 OF_sugar     = $(APART)/004_sugar_box_textured.obj m 10 30
 OF_plate     = $(APART)/downsampled.pcd m 6 20
-# Its file does not say its unit: one by which its triangles are as long as the panel's..
+# Its file does not say its unit: one by which its triangles are as long as the panel's.
 OF_blade     = $(APART)/turbineblade.ply in 40 120
 
 # Of the welded workpiece a strip is left out as wide as B of its job: a cell over the seam and its weld is no face.
