@@ -1,12 +1,12 @@
 #include "find/job_outlines.h"
 
+#include "geometry/division.h"
 #include "job/joined.h"
 #include "job/open_side.h"
 
 #include <opencv2/imgproc.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 namespace fettle::find {
@@ -101,17 +101,15 @@ Mask beside_part(const HalfCells& cells, const Mask& inside, const HeightMap& ma
     return opened(beside, kMinEdgePixels);
 }
 
-/// A polygon whose sides are parted into equal pieces no longer than a spacing; of the new corners those with metal.
-Eigen::Matrix2Xd parted(const Eigen::Matrix2Xd& boundary, const Eigen::Matrix2Xd& sampling, double spacing)
+/// B with its sides divided into equal pieces no longer than a spacing. New corners without metal are left out.
+Eigen::Matrix2Xd divided(const Eigen::Matrix2Xd& boundary, const Eigen::Matrix2Xd& sampling, double spacing)
 {
     std::vector<Eigen::Vector2d> corners;
     for (Eigen::Index k = 0; k < boundary.cols(); ++k) {
-        const Eigen::Vector2d from = boundary.col(k), along = boundary.col((k + 1) % boundary.cols()) - from;
-        const auto pieces = Eigen::Index(std::ceil(along.norm() / spacing));
-        Eigen::Matrix2Xd places(2, std::max<Eigen::Index>(pieces - 1, 0)); // between the side's ends
-        for (Eigen::Index i = 0; i < places.cols(); ++i) places.col(i) = from + double(i + 1) / double(pieces) * along;
+        const Eigen::Vector2d from = boundary.col(k), to = boundary.col((k + 1) % boundary.cols());
+        const Eigen::Matrix2Xd added = geometry::division_points(from, to, spacing);
         corners.push_back(from);
-        for (const Eigen::Index i : job::corners_on_metal(places, sampling)) corners.emplace_back(places.col(i));
+        for (const Eigen::Index i : job::corners_on_metal(added, sampling)) corners.emplace_back(added.col(i));
     }
     return job::columns_to_matrix(corners);
 }
@@ -125,7 +123,7 @@ Eigen::Matrix2Xd with_more_corners(const Eigen::Matrix2Xd& boundary, const Eigen
     const double diagonal = (boundary.rowwise().maxCoeff() - boundary.rowwise().minCoeff()).norm();
     for (double spacing = diagonal; spacing >= min_spacing; spacing *= kSpacingStep) {
         if (double(job::corners_on_metal(result, sampling).size()) >= count) break;
-        result = parted(boundary, sampling, spacing);
+        result = divided(boundary, sampling, spacing);
     }
     return result;
 }

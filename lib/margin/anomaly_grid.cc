@@ -1,9 +1,9 @@
 #include "margin/anomaly_grid.h"
 
 #include "geometry/bounding_box.h"
+#include "geometry/division.h"
 #include "job/boundary.h"
 
-#include <cmath>
 #include <vector>
 
 namespace fettle::margin {
@@ -35,9 +35,9 @@ Eigen::Matrix2Xd anomaly_grid(const job::Job& job, int across)
     std::vector<Eigen::Vector2d> points;
     for (Eigen::Index k = 0; k < corners.cols(); ++k) points.push_back(corners.col(k));
     for (Eigen::Index k = 0; k < corners.cols(); ++k) {
-        const Eigen::Vector2d side = corners.col((k + 1) % corners.cols()) - corners.col(k);
-        const double parts = std::ceil(side.norm() / step);
-        for (double i = 1; i < parts; ++i) points.push_back(corners.col(k) + i / parts * side);
+        const Eigen::Index next = (k + 1) % corners.cols();
+        const Eigen::Matrix2Xd added = geometry::division_points(corners.col(k), corners.col(next), step);
+        for (const auto& point : added.colwise()) points.emplace_back(point);
     }
     const Eigen::Vector2d parts = (size / step).array().ceil();
     for (double row = 0.5; row < parts.y(); ++row)
@@ -45,9 +45,7 @@ Eigen::Matrix2Xd anomaly_grid(const job::Job& job, int across)
             const Eigen::Vector2d xy = box.min() + size.cwiseProduct(Eigen::Vector2d(column, row).cwiseQuotient(parts));
             if (job::contains(anomaly, xy)) points.push_back(xy);
         }
-    Eigen::Matrix2Xd working(2, points.size());
-    for (std::size_t i = 0; i < points.size(); ++i) working.col(i) = points[i];
-    return job::rotation_working_machine(job.theta).transpose() * working;
+    return job::rotation_working_machine(job.theta).transpose() * job::columns_to_matrix(points);
 }
 
 } // namespace fettle::margin

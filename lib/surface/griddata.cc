@@ -4,13 +4,13 @@
 #include "core/error.h"
 #include "core/text.h"
 #include "geometry/bounding_box.h"
+#include "geometry/division.h"
 #include "job/boundary.h"
 #include "surface/clough_tocher.h"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 #include <vector>
 
@@ -89,10 +89,11 @@ Eigen::Matrix2Xd uniform_nodes(const Triangulation& triangulation, double spacin
     std::vector<Eigen::ParametrizedLine<double, 2>> sides; // inward normals are to their left
     for (std::size_t k = 0; k < corners.size(); ++k) {
         const Eigen::Vector2d from = triangulation.points.col(corners[k]);
-        const Eigen::Vector2d side = triangulation.points.col(corners[(k + 1) % corners.size()]) - from;
-        const double parts = std::ceil(side.norm() / spacing);
-        for (double i = 0; i < parts; ++i) nodes.push_back(from + i / parts * side);
-        sides.emplace_back(from, side.normalized());
+        const Eigen::Vector2d to = triangulation.points.col(corners[(k + 1) % corners.size()]);
+        const Eigen::Matrix2Xd added = geometry::division_points(from, to, spacing);
+        nodes.push_back(from);
+        for (const auto& point : added.colwise()) nodes.emplace_back(point);
+        sides.emplace_back(from, (to - from).normalized());
     }
     const auto distance_inside_hull = [&](const Eigen::Vector2d& xy) {
         double min = core::kInfinity;

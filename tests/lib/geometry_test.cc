@@ -1,5 +1,7 @@
+#include "core/error.h"
 #include "geometry/bounding_box.h"
 #include "geometry/clipping.h"
+#include "geometry/division.h"
 #include "geometry/quantiles.h"
 #include "geometry/stray_point.h"
 #include "geometry/uniform_draws.h"
@@ -154,6 +156,22 @@ TEST(StrayPoint, IsAThousandTimesAsFarAsHalf)
     EXPECT_FALSE(geometry::find_stray_point(Eigen::Matrix3Xd(3, 0)));
     EXPECT_FALSE(geometry::find_stray_point(Eigen::Matrix3Xd::Constant(3, 9, std::nan(""))));
     EXPECT_FALSE(geometry::find_stray_point(Eigen::Matrix3Xd::Constant(3, 9, 4)));
+}
+
+// A side of 3, 4, 5 has coordinates that are exact.
+TEST(Division, PiecesAreEqualAndNoLonger)
+{
+    const Eigen::Vector2d from(1, 2), to(7, 10); // length 10
+    Eigen::Matrix2Xd quarters(2, 3);
+    quarters << 2.5, 4, 5.5, 4, 6, 8;
+    EXPECT_EQ(geometry::division_points(from, to, 2.5), quarters);
+    EXPECT_EQ(geometry::division_points(from, to, 3.3), quarters);
+    EXPECT_EQ(geometry::division_points(to, from, 2.5), quarters.rowwise().reverse());
+    EXPECT_EQ(geometry::division_points(from, to, 2.4).cols(), 4);
+    EXPECT_EQ(geometry::division_points(from, to, 10).cols(), 0);
+    EXPECT_EQ(geometry::division_points(from, from, 1).cols(), 0);
+    for (const double length : {0.0, -1.0, std::nan("")})
+        EXPECT_THROW(geometry::division_points(from, to, length), core::InputError);
 }
 
 TEST(BoundingBox, OfPoints)
