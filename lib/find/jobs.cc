@@ -3,10 +3,10 @@
 #include "core/constants.h"
 #include "core/text.h"
 #include "find/job_outlines.h"
+#include "find/plane_choice.h"
 #include "find/ring_fit.h"
 #include "find/view.h"
 #include "job/boundary.h"
-#include "job/open_side.h"
 
 #include <opencv2/imgproc.hpp>
 
@@ -20,29 +20,12 @@ namespace {
 // Radius in cells of the square about a corner of a boundary whose median is the corner's height.
 constexpr int kCornerReach = 1;
 
-// fettle-margin raises a plane through B's corners by about this share of the probe's accuracy: .36 to .55 mostly
-// (find.mk).
-constexpr double kPlaneRise = 0.5;
-// What a free-form job leaves on the mean where the metal is nearly plane: its touches go on until the band of its
-// margin meets the tolerance, and leave .5 to 3 of it, 1 in the middle (find.mk chain, where a plane would cut no
-// deeper than the tolerance); with however poor a probe no less than a plane would, and somewhat more.
-constexpr double kFreeformShare = 1, kFreeformRise = 0.84;
-
 // The part leaves a surface where it is off it by so many standard deviations of the metal around.
 constexpr double kLeavingSds = 4;
 constexpr int kMaxDegree = 3; // of that surface: one more would follow a fillet
 
 // Beyond an edge the part lies below that surface by this and by more cells than a slope of the surface falls.
 constexpr double kFallCells = 2;
-
-// Corners that a plane is touched at, as sampling/planar.h.
-constexpr std::size_t kMinPlaneCorners = 4;
-// A plane through n touches around B has a standard deviation of √(3/n) of one touch's at B's rim, three terms' worth.
-// It is to be this share of the tolerance, by no more touches than a free-form surface mostly has, and by none nearer
-// to each other than the scan's points.
-constexpr double kRimShare = 0.1;
-constexpr double kPlaneTerms = 3, kMaxPlaneCorners = 32, kCornerSpacing = 1; // the last: cells
-constexpr double kSigmasOfAccuracy = 2.576;                                  // 99 % of touches are within it
 
 /// Corners with the height of the part at each; NaN where nothing is seen.
 Eigen::Matrix3Xd with_heights(const Eigen::Matrix2Xd& polygon, const HeightMap& map)
@@ -113,52 +96,6 @@ Eigen::Matrix2Xd before_edges(const FoundAnomaly& anomaly, const HeightMap& map,
         return std::abs(double(map.z(cell)) - surface.z_at(place.x(), place.y())) <= limit; // false for NaN
     };
     return sampling_before_edges(anomaly, map, part, is_on_surface);
-}
-
-/// B with as many corners as its plane needs: what one touch is off by is the probe's error and, as far from the
-/// surface beneath as the metal around scatters, the place it falls on.
-Eigen::Matrix2Xd with_touches_of_plane(const FoundAnomaly& anomaly, const HeightMap& map, const RingFit& beneath,
-                                       const job::Job& settings)
-{
-    const double sd = std::hypot(settings.probe.accuracy / kSigmasOfAccuracy, beneath.sd);
-    const double count = kPlaneTerms * std::pow(sd / (kRimShare * settings.tolerance), 2);
-    return with_more_corners(anomaly.boundary, anomaly.sampling, std::min(count, kMaxPlaneCorners),
-                             kCornerSpacing * map.cell);
-}
-
-/// The plane z = p0 + p1 x + p2 y that a job touches: through a surface at the corners of B that are on metal.
-Eigen::Vector3d touched_plane(const FoundAnomaly& anomaly, const RingFit& surface)
-{
-    std::vector<Eigen::Index> corners = job::corners_on_metal(anomaly.boundary, anomaly.sampling);
-    if (corners.size() < kMinPlaneCorners) corners = job::corners_on_metal(anomaly.boundary, {});
-    const auto n = Eigen::Index(corners.size());
-    Eigen::MatrixX3d A(n, 3);
-    Eigen::VectorXd z(n);
-    for (Eigen::Index i = 0; i < n; ++i) {
-        const Eigen::Vector2d corner = anomaly.boundary.col(corners[std::size_t(i)]);
-        A.row(i) << 1, corner.x(), corner.y();
-        z[i] = surface.z_at(corner.x(), corner.y());
-    }
-    return A.colPivHouseholderQr().solve(z);
-}
-
-/// Whether a plane is expected to leave no more than a free-form surface does, and to cut nothing by more than the
-/// tolerance. A limit on the bend alone would part two outlines of one anomaly whose errors differ by a factor of two.
-bool is_plane(const FoundAnomaly& anomaly, const HeightMap& map, const RingFit& beneath, const job::Job& settings)
-{
-    const Eigen::Vector3d plane = touched_plane(anomaly, beneath);
-    const double rise = kPlaneRise * settings.probe.accuracy;
-    double sum = 0, count = 0;
-    for (int y = 0; y < map.z.rows; ++y)
-        for (int x = 0; x < map.z.cols; ++x) {
-            const Eigen::Vector2d p = map.point_at(x, y);
-            if (!job::contains(anomaly.boundary, p)) continue;
-            const double cut = beneath.z_at(p.x(), p.y()) - plane[0] - plane.tail<2>().dot(p) - rise;
-            if (cut > settings.tolerance) return false;
-            sum += std::abs(cut);
-            ++count;
-        }
-    return sum <= std::max(kFreeformShare * settings.tolerance, kFreeformRise * settings.probe.accuracy) * count;
 }
 
 /// What the wheel may meet on its way: the part within its radius about S.
@@ -291,8 +228,8 @@ FoundJob job_for(const FoundAnomaly& found, const mesh::CloudMesh& part, const j
     job.surface = job::SurfaceType::freeform;
     if (beneath) {
         FoundAnomaly touched = anomaly;
-        touched.boundary = with_touches_of_plane(anomaly, map, *beneath, settings);
-        if (is_plane(touched, map, *beneath, settings)) {
+        touched.boundary = with_plane_corners(anomaly, map, *beneath, settings);
+        if (is_plane_better(touched, map, *beneath, settings)) {
             job.surface = job::SurfaceType::plane;
             anomaly.boundary = touched.boundary;
         }
