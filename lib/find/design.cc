@@ -1,6 +1,7 @@
 #include "find/design.h"
 
-#include "core/cholesky.h"
+#include "core/constants.h"
+#include "find/flat_top.h"
 
 #include <opencv2/imgproc.hpp>
 
@@ -10,8 +11,6 @@
 
 namespace fettle::find {
 namespace {
-
-using Eigen::Index;
 
 // A boss by design has a flat top, and an outline that is a rectangle or an ellipse: shares of height and area.
 constexpr double kFlatTop = 0.05, kRegularOutline = 0.06;
@@ -28,22 +27,16 @@ constexpr double kAlikeAreas = 3; // ratio
 
 double area_of(const Evidence& evidence) { return evidence.cells * evidence.cell * evidence.cell; }
 
-/// Root mean square departure from a plane of the cells of a region that lie farther than kTopDepth from its outline,
-/// mm; infinite if they are few.
+/// Root mean square distance from their least squares plane of the cells of a region that lie farther than kTopDepth
+/// from its outline, mm; infinite if they are few.
 double departure_of_boss(const Verified& find)
 {
     const Mask top = (depth_of(find.mask) > float(kTopDepth)) & finite(find.height);
-    std::vector<cv::Point> places;
-    cv::findNonZero(top, places);
-    if (places.size() < kMinBossCells) return core::kInfinity;
-    Eigen::MatrixXd A(Index(places.size()), 3);
-    Eigen::VectorXd z(A.rows());
-    for (std::size_t k = 0; k < places.size(); ++k) {
-        A.row(Index(k)) << 1, places[k].x - places[0].x, places[k].y - places[0].y;
-        z[Index(k)] = find.height(places[k]);
-    }
-    const Eigen::Vector3d plane = core::solve_ldlt(A.transpose() * A, A.transpose() * z); // definite: cells of an area
-    return (z - A * plane).norm() / std::sqrt(double(places.size()));
+    std::vector<cv::Point> cells;
+    cv::findNonZero(top, cells);
+    if (cells.size() < kMinBossCells) return core::kInfinity;
+    const Eigen::VectorXd z = values_at(find.height, cells);
+    return plane_residuals(cells, z, Eigen::VectorXd::Ones(z.size())).norm() / std::sqrt(double(cells.size()));
 }
 
 bool has_flat_top(const Evidence& e)

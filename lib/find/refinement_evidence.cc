@@ -1,4 +1,3 @@
-#include "core/cholesky.h"
 #include "find/flat_top.h"
 #include "find/refinement.h"
 
@@ -72,10 +71,8 @@ void Refinement::measure_stability(Evidence& evidence) const
         }
     }
     evidence.instability = fits == 0 ? evidence.height : std::sqrt(quantile_of(squares, 0.75) / fits);
-    Eigen::MatrixXd A(Eigen::Index(places.size()), 3);
-    for (std::size_t k = 0; k < places.size(); ++k) A.row(Eigen::Index(k)) << 1, places[k].x - x0, places[k].y - y0;
-    const Eigen::Vector3d plane = core::solve_ldlt(A.transpose() * A, A.transpose() * z);
-    evidence.sag = std::sqrt((z - A * plane).squaredNorm() / double(places.size()));
+    evidence.sag =
+        plane_residuals(places, z, Eigen::VectorXd::Ones(z.size())).norm() / std::sqrt(double(places.size()));
 }
 
 namespace {
