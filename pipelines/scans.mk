@@ -14,7 +14,7 @@
 # happyStandRight_0.ply (thegyro/Project4-Scan-Matching), igea.ply, nefertiti.obj and horse.ply (alecjacobson/common-3d-test-models),
 # pepper.ply and turbineblade.ply (pyvista/vtk-data), 004_sugar_box_textured.obj, 005_tomato_soup_can.obj and 010_potted_meat_can.obj (YCB objects of
 # RobotLocomotion/models, the cans' glTF as OBJ), downsampled.pcd (openlmd/proper).
-# A step is the cells of one scan. SCANS/SEED/NAME.csv holds them, a line a cell and strategy.
+# A step is the cells of one scan. SCANS/NAME.csv holds them, a line a cell and strategy.
 
 B      ?= build
 LEARNT := hammer panel weld
@@ -26,7 +26,7 @@ SEED   ?= 1
 STRATEGIES ?= wang extended
 SCANS  ?= $(B)/scans/cells-$(CELLS)/$(SEED)
 
-.PHONY: scans
+.PHONY: scans FORCE
 scans: $(NAMES:%=$(SCANS)/%.csv)
 	@pipelines/scans-table $(SCANS) "$(NAMES)" "$(if $(APART),,$(filter-out $(LEARNT),$(NAMES)))" "$(STRATEGIES)"
 
@@ -36,12 +36,12 @@ include pipelines/step.mk
 OF_hammer   := samples/scans/hammer.stl mm 8 20
 OF_panel    := samples/scans/panel.pcd m 40 120
 OF_weld     := $(B)/scans/weld.obj mm 10 40
-OF_waist    := $(B)/scans/waist.obj mm 10 40
+OF_waist    := $(SCANS)/waist.obj mm 10 40
 OF_sheet     = $(DATA)/scan_mesh/raw_mesh.ply m 40 120
 OF_bottle    = $(DATA)/scan_mesh/006_mustard_bottle.obj m 10 30
-OF_toys     := $(B)/scans/toys.pcd mm 6 20
-OF_rabbit0  := $(B)/scans/rabbit0.ply m 6 20
-OF_rabbit45 := $(B)/scans/rabbit45.ply m 6 20
+OF_toys     := $(SCANS)/toys.pcd mm 6 20
+OF_rabbit0  := $(SCANS)/rabbit0.ply m 6 20
+OF_rabbit45 := $(SCANS)/rabbit45.ply m 6 20
 OF_dragon0   = $(APART)/dragonStandRight_0.ply m 6 20
 OF_dragon168 = $(APART)/dragonStandRight_168.ply m 6 20
 OF_happy    := $(SCANS)/happy.ply m 6 20
@@ -63,8 +63,14 @@ $(B)/scans/weld.obj: samples/scans/weld-seam.txt samples/scans/weld.txt.gz pipel
 	@$(MAKE) --no-print-directory -s -f pipelines/casting.mk B=$(B) $(B)/chain/parts/weld.obj
 	@pipelines/mesh-without $< $(HALF_STRIP) $(B)/chain/parts/weld.obj > $@
 
+# SCANS/DATA and SCANS/APART hold the name of the folder. They get a new date only with another name: what was made from a
+# folder's scans is then made again.
+$(SCANS)/DATA $(SCANS)/APART: $(SCANS)/%: FORCE
+	@mkdir -p $(@D)
+	@echo '$($*)' | cmp -s - $@ || echo '$($*)' > $@
+
 # The profiles of the same workpiece that samples/ does not have, and that lie close enough.
-$(B)/scans/waist.obj: samples/scans/weld-seam.txt samples/scans/weld-placement.txt pipelines/mesh-without $(B)/bin/fettle-align
+$(SCANS)/waist.obj: samples/scans/weld-seam.txt samples/scans/weld-placement.txt pipelines/mesh-without $(B)/bin/fettle-align $(SCANS)/DATA
 	@mkdir -p $(@D)
 	@zcat $(DATA)/find/wp_waist.txt.gz | tail -n +67097 | awk -F, '{ printf "%.3f %.3f %.3f\n", 1000 * $$1, 1000 * $$2, 1000 * $$3 }' > $(@:.obj=.xyz)
 	@$(B)/bin/fettle-align $(@:.obj=.xyz) --file-units mm --to samples/designs/weld.stl --to-units mm \
@@ -73,19 +79,21 @@ $(B)/scans/waist.obj: samples/scans/weld-seam.txt samples/scans/weld-placement.t
 	@pipelines/mesh-without $< $(HALF_STRIP) $(@:.obj=-whole.obj) > $@
 
 # The camera looked along +z.
-$(B)/scans/toys.pcd: $(B)/bin/fettle-place
+$(SCANS)/toys.pcd: $(B)/bin/fettle-place $(SCANS)/DATA
 	@mkdir -p $(@D)
 	@$< $(DATA)/scan_range/rs1.pcd --file-units m --units mm --turn x,180 -q -o $@
 
-$(B)/scans/rabbit%.ply:
+$(SCANS)/rabbit%.ply: $(SCANS)/DATA
 	@mkdir -p $(@D)
 	@gunzip -c $(DATA)/several/bun$(if $(filter 0,$*),000,0$*).ply.gz > $@
 
 # Three lines of its header are none of a PLY's.
-$(SCANS)/happy.ply:
+$(SCANS)/happy.ply: $(SCANS)/APART
 	@mkdir -p $(@D)
 	@grep -v '^bye' $(APART)/happyStandRight_0.ply > $@
 
 $(foreach name,weld waist toys rabbit0 rabbit45 happy,$(eval $(SCANS)/$(name).csv: | $(firstword $(OF_$(name)))))
+$(OTHERS:%=$(SCANS)/%.csv): $(SCANS)/DATA
+$(UNSEEN:%=$(SCANS)/%.csv): $(SCANS)/APART
 $(NAMES:%=$(SCANS)/%.csv): $(SCANS)/%.csv: $(B)/study/scans
-	$(call step,$< $(OF_$*) $(CELLS) $(SEED) "$(STRATEGIES)" > $@.part)
+	$(call step,$(B)/study/scans $(OF_$*) $(CELLS) $(SEED) "$(STRATEGIES)" > $@.part)

@@ -22,6 +22,15 @@ study APART="$PWD/apart" SCANS="$PWD/unseen" NAMES=happy STRATEGIES=wang >unseen
 awk -F, 'NR > 1 { exit !($5 >= 6 && $5 <= 20 && $22 < 1e-6) }' unseen/happy.csv
 grep -cE '^(happy|all) +wang +2 ' unseen.txt | grep -x 2
 if grep '^others' unseen.txt; then exit 1; fi
+# They are read again from a folder of another name, and from no other.
+touch begin
+study APART="$PWD/apart" SCANS="$PWD/unseen" NAMES=happy STRATEGIES=wang | cmp - unseen.txt
+if test unseen/happy.csv -nt begin; then exit 1; fi
+mkdir steeper
+awk 'NF == 3 && /^[0-9]/ { $3 = $1 / 8 } { print }' apart/happyStandRight_0.ply >steeper/happyStandRight_0.ply
+study APART="$PWD/steeper" SCANS="$PWD/unseen" NAMES=happy STRATEGIES=wang >steeper.txt
+test unseen/happy.csv -nt begin
+grep -v bye steeper/happyStandRight_0.ply | cmp - unseen/happy.ply
 
 # Cells are cut where the scan knows the part. A plane of 90 x 90 mm in lines along y, DX apart, its points 2 mm apart along them.
 lines() { # DX
