@@ -18,16 +18,17 @@ constexpr std::array<int, kTerms> kPowerX{0, 1, 0, 2, 1, 0}; // 1, x, y, x², x 
 constexpr std::array<int, kTerms> kPowerY{0, 0, 1, 0, 1, 2};
 constexpr int kMaxPower = 4; // of the normal equations
 
-constexpr double kWindowPerWidth = 0.75; // standard deviation of the window over the width that it passes beneath
-constexpr double kWindowReach = 2.6;     // standard deviations: 3 % of the weight lie beyond
-constexpr double kCellsPerWidth = 5;     // of the coarse grid: its window then still has 3.75 cells of deviation
-constexpr float kUntrustedWeight = 0.01F;
+constexpr double kWindowPerWidth = 0.75;  // standard deviation of the window over the width that it passes beneath
+constexpr double kWindowReach = 2.6;      // standard deviations: 3 % of the weight lie beyond
+constexpr double kCellsPerWidth = 5;      // of the coarse grid: its window then still has 3.75 cells of deviation
+constexpr float kUntrustedWeight = 0.01F; // first weight of cells outside of sheets
 // Tukey's cutoff in standard deviations, falling from one iteration to the next, so that the first surface, which
 // anomalies pull up, excludes none of the good metal.
 constexpr std::array<double, 6> kCutoffs{8, 6, 5, 4.5, 4, 4};
-// What lies deep is cut off later and keeps a weight: the material's own form is rather low than high there.
+// Cells far beneath the surface are cut off later and keep a weight: they are more often the form of the part than
+// outliers.
 constexpr double kDeepCutoffs = 1.5;
-constexpr double kMinDeepWeight = 0.02;
+constexpr double kMinDeepWeight = 0.02; // lower bound of their weight
 // Ridge on all but the constant term, as a share of the weight in the window: it flattens quadratics that too few
 // cells determine.
 constexpr double kRidge = 1e-3;
@@ -75,7 +76,7 @@ Moments moments(const Image& weight, const Image& z, const Window& window)
 constexpr int kLanes = 8; // cells that are solved together
 using Lanes = Eigen::Array<double, kLanes, 1>;
 
-// What rounding may leave of a pivot of an empty window.
+// Lower bound of pivots, which rounding may make 0 or negative in an empty window.
 constexpr double kMinPivot = 1e-12;
 
 /// The constant terms of the quadratics at cells in a row, by Cholesky's factors; the constant comes last, which is

@@ -23,10 +23,10 @@ constexpr int kMinCells = 10;
 // A region that fills more than this share of the one around it at the next lower threshold is a duplicate of it.
 constexpr double kMaxNestedAreaShare = 0.85;
 
-// A candidate stands over the median of a shell around it, from 2 to 4 cells off, by this many sigmas; this share of
+// A candidate is higher than the median of a shell around it, from 2 to 4 cells off, by so many sigmas; this share of
 // the shell lies within 0.3 of its height about that median.
 constexpr int kShellInner = 1, kShellOuter = 4;
-constexpr double kMinContrast = 4, kMaxContrast = 30; // beyond, contrast says no more
+constexpr double kMinContrast = 4, kMaxContrast = 30; // a higher contrast does not raise the rank
 constexpr double kLevelShare = 0.3;
 // A filter takes part of an anomaly for surface: a candidate may be lower than what is reported.
 constexpr double kMinHeightShare = 0.5;
@@ -37,8 +37,8 @@ constexpr std::size_t kMaxCandidates = 200;
 
 // Candidates may be larger than what is reported by these factors: a low threshold takes in their surroundings.
 constexpr double kMaxAreaFactor = 1.5, kMaxExtentFactor = 2;
-constexpr double kAreaRankPower = 0.25;      // of two as distinct the larger one comes first
-constexpr float kBelowAllThresholds = -1e9F; // what is not seen
+constexpr double kAreaRankPower = 0.25;      // at the same contrast and enclosure the larger candidate ranks first
+constexpr float kBelowAllThresholds = -1e9F; // height of cells that are not seen
 
 // Two candidates are the same if they share this much of what both cover.
 constexpr double kDuplicateOverlap = 0.85;
@@ -69,7 +69,7 @@ double rank_of(const Image& residual, const Mask& domain, const Mask& mask, doub
     return enclosure > kMinEnclosure ? std::min(contrast, kMaxContrast) * enclosure * enclosure : 0;
 }
 
-/// What hangs together over a threshold.
+/// A connected component over a threshold.
 struct Region {
     cv::Rect box;
     Mask mask; ///< of the box's size
@@ -90,8 +90,8 @@ void add_regions(const Image& residual, const Region& below, double threshold, s
     }
 }
 
-/// Candidates of one residual: components over rising thresholds. Those over each are sought in those over the one
-/// before it, which are few beside the map.
+/// Candidates of one residual: connected components over rising thresholds. Each threshold is applied within the
+/// components over the one before it, which are small beside the map.
 std::vector<Candidate> cut_out(const Image& residual, const Mask& domain, const HeightMap& map,
                                const SearchBounds& bounds)
 {
@@ -166,7 +166,7 @@ std::vector<Candidate> find_candidates(const HeightMap& map, const SearchBounds&
 {
     const std::vector<double> widths = filter_widths(map, bounds.max_width);
     std::vector<std::vector<Candidate>> found, of_openings(std::min<std::size_t>(2, widths.size()));
-    tbb::task_group openings; // while the sheets, which they do not need, are found
+    tbb::task_group openings; // run while the sheets are found, on which they do not depend
     for (std::size_t i = 0; i < of_openings.size(); ++i)
         openings.run([&, i] { of_openings[i] = candidates_of_opening(map, widths[widths.size() - 1 - i], bounds); });
     const std::vector<Sheet> sheets = find_sheets(map, bounds.max_width / map.cell / 2);

@@ -11,17 +11,17 @@ namespace fettle::find {
 struct Candidate {
     cv::Rect box;       ///< in the map
     Mask mask;          ///< of the box's size
-    double rank = 0;    ///< by contrast to what surrounds it, and how far that encloses it; higher: sooner verified
+    double rank = 0;    ///< by contrast to its surroundings, and by how far they enclose it
     int cells = 0;      ///< of the mask
     double texture = 0; ///< robust standard deviation of the smoothed residual of its sheet, by the filter's width, mm
 };
 
-/// Whether two candidates have more than a share of the cells in common that any of them has.
+/// Whether the intersection over union of two candidates exceeds a share.
 bool overlap(const Candidate& a, const Candidate& b, double share);
 
-/// Regions that stand out of the surfaces of filters at several scales: of each sheet of the map by
-/// regression_filter(), of the map by ball_opening(). Not one threshold cuts them out, but each of a rising row:
-/// features of the part inflate a single one. Highest rank first; of near duplicates the first.
+/// Regions above the surfaces of filters at several scales: of each sheet of the map by regression_filter(), of the
+/// whole map by ball_opening(). They are segmented by several thresholds, since features of the part would inflate a
+/// single one. Highest rank first; of near duplicates the first.
 std::vector<Candidate> find_candidates(const HeightMap& map, const SearchBounds& bounds);
 
 } // namespace fettle::find

@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Index;
 
-constexpr Index kMaxSearchPoints = 100; // tell lines apart as well as more
+constexpr Index kMaxSearchPoints = 100; // more points do not distinguish lines better
 constexpr int kSearchDirections = 8, kSearchOffsets = 7;
 constexpr int kHalvings = 5; // of the steps between these
 constexpr int kSearchDegree = 2, kRobustIterations = 2;
@@ -63,7 +63,7 @@ class SidesOfLines {
     RingBasis basis_;
 };
 
-/// How badly a line fits; without end where it is no ridge.
+/// Misfit of a line, mm; infinite where it is no ridge.
 double misfit(const Sides& sides)
 {
     return sides.bend < 0 ? quantile_of_sizes(sides.residuals, kSearchQuantile)

@@ -16,17 +16,18 @@ using Eigen::Index;
 // A point belongs to the map's surface if it lies no farther off it than this.
 constexpr double kSurfaceSigmas = 8, kSurfaceCells = 2;
 
-// Walls and feet are narrower than a cell: points of a region's cells and of those beside it belong to it, too, if they
-// themselves stand over the surface by so many standard deviations of the noise and this share of the region's height.
+// Walls and feet are narrower than a cell. Points of a region's cells and of the cells beside it therefore belong to
+// the region, too, if their own height exceeds so many standard deviations of the noise and this share of the region's
+// height.
 constexpr double kOwnSigmas = 3, kOwnShare = 0.08;
 
-// Doubts. Below this probability a person looks at a find.
+// Below this probability a person checks a find.
 constexpr double kSureProbability = 0.96;
-// What is thicker than this multiple of the ring that could be fitted rests on extrapolation.
+// The surface beneath a region thicker than this multiple of its ring is an extrapolation.
 constexpr double kMaxThicknessPerRing = 2.5;
-// Share of the surroundings that is not the surface: an edge of the part, of the scan, or another feature.
-constexpr double kMinOpenShare = 0.6;
-// Nothing on the part tells a boss by design from an anomaly of that shape: no more is said of its probability.
+// A region enclosed by a smaller share of metal is at an edge of the part or of the scan, or beside another feature.
+constexpr double kMinSureEnclosure = 0.6;
+// Upper bound for regions shaped as a boss: nothing on the part distinguishes a boss by design from such an anomaly.
 constexpr double kMaxBossProbability = 0.9;
 
 /// Heights of the surface beneath, in the view.
@@ -71,7 +72,7 @@ std::string doubts_of(const Verified& find, bool is_boss)
     const Evidence& e = find.evidence;
     std::vector<std::string> doubts;
     if (!is_boss && find.probability < kSureProbability) doubts.push_back("it may be a feature of the part");
-    if (e.enclosure < kMinOpenShare) doubts.push_back("it stands at an edge, or beside another feature");
+    if (e.enclosure < kMinSureEnclosure) doubts.push_back("it stands at an edge, or beside another feature");
     if (e.thickness > kMaxThicknessPerRing * e.ring_width)
         doubts.push_back("it is wider than the good metal around it");
     if (find.has_crease) doubts.push_back("a crease of the part runs beneath it");
@@ -109,9 +110,8 @@ std::vector<Index> CellPoints::in(const cv::Point& cell) const
 
 namespace {
 
-/// Points of a region with their heights over the surface beneath: those of its cells that lie on the map's surface
-/// and not at the foot of a wall, and those of its cells and the ones beside them that stand over the surface beneath
-/// by themselves.
+/// Points of a region with their heights over the surface beneath: points of its cells that lie on the map's surface
+/// and not at the foot of a wall, and points of its cells and the cells beside them whose own height exceeds a limit.
 std::vector<std::pair<Index, double>> points_of(const mesh::CloudMesh& part, const SeenSide& side,
                                                 const CellPoints& cells, const Verified& find,
                                                 const Eigen::Vector3d& up)
@@ -119,7 +119,7 @@ std::vector<std::pair<Index, double>> points_of(const mesh::CloudMesh& part, con
     const HeightMap& map = side.surface;
     const double tolerance = kSurfaceSigmas * map.sigma + kSurfaceCells * map.cell;
     const double own_limit = std::max(kOwnSigmas * map.sigma, kOwnShare * find.evidence.height);
-    // Distances from a reference are those of cells.
+    // Distances from a reference are known for cells, not for points.
     const Mask near = side.is_along_normal ? find.mask : dilated(find.mask, 1);
     const Image floor = filled(beneath(side, find));
     std::vector<std::pair<Index, double>> points;
@@ -134,13 +134,13 @@ std::vector<std::pair<Index, double>> points_of(const mesh::CloudMesh& part, con
                 const Eigen::Vector3d p = side.view * Eigen::Vector3d(part.points.xyz.col(i));
                 const double own = up.dot(p - foot) / up.z();
                 const bool is_on_map = std::abs(p.z() - map.z(cell)) <= tolerance;
-                const bool stands = !side.is_along_normal && own > own_limit && own < 2 * find.evidence.height;
-                // Of a cell at a wall the points at its foot are metal around.
+                const bool is_above = !side.is_along_normal && own > own_limit && own < 2 * find.evidence.height;
+                // A cell at a wall has points at the wall's foot, which belong to the metal around.
                 const bool is_at_foot = !side.is_along_normal && own < own_limit &&
                                         own < std::min(height / 2, height - kOwnSigmas * map.sigma);
                 if (find.mask(y, x) && is_on_map && !is_at_foot)
                     points.emplace_back(i, (side.is_along_normal ? 1 : up.z()) * height);
-                else if (stands)
+                else if (is_above)
                     points.emplace_back(i, up.z() * own);
             }
         }

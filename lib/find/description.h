@@ -8,16 +8,16 @@
 
 namespace fettle::find {
 
-/// A part seen from one side, and what was found there.
+/// A part seen from one side, and the finds there.
 struct SeenSide {
     View view;
     HeightMap surface;            ///< heights of what is seen
-    HeightMap searched;           ///< the same, or signed distances from a reference along its normals
-    bool is_along_normal = false; ///< the latter
+    HeightMap searched;           ///< `surface`, or signed distances from a reference along its normals
+    bool is_along_normal = false; ///< `searched` has distances from a reference
     std::vector<Verified> finds;  ///< in `searched`
 };
 
-/// Points of a part by the cell in which a side shows them.
+/// Points of a part by the cell that they fall into, as linked lists.
 struct CellPoints {
     cv::Mat1i first;                ///< point of a cell, -1: none
     std::vector<Eigen::Index> next; ///< point of the same cell after each, -1: none

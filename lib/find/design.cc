@@ -15,13 +15,13 @@ namespace {
 // A boss by design has a flat top, and an outline that is a rectangle or an ellipse: shares of height and area.
 constexpr double kFlatTop = 0.05, kRegularOutline = 0.06;
 constexpr double kTopDepth = 3;           // cells inside of the region's outline
-constexpr std::size_t kMinBossCells = 12; // of the top, to tell its form
+constexpr std::size_t kMinBossCells = 12; // of the top: fewer do not determine its form
 
 // A flat top departs from a plane by this share of its height, or by noise, whose median is 0.67 of its spread.
 constexpr double kFlatShare = 0.03, kFlatNoise = 1.05;
-// Heights of flat tops are those of their means: these shares of them, and of the noise, tell two apart. What is not so
-// many times the noise high may be as flat and as high by chance. Pads, letters and digits of one height differ in
-// size.
+// The heights of two flat tops are equal if they differ by less than these shares of the height and of the noise.
+// Regions lower than so many sigmas of the noise may be flat and of one height by chance. Pads, letters and digits of
+// one height differ in area.
 constexpr double kAlikeHeight = 0.02, kAlikeNoise = 0.5, kMinAlikeSigmas = 12;
 constexpr double kAlikeAreas = 3; // ratio
 

@@ -11,8 +11,8 @@ namespace {
 // Two finds that share more than this of either's cells are at one place.
 constexpr double kMaxSharedCells = 0.1;
 
-// What each alike one takes from a score: a factor of 100 of the odds, if a boss by design has one as often as not, and
-// of pairs with an anomaly one in 240 has that height and size (docs/methods/find.md).
+// Each find that is alike lowers a score by this, which divides the odds by 100: half of the bosses by design have one
+// alike, and one in 240 pairs with an anomaly has that height and size (docs/methods/find.md).
 constexpr double kAlikeScore = 3.1;
 
 bool is_one_place(const Verified& a, const Verified& b)
@@ -34,7 +34,7 @@ void set_probabilities(std::vector<Verified>& finds)
         find.score -= flat_top_score(find.evidence);
         order.push_back(&find);
     }
-    // The surer ones of a place come first: another find there is the same again.
+    // Of finds at one place the first, with the highest score, counts.
     std::ranges::stable_sort(order, std::greater{}, &Verified::score);
     for (const Verified* find : order)
         if (std::ranges::none_of(places, [&](const Verified* other) { return is_one_place(*find, *other); }))

@@ -6,8 +6,8 @@
 
 namespace fettle::find {
 
-/// Sets the probabilities of a view's finds from their scores, and from how many doubtful ones and how many like it lie
-/// beside each. Of finds at one place the one with the highest score counts.
+/// Sets the probabilities of a view's finds from their scores, and from the numbers of doubtful finds and of finds
+/// alike beside each. Of finds at one place the one with the highest score counts.
 void set_probabilities(std::vector<Verified>& finds);
 
 } // namespace fettle::find

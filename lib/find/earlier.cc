@@ -13,15 +13,14 @@ namespace {
 
 using Eigen::Index;
 
-// A find belongs to a job if this share of its points lies within B; B is around all of it if all but the last lie
-// there.
+// A find belongs to a job if this share of its points lies within B; B encloses it if the second share does.
 constexpr double kMatchShare = 0.5, kCoveredShare = 0.995;
 
 /// An earlier job on today's part.
 struct PlacedJob {
     const EarlierJob* earlier;
     Eigen::Isometry3d T_job_part;
-    double low, high; // z of what can stand on its surface, mm
+    double low, high; // range of z in which its anomaly can lie, mm
 };
 
 PlacedJob placed_job(const EarlierJob& earlier, const Eigen::Isometry3d& T_earlier_part)

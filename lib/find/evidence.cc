@@ -7,16 +7,17 @@
 namespace fettle::find {
 namespace {
 
-// Share of the ring's variance that the height of a region's mean has: neighbouring cells are correlated.
+// Variance of the mean height of a region as a share of the ring's variance: neighbouring cells are correlated.
 constexpr double kMeanVariance = 0.35;
 constexpr double kMinNoiseShare = 0.5; // of the noise: a ring quieter than that is chance
 
 constexpr double kMinSeen = 0.05; // share of the shell that is seen, in ratios to it
 
-// Logarithms of ratios grow without end where a ring is perfect; beyond this they say no more.
+// Logarithms of ratios grow without bound where a ring is perfect; they are limited to this.
 constexpr double kMaxLogRatio = 4.5;
-constexpr double kMinRatio = 1e-3, kMaxRatio = 1e4; // nor do ratios beyond these; they keep the logarithm finite
-// Spreads that a height is divided by are at least these shares of the ring's, or of the noise: less is chance.
+constexpr double kMinRatio = 1e-3, kMaxRatio = 1e4; // limits of the ratios, so that the logarithm is finite
+// Lower bounds of the spreads that a height is divided by, as shares of the ring's, or of the noise: smaller ones are
+// chance.
 constexpr double kMinDisagreementShare = 0.3, kMinTextureShare = 0.3, kMinSagShare = 0.1, kMinInstabilityShare = 0.1;
 constexpr double kMaxRoundness = 6; // cells over the square of the thickness: a disc has 0.8, a bead of six widths 6
 // Divisors that bring a feature to about 1, as the weights' penalty expects.
@@ -37,25 +38,25 @@ struct Term {
 
 constexpr double kNoKnot = std::numeric_limits<double>::infinity();
 
-// The model, made by pipelines/programs/find-train.cc; docs/methods/find.md says from what.
+// The model, from pipelines/programs/find-train.cc; docs/methods/find.md describes the training set.
 constexpr Term kModelTerms[] = {
 #include "find/weights.inc"
 };
 
-// Log odds by the score and by what else the view shows, so that of the finds on parts that they were not fitted to as
-// many are right as is said: pipelines/programs/find-calibration.cc.
+// Calibration of the log odds by the score and by the doubtful finds of the view: on parts that were left out of the
+// fit, the share of right finds equals the probability (pipelines/programs/find-calibration.cc).
 constexpr double kCalibrationSlope = 1.5, kCalibrationOffset = 2.6, kCalibrationOthers = -0.95;
-// Scores of doubtful finds, from kMinDoubtfulScore, are said .03 to .65 where no other is.
+// Scores from kMinDoubtfulScore to this one are probabilities of .03 to .65, if no other find of the view is doubtful.
 constexpr double kMaxDoubtfulScore = -1.3;
 
-// Anomalies are seldom so plane on top that their height is exp(2.5), twelve times, the top's departure from a plane;
-// features by design are. What each factor of e beyond that takes from the score (docs/methods/find.md).
+// The height of an anomaly is seldom more than exp(2.5), twelve times, the departure of its top from a plane; that of
+// features by design is. Each factor of e above that lowers the score by kFlatTopScore (docs/methods/find.md).
 constexpr double kFlatTopKnot = 2.5, kFlatTopScore = 4;
 
-// Against a reference: slope and offset of the log odds of what stands out by so many standard deviations, and those
-// over which they change by 1.
+// Against a reference: slope and offset of the log odds by the height in standard deviations, which is centred and
+// scaled by the second pair.
 constexpr double kReferenceSlope = 1.06, kReferenceOffset = 1.38;
-constexpr double kEvenStanding = 6, kStandingScale = 1;
+constexpr double kReferenceCentre = 6, kReferenceScale = 1;
 
 double logistic(double log_odds) { return 1 / (1 + std::exp(-log_odds)); }
 
@@ -114,8 +115,8 @@ double probability_of(double score, int doubtful_others)
 
 double probability_against(const Evidence& e)
 {
-    const double standing = std::min(e.significance(), e.height / e.noise);
-    return logistic(kReferenceSlope * (standing - kEvenStanding) / kStandingScale + kReferenceOffset);
+    const double height_in_sds = std::min(e.significance(), e.height / e.noise);
+    return logistic(kReferenceSlope * (height_in_sds - kReferenceCentre) / kReferenceScale + kReferenceOffset);
 }
 
 bool is_plausible(const Evidence& e, const SearchBounds& bounds)

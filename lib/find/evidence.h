@@ -9,8 +9,8 @@
 
 namespace fettle::find {
 
-/// Quantities that distinguish an anomaly from a feature of the part, measured on one candidate. Lengths mm unless they
-/// say otherwise.
+/// Quantities that distinguish an anomaly from a feature of the part, measured on one candidate. Lengths are in mm
+/// unless stated otherwise.
 struct Evidence {
     double height = 0;        ///< 0.9 quantile over the surface beneath
     double ring_sd = 0;       ///< of the metal around, about that surface
@@ -27,15 +27,15 @@ struct Evidence {
     double inliers = 0;        ///< share of the ring on the surface
     double pits = 0;           ///< share of the ring far beneath
     double sharpness = 0;      ///< share of the height within two cells inside and outside of the boundary
-    double ring_width = 0;     ///< cells, as far as metal was there
+    double ring_width = 0;     ///< cells, up to the outermost metal
     double cells = 0;          ///< number
     double thickness = 0;      ///< largest inscribed circle's diameter, cells
     double cell = 1;           ///< mm
     double degree = 1;         ///< of the surface
-    /// Of its top from a plane: departure_from_plane(). Infinite: not measured, as of what is hardly an anomaly anyway.
+    /// Departure of its top from a plane, departure_from_plane(). Infinite: not measured, as for improbable candidates.
     double top_departure = core::kInfinity;
 
-    /// Standard deviation of the surface beneath: of the mean of the metal around it, and of the surface itself.
+    /// Standard deviation of the surface beneath, from the scatter of the metal around and the variance of the fit.
     double surface_sd() const;
     double significance() const { return height / surface_sd(); }
 };
@@ -50,17 +50,17 @@ Features features_of(const Evidence& evidence);
 /// of features_of(), whose weights and their origin docs/methods/find.md describes.
 double score_of(const Evidence& evidence);
 
-/// What a flat top takes from that score: it is more often a feature by design. 0 if its departure is not measured.
+/// Decrease of that score by a flat top, which is more often a feature by design. 0 if its departure is not measured.
 double flat_top_score(const Evidence& evidence);
 
-/// Least score of a doubtful find: what is below is hardly an anomaly.
+/// Minimum score of a doubtful find: a candidate below it is hardly an anomaly.
 inline constexpr double kMinDoubtfulScore = -4.1;
 
-/// Whether a find of this score may be a feature of the part as well as an anomaly, or is rather one.
+/// Whether a find of this score may as well be a feature of the part.
 bool is_doubtful(double score);
 
-/// Share of finds that are features by design, however sure the evidence: of a kind that no part had to which the
-/// probabilities were fitted.
+/// Share of finds that are features by design in spite of strong evidence: of a kind that the parts of the calibration
+/// did not have.
 inline constexpr double kUnforeseenShare = 0.005;
 
 /// Probability that a find is an anomaly, at most 1 - kUnforeseenShare. A part that shows many doubtful finds has
@@ -72,7 +72,7 @@ double probability_of(double score, int doubtful_others);
 /// significance and height over the noise suffice.
 double probability_against(const Evidence& evidence);
 
-/// Whether the evidence is worth a probability at all: bounds far outside of what anomalies of the evaluation set show.
+/// Whether the evidence lies within bounds, which are wide beside those of the evaluation set's anomalies.
 /// @param bounds  of heights
 bool is_plausible(const Evidence& evidence, const SearchBounds& bounds);
 

@@ -20,22 +20,22 @@ using Eigen::Index;
 // If two finds share more than this of either's points, the one with the higher rank is kept.
 constexpr double kMaxOverlap = 0.1;
 
-/// A find of a side, and what it is of the part.
+/// A find of a side, described in the part.
 struct Entry {
     const Verified* find;
     const SeenSide* side;
     FoundAnomaly found;
 };
 
-/// How well a side shows a find. A reference tells what stands out, hardly a doubt is left, but not whether a side
-/// shows all of it: one that sees half of it from beside has an edge around that half.
+/// How well a side shows a find. Against a reference nearly all finds are probable, and the enclosure decides: a side
+/// that shows only half of an anomaly has an edge around that half.
 double rank_in_part(const Entry& entry)
 {
     const double probability = entry.find->probability;
     return entry.side->is_along_normal ? probability * entry.find->evidence.enclosure : probability;
 }
 
-/// Takes finds by falling rank, without those that share points with one taken before. @return  most probable first
+/// Selects finds by descending rank, without those that share points with a selected one. @return  most probable first
 std::vector<Entry> without_overlaps(std::vector<Entry> entries, Index points)
 {
     std::ranges::stable_sort(entries, std::greater{}, rank_in_part);
@@ -108,7 +108,7 @@ FindResult merge(const mesh::CloudMesh& part, const std::vector<SeenSide>& sides
     return result;
 }
 
-// Cells across: less is a line, and has no metal around an anomaly.
+// Cells across. A narrower surface is a line, without metal around an anomaly.
 constexpr double kMinSurfaceWidth = 3;
 
 /// @throws InputError if no side of a cloud shows a surface

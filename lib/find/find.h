@@ -19,20 +19,20 @@ namespace fettle::find {
 struct FoundAnomaly {
     int number = 0;          ///< row in the result and value of the field `anomaly`, from 1
     double probability = 0;  ///< that it is one, by the logistic model
-    double score = 0;        ///< by its evidence and those alike, of which that is made; without a reference
-    int doubtful_others = 0; ///< finds beside it of which that is made, too
+    double score = 0;        ///< of the logistic model; without a reference
+    int doubtful_others = 0; ///< doubtful finds of its view, which enter the probability, too
     double height = 0;       ///< largest over the surface beneath, along its mean normal
     double area = 0;         ///< of the surface beneath, mm²
     double volume = 0;       ///< over that surface, mm³
     double significance = 0; ///< height in standard deviations of the surface beneath
-    std::string doubt;       ///< why an operator should check it; empty: none
+    std::string doubt;       ///< reason for an operator to check it; empty: none
     std::string job;         ///< file of its job; empty: it has none
     std::string wheel;       ///< why the wheel of its job is not the template's; empty: it is
     std::string like;        ///< file of the job of an earlier casting that has it, too; empty: none
 
     Eigen::Isometry3d T_anomaly_part; ///< its own frame: origin on the surface beneath, whose mean normal is +z
-    Eigen::Matrix2Xd boundary;        ///< 2xN, polygon B in that frame's x-y plane: around all of it
-    Eigen::Matrix2Xd sampling;        ///< 2xM, polygon S around B in the same plane: as far as the metal is good
+    Eigen::Matrix2Xd boundary;        ///< 2xN, polygon B in that frame's x-y plane, which encloses it
+    Eigen::Matrix2Xd sampling;        ///< 2xM, polygon S around B in the same plane, on good metal
     double cell = 0;                  ///< of the height map: what the polygons resolve
     std::vector<Eigen::Index> points; ///< of the part, ascending
     Eigen::VectorXd heights;          ///< of these over the surface beneath
@@ -46,8 +46,9 @@ struct FindResult {
 
 struct FindOptions {
     SearchBounds bounds;
-    double min_probability = 0.8; ///< less probable ones are left out
-    /// Unless they are so probable but for what speaks for a feature by design: flat tops, and others alike.
+    double min_probability = 0.8; ///< less probable finds are left out
+    /// Finds are kept, too, whose probability without signs of a feature by design (flat tops, others alike) is not
+    /// below this.
     double min_by_evidence = core::kInfinity;
 };
 

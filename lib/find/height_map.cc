@@ -9,17 +9,17 @@
 namespace fettle::find {
 namespace {
 
-// A cell is an outlier if it differs from the median around by more than noise and slope explain, and no more than
-// four such cells hang together: flying points are single, anomalies are not.
+// A cell is an outlier if it differs from the median around by more than noise and slope explain, in a connected
+// component of at most four such cells: flying points are single, anomalies are not.
 constexpr double kOutlierSigmas = 8;
 constexpr double kOutlierSlopes = 2.5; // of the median's change from cell to cell
 constexpr int kMaxOutlierCells = 4;
 
 constexpr int kFillRounds = 2;
-constexpr int kMinFillNeighbours = 5; // of nine: most of those around
-constexpr int kMinSpeckCells = 30;    // what is smaller has no ring to fit a surface to
+constexpr int kMinFillNeighbours = 5; // of nine cells: the majority
+constexpr int kMinSpeckCells = 30;    // a smaller component has no ring to fit a surface to
 
-// Below this noise, in cells, are only the roundings of files.
+// Lower bound of the noise, in cells: smaller differences are rounding of files.
 constexpr double kMinSigmaCells = 1e-4;
 
 /// The larger of the changes of an image along x and y, per cell; 0 beside gaps.

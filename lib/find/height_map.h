@@ -25,14 +25,14 @@ struct HeightMap {
     Eigen::Vector2d point_at(double x, double y) const { return origin + cell * Eigen::Vector2d(x, y); }
 };
 
-/// The map with cells `factor` times as long, their means; its noise is measured anew.
+/// The map with cells `factor` times as long, which have the means; its noise is estimated again.
 HeightMap coarsened(const HeightMap& map, int factor);
 /// Cells of which any is in the mask.
 Mask coarsened(const Mask& mask, int factor);
 
-/// Takes single outliers (flying points) out, fills holes of single cells by the median around, leaves out specks, and
-/// sets `seen` and `sigma`.
-/// @param fills  of a mesh false: cells that it does not cover are its walls and holes, no lack of points
+/// Removes single outliers (flying points), fills holes of single cells by the median around, removes small components,
+/// and sets `seen` and `sigma`.
+/// @param fills  false for a mesh, whose cells without a height are its walls and holes, no lack of points
 void clean(HeightMap& map, bool fills);
 
 } // namespace fettle::find

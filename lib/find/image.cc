@@ -15,7 +15,7 @@ namespace {
 
 constexpr float kUnseen = std::numeric_limits<float>::quiet_NaN();
 
-// Weights below this share of a full kernel say nothing.
+// Lower bound of a kernel's weight, relative to the full kernel, so that it can be divided by.
 constexpr float kMinKernelWeight = 1e-6F;
 
 /// Mask with a border of cells that are not in it.
@@ -74,7 +74,7 @@ Image nan_median(const Image& z, int radius)
 {
     const int side = 2 * radius + 1;
     const Mask seen = finite(z);
-    // OpenCV's median knows no gaps: it is right where there are none in the square, which is most of an image.
+    // OpenCV's median does not handle gaps. It is valid where the square has none, which is most of an image.
     Image whole = z.clone(), result;
     whole.setTo(0, ~seen);
     cv::medianBlur(whole, result, side);

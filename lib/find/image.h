@@ -5,7 +5,7 @@
 
 #include <vector>
 
-/// Filters of images with gaps. Lengths are in cells unless they say otherwise. The files of lib/find that include this
+/// Filters of images with gaps. Lengths are in cells unless stated otherwise. The files of lib/find that include this
 /// header see OpenCV; those of other modules do not.
 namespace fettle::find {
 
@@ -26,7 +26,7 @@ Image nan_median(const Image& z, int radius);
 /// Gaussian smoothing of the cells of a mask by those of the mask alone (normalized convolution, Knutsson & Westin
 /// 1993); NaN elsewhere. @param sigma  cells
 Image smoothed(const Image& z, const Mask& mask, double sigma);
-/// The same with what the mask's cells weigh, which several images of one mask share.
+/// Smoothing with a precomputed smoothing_weight(), which several images of one mask share.
 Image smoothed(const Image& z, const Mask& mask, double sigma, const Image& weight);
 Image smoothing_weight(const Mask& mask, double sigma);
 

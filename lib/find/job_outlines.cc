@@ -12,24 +12,25 @@
 namespace fettle::find {
 namespace {
 
-// S stays so many cells before a place where the part leaves the surface around B.
+// S ends so many cells before a place where the part departs from the surface around B.
 constexpr double kEdgeCells = 2.5;
-// Pixels, of half a cell: around polygons; of an edge's least size, as single cells are outliers of the noise; of S's
-// and B's simplified outlines.
-constexpr int kMarginPixels = 8, kMinEdgePixels = 4, kEdgePixels = int(2 * kEdgeCells);
-constexpr double kSamplingPixels = 1.5, kBoundaryPixels = 0.8;
-// The part ends at B if it does so within this of it: as far as B is clipped, and as its outline is simplified.
+// Pixels are half cells.
+constexpr int kMarginPixels = 8;  // around polygons
+constexpr int kMinEdgePixels = 4; // minimum size of an edge: single cells are outliers of the noise
+constexpr int kEdgePixels = int(2 * kEdgeCells);
+constexpr double kSamplingPixels = 1.5, kBoundaryPixels = 0.8; // tolerances of the simplified outlines of S and B
+// The part ends at B if it ends within this distance of B, by which B is clipped and its outline simplified.
 constexpr int kOpenSidePixels = 4;
-// B ends so far before the part's edge, where a stock still has a surface.
+// Distance of B from the part's edge, where a stock still has a surface.
 constexpr int kEdgeGapPixels = 3;
-// Less of B than this share beside the part is no edge.
+// B crosses an edge if more than this share of it lies beside the part.
 constexpr double kMinClippedShare = 0.005;
 
-constexpr double kSpacingStep = 0.9; // of corners, until there are enough of them
+constexpr double kSpacingStep = 0.9; // ratio of the spacings of corners that are tried
 
-/// A window of half cells around polygons, whose corners come to lie on them.
+/// A window of half cells around polygons. Corners of the polygons are rounded to their centres.
 struct HalfCells {
-    Eigen::Vector2d low; // the place of the first inside of the margin, mm
+    Eigen::Vector2d low; // centre of the first pixel inside of the margin, mm
     double pixel;        // mm
     cv::Size size;
 
@@ -82,7 +83,7 @@ struct HalfCells {
     }
 };
 
-/// The half cells beside the part, but for holes inside of a mask.
+/// The half cells beside the part, without holes that lie inside of a mask.
 Mask beside_part(const HalfCells& cells, const Mask& inside, const HeightMap& map, const Mask& part)
 {
     const Mask off = cells.where([&](const Eigen::Vector2d& place) {
@@ -90,14 +91,14 @@ Mask beside_part(const HalfCells& cells, const Mask& inside, const HeightMap& ma
         return !cv::Rect({0, 0}, part.size()).contains(cell) || !part(cell);
     });
     const Components pieces = components(off);
-    std::vector<bool> goes_on(std::size_t(pieces.count) + 1, false);
+    std::vector<bool> is_outside(std::size_t(pieces.count) + 1, false);
     for (int y = 0; y < off.rows; ++y)
         for (int x = 0; x < off.cols; ++x)
-            if (!inside(y, x)) goes_on[std::size_t(pieces.labels(y, x))] = true;
+            if (!inside(y, x)) is_outside[std::size_t(pieces.labels(y, x))] = true;
     Mask beside(off.size(), std::uint8_t(0));
     for (int y = 0; y < off.rows; ++y)
         for (int x = 0; x < off.cols; ++x)
-            if (const int piece = pieces.labels(y, x); piece > 0 && goes_on[std::size_t(piece)]) beside(y, x) = 255;
+            if (const int piece = pieces.labels(y, x); piece > 0 && is_outside[std::size_t(piece)]) beside(y, x) = 255;
     return opened(beside, kMinEdgePixels);
 }
 
@@ -161,12 +162,12 @@ Eigen::Matrix2Xd sampling_before_edges(const FoundAnomaly& anomaly, const Height
         while (reach <= length && is_good(from + reach * along)) reach += map.cell;
         if (reach <= length) corner = from + std::max(map.cell, reach - kEdgeCells * map.cell) * along;
     }
-    // Corners that were moved one by one may have made S cross itself, and an edge may run between two of them.
+    // Corners are moved one by one: S may cross itself now, and an edge may run between two of them.
     const HalfCells cells(sampling, anomaly.boundary, map.cell);
     const Mask core = cells.inside(anomaly.boundary), outer = cells.inside(sampling);
     const Mask edges = dilated(opened(~core & ~cells.where(is_good), kMinEdgePixels), kEdgePixels);
     const Mask metal = opened(outer & ~edges, 3);
-    // Where the part ends, what is left between B and its edge is the anomaly's, and no metal to touch.
+    // Where the part ends, cells between B and the edge belong to the anomaly and are no metal to touch.
     const bool is_open = cv::countNonZero(beside_part(cells, core, map, part) & dilated(core, kOpenSidePixels)) > 0;
     const Mask all = metal | (is_open ? core : dilated(core, 1));
     return job::joined(cells.outline(all, kSamplingPixels), anomaly.boundary); // simplified, it may cut corners of B

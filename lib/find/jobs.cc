@@ -20,11 +20,12 @@ namespace {
 // Radius in cells of the square about a corner of a boundary whose median is the corner's height.
 constexpr int kCornerReach = 1;
 
-// The part leaves a surface where it is off it by so many standard deviations of the metal around.
+// The part departs from a surface where its distance exceeds so many standard deviations of the metal around.
 constexpr double kLeavingSds = 4;
-constexpr int kMaxDegree = 3; // of that surface: one more would follow a fillet
+constexpr int kMaxDegree = 3; // of that surface: a fourth degree would follow a fillet
 
-// Beyond an edge the part lies below that surface by this and by more cells than a slope of the surface falls.
+// Beyond an edge the part lies at least this far below that surface, which is more than a sloped surface falls per
+// cell.
 constexpr double kFallCells = 2;
 
 /// Corners with the height of the part at each; NaN where nothing is seen.
@@ -64,12 +65,12 @@ std::optional<RingFit> surface_beneath(const FoundAnomaly& anomaly, const Height
     for (Eigen::Index i = 0; i < metal.cols(); ++i) {
         const Eigen::Vector2d place = metal.col(i).head<2>();
         const double distance = (nearest_on(anomaly.boundary, place) - place).norm();
-        weights[i] = 1 / (1 + distance / map.cell); // what lies near B tells what lies beneath it
+        weights[i] = 1 / (1 + distance / map.cell); // the metal near B determines the surface beneath it
     }
     return fit_ring({metal.topRows<2>(), metal.row(2), weights}, map.sigma, kMaxDegree);
 }
 
-/// The cells that are seen, with the single ones between them, but for the sides of the part beyond its edges.
+/// The seen cells and single gaps between them, without the sides of the part beyond its edges.
 Mask cells_of_part(const HeightMap& map, const std::optional<RingFit>& surface)
 {
     Mask part = closed(finite(map.z), 1);
@@ -83,9 +84,9 @@ Mask cells_of_part(const HeightMap& map, const std::optional<RingFit>& surface)
     return part;
 }
 
-/// S, each corner drawn towards B until no edge, fillet or hole lies between: a place where nothing is seen, or where
-/// the part leaves the surface that goes on from B, the robust one through the metal between B and S. What was found in
-/// a view may lie askew to it, with its edges at other places than where that view showed them.
+/// S with each corner moved towards B until no edge, fillet or hole lies between: a place where nothing is seen, or
+/// where the part departs from the robust surface through the metal between B and S. The anomaly's frame may be oblique
+/// to the view in which it was found, and edges then have other places.
 Eigen::Matrix2Xd before_edges(const FoundAnomaly& anomaly, const HeightMap& map, const Mask& part,
                               const RingFit& surface)
 {
@@ -98,8 +99,8 @@ Eigen::Matrix2Xd before_edges(const FoundAnomaly& anomaly, const HeightMap& map,
     return sampling_before_edges(anomaly, map, part, is_on_surface);
 }
 
-/// What the wheel may meet on its way: the part within its radius about S.
-double highest_under_way(const FoundAnomaly& anomaly, const HeightMap& map, double radius)
+/// Largest height that the wheel may meet: that of the part within the wheel's radius about S, mm.
+double highest_under_wheel(const FoundAnomaly& anomaly, const HeightMap& map, double radius)
 {
     const cv::Point low = map.cell_of(anomaly.sampling.rowwise().minCoeff().array() - radius),
                     high = map.cell_of(anomaly.sampling.rowwise().maxCoeff().array() + radius);
@@ -119,10 +120,10 @@ double theta_along(const Eigen::Matrix2Xd& boundary, char feed_axis)
     const double quarter = core::kRadPerDegree * 90;
     const double along = core::kRadPerDegree * double(box.angle) + (box.size.width >= box.size.height ? 0 : quarter);
     const double theta = feed_axis == 'x' ? along : along - quarter;
-    return std::remainder(theta, 2 * quarter); // a pass runs both ways: half a turn is none
+    return std::remainder(theta, 2 * quarter); // a pass has no sense of direction: half a turn changes nothing
 }
 
-// A fitted surface bends more than this one here and there: shares of the sag and the radius that are allowed.
+// A fitted surface is locally more curved than this one, so only these shares of sag and radius are allowed.
 constexpr double kSagShare = 0.4, kRadiusShare = 0.8;
 constexpr int kCurvaturePoints = 12; // along the longer side of B
 
@@ -238,7 +239,7 @@ FoundJob job_for(const FoundAnomaly& found, const mesh::CloudMesh& part, const j
     job.sampling = with_heights(anomaly.sampling, map);
     const std::string wheel = beneath ? fit_wheel(job, *beneath, others) : "";
     job.is_safe_height_known = true;
-    job.safe_height = highest_under_way(anomaly, map, job.wheel.radius) + job::kTravelClearance;
+    job.safe_height = highest_under_wheel(anomaly, map, job.wheel.radius) + job::kTravelClearance;
     return {job::validated(job, "row " + std::to_string(anomaly.number)), wheel};
 }
 

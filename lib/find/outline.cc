@@ -9,8 +9,8 @@ namespace fettle::find {
 namespace {
 
 constexpr int kClosing = 3;        // cells: dents of B that no wheel follows
-constexpr double kGrowth = 3.2;    // beyond the region: its foot, and what simplifying the outline takes off
-constexpr double kFootGap = 1.7;   // beyond a foot that was measured: what simplifying takes off, and a cell
+constexpr double kGrowth = 3.2;    // beyond the region: its foot, and the tolerance of the simplified outline
+constexpr double kFootGap = 1.7;   // beyond a measured foot: the tolerance of the simplified outline, and a cell
 constexpr double kOthersGap = 1.5; // between B and another anomaly, cells
 
 constexpr double kSamplingPerThickness = 0.6;
@@ -19,7 +19,7 @@ constexpr double kEdgeGap = 1.5;                        // S keeps off edges, ce
 
 constexpr int kOutlineCells = 4;     // around what an outline surrounds, for its blur and simplification, cells
 constexpr int kUpscale = 4;          // of masks before their outline is taken
-constexpr double kOutlineBlur = 0.7; // cells, takes the stairs out
+constexpr double kOutlineBlur = 0.7; // cells, removes the steps of the pixels
 constexpr double kBoundaryDetail = 0.6, kSamplingDetail = 0.8; // of simplified outlines, cells
 
 /// The outline of the mask's largest component.

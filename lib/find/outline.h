@@ -16,7 +16,7 @@ struct Outlines {
 /// Boundaries of a region. S reaches 0.6 of the region's thickness from B, in straight lines from B, up to edges of
 /// what is seen, creases, and other regions.
 /// @param region   of the map's size   @param others  cells of other anomalies
-/// @param growth   shells around it, a cell each, that still stand over the surface: B is beyond them, too
+/// @param growth   shells around it, a cell each, that are still above the surface: B encloses them, too
 Outlines outlines_of(const HeightMap& map, const Mask& region, const Mask& others, int growth);
 
 } // namespace fettle::find

@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::Index;
 
-// From this ratio of the two spacings on, anomalies as wide as some profiles would have too few cells.
+// Above this ratio of the two spacings, anomalies of a few profiles' width would have too few cells.
 constexpr double kMinAnisotropy = 3;
 constexpr Index kSampledProfiles = 100;
 

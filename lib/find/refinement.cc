@@ -18,19 +18,20 @@ constexpr double kRingPerExtent = 0.35;                 // of a thin region
 constexpr double kMinRingWidth = 6, kMaxRingWidth = 45; // cells
 constexpr int kMaxMargin = 60, kMarginBeyond = 8;       // of the window, cells
 
-// Hysteresis of the region over the surface: seeds stand over it by so many of its standard deviations and by this
-// share of the height, the region is what hangs together with them down to the lower bounds.
+// Hysteresis thresholds of the region, in standard deviations of the surface beneath and as shares of the height: cells
+// above the upper ones are seeds, connected cells above the lower ones belong to the region.
 constexpr double kSeedSds = 4.5, kSeedShare = 0.2;
 constexpr double kRegionSds = 2.5, kRegionShare = 0.08;
-constexpr double kMinSds = 0.25; // of the noise
+constexpr double kMinSds = 0.25; // lower bound of that standard deviation, in sigmas of the noise
 constexpr double kHeightSmoothing = 0.8;
-// Around the ring, cells: the shell around a region that has grown to the ring's edge, and smoothing.
+// Cells around the ring that are evaluated, too: the shell around a region that has grown to the ring's edge, and the
+// kernel of the smoothing.
 constexpr int kReachBeyondRing = 8;
 constexpr float kVeryLow = -1e9; // mm: no region
 
-// A crease that is beneath the region shows at once, or once the region has been taken anew.
+// A crease beneath the region is found in the first step, or in the second, when the region has been segmented again.
 constexpr int kMaxCreaseSearches = 2;
-// Cells: what is thinner may be the part's own, as ridges are rounded and curve.
+// Cells. A thinner region on a crease may be the crease itself, as ridges are rounded and curved.
 constexpr double kMinCreaseThickness = 7;
 // Slopes on both sides differ by more than where a sheet ends (15 degrees), and less than beside a wall (60).
 constexpr double kMinBend = 0.27, kMaxBend = 1.7;
@@ -83,7 +84,7 @@ Refinement::Progress Refinement::step()
     const double overlap = double(cv::countNonZero(next & region_)) / cv::countNonZero(next | region_);
     region_ = next;
     thickness_ = thickness_of(region_);
-    return overlap > kStableOverlap ? Progress::settled : Progress::moved;
+    return overlap > kStableOverlap ? Progress::converged : Progress::changed;
 }
 
 Candidate Refinement::region() const
@@ -187,13 +188,13 @@ Mask Refinement::region_over_surface() const
     for (int y = reach.y; y < reach.y + reach.height; ++y)
         for (int x = reach.x; x < reach.x + reach.width; ++x) {
             const double value = beneath_.smooth(y, x);
-            if (!(value > min_height)) continue; // as of most cells
+            if (!(value > min_height)) continue; // true for most cells, which need no square root
             const double sd =
                 std::max(std::sqrt(ring_variance + beneath_.sd(y, x) * beneath_.sd(y, x)), kMinSds * sigma_);
             if (value > std::max(kSeedSds * sd, kSeedShare * height) && core_(y, x)) seeds(y, x) = 255;
             if (value > kRegionSds * sd && beneath_.distance(y, x) < beneath_.width + kRingGap) low(y, x) = 255;
         }
-    // Steep sides hide cells: a few unseen ones within do not cut a region in two.
+    // Steep sides hide cells: a few unseen cells do not divide a region.
     low |= closed(low, 1) & ~seen_;
     return largest(opened(connected_to(low, seeds), cv::countNonZero(low) > 60 ? 3 : 2));
 }

@@ -20,15 +20,15 @@ double thickness_of(const Mask& mask);
 struct Beneath {
     RingFit fit;
     Mask ring;
-    cv::Rect reach; ///< of the ring, and what smoothing needs around it: the images are right in it
+    cv::Rect reach; ///< the ring and the cells around it that smoothing needs: the images are valid in it
     Image distance; ///< from the region; large beyond the ring's reach
     double width;   ///< of the ring
     Image residual; ///< over the surface; NaN beyond
-    Image smooth;   ///< the same, smoothed; very low beyond, and where nothing is seen
+    Image smooth;   ///< smoothed residual; very low beyond, and where nothing is seen
     Image sd;       ///< of the surface
 };
 
-/// The refinement of one candidate within its window.
+/// Refines one candidate within its window: fits the surface beneath, and segments the region that rises above it.
 class Refinement {
   public:
     Refinement(const HeightMap& map, const Candidate& candidate, const Mask& others, const SearchBounds& bounds);
@@ -36,27 +36,27 @@ class Refinement {
     /// The region without the rim that only smoothing has raised.
     Mask trimmed() const;
 
-    /// How a region stands after it was taken anew.
+    /// Outcome of a step.
     enum class Progress {
-        none,   ///< no region remains
-        moved,  ///< it differs from the one before
-        settled ///< it is nearly the one before
+        none,     ///< no region remains
+        changed,  ///< it differs from the region before the step
+        converged ///< it hardly differs from it
     };
-    /// Fits the surface beneath the region, and takes the region anew from what stands over it.
+    /// Fits the surface beneath the region, and segments the region again where the heights rise above it.
     Progress step();
 
     /// The region as a candidate in the map.
     Candidate region() const;
-    /// Of the region, cells.
+    /// Thickness of the region, cells.
     double thickness() const { return thickness_; }
 
-    /// The find, once the region is taken for final.
+    /// The verified candidate with the region of the last step.
     Verified result(double texture) const;
 
-    /// Frees what step() makes anew.
+    /// Frees the memory of what step() computes again.
     void release() { beneath_ = {}; }
 
-    /// The surface beneath, all over the window.
+    /// The surface beneath, in the whole window.
     Image surface() const;
 
   private:
@@ -69,10 +69,11 @@ class Refinement {
 
     bool fit_beneath();
 
-    /// Heights over the surface, and its standard deviation, which is smooth: at every few cells it is computed.
+    /// Sets the heights over the surface, and its standard deviation, which is smooth: it is computed at every few
+    /// cells and interpolated.
     void evaluate();
 
-    /// What is seen in a box of the window, over the surface; NaN elsewhere.
+    /// Heights over the surface in a box of the window; NaN where nothing is seen.
     Image residual_in(const cv::Rect& box) const;
 
     Mask region_over_surface() const;
@@ -92,7 +93,7 @@ class Refinement {
     cv::Rect window_;
     Image z_;
     Mask seen_, others_, region_, core_;
-    Image seen_weight_; ///< of smoothing
+    Image seen_weight_; ///< smoothing_weight() of the seen cells
     double thickness_;
     Beneath beneath_;
     std::optional<Crease> crease_; ///< beneath the region

@@ -10,8 +10,8 @@
 namespace fettle::find {
 namespace {
 
-// The shell around a region in which the surface should lie open: from 1.5 to 4 cells off, and how far off the surface
-// it may be: noise, or a share of the height, which a rounded foot reaches.
+// The shell around a region in which the metal should lie on the surface beneath: its distances from the region, cells,
+// and its tolerance, in standard deviations or as a share of the height, which a rounded foot reaches.
 constexpr double kShellFrom = 1.5, kShellTo = 4;
 constexpr double kShellSds = 4, kShellShare = 0.15;
 
@@ -46,7 +46,7 @@ void Refinement::measure_shell(Evidence& evidence) const
     evidence.unseen = double(unseen) / all;
 }
 
-/// Refits the surface with each quadrant of the ring left out, and measures how much it moves beneath the region.
+/// Fits the surface without each quadrant of the ring in turn, and measures how much it changes beneath the region.
 void Refinement::measure_stability(Evidence& evidence) const
 {
     const cv::Rect box = cv::boundingRect(region_);
@@ -79,11 +79,11 @@ namespace {
 
 constexpr double kMinSignificance = 4;
 constexpr int kMaxGrowth = 6;
-constexpr double kCorrelatedShellCells = 6; // that stand for an independent one
+constexpr double kCorrelatedShellCells = 6; // as informative as one independent cell
 
 } // namespace
 
-/// Shells around the region whose mean stands over the surface by more than chance.
+/// Number of shells around the region whose mean is above the surface by more than chance.
 int Refinement::growth() const
 {
     for (int k = 1; k <= kMaxGrowth; ++k) {

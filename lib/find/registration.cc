@@ -20,7 +20,7 @@
 namespace fettle::find {
 namespace {
 
-constexpr Eigen::Index kFieldPoints = 6000; // 168 coefficients follow from them
+constexpr Eigen::Index kFieldPoints = 6000; // for the 168 coefficients of the slow field
 
 constexpr Eigen::Index kRegistrationPoints = 20000; // as fettle-align takes of a mesh
 
@@ -42,10 +42,10 @@ double max_same_distance(const Eigen::Matrix3Xd& points)
     return kMaxSameDistance * geometry::bounding_box(points).diagonal().norm();
 }
 
-/// Mean square distance of a part from its reference once the slow field between both is taken off, mm². The field has
-/// no stiffness: in a wrong pose a bent part may lie flatter, and a stiff field leaves more of the bend in the right
-/// one. Distances count up to a bound, the same for all poses: what has no counterpart on the reference tells poses of
-/// a nearly symmetric part apart, and anomalies, which are far off in all of them, do not rule.
+/// Mean square distance of a part from its reference after subtraction of the slow field between both, mm². The field
+/// has no stiffness: a bent part may lie flatter in a wrong pose, and a stiff field would leave more of the bend in the
+/// right one. Distances are bounded, by the same value for all poses: points without a counterpart distinguish the
+/// poses of a nearly symmetric part, and anomalies, which are far off in all of them, do not dominate.
 double misfit_beyond_slow_field(const Eigen::Matrix3Xd& points, const compare::Reference& reference)
 {
     const SlowField field = fit_slow_field(points, reference, Stiffness::none);
@@ -60,8 +60,8 @@ double misfit_beyond_slow_field(const Eigen::Matrix3Xd& points, const compare::R
     return sum / double(points.cols());
 }
 
-/// Takes another pose if it fits better once the slow field is taken off: the second best of the search, or the one
-/// next to the part's own frame, which is often that of its design.
+/// Selects another pose if it fits better after subtraction of the slow field: the second best of the search, or the
+/// one nearest to the part's own frame, which is often that of its design.
 void choose_bent_pose(align::Alignment& alignment, const align::OrientedPoints& points,
                       const align::AlignReference& target, const mesh::MeshOrCloud& reference)
 {
@@ -114,7 +114,7 @@ Registration register_part(const mesh::CloudMesh& part, const mesh::MeshOrCloud&
 
 namespace {
 
-/// The part is judged before the slow field is taken off, which could bend any part onto any other.
+/// Compares the part without the slow field, which could bend any part onto any other.
 /// @throws InputError if it is not that of the reference
 void check_same_part(const Eigen::Matrix3Xd& points, const compare::Reference& reference)
 {
@@ -129,7 +129,8 @@ void check_same_part(const Eigen::Matrix3Xd& points, const compare::Reference& r
     throw core::InputError(text.str());
 }
 
-// A departure beyond chance counts by what the slow field cannot explain within so many of its standard deviations.
+// A departure beyond kChanceSds is reduced by what the slow field may explain within kFieldSds of its standard
+// deviations.
 constexpr double kChanceSds = 4, kFieldSds = 3;
 
 } // namespace

@@ -24,7 +24,7 @@ Registration register_part(const mesh::CloudMesh& part, const mesh::MeshOrCloud&
 cloud::Cloud registration_points(const mesh::CloudMesh& part);
 
 /// Distances of the part's points along the reference's normals (compare::signed_distance), after the slow field
-/// between both (slow_field.h) has been taken off.
+/// between both (slow_field.h) has been subtracted.
 /// @throws InputError if the part is another one than the reference
 SignedDistances signed_distances(const mesh::CloudMesh& part, const mesh::MeshOrCloud& reference,
                                  const Eigen::Isometry3d& T_reference_part);

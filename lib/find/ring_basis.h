@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-/// What the files of RingFit share: the points of a ring, scaled, and linear least squares on them.
+/// Shared by the files of RingFit: the scaled points of a ring, and linear least squares on them.
 namespace fettle::find {
 
 inline constexpr std::size_t kHighestDegree = 4;
@@ -13,9 +13,8 @@ inline constexpr Eigen::Index kMaxTerms = 15;   ///< of a polynomial of that deg
 inline constexpr Eigen::Index kCreaseTerms = 3; ///< of a crease
 inline constexpr double kRingStartCutoff = 5;   ///< Tukey's, of the weights to start from, standard deviations
 inline constexpr double kMinRingSigmas = 0.5;   ///< a residual spread below half the noise is chance
-inline constexpr double kMinRingSpread =
-    1e-9;                                  ///< mm: of a made ring that is fitted exactly, so that weights stay finite
-inline constexpr double kRingRidge = 1e-9; ///< of the trace: fixes what few points leave open
+inline constexpr double kMinRingSpread = 1e-9;  ///< mm: keeps weights finite where a synthetic ring is fitted exactly
+inline constexpr double kRingRidge = 1e-9;      ///< of the trace: fixes directions that few points do not determine
 
 /// The line across which a surface bends: across · p = offset.
 struct Crease {
@@ -39,7 +38,7 @@ struct Ring {
 /// The largest number of points up to `count` that fills lanes of four.
 inline Eigen::Index count_in_lanes(Eigen::Index count) { return count / 4 * 4; }
 
-/// Some of the points, evenly left out.
+/// An even subset of the points.
 Ring thinned(const Ring& ring, Eigen::Index max_count);
 
 inline Eigen::Index terms_of(int degree) { return Eigen::Index(degree + 1) * (degree + 2) / 2; }
@@ -47,7 +46,7 @@ inline Eigen::Index terms_of(int degree) { return Eigen::Index(degree + 1) * (de
 /// Monomials x^a y^b of total degree up to `degree`; those of a lower degree come first.
 void monomials(double x, double y, int degree, double* row);
 
-// Functions of a ring's points, and their coefficients: no more than these, so that they need no memory of their own.
+// Upper bound of the number of functions, by which matrices and vectors of coefficients are on the stack.
 inline constexpr int kMaxRingTerms = int(kMaxTerms + kCreaseTerms);
 using RingCoefficients = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxRingTerms, 1>;
 using RingMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMaxRingTerms, kMaxRingTerms>;
@@ -63,14 +62,14 @@ class RingColumns {
         RingMatrix matrix; ///< lower half
         RingCoefficients right;
 
-        /// Those of the first columns alone.
+        /// The normal equations of the first columns.
         NormalEquations head(Eigen::Index count) const;
         RingCoefficients solution() const;
         RingMatrix inverse() const;
     };
     NormalEquations normal_equations(const Eigen::VectorXd& z, const Eigen::VectorXd& weights) const;
 
-    /// Weighted least squares.
+    /// Coefficients by weighted least squares.
     RingCoefficients solve(const Eigen::VectorXd& z, const Eigen::VectorXd& weights) const
     {
         return normal_equations(z, weights).solution();

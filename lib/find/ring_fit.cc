@@ -15,9 +15,9 @@ namespace {
 
 using Eigen::Index;
 
-constexpr Index kMaxStartPoints = 200;    // find the same start
-constexpr Index kMaxRingPoints = 450;     // more, evenly left out, change the surface by less than its own error
-constexpr double kCorrelatedCells = 6;    // points that stand for an independent one: smoothing scanners correlate
+constexpr Index kMaxStartPoints = 200;    // more points yield the same start
+constexpr Index kMaxRingPoints = 450;     // more points change the surface by less than its own error
+constexpr double kCorrelatedCells = 6;    // as informative as one independent point: scanners smooth
 constexpr double kMinPointsPerTerm = 2.5; // independent ones
 
 // The start: least median (here the 0.6 quantile) of absolute residuals (Rousseeuw 1984) over the whole ring and over
@@ -28,17 +28,17 @@ constexpr double kSectorHalfAngle = std::numbers::pi / 3;
 constexpr double kStartQuantile = 0.6, kQuantilePerSigma = 1.2;
 constexpr double kPartialGain = 0.85;
 constexpr int kStartIterations = 3, kRefineIterations = 6;
-// The start is a quadratic from so many independent points on, and then a plane's or a quadratic's terms have at least
-// so many points each: half of them may be outliers.
+// The start is a quadratic if there are more than kMinQuadraticPoints independent points, else a plane. Each term needs
+// kMinStartPointsPerTerm points, half of which may be outliers.
 constexpr int kMaxStartDegree = 2;
 constexpr double kMinQuadraticPoints = 15, kMinStartPointsPerTerm = 3;
-// The first refinements measure the spread of the start's inliers; by then the residuals can tell inliers themselves.
+// The first iterations measure the spread of the start's inliers; later ones define inliers by their own residuals.
 constexpr int kStartInlierIterations = 2;
-constexpr double kSettledChange = 1e-3; // of the spread: the refinement has come to its end
+constexpr double kMinSpreadChange = 1e-3; // relative change below which the iteration has converged
 
 constexpr double kCutoff = 4.5, kInlierCutoff = 6; // Tukey's, in standard deviations
 constexpr double kMinWeight = 0.05;                // below it a point is an outlier
-// A crease is sought where the best polynomial leaves more than this multiple of the noise, or points out.
+// A crease is sought where the best polynomial leaves more than this multiple of the noise, or too few inliers.
 constexpr double kMinCreaseSigmas = 1.5, kMaxSmoothInliers = 0.85;
 constexpr int kMaxCreasedDegree = 3;
 constexpr double kMinShare = 1e-3; // of a polynomial in the average
@@ -48,7 +48,7 @@ Eigen::VectorXd biweights(const Eigen::VectorXd& residuals, double cutoff)
     return (1 - (residuals.array() / cutoff).square()).max(0).square();
 }
 
-/// Points by direction: 1, or 0 within a sector.
+/// Weights of the points outside of a sector of directions: 1, within it 0.
 Eigen::VectorXd outside_sector(const Ring& ring, int sector)
 {
     const double turn = sector * 2 * std::numbers::pi / kSectors;
@@ -71,7 +71,7 @@ RingCoefficients robust_coefficients(const Ring& ring, const RingColumns& A, con
     return coefficients;
 }
 
-/// Weights to start from.
+/// First weights of the ring's points, about a robust start; empty if there are too few points.
 Eigen::VectorXd start_weights(const Ring& whole, const RingBasis& basis)
 {
     const Ring ring = thinned(whole, kMaxStartPoints);
@@ -112,7 +112,7 @@ struct FittedPolynomial {
     Eigen::VectorXd residuals, weights;
 };
 
-/// Weights to start from, and the normal equations by them of the highest degree, which hold those of the lower ones.
+/// First weights, and the normal equations of the highest degree with them, which include those of lower degrees.
 struct RingStart {
     Eigen::VectorXd weights;
     RingColumns::NormalEquations equations;
@@ -141,7 +141,7 @@ FittedPolynomial fit_polynomial(const Ring& ring, const RingBasis& basis, int de
         const double spread = sizes.empty() ? sd : geometry::kMedianToSigma * sizes.median();
         const double before = std::exchange(sd, std::max({spread, kMinRingSigmas * ring.sigma, kMinRingSpread}));
         fit.weights = biweights(fit.residuals, kCutoff * sd);
-        if (iteration > kStartInlierIterations && std::abs(sd - before) < kSettledChange * sd) break;
+        if (iteration > kStartInlierIterations && std::abs(sd - before) < kMinSpreadChange * sd) break;
     }
     fit.polynomial.sd = sd;
     fit.polynomial.inliers = double((fit.weights.array() > kMinWeight).count()) / double(fit.weights.size());
@@ -208,7 +208,7 @@ Ring scaled_ring(const RingPoints& points, double sigma, RingFit& fit)
     return ring;
 }
 
-/// Sets the average of the polynomials, its covariance, and what else is averaged.
+/// Sets the average of the polynomials, its covariance, and the averages of their other results.
 void set_average(RingFit& fit, const std::vector<FittedPolynomial>& fits)
 {
     bool is_creased = false;
@@ -218,7 +218,7 @@ void set_average(RingFit& fit, const std::vector<FittedPolynomial>& fits)
     }
     if (!is_creased) fit.crease.reset();
     const Index monomials = terms_of(fit.highest_degree), count = monomials + (is_creased ? kCreaseTerms : 0);
-    std::vector<std::vector<Index>> places; // of a polynomial's coefficients among all
+    std::vector<std::vector<Index>> places; // indices of a polynomial's coefficients among all
     fit.mean = Eigen::VectorXd::Zero(count);
     double max_share = 0;
     for (const FittedPolynomial& fitted : fits) {
@@ -241,7 +241,7 @@ void set_average(RingFit& fit, const std::vector<FittedPolynomial>& fits)
     }
 }
 
-/// Fits polynomials on both sides of a crease, where one alone leaves more than noise.
+/// Fits polynomials on both sides of a crease where a single polynomial leaves more than noise.
 void add_creased(std::vector<FittedPolynomial>& fits, const Ring& ring, RingBasis& basis, int max_degree,
                  const CreaseSearch& creases, RingFit& fit)
 {

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-/// Places on a surface that was fitted to a ring.
+/// Evaluation of a surface that was fitted to a ring.
 namespace fettle::find {
 namespace {
 
@@ -101,7 +101,7 @@ FETTLE_INLINE Double4 heights(const RowSurface& row, const Double4& u)
     return z + beyond * (row.once + row.twist * (row.along + row.turn * u) + row.square * beyond);
 }
 
-/// @param x  of the first place; the others are 1 apart
+/// @param x  of the first place; the spacing is 1
 FETTLE_CLONES void add_heights(const RowSurface& surface, double x, double centre, double scale, double factor,
                                float* row, std::size_t count)
 {

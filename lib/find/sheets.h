@@ -9,11 +9,11 @@ namespace fettle::find {
 /// A large smooth piece of a part between creases, steps and borders.
 struct Sheet {
     Mask smooth; ///< its own cells
-    Mask domain; ///< them, what they enclose, and what lies beside within reach: where its anomalies may stand
+    Mask domain; ///< its own cells, those they enclose, and those within reach: where its anomalies may lie
 };
 
-/// Cuts a height map where its normals turn faster than within sheets, and keeps the large pieces, largest first.
-/// @param reach  how far beside a sheet its anomalies may stand, cells
+/// Segments a height map where its normals turn faster than within sheets, and keeps the large pieces, largest first.
+/// @param reach  maximum distance of an anomaly from its sheet, cells
 std::vector<Sheet> find_sheets(const HeightMap& map, double reach);
 
 } // namespace fettle::find

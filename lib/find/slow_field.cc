@@ -17,8 +17,8 @@ constexpr Index kMonomials = 56; // of three variables, up to that degree
 constexpr int kFieldIterations = 8;
 // Ridge as a share of the mean diagonal: motions along the surface, which no distance shows, stay small.
 constexpr double kFieldRidge = 1e-4, kMinRidge = 1e-12; // the latter where no point has a weight
-// Strains have this standard deviation, and count together as much as so many points: what a few points on the walls
-// and ledges of a plate leave open follows from it, and what thousands show, such as shrinkage, does not.
+// Prior: strains have this standard deviation, and together the weight of so many points. It determines what a few
+// points on the walls and ledges of a plate do not, and hardly changes what thousands show, such as shrinkage.
 constexpr double kStrainSd = 0.01, kStrainWeight = 50;
 constexpr Index kStrainPoints = 500;                            // at which the strains are taken
 constexpr double kMinFieldScale = 1e-9, kMinFieldCutoff = 1e-9; // mm: points at one place, residuals all 0
@@ -68,7 +68,7 @@ Eigen::MatrixXd strain_energy(const Eigen::Matrix3Xd& points, const SlowField& f
         for (int axis = 0; axis < 3; ++axis) gradient.col(axis) = derivative_of_monomials(p, axis) / field.scale;
         for (int a = 0; a < 3; ++a)
             for (int b = 0; b <= a; ++b, ++row) {
-                // A shear stands twice in the symmetric gradient, as the mean of two derivatives.
+                // A shear occurs twice in the symmetric gradient, as the mean of two derivatives.
                 const double factor = a == b ? 1 : std::sqrt(0.5);
                 strains.col(row).segment(a * kMonomials, kMonomials) += factor * gradient.col(b);
                 if (a != b) strains.col(row).segment(b * kMonomials, kMonomials) += factor * gradient.col(a);
@@ -79,7 +79,7 @@ Eigen::MatrixXd strain_energy(const Eigen::Matrix3Xd& points, const SlowField& f
     return energy / double(count);
 }
 
-/// Robust standard deviation of the residuals that there are; 0 without any.
+/// Robust standard deviation of the finite residuals; 0 if there is none.
 double spread_of(const Eigen::VectorXd& residuals)
 {
     std::vector<double> sizes;

@@ -17,14 +17,14 @@ struct SlowField {
 
     Eigen::Vector3d at(const Eigen::Vector3d& point) const;
     /// Standard deviation of the field at a point along a direction, mm. It is large where hardly any surface faced
-    /// that way: across a plate, the walls of its few holes alone say how far it lies sideways.
+    /// that way: across a plate, only the walls of its few holes determine how far it lies sideways.
     double sd_along(const Eigen::Vector3d& point, const Eigen::Vector3d& direction) const;
 };
 
-/// Whether the field hardly strains, as metal, or takes any slow form.
+/// Prior of the field: metal hardly strains, or any slow form.
 enum class Stiffness { metal, none };
 
-/// Fits the field so that points, taken back by it, lie on the reference: weighted least squares of the distances along
+/// Fits the field so that points minus the field lie on the reference: weighted least squares of the distances along
 /// the normals, and of strains, iterated with Tukey's weights, so that anomalies do not bend it (a smooth non-rigid
 /// ICP; compare Amberg, Romdhani & Vetter 2007, who hold neighbours together where here the polynomial does).
 /// @param points  3xN, mm, registered; some thousands, evenly over the part

@@ -11,7 +11,7 @@
 namespace fettle::find {
 namespace {
 
-/// A mask of cells `factor` times as long in the map's own.
+/// Resamples the mask of a coarsened map to the cells of the full map.
 Mask magnified(const Mask& mask, int factor, const cv::Size& size)
 {
     Mask large;
@@ -19,9 +19,9 @@ Mask magnified(const Mask& mask, int factor, const cv::Size& size)
     return large(cv::Rect({0, 0}, size)).clone();
 }
 
-/// What was verified in a coarse map, in the cells of the map.
-/// @param surface  beneath, in the coarse window
-Verified in_cells_of(const HeightMap& map, Verified coarse, const Image& surface, int factor)
+/// A candidate that was verified in a coarsened map, with window, heights and evidence in the cells of the full map.
+/// @param surface  the surface beneath, in the coarse window
+Verified in_full_resolution(const HeightMap& map, Verified coarse, const Image& surface, int factor)
 {
     const cv::Rect box(factor * coarse.window.tl(),
                        cv::Size(factor * coarse.window.width, factor * coarse.window.height));
@@ -39,19 +39,19 @@ Verified in_cells_of(const HeightMap& map, Verified coarse, const Image& surface
     return fine;
 }
 
-// A candidate is verified in cells twice as long, and again, as long as it remains thicker than this many of them; a
-// long one, whose window would be large, than the other number.
+// The cells in which a candidate is verified are doubled as long as it remains at least so many of them thick. Long
+// candidates, which need a large window, may become thinner.
 constexpr double kMinCoarseThickness = 40, kMinLongThickness = 12;
-constexpr double kMaxExtent = 300; // cells: what is longer is long
+constexpr double kMaxExtent = 300; // cells: candidates above it are long
 
-/// A map in cells twice as long from level to level, with the cells of all candidates.
+/// A level of the pyramid of maps: its cells are twice as long as those of the level before.
 struct Level {
     HeightMap map;
-    Mask others;
+    Mask others; ///< cells of all candidates
 };
 
-/// How often the cells in which a candidate is verified are doubled.
-/// @param box  of its cells   @param thickness  cells
+/// Level of the pyramid at which a candidate is verified.
+/// @param box  bounds of its cells   @param thickness  cells
 int level_of(const cv::Rect& box, double thickness)
 {
     double extent = std::max(box.width, box.height);
@@ -62,7 +62,7 @@ int level_of(const cv::Rect& box, double thickness)
 }
 
 /// A candidate in cells `factor` times as long.
-Candidate in_longer_cells(const Candidate& candidate, int factor, const cv::Size& size)
+Candidate coarsened_candidate(const Candidate& candidate, int factor, const cv::Size& size)
 {
     if (factor == 1) return candidate;
     const cv::Point corner(candidate.box.x / factor, candidate.box.y / factor);
@@ -75,23 +75,23 @@ Candidate in_longer_cells(const Candidate& candidate, int factor, const cv::Size
     return coarse;
 }
 
-/// A candidate on its way to a find.
+/// A candidate under refinement.
 struct Attempt {
     int level = 0;
-    std::optional<Refinement> refinement; ///< nothing once it has ended
-    Refinement::Progress progress = Refinement::Progress::moved;
+    std::optional<Refinement> refinement; ///< none once it has ended
+    Refinement::Progress progress = Refinement::Progress::changed;
     Candidate region;
-    bool is_repetition = false; ///< ended where another had been
+    bool is_duplicate = false; ///< it reached the region of another candidate
 };
 
 Attempt attempt_at(int level, const std::vector<Level>& levels, const Candidate& candidate, const SearchBounds& bounds)
 {
     const Level& at = levels[std::size_t(level)];
-    return {level, Refinement(at.map, candidate, at.others, bounds), Refinement::Progress::moved, {}, false};
+    return {level, Refinement(at.map, candidate, at.others, bounds), Refinement::Progress::changed, {}, false};
 }
 
-/// Takes the region anew; one that has grown thick goes on in longer cells, if it goes on.
-void step(Attempt& attempt, const std::vector<Level>& levels, const SearchBounds& bounds, bool goes_on)
+/// Segments the region again. A region that has grown thick moves to a coarser level, unless this is the last step.
+void step(Attempt& attempt, const std::vector<Level>& levels, const SearchBounds& bounds, bool is_last)
 {
     attempt.progress = attempt.refinement->step();
     if (attempt.progress == Refinement::Progress::none) {
@@ -99,57 +99,58 @@ void step(Attempt& attempt, const std::vector<Level>& levels, const SearchBounds
         return;
     }
     attempt.region = attempt.refinement->region();
-    if (!goes_on || attempt.progress == Refinement::Progress::settled) return;
+    if (is_last || attempt.progress == Refinement::Progress::converged) return;
     const int level =
         std::min(attempt.level + level_of(attempt.region.box, attempt.refinement->thickness()), int(levels.size()) - 1);
     if (level > attempt.level) {
         Candidate region =
-            in_longer_cells(attempt.region, 1 << (level - attempt.level), levels[std::size_t(level)].map.z.size());
+            coarsened_candidate(attempt.region, 1 << (level - attempt.level), levels[std::size_t(level)].map.z.size());
         attempt = attempt_at(level, levels, region, bounds);
         attempt.region = std::move(region);
     }
 }
 
-// Two regions that overlap by this are of one place.
-constexpr double kSamePlace = 0.93;
+// Intersection over union above which two regions are duplicates.
+constexpr double kMinDuplicateOverlap = 0.93;
 
-/// A region that an attempt has come to.
-struct Visit {
+/// A region that an attempt has reached.
+struct VisitedRegion {
     const Attempt* attempt;
     int level;
     Candidate region;
 };
 
-/// Ends attempts that have come to where another has been: they would go the same way. Of two that come to one place
-/// together, that with the higher rank goes on.
-void end_repetitions(std::vector<Attempt>& attempts, std::vector<Visit>& visits)
+/// Ends attempts that have reached the region of another: their further steps would be the same. If two reach it in one
+/// step, the candidate with the higher rank continues.
+void end_duplicates(std::vector<Attempt>& attempts, std::vector<VisitedRegion>& visits)
 {
     for (Attempt& attempt : attempts) {
         if (!attempt.refinement) continue;
-        attempt.is_repetition = std::ranges::any_of(visits, [&](const Visit& visit) {
-            return visit.attempt != &attempt && !visit.attempt->is_repetition && visit.level == attempt.level &&
-                   overlap(visit.region, attempt.region, kSamePlace);
+        attempt.is_duplicate = std::ranges::any_of(visits, [&](const VisitedRegion& visit) {
+            return visit.attempt != &attempt && !visit.attempt->is_duplicate && visit.level == attempt.level &&
+                   overlap(visit.region, attempt.region, kMinDuplicateOverlap);
         });
-        if (attempt.is_repetition)
+        if (attempt.is_duplicate)
             attempt.refinement.reset();
         else
             visits.push_back({&attempt, attempt.level, attempt.region});
     }
 }
 
-/// The find that a region is, in the map's own cells; nothing if its evidence is not plausible.
-std::optional<Verified> find_of(const Attempt& attempt, const std::vector<Level>& levels, double texture,
-                                const SearchBounds& bounds)
+/// The result of an attempt in the cells of the full map; nothing if its evidence is not plausible.
+std::optional<Verified> plausible_result(const Attempt& attempt, const std::vector<Level>& levels, double texture,
+                                         const SearchBounds& bounds)
 {
     Verified verified = attempt.refinement->result(texture);
     if (!is_plausible(verified.evidence, bounds)) return std::nullopt;
     if (attempt.level == 0) return verified;
-    return in_cells_of(levels[0].map, std::move(verified), attempt.refinement->surface(), 1 << attempt.level);
+    return in_full_resolution(levels[0].map, std::move(verified), attempt.refinement->surface(), 1 << attempt.level);
 }
 
 constexpr int kMaxIterations = 6;
 
-// Candidates larger than this share of the largest anomaly, or of a lower rank, do not keep cells out of others' rings.
+// Cells of a candidate are left out of the rings of others unless it is larger than this share of the largest anomaly,
+// or has a low rank.
 constexpr double kMaxOtherArea = 0.3;
 constexpr double kMinOtherRank = 3;
 
@@ -173,22 +174,22 @@ std::vector<Verified> verify_all(const HeightMap& map, const std::vector<Candida
     });
     std::vector<Attempt> attempts(candidates.size());
     std::vector<std::optional<Verified>> results(candidates.size());
-    std::vector<Visit> visits;
+    std::vector<VisitedRegion> visits;
     for (int iteration = 1; iteration <= kMaxIterations; ++iteration) {
         tbb::parallel_for(std::size_t{0}, attempts.size(), [&](std::size_t i) {
             const int level = levels_of[i];
             if (iteration == 1)
                 attempts[i] = attempt_at(
-                    level, levels, in_longer_cells(candidates[i], 1 << level, levels[std::size_t(level)].map.z.size()),
-                    bounds);
-            if (attempts[i].refinement) step(attempts[i], levels, bounds, iteration < kMaxIterations);
+                    level, levels,
+                    coarsened_candidate(candidates[i], 1 << level, levels[std::size_t(level)].map.z.size()), bounds);
+            if (attempts[i].refinement) step(attempts[i], levels, bounds, iteration == kMaxIterations);
         });
-        end_repetitions(attempts, visits);
+        end_duplicates(attempts, visits);
         tbb::parallel_for(std::size_t{0}, attempts.size(), [&](std::size_t i) {
             Attempt& attempt = attempts[i];
             if (!attempt.refinement) return;
-            if (iteration == kMaxIterations || attempt.progress == Refinement::Progress::settled) {
-                results[i] = find_of(attempt, levels, candidates[i].texture, bounds);
+            if (iteration == kMaxIterations || attempt.progress == Refinement::Progress::converged) {
+                results[i] = plausible_result(attempt, levels, candidates[i].texture, bounds);
                 attempt.refinement.reset();
             } else
                 attempt.refinement->release();

@@ -21,12 +21,12 @@ constexpr Index kMaxOwnSidePoints = 4000; // of a cloud without normals, whose n
 constexpr int kDirections = 200;          // tried: neighbours are about 14 degrees apart
 constexpr double kMinCosine = 0.5;        // of the angle between normal and view: 60 degrees
 constexpr double kSeenShare = 0.98;       // of what any direction sees
-constexpr double kMinGain = 0.01;         // a view that adds less is none
-constexpr double kOwnSideShare = 0.5;     // of a cloud without normals: then no other side is looked at
+constexpr double kMinGain = 0.01;         // of the samples, that a further view must add
+constexpr double kOwnSideShare = 0.5;     // of a cloud without normals, seen from +z: then there is no other view
 constexpr double kFaceCosine = 0.9;       // normals within 26 degrees of a direction are of one face
 constexpr int kShifts = 4;                // after which the mean hardly moves
 constexpr double kMaxSideCells = 1000;    // of a part: bounds the memory where one point lies far off
-constexpr double kOcclusionCells = 3;     // what lies deeper beneath what is seen is hidden
+constexpr double kOcclusionCells = 3;     // samples deeper beneath the highest of a cell are occluded
 
 struct Samples {
     align::OrientedPoints points;
@@ -75,7 +75,7 @@ View view_from(const Eigen::Vector3d& direction)
     return View(core::rotation_between(direction, Eigen::Vector3d::UnitZ()));
 }
 
-/// Which samples are seen from a direction: those that face it, beneath no other.
+/// Marks the samples that are seen from a direction: those that face it and are not occluded.
 std::vector<char> seen_from(const Samples& samples, const Eigen::Vector3d& direction)
 {
     const Eigen::Matrix3Xd placed = view_from(direction) * samples.points.xyz;
@@ -96,8 +96,8 @@ std::vector<char> seen_from(const Samples& samples, const Eigen::Vector3d& direc
     return is_seen;
 }
 
-/// The mean normal of what faces a direction, repeated: the nearest mode of the normals (mean shift), so that a face is
-/// looked at along its own normal. A cell of a face that is seen askew holds points of many heights.
+/// The nearest mode of the normals by mean shift, so that a face is seen along its own normal. In an oblique view the
+/// points of a cell differ much in height.
 Eigen::Vector3d towards_face(const Samples& samples, Eigen::Vector3d direction, const std::vector<char>& is_covered)
 {
     for (int step = 0; step < kShifts; ++step) {
@@ -111,7 +111,7 @@ Eigen::Vector3d towards_face(const Samples& samples, Eigen::Vector3d direction, 
     return direction;
 }
 
-/// How much of the samples a direction would add to what is covered: a face seen along its normal has weight 1, one
+/// Number of samples that a direction would add to the covered ones: a face seen along its normal has weight 1, one
 /// seen at 60 degrees 1/16.
 double gain_of(const Samples& samples, const Eigen::Vector3d& direction, const std::vector<char>& is_seen,
                const std::vector<char>& is_covered)
@@ -122,8 +122,7 @@ double gain_of(const Samples& samples, const Eigen::Vector3d& direction, const s
     return gain;
 }
 
-/// Whether a cloud without normals is seen from this direction alone: nothing says that what lies under it is a
-/// surface.
+/// Whether a cloud without normals is seen from this direction alone: the back of its points need not be a surface.
 bool is_own_side(const Samples& samples, const Eigen::Vector3d& direction)
 {
     const std::vector<char> is_seen = seen_from(samples, direction);

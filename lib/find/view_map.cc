@@ -15,42 +15,42 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kMaxCells = 2e7; // of a map: four bytes each, and some ten such images
+constexpr double kMaxCells = 2e7; // bounds the memory: some ten images of a map, four bytes a cell
 
-// A cell holds the median of the points no more than this deep beneath its highest, in cells: what lies deeper is
-// another surface.
+// A cell's height is the median of its points no deeper than this beneath its highest, in cells. Deeper points belong
+// to another surface.
 constexpr double kLayerCells = 3;
 
-// A cell is hidden if it lies so many cells beneath what is seen around it: the far side of a body shows where no point
-// of the near one falls into a cell. Walls up to 70 degrees drop by less within that reach.
+// A cell is hidden if it lies so many cells beneath the cells within kHiddenReach: it shows the far side of a body,
+// since no point of the near side fell into it. Walls up to 70 degrees drop by less within that reach.
 constexpr int kHiddenReach = 2;
 constexpr float kHiddenCells = 6;
 
-// The cell is the spacing of the points, or the first of its multiples at which this share of the cells between seen
-// ones is seen, too. Gaps that count as between seen cells are as wide as points lie apart where they are sparse.
+// The edge of a cell is the median spacing of the points. It is increased by this ratio until at least kMinFill of the
+// cells are filled; gaps count as cells to fill up to the 0.9 quantile of the spacing, which is that of sparse areas.
 constexpr double kCellRatio = 1.25;
 constexpr double kMinFill = 0.8;
 constexpr int kMinFillRadius = 2, kMaxFillRadius = 8; // of these gaps, cells
-constexpr double kSparseShare = 0.9;                  // of the area has points closer together
-constexpr int kSpacingQueries = 4000;                 // about
+constexpr double kSparseQuantile = 0.9;
+constexpr int kSpacingQueries = 4000; // about
 constexpr double kPointsPerGridCell = 3;
 
-// A mesh has been smoothed and interpolated: its second differences do not show the noise that is left in waves of a
-// few cells. This is its lower bound, in cells; scans have 0.03 to 0.1.
+// A mesh has been smoothed and interpolated, so its second differences do not show the noise that remains in waves of a
+// few cells. This is a lower bound of the noise, in cells; scans have 0.03 to 0.1.
 constexpr double kMinMeshSigmaCells = 0.05;
-constexpr double kMinFacing = 0.17; // cosine of 80 degrees: what is seen from the side has no height
+constexpr double kMinFacing = 0.17; // cosine of 80 degrees: steeper surfaces are seen from the side and have no height
 constexpr double kMinMeshCells = 300, kMaxMeshCells = 3000; // along a mesh's diagonal
 constexpr double kMinTriangleArea = 1e-12; // twice the area, in cells: a degenerate triangle covers no cell's centre
-constexpr double kOnEdge = -1e-9;          // barycentric: cells on the common edge of two triangles belong to both
+constexpr double kMinBarycentric = -1e-9;  // cells on the common edge of two triangles belong to both
 
-/// Distances of points of a plane to their nearest others.
+/// Distances of points in a plane to their nearest neighbours.
 struct Spacing {
     double median;
-    double sparse; // exceeded in a tenth of the area
+    double sparse; // kSparseQuantile
 };
 
-/// One point of each square of a grid is asked: areas count alike, however many points lie in some. Walls, seen from
-/// the side, put many into a few places, and merged scans where they overlap.
+/// The spacing over the area: one point is sampled in each square of a grid. Statistics over all points would be those
+/// of dense areas, such as walls seen from the side or the overlaps of merged scans.
 Spacing spacing_of(const Eigen::Matrix2Xd& points)
 {
     const geometry::PlanarGrid grid = geometry::planar_grid(points, kPointsPerGridCell);
@@ -74,7 +74,7 @@ Spacing spacing_of(const Eigen::Matrix2Xd& points)
             if (std::isfinite(squared)) nearest.push_back(std::sqrt(squared));
         }
     if (nearest.empty()) throw core::InputError("no surface: the points lie far apart, or all at one place");
-    return {geometry::median(nearest), geometry::quantile(nearest, kSparseShare)};
+    return {geometry::median(nearest), geometry::quantile(nearest, kSparseQuantile)};
 }
 
 HeightMap empty_map(const Eigen::AlignedBox2d& box, double cell)
@@ -91,21 +91,20 @@ HeightMap empty_map(const Eigen::AlignedBox2d& box, double cell)
     return map;
 }
 
-/// Leaves out cells beneath the closing of the heights around them.
+/// Removes cells that lie far beneath the morphological closing of the heights.
 void remove_hidden(HeightMap& map)
 {
-    constexpr float kNothing = std::numeric_limits<float>::lowest();
+    constexpr float kUnseenHeight = std::numeric_limits<float>::lowest();
     Image upper = map.z.clone();
-    upper.setTo(kNothing, ~finite(map.z));
+    upper.setTo(kUnseenHeight, ~finite(map.z));
     const cv::Mat square = cv::getStructuringElement(cv::MORPH_RECT, {2 * kHiddenReach + 1, 2 * kHiddenReach + 1});
-    cv::morphologyEx(upper, upper, cv::MORPH_CLOSE,
-                     square); // beyond the map's edge there is nothing to cover or to show
+    cv::morphologyEx(upper, upper, cv::MORPH_CLOSE, square); // cells beyond the map's edge have no effect
     map.z.setTo(std::numeric_limits<float>::quiet_NaN(), map.z < upper - kHiddenCells * float(map.cell));
 }
 
-/// Share of the seen cells among those that are seen or between seen ones.
-/// @param radius  of the gaps that are between, cells
-double fill_of(const Image& z, int radius)
+/// Share of seen cells among the seen cells and the gaps between them.
+/// @param radius  cells: gaps up to twice as wide count
+double fill_share(const Image& z, int radius)
 {
     const Mask seen = finite(z);
     return double(cv::countNonZero(seen)) / std::max(1, cv::countNonZero(closed(seen, radius)));
@@ -141,8 +140,8 @@ HeightMap map_of_points(const Eigen::Matrix3Xd& placed, const Eigen::AlignedBox2
     return map;
 }
 
-/// Raises the heights of the cells whose centres a triangle covers to the triangle's.
-void draw(HeightMap& map, const Eigen::Matrix3d& corners)
+/// Rasterizes a triangle: raises the heights of the cells whose centres it covers to its own.
+void rasterize(HeightMap& map, const Eigen::Matrix3d& corners)
 {
     const Eigen::Matrix2d edges =
         (Eigen::Matrix2d() << (corners.col(1) - corners.col(0)).head<2>(), (corners.col(2) - corners.col(0)).head<2>())
@@ -155,7 +154,7 @@ void draw(HeightMap& map, const Eigen::Matrix3d& corners)
     for (int y = std::max(0, int(std::ceil(low.y()))); y <= std::min(map.z.rows - 1, int(high.y())); ++y)
         for (int x = std::max(0, int(std::ceil(low.x()))); x <= std::min(map.z.cols - 1, int(high.x())); ++x) {
             const Eigen::Vector2d weights = inverse * (map.point_at(x, y) - corners.col(0).head<2>());
-            if (weights.minCoeff() < kOnEdge || weights.sum() > 1 - kOnEdge) continue;
+            if (weights.minCoeff() < kMinBarycentric || weights.sum() > 1 - kMinBarycentric) continue;
             const auto z = float(corners(2, 0) + weights.x() * (corners(2, 1) - corners(2, 0)) +
                                  weights.y() * (corners(2, 2) - corners(2, 0)));
             if (!(map.z(y, x) >= z)) map.z(y, x) = z;
@@ -165,7 +164,7 @@ void draw(HeightMap& map, const Eigen::Matrix3d& corners)
 HeightMap map_of_mesh(const mesh::CloudMesh& part, const Eigen::Matrix3Xd& placed)
 {
     std::vector<double> edges;
-    Eigen::AlignedBox2d box; // of the triangles: other vertices are no surface
+    Eigen::AlignedBox2d box; // of the triangles, since unused vertices belong to no surface
     for (Index t = 0; t < part.triangles.cols(); ++t)
         for (int k = 0; k < 3; ++k) {
             const Eigen::Vector2d corner = placed.col(part.triangles(k, t)).head<2>();
@@ -180,7 +179,7 @@ HeightMap map_of_mesh(const mesh::CloudMesh& part, const Eigen::Matrix3Xd& place
         Eigen::Matrix3d corners;
         for (int k = 0; k < 3; ++k) corners.col(k) = placed.col(part.triangles(k, t));
         const Eigen::Vector3d normal = (corners.col(1) - corners.col(0)).cross(corners.col(2) - corners.col(0));
-        if (normal.z() > kMinFacing * normal.norm()) draw(map, corners);
+        if (normal.z() > kMinFacing * normal.norm()) rasterize(map, corners);
     }
     return map;
 }
@@ -212,7 +211,7 @@ HeightMap height_map(const mesh::CloudMesh& part, const View& view)
         HeightMap map = map_of_points(placed, box, cell);
         remove_hidden(map);
         const int radius = std::clamp(int(std::ceil(spacing.sparse / cell)), kMinFillRadius, kMaxFillRadius);
-        if (fill_of(map.z, radius) >= kMinFill) return map;
+        if (fill_share(map.z, radius) >= kMinFill) return map;
     }
 }
 
