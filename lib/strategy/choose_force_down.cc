@@ -14,8 +14,8 @@
 namespace fettle::strategy {
 namespace {
 
-/// Where the values of F_down lie between F_min and F_max. At F_max the layers would have no distance; at the last of
-/// these it is a tenth of their thickness.
+/// Values of F_down that are tried, as positions between F_min and F_max. At F_max the distance of the layers would be
+/// 0; at the last value it is a tenth of their thickness.
 constexpr std::array<double, 7> kShares = {0, 0.15, 0.3, 0.45, 0.6, 0.75, 0.9};
 
 ForceDownTrial try_force_down(job::Job job, const surface::Surface& surface, const MakeGantry& make_gantry,

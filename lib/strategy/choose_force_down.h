@@ -32,9 +32,9 @@ struct ForceDownChoice {
 /// Makes the gantry of a trial; its job has the F_down that is tried.
 using MakeGantry = std::function<std::unique_ptr<gantry::Gantry>(const job::Job& job)>;
 
-/// Chooses F_down by simulation (Wang 2007, 5.3.1, leaves it to the operator): the part is ground with each of some
-/// values from F_min to just below F_max on a simulated gantry, and the one that takes the least machine time is
-/// taken; of equal ones the smallest. With a higher F_down cuts are repeated less often, but layers are closer: which
+/// Chooses F_down by simulation (Wang 2007, 5.3.1, leaves it to the operator): the part is ground with several
+/// values from F_min to just below F_max on a simulated gantry, and the value with the shortest machine time is
+/// chosen, the smallest of equal ones. With a higher F_down cuts are repeated less often, but layers are closer: which
 /// matters more depends on how fast the stock yields.
 /// @param make_gantry  a simulated gantry on the part with its anomaly; called from several threads
 /// @throws InputError if the work finishes with none of them, or as plan::make_plan()

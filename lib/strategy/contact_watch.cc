@@ -8,11 +8,12 @@
 namespace fettle::strategy {
 namespace {
 
-/// Distance of two positions of the wheel, as in replay_removal().
+/// Distance of two evaluated positions of the wheel in cells, as in replay_removal().
 constexpr double kWatchStepCells = 2;
-/// The stock may be that many times softer than the job's removal coefficient says.
+/// Largest ratio of the stock's removal coefficient to the job's.
 constexpr double kMaxSoftness = 10;
-/// A transducer that is good enough for the job's tolerance shows this share of the force over it.
+/// Force that any transducer fit for the job reports, relative to the increase of the spring's force over the
+/// tolerance.
 constexpr double kMinReadingShare = 0.1;
 
 } // namespace
@@ -21,7 +22,7 @@ ContactWatch::ContactWatch(const removal::HeightField& stock, const job::Job& jo
     : stock_(stock), wheel_(stock_, job.wheel.width), R_working_machine_(job::rotation_working_machine(job.theta)),
       radius_(job.wheel.radius), width_(job.wheel.width), tolerance_(job.tolerance), removal_(job.removal_coefficient),
       preload_(job.force.preload), min_force_(kMinReadingShare * job.force.stiffness * job.tolerance),
-      // Up to this distance the rim is within the tolerance of its lowest line: an edge may be that far off its place.
+      // Up to this distance the rim is within the tolerance of its lowest line, so an edge may be displaced by as much.
       max_length_without_force_(std::sqrt(2 * job.wheel.radius * job.tolerance))
 {
 }
@@ -39,7 +40,7 @@ void ContactWatch::follow(const gantry::GantryStatus& status, double feed)
 
     const double length = (to - from).norm();
     const int steps = std::max(1, int(std::ceil(length / (kWatchStepCells * stock_.cell))));
-    double removed = -tolerance_ * width_ * length; // what lies no higher than the tolerance may not be there
+    double removed = -tolerance_ * width_ * length; // stock no higher than the tolerance may be missing
     for (int n = 1; n <= steps; ++n) removed += remove_to(from + (to - from) * (double(n) / steps));
     // The force that removes this volume, if the clock of the machine is not too coarse for the step.
     const double needed = removed / (removal_ * std::max(duration, length / feed));

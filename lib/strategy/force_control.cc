@@ -12,7 +12,7 @@ namespace {
 constexpr double kForceTargetShare = 0.5;
 /// Upper bound of q relative to its estimate: readings are noisy, and the edges of metal lie between points.
 constexpr double kMaxQRatio = 1.25;
-/// A learnt coefficient is taken for larger than expected by so many standard deviations: less is ground then.
+/// Standard deviations that are added to a learnt coefficient, so that less is ground.
 constexpr double kCoefficientSigmas = 2;
 
 } // namespace
@@ -93,8 +93,8 @@ double ForceControl::learned_q(int point) const
     return removed / impulse;
 }
 
-/// q where the strokes of this pass have taught nothing, by the learnt law; the largest one that the last pass taught
-/// within a contact length, if that is more; 0: not known.
+/// q where the strokes of this pass have no estimate: the larger of that of the learnt law and the largest estimate of
+/// the last pass within a contact length; 0: not known.
 double ForceControl::expected_q(double along) const
 {
     double q = max_known_q_;

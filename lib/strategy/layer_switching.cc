@@ -9,7 +9,7 @@
 namespace fettle::strategy {
 namespace {
 
-/// Lines are read from a file: a step-over that equals their distance within rounding reaches the next one.
+/// Tolerance of the distances between lines, which are read from a file, relative to the step-over.
 constexpr double kRelativeLineTolerance = 1e-6;
 
 } // namespace
@@ -51,7 +51,7 @@ Action LayerSwitching::fail(const std::string& limit)
     return act(Action::Kind::fail, Event::limit_reached);
 }
 
-/// Rule 1.
+/// Implements rule 1 of the class.
 Action LayerSwitching::raise_layer()
 {
     if (layer() >= settings_.bounds.layers)
@@ -63,7 +63,7 @@ Action LayerSwitching::raise_layer()
     return act(Action::Kind::lift, Event::up);
 }
 
-/// Rule 2.
+/// Implements rule 2.
 Action LayerSwitching::advance_in_layer_1(double remaining)
 {
     Level& level = levels_.back();
@@ -85,7 +85,7 @@ Action LayerSwitching::advance_in_layer_1(double remaining)
     return action;
 }
 
-/// Layer 1 is ground: done, or once more.
+/// Finishes, or starts the next covering of layer 1.
 Action LayerSwitching::end_covering()
 {
     if (roughing_) {
@@ -100,7 +100,7 @@ Action LayerSwitching::end_covering()
     return start_covering(Event::covering_done);
 }
 
-/// Rule 3.
+/// Implements rule 3.
 Action LayerSwitching::advance_above_layer_1(double force)
 {
     Level& level = levels_.back();
@@ -128,8 +128,7 @@ Action LayerSwitching::advance_above_layer_1(double force)
     return act(Action::Kind::stay, Event::cut_end);
 }
 
-/// Whether the force is expected to stay below F_min, from here, on the rest of a pass's first stretch: it would end
-/// the cut.
+/// Whether the force is expected to stay below F_min on the rest of a pass's first stretch, which would end the cut.
 bool LayerSwitching::starts_below_force_min(const PathIndex& from, int direction, double pass_start) const
 {
     if (!predictions_.expected) return false;
@@ -143,8 +142,9 @@ bool LayerSwitching::starts_below_force_min(const PathIndex& from, int direction
     return stretch.size() > 1 && predictions_.expected(stretch, layer()) < settings_.force_min;
 }
 
-/// At the end of a stroke on which too much was left: turns back over the stretch where it was, plus a point on either
-/// side, towards its farther end. If nothing was left: goes on to the nearer end of the pass.
+/// At the end of a stroke that left too much, starts a stroke back over the stretch where it did, plus a point on
+/// either side, towards its farther end. If nothing is left, continues to the nearer end of the pass.
+/// @return  whether a stroke is repeated
 bool LayerSwitching::turn_back(double remaining)
 {
     const int here = levels_.back().at.point, last = last_point();

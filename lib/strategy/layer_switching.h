@@ -10,7 +10,7 @@
 
 namespace fettle::strategy {
 
-/// Decision of the strategy; its number is the field `event` of a trace (docs/formats.md).
+/// Decision of the strategy. Its number is the value of the field `event` of a trace (docs/formats.md).
 enum class Event {
     none = 0,          ///< a step along a pass
     start = 1,         ///< travel to the initial point
@@ -25,7 +25,7 @@ enum class Event {
     touch_off = 10,    ///< the wheel's radius was measured at P0 (run.h)
     wheel_change = 11, ///< a new wheel (run.h)
     fault = 12,        ///< the machine stopped (run.h)
-    in_progress = 13,  ///< the action was started, its result is not known (trace_file.h)
+    in_progress = 13,  ///< the action was started; its result is not known (trace_file.h)
     stopped = 14,      ///< the operator stopped the machine; the wheel was lifted (run.h)
     roughed = 15,      ///< layer 1 is ground on lines a step-over apart: travel to the start of the first covering
 };
@@ -60,12 +60,12 @@ struct Action {
     int layer = 1;
 };
 
-/// Predictions of the largest force, N, of grinding in `layer` at these points, one after the other. Either may be
-/// empty: nothing is known.
+/// Predictions of the largest force, N, while the wheel grinds in `layer` from point to point. An empty function
+/// predicts nothing.
 using ForcePrediction = std::function<double(const std::vector<PathIndex>& points, int layer)>;
 struct ForcePredictions {
-    ForcePrediction upper_bound; ///< in the hardest stock
-    ForcePrediction expected;    ///< in stock as the job says
+    ForcePrediction upper_bound; ///< for the hardest stock
+    ForcePrediction expected;    ///< for the removal coefficient of the job
 };
 
 struct StrategyCounts {
@@ -84,18 +84,20 @@ struct StrategyCounts {
 ///
 /// 1. F > F_max: up one layer in place, again until the force is in range. The position where the lower layer was left
 ///    is kept on a stack.
-/// 2. Layer 1 covers all of B: first, where its lines are closer than the step-over, on those that are not. At its end,
-///    within tolerance: done; else once more from the start. Or, with `finish_passes`, each pass goes to and fro over
-///    the stretch where more is left, until none is, before the next.
-/// 3. Above layer 1, F < F_min ends a pass: step over, reverse. F < F_min at the beginning of a pass ends the cut. Its
-///    largest force F_a > F_down: cut again from where this layer was entered; else down one layer, to the position
-///    where that was left, and on in its direction. Where the forces of the cut predict that the next one would not
-///    exceed F_down, it is left out, and so is the beginning of a pass, or the rest of it,
-///    where the force is expected to stay below F_min.
+/// 2. Layer 1 covers all of B. If it has lines closer than the step-over, a covering on lines about a step-over apart
+///    comes first. A covering that leaves no more than the tolerance finishes the work; else the next one starts. With
+///    `finish_passes` the wheel instead repeats strokes over the stretch of a pass where more is left, before the next
+///    pass.
+/// 3. Above layer 1, F < F_min ends a pass: the wheel steps over and reverses. F < F_min at the beginning of a pass
+/// ends
+///    the cut. If the cut's largest force F_a exceeds F_down, it is repeated from where this layer was entered; else
+///    the wheel goes down one layer, to the position where that was left, and continues in its direction. A repetition
+///    that is predicted not to exceed F_down is skipped, and so is the beginning of a pass, or the rest of it, where
+///    the force is expected to stay below F_min.
 ///
-/// The beginning of a pass is its first stretch, as long as the step-over: an edge of the anomaly that recedes by up to
-/// 45° from pass to pass is still followed. The lines of the staircase that are closer than the step-over serve the
-/// finish of layer 1: they are skipped above it, and until the wheel has been all over B.
+/// The beginning of a pass is its first stretch, as long as the step-over, so that an edge of the anomaly that recedes
+/// by up to 45° from pass to pass is still followed. Lines closer than the step-over serve the finish of layer 1: they
+/// are skipped above it, and in its first covering.
 class LayerSwitching {
   public:
     struct Settings {
@@ -114,17 +116,17 @@ class LayerSwitching {
     Action first();
     Action next(const Measurement& measurement);
 
-    /// Grinding layer 1 on lines a step-over apart.
+    /// Whether layer 1 is being covered on lines about a step-over apart.
     bool is_roughing() const { return roughing_ && layer() == 1; }
 
     int layer() const { return int(levels_.size()); }
     int direction() const { return levels_.back().direction; } ///< +1: towards larger `along`
     const StrategyCounts& counts() const { return counts_; }
-    /// After Kind::fail: the limit that was reached, and the state.
+    /// The limit that was reached, and the state, after Kind::fail.
     const std::string& failure() const { return failure_; }
 
   private:
-    /// A layer on the stack. All but the last one were left upwards, at `at`.
+    /// A layer on the stack. Each but the last was left for the next higher layer at `at`.
     struct Level {
         PathIndex entered;
         int entry_direction;
@@ -170,8 +172,8 @@ class LayerSwitching {
     bool cut_ended_ = false;
     bool roughing_ = false;
     double max_remaining_ = 0; ///< measured in this covering, mm
-    /// Layer 1 with finish_passes: first and last point of the current stroke where too much is left, its end point,
-    /// and the number of repeated strokes of this pass.
+    /// State of a pass in layer 1 with finish_passes: first and last point of the current stroke where too much is
+    /// left, its end point, and the number of repeated strokes.
     int first_high_ = 0, last_high_ = -1, stroke_end_ = -1, strokes_ = 0;
     StrategyCounts counts_;
     std::string failure_;

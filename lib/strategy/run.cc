@@ -138,7 +138,7 @@ void Runner::measure_wheel_if_due(const Action& action)
         action.event == Event::start || (action.event == Event::covering_done && !wear_model_.is_known());
     const bool in_pass = action.kind == Action::Kind::grind && action.event == Event::none;
     const bool due = grinding_time_ - last_touch_off_ >= options_.touch_off_period ||
-                     (makes_up_for_wear() && finishing(action.layer) && wear_model_.measurement_due());
+                     (compensates_wear() && finishing(action.layer) && wear_model_.measurement_due());
     if (!covering && !(due && (in_pass || action.kind == Action::Kind::travel))) return;
     measure_wheel(action);
     if (!in_pass) return;

@@ -1,4 +1,4 @@
-// The runner of run(): what it knows between two actions. Not for other modules.
+// The runner of run(), with its state between two actions. It is private to this module.
 
 #pragma once
 
@@ -23,7 +23,7 @@ class Runner {
 
   private:
     bool single_covering() const { return options_.layer_1 != Layer1::constant; }
-    bool makes_up_for_wear() const { return single_covering() || wear_model_.is_known(); }
+    bool compensates_wear() const { return single_covering() || wear_model_.is_known(); }
     bool finishing(int layer) const { return layer == 1 && !strategy_.is_roughing(); }
     bool by_feed(int layer) const { return finishing(layer) && options_.layer_1 == Layer1::feed; }
     bool by_force(int layer) const { return finishing(layer) && options_.layer_1 == Layer1::force; }
@@ -48,22 +48,22 @@ class Runner {
     void grind(const Action& action, const Eigen::Vector3d& reference);
     void grind_at(const Action& action, double feed);
     void grind_controlled(const Action& action, const Eigen::Vector3d& reference);
-    std::vector<Eigen::Vector3d> way_across(const PathIndex& to) const;
-    static std::vector<Eigen::Vector3d> beyond(std::vector<Eigen::Vector3d> way, double feed);
-    Eigen::Vector3d off_the_way() const;
+    std::vector<Eigen::Vector3d> crossing_path(const PathIndex& to) const;
+    static std::vector<Eigen::Vector3d> extended(std::vector<Eigen::Vector3d> path, double feed);
+    Eigen::Vector3d path_deviation() const;
     double feed_to(const Action& action, const Eigen::Vector3d& reference);
     double feed_along_pass(const Action& action, const Eigen::Vector3d& reference) const;
-    double feed_in_air(std::vector<Eigen::Vector3d> way) const;
+    double feed_in_air(std::vector<Eigen::Vector3d> path) const;
     bool is_wall_ahead(double feed) const;
     double wall_slope() const;
     double force_after_step(double feed, double slope) const;
     double decisive_force() const;
-    double max_force(std::vector<Eigen::Vector3d> way, int layer, double feed,
+    double max_force(std::vector<Eigen::Vector3d> path, int layer, double feed,
                      double hardness = StockBound::kMaxHardness) const;
     ForcePrediction force_on_passes(double hardness) const;
     void cross(const Action& action);
     void record_move(const gantry::GantryStatus& status, int layer, double feed);
-    void lower_bound(const gantry::GantryStatus& status, double feed);
+    void lower_stock_bound(const gantry::GantryStatus& status, double feed);
     double radius() const;
     void resume_from_trace(const Action& action);
     void measure_wheel_if_due(const Action& action);
@@ -84,16 +84,16 @@ class Runner {
     double climb_ = 0;                              ///< steepest slope that the wheel has climbed lately
     bool is_climbing_ = false;                      ///< on a wall, in the last step
     double feed_share_ = 1;                         ///< of the job's feed
-    double crossing_share_ = 1;                     ///< the same from one pass to the next
+    double crossing_share_ = 1;                     ///< of the job's feed, from one pass to the next
     Eigen::Vector3d tip_ = Eigen::Vector3d::Zero(); ///< the wheel's, at the end of the last move
     GrindRun result_;
     PathIndex at_;
     Eigen::Vector3d reference_point_ = Eigen::Vector3d::Zero(); ///< tool point in layer 1 at the tool's position
-    double wheel_wear_ = 0;     ///< estimated since the last measurement, mm; only if it is made up for
-    double force_offset_ = 0;   ///< how far the drives go below the reference to reach the desired force, mm
+    double wheel_wear_ = 0;     ///< estimated since the last measurement, mm; 0 unless it is compensated
+    double force_offset_ = 0;   ///< distance of the drives below the reference for the desired force, mm
     double impulse_ = 0;        ///< ∫F dt of the last step, N s
     Event event_ = Event::none; ///< of the next row
-    double height_error_ = 0;   ///< how far the drives are above their target, mm
+    double height_error_ = 0;   ///< distance of the drives above their target, mm
     double grinding_time_ = 0, last_touch_off_ = 0; ///< s, and its value at the last touch-off
     double last_time_ = 0, last_force_ = 0;         ///< of the machine at the end of the last move
     double last_feed_ = 0;                          ///< of the last move, mm/s; 0: it did not grind

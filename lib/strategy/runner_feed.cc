@@ -1,4 +1,4 @@
-// The feed of a run, step by step: what the force of the last step, walls ahead and known air allow.
+// The feed of each step of a run, from the force of the last step, walls ahead and stock known to be free.
 
 #include "strategy/runner_feed.h"
 
@@ -11,18 +11,19 @@
 namespace fettle::strategy {
 namespace {
 
-/// What just exceeds a limit, relative to it.
-constexpr double kJustAbove = 1e-6;
-/// Share of F_max above which the wheel goes slower, and of F_min below which it goes faster.
+/// Relative excess of a force that is just above a limit.
+constexpr double kRelativeExcess = 1e-6;
+/// Share of F_max above which the feed is reduced, and of F_min below which it is increased.
 constexpr double kSlowForceShare = 0.9, kFastForceShare = 1.2;
-/// Slope of the rim where it meets the edge of a wall half as high as its radius: it climbs no steeper.
+/// Largest slope of a climb: that of the rim where it meets the edge of a wall half as high as its radius.
 constexpr double kMaxClimb = 1.75;
-/// A wheel that climbs a wall may come to these shares of F_max before the drives stand: it goes slower, and is lifted.
+/// Shares of F_max that a wheel on a wall may reach before the drives stop: above the first its feed is reduced, above
+/// the second it is lifted.
 constexpr double kSlowClimbShare = 1.05, kMaxClimbShare = 1.1;
-constexpr double kSteeper = 1.5; ///< the next climb relative to the last ones, where the wheel slows down
-/// A flatter slope is no wall, nor is one that adds less than this share of F_max over a step and the way to stop.
+constexpr double kClimbIncrease = 1.5; ///< expected slope of the next step relative to the steepest of the last ones
+/// Minimum slope of a wall, and minimum share of F_max that it adds over a step and the braking distance.
 constexpr double kWallSlope = 0.2, kMinWallShare = 0.12;
-/// What is known to stand no higher than this share of what may remain needs no grinding: it is as good as air.
+/// Stock known to be no higher than this share of what may remain needs no grinding: the wheel is in air there.
 constexpr double kAirShare = 0.5;
 
 /// The feed from which the drives stop within a distance, mm/s. @param distance  mm
@@ -30,9 +31,9 @@ double stoppable_feed(double distance) { return std::sqrt(2 * kDriveDeceleration
 
 } // namespace
 
-/// In layer 1 the feed along a pass depends on known air. Above it the force of the last step sets the feed of the
-/// next: faster where there is little to grind, if even a wall that the rim begins to climb does not take F_max within
-/// the step; slower near F_max.
+/// The feed of the next step, mm/s. In layer 1 it depends on the air ahead. Above layer 1 it follows from the force of
+/// the last step: higher where there is little to grind, if even a wall that the rim begins to climb does not take
+/// F_max within the step; lower near F_max.
 double Runner::feed_to(const Action& action, const Eigen::Vector3d& reference)
 {
     const job::ForceRange& limits = plan_.job.force;
@@ -52,66 +53,67 @@ double Runner::feed_to(const Action& action, const Eigen::Vector3d& reference)
     return is_wall_ahead(feed) ? std::min(feed, kMinFeedShare * rate) : feed;
 }
 
-/// The job's feed, or more along a pass of layer 1 through known air, mm/s.
+/// The feed along a pass of layer 1, mm/s: the job's, or more through air.
 double Runner::feed_along_pass(const Action& action, const Eigen::Vector3d& reference) const
 {
-    std::vector<Eigen::Vector3d> way = {reference_point_, reference};
+    std::vector<Eigen::Vector3d> path = {reference_point_, reference};
     const std::vector<Eigen::Vector3d>& points = path_.passes()[action.to.pass].points;
     const int direction = strategy_.direction();
     double left = plan_.step + braking_distance(kMaxFeedShare * plan_.job.feed.rate);
     for (int n = action.to.point + direction; left > 0 && n >= 0 && n < int(points.size()); n += direction) {
-        left -= (points[n] - way.back()).norm();
-        way.push_back(points[n]);
+        left -= (points[n] - path.back()).norm();
+        path.push_back(points[n]);
     }
-    return feed_in_air(std::move(way));
+    return feed_in_air(std::move(path));
 }
 
-/// In layer 1, on a way where the wheel has been before and has left nothing to grind: the feed from which the drives
-/// stop, after a step, before the first place where there may be something; not below the job's, mm/s.
-/// @param way  reference points, ahead of the drives, from the end of their last step on
-double Runner::feed_in_air(std::vector<Eigen::Vector3d> way) const
+/// The feed in layer 1 on a path that the wheel has ground before, mm/s: the feed from which the drives stop, after a
+/// step, before the first place where there may be stock; not below the job's.
+/// @param path  reference points, ahead of the drives, from the end of their last step
+double Runner::feed_in_air(std::vector<Eigen::Vector3d> path) const
 {
     const double rate = plan_.job.feed.rate;
     const double fastest = std::min(kMaxFeedShare * rate, std::max(rate, machine_.max_feed()));
-    way = beyond(std::move(way), fastest); // the drives may come beyond its end
-    way.front() += off_the_way();
-    for (Eigen::Vector3d& at : way) at.z() += tool_point(1).z() - reference_point_.z();
+    path = extended(std::move(path), fastest); // the drives may pass its end
+    path.front() += path_deviation();
+    for (Eigen::Vector3d& at : path) at.z() += tool_point(1).z() - reference_point_.z();
     const double air = std::min(kAirShare * settings_.max_remaining, plan_.job.force.min / plan_.job.force.stiffness);
-    const double free = bound_.free_length(way, radius(), air);
+    const double free = bound_.free_length(path, radius(), air);
     return std::clamp(stoppable_feed(free - plan_.step), rate, fastest);
 }
 
-/// Whether the next step could climb above F_max on a wall somewhat steeper than what was met lately.
+/// Whether the force could exceed F_max in the next step, on a wall somewhat steeper than the last slopes.
 bool Runner::is_wall_ahead(double feed) const
 {
-    return climb_ > wall_slope() && force_after_step(feed, kSteeper * climb_) > kSlowClimbShare * plan_.job.force.max;
+    return climb_ > wall_slope() &&
+           force_after_step(feed, kClimbIncrease * climb_) > kSlowClimbShare * plan_.job.force.max;
 }
 
-/// The flattest slope that is a wall.
+/// Minimum slope of a wall.
 double Runner::wall_slope() const
 {
     const double flat = force_after_step(plan_.job.feed.rate, 0), steep = force_after_step(plan_.job.feed.rate, 1);
     return std::min(kWallSlope, kMinWallShare * plan_.job.force.max / (steep - flat));
 }
 
-/// The force when the drives stand after another step, if the wheel climbs at this slope, N.
+/// The force when the drives stop after another step, if the wheel climbs at this slope, N.
 double Runner::force_after_step(double feed, double slope) const
 {
-    const double way = plan_.step + braking_distance(feed);
-    return machine_.status().force + plan_.job.force.stiffness * slope * way;
+    const double distance = plan_.step + braking_distance(feed);
+    return machine_.status().force + plan_.job.force.stiffness * slope * distance;
 }
 
-/// The force by which the strategy decides, N: after a guarded descent that of the target; on a wall that the wheel
-/// would climb too far with the next step, or before drives that were fast stand, what is just too much.
+/// The force by which the strategy decides, N: after a guarded descent the force at the target. On a wall that the
+/// wheel would climb too far in the next step, or within the braking distance, it is just above F_max.
 double Runner::decisive_force() const
 {
     const job::ForceRange& limits = plan_.job.force;
     const double force = machine_.status().force + limits.stiffness * height_error_;
     const double slow = kMinFeedShare * plan_.job.feed.rate;
-    const double way = std::max(plan_.step + braking_distance(slow), braking_distance(last_feed_));
+    const double distance = std::max(plan_.step + braking_distance(slow), braking_distance(last_feed_));
     const bool climbs = is_climbing_ && climb_ > wall_slope() &&
-                        machine_.status().force + limits.stiffness * climb_ * way > kMaxClimbShare * limits.max;
-    return climbs ? std::max(force, limits.max * (1 + kJustAbove)) : force;
+                        machine_.status().force + limits.stiffness * climb_ * distance > kMaxClimbShare * limits.max;
+    return climbs ? std::max(force, limits.max * (1 + kRelativeExcess)) : force;
 }
 
 } // namespace fettle::strategy

@@ -10,12 +10,12 @@
 namespace fettle::strategy {
 namespace {
 
-/// Cells across the wheel's width, where a wall's place is known to a twenty-fourth of it; and over the radius of a
-/// thin wheel no more than the second.
+/// Cells across the wheel's width, by which walls are located to a twenty-fourth of it; and their maximum number over
+/// the radius of a thin wheel.
 constexpr double kCellsPerWidth = 24, kMaxCellsPerRadius = 100;
-/// Distance of two positions of the wheel in cells.
+/// Distance of two evaluated positions of the wheel in cells.
 constexpr double kBoundStepCells = 2;
-/// Travels clear the bound by this height, mm: the rim between two cells, and the drives' errors.
+/// Clearance of travels above the bound, mm, for the rim between two cells and the drives' errors.
 constexpr double kClearance = 0.5;
 
 removal::HeightField grid_around(const job::Job& job)
@@ -26,13 +26,13 @@ removal::HeightField grid_around(const job::Job& job)
         std::max(job.wheel.width / kCellsPerWidth, job.wheel.radius / kMaxCellsPerRadius));
 }
 
-/// Which cells lie in B.
+/// Marks the cells in B.
 Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> cells_of_B(const removal::HeightField& field, const job::Job& job)
 {
     Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> inside =
         Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic>::Constant(field.columns(), field.rows(), false);
     const Eigen::Matrix2d R_machine_working = job::rotation_working_machine(job.theta).transpose();
-    // Most cells lie around B, where the wheel hangs over: only those in its box are looked at.
+    // Most cells lie around B, where the wheel overhangs: only those in its bounding box are classified.
     const Eigen::AlignedBox2d box = geometry::bounding_box(job::working_boundaries(job).anomaly);
     const Eigen::Array2d count(field.columns(), field.rows());
     const Eigen::Array2d first = ((box.min() - field.origin).array() / field.cell).floor().max(0).min(count),
@@ -65,7 +65,7 @@ StockBound::StockBound(const job::Job& job, double sound_height)
 {
 }
 
-/// Visits the positions of a wheel on its way: each but the first.
+/// Visits the evaluated positions of a wheel along a line, without the first.
 template <class Visit>
 void StockBound::visit_positions(const Eigen::Vector3d& from, const Eigen::Vector3d& to, const Visit& visit) const
 {
@@ -125,7 +125,7 @@ double StockBound::free_height(const Eigen::Vector3d& from, const Eigen::Vector3
     const Eigen::Vector3d a(from.x(), from.y(), height), b(to.x(), to.y(), height);
     const auto touch = [&](const Eigen::Vector3d& at) {
         wheel_.place(R_working_machine_ * at.head<2>(), radius, at.z());
-        height = std::max(height, is_off_the_work(at.head<2>()) ? safe_height_ : wheel_.touch());
+        height = std::max(height, is_outside_anomaly(at.head<2>()) ? safe_height_ : wheel_.touch());
     };
     touch(a);
     if (a != b) visit_positions(a, b, touch);
@@ -133,7 +133,7 @@ double StockBound::free_height(const Eigen::Vector3d& from, const Eigen::Vector3
 }
 
 /// Whether a place is outside B by more than a cell.
-bool StockBound::is_off_the_work(const Eigen::Vector2d& xy) const
+bool StockBound::is_outside_anomaly(const Eigen::Vector2d& xy) const
 {
     const Eigen::Array2d count(bound_.columns(), bound_.rows());
     const Eigen::Array2d cell = ((R_working_machine_ * xy - bound_.origin).array() / bound_.cell).floor();
@@ -144,7 +144,7 @@ bool StockBound::is_off_the_work(const Eigen::Vector2d& xy) const
                 .any();
 }
 
-/// The part of the bound that a wheel may meet on its way.
+/// The part of the bound within reach of a wheel along a path.
 removal::HeightField StockBound::cut_out(const std::vector<Eigen::Vector3d>& path, double radius) const
 {
     Eigen::AlignedBox2d box;
