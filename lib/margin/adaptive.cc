@@ -28,21 +28,21 @@ using Eigen::MatrixXd;
 using Eigen::Vector2d;
 using Eigen::VectorXd;
 
-// Enough touches to distinguish a sphere from a plane; later ones are chosen by the fit.
+// Number of touches that distinguishes a sphere from a plane; later ones are chosen by the fit.
 constexpr int kInitialTouches = 8;
 // Further touches during which the band must stay as small as required. A wrong surface may fit few touches; each of
 // these tests it at the most informative place.
 constexpr int kConfirmations = 4;
-// Twenty touches of a wavy surface are often explained by a cubic, thirty now and then.
+// Minimum number of touches for a rare family: twenty touches of a wavy surface often fit a cubic, thirty seldom.
 constexpr int kTouchesPerParameter = 4;
 // On a rough surface the band stops falling well above the tolerance, and touches only show more of the roughness.
-// Touches are worth their time as long as the mean band of the last ones is below this share of that of as many before.
-constexpr double kWorthwhileShare = 0.95;
+// Touching continues as long as the mean band of the last touches is below this share of that of as many before.
+constexpr double kMaxBandShare = 0.95;
 // Candidates along the longer side of S; a finer grid changes a touch's gain by less than its error.
 constexpr int kCandidatesPerSide = 30;
 // Grid cells along the longer side of B: the surface bends between touches that are several cells apart.
 constexpr int kAnomalyCells = 12;
-constexpr int kDraws = 256;             // give the expected band within about 2 %; the same draws serve all candidates
+constexpr int kDraws = 256;             // yield the expected band within about 2 %; all candidates share them
 constexpr int kMaxBandEvaluations = 40; // candidates with the largest variance reduction whose band is computed
 
 /// Candidate places in S \ B, M, mm.
@@ -107,7 +107,8 @@ Index most_informative(const surface::Surface& surface, const Matrix2Xd& grid, c
     VectorXd band(order.size());
     tbb::parallel_for(Index{0}, band.size(), [&](Index k) {
         const Index c = order[k];
-        // Kriging with the new touch leaves these residuals of the draws. Its noise would add to all of them alike.
+        // Residuals of the draws after kriging with the new touch, without its noise, which would shift all of them
+        // alike.
         const VectorXd weight = covariance.col(c) / (variance[c] + noise);
         double sum = 0;
         for (Index d = 0; d < kDraws; ++d) sum += error_band(over_grid.col(d) - over_places(c, d) * weight);
@@ -135,7 +136,7 @@ void append(sampling::TouchPlan& plan, const Vector2d& xy, const job::Job& job, 
         static_cast<int>(nearer_to_anomaly ? sampling::Role::near_anomaly : sampling::Role::near_sampling_boundary);
 }
 
-/// Whether a surface may explain its touches by chance: it is of a rare family, with many parameters for their number.
+/// Whether a surface may fit its touches by chance: it is of a rare family, with many parameters for their number.
 bool may_be_chance(const surface::Surface& surface, Index touches)
 {
     return fit::is_rare(surface.method) && touches < kTouchesPerParameter * surface.covariance.rows();
@@ -150,13 +151,13 @@ surface::Surface fit_touches(const job::Job& job, const sampling::TouchPlan& pla
     return fit::fit_surface(input, "auto").surface;
 }
 
-/// The band by which touching goes on or stops. At 95 % the tails of a process matter by half a percent.
+/// The band by which touching continues or stops. At 95 % the tails of a process change it by half a percent.
 double predicted_band(const surface::Surface& surface, const job::Job& job, double confidence)
 {
     return predict_by_posterior(surface, job, confidence, 1, "surface", Tails::normal).band;
 }
 
-/// The search for touches of one job: those made so far, and what their fit predicts.
+/// The search for touches of one job, with the touches so far and the band that their fit predicts.
 class AdaptiveSearch {
   public:
     AdaptiveSearch(const job::Job& job, const AdaptiveLimits& limits, const ProbeFunction& probe)
@@ -170,7 +171,7 @@ class AdaptiveSearch {
         result_.plan.xy.resize(2, 0);
     }
 
-    /// Begins with touches that are made already, and what their fit predicts.
+    /// Begins with touches that exist already, and the band that their fit predicts.
     void begin(const sampling::TouchPlan& layout, const Eigen::Matrix3Xd& touches, const surface::Surface& surface,
                double band)
     {
@@ -202,7 +203,7 @@ class AdaptiveSearch {
         if (n == 0 || count < 2 * n) return false;
         const Eigen::Map<const VectorXd> bands(bands_.data(), count);
         const double before = bands.segment(count - 2 * n, n).sum(); // NaN while there are too few to compare
-        return bands.tail(n).sum() > kWorthwhileShare * before;
+        return bands.tail(n).sum() > kMaxBandShare * before;
     }
 
     void exclude(const Vector2d& place, double radius)
@@ -210,7 +211,7 @@ class AdaptiveSearch {
         std::erase_if(places_, [&](const Vector2d& p) { return (p - place).norm() <= radius; });
     }
 
-    /// The place to touch next. A sphere through few touches may end inside of S: then far ones refute it.
+    /// The place to touch next. A sphere through few touches may end inside of S: then distant touches refute it.
     Index next_place() const
     {
         const bool is_begun = result_.plan.size() >= kInitialTouches;

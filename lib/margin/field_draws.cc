@@ -43,19 +43,20 @@ Eigen::MatrixXd field_root(const Eigen::MatrixXd& gradients, const Eigen::Matrix
     const Eigen::MatrixXd B = gradients.transpose() * covariance_root(covariance);
     const core::SymmetricEigen<Eigen::Dynamic> axes = core::symmetric_eigen<Eigen::Dynamic>(B.transpose() * B);
     Eigen::MatrixXd field = B * axes.vectors;
-    // The sign of an eigenvector is arbitrary. These weights define it; they have no symmetry, so as not to cancel.
+    // The sign of an eigenvector is arbitrary. These weights define it; they have no symmetry, so that they do not
+    // cancel.
     const Eigen::VectorXd weights = Eigen::VectorXd::LinSpaced(field.rows(), 1, field.rows()).array().sin();
     for (Eigen::Index k = 0; k < field.cols(); ++k)
         if (field.col(k).dot(weights) < 0) field.col(k) *= -1;
     return field;
 }
 
-/// Parameters of a process's trend, a quadratic.
+/// Number of parameters of a process's trend, a quadratic.
 constexpr Eigen::Index kTrendParameters = 6;
 /// Fewer degrees of freedom would leave Student's t without a fourth moment, as few touches leave no process.
 constexpr Eigen::Index kMinFreedom = 5;
 
-/// Degrees of freedom that the touches have left over the trend of a process.
+/// Degrees of freedom of the touches less the parameters of a process's trend.
 double process_freedom(const surface::Surface& surface)
 {
     const Eigen::Index used = surface.touches.cols() - Eigen::Index(surface.outliers.size());
@@ -63,7 +64,7 @@ double process_freedom(const surface::Surface& surface)
 }
 
 /// Random factor of mean square 1 that gives heights Student's t distribution if the size of the errors was estimated
-/// with these degrees of freedom: a possible size over the root mean square one that the covariance has.
+/// with these degrees of freedom: a possible size relative to the root mean square of the covariance.
 double draw_noise_factor(double freedom, std::mt19937_64& random)
 {
     if (!std::isfinite(freedom)) return 1;
@@ -79,7 +80,7 @@ struct Component {
     double freedom;         ///< degrees of freedom of its size
 };
 
-/// Adds waves about a family, the last of the components, which gives them their share.
+/// Adds waves about a family, the last of the components, whose weight is reduced by theirs.
 void add_waves(std::vector<Component>& all, const surface::WeightedShape& member, const surface::Surface& surface,
                const Eigen::Matrix2Xd& xy)
 {
@@ -118,13 +119,13 @@ Eigen::MatrixXd draw_fields(const surface::Surface& surface, const Eigen::Matrix
     }
     double sum = 0;
     for (const Component& one : all) sum += one.weight;
-    if (!(sum > 0) || !std::isfinite(sum)) // heights whose squares no number holds
+    if (!(sum > 0) || !std::isfinite(sum)) // the squares of the heights overflow
         throw core::InputError("touches", "the surface fitted to them has no finite covariance, so its error cannot be "
                                           "predicted");
     std::mt19937_64 random(seed);
     std::normal_distribution<double> normal;
     Eigen::MatrixXd fields = Eigen::MatrixXd::Zero(xy.cols(), draws);
-    double due = 0; // pairs of draws up to this component, before rounding
+    double due = 0; // cumulative number of pairs of draws up to this component, before rounding
     Eigen::Index column = 0;
     for (const Component& one : all) {
         due += one.weight / sum * draws / 2;

@@ -11,7 +11,7 @@ namespace fettle::margin {
 /// Tails of the draws of a process (fit/process.h), whose amplitude is estimated from the touches.
 enum class Tails {
     normal, ///< as if the amplitude were known
-    /// Student's t of the same covariance, with the degrees of freedom that the touches have left over the process's
+    /// Student's t with that covariance, and the degrees of freedom of the touches less the parameters of the process's
     /// trend (Kitanidis 1986; Handcock and Stein 1993)
     student
 };
@@ -20,7 +20,7 @@ enum class Tails {
 enum class WavesOfFamilies { none, possible };
 
 /// Draws height errors from the posterior of a fit: from its covariance and its alternatives by their weight, relative
-/// to their common mean. Antithetic draws, of opposite sign about a member's mean, follow each other.
+/// to their common mean. Draws are in antithetic pairs, of opposite sign about a member's mean.
 /// @param xy  2xN, M, mm   @param draws  even
 /// @return  N x draws, mm; members that are not defined at all of xy are left out
 /// @throws core::InputError if no member has a finite covariance

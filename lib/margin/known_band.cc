@@ -32,7 +32,7 @@ sampling::SubsetError subset_band(const KnownSurface& known, const Heights& heig
     };
 }
 
-// Grid points along the longer side of B: they give the band of a fit through 16 touches within 1 %.
+// Grid points along the longer side of B, which yield the band of a fit through 16 touches within 1 %.
 constexpr int kAnomalyPoints = 20;
 
 } // namespace

@@ -16,13 +16,13 @@ namespace fettle::margin {
 
 namespace {
 
-// The surface bends between touches that are several cells of this grid apart: a finer one changes the extremes by
-// less than the draws' scatter.
+// Grid cells along the longer side of B. Touches are several cells apart, so a finer grid changes the extremes by less
+// than the scatter of the draws.
 constexpr int kAnomalyCells = 16;
-constexpr int kDraws = 8192; // their 99 % quantile has a relative standard deviation of about 1 %
+constexpr int kDraws = 8192; // the 99 % quantile of so many has a relative standard deviation of about 1 %
 
-/// A free-form surface of which nobody has said the family may have waves about it. A scan shows them, and has no
-/// goodness of fit.
+/// A free-form surface whose family the job does not state may have waves about it. A fit to a scan, which has no
+/// goodness of fit, follows its waves.
 WavesOfFamilies possible_waves(const surface::Surface& surface, const job::Job& job, Tails tails)
 {
     const bool may_wave = tails == Tails::student && job.surface == job::SurfaceType::freeform &&
@@ -72,7 +72,7 @@ surface::Prediction predict_by_posterior(const surface::Surface& surface, const 
         shifts.push_back(field.maxCoeff()); // the fitted surface's error is the negative field
         bands.push_back(error_band(field));
     }
-    // The smallest band and shift that suffice in this share of the draws.
+    // The quantiles of the band and the shift at this share of the draws.
     const auto rank = static_cast<std::size_t>(std::ceil(confidence * bands.size())) - 1;
     return {"posterior", confidence, geometry::nth_smallest(bands, rank), geometry::nth_smallest(shifts, rank), false};
 }

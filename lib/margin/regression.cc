@@ -36,7 +36,7 @@ RoundFit fit_section(const Eigen::Matrix3Xd& touches, const Eigen::Vector2d& dir
     return fit_round(section);
 }
 
-/// The touches of a fitted surface without its estimated points; M, mm.
+/// The touches of a surface without estimated points; M, mm.
 Eigen::Matrix3Xd real_touches(const surface::Surface& surface)
 {
     std::vector<Eigen::Index> used;

@@ -30,8 +30,8 @@ void check_determined(const surface::Prediction& prediction, const job::Job& job
 
 /// The shift of a plane, which Wang's experiment does not cover.
 enum class PlaneShift {
-    worst_case, ///< of touches that are all wrong by the probe's accuracy, each in its worst direction
-    accuracy,   ///< the probe's accuracy (Wang 2007, 4.5): the worst case of touches that are all wrong by the same
+    worst_case, ///< each touch has an error of the probe's accuracy, in its worst direction
+    accuracy,   ///< the probe's accuracy (Wang 2007, 4.5): the worst case of touches that share one error
 };
 
 /// Predicts both by Wang's regressions over his factorial experiment (2007, 4.5), from the touches' equivalent

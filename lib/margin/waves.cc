@@ -20,16 +20,17 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Shares of the parts that have waves of a given amplitude, among those and the parts that have none.
+// Prior: share of the parts with waves of a given amplitude, among these and the parts without waves.
 constexpr double kShare = 0.25;
 constexpr double kCubicShare = 0.9;
-// Over the standard deviation of a touch. Lower waves do not matter beside the touches' error. The higher ones show at
-// touches so far off that the fit leaves them out.
+// Amplitudes over the standard deviation of a touch. Lower waves do not matter beside the touches' error. The higher
+// ones show only by touches that the fit leaves out as outliers.
 constexpr std::array kAmplitudes = {4.0, 8.0, 16.0, 32.0};
-constexpr std::array kLengths = {0.25, 0.5, 1.0}; // over the touches' radius, all alike
+constexpr std::array kLengths = {0.25, 0.5, 1.0}; // over the touches' radius, with equal probability
 // Waves less probable than this change the margin by less than the scatter of the draws.
 constexpr double kMinProbability = 1e-3;
-// Of the mean variance, added so that rounding leaves the covariance of neighbouring heights positive.
+// Share of the mean variance that is added to the diagonal, so that the covariance of neighbouring heights remains
+// positive definite in spite of rounding.
 constexpr double kJitter = 1e-6;
 
 Eigen::Matrix3Xd inliers(const surface::Surface& surface)
@@ -40,8 +41,8 @@ Eigen::Matrix3Xd inliers(const surface::Surface& surface)
     return surface.touches(Eigen::all, kept);
 }
 
-/// The family to first order: heights at the touches and at xy by coefficients of which the touches know each as well
-/// as one touch its height. All in standard deviations of a touch.
+/// The family to first order: heights at the touches and at xy by coefficients that the touches determine as well as
+/// one touch determines its height. The unit is the standard deviation of a touch.
 struct Trend {
     MatrixXd at_touches, at_xy;
     VectorXd residuals;
@@ -51,7 +52,7 @@ Trend trend_of(const surface::WeightedShape& member, const Eigen::Matrix3Xd& tou
                const Eigen::Matrix2Xd& xy)
 {
     constexpr double kMinVariance =
-        1e-6; // of a direction: less is rounding, or a change that the family does not allow
+        1e-6; // of a direction, relative: smaller ones are rounding, or a change that the family does not allow
     const Eigen::Matrix2Xd places = touches.topRows<2>();
     const VectorXd size = member.covariance.diagonal().cwiseMax(0).cwiseSqrt();
     const VectorXd inverse = size.unaryExpr([](double s) { return s > 0 ? 1 / s : 0; });
@@ -66,7 +67,7 @@ Trend trend_of(const surface::WeightedShape& member, const Eigen::Matrix3Xd& tou
             (touches.row(2).transpose() - surface::heights(member.shape, places)) / sigma};
 }
 
-/// V of the touches in the model z = F β + g + e, and what follows of it.
+/// Kriging with V, the covariance of the touches in the model z = F β + g + e.
 struct Kriging {
     MatrixXd inverse;          ///< V⁻¹
     MatrixXd beta;             ///< (Fᵀ V⁻¹ F)⁻¹, the covariance of β
@@ -97,11 +98,11 @@ double share_of(const surface::Shape& shape)
     return is_cubic ? kCubicShare : kShare;
 }
 
-/// Touches, and the family at them.
+/// Touches and the family's trend at them.
 struct Touches {
     Eigen::Matrix2Xd places;
     Trend trend;
-    double log_prior; ///< that these are on good metal, and the others gross errors
+    double log_prior; ///< of these touches being on good metal, and the others outliers
 };
 
 bool is_usable(const Trend& trend)
@@ -110,13 +111,13 @@ bool is_usable(const Trend& trend)
            trend.at_xy.allFinite() && trend.residuals.allFinite();
 }
 
-/// Waves of one amplitude and one length, seen by some touches.
+/// Waves of one amplitude and one length, given some touches.
 struct Model {
     const Touches* touches;
     fit::Correlation correlation;
     double variance; ///< over that of a touch
     Kriging kriging;
-    double probability = 0; ///< after the touches, if the part is of the family
+    double probability = 0; ///< posterior, if the part is of the family
 };
 
 double log_evidence(const Model& model) { return model.kriging.log_likelihood + model.touches->log_prior; }
@@ -132,7 +133,7 @@ void add_models(const Touches& touches, double amplitude, double radius, std::ve
     }
 }
 
-/// @param inliers  touches that the fit kept   @param all  with those that it left out, nothing if there are none
+/// @param inliers  touches that the fit kept   @param all  inliers and outliers; nothing if there are no outliers
 std::vector<Model> models_of(double share, const Touches& inliers, const std::optional<Touches>& all, double radius)
 {
     const MatrixXd noise = MatrixXd::Identity(inliers.places.cols(), inliers.places.cols());
@@ -156,7 +157,7 @@ Waves waves_of(const Model& model, const Eigen::Matrix2Xd& xy, double sigma)
 {
     const Eigen::Matrix2Xd& places = model.touches->places;
     const Trend& trend = model.touches->trend;
-    // Of the touches' residuals in the waves at xy.
+    // Kriging weights of the touches' residuals in the waves at xy.
     const MatrixXd weights =
         model.variance * fit::correlation_matrix(model.correlation, xy, places) * model.kriging.inverse;
     const MatrixXd rest = trend.at_xy - weights * trend.at_touches;
