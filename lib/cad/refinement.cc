@@ -17,18 +17,17 @@
 namespace fettle::cad {
 namespace {
 
-// Each round halves edges of what is beyond the tolerance, two a quarter of its deviation: twenty take a bulge of a
-// metre to a micron.
+// Each round halves edges of the facets beyond the tolerance. Two rounds leave a quarter of the deviation or less:
+// twenty reduce a metre to a micron.
 constexpr int kMaxRefinements = 20;
-constexpr double kBulge = 0.25; // of the tolerance: edges closer to the surface are taken to be on it
-constexpr double kNearlyAsFar =
-    0.75; // of the largest distance: halving only the farthest edge would take another round
+constexpr double kOnSurfaceShare = 0.25; // of the tolerance: edges closer to the surface count as on it
+constexpr double kMinSplitShare = 0.75;  // of the largest distance: edges nearly as far are split in the same round
 
-constexpr double kSameNode = 1e-7; // mm: OpenCASCADE's own tolerance of points
+constexpr double kNodeTolerance = 1e-7; // mm, as OpenCASCADE's tolerance of points
 
 using EdgeKey = std::pair<int, int>; ///< its nodes, the lower first
 
-/// Barycentric coordinates of the middle of edge k, from corner k to the next.
+/// Barycentric coordinates of the midpoint of edge k, from corner k to the next.
 Eigen::Vector3d middle_of_edge(int k)
 {
     Eigen::Vector3d middle = Eigen::Vector3d::Constant(0.5);
@@ -36,8 +35,9 @@ Eigen::Vector3d middle_of_edge(int k)
     return middle;
 }
 
+/// The triangles of a face with the parameters of their nodes.
 struct Net {
-    std::vector<Eigen::Vector3d> nodes; ///< where the face is placed, mm
+    std::vector<Eigen::Vector3d> nodes; ///< in the frame of the placed face, mm
     std::vector<Eigen::Vector2d> uv;
     struct Facet {
         std::array<int, 3> nodes;
@@ -81,7 +81,7 @@ Net net_of(const Poly_Triangulation& triangulation, const gp_Trsf& placing)
     return net;
 }
 
-/// The edges that are to be split, with the node in their middle; -1: not yet made.
+/// The edges that are to be split, with the node at their midpoint; -1: not yet created.
 class Splits {
   public:
     explicit Splits(const Net& net, const Adaptor3d_Surface& surface, double tolerance) : net_(net)
@@ -90,11 +90,11 @@ class Splits {
             for (int k = 0; k < 3; ++k) ++facets_at_[net.edge(f, k)];
         for (const Net::Facet& f : net.facets)
             if (!f.is_within) add(f, surface, tolerance);
-        while (any() && join_at_poles()) {
+        while (any() && add_at_poles()) {
         }
     }
     bool any() const { return !middle_.empty(); }
-    /// Node in the middle of an edge, if it is to be split.
+    /// Node at the midpoint of an edge, if the edge is to be split.
     int* middle(const EdgeKey& e)
     {
         const auto found = middle_.find(e);
@@ -102,35 +102,36 @@ class Splits {
     }
 
   private:
-    /// Splits the edge of a facet that is farthest from the surface, and others nearly as far; only a bulge between
-    /// edges that are on the surface is halved along the longest. So a cone is divided across its generatrices alone.
+    /// Splits the edge of a facet that is farthest from the surface, and edges nearly as far. If all edges are on the
+    /// surface, the longest is split. So a cone is divided across its generatrices alone.
     void add(const Net::Facet& f, const Adaptor3d_Surface& surface, double tolerance)
     {
         const FaceTriangle triangle = net_.triangle(surface, f);
         std::array<double, 3> distance{}, length{};
         for (int k = 0; k < 3; ++k) {
-            if (facets_at_.at(net_.edge(f, k)) != 2) continue; // of the face's border: its chords stay
+            if (facets_at_.at(net_.edge(f, k)) != 2) continue; // an edge on the border of the face is not split
             const Eigen::Vector3d middle = middle_of_edge(k);
             const Eigen::Vector3d flat = triangle.corners * middle;
             distance[k] = (foot_on_surface(surface, triangle.parameters(middle), flat).point - flat).norm();
             length[k] = net_.squared_length(net_.edge(f, k));
         }
-        if (*std::ranges::max_element(distance) < kBulge * tolerance) distance = length;
+        if (*std::ranges::max_element(distance) < kOnSurfaceShare * tolerance) distance = length;
         const double largest = *std::ranges::max_element(distance);
         for (int k = 0; k < 3; ++k)
-            if (distance[k] > 0 && distance[k] > kNearlyAsFar * largest) middle_.emplace(net_.edge(f, k), -1);
+            if (distance[k] > 0 && distance[k] > kMinSplitShare * largest) middle_.emplace(net_.edge(f, k), -1);
     }
 
-    /// At a pole the facets' corners are nodes of their own, joined by facets without an area, whose two sides are the
-    /// same line: they are split alike.
-    /// @return  whether one more was
-    bool join_at_poles()
+    /// Splits both sides of degenerate facets if one is to be split. At a pole such facets, without an area, join the
+    /// nodes of neighbouring facets, and their two long sides are one line.
+    /// @return  whether a side was added
+    bool add_at_poles()
     {
         bool has_grown = false;
         for (const Net::Facet& f : net_.facets)
             for (int k = 0; k < 3; ++k) {
                 const EdgeKey base = net_.edge(f, k), a = net_.edge(f, (k + 1) % 3), b = net_.edge(f, (k + 2) % 3);
-                if (net_.squared_length(base) > kSameNode * kSameNode || middle_.contains(a) == middle_.contains(b))
+                if (net_.squared_length(base) > kNodeTolerance * kNodeTolerance ||
+                    middle_.contains(a) == middle_.contains(b))
                     continue;
                 middle_.emplace(middle_.contains(a) ? b : a, -1);
                 has_grown = true;
@@ -142,7 +143,7 @@ class Splits {
     std::map<EdgeKey, int> facets_at_, middle_;
 };
 
-/// Node in the middle of an edge of a facet, on the surface.
+/// Adds a node on the surface at the midpoint of an edge of a facet. @return  its index
 int add_middle(Net& net, const Adaptor3d_Surface& surface, const Net::Facet& f, int k)
 {
     const Eigen::Vector2d uv = net.triangle(surface, f).parameters(middle_of_edge(k));
@@ -151,7 +152,7 @@ int add_middle(Net& net, const Adaptor3d_Surface& surface, const Net::Facet& f, 
     return static_cast<int>(net.nodes.size()) - 1;
 }
 
-/// Splits a facet at the first of its edges that is to be split, longest first, and what comes of it likewise.
+/// Bisects a facet at the longest of its edges that are to be split, and its halves recursively.
 void split(Net& net, Splits& splits, const Net::Facet& f, std::vector<Net::Facet>& into)
 {
     int longest = -1;

@@ -20,8 +20,8 @@ using Eigen::MatrixXd;
 using Eigen::Vector2d;
 using Eigen::VectorXd;
 
-/// Centres of cells with points, about `spacing` apart (M): in each square of that side, the cell nearest to its
-/// centre.
+/// Subsamples the cells with points: in each square of side `spacing` the cell nearest to its centre. @return  centres
+/// of cells, 2xN, M, mm
 Eigen::Matrix2Xd subsample_cells(const surface::Bspline& grid, const MatrixXd& weights, double spacing)
 {
     std::map<std::pair<Index, Index>, std::pair<double, Vector2d>> nearest;
@@ -43,10 +43,11 @@ Eigen::Matrix2Xd subsample_cells(const surface::Bspline& grid, const MatrixXd& w
     return xy;
 }
 
-/// Cells from subsample_cells(), half of B apart unless that gives too few or too many. M
+/// Subsamples the cells at half the size of B, or at a spacing that yields neither too few nor too many. @return  2xN,
+/// M, mm
 Eigen::Matrix2Xd condensed_places(const surface::Bspline& grid, const MatrixXd& weights, const job::Job& job)
 {
-    constexpr Index kMinPlaces = 24;  // the parameters of a quadratic, and three times as many for its residuals
+    constexpr Index kMinPlaces = 24;  // six parameters of a quadratic, and eighteen degrees of freedom of its residuals
     constexpr Index kMaxPlaces = 100; // the exact posterior of so many takes a few tens of milliseconds
     const Eigen::Matrix2Xd anomaly = job::rotation_working_machine(job.theta) * job.anomaly.topRows<2>();
     double spacing = geometry::bounding_box(anomaly).sizes().maxCoeff() / 2;
@@ -66,8 +67,8 @@ void set_posterior(surface::Surface& surface, const RobustSpline& fit, const Den
     surface.touches << xy, surface::heights(surface, xy).transpose();
     surface.roles = Eigen::VectorXi::Ones(xy.cols());
 
-    // The variance is bounded from below by the λ at which rounding would swallow the energy that bridges gaps; for so
-    // exact points the precision is smaller than theirs.
+    // The smallest λ at which the energy that bridges gaps is not lost by rounding is a lower bound of the variance.
+    // For more exact points the precision is underestimated.
     const double fine_amplitude = std::sqrt(kBiweightVariance) * fit.sigma / std::sqrt(fit.lambda);
     surface::SplinePrecision precision{fit.last.weights / (fit.sigma * fit.sigma), fine_amplitude};
     FitInput condensed;

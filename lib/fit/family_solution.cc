@@ -93,8 +93,7 @@ struct Attempt {
     RoundSolution solution;
 };
 
-/// True if χ² is as small as the touches' noise lets expect. Never true for few touches, which several surfaces may
-/// fit.
+/// True if χ² is consistent with the touches' noise. Never true for few touches, which several surfaces may fit.
 bool fits_to_noise(const Attempt& attempt, int parameters)
 {
     constexpr double kMaxExcessSigmas = 2; // of χ² above its mean
@@ -114,11 +113,11 @@ MatrixXd directions_keeping_heading(const surface::Cylinder& cylinder)
 }
 
 /// True if the normal points up and all touches lie on one side of the axis of revolution, at similar distances from
-/// it. Cones with their apex among the touches, and tori as narrow or with a pole there, fit a few touches easily but
-/// are no castings.
+/// it. Cones with their apex among the touches, and narrow tori or tori with a pole there, easily fit a few touches but
+/// do not occur as castings.
 bool is_plausible(const surface::Shape& shape, const Eigen::Matrix3Xd& touches)
 {
-    constexpr double kMaxDistanceRatio = 3; // to the distance of the frame's origin, and vice versa
+    constexpr double kMaxDistanceRatio = 3; // to the distance of the frame's origin; its inverse is the minimum
     const auto is_plausible_round = [&](const auto& round) {
         if constexpr (requires { round.normal; })
             if (!(round.normal.z() > 0)) return false;
@@ -144,7 +143,7 @@ Attempt attempt(RoundFamily family, const RoundProblem& problem, double angle, c
     return result;
 }
 
-/// Solutions from the curvatures of the quadratic, in several frames.
+/// Solutions that start at the curvatures of the quadratic, in several frames.
 std::vector<Attempt> attempts_from_quadratic(RoundFamily family, const RoundStart& start)
 {
     constexpr double kQuarterTurn = std::numbers::pi / 2;
@@ -164,7 +163,7 @@ std::vector<Attempt> attempts_from_quadratic(RoundFamily family, const RoundStar
     const double along = family == RoundFamily::torus ? start.min_curvature : 0;
     const double across = family == RoundFamily::torus ? start.max_curvature : 0;
     try_start(0, start.max_curvature, along);
-    // A solution with straight rulings that fits is the only one; tori bend both ways and may have two minima.
+    // A solution with straight rulings that fits is unique; tori are curved both ways and may have two minima.
     const bool found =
         family != RoundFamily::torus && fits_to_noise(all.front(), parameter_count(family, given_direction));
     if (given_direction || found) return all;
@@ -174,7 +173,7 @@ std::vector<Attempt> attempts_from_quadratic(RoundFamily family, const RoundStar
     return all;
 }
 
-/// Solutions from minima for almost the same touches.
+/// Solutions that start at minima for almost the same touches.
 std::vector<Attempt> attempts_from_minima(RoundFamily family, const RoundProblem& problem,
                                           const std::vector<RoundMinimum>& minima)
 {
@@ -187,10 +186,10 @@ std::vector<Attempt> attempts_from_minima(RoundFamily family, const RoundProblem
     return all;
 }
 
-/// The local minima that may become the global one if a touch is added or left out; `best` always is one.
+/// The local minima that may become the global one if a touch is added or left out, and `best`.
 std::vector<RoundMinimum> competing_minima(const std::vector<Attempt>& attempts, const Attempt& best)
 {
-    constexpr double kMaxCostRatio = 2;       // to the global one: one touch seldom makes up for more
+    constexpr double kMaxCostRatio = 2;       // to the global one: one touch seldom compensates more
     constexpr double kSameMinimum = 1 + 1e-6; // ratio of costs: the solver's tolerance is smaller
     std::vector<RoundMinimum> minima;
     for (const Attempt& one : attempts) {

@@ -20,14 +20,14 @@
 namespace fettle::merge {
 namespace {
 
-// Edges of the cubes in distances of neighbouring points of the scan in the middle: some nine points of a scan are in a
-// cube, and more within one such length of a place. They say where the surface is, and hardly level the part's shape.
-constexpr double kLengthSpacings = 3;
-// Points of another scan are looked for within this many distances of its points: there is one.
+// Edge of the voxels in point spacings, of the scan with the median spacing. A voxel has about nine points of a scan,
+// which determine the surface without smoothing the part's shape.
+constexpr double kVoxelSpacings = 3;
+// Radius of the search for points of another scan, in spacings of the coarsest scan: it contains at least one.
 constexpr double kReachSpacings = 1.5;
-// With fewer points there is no telling a surface from its noise.
+// Fewer points do not distinguish a surface from its noise.
 constexpr Eigen::Index kMinPoints = 100;
-constexpr Eigen::Index kMaxPoints = 20'000'000; // of a scan: they take 2 GB until it is merged
+constexpr Eigen::Index kMaxPoints = 20'000'000; // of a scan: bounds the memory, 2 GB until it is merged
 
 /// A scan as it was read.
 struct RawScan {
@@ -37,7 +37,7 @@ struct RawScan {
     double spacing = 0; ///< mm
 };
 
-/// Normals at the vertices of a mesh: means of the triangles' there, by area.
+/// Normals at the vertices of a mesh: area-weighted means of the triangles' normals.
 Eigen::Matrix3Xd vertex_normals(const mesh::CloudMesh& part)
 {
     Eigen::Matrix3Xd normals = Eigen::Matrix3Xd::Zero(3, part.points.size());
@@ -94,13 +94,13 @@ bool shows_surface(const VoxelMeans& means)
     return static_cast<double>(with_normal) >= kMinSurfaceShare * static_cast<double>(means.xyz.cols());
 }
 
-/// Makes a scan ready for registration. One that is only coarse beside the others will fit none of them.
-/// @throws InputError for one that shows no surface: profiles far apart
+/// Prepares a scan for registration. A scan that is only coarse beside the others is accepted, though it may fit none.
+/// @throws InputError for a scan that shows no surface, such as profiles far apart
 std::unique_ptr<const Scan> prepared(RawScan raw, double length)
 {
     return core::with_error_prefix(raw.name, [&] {
         auto scan = std::make_unique<const Scan>(raw.name, std::move(raw.xyz), raw.sides, length);
-        const double own_length = kLengthSpacings * raw.spacing;
+        const double own_length = kVoxelSpacings * raw.spacing;
         if (!shows_surface(scan->means) &&
             !shows_surface(voxel_means(scan->xyz, VoxelGrid(scan->xyz, own_length), raw.sides, own_length)))
             throw core::InputError("shows no surface: its points lie on lines, or far apart");
@@ -108,7 +108,7 @@ std::unique_ptr<const Scan> prepared(RawScan raw, double length)
     });
 }
 
-/// Scans that do not fit at all may do so for what was seen when they were read, as a unit that is not theirs.
+/// Registers the scans. If none fit, a warning from reading them may be the reason, such as a wrong unit.
 /// @throws InputError as register_scans(), with the first of the warnings
 Registration register_or_explain(const Scans& scans, const RegistrationRequest& request,
                                  const std::vector<std::string>& warnings)
@@ -131,7 +131,7 @@ MergeRun merge_files(const MergeRequest& request)
     const double spacing = finest.spacing, reach = kReachSpacings * coarsest.spacing;
     std::vector<double> spacings;
     for (const RawScan& scan : raw) spacings.push_back(scan.spacing);
-    const double length = kLengthSpacings * geometry::median(spacings);
+    const double length = kVoxelSpacings * geometry::median(spacings);
     RegistrationRequest registration_request{length, {}, request.progress};
     if (!request.poses.empty()) {
         std::vector<std::string> names;

@@ -18,8 +18,8 @@ using Points = std::vector<Vector3d>;
 
 constexpr double kFitRadiusSpacings = 3; // radius of the local quadratic: about 28 points of a regular scan
 
-// Estimate of the spacing: with that many neighbours, a scan whose lines are five times as far apart as the points on
-// them still counts several lines.
+// Neighbours for the estimate of the spacing. Among so many, a scan whose lines are five times as far apart as the
+// points on them still has points of several lines.
 constexpr Index kNeighbours = 16;
 constexpr Index kSpacingSamples = 1000; // a median of so many is exact to a few per cent
 
@@ -31,7 +31,7 @@ constexpr double kMaxEmptySector = std::numbers::pi;
 // A larger gap in z separates two sheets. Successive heights of a sheet at 45 degrees differ by less than a spacing.
 constexpr double kSheetGapSpacings = 3;
 
-// Residuals above that many standard deviations, estimated by the median, are outliers.
+// Residuals above so many standard deviations, estimated by the median, are outliers.
 constexpr double kOutlierSigmas = 4;
 constexpr int kMaxReweightings = 12; // towards least absolute deviations: enough for three digits
 
@@ -40,8 +40,9 @@ constexpr double kRoundoffSpacings = 1e-6;
 
 constexpr Index kUnknowns = geometry::QuadraticTerms::SizeAtCompileTime;
 
-/// Minimum share of a term's square that the terms before it do not explain. On one line or circle the points do not
-/// determine a quadratic. It is the square of 1e-6, the rounding of float coordinates.
+/// Minimum of a squared pivot relative to the diagonal: the share of a term that the terms before it do not explain.
+/// Points on one line or circle do not determine a quadratic. The bound is the square of 1e-6, the rounding of float
+/// coordinates.
 constexpr double kMinPivotShare = 1e-12;
 
 bool surrounded(const Points& points, const Vector2d& xy)
@@ -49,7 +50,7 @@ bool surrounded(const Points& points, const Vector2d& xy)
     std::vector<double> angles;
     for (const Vector3d& point : points) {
         const Vector2d from = point.head<2>() - xy;
-        if (from.isZero(0)) return true; // the point is on the line
+        if (from.isZero(0)) return true; // a point on the line itself
         angles.push_back(std::atan2(from.y(), from.x()));
     }
     return geometry::widest_gap(angles) < kMaxEmptySector;
@@ -78,10 +79,10 @@ std::optional<double> robust_height(const Points& points, const Vector2d& xy, do
         near[i] = distance_weight(uv.norm());
         z[i] = point.z();
     }
-    // Points on both sides of a wall may fix the quadratic only by what is far off: farther above or below them than
-    // they lie apart there is no surface.
+    // Between points on both sides of a wall the quadratic may be an extrapolation. A height outside of their range by
+    // more than the radius of the fit is no surface.
     const double reach = kFitRadiusSpacings * spacing, lowest = z.minCoeff() - reach, highest = z.maxCoeff() + reach;
-    const double middle = z.mean(); // subtracted, or digits are lost far from z = 0
+    const double middle = z.mean(); // subtracted, so that no digits are lost far from z = 0
     z -= middle;
     Eigen::ArrayXd weights = near;
     geometry::QuadraticTerms coefficients;
