@@ -119,7 +119,7 @@ Eigen::MatrixXd draw_fields(const surface::Surface& surface, const Eigen::Matrix
     }
     double sum = 0;
     for (const Component& one : all) sum += one.weight;
-    if (!(sum > 0) || !std::isfinite(sum)) // the squares of the heights overflow
+    if (!(sum > 0) || !std::isfinite(sum)) // the squares of the heights overflow or underflow
         throw core::InputError("touches", "the surface fitted to them has no finite covariance, so its error cannot be "
                                           "predicted");
     std::mt19937_64 random(seed);
