@@ -94,18 +94,19 @@ ArmSolutions Arm::solve(const Eigen::Isometry3d& T_base_flange, const Joints& se
 {
     if (kind_ == ArmKind::general) return solve_general(T_base_flange, seed, ranges);
     const Ranges asked = is_exact_ ? ranges : Ranges::ignore; // a correction may bring a joint into its range
-    const ArmSolutions found = kind_ == ArmKind::spherical_wrist ? solve_spherical(T_base_flange, seed, asked)
-                                                                 : solve_parallel(T_base_flange, seed, asked);
+    const ArmSolutions found = solve_closed(T_base_flange, seed, asked);
     return is_exact_ ? found : corrected(found, T_base_flange, ranges);
 }
 
-ArmSolutions Arm::solve_spherical(const Eigen::Isometry3d& T_base_flange, const Joints& seed, Ranges ranges) const
+ArmSolutions Arm::solve_closed(const Eigen::Isometry3d& T_base_flange, const Joints& seed, Ranges ranges) const
 {
     ArmSolutions found;
+    const bool is_spherical = kind_ == ArmKind::spherical_wrist;
     const Eigen::Matrix3d R = T_base_flange.linear() * R_alpha6_;
     const Eigen::Vector3d wrist = T_base_flange.translation() - T_base_flange.linear() * wrist_to_flange_;
-    // The wrist centre is R_z(theta1) (across, offset, .), where only the offsets of axes 2 and 3 enter `offset`.
-    const double offset = -sin_alpha_[0] * (dh_[1].d + dh_[2].d);
+    // The wrist centre, or the origin of frame 5 of an arm with parallel axes, is R_z(theta1) (across, offset, .),
+    // where only the offsets of axes 2 and 3, or 2 to 4, enter `offset`.
+    const double offset = -sin_alpha_[0] * (dh_[1].d + dh_[2].d + (is_spherical ? 0 : dh_[3].d));
     const double squared = wrist.head<2>().squaredNorm(), across2 = squared - offset * offset;
     const bool on_axis = squared < kAxisDistanceTolerance * kAxisDistanceTolerance;
     if (!on_axis && across2 < 0) return found;
@@ -118,9 +119,22 @@ ArmSolutions Arm::solve_spherical(const Eigen::Isometry3d& T_base_flange, const 
             theta1 = dh_[0].sign * seed[0] + dh_[0].offset + shoulder * kPi;
             turn1 = {std::cos(theta1), std::sin(theta1)};
         }
-        add_elbow_solutions({R, wrist, seed, ranges, u, turn1}, theta1, shoulder, found);
+        const Target target = {R, wrist, seed, ranges, u, turn1};
+        if (is_spherical)
+            add_elbow_solutions(target, theta1, shoulder, found);
+        else
+            add_parallel_wrist(target, 4 * shoulder, found);
     }
     return found;
+}
+
+std::optional<CosSin> bend_of_links(double a, double b, double distance)
+{
+    const double twice = 2 * a * b;
+    const double from_straight = (a + b - distance) * (a + b + distance) / twice; // 1 - cosine
+    const double from_folded = (distance - (a - b)) * (distance + (a - b)) / twice;
+    if (from_straight < -kCosineRounding || from_folded < -kCosineRounding) return std::nullopt;
+    return CosSin{(from_folded - from_straight) / 2, std::sqrt(std::max(from_straight * from_folded, 0.0))};
 }
 
 // Axes 2 and 3 and the wrist centre form a triangle with sides a2 and L in the plane of the arm.
@@ -128,16 +142,14 @@ void Arm::add_elbow_solutions(const Target& target, double theta1, int shoulder,
 {
     const double a2 = dh_[1].a, L = forearm_length_;
     const double x = target.across - dh_[0].a, y = sin_alpha_[0] * (target.wrist_centre.z() - dh_[0].d);
-    const double r2 = x * x + y * y, r = std::sqrt(r2), twice = 2 * a2 * L;
-    const double from_straight = (a2 + L - r) * (a2 + L + r) / twice; // 1 - cosine of the bend
-    const double from_folded = (r - (a2 - L)) * (r + (a2 - L)) / twice;
-    if (from_straight < -kCosineRounding || from_folded < -kCosineRounding) return;
+    const double r2 = x * x + y * y;
+    const std::optional<CosSin> links = bend_of_links(a2, L, std::sqrt(r2));
+    if (!links) return;
     found.reachable = true;
     Joints joints;
     joints[0] = dh_[0].sign * (theta1 - dh_[0].offset);
     if (!wrap(joints, 0, target.ranges)) return;
-    const double sine = std::sqrt(std::max(from_straight * from_folded, 0.0)),
-                 cosine = (from_folded - from_straight) / 2;
+    const auto [cosine, sine] = *links;
     const double bend = std::atan2(sine, cosine);
     for (int elbow = 0; elbow < 2; ++elbow) {
         if (elbow == 1 && sine == 0) return; // straight or folded: both solutions coincide

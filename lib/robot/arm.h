@@ -76,8 +76,7 @@ class Arm {
 
   private:
     struct Target;
-    ArmSolutions solve_spherical(const Eigen::Isometry3d& T_base_flange, const Joints& seed, Ranges ranges) const;
-    ArmSolutions solve_parallel(const Eigen::Isometry3d& T_base_flange, const Joints& seed, Ranges ranges) const;
+    ArmSolutions solve_closed(const Eigen::Isometry3d& T_base_flange, const Joints& seed, Ranges ranges) const;
     ArmSolutions solve_general(const Eigen::Isometry3d& T_base_flange, const Joints& seed, Ranges ranges) const;
     void add_parallel_wrist(const Target& target, int branch, ArmSolutions& found) const;
     void add_parallel_elbows(const Target& target, const Eigen::Vector2d& wrist, double total_turn, Joints joints,

@@ -5,30 +5,9 @@
 
 namespace fettle::robot {
 
-// With alpha1, alpha4, alpha5 = ±90°, alpha2 = alpha3 = 0 and a1 = a4 = a5 = 0. The axes 2, 3 and 4 share a direction
-// n, and the origin o5 of frame 5 lies at the distance d2 + d3 + d4 along it from axis 1: that gives theta1, as the
-// wrist centre does with a spherical wrist. The flange is fixed to frame 5 but for axis 6.
-ArmSolutions Arm::solve_parallel(const Eigen::Isometry3d& T_base_flange, const Joints& seed, Ranges ranges) const
-{
-    ArmSolutions found;
-    const Eigen::Matrix3d R = T_base_flange.linear() * R_alpha6_;
-    const Eigen::Vector3d o5 = T_base_flange.translation() - T_base_flange.linear() * wrist_to_flange_;
-    const double offset = -sin_alpha_[0] * (dh_[1].d + dh_[2].d + dh_[3].d);
-    const double squared = o5.head<2>().squaredNorm(), across2 = squared - offset * offset;
-    const bool on_axis = squared < kAxisDistanceTolerance * kAxisDistanceTolerance;
-    if (!on_axis && across2 < 0) return found;
-    const double across = on_axis ? 0 : std::sqrt(across2);
-    for (int shoulder = 0; shoulder < 2; ++shoulder) {
-        const double u = shoulder == 0 ? across : -across;
-        CosSin turn1 = {(o5.x() * u + o5.y() * offset) / squared, (o5.y() * u - o5.x() * offset) / squared};
-        if (on_axis) {
-            const double theta1 = dh_[0].sign * seed[0] + dh_[0].offset + shoulder * kPi;
-            turn1 = {std::cos(theta1), std::sin(theta1)};
-        }
-        add_parallel_wrist({R, o5, seed, ranges, u, turn1}, 4 * shoulder, found);
-    }
-    return found;
-}
+// Arms with alpha1, alpha4, alpha5 = ±90°, alpha2 = alpha3 = 0 and a1 = a4 = a5 = 0. The axes 2, 3 and 4 share a
+// direction n, and the origin o5 of frame 5 lies at the distance d2 + d3 + d4 along it from axis 1: that gives theta1,
+// as the wrist centre does with a spherical wrist. The flange is fixed to frame 5 but for axis 6.
 
 // z6 = z5 makes with n an angle whose cosine is -s4 s5 cos(theta5), and lies along x of frame 4 across n: this gives
 // theta5 but for its sign, and the turn psi = theta2 + theta3 + theta4.
@@ -81,13 +60,11 @@ void Arm::add_parallel_wrist(const Target& target, int branch, ArmSolutions& fou
 void Arm::add_parallel_elbows(const Target& target, const Eigen::Vector2d& wrist, double total_turn, Joints joints,
                               int branch, ArmSolutions& found) const
 {
-    const double a2 = dh_[1].a, a3 = dh_[2].a, r2 = wrist.squaredNorm(), r = std::sqrt(r2), twice = 2 * a2 * a3;
-    const double from_straight = (a2 + a3 - r) * (a2 + a3 + r) / twice; // 1 - cosine of theta3
-    const double from_folded = (r - (a2 - a3)) * (r + (a2 - a3)) / twice;
-    if (from_straight < -kCosineRounding || from_folded < -kCosineRounding) return;
+    const double a2 = dh_[1].a, a3 = dh_[2].a, r2 = wrist.squaredNorm();
+    const std::optional<CosSin> links = bend_of_links(a2, a3, std::sqrt(r2));
+    if (!links) return;
     found.reachable = true;
-    const double sine = std::sqrt(std::max(from_straight * from_folded, 0.0)),
-                 cosine = (from_folded - from_straight) / 2;
+    const auto [cosine, sine] = *links;
     const double bend = std::atan2(sine, cosine);
     for (int elbow = 0; elbow < 2; ++elbow) {
         if (elbow == 1 && sine == 0) return;

@@ -1,10 +1,11 @@
 #pragma once
 
-// What the closed forms of the inverse kinematics share. Used by arm*.cc only.
+// Shared by the closed forms of the inverse kinematics. It is private to arm*.cc.
 
 #include "robot/arm.h"
 
 #include <numbers>
+#include <optional>
 
 namespace fettle::robot {
 
@@ -21,7 +22,11 @@ struct CosSin {
     double cosine, sine;
 };
 
-/// What the inverse is to reach, with the choice of the shoulder.
+/// The angle between two links whose far ends are at a distance, 0 if they are straight; sine >= 0. Nothing if the
+/// distance is out of reach. Both sums of the law of cosines are taken from their ends, so that it is accurate there.
+std::optional<CosSin> bend_of_links(double a, double b, double distance);
+
+/// The target of the inverse kinematics, with the choice of the shoulder.
 struct Arm::Target {
     const Eigen::Matrix3d& R;     ///< R_base_5 R_z(theta6)
     Eigen::Vector3d wrist_centre; ///< base frame, mm

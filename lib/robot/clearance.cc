@@ -66,4 +66,11 @@ Clearance clearance(const PlacedSolid& a, const PlacedSolid& b, double max_dista
     return with_radii({length, v / length, simplex.on_a(), simplex.on_b()}, a, b);
 }
 
+void make_penetration(Clearance& clearance, double width)
+{
+    clearance.distance = -clearance.distance - width;
+    clearance.normal = -clearance.normal;
+    clearance.on_a = clearance.on_b - clearance.distance * clearance.normal;
+}
+
 } // namespace fettle::robot

@@ -78,6 +78,11 @@ struct Clearance {
     Eigen::Vector3d on_b = Eigen::Vector3d::Zero();    ///< on_a + distance * normal
 };
 
+/// Turns the clearance of the surfaces of a solid a inside b, or b inside a, into that of the solids: the negative
+/// distance that one moves until it is beyond the plane at the nearest point of the other.
+/// @param width  of the inner solid along the normal, mm
+void make_penetration(Clearance& clearance, double width);
+
 /// Error bound of distances and depths, mm, a thousandth of what machining asks for. All but one in some thousand are
 /// accurate to 1e-8: where rims of round solids nearly touch, rounding ends the search earlier.
 inline constexpr double kClearanceAccuracy = 1e-5;

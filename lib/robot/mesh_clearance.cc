@@ -222,13 +222,10 @@ NearestTriangles nearest_triangles(const Workpiece& a, const Workpiece& b, const
     if (!a_inside && !a.contains(T_b_a.inverse() * mesh::triangle_of(b.mesh(), 0).col(0))) return best;
     if (best.triangle_a < 0) // the depth exceeds max_distance: measured without that bound
         return nearest_triangles(a, b, T_b_a, std::numeric_limits<double>::infinity(), start);
-    Clearance& c = best.clearance;
-    const double width =
-        a_inside ? width_along(a.mesh(), T_b_a.linear().transpose() * c.normal) : width_along(b.mesh(), c.normal);
+    const Vector3d& n = best.clearance.normal;
+    const double width = a_inside ? width_along(a.mesh(), T_b_a.linear().transpose() * n) : width_along(b.mesh(), n);
     best.inside = true;
-    c.distance = -c.distance - width;
-    c.normal = -c.normal;
-    c.on_a = c.on_b - c.distance * c.normal;
+    make_penetration(best.clearance, width);
     return best;
 }
 

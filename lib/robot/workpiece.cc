@@ -93,12 +93,10 @@ Workpiece::Nearest Workpiece::nearest(const PlacedSolid& body, double max_distan
     const Vector3d point = body.support(Vector3d::UnitZ());
     if (!index_.tree().box.contains(point) || !is_inside(best, point)) return best;
     if (best.triangle < 0) return nearest(body); // the depth exceeds max_distance: measured without that bound
-    Clearance& c = best.clearance;
-    const double width = (body.support(c.normal) - body.support(-c.normal)).dot(c.normal) + 2 * body.radius();
+    const Vector3d& n = best.clearance.normal;
+    const double width = (body.support(n) - body.support(-n)).dot(n) + 2 * body.radius();
     best.inside = true;
-    c.distance = -c.distance - width;
-    c.normal = -c.normal;
-    c.on_a = c.on_b - c.distance * c.normal;
+    make_penetration(best.clearance, width);
     return best;
 }
 
