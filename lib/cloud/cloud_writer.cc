@@ -2,7 +2,6 @@
 
 #include "cloud/cloud_encoder.h"
 #include "cloud/pcd.h"
-#include "core/text.h"
 
 #include <ostream>
 
@@ -40,20 +39,9 @@ class CsvEncoder : public CloudWriter::Encoder {
 
     void write(const Cloud& part) override
     {
-        const std::vector<Field> fields = to_file_units(part.fields, units_);
-        const Eigen::Matrix3Xf xyz = to_file_coordinates(part, units_);
-        std::string text;
-        for (Eigen::Index i = 0; i < part.size(); ++i) {
-            for (int axis = 0; axis < 3; ++axis) text += (axis > 0 ? "," : "") + core::to_text(xyz(axis, i));
-            for (const Field& field : fields)
-                for (int k = 0; k < field.count; ++k) {
-                    text += ',';
-                    const char type = is_colour(field) ? 'U' : field.type; // 0x00RRGGBB, which as a float may be NaN
-                    append_element(text, field, type, i * field.count + k);
-                }
-            text += '\n';
-        }
-        out_ << text;
+        // A colour is an integer, 0x00RRGGBB, which as a float may be NaN.
+        out_ << text_rows(to_file_coordinates(part, units_), to_file_units(part.fields, units_), ',',
+                          [](const Field& field) { return is_colour(field) ? 'U' : field.type; });
     }
 
   private:

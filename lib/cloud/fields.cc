@@ -2,6 +2,7 @@
 
 #include "cloud/element.h"
 #include "core/range.h"
+#include "core/text.h"
 
 #include <charconv>
 #include <cmath>
@@ -50,6 +51,22 @@ void append_element(std::string& text, const Field& field, char type, std::size_
             text.append(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
         }
     });
+}
+
+std::string text_rows(const Eigen::Matrix3Xf& xyz, const std::vector<Field>& fields, char separator,
+                      char (*type_of)(const Field&))
+{
+    std::string text;
+    for (Eigen::Index i = 0; i < xyz.cols(); ++i) {
+        text += core::to_text(xyz(0, i)) + separator + core::to_text(xyz(1, i)) + separator + core::to_text(xyz(2, i));
+        for (const Field& field : fields)
+            for (int k = 0; k < field.count; ++k) {
+                text += separator;
+                append_element(text, field, type_of(field), i * field.count + k);
+            }
+        text += '\n';
+    }
+    return text;
 }
 
 void scale_field(Field& field, double times, double over)

@@ -4,6 +4,7 @@
 #include "units/units.h"
 
 #include <string>
+#include <vector>
 
 namespace fettle::cloud {
 
@@ -21,6 +22,11 @@ Eigen::VectorXi integer_field(const Cloud& cloud, const std::string& name);
 double element(const Field& field, char type, std::size_t index);
 /// Appends element `index` as text: an integer, or the shortest text of a float.
 void append_element(std::string& text, const Field& field, char type, std::size_t index);
+
+/// Rows of text, a point each: its coordinates and the elements of its fields.
+/// @param type_of  returns the type of a field's elements, usually field.type
+std::string text_rows(const Eigen::Matrix3Xf& xyz, const std::vector<Field>& fields, char separator,
+                      char (*type_of)(const Field&));
 
 /// Scales all elements of a field to value * times / over. An integer field becomes F8: 1 in is not an integer in mm.
 void scale_field(Field& field, double times, double over = 1);

@@ -87,21 +87,6 @@ void write_packed(std::ostream& out, const Cloud& cloud, const units::Units& uni
     }
 }
 
-std::string ascii_rows(const Eigen::Matrix3Xf& xyz, const std::vector<Field>& fields)
-{
-    std::string text;
-    for (Eigen::Index i = 0; i < xyz.cols(); ++i) {
-        for (int axis = 0; axis < 3; ++axis) text += (axis > 0 ? " " : "") + core::to_text(xyz(axis, i));
-        for (const Field& field : fields)
-            for (int k = 0; k < field.count; ++k) {
-                text += ' ';
-                append_element(text, field, written_type(field, PcdEncoding::ascii), i * field.count + k);
-            }
-        text += '\n';
-    }
-    return text;
-}
-
 } // namespace
 
 void write_pcd_header(std::ostream& out, const Cloud& some, std::size_t points, const units::Units& units,
@@ -116,7 +101,8 @@ void write_pcd_points(std::ostream& out, const Cloud& part, const units::Units& 
     if (encoding == PcdEncoding::binary)
         write_packed(out, part, units);
     else
-        out << ascii_rows(to_file_coordinates(part, units), to_file_units(part.fields, units));
+        out << text_rows(to_file_coordinates(part, units), to_file_units(part.fields, units), ' ',
+                         [](const Field& field) { return written_type(field, PcdEncoding::ascii); });
 }
 
 void write_pcd(std::ostream& out, const Cloud& cloud, const units::Units& units, PcdEncoding encoding)
