@@ -225,6 +225,18 @@ Components components(const Mask& mask, int connectivity)
     return result;
 }
 
+std::vector<cv::Point> simplified_outline(const Mask& mask, double tolerance)
+{
+    std::vector<std::vector<cv::Point>> outlines;
+    cv::findContours(mask, outlines, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
+    if (outlines.empty()) return {};
+    const auto largest = std::ranges::max_element(
+        outlines, {}, [](const std::vector<cv::Point>& outline) { return cv::contourArea(outline); });
+    std::vector<cv::Point> corners;
+    cv::approxPolyDP(*largest, corners, tolerance, true);
+    return corners;
+}
+
 std::vector<double> values_in(const Image& image, const Mask& mask)
 {
     std::vector<double> values;

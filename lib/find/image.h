@@ -64,6 +64,10 @@ struct Components {
 };
 Components components(const Mask& mask, int connectivity = 4);
 
+/// The simplified outline of a mask's largest component (Douglas & Peucker); empty for an empty mask.
+/// @param tolerance  largest distance of the outline from its simplification, cells
+std::vector<cv::Point> simplified_outline(const Mask& mask, double tolerance);
+
 /// Values of the cells of a mask that have one, row by row.
 std::vector<double> values_in(const Image& image, const Mask& mask);
 /// Robust standard deviation of numbers about their median; 0 if there is none.

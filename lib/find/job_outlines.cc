@@ -70,13 +70,7 @@ struct HalfCells {
     /// The simplified outline of a mask's largest component; nothing if the mask is empty.
     Eigen::Matrix2Xd outline(const Mask& mask, double tolerance) const
     {
-        std::vector<std::vector<cv::Point>> outlines;
-        cv::findContours(mask, outlines, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
-        if (outlines.empty()) return {};
-        const auto largest = std::ranges::max_element(
-            outlines, {}, [](const std::vector<cv::Point>& outline) { return cv::contourArea(outline); });
-        std::vector<cv::Point> corners;
-        cv::approxPolyDP(*largest, corners, tolerance, true);
+        const std::vector<cv::Point> corners = simplified_outline(mask, tolerance);
         Eigen::Matrix2Xd result(2, corners.size());
         for (std::size_t i = 0; i < corners.size(); ++i) result.col(Eigen::Index(i)) = place(corners[i]);
         return result;

@@ -32,13 +32,7 @@ Eigen::Matrix2Xd polygon_of(const Mask& mask, double tolerance)
     constexpr int kBorder = 2 * kUpscale; // more than the blur's reach
     cv::copyMakeBorder(large, large, kBorder, kBorder, kBorder, kBorder, cv::BORDER_CONSTANT, 0);
     cv::GaussianBlur(large, large, {}, kUpscale * kOutlineBlur);
-    std::vector<std::vector<cv::Point>> contours;
-    cv::findContours(large > 127, contours, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
-    if (contours.empty()) return {};
-    const auto largest = std::ranges::max_element(
-        contours, {}, [](const std::vector<cv::Point>& contour) { return cv::contourArea(contour); });
-    std::vector<cv::Point> corners;
-    cv::approxPolyDP(*largest, corners, tolerance * kUpscale, true);
+    const std::vector<cv::Point> corners = simplified_outline(large > 127, tolerance * kUpscale);
     Eigen::Matrix2Xd polygon(2, Eigen::Index(corners.size()));
     for (std::size_t k = 0; k < corners.size(); ++k)
         polygon.col(Eigen::Index(k)) << box.x + (corners[k].x - kBorder + 0.5) / kUpscale - 0.5,
