@@ -252,7 +252,7 @@ int main(int argc, char** argv)
         const units::Units units = o.out.units(cloud::measured_units(file.units, std::nullopt));
         const find::FindOptions options = find_options(o, settings, units.mm());
         find::FindResult result = search(o, options, settings, file, name);
-        if (settings.machine) find::doubt_scatter(result, *settings.machine);
+        if (settings.machine) find::add_scatter_doubts(result, *settings.machine);
         find::judge(result, keep, drop);
         const bool all_have_jobs =
             o.jobs.empty() ? result.anomalies.empty() : write_jobs(o, result, file.part, settings);

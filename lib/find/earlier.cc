@@ -66,8 +66,8 @@ void absorb(FoundAnomaly& one, const FoundAnomaly& other)
     one.volume += other.volume;
 }
 
-/// A plane's job may have no S: then the anomaly keeps the outlines that were found.
-void take_over(FoundAnomaly& found, const PlacedJob& placed)
+/// Replaces frame, B and S of a find by those of a job, unless that has no S, as a plane's job may.
+void adopt_outlines(FoundAnomaly& found, const PlacedJob& placed)
 {
     if (placed.earlier->job.sampling.cols() == 0) return;
     found.T_anomaly_part = placed.T_job_part;
@@ -95,20 +95,20 @@ void match_earlier(FindResult& result, const mesh::CloudMesh& part, const std::v
                    const Eigen::Isometry3d& T_earlier_part, double min_probability)
 {
     std::vector<FoundAnomaly> rows;
-    std::vector<char> is_taken(result.anomalies.size(), 0);
+    std::vector<char> is_matched(result.anomalies.size(), 0);
     for (const EarlierJob& earlier : jobs) {
         const PlacedJob placed = placed_job(earlier, T_earlier_part);
         std::vector<FoundAnomaly*> within, beyond;
         for (std::size_t k = 0; k < result.anomalies.size(); ++k) {
-            const double share = is_taken[k] ? 0 : share_within(result.anomalies[k], part, placed);
+            const double share = is_matched[k] ? 0 : share_within(result.anomalies[k], part, placed);
             if (share < kMatchShare) continue;
-            is_taken[k] = 1;
+            is_matched[k] = 1;
             (share >= kCoveredShare ? within : beyond).push_back(&result.anomalies[k]);
         }
         if (within.empty() && beyond.empty()) result.absent.push_back(earlier.file);
         for (std::size_t k = 1; k < within.size(); ++k) absorb(*within[0], *within[k]);
         if (!within.empty()) {
-            take_over(*within[0], placed);
+            adopt_outlines(*within[0], placed);
             within.resize(1);
         }
         for (FoundAnomaly* found : beyond) within.push_back(found);
@@ -119,7 +119,7 @@ void match_earlier(FindResult& result, const mesh::CloudMesh& part, const std::v
         }
     }
     for (std::size_t k = 0; k < result.anomalies.size(); ++k)
-        if (!is_taken[k] && result.anomalies[k].probability >= min_probability)
+        if (!is_matched[k] && result.anomalies[k].probability >= min_probability)
             rows.push_back(std::move(result.anomalies[k]));
     for (std::size_t k = 0; k < rows.size(); ++k) rows[k].number = int(k) + 1;
     result.anomalies = std::move(rows);

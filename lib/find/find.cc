@@ -39,23 +39,23 @@ double rank_in_part(const Entry& entry)
 std::vector<Entry> without_overlaps(std::vector<Entry> entries, Index points)
 {
     std::ranges::stable_sort(entries, std::greater{}, rank_in_part);
-    std::vector<int> taken_by(std::size_t(points), -1);
-    std::vector<Entry> taken;
+    std::vector<int> selected_by(std::size_t(points), -1);
+    std::vector<Entry> selected;
     for (Entry& entry : entries) {
         const auto size = double(entry.found.points.size());
-        std::vector<double> shared(taken.size(), 0);
+        std::vector<double> shared(selected.size(), 0);
         double sum = 0;
         for (const Index i : entry.found.points)
-            if (const int by = taken_by[std::size_t(i)]; by >= 0) ++shared[std::size_t(by)], ++sum;
-        bool is_free = size > 0 && sum <= kMaxOverlap * size;
-        for (std::size_t k = 0; k < taken.size(); ++k)
-            is_free &= shared[k] <= kMaxOverlap * double(taken[k].found.points.size());
-        if (!is_free) continue;
-        for (const Index i : entry.found.points) taken_by[std::size_t(i)] = int(taken.size());
-        taken.push_back(std::move(entry));
+            if (const int by = selected_by[std::size_t(i)]; by >= 0) ++shared[std::size_t(by)], ++sum;
+        bool is_distinct = size > 0 && sum <= kMaxOverlap * size;
+        for (std::size_t k = 0; k < selected.size(); ++k)
+            is_distinct &= shared[k] <= kMaxOverlap * double(selected[k].found.points.size());
+        if (!is_distinct) continue;
+        for (const Index i : entry.found.points) selected_by[std::size_t(i)] = int(selected.size());
+        selected.push_back(std::move(entry));
     }
-    std::ranges::stable_sort(taken, std::greater{}, [](const Entry& e) { return e.found.probability; });
-    return taken;
+    std::ranges::stable_sort(selected, std::greater{}, [](const Entry& e) { return e.found.probability; });
+    return selected;
 }
 
 void set_all_outlines(std::vector<Entry>& entries)

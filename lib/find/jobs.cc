@@ -161,7 +161,7 @@ WheelLimits wheel_limits(const job::Job& job, const RingFit& surface)
     return limits;
 }
 
-void take_wheel_of(const job::Job& other, job::Job& job)
+void copy_wheel_settings(const job::Job& other, job::Job& job)
 {
     job.wheel = other.wheel;
     job.feed.rate = other.feed.rate;
@@ -184,7 +184,7 @@ std::string fit_wheel(job::Job& job, const RingFit& surface, std::span<const job
                                 : "the surface is too hollow for a wheel of radius " + in_units(job.wheel.radius);
     for (const job::Job& other : others) {
         job::Job tried = job;
-        take_wheel_of(other, tried);
+        copy_wheel_settings(other, tried);
         if (!wheel_limits(tried, surface).allow(tried.wheel)) continue;
         job = tried;
         return why + ": that of " + other.source + " fits";
@@ -200,7 +200,7 @@ std::string fit_wheel(job::Job& job, const RingFit& surface, std::span<const job
 
 } // namespace
 
-void doubt_scatter(FindResult& result, const job::Job& settings)
+void add_scatter_doubts(FindResult& result, const job::Job& settings)
 {
     const double mm = settings.units.mm();
     for (FoundAnomaly& anomaly : result.anomalies) {

@@ -14,18 +14,17 @@ struct FoundJob {
     std::string wheel; ///< why its wheel is not the template's; empty: it is
 };
 
-/// Adds a doubt to anomalies where the metal around scatters about the surface through it by more than the tolerance of
-/// `settings`: it does not show what is to be ground to.
-void doubt_scatter(FindResult& result, const job::Job& settings);
+/// Adds a doubt to anomalies where the metal around scatters by more than the tolerance of `settings` about the surface
+/// through it, and does not determine the desired surface.
+void add_scatter_doubts(FindResult& result, const job::Job& settings);
 
 /// The job of an anomaly. Its frame is the anomaly's own; B and S are the anomaly's, with the heights of the part's
-/// metal at their corners where that is seen; neither goes over an edge of the part. A surface is a plane if that is
-/// expected to leave no more than a free-form surface does, by the bend of the robust surface through the metal between
-/// B and S, and to cut nothing by more than the tolerance, else free-form; a plane's B has as many corners, its
-/// touches, as the tolerance needs. The passes run along B's longer side. The wheel travels above all of the part that
-/// lies under its way. Probe, tolerance, wheel, forces, feed and removal are those of `settings`. A surface that is too
-/// curved for its wheel gets that of the first of `others` that fits, with the forces, feed and removal that go with
-/// it; without one, a narrower or smaller one than the template's.
+/// metal at their corners where that is seen; neither crosses an edge of the part. The surface is a plane if
+/// is_plane_better() (plane_choice.h), and B then has as many corners, its touches, as the tolerance needs; else it is
+/// free-form. The passes run along B's longer side. The safe height clears all of the part within the wheel's reach.
+/// Probe, tolerance, wheel, forces, feed and removal are those of `settings`. If the surface is too curved for that
+/// wheel, the job has the wheel of the first of `others` that fits, with its forces, feed and removal; if none does, a
+/// narrower or smaller wheel.
 /// @param part  in which the anomaly was found
 /// @throws InputError as job::validated(), if the boundaries bound nothing
 FoundJob job_for(const FoundAnomaly& anomaly, const mesh::CloudMesh& part, const job::Job& settings,
