@@ -28,7 +28,7 @@ class StockBound {
 
     /// Largest ratio of the stock's hardness to that of the job's removal coefficient.
     static constexpr double kMaxHardness = 2;
-    /// Largest force while the wheel grinds along a polyline, N, if the stock stood as high as the bound.
+    /// Largest force while the wheel grinds along a polyline, N, if the stock is as high as the bound.
     /// @param path  commanded tool points, frame M; the wheel is at the first one   @param feed  mm/s
     /// @param hardness  of the stock, relative to that of the job's removal coefficient
     double max_force(const std::vector<Eigen::Vector3d>& path, double radius, double feed,

@@ -12,7 +12,7 @@ namespace fettle::strategy {
 void add_frames(draw::Frames& frames, const std::vector<TraceRow>& trace, const plan::Plan& plan,
                 const removal::HeightField& stock)
 {
-    constexpr double kScaleTolerances = 4; // what is within the tolerance is pale, what is left stands out
+    constexpr double kScaleTolerances = 4; // errors within the tolerance are pale
     draw::PictureOptions options;
     constexpr int kWidth = 480; // pixels
     options.width = kWidth;
