@@ -72,7 +72,13 @@ void weld_open(ReferenceMesh& reference, const std::vector<bool>& open)
         if (open[v] && reference.mesh.vertices.col(v).allFinite()) candidates.push_back(v);
     const std::vector<std::int32_t> lowest =
         weld(reference.mesh.vertices, candidates, [&](const Eigen::Vector3d& v) { return reference.rounding_at(v); });
-    for (std::size_t c = 0; c < lowest.size(); ++c) reference.repair.welded_vertices += lowest[c] != candidates[c];
+    for (std::size_t c = 0; c < lowest.size(); ++c) {
+        if (lowest[c] == candidates[c]) continue;
+        ++reference.repair.welded_vertices;
+        const double distance =
+            (reference.mesh.vertices.col(lowest[c]) - reference.mesh.vertices.col(candidates[c])).norm();
+        reference.max_weld_distance = std::max(reference.max_weld_distance, distance);
+    }
     if (reference.repair.welded_vertices == 0) return;
     std::vector<std::int32_t> welded(open.size());
     std::iota(welded.begin(), welded.end(), 0);

@@ -32,6 +32,7 @@ struct ReferenceMesh {
     mesh::Mesh mesh;                             ///< with its original vertices
     Eigen::Matrix3Xi welded;                     ///< its triangles with welded vertices; empty: as in `mesh`
     std::vector<std::uint32_t> original_indices; ///< of its triangles, before duplicates were dropped; empty: the same
+    double max_weld_distance = 0;                ///< largest distance of a vertex from the one it is welded to, mm
     double coordinate = 0;                       ///< median_coordinate(), mm
     ReferenceRepair repair;
     bool closed = false; ///< no border, and all windings agree

@@ -9,7 +9,6 @@
 #include <Eigen/Geometry>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_invoke.h>
 
 #include <cmath>
 #include <numeric>
@@ -33,9 +32,8 @@ struct Measurement {
 class MeshReference {
   public:
     MeshReference(mesh::Mesh mesh, const DistanceOptions& options)
-        : options_(options), mesh_(std::make_unique<ReferenceMesh>(reference_mesh(std::move(mesh), options.winding)))
+        : options_(options), parts_(std::make_unique<Parts>(reference_mesh(std::move(mesh), options.winding)))
     {
-        tbb::parallel_invoke([&] { index_.emplace(mesh_->mesh); }, [&] { normals_.emplace(*mesh_); });
     }
 
     /// @param leaf  of the index, where the search starts; set to the leaf of the foot
@@ -44,18 +42,17 @@ class MeshReference {
         return options_.mode == DistanceMode::normal ? closest(point, leaf) : along_line(point);
     }
 
-    const ReferenceRepair& repair() const { return mesh_->repair; }
+    const ReferenceRepair& repair() const { return parts_->mesh.repair; }
 
   private:
     Measurement closest(const Eigen::Vector3d& point, std::uint32_t& leaf) const
     {
-        const std::optional<mesh::MeshIndex::Closest> found = index_->closest(point, options_.max_distance, leaf);
+        const std::optional<mesh::MeshIndex::Closest> found = parts_->index.closest(point, options_.max_distance, leaf);
         if (!found) return {};
         leaf = found->leaf;
         const Eigen::Vector3d offset = point - found->point;
-        if (normals_->beyond_border(*found, offset) > mesh_->rounding_at(found->point)) return {};
-        const Eigen::Vector3d normal = normals_->normal(*found);
-        if (normal.isZero(0)) return {};
+        const auto [normal, beyond_border] = parts_->normals.side(*found, offset);
+        if (beyond_border > parts_->mesh.rounding_at(found->point) || normal.isZero(0)) return {};
         return {std::copysign(offset.norm(), offset.dot(normal)), normal, found->point, facet_index(found->triangle)};
     }
 
@@ -63,14 +60,14 @@ class MeshReference {
     {
         // The two rays start on opposite sides of the point, so that a facet through the point is not missed.
         const Eigen::Vector3d& up = options_.direction;
-        const double start = mesh_->rounding_at(point);
+        const double start = parts_->mesh.rounding_at(point);
         Measurement nearest;
         bool nearest_faces = false;
         for (const double side : {1.0, -1.0}) {
-            const auto hit = index_->cast(point - side * start * up, side * up);
+            const auto hit = parts_->index.cast(point - side * start * up, side * up);
             if (!hit) continue;
             const double error = side * (start - hit->distance);
-            const Eigen::Vector3d normal = normals_->facet_normal(hit->triangle);
+            const Eigen::Vector3d normal = parts_->normals.facet_normal(hit->triangle);
             const bool faces = normal.dot(up) > 0;
             const bool better = faces != nearest_faces ? faces : !(std::abs(nearest.error) <= std::abs(error));
             if (std::abs(error) > options_.max_distance || !better) continue;
@@ -80,12 +77,17 @@ class MeshReference {
         return nearest;
     }
 
-    double facet_index(Eigen::Index triangle) const { return mesh_->original_index(triangle); }
+    double facet_index(Eigen::Index triangle) const { return parts_->mesh.original_index(triangle); }
 
+    /// On the heap, as the later ones refer to the earlier.
+    struct Parts {
+        explicit Parts(ReferenceMesh reference) : mesh(std::move(reference)), index(mesh.mesh), normals(mesh, index) {}
+        const ReferenceMesh mesh;
+        const mesh::MeshIndex index;
+        const PseudoNormals normals;
+    };
     DistanceOptions options_;
-    std::unique_ptr<const ReferenceMesh> mesh_; ///< on the heap: the index refers to it
-    std::optional<mesh::MeshIndex> index_;      ///< optional, to be built at the same time as the normals
-    std::optional<PseudoNormals> normals_;
+    std::unique_ptr<const Parts> parts_;
 };
 
 class QuadraticCloud {

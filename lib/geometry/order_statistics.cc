@@ -11,7 +11,8 @@ namespace fettle::geometry {
 
 namespace {
 
-constexpr int kDigitBits = 16;
+constexpr int kKeyBits = 64;
+constexpr int kDigitBits = 13; // five passes, in which a thread holds 64 KiB for each prefix
 constexpr std::size_t kDigits = std::size_t{1} << kDigitBits;
 
 // Integers in the same order as the numbers.
@@ -37,9 +38,14 @@ struct ThreadCounts {
     std::vector<Prefix> prefixes;
 };
 
+/// Number of bits in the digit after the known ones: the last is what remains.
+int digit_bits(int known) { return std::min(kDigitBits, kKeyBits - known); }
+
 /// Counts the numbers by prefix and next digit. @param known  number of bits in a prefix
 void count(const NumberBlocks& numbers, int known, std::vector<Prefix>& prefixes)
 {
+    const int digit_shift = kKeyBits - known - digit_bits(known);
+    const std::size_t digits = std::size_t{1} << digit_bits(known);
     // First digits of the prefixes: few numbers begin with one, so the others are skipped early.
     std::vector<char> first_digits(kDigits, known == 0);
     for (const Prefix& prefix : prefixes)
@@ -50,10 +56,10 @@ void count(const NumberBlocks& numbers, int known, std::vector<Prefix>& prefixes
         numbers.read(block, local.numbers);
         for (const double number : local.numbers) {
             const std::uint64_t key = key_of(number);
-            if (!first_digits[key >> (64 - kDigitBits)]) continue;
-            const std::uint64_t known_bits = known == 0 ? 0 : key >> (64 - known);
+            if (!first_digits[key >> (kKeyBits - kDigitBits)]) continue;
+            const std::uint64_t known_bits = known == 0 ? 0 : key >> (kKeyBits - known);
             for (Prefix& prefix : local.prefixes)
-                if (prefix.bits == known_bits) ++prefix.counts[(key >> (64 - kDigitBits - known)) % kDigits];
+                if (prefix.bits == known_bits) ++prefix.counts[(key >> digit_shift) % digits];
         }
     });
     for (const ThreadCounts& thread : threads)
@@ -72,7 +78,7 @@ std::vector<double> order_statistics(const NumberBlocks& numbers, const std::vec
     };
     std::vector<Target> targets;
     for (const std::size_t rank : ranks) targets.push_back({0, rank});
-    for (int known = 0; known < 64; known += kDigitBits) {
+    for (int known = 0; known < kKeyBits; known += digit_bits(known)) {
         std::vector<Prefix> prefixes;
         const auto find = [&](const Target& t) { return std::ranges::find(prefixes, t.bits, &Prefix::bits); };
         for (const Target& t : targets)
@@ -82,7 +88,7 @@ std::vector<double> order_statistics(const NumberBlocks& numbers, const std::vec
             const Prefix& prefix = *find(t);
             std::size_t digit = 0;
             for (; t.rank >= prefix.counts[digit]; ++digit) t.rank -= prefix.counts[digit];
-            t.bits = t.bits << kDigitBits | digit;
+            t.bits = t.bits << digit_bits(known) | digit;
         }
     }
     std::vector<double> found;

@@ -190,6 +190,35 @@ FETTLE_CLONES void find_first_hit(RayQuery& query, const BoxTree& tree, const Me
     }
 }
 
+/// Adds the triangles whose boxes come within a distance of a point. @param point  relative to the tree's centre
+FETTLE_CLONES void find_nearby(const float (&point)[3], float squared_bound, const BoxTree& tree,
+                               std::vector<std::uint32_t>& found)
+{
+    NodeStack stack;
+    stack.push({0, static_cast<std::int32_t>(tree.levels.size()) - 1, 0});
+    while (stack.any()) {
+        const StackEntry node = stack.pop();
+        if (node.level >= 0) {
+            const Float8 squared = squared_distance(tree.levels[node.level], node.index, point);
+            stack.push(lane_bits(squared <= squared_bound), squared, node.level - 1, node.index);
+            continue;
+        }
+        const Boxes8 boxes = enlarged(boxes_of(tree.leaves[node.index]), tree.leaf_margins[node.index]);
+        for (LaneIterator lanes{lane_bits(squared_distance(boxes, point) <= squared_bound)}; lanes.any(); lanes.next())
+            if (std::size_t{8} * node.index + lanes.first() < tree.triangle_order.size())
+                found.push_back(static_cast<std::uint32_t>(tree.triangle(node.index, lanes.first())));
+    }
+}
+
+/// Bound on the error that the rounding to float causes in the distances to a point. Besides its coordinates a
+/// triangle's are rounded: by no more than the point's are, and by a share of their difference that the relative errors
+/// of all distances cover. @param centred_point  relative to the tree's centre
+double float_error(const Eigen::Vector3d& centred_point)
+{
+    constexpr double kMaxNormPerComponent = 2; // > √3, the norm of a vector over its largest component
+    return 2 * kMaxNormPerComponent * kFloatRoundoff * centred_point.cwiseAbs().maxCoeff();
+}
+
 /// Distance from `origin` to where the ray enters the box; nothing if it misses the box.
 std::optional<double> entry_distance(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& origin,
                                      const Eigen::Vector3d& direction)
@@ -270,15 +299,28 @@ std::optional<MeshIndex::Closest> MeshIndex::closest(const Eigen::Vector3d& poin
     const BoxTree& tree = state_->tree;
     if (tree.levels.empty() || !point.allFinite() || !(radius >= 0)) return std::nullopt;
     const Eigen::Vector3d centred = point - tree.centre;
-    // Besides the point's coordinates a triangle's are rounded: by no more than the point's are, and by a share of
-    // their difference that the relative errors of all distances cover.
-    constexpr double kMaxNormPerComponent = 2; // > √3, the norm of a vector over its largest component
-    const double float_error = 2 * kMaxNormPerComponent * kFloatRoundoff * centred.cwiseAbs().maxCoeff();
-    ClosestQuery query(point, centred, radius, float_error);
+    ClosestQuery query(point, centred, radius, float_error(centred));
     const auto last_leaf = static_cast<std::uint32_t>(tree.leaves.size()) - 1;
     find_closest(query, std::min(leaf, last_leaf), tree, state_->mesh);
     if (query.triangle == kNoTriangle) return std::nullopt;
     return Closest{query.closest.point, query.triangle, query.closest.barycentric, query.leaf};
+}
+
+std::vector<std::uint32_t> MeshIndex::nearby(const Eigen::Vector3d& point, double distance) const
+{
+    std::vector<std::uint32_t> found;
+    const BoxTree& tree = state_->tree;
+    if (tree.levels.empty() || !point.allFinite() || !(distance >= 0)) return found;
+    const Eigen::Vector3d centred = point - tree.centre;
+    float rounded[3];
+    Eigen::Vector3f::Map(rounded) = centred.cast<float>();
+    const double bound = (distance + float_error(centred)) * (1 + kMaxRoundings * kFloatRoundoff);
+    // Rounded upwards, and finite, so that it excludes empty boxes.
+    const double squared =
+        std::min(bound * bound * (1 + 2 * kFloatRoundoff), double{std::numeric_limits<float>::max()});
+    find_nearby(rounded, static_cast<float>(squared), tree, found);
+    std::ranges::sort(found);
+    return found;
 }
 
 } // namespace fettle::mesh

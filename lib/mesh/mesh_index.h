@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <vector>
 
 namespace fettle::mesh {
 
@@ -40,6 +41,10 @@ class MeshIndex {
     /// Closest point within `radius`, mm, if there is one.
     /// @param leaf  where the search starts; it affects only the time
     std::optional<Closest> closest(const Eigen::Vector3d& point, double radius, std::uint32_t leaf = 0) const;
+
+    /// Triangles near a point, ascending: all that have a point within `distance`, mm, and of the others only such
+    /// whose bounding boxes do.
+    std::vector<std::uint32_t> nearby(const Eigen::Vector3d& point, double distance) const;
 
     const Mesh& mesh() const;
     /// The tree, for searches of other kinds.

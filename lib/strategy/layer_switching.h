@@ -89,11 +89,10 @@ struct StrategyCounts {
 ///    `finish_passes` the wheel instead repeats strokes over the stretch of a pass where more is left, before the next
 ///    pass.
 /// 3. Above layer 1, F < F_min ends a pass: the wheel steps over and reverses. F < F_min at the beginning of a pass
-/// ends
-///    the cut. If the cut's largest force F_a exceeds F_down, it is repeated from where this layer was entered; else
-///    the wheel goes down one layer, to the position where that was left, and continues in its direction. A repetition
-///    that is predicted not to exceed F_down is skipped, and so is the beginning of a pass, or the rest of it, where
-///    the force is expected to stay below F_min.
+///    ends the cut. If the cut's largest force F_a exceeds F_down, it is repeated from where this layer was entered;
+///    else the wheel goes down one layer, to the position where that was left, and continues in its direction. A
+///    repetition that is predicted not to exceed F_down is skipped, and so is the beginning of a pass, or the rest of
+///    it, where the force is expected to stay below F_min.
 ///
 /// The beginning of a pass is its first stretch, as long as the step-over, so that an edge of the anomaly that recedes
 /// by up to 45° from pass to pass is still followed. Lines closer than the step-over serve the finish of layer 1: they

@@ -4,11 +4,14 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 #include <random>
 #include <utility>
+#include <vector>
 
 namespace fettle {
 namespace mesh_index_test {
@@ -135,6 +138,36 @@ TEST(MeshIndex, ClosestIsThatOfBruteForceOnSoups)
                 EXPECT_GE(found->barycentric.minCoeff(), 0);
                 EXPECT_FALSE(index.closest(point, expected - 1e-9 * (1 + shift)));
                 EXPECT_TRUE(index.closest(point, expected + 1e-9 * (1 + shift)));
+            }
+        }
+}
+
+// All facets within a distance, and only such whose boxes are; at distance 0 those at a vertex.
+TEST(MeshIndex, NearbyIsThatOfBruteForceOnSoups)
+{
+    std::mt19937 random(2);
+    std::uniform_real_distribution<double> place(-2, 2), radius(0, 1);
+    for (const double size : {0.01, 0.3, 2.0})
+        for (const double shift : {0.0, 1e4}) {
+            const Eigen::Vector3d centre = Eigen::Vector3d::Constant(shift);
+            const mesh::Mesh mesh = soup(300, size, random, centre);
+            const mesh::MeshIndex index(mesh);
+            const double tolerance = 1e-6 * (1 + shift); // of floats
+            for (int i = 0; i < 300; ++i) {
+                const bool at_vertex = i % 3 == 0;
+                const Eigen::Vector3d point =
+                    at_vertex ? Eigen::Vector3d(mesh.vertices.col(3 * i))
+                              : Eigen::Vector3d(centre + Eigen::Vector3d(place(random), place(random), place(random)));
+                const double distance = at_vertex ? 0 : radius(random);
+                const std::vector<std::uint32_t> found = index.nearby(point, distance);
+                EXPECT_TRUE(std::ranges::is_sorted(found));
+                for (std::uint32_t t = 0; t < mesh.triangles.cols(); ++t) {
+                    const mesh::Triangle corners = corners_of(mesh, t);
+                    const Eigen::AlignedBox3d box(corners.rowwise().minCoeff(), corners.rowwise().maxCoeff());
+                    const bool is_found = std::ranges::binary_search(found, t);
+                    if (brute_distance(corners, point) <= distance) EXPECT_TRUE(is_found);
+                    if (box.exteriorDistance(point) > distance + tolerance) EXPECT_FALSE(is_found);
+                }
             }
         }
 }
@@ -327,10 +360,12 @@ TEST(MeshIndex, EmptyAndUndefined)
     const mesh::MeshIndex nothing(empty);
     EXPECT_FALSE(nothing.highest(0, 0));
     EXPECT_FALSE(nothing.closest({0, 0, 0}, 1));
+    EXPECT_TRUE(nothing.nearby({0, 0, 0}, 1).empty());
     const mesh::Mesh mesh = grid(1);
     const mesh::MeshIndex index(mesh);
     const double nan = std::numeric_limits<double>::quiet_NaN();
     EXPECT_FALSE(index.closest({nan, 0, 0}, 1));
+    EXPECT_TRUE(index.nearby({nan, 0, 0}, 1).empty());
     EXPECT_FALSE(index.highest(nan, 0));
 }
 
