@@ -2,25 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numbers>
 
 namespace fettle::robot {
-
-namespace {
-
-constexpr double kFewTurns = 8 * kPi;
-
-// Shifts an angle by whole turns to within half a turn of `middle`; it mostly is at most a few turns away.
-double wrap_about(double angle, double middle)
-{
-    if (std::abs(angle - middle) > kFewTurns) return middle + std::remainder(angle - middle, 2 * kPi);
-    // Adding this and taking it off rounds to an integer, without a branch that cannot be foreseen.
-    constexpr double kRounding = 1.5 / std::numeric_limits<double>::epsilon();
-    return angle - 2 * kPi * ((angle - middle) / (2 * kPi) + kRounding - kRounding);
-}
-
-} // namespace
 
 double Singularity::min() const { return std::min({shoulder, elbow, wrist}); }
 
@@ -83,19 +66,14 @@ bool Arm::in_range(const Joints& joints) const
     return true;
 }
 
-bool Arm::wrap(Joints& joints, Eigen::Index k, Ranges ranges) const
-{
-    const JointRange& range = dh_[k].range;
-    joints[k] = wrap_about(joints[k], (range.min + range.max) / 2);
-    return ranges == Ranges::ignore || range.contains(joints[k]);
-}
-
 ArmSolutions Arm::solve(const Eigen::Isometry3d& T_base_flange, const Joints& seed, Ranges ranges) const
 {
-    if (kind_ == ArmKind::general) return solve_general(T_base_flange, seed, ranges);
-    const Ranges asked = is_exact_ ? ranges : Ranges::ignore; // a correction may bring a joint into its range
-    const ArmSolutions found = solve_closed(T_base_flange, seed, asked);
-    return is_exact_ ? found : corrected(found, T_base_flange, ranges);
+    const bool is_general = kind_ == ArmKind::general, needs_correction = !is_general && !is_exact_;
+    const Ranges asked = needs_correction ? Ranges::ignore : ranges; // a correction may bring a joint into its range
+    ArmSolutions found =
+        is_general ? solve_general(T_base_flange, seed, asked) : solve_closed(T_base_flange, seed, asked);
+    if (needs_correction) found = corrected(found, T_base_flange, ranges);
+    return found;
 }
 
 ArmSolutions Arm::solve_closed(const Eigen::Isometry3d& T_base_flange, const Joints& seed, Ranges ranges) const
