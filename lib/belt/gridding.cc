@@ -131,11 +131,13 @@ class Outline {
 Eigen::MatrixXd cell_coverage(const ContactGrid& grid, const Outline& outline, const Eigen::MatrixXd& center_inside)
 {
     Eigen::MatrixXd coverage = center_inside;
+    if (center_inside.minCoeff() == center_inside.maxCoeff()) return coverage;
     const auto is_at_border = [&](Index row, Index column) {
-        const Index top = std::max<Index>(row - 1, 0), left = std::max<Index>(column - 1, 0);
-        const auto around = center_inside.block(top, left, std::min(row + 2, grid.rows) - top,
-                                                std::min(column + 2, grid.columns) - left);
-        return around.minCoeff() != around.maxCoeff();
+        const double own = center_inside(row, column);
+        for (Index j = std::max<Index>(column - 1, 0); j < std::min(column + 2, grid.columns); ++j)
+            for (Index i = std::max<Index>(row - 1, 0); i < std::min(row + 2, grid.rows); ++i)
+                if (center_inside(i, j) != own) return true;
+        return false;
     };
     tbb::parallel_for(Index{0}, grid.columns, [&](Index column) {
         for (Index row = 0; row < grid.rows; ++row)

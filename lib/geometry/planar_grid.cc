@@ -21,18 +21,19 @@ PlanarGrid planar_grid(const Eigen::Ref<const Eigen::Matrix2Xd, 0, Eigen::OuterS
     grid.side =
         std::max({std::sqrt(points_per_cell * size.prod() / n), points_per_cell * size.maxCoeff() / n, kMinSide});
     grid.count = (size / grid.side).array().cast<int>() + 1;
-    // Counting sort.
-    std::vector<Eigen::Index> cells(points.cols());
-    grid.begin.assign(static_cast<std::size_t>(grid.count.x()) * grid.count.y() + 1, 0);
+    // Counting sort. Cells are counted two places on, so that filling them moves each cell's end to where it belongs.
+    std::vector<int> cells(points.cols());
+    grid.begin.assign(static_cast<std::size_t>(grid.count.x()) * grid.count.y() + 2, 0);
     for (Eigen::Index i = 0; i < points.cols(); ++i) {
-        const Eigen::Array2i cell = grid.cell_of(points.col(i));
-        cells[i] = static_cast<Eigen::Index>(cell.y()) * grid.count.x() + cell.x();
-        ++grid.begin[cells[i] + 1];
+        // As cell_of(), but no point is beside the grid.
+        const Eigen::Array2i cell = ((points.col(i) - grid.min) / grid.side).array().cast<int>();
+        cells[i] = cell.y() * grid.count.x() + cell.x();
+        ++grid.begin[cells[i] + 2];
     }
     std::partial_sum(grid.begin.begin(), grid.begin.end(), grid.begin.begin());
-    std::vector<Eigen::Index> next = grid.begin;
     grid.order.resize(points.cols());
-    for (Eigen::Index i = 0; i < points.cols(); ++i) grid.order[next[cells[i]]++] = i;
+    for (int i = 0; i < points.cols(); ++i) grid.order[grid.begin[cells[i] + 1]++] = i;
+    grid.begin.pop_back();
     return grid;
 }
 

@@ -13,8 +13,8 @@ struct PlanarGrid {
     Eigen::Vector2d min;                           ///< corner of the first cell
     double side = 0;                               ///< of a cell
     Eigen::Array2i count = Eigen::Array2i::Zero(); ///< cells in x and y
-    std::vector<Eigen::Index> order;               ///< columns of the points by cell, ascending in each cell
-    std::vector<Eigen::Index> begin;               ///< points of cell c = x + y count.x(): order[begin[c]] up to
+    std::vector<int> order;                        ///< columns of the points by cell, ascending in each cell
+    std::vector<int> begin;                        ///< points of cell c = x + y count.x(): order[begin[c]] up to
                                                    ///< order[begin[c + 1]]
 
     /// The cell of a point; for a point beside the grid, the nearest cell.
@@ -25,7 +25,7 @@ struct PlanarGrid {
     }
 };
 
-/// @param points  2xN, at least one, all of them finite
+/// @param points  2xN, at least one and fewer than 2³¹, all of them finite
 PlanarGrid planar_grid(const Eigen::Ref<const Eigen::Matrix2Xd, 0, Eigen::OuterStride<>>& points,
                        double points_per_cell);
 

@@ -114,7 +114,7 @@ TEST(PlanarGrid, PointsOnALineOrAtOnePlace)
     line.row(0).setLinSpaced(0, 99);
     EXPECT_EQ(geometry::planar_grid(line, 2).count.y(), 1);
     EXPECT_LE(geometry::planar_grid(line, 2).count.x(), 51);
-    EXPECT_EQ(geometry::planar_grid(Eigen::Matrix2Xd::Ones(2, 3), 1).order, (std::vector<Eigen::Index>{0, 1, 2}));
+    EXPECT_EQ(geometry::planar_grid(Eigen::Matrix2Xd::Ones(2, 3), 1).order, (std::vector<int>{0, 1, 2}));
 }
 
 TEST(PointIndex, FewPoints)
