@@ -23,11 +23,29 @@ using Eigen::VectorXd;
 constexpr std::array<double, 5> kPrefilter = {1 / 36.0, -10 / 36.0, 54 / 36.0, -10 / 36.0, 1 / 36.0};
 constexpr Index kExtraNodes = 2; // beyond each end
 
+/// Control heights along one axis from the values at its nodes, each of them a row.
+template <typename Values>
+auto filtered_rows(const Values& values, Index count)
+{
+    const auto& w = kPrefilter;
+    return w[0] * values.middleRows(0, count) + w[1] * values.middleRows(1, count) +
+           w[2] * values.middleRows(2, count) + w[3] * values.middleRows(3, count) + w[4] * values.middleRows(4, count);
+}
+
+/// The same of nodes that are columns.
+template <typename Values>
+auto filtered_columns(const Values& values, Index count)
+{
+    const auto& w = kPrefilter;
+    return w[0] * values.middleCols(0, count) + w[1] * values.middleCols(1, count) +
+           w[2] * values.middleCols(2, count) + w[3] * values.middleCols(3, count) + w[4] * values.middleCols(4, count);
+}
+
 } // namespace
 
 ControlHeights::ControlHeights(const surface::Bspline& grid)
-    : rows_(grid.heights.rows()), columns_(grid.heights.cols()), cell_(grid.cell),
-      nodes_(2, (rows_ + 2 * kExtraNodes) * (columns_ + 2 * kExtraNodes))
+    : rows_(grid.heights.rows()), columns_(grid.heights.cols()), cell_(grid.cell), origin_(grid.origin),
+      angle_(grid.angle), nodes_(2, (rows_ + 2 * kExtraNodes) * (columns_ + 2 * kExtraNodes))
 {
     const Eigen::Rotation2Dd turn(grid.angle);
     for (Index j = 0; j < columns_ + 2 * kExtraNodes; ++j)
@@ -40,13 +58,28 @@ MatrixXd ControlHeights::from_values(const MatrixXd& values) const
 {
     MatrixXd result(size(), values.cols()), along(rows_, columns_ + 2 * kExtraNodes);
     for (Index k = 0; k < values.cols(); ++k) {
-        const auto f = values.col(k).reshaped(rows_ + 2 * kExtraNodes, columns_ + 2 * kExtraNodes);
-        along.setZero();
-        for (Index p = 0; p <= 2 * kExtraNodes; ++p) along += kPrefilter[p] * f.middleRows(p, rows_);
-        auto controls = result.col(k).reshaped(rows_, columns_);
-        controls.setZero();
-        for (Index p = 0; p <= 2 * kExtraNodes; ++p) controls += kPrefilter[p] * along.middleCols(p, columns_);
+        along = filtered_rows(values.col(k).reshaped(rows_ + 2 * kExtraNodes, columns_ + 2 * kExtraNodes), rows_);
+        result.col(k).reshaped(rows_, columns_) = filtered_columns(along, columns_);
     }
+    return result;
+}
+
+// exp(-(u² + v²) / 2) is a product: of a squared exponential each axis of the grid is filtered alone.
+MatrixXd ControlHeights::correlation_with(const Correlation& correlation, const Eigen::Matrix2Xd& points,
+                                          const MatrixXd& squared) const
+{
+    if (correlation.kernel != Kernel::squared_exponential) return from_values(correlation_matrix(correlation, squared));
+    const Eigen::Matrix2Xd in_grid = Eigen::Rotation2Dd(-angle_).toRotationMatrix() * (points.colwise() - origin_);
+    const auto filtered_axis = [&](Index axis, Index count) -> MatrixXd {
+        const Index nodes = count + 2 * kExtraNodes;
+        const VectorXd places = cell_[axis] * VectorXd::LinSpaced(nodes, -kExtraNodes - 1, nodes - kExtraNodes - 2);
+        const MatrixXd offsets = places.replicate(1, points.cols()).rowwise() - in_grid.row(axis);
+        return filtered_rows(correlation_matrix(correlation, MatrixXd(offsets.cwiseAbs2())), count);
+    };
+    const MatrixXd rows = filtered_axis(0, rows_), columns = filtered_axis(1, columns_);
+    MatrixXd result(size(), points.cols());
+    for (Index k = 0; k < points.cols(); ++k)
+        result.col(k).reshaped(rows_, columns_).noalias() = rows.col(k) * columns.col(k).transpose();
     return result;
 }
 
@@ -160,7 +193,7 @@ std::pair<VectorXd, MatrixXd> mix_processes(const ProcessTouches& touches, const
         const Spectrum& s = spectra[k];
         Amplitudes amplitudes(s, touches.sigma, weights[k]);
         if (amplitudes.weight == 0) return;
-        const MatrixXd C = controls.from_values(correlation_matrix(s.correlation, from_nodes));
+        const MatrixXd C = controls.correlation_with(s.correlation, touches.xy, from_nodes);
         const MatrixXd QK = trend.Q.transpose() * correlation_matrix(s.correlation, among_touches);
         Part& part = parts[k];
         part.weight = amplitudes.weight;

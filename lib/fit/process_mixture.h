@@ -23,6 +23,10 @@ class ControlHeights {
     const Eigen::Matrix2Xd& nodes() const { return nodes_; }
     /// Control heights, one column for each column of function values at the nodes.
     Eigen::MatrixXd from_values(const Eigen::MatrixXd& values) const;
+    /// Correlations of the control heights with the process at some points.
+    /// @param squared  of the nodes' distances from the points, mm²
+    Eigen::MatrixXd correlation_with(const Correlation& correlation, const Eigen::Matrix2Xd& points,
+                                     const Eigen::MatrixXd& squared) const;
     /// Correlation of two control heights; entry (p, q) is for p rows and q columns between them.
     Eigen::MatrixXd correlation_by_offset(const Correlation& correlation) const;
     /// Adds the block Toeplitz matrix of correlations by offset to the lower triangle of a covariance.
@@ -30,7 +34,8 @@ class ControlHeights {
 
   private:
     Eigen::Index rows_, columns_;
-    Eigen::Vector2d cell_;
+    Eigen::Vector2d cell_, origin_;
+    double angle_;
     Eigen::Matrix2Xd nodes_;
 };
 

@@ -30,6 +30,20 @@ double radius_of(const Eigen::Matrix2Xd& xy)
     return (xy.colwise() - xy.rowwise().mean().eval()).colwise().norm().maxCoeff();
 }
 
+/// Σ ln of numbers in (0, 1], by few logarithms.
+double log_of_product(const VectorXd& factors)
+{
+    constexpr double kMinProduct = 1e-150; // times another such number, the product is still no denormal one
+    double sum = 0, product = 1;
+    for (const double factor : factors) {
+        product *= factor;
+        if (product > kMinProduct) continue;
+        sum += std::log(product);
+        product = 1;
+    }
+    return sum + std::log(product);
+}
+
 } // namespace
 
 ProcessTouches subset_of(const ProcessTouches& all, const TouchIndices& kept)
@@ -44,8 +58,8 @@ void set_scores(Spectrum& s, double factor, Index trend)
     const double trend_penalty = trend * std::log(s.E.rows());
     const Eigen::ArrayXd squares = (s.y / factor).array().square();
     for (int i = 0; i < kNumRatios; ++i) {
-        const Eigen::ArrayXd d = precision(s, amplitude_ratio(i));
-        s.score[i] = trend_penalty - d.log().sum() + (squares * d).sum();
+        const VectorXd d = precision(s, amplitude_ratio(i));
+        s.score[i] = trend_penalty - log_of_product(d) + (squares * d.array()).sum();
     }
 }
 

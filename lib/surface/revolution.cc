@@ -101,11 +101,14 @@ RevolutionDistance distance_with_gradients(const Revolution& surface, const Vect
     RevolutionDistance result;
     result.value = f;
     result.gradient = by_height * surface.w + by_q * surface.m + by_q * surface.curvature_around * p.d;
-    result.parameter_gradient =
-        by_height * (surface.w_theta.transpose() * p.d) + by_q * (surface.m_theta.transpose() * p.d);
+    for (const RevolutionParameter k : {kTiltAcross, kTiltAlong, kTurn})
+        result.parameter_gradient[k] =
+            by_height * surface.w_theta.col(k).dot(p.d) + by_q * surface.m_theta.col(k).dot(p.d);
     result.parameter_gradient[kOffset] = -result.gradient.z();
     result.parameter_gradient[kCurvatureAround] = by_q * p.across2 / 2 - by_g * g * g / (2 * p.around.r);
-    result.parameter_gradient[kLean] += (surface.c * p.height - surface.s * g) / p.along.r;
+    // ∂w/∂lean = m and ∂m/∂lean = -w
+    result.parameter_gradient[kLean] =
+        by_height * p.radial - by_q * p.height + (surface.c * p.height - surface.s * g) / p.along.r;
     result.parameter_gradient[kCurvatureAlong] = (g * g + p.height * p.height - f * f) / (2 * p.along.r);
     return result;
 }
