@@ -4,6 +4,7 @@
 #include "core/decompositions.h"
 #include "fit/correlation.h"
 #include "fit/family.h"
+#include "fit/process_weights.h"
 #include "surface/shapes.h"
 
 #include <algorithm>
@@ -142,11 +143,13 @@ std::vector<Model> models_of(double share, const Touches& inliers, const std::op
     add_models(inliers, kAmplitudes.front(), radius, models);
     if (all)
         for (const double amplitude : kAmplitudes) add_models(*all, amplitude, radius, models);
+    // Per touch: per degree of freedom the bands of exact cones and tori, with many parameters, grew by a quarter.
+    const double power = fit::evidence_power(inliers.places.cols(), 0);
     double max = without;
     for (const Model& model : models) max = std::max(max, log_evidence(model));
-    double sum = (1 - share) * std::exp(without - max);
+    double sum = (1 - share) * std::exp(power * (without - max));
     for (Model& model : models) {
-        model.probability = share / kLengths.size() * std::exp(log_evidence(model) - max);
+        model.probability = share / kLengths.size() * std::exp(power * (log_evidence(model) - max));
         sum += model.probability;
     }
     for (Model& model : models) model.probability /= sum;
