@@ -1,5 +1,6 @@
 # How honest the margin is on real surfaces: cells cut from scans where they are one face, each touched as fettle-sample does
-# (Wang's layout, and the default, which goes on from there), fitted by auto, compared with the scan inside B.
+# (Wang's layout, and the default, which goes on from there), fitted by auto, compared with the scan inside B; the margin by the touches
+# alone, and with the scan around B (+scan).
 #
 #   make -f pipelines/scans.mk -j2                 three scans of samples/: the table; exit 1 if a figure is missed
 #   make -f pipelines/scans.mk -j2 DATA=FOLDER     with six more, which the rules of the study were not made on
@@ -23,7 +24,7 @@ UNSEEN := dragon0 dragon168 happy igea horse nefertiti pepper blade soup meat su
 NAMES  := $(if $(APART),$(UNSEEN),$(LEARNT) $(OTHERS))
 CELLS  ?= $(if $(APART),110,$(if $(DATA),170,340))
 SEED   ?= 1
-STRATEGIES ?= wang extended
+STRATEGIES ?= wang wang+scan extended extended+scan
 SCANS  ?= $(B)/scans/cells-$(CELLS)/$(SEED)
 
 .PHONY: scans FORCE

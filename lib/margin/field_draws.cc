@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <random>
 #include <variant>
 #include <vector>
@@ -82,10 +83,10 @@ struct Component {
 
 /// Adds waves about a family, the last of the components, whose weight is reduced by theirs.
 void add_waves(std::vector<Component>& all, const surface::WeightedShape& member, const surface::Surface& surface,
-               const Eigen::Matrix2Xd& xy)
+               const Eigen::Matrix2Xd& xy, const ScanWaves* scan)
 {
     const Component family = all.back();
-    for (Waves& one : waves_about(member, surface, xy)) {
+    for (Waves& one : waves_about(member, surface, xy, scan)) {
         if (!one.root.allFinite() || !one.offset.allFinite()) continue;
         all.back().weight -= one.probability * family.weight;
         all.insert(all.end() - 1,
@@ -96,9 +97,11 @@ void add_waves(std::vector<Component>& all, const surface::WeightedShape& member
 } // namespace
 
 Eigen::MatrixXd draw_fields(const surface::Surface& surface, const Eigen::Matrix2Xd& xy, int draws, std::uint64_t seed,
-                            Tails tails, WavesOfFamilies waves)
+                            Tails tails, WavesOfFamilies waves, const Eigen::Matrix3Xd& scan)
 {
     const Eigen::VectorXd mean = surface::heights(surface, xy).array() - surface.shift;
+    std::optional<ScanWaves> scan_waves;
+    if (scan.cols() > 0) scan_waves.emplace(scan, wave_lengths(surface));
     std::vector<Component> all;
     if (surface.precision) {
         const Eigen::MatrixXd covariance =
@@ -115,7 +118,8 @@ Eigen::MatrixXd draw_fields(const surface::Surface& surface, const Eigen::Matrix
                        is_process && tails == Tails::student
                            ? std::min(surface.touch_sigma_dof, process_freedom(surface))
                            : surface.touch_sigma_dof});
-        if (waves == WavesOfFamilies::possible && !is_process) add_waves(all, member, surface, xy);
+        if (waves == WavesOfFamilies::possible && !is_process)
+            add_waves(all, member, surface, xy, scan_waves ? &*scan_waves : nullptr);
     }
     double sum = 0;
     for (const Component& one : all) sum += one.weight;

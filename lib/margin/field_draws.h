@@ -22,9 +22,12 @@ enum class WavesOfFamilies { none, possible };
 /// Draws height errors from the posterior of a fit: from its covariance and its alternatives by their weight, relative
 /// to their common mean. Draws are in antithetic pairs, of opposite sign about a member's mean.
 /// @param xy  2xN, M, mm   @param draws  even
+/// @param scan  of the metal around the anomaly, which says how large the waves are: 3xN, M, mm; none: the touches
+/// alone
 /// @return  N x draws, mm; members that are not defined at all of xy are left out
 /// @throws core::InputError if no member has a finite covariance
 Eigen::MatrixXd draw_fields(const surface::Surface& surface, const Eigen::Matrix2Xd& xy, int draws, std::uint64_t seed,
-                            Tails tails = Tails::normal, WavesOfFamilies waves = WavesOfFamilies::none);
+                            Tails tails = Tails::normal, WavesOfFamilies waves = WavesOfFamilies::none,
+                            const Eigen::Matrix3Xd& scan = {});
 
 } // namespace fettle::margin

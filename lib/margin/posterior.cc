@@ -23,10 +23,16 @@ constexpr int kDraws = 8192; // the 99 % quantile of so many has a relative stan
 
 /// A free-form surface whose family the job does not state may have waves about it. A fit to a scan, which has no
 /// goodness of fit, follows its waves.
-WavesOfFamilies possible_waves(const surface::Surface& surface, const job::Job& job, Tails tails)
+/// @throws InputError if a scan is to say how large the waves are of a surface that has none
+WavesOfFamilies possible_waves(const surface::Surface& surface, const job::Job& job, Tails tails, bool is_scan_given,
+                               const std::string& source)
 {
-    const bool may_wave = tails == Tails::student && job.surface == job::SurfaceType::freeform &&
-                          !surface.alternatives.empty() && std::isfinite(surface.goodness);
+    const bool is_of_touches = job.surface == job::SurfaceType::freeform && std::isfinite(surface.goodness);
+    if (is_scan_given && !is_of_touches)
+        throw core::InputError(source,
+                               "is no free-form surface fitted to touches with one to spare, so no waves about it "
+                               "are predicted from a scan");
+    const bool may_wave = tails == Tails::student && is_of_touches && (is_scan_given || !surface.alternatives.empty());
     return may_wave ? WavesOfFamilies::possible : WavesOfFamilies::none;
 }
 
@@ -55,7 +61,8 @@ void check_determined(const surface::Prediction& prediction, const job::Job& job
 }
 
 surface::Prediction predict_by_posterior(const surface::Surface& surface, const job::Job& job, double confidence,
-                                         std::uint64_t seed, const std::string& source, Tails tails)
+                                         std::uint64_t seed, const std::string& source, Tails tails,
+                                         const Eigen::Matrix3Xd& scan)
 {
     if (!surface::has_sigma(surface) && !surface::has_touch_noise_only(surface))
         throw core::InputError(source,
@@ -66,7 +73,8 @@ surface::Prediction predict_by_posterior(const surface::Surface& surface, const 
         throw core::InputError(source, "the covariance of an interpolant (" + surface.method +
                                            ") holds the touches' noise, not what it misses between them, so its error "
                                            "cannot be predicted; use the method wang");
-    const Eigen::MatrixXd fields = draw_fields(surface, grid, kDraws, seed, tails, possible_waves(surface, job, tails));
+    const Eigen::MatrixXd fields = draw_fields(surface, grid, kDraws, seed, tails,
+                                               possible_waves(surface, job, tails, scan.cols() > 0, source), scan);
     std::vector<double> shifts, bands;
     for (const auto& field : fields.colwise()) {
         shifts.push_back(field.maxCoeff()); // the fitted surface's error is the negative field

@@ -118,41 +118,80 @@ struct Model {
     fit::Correlation correlation;
     double variance; ///< over that of a touch
     Kriging kriging;
-    double probability = 0; ///< posterior, if the part is of the family
+    double probability; ///< prior, then posterior, if the part is of the family
 };
 
 double log_evidence(const Model& model) { return model.kriging.log_likelihood + model.touches->log_prior; }
 
-void add_models(const Touches& touches, double amplitude, double radius, std::vector<Model>& models)
+/// Prior of waves of one amplitude and one length; what is left of 1 is that of no waves.
+struct WavePrior {
+    double amplitude; ///< over the standard deviation of a touch
+    double length;    ///< mm
+    double probability;
+};
+
+/// The models of the priors, each given the touches.
+void add_models(const Touches& touches, const std::vector<WavePrior>& priors, std::vector<Model>& models)
 {
     const MatrixXd noise = MatrixXd::Identity(touches.places.cols(), touches.places.cols());
-    for (const double length : kLengths) {
-        const fit::Correlation correlation{fit::Kernel::matern52, length * radius};
-        const double variance = amplitude * amplitude;
+    for (const WavePrior& prior : priors) {
+        const fit::Correlation correlation{fit::Kernel::matern52, prior.length};
+        const double variance = prior.amplitude * prior.amplitude;
         const MatrixXd K = fit::correlation_matrix(correlation, touches.places, touches.places);
-        models.push_back({&touches, correlation, variance, kriging(variance * K + noise, touches.trend)});
+        models.push_back(
+            {&touches, correlation, variance, kriging(variance * K + noise, touches.trend), prior.probability});
     }
 }
 
-/// @param inliers  touches that the fit kept   @param all  inliers and outliers; nothing if there are no outliers
-std::vector<Model> models_of(double share, const Touches& inliers, const std::optional<Touches>& all, double radius)
+/// Sets the posterior probabilities of models that hold their prior ones.
+/// @param without  prior probability of no waves, given the touches that the fit kept
+void set_posterior(double without, const Touches& inliers, std::vector<Model>& models)
 {
     const MatrixXd noise = MatrixXd::Identity(inliers.places.cols(), inliers.places.cols());
-    const double without = kriging(noise, inliers.trend).log_likelihood + inliers.log_prior;
-    std::vector<Model> models;
-    add_models(inliers, kAmplitudes.front(), radius, models);
-    if (all)
-        for (const double amplitude : kAmplitudes) add_models(*all, amplitude, radius, models);
+    const double evidence = kriging(noise, inliers.trend).log_likelihood + inliers.log_prior;
     // Per touch: per degree of freedom the bands of exact cones and tori, with many parameters, grew by a quarter.
     const double power = fit::evidence_power(inliers.places.cols(), 0);
-    double max = without;
+    double max = evidence;
     for (const Model& model : models) max = std::max(max, log_evidence(model));
-    double sum = (1 - share) * std::exp(power * (without - max));
-    for (Model& model : models) {
-        model.probability = share / kLengths.size() * std::exp(power * (log_evidence(model) - max));
-        sum += model.probability;
-    }
+    double sum = without * std::exp(power * (evidence - max));
+    for (Model& model : models) sum += model.probability *= std::exp(power * (log_evidence(model) - max));
     for (Model& model : models) model.probability /= sum;
+}
+
+std::vector<WavePrior> priors_of(double amplitude, double share, const std::vector<double>& lengths)
+{
+    std::vector<WavePrior> priors;
+    for (const double length : lengths) priors.push_back({amplitude, length, share / double(lengths.size())});
+    return priors;
+}
+
+/// @param inliers  touches that the fit kept   @param all  inliers and outliers; nothing if there are no outliers
+std::vector<Model> models_of_touches(double share, const Touches& inliers, const std::optional<Touches>& all,
+                                     const std::vector<double>& lengths)
+{
+    std::vector<Model> models;
+    add_models(inliers, priors_of(kAmplitudes.front(), share, lengths), models);
+    if (all)
+        for (const double amplitude : kAmplitudes) add_models(*all, priors_of(amplitude, share, lengths), models);
+    set_posterior(1 - share, inliers, models);
+    return models;
+}
+
+/// As models_of_touches(), of waves as large as those that a scan shows about the family.
+std::vector<Model> models_of_scan(const std::vector<WaveSize>& sizes, double sigma, const Touches& inliers,
+                                  const std::optional<Touches>& all)
+{
+    std::vector<WavePrior> priors;
+    double without = 0;
+    for (const WaveSize& size : sizes)
+        if (size.amplitude == 0)
+            without += size.probability;
+        else if (size.probability > kMinProbability)
+            priors.push_back({size.amplitude / sigma, size.length, size.probability});
+    std::vector<Model> models;
+    add_models(inliers, priors, models);
+    if (all) add_models(*all, priors, models);
+    set_posterior(without, inliers, models);
     return models;
 }
 
@@ -174,24 +213,43 @@ Waves waves_of(const Model& model, const Eigen::Matrix2Xd& xy, double sigma)
 
 } // namespace
 
+std::vector<double> wave_lengths(const surface::Surface& surface)
+{
+    const Eigen::Matrix2Xd places = inliers(surface).topRows<2>();
+    if (places.cols() == 0) return {};
+    const double radius = (places.colwise() - places.rowwise().mean().eval()).colwise().norm().maxCoeff();
+    std::vector<double> lengths;
+    for (const double length : kLengths) lengths.push_back(length * radius);
+    return lengths;
+}
+
 std::vector<Waves> waves_about(const surface::WeightedShape& member, const surface::Surface& surface,
-                               const Eigen::Matrix2Xd& xy)
+                               const Eigen::Matrix2Xd& xy, const ScanWaves* scan)
 {
     const Eigen::Matrix3Xd kept = inliers(surface);
     const double sigma = surface.touch_sigma;
     if (kept.cols() == 0 || !(sigma > 0)) return {};
     const Eigen::Matrix2Xd places = kept.topRows<2>();
-    const double radius = (places.colwise() - places.rowwise().mean().eval()).colwise().norm().maxCoeff();
+    const std::vector<double> lengths = wave_lengths(surface);
     const double gross = -double(surface.outliers.size()) * fit::outlier_penalty(sigma) / 2;
     const Touches inner{places, trend_of(member, kept, sigma, xy), gross};
-    if (!is_usable(inner.trend) || !(radius > 0)) return {};
+    if (!is_usable(inner.trend) || !(lengths.front() > 0)) return {};
     std::optional<Touches> all;
     if (!surface.outliers.empty()) {
         all = Touches{surface.touches.topRows<2>(), trend_of(member, surface.touches, sigma, xy), 0};
         if (!is_usable(all->trend)) all.reset();
     }
+    std::vector<Model> models;
+    if (scan != nullptr) {
+        const MatrixXd at_scan = trend_of(member, kept, sigma, scan->places()).at_xy;
+        const VectorXd residuals = scan->z() - surface::heights(member.shape, scan->places());
+        if (!at_scan.allFinite() || !residuals.allFinite()) return {}; // the family is not defined all over the scan
+        models = models_of_scan(scan->sizes(at_scan, residuals, share_of(member.shape)), sigma, inner, all);
+    } else {
+        models = models_of_touches(share_of(member.shape), inner, all, lengths);
+    }
     std::vector<Waves> result;
-    for (const Model& model : models_of(share_of(member.shape), inner, all, radius))
+    for (const Model& model : models)
         if (model.probability > kMinProbability) result.push_back(waves_of(model, xy, sigma));
     return result;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "margin/scan_waves.h"
 #include "surface/surface.h"
 
 #include <Eigen/Core>
@@ -16,6 +17,10 @@ struct Waves {
     Eigen::MatrixXd root;   ///< F with F Fᵀ the heights' covariance
 };
 
+/// Lengths of the waves that are considered, mm: parts of the distance of the farthest touch from the middle of those
+/// that the fit kept.
+std::vector<double> wave_lengths(const surface::Surface& surface);
+
 /// Castings have waves of their own, and families none. A priori one part in four has waves: of four times the standard
 /// deviation of a touch, the highest that a dozen touches may hide, with lengths of a quarter to all of the touches'
 /// radius, equally probable (Matérn, ν = 5/2). No part is designed as a cubic: where one fits the touches, nine parts
@@ -25,10 +30,12 @@ struct Waves {
 /// outliers (outlier_penalty()), or be explained by waves: given these touches, waves of 8, 16 and 32 times that
 /// deviation are considered, too, each with the prior odds of those of four times. Without such touches they are not,
 /// since they would leave no probability to any family.
-/// @param member  a family fitted to the surface's touches   @param xy  2xN, M, mm
+/// A scan of the metal around the anomaly says how large the waves are; then these sizes are the prior instead.
+/// @param member  a family fitted to the surface's touches   @param xy  2xN, M, mm   @param scan  may be null; of the
+///                lengths of wave_lengths()
 /// @return  waves whose probability matters; the remaining probability is that of the family without waves. Nothing
 ///          where the touches leave no degree of freedom, or the family is not defined.
 std::vector<Waves> waves_about(const surface::WeightedShape& member, const surface::Surface& surface,
-                               const Eigen::Matrix2Xd& xy);
+                               const Eigen::Matrix2Xd& xy, const ScanWaves* scan = nullptr);
 
 } // namespace fettle::margin

@@ -4,14 +4,16 @@
 //
 //     scans FILE UNIT MIN MAX CELLS SEED STRATEGIES [ACCURACY...]       a line a cell and strategy, CSV
 //
-// MIN and MAX bound the sides of B in mm; STRATEGIES: "wang", "extended" or both; ACCURACY is that of the probe, mm: 99
-// % of the touches lie within it. The part's skin and the scanner's noise come on top of it in every touch: the job's
-// accuracy allows for their usual size, that of cells which are not judged.
+// MIN and MAX bound the sides of B in mm; STRATEGIES: some of "wang extended wang+scan extended+scan", with the margin
+// told the scan of the metal around B or not; ACCURACY is that of the probe, mm: 99 % of the touches lie within it. The
+// part's skin and the scanner's noise come on top of it in every touch: the job's accuracy allows for their usual size,
+// that of cells which are not judged.
 #include "scan-cells.h"
 
 #include "fit/fit.h"
 #include "gantry/touch_job.h"
 #include "margin/error_band.h"
+#include "margin/scan_waves.h"
 #include "margin/shift.h"
 #include "mesh/shape_file.h"
 #include "sampling/noise.h"
@@ -21,8 +23,11 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <iterator>
 #include <optional>
 #include <random>
+#include <set>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -82,15 +87,18 @@ double skin_of(const Cell& cell)
     return std::sqrt((heights(cell, 0).reshaped() - smooth_heights(cell)).array().square().mean());
 }
 
-void compare(const Cell& cell, double accuracy, double usual_skin, const std::string& name,
-             const gantry::JobTouches& touched, const job::Job& job, std::ostream& out)
+/// @param around  heights of the scan that the margin is told; none: it goes by the touches alone
+void compare(const Cell& cell, int number, double accuracy, double usual_skin, const std::string& name,
+             const gantry::JobTouches& touched, const job::Job& job, const Eigen::Matrix3Xd& around, std::ostream& out)
 {
     fit::FitInput input;
     input.job = job;
     input.xyz = touched.touches;
     input.roles = touched.plan.role;
     const surface::Surface surface = fit::fit_surface(input, "auto").surface;
-    const auto predict = [&](double confidence) { return margin::predict_by_posterior(surface, job, confidence, 1); };
+    const auto predict = [&](double confidence) {
+        return margin::predict_by_posterior(surface, job, confidence, 1, "surface", margin::Tails::student, around);
+    };
     Eigen::Matrix2Xd xy(2, kInside * kInside);
     for (int j = 0, k = 0; j < kInside; ++j)
         for (int i = 0; i < kInside; ++i, ++k) xy.col(k) = place(cell, i, j);
@@ -105,12 +113,12 @@ void compare(const Cell& cell, double accuracy, double usual_skin, const std::st
     };
     const surface::Prediction at90 = predict(0.9), at99 = predict(0.99);
     const double points = ((error.array() + at99.shift) < 0).cast<double>().mean();
-    out << name << ',' << touched.plan.size() << ',' << accuracy << ',' << cell.a << ',' << cell.b << ',' << cell.d
-        << ',' << surface.method << ',' << surface.weight << ',' << surface.goodness << ',' << margin::error_band(error)
-        << ',' << at90.shift << ',' << at99.shift << ',' << -(error.minCoeff() + at90.shift) << ','
-        << -(error.minCoeff() + at99.shift) << ',' << predict(0.95).band << ',' << covered << ',' << points << ','
-        << -(percentile(error, 0.01) + at99.shift) << ',' << -(smooth_error.minCoeff() + at99.shift) << ','
-        << -(smooth_error.minCoeff() + at90.shift) << ','
+    out << number << ',' << name << ',' << touched.plan.size() << ',' << accuracy << ',' << cell.a << ',' << cell.b
+        << ',' << cell.d << ',' << surface.method << ',' << surface.weight << ',' << surface.goodness << ','
+        << margin::error_band(error) << ',' << at90.shift << ',' << at99.shift << ','
+        << -(error.minCoeff() + at90.shift) << ',' << -(error.minCoeff() + at99.shift) << ',' << predict(0.95).band
+        << ',' << covered << ',' << points << ',' << -(percentile(error, 0.01) + at99.shift) << ','
+        << -(smooth_error.minCoeff() + at99.shift) << ',' << -(smooth_error.minCoeff() + at90.shift) << ','
         << std::sqrt((smooth_error - error).squaredNorm() / error.size()) << ',' << usual_skin << "\n";
 }
 
@@ -146,7 +154,7 @@ double usual_skin(const Shape& all, const std::vector<double>& sides, std::uint6
 
 template <typename Shape>
 void run(const Shape& all, const std::vector<double>& sides, int cells, std::uint64_t seed,
-         const std::string& strategies, const std::vector<double>& accuracies)
+         const std::set<std::string>& strategies, const std::vector<double>& accuracies)
 {
     const double skin = usual_skin(all, sides, seed);
     for (int number = 0; number < cells; ++number) {
@@ -162,12 +170,15 @@ void run(const Shape& all, const std::vector<double>& sides, int cells, std::uin
         };
         for (const auto& [name, strategy] :
              {std::pair{"wang", gantry::TouchStrategy::wang}, std::pair{"extended", gantry::TouchStrategy::extended}}) {
-            if (strategies.find(name) == std::string::npos) continue;
+            const std::string with_scan = std::string(name) + "+scan";
+            if (!strategies.contains(name) && !strategies.contains(with_scan)) continue;
             gantry::TouchRequest request;
             request.strategy = strategy;
             const gantry::JobTouches touched = touch_job(job, &part, request);
-            std::cout << number << ',';
-            compare(cell, accuracy, skin, name, touched, job, std::cout);
+            if (strategies.contains(name)) compare(cell, number, accuracy, skin, name, touched, job, {}, std::cout);
+            if (strategies.contains(with_scan))
+                compare(cell, number, accuracy, skin, with_scan, touched, job,
+                        margin::heights_around_anomaly(*cell.on, job, "scan"), std::cout);
         }
     }
 }
@@ -187,12 +198,14 @@ int main(int argc, char** argv)
     units.length = units::parse_length_unit(argv[2]);
     const mesh::ShapeFile file = mesh::read_shape(argv[1], units);
     const std::vector<double> sides = {std::atof(argv[3]), std::atof(argv[4])};
+    std::istringstream words(argv[7]);
+    const std::set<std::string> strategies{std::istream_iterator<std::string>(words), {}};
     std::cout
         << "cell,strategy,touches,accuracy,a,b,d,method,weight,goodness,band,shift90,shift99,below90,below99,predicted,"
            "covered,points,p99,smooth99,smooth90,skin,usual_skin\n";
     std::visit(
         [&](const auto& all) {
-            run(all, sides, std::atoi(argv[5]), std::strtoull(argv[6], nullptr, 10), argv[7], accuracies);
+            run(all, sides, std::atoi(argv[5]), std::strtoull(argv[6], nullptr, 10), strategies, accuracies);
         },
         file.shape);
 }
