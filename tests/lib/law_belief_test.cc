@@ -19,7 +19,8 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 /// F^2 t, wearing by a hundredth of a pass's work each.
 LawRecord drawn(int count)
 {
-    LawRecord record{5 * 10, {}};
+    LawRecord record;
+    record.pass_work = 5 * 10;
     for (int k = 0; k < count; ++k) {
         removal::RemovalTrial pass{3.0 + k % 7, kNone, kNone, 5.0 + 3 * (k % 5), 50.0 * k, 0};
         pass.volume = 0.1 * pass.force * pass.force * pass.duration * std::exp(-0.01 * k);
@@ -91,7 +92,8 @@ TEST(LawBelief, RejectsWhatIsNotPositive)
     record = drawn(8);
     record.passes[5].force = -1;
     EXPECT_THROW(calibrate::learn(record), core::InputError);
-    EXPECT_THROW(calibrate::learn({1, {}}), core::InputError);
+    record.passes.clear();
+    EXPECT_THROW(calibrate::learn(record), core::InputError);
 }
 
 } // namespace law_belief_test
