@@ -17,8 +17,8 @@ namespace {
 // After a layout touches are added in batches, each as large as a layout of two lines, while a batch lowers the band.
 constexpr int kPatience = 8;
 
-// As that of fettle-margin by default: the band that is to meet the tolerance is the one that the margin will be made
-// of.
+// That of fettle-margin by default. The band that is to meet the tolerance is of normal draws without waves about a
+// family; the margin has both these and Student's tails.
 constexpr double kMarginConfidence = 0.99;
 
 margin::AdaptiveLimits adaptive_limits(const job::Job& job, int max_touches)

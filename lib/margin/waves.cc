@@ -149,7 +149,8 @@ void set_posterior(double without, const Touches& inliers, std::vector<Model>& m
 {
     const MatrixXd noise = MatrixXd::Identity(inliers.places.cols(), inliers.places.cols());
     const double evidence = kriging(noise, inliers.trend).log_likelihood + inliers.log_prior;
-    // Per touch: per degree of freedom the bands of exact cones and tori, with many parameters, grew by a quarter.
+    // The power counts touches: with degrees of freedom the bands of exact cones and tori, which have many parameters,
+    // grew by a quarter.
     const double power = fit::evidence_power(inliers.places.cols(), 0);
     double max = evidence;
     for (const Model& model : models) max = std::max(max, log_evidence(model));
