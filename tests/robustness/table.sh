@@ -3,7 +3,7 @@
 # shellcheck source=tests/robustness/tools.bash
 . "$HERE/tools.bash"
 inputs
-reads='align:--transform-in arm:--srdf collide:--srdf find:--wheels gantry-robot:--srdf grind:--place merge:--poses mill:--design path:--no-room-for path:--part path:--room-for place:--matrix stock-linuxcnc:--after teach:--machine' # files that the commands do without, and only read
+reads='align:--transform-in arm:--srdf collide:--srdf find:--wheels gantry-robot:--srdf grind:--place margin:--scan merge:--poses mill:--design path:--no-room-for path:--part path:--room-for place:--matrix stock-linuxcnc:--after teach:--machine' # files that the commands do without, and only read
 for file in "$HERE"/../../tools/fettle-*.cc; do
     name=$(basename "$file" .cc)
     [[ " ${names//$'\n'/ } gantry-linuxcnc step " == *" ${name#fettle-} "* ]] || say 'is not in tools.bash' "$name"
