@@ -118,6 +118,7 @@ points() { # R|S FILE
     try "$1" "$2" fettle-form sphericity "$2"
     try "$1" "$2" fettle-grind plan.json --stock "$2" --cell 2
     stocks "$@"
+    try "${1/G/S}" "$2" fettle-margin job.json fit.json --scan "$2"
     try "${1/G/S}" "$2" fettle-merge "$2" good.pcd
     try "$1" "$2" fettle-mesh surface.json --at "$2"
     try "$1" "$2" fettle-mill "$2" --stock box:0,0,0,9,9,9 --cutter ball:6 --step 0.5
@@ -159,6 +160,7 @@ meshes() { # R|S|G FILE
     try "${1/G/S}" "$2" fettle-find good.pcd --against "$2" --transform-in identity.txt
     try "$1" "$2" fettle-finish "$2" --cutter ball:6 --step-over 4
     try "$1" "$2" fettle-grind plan.json --stock "$2" --cell 2
+    try "${1/G/S}" "$2" fettle-margin job.json fit.json --scan "$2"
     try "$1" "$2" fettle-mill path.nc --stock "$2" --cutter ball:6 --step 0.5
     stocks "$@"
     try "$1" "$2" fettle-place "$2" --up plane
