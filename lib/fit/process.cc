@@ -89,13 +89,12 @@ std::optional<FitCandidate> fit_gaussian_process(const TouchSet& touches, const 
     candidate.method = "gp";
     std::vector<Spectrum> spectra;
     candidate.outliers = reject_outliers(inliers, spectra, std::min(n - p - kMinRedundancy, n / 4));
-    const double likelihoods = mixture_weights(spectra).sum / (spectra.size() * kNumRatios);
-    candidate.score =
-        min_score(spectra) - 2 * std::log(likelihoods) + outlier_penalty(touches.sigma) * candidate.outliers.size();
+    const ProcessWeights weights = mixture_weights(spectra);
+    candidate.score = min_score(spectra) - 2 * std::log(weights.sum / (spectra.size() * kNumRatios)) +
+                      outlier_penalty(touches.sigma) * candidate.outliers.size();
     candidate.freedom = inliers.z.size() - p;
 
     // The mixture of all correlations and amplitudes, on a grid as coarse as they allow.
-    const ProcessWeights weights = mixture_weights(spectra, evidence_power(inliers.z.size(), p));
     surface::Bspline spline = coarsen(grid, weights.cell);
     const ControlHeights controls(spline);
     const Eigen::MatrixXd trend_controls =

@@ -2,7 +2,6 @@
 
 #include "fit/bspline.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -30,7 +29,7 @@ surface::Bspline coarsen(const surface::Bspline& grid, double max_side)
     return with_cell_counts(grid, (side / max_side).ceil().max(kMinCells).min(before));
 }
 
-ProcessWeights mixture_weights(const std::vector<Spectrum>& spectra, double power)
+ProcessWeights mixture_weights(const std::vector<Spectrum>& spectra)
 {
     constexpr double kMinWeight = 0.01; // relative to the largest
     constexpr double kMinShare = 0.01;  // of the sum, for a correlation to matter
@@ -40,7 +39,7 @@ ProcessWeights mixture_weights(const std::vector<Spectrum>& spectra, double powe
     std::vector<double> sums(spectra.size(), 0);
     for (std::size_t k = 0; k < spectra.size(); ++k)
         for (int i = 0; i < kNumRatios; ++i) {
-            const double weight = std::exp(power * (best - spectra[k].score[i]) / 2);
+            const double weight = std::exp((best - spectra[k].score[i]) / 2);
             sums[k] += weight;
             weights.relative[k][i] = weight < kMinWeight ? 0 : weight;
         }
@@ -50,12 +49,6 @@ ProcessWeights mixture_weights(const std::vector<Spectrum>& spectra, double powe
             if (sums[k] >= kMinShare * weights.sum && weights.relative[k][i] > 0)
                 weights.cell = std::min(weights.cell, max_cell_side(spectra[k].correlation, amplitude_ratio(i)));
     return weights;
-}
-
-double evidence_power(Eigen::Index touches, Eigen::Index trend)
-{
-    const Eigen::Index full = std::max<Eigen::Index>(kFullEvidenceTouches - trend, 1);
-    return std::min(1.0, double(full) / double(std::max<Eigen::Index>(touches - trend, 1)));
 }
 
 } // namespace fettle::fit

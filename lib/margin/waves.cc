@@ -4,7 +4,6 @@
 #include "core/decompositions.h"
 #include "fit/correlation.h"
 #include "fit/family.h"
-#include "fit/process_weights.h"
 #include "surface/shapes.h"
 
 #include <algorithm>
@@ -149,13 +148,10 @@ void set_posterior(double without, const Touches& inliers, std::vector<Model>& m
 {
     const MatrixXd noise = MatrixXd::Identity(inliers.places.cols(), inliers.places.cols());
     const double evidence = kriging(noise, inliers.trend).log_likelihood + inliers.log_prior;
-    // The power counts touches: with degrees of freedom the bands of exact cones and tori, which have many parameters,
-    // grew by a quarter.
-    const double power = fit::evidence_power(inliers.places.cols(), 0);
     double max = evidence;
     for (const Model& model : models) max = std::max(max, log_evidence(model));
-    double sum = without * std::exp(power * (evidence - max));
-    for (Model& model : models) sum += model.probability *= std::exp(power * (log_evidence(model) - max));
+    double sum = without * std::exp(evidence - max);
+    for (Model& model : models) sum += model.probability *= std::exp(log_evidence(model) - max);
     for (Model& model : models) model.probability /= sum;
 }
 

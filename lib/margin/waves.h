@@ -25,11 +25,10 @@ std::vector<double> wave_lengths(const surface::Surface& surface);
 /// deviation of a touch, the highest that a dozen touches may hide, with lengths of a quarter to all of the touches'
 /// radius, equally probable (Matérn, ν = 5/2). No part is designed as a cubic: where one fits the touches, nine parts
 /// in ten have waves. The posterior given the touches yields their probabilities and their heights inside the anomaly
-/// (universal kriging: Cressie 1993, 3.4; restricted likelihood: Patterson and Thompson 1971). The evidence of more
-/// than sixteen touches counts as that of sixteen (fit::evidence_power()). Touches that the fit left out may be
-/// outliers (outlier_penalty()), or be explained by waves: given these touches, waves of 8, 16 and 32 times that
-/// deviation are considered, too, each with the prior odds of those of four times. Without such touches they are not,
-/// since they would leave no probability to any family.
+/// (universal kriging: Cressie 1993, 3.4; restricted likelihood: Patterson and Thompson 1971).
+/// Touches that the fit left out may be outliers (outlier_penalty()), or be explained by waves: given these touches,
+/// waves of 8, 16 and 32 times that deviation are considered, too, each with the prior odds of those of four times.
+/// Without such touches they are not, since they would leave no probability to any family.
 /// A scan of the metal around the anomaly says how large the waves are; then these sizes are the prior instead.
 /// @param member  a family fitted to the surface's touches   @param xy  2xN, M, mm   @param scan  may be null; of the
 ///                lengths of wave_lengths()
