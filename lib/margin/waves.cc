@@ -236,15 +236,16 @@ std::vector<Waves> waves_about(const surface::WeightedShape& member, const surfa
         all = Touches{surface.touches.topRows<2>(), trend_of(member, surface.touches, sigma, xy), 0};
         if (!is_usable(all->trend)) all.reset();
     }
-    std::vector<Model> models;
+    const double share = share_of(member.shape);
+    // Of a family that is not defined all over the scan the touches speak alone.
+    std::optional<std::vector<WaveSize>> sizes;
     if (scan != nullptr) {
         const MatrixXd at_scan = trend_of(member, kept, sigma, scan->places()).at_xy;
         const VectorXd residuals = scan->z() - surface::heights(member.shape, scan->places());
-        if (!at_scan.allFinite() || !residuals.allFinite()) return {}; // the family is not defined all over the scan
-        models = models_of_scan(scan->sizes(at_scan, residuals, share_of(member.shape)), sigma, inner, all);
-    } else {
-        models = models_of_touches(share_of(member.shape), inner, all, lengths);
+        if (at_scan.allFinite() && residuals.allFinite()) sizes = scan->sizes(at_scan, residuals, share);
     }
+    const std::vector<Model> models =
+        sizes ? models_of_scan(*sizes, sigma, inner, all) : models_of_touches(share, inner, all, lengths);
     std::vector<Waves> result;
     for (const Model& model : models)
         if (model.probability > kMinProbability) result.push_back(waves_of(model, xy, sigma));
