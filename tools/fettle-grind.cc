@@ -139,15 +139,29 @@ void note_times(const cli::Tool& t, double time, Clock::time_point begun)
            std::to_string(time / computing));
 }
 
-/// How the machine's controllers were tuned: on stderr with -v, and in the report.
-void report_loops(cli::Tool& t, const std::vector<gantry::ControlLoop>& loops)
+/// What the simulated machine did in all, and how its controllers were tuned: in the report, the latter also on stderr
+/// with -v.
+void report_simulation(const Options& o, const gantry::VirtualGantry& simulated, const job::Job& job)
 {
+    gantry::add_report(o.t.report(), simulated.totals());
+    if (o.gantry.machine.empty()) return;
     std::vector<json::Value> list;
-    for (const gantry::ControlLoop& loop : loops) {
-        t.note(to_string(loop));
+    for (const gantry::ControlLoop& loop : gantry::tune_loops(gantry::read_machine(o.gantry.machine), job)) {
+        o.t.note(to_string(loop));
         list.push_back(to_json(loop));
     }
-    t.report().set("loops", list);
+    o.t.report().set("loops", list);
+}
+
+/// Says where the force went over its limit, and why a run did not finish.
+void say_outcome(const Options& o, const strategy::GrindRun& run, const job::Job& job)
+{
+    const std::string prefix = core::display_name(o.plan) + ": ";
+    if (const std::string doubt = strategy::peak_warning(run.force, job); !doubt.empty()) o.t.warn(prefix + doubt);
+    if (run.faulted)
+        o.t.fault(prefix + run.failure);
+    else if (!run.finished)
+        o.t.warn(prefix + run.failure);
 }
 
 } // namespace
@@ -200,18 +214,10 @@ int main(int argc, char** argv)
         save_trace(o, run.trace, journal.get(), units, identity);
         t.report() = strategy::to_json(run, removal::volume_between(stock, ground), o.out.units(units));
         t.report().set("dropped_facets", dropped);
-        if (simulated) gantry::add_report(t.report(), simulated->totals());
-        if (const std::string& file = o.gantry.machine; simulated && !file.empty())
-            report_loops(t, gantry::tune_loops(gantry::read_machine(file), plan.job));
+        if (simulated) report_simulation(o, *simulated, plan.job);
         if (learning) learn_from(o, run, plan.job, stock, *learning);
         note_times(t, run.trace.back().time, begun);
-        if (const std::string doubt = strategy::peak_warning(run.force, plan.job); !doubt.empty())
-            t.warn(core::display_name(o.plan) + ": " + doubt);
-        const std::string failure = core::display_name(o.plan) + ": " + run.failure;
-        if (run.faulted)
-            t.fault(failure);
-        else if (!run.finished)
-            t.warn(failure);
+        say_outcome(o, run, plan.job);
         return run.finished ? cli::Verdict::yes : cli::Verdict::no;
     });
 }

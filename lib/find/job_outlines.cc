@@ -67,7 +67,7 @@ struct HalfCells {
         return mask;
     }
 
-    /// The simplified outline of a mask's largest component; nothing if the mask is empty.
+    /// simplified_outline() of the mask, mm.
     Eigen::Matrix2Xd outline(const Mask& mask, double tolerance) const
     {
         const std::vector<cv::Point> corners = simplified_outline(mask, tolerance);

@@ -9,8 +9,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
+#include <string>
 #include <utility>
 
 namespace waves_test {
@@ -19,8 +21,21 @@ using namespace fettle;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Touches of a plane with waves, on a ring about B. Some, beside each other, are too high.
-surface::Surface touched_plane(double height_of_waves, int high_touches = 0, double too_high = 0)
+/// What fit_family() makes of touches.
+surface::Surface fitted(const fit::FitInput& input, const std::string& family)
+{
+    surface::Surface surface = fit::begin_surface(input, family, fit::kSampleRoles, 3);
+    const fit::TouchSet touches = fit::make_touch_set(surface, input.job);
+    fit::FitCandidate candidate = fit::fit_family(family, touches, fit::all_touches(touches)).value();
+    surface.shape = std::move(candidate.shape);
+    surface.covariance = std::move(candidate.covariance);
+    surface.outliers = std::move(candidate.outliers);
+    return surface;
+}
+
+/// Touches of a surface z(x, y), on a ring about B.
+template <class Height>
+fit::FitInput touches_of(const Height& z)
 {
     fit::FitInput input;
     input.job.probe.accuracy = 0.127;
@@ -31,16 +46,18 @@ surface::Surface touched_plane(double height_of_waves, int high_touches = 0, dou
     for (int i = 0; i < 14; ++i) {
         const double angle = 2 * M_PI * i / 14, r = i % 2 == 0 ? 20 : 27, x = r * std::cos(angle),
                      y = r * std::sin(angle);
-        input.xyz.col(i) << x, y,
-            0.1 * x - 0.05 * y + height_of_waves * std::sin(x / 6) + noise(random) + (i < high_touches ? too_high : 0);
+        input.xyz.col(i) << x, y, z(x, y) + noise(random);
     }
-    surface::Surface surface = fit::begin_surface(input, "plane", fit::kSampleRoles, 3);
-    const fit::TouchSet touches = fit::make_touch_set(surface, input.job);
-    fit::FitCandidate plane = fit::fit_family("plane", touches, fit::all_touches(touches)).value();
-    surface.shape = std::move(plane.shape);
-    surface.covariance = std::move(plane.covariance);
-    surface.outliers = std::move(plane.outliers);
-    return surface;
+    return input;
+}
+
+/// A plane with waves. Some touches, beside each other, are too high.
+surface::Surface touched_plane(double height_of_waves, int high_touches = 0, double too_high = 0)
+{
+    fit::FitInput input =
+        touches_of([&](double x, double y) { return 0.1 * x - 0.05 * y + height_of_waves * std::sin(x / 6); });
+    input.xyz.row(2).head(high_touches).array() += too_high;
+    return fitted(input, "plane");
 }
 
 Eigen::Matrix2Xd places()
@@ -149,6 +166,29 @@ TEST(Waves, of_a_chip_are_not_believed)
 {
     EXPECT_LT(probability(touched_plane(0, 1, 1)), 0.05);
     EXPECT_GT(probability(touched_plane(0, 3, 0.35)), 0.9);
+}
+
+TEST(Waves, of_touches_alone_where_the_family_ends_within_the_scan)
+{
+    constexpr double kRadius = 30; // mm; the touches reach 27, the scan 32
+    const surface::Surface sphere =
+        fitted(touches_of([](double x, double y) { return std::sqrt(kRadius * kRadius - x * x - y * y); }), "sphere");
+    Eigen::Matrix3Xd heights(3, 100);
+    for (int i = 0; i < 100; ++i) {
+        const double angle = 2.399963 * i, r = 20 + 12.0 * i / 100; // the golden angle
+        heights.col(i) << r * std::cos(angle), r * std::sin(angle), std::sqrt(std::max(0.0, kRadius * kRadius - r * r));
+    }
+    const margin::ScanWaves scan(heights, margin::wave_lengths(sphere));
+    const surface::WeightedShape member{1, sphere.shape, sphere.covariance};
+    ASSERT_FALSE(surface::heights(member.shape, scan.places()).allFinite());
+    const std::vector<margin::Waves> alone = margin::waves_about(member, sphere, places()),
+                                     with_scan = margin::waves_about(member, sphere, places(), &scan);
+    ASSERT_FALSE(alone.empty());
+    ASSERT_EQ(with_scan.size(), alone.size());
+    for (std::size_t k = 0; k < alone.size(); ++k) {
+        EXPECT_EQ(with_scan[k].probability, alone[k].probability);
+        EXPECT_EQ(with_scan[k].root, alone[k].root);
+    }
 }
 
 } // namespace waves_test
