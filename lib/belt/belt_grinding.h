@@ -105,7 +105,7 @@ class BeltGrinding {
 
     const BeltRun& run() const { return state_.run; }
     std::size_t next_point() const { return state_.next_point; }
-    /// Of the last contact; the next one begins with it. No rows: it is not known yet.
+    /// Grid of the last contact, with which the next one begins. It has no rows while it is not known.
     const ContactGrid& contact_grid() const { return solver_.contact_grid(); }
     void set_contact_grid(const ContactGrid& grid) { solver_.restore({grid, {}, {}}); }
     void add_pass(const MeasuredPass& pass) { state_.run.passes.push_back(pass); }

@@ -12,7 +12,7 @@ namespace fettle::belt {
 struct BeltJournal {
     std::string file;    ///< empty: no checkpoints
     double interval = 5; ///< time between checkpoints, s; 0: after every point
-    /// Of what else the run depends on, such as what its supervisor knows beforehand.
+    /// Digest of what else the run depends on, such as what its supervisor knows beforehand.
     std::string context_digest;
 };
 

@@ -164,7 +164,7 @@ bool is_consistent(const WheelContactState& contact, Index cells)
     const auto is_on_grid = [&](const Eigen::MatrixXd& pressure) {
         return pressure.size() == 0 || (pressure.rows() == grid.rows && pressure.cols() == grid.columns);
     };
-    // Of a long contact the grid may have twice as many rows (press.cc), of multiples of eight.
+    // A long contact's grid may have twice as many rows (press.cc), rounded up to multiples of eight.
     constexpr Index kMaxStretch = 2, kMaxRounding = 4;
     const bool has_grid = grid.rows > 0 && grid.rows <= kMaxStretch * cells + kMaxRounding && grid.columns > 0 &&
                           grid.columns <= cells + kMaxRounding && grid.cell_size.allFinite() &&

@@ -129,7 +129,7 @@ BeltPlan first_plan(const Aim& aim, const BeltPlanner& planner, const VectorXd& 
 void improve(BeltPlan& plan, const Aim& aim, const BeltPlanner& planner, Simulation simulation, int max_rounds,
              const core::Progress& progress)
 {
-    // Of the error, and of the share within: less is not worth another simulation.
+    // Where error and share within gain less than these, another simulation is not worth its time.
     constexpr double kMinDecrease = 0.01, kMinGain = 0.0005;
     std::vector<BeltPoint> path = plan.path;
     int idle_rounds = 0;

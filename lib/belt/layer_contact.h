@@ -35,7 +35,7 @@ class LayerContact {
         : surface_(layer, cell, rows, columns)
     {
     }
-    /// The same with the free sides of a wheel; the grid is in the middle of its width.
+    /// Takes the free sides of a wheel into account; the grid is in the middle of its width.
     LayerContact(const ElasticLayer& layer, const EdgeCompliance& edges, const Eigen::Vector2d& cell, Eigen::Index rows,
                  Eigen::Index columns)
         : surface_(layer, edges, cell, rows, columns)

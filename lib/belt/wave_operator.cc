@@ -141,7 +141,7 @@ MatrixXd WaveOperator::displacement(const MatrixXd& pressure) const
     folded.leftCols(even_rows) = across.leftCols(even_rows);
     folded.leftCols(odd_rows) += across.rightCols(odd_rows).rowwise().reverse();
     folded.rightCols(odd_rows) = across.leftCols(odd_rows) - across.rightCols(odd_rows).rowwise().reverse();
-    // Of each wave a column of cosines and one of sines.
+    // Each wave has a column of cosines and one of sines.
     const Index count = rows_ + 1, pair = 2 * columns;
     MatrixXd pressures(columns, 2 * count), displacements(columns, 2 * count);
     multiply({folded.data(), columns}, {waves.cosines.data(), 1, even_rows}, columns, even_rows, count,

@@ -26,7 +26,7 @@ class BeltLearning : public belt::PassSupervisor {
     BeltLearning(const std::string& file, const belt::ContactWheel& wheel, const belt::BeltOptions& options,
                  const belt::Surfels& surfels, std::vector<belt::BeltPoint>& path);
 
-    /// Of the passes that were known beforehand, and the wheel: for BeltJournal::context_digest.
+    /// Digest of the passes that were known beforehand and of the wheel, for BeltJournal::context_digest.
     std::string context_digest() const;
     void resume(const belt::BeltRun& run) override;
     void begin_pass(const belt::BeltGrinding& grinding, std::size_t first, std::size_t end) override;

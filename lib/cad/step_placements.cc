@@ -24,7 +24,7 @@ namespace {
 
 using Operator = StepGeom_CartesianTransformationOperator3d;
 
-// Of a scale that is written as a ratio of two units.
+// A scale that is written as a ratio of two units is rounded by less.
 constexpr double kScaleTolerance = 1e-9;
 
 gp_Vec ratios_of(const Handle(StepGeom_Direction) & direction)

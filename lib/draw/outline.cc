@@ -30,8 +30,8 @@ bool are_around(const Eigen::Matrix3Xd& points, const Vector2d& xy)
     return widest < std::numbers::pi;
 }
 
-/// Of points around a place, nearest first, those of the part's top, if an underside shows between them: their heights
-/// then lie in two groups, and the upper ones surround the place. Else none.
+/// Selects the points on the part's top from those around a place, nearest first, if an underside shows between them:
+/// their heights then lie in two groups, and the upper ones surround the place. Otherwise it returns none.
 Eigen::Matrix3Xd over_an_underside(const Eigen::Matrix3Xd& near, const Vector2d& xy)
 {
     constexpr double kMinGapToRange = 0.5; // on one surface, also a steep one, heights are spread over their range

@@ -34,7 +34,7 @@ void set_probabilities(std::vector<Verified>& finds)
         find.score -= flat_top_score(find.evidence);
         order.push_back(&find);
     }
-    // Of finds at one place the first, with the highest score, counts.
+    // Among finds at one place the first, which has the highest score, counts.
     std::ranges::stable_sort(order, std::greater{}, &Verified::score);
     for (const Verified* find : order)
         if (std::ranges::none_of(places, [&](const Verified* other) { return is_one_place(*find, *other); }))

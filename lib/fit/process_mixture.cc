@@ -32,7 +32,7 @@ auto filtered_rows(const Values& values, Index count)
            w[2] * values.middleRows(2, count) + w[3] * values.middleRows(3, count) + w[4] * values.middleRows(4, count);
 }
 
-/// The same of nodes that are columns.
+/// Control heights along the other axis, where the values at a node are a column.
 template <typename Values>
 auto filtered_columns(const Values& values, Index count)
 {

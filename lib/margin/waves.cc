@@ -237,7 +237,7 @@ std::vector<Waves> waves_about(const surface::WeightedShape& member, const surfa
         if (!is_usable(all->trend)) all.reset();
     }
     const double share = share_of(member.shape);
-    // Of a family that is not defined all over the scan the touches speak alone.
+    // Where a family is not defined all over the scan, the touches speak alone.
     std::optional<std::vector<WaveSize>> sizes;
     if (scan != nullptr) {
         const MatrixXd at_scan = trend_of(member, kept, sigma, scan->places()).at_xy;

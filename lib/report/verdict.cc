@@ -28,7 +28,7 @@ OverCut split_over_cut(const Eigen::VectorXd& errors, const Eigen::VectorXd& rem
 
 namespace {
 
-/// Of an error between two files, whose coordinates are floats: half a unit in the last place for each.
+/// Rounding of an error between two files, whose coordinates are floats: half a unit in the last place for each.
 double file_rounding(const cloud::Cloud& errors, const units::Units& units)
 {
     double max_coordinate = 0;

@@ -20,7 +20,8 @@ struct Feedrate {
 Eigen::VectorXd arrival_times(const cloud::PosePath& poses, const Feedrate& feed);
 /// Arrival times with a speed of the tip for the motion to each pose. @param speeds  N, mm/s   @param turn_rate  rad/s
 Eigen::VectorXd arrival_times(const cloud::PosePath& poses, const Eigen::VectorXd& speeds, double turn_rate);
-/// The same where speeds are along other ways than the tip's. @param lengths  N, of the motion to each pose, mm
+/// Arrival times where the speeds are along other ways than the tip's. @param lengths  N, of the motion to each pose,
+/// mm
 Eigen::VectorXd arrival_times(const cloud::PosePath& poses, const Eigen::VectorXd& lengths,
                               const Eigen::VectorXd& speeds, double turn_rate);
 

@@ -67,7 +67,8 @@ Eigen::Matrix2Xd places()
     return xy;
 }
 
-/// Of one amplitude and length: ln of the evidence, mean and covariance of the heights at places().
+/// What Bayes' rule says of waves of one amplitude and length: ln of the evidence, mean and covariance of the heights
+/// at places().
 struct Direct {
     double log_evidence;
     VectorXd mean;
