@@ -81,6 +81,7 @@ std::vector<char> seen_from(const Samples& samples, const Eigen::Vector3d& direc
     const Eigen::Matrix3Xd placed = view_from(direction) * samples.points.xyz;
     const Eigen::Vector3d min = placed.rowwise().minCoeff(), max = placed.rowwise().maxCoeff();
     const double cell = std::max(3 * samples.spacing, (max - min).head<2>().maxCoeff() / kMaxSideCells);
+    if (!(cell > 0)) return std::vector<char>(std::size_t(placed.cols())); // all points at one place are no surface
     const auto columns = Index((max.x() - min.x()) / cell) + 1, rows = Index((max.y() - min.y()) / cell) + 1;
     std::vector<double> top(std::size_t(columns * rows), -std::numeric_limits<double>::infinity());
     const auto cell_of = [&](Index i) {

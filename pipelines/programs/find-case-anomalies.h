@@ -49,7 +49,8 @@ struct Placed {
 
 inline Eigen::Matrix2Xd turned(const Eigen::Matrix2Xd& points, const Vector2d& centre, double angle)
 {
-    return (Eigen::Rotation2Dd(angle) * points).colwise() + centre;
+    // As a matrix: the product of Eigen's rotation itself with a matrix of any width has two columns.
+    return (Eigen::Rotation2Dd(angle).toRotationMatrix() * points).colwise() + centre;
 }
 
 /// A path along x with `corners` corners, `length` long, each off it by a normal deviate.
