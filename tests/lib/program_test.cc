@@ -18,6 +18,13 @@ namespace program_test {
 
 using program::StepKind;
 
+/// A program refers to its robot, so the robot outlives it.
+const robot::Robot& robot_of_tests()
+{
+    static const robot::Robot robot = irb1400();
+    return robot;
+}
+
 robot::SolvedPath solved(const robot::Robot& robot, const robot::CellJointsPath& joints)
 {
     robot::SolvedPath path;
@@ -102,7 +109,7 @@ TEST(Program, Hooks)
     options.force = 20;
     // travel, lead, approach, first contact, two on the stroke, retract, lead; another stroke; end
     const std::vector<double> motions = {3, 2, 1, 1, 0, 0, 1, 2, 3, 2, 1, 0, 1, 2};
-    const program::Program made = program_of(irb1400(), some_joints(14), motions, {}, options);
+    const program::Program made = program_of(robot_of_tests(), some_joints(14), motions, {}, options);
     ASSERT_EQ(made.routines.size(), 1u);
     std::string order;
     for (const program::Step& step : made.routines[0].steps) {
@@ -116,7 +123,7 @@ TEST(Program, Hooks)
 // A routine for each anomaly, called in the order of the path; one that the path comes back to has one each time.
 TEST(Program, OneRoutineForEachAnomaly)
 {
-    const program::Program made = program_of(irb1400(), some_joints(6), {}, {1, 1, 2, 2, 1, 1});
+    const program::Program made = program_of(robot_of_tests(), some_joints(6), {}, {1, 1, 2, 2, 1, 1});
     ASSERT_EQ(made.routines.size(), 3u);
     EXPECT_EQ(made.routines[0].name, "anomaly_1");
     EXPECT_EQ(made.routines[1].name, "anomaly_2");
@@ -156,7 +163,7 @@ TEST(Fanuc, HeightsPerCentAscii)
     options.joint_speed = 35;
     robot::CellJointsPath joints = robot::CellJointsPath::Zero(8, 3);
     joints(0, 1) = 0.1;
-    program::Program made = program_of(irb1400(), joints, {}, {}, options);
+    program::Program made = program_of(robot_of_tests(), joints, {}, {}, options);
     made.options.remark = "UNCHECKED — ü";
     const auto files = program::fanuc_files(made, "home");
     ASSERT_EQ(files.size(), 2u);
@@ -172,7 +179,7 @@ TEST(Fanuc, HeightsPerCentAscii)
 // Long routines are split, and lines are counted beyond what an int holds.
 TEST(Fanuc, LongPrograms)
 {
-    const auto files = program::fanuc_files(program_of(irb1400(), some_joints(50) * 0.3), "long", 20);
+    const auto files = program::fanuc_files(program_of(robot_of_tests(), some_joints(50) * 0.3), "long", 20);
     EXPECT_EQ(files.size(), 4u); // 51 lines in files of 20, with a remark in each
     std::size_t moves = 0;
     for (const program::ProgramFile& file : files)
@@ -206,7 +213,7 @@ TEST(UrScript, BlendRadii)
     program::ProgramOptions options;
     options.zone = {"z10", 10};
     const robot::CellJointsPath joints = some_joints(8) * 0.05;
-    const program::Program made = program_of(irb1400(), joints, {}, {}, options);
+    const program::Program made = program_of(robot_of_tests(), joints, {}, {}, options);
     const std::string text = program::urscript_text(made, "cell");
     std::vector<double> radii;
     const std::regex radius(R"(, r=([0-9.]+)\))");
