@@ -14,7 +14,7 @@ using Eigen::Index;
 using Eigen::VectorXd;
 using removal::RemovalTrial;
 
-/// Student's t has so many: few enough for tails that outliers fit in, and the variance is finite.
+/// Student's t has tails that outliers fit in with few, and a finite variance with more than two.
 constexpr double kDegreesOfFreedom = 4;
 
 /// Standard deviations before the first pass. The level may be anything. Published exponents of the force and the speed
