@@ -92,38 +92,51 @@ bool copy_to(const std::string& path, const FileDescriptor& file)
     return copy.is_open() && copy_all(file, copy) && fsync(copy.get()) == 0 && copy.close();
 }
 
+constexpr std::array kEndingSignals = {SIGHUP, SIGINT, SIGTERM};
 std::atomic<const char*> temporary_file = nullptr;
+/// What `kEndingSignals` did before there was a temporary file.
+std::array<struct sigaction, kEndingSignals.size()> previous_actions = {};
 
+/// Removes the temporary file and ends the program; or does what the program itself does about its first such signal.
 extern "C" void remove_temporary_file(int signal)
 {
+    for (std::size_t i = 0; i < kEndingSignals.size(); ++i) {
+        struct sigaction& previous = previous_actions[i];
+        if (kEndingSignals[i] != signal || previous.sa_handler == SIG_DFL) continue;
+        const auto own_handler = previous.sa_handler;
+        if ((previous.sa_flags & int(SA_RESETHAND)) != 0) previous.sa_handler = SIG_DFL;
+        own_handler(signal);
+        return;
+    }
     if (const char* const name = temporary_file.load()) unlink(name);
     std::signal(signal, SIG_DFL);
     raise(signal); // takes effect when the handler has returned
 }
 
-/// While it exists, a signal that terminates the program removes a temporary file first. Ignored signals stay ignored.
+/// While it exists, a signal that terminates the program removes a temporary file first. Ignored signals stay ignored,
+/// and handlers of the program are called as ever.
 class RemoveOnSignal {
   public:
     explicit RemoveOnSignal(const std::string& name)
     {
         temporary_file = name.c_str();
-        struct sigaction handler = {};
-        handler.sa_handler = remove_temporary_file;
-        for (std::size_t i = 0; i < previous_.size(); ++i)
-            if (sigaction(kSignals[i], nullptr, &previous_[i]) == 0 && previous_[i].sa_handler == SIG_DFL)
-                sigaction(kSignals[i], &handler, nullptr);
+        for (std::size_t i = 0; i < kEndingSignals.size(); ++i) {
+            struct sigaction& previous = previous_actions[i];
+            sigaction(kEndingSignals[i], nullptr, &previous);
+            struct sigaction action = previous;
+            action.sa_handler = remove_temporary_file;
+            action.sa_flags &= ~int(SA_RESETHAND);
+            if (previous.sa_handler != SIG_IGN) sigaction(kEndingSignals[i], &action, nullptr);
+        }
     }
     RemoveOnSignal(const RemoveOnSignal&) = delete;
     RemoveOnSignal& operator=(const RemoveOnSignal&) = delete;
     ~RemoveOnSignal()
     {
-        for (std::size_t i = 0; i < previous_.size(); ++i) sigaction(kSignals[i], &previous_[i], nullptr);
+        for (std::size_t i = 0; i < kEndingSignals.size(); ++i)
+            sigaction(kEndingSignals[i], &previous_actions[i], nullptr);
         temporary_file = nullptr;
     }
-
-  private:
-    static constexpr std::array kSignals = {SIGHUP, SIGINT, SIGTERM};
-    std::array<struct sigaction, kSignals.size()> previous_ = {};
 };
 
 /// Gives the unnamed file the name `target` and the permissions of the file that it replaces.

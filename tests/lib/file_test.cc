@@ -6,10 +6,29 @@
 
 #include <gtest/gtest.h>
 
+#include <csignal>
+#include <cstdlib>
+#include <fcntl.h>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <thread>
+#include <unistd.h>
+
+namespace {
+
+std::function<void()> before_rename; ///< called when a temporary file is there and has not got its name yet
+
+} // namespace
+
+/// Takes the place of the C library's.
+extern "C" int rename(const char* from, const char* to) noexcept
+{
+    if (before_rename) before_rename();
+    return static_cast<int>(syscall(SYS_renameat2, AT_FDCWD, from, AT_FDCWD, to, 0));
+}
 
 namespace fettle {
 namespace file_test {
@@ -144,6 +163,35 @@ TEST_F(Files, AreRemovedWhenTheyCannotBeNamed)
     fs::create_directory("a");
     EXPECT_THROW(file.commit(), core::InputError);
     EXPECT_TRUE(fs::is_directory("a"));
+    EXPECT_EQ(files(), 1u);
+}
+
+volatile std::sig_atomic_t signals = 0;
+
+void commit_and_raise(int count, sighandler_t handler)
+{
+    struct sigaction action = {};
+    action.sa_handler = handler;
+    action.sa_flags = int(SA_RESETHAND);
+    sigaction(SIGTERM, &action, nullptr);
+    before_rename = [count] {
+        for (int i = 0; i < count; ++i) raise(SIGTERM);
+    };
+    core::OutputFile file("a");
+    file.stream() << "new";
+    file.commit();
+    std::_Exit(core::read_file("a") == "new" ? 10 + signals : 1);
+}
+
+// A program may want to do something else at the first signal, as fettle-station does; the second ends it.
+TEST_F(Files, AreRemovedWhenASignalComesBeforeTheyAreNamed)
+{
+    const auto count = [](int) { signals = signals + 1; };
+    EXPECT_EXIT(commit_and_raise(1, SIG_DFL), testing::KilledBySignal(SIGTERM), "");
+    EXPECT_EXIT(commit_and_raise(2, count), testing::KilledBySignal(SIGTERM), "");
+    EXPECT_EQ(files(), 0u);
+    EXPECT_EXIT(commit_and_raise(2, SIG_IGN), testing::ExitedWithCode(10), "");
+    EXPECT_EXIT(commit_and_raise(1, count), testing::ExitedWithCode(11), "");
     EXPECT_EQ(files(), 1u);
 }
 
