@@ -45,13 +45,16 @@ constexpr Term kModelTerms[] = {
 
 // Calibration of the log odds by the score and by the doubtful finds of the view: on parts that were left out of the
 // fit, the share of right finds equals the probability (pipelines/programs/find-calibration.cc).
-constexpr double kCalibrationSlope = 1.5, kCalibrationOffset = 2.6, kCalibrationOthers = -0.95;
-// Scores from kMinDoubtfulScore to this one are probabilities of .03 to .65, if no other find of the view is doubtful.
+constexpr double kCalibrationSlope = 1.61, kCalibrationOffset = 2.54, kCalibrationOthers = -0.28;
+// Scores from kMinDoubtfulScore to this one are probabilities of .02 to .61, if no other find of the view is doubtful.
 constexpr double kMaxDoubtfulScore = -1.3;
 
 // The height of an anomaly is seldom more than exp(2.5), twelve times, the departure of its top from a plane; that of
-// features by design is. Each factor of e above that lowers the score by kFlatTopScore (docs/methods/find.md).
-constexpr double kFlatTopKnot = 2.5, kFlatTopScore = 4;
+// features by design is. Each factor of e above that lowers the score: by more if the top is level, as bosses are, than
+// if it leans, as a stub may where a saw went through it (docs/methods/find.md).
+constexpr double kFlatTopKnot = 2.5, kLevelTopScore = 4, kLeaningTopScore = 1;
+// A level top rises over its thickness by this share of its height, or by noise, at most.
+constexpr double kLevelRise = 0.02;
 
 // Against a reference: slope and offset of the log odds by the height in standard deviations, which is centred and
 // scaled by the second pair.
@@ -101,7 +104,8 @@ double score_of(const Evidence& evidence)
 double flat_top_score(const Evidence& evidence)
 {
     const double flatness = log_ratio(evidence.height, std::max(evidence.top_departure, evidence.noise));
-    return kFlatTopScore * std::max(flatness - kFlatTopKnot, 0.0);
+    const bool is_level = evidence.top_rise <= std::hypot(kLevelRise * evidence.height, evidence.noise);
+    return (is_level ? kLevelTopScore : kLeaningTopScore) * std::max(flatness - kFlatTopKnot, 0.0);
 }
 
 bool is_doubtful(double score) { return score >= kMinDoubtfulScore && score < kMaxDoubtfulScore; }

@@ -32,8 +32,9 @@ struct Evidence {
     double thickness = 0;      ///< largest inscribed circle's diameter, cells
     double cell = 1;           ///< mm
     double degree = 1;         ///< of the surface
-    /// Departure of its top from a plane, departure_from_plane(). Infinite: not measured, as for improbable candidates.
+    /// Departure of its top from a plane, measure_top(). Infinite: not measured, as for improbable candidates.
     double top_departure = core::kInfinity;
+    double top_rise = 0; ///< of that plane against the surface beneath, over the thickness
 
     /// Standard deviation of the surface beneath, from the scatter of the metal around and the variance of the fit.
     double surface_sd() const;

@@ -1,7 +1,6 @@
 #include "find/flat_top.h"
 
 #include "core/cholesky.h"
-#include "core/constants.h"
 
 #include <opencv2/imgproc.hpp>
 
@@ -32,32 +31,56 @@ double median_of(const Eigen::VectorXd& values)
     return quantile_of({values.data(), values.data() + values.size()}, 0.5);
 }
 
-/// Median distance of heights at cells from their least trimmed squares plane, to which concentration steps converge
-/// (Rousseeuw and Van Driessen 1999). @param kept  1 for the cells of the first step, else 0
-double trimmed_median_distance(const std::vector<cv::Point>& cells, const Eigen::VectorXd& z, Eigen::VectorXd kept)
+/// Each row 1 and a cell's place from the first one, in cells.
+Eigen::MatrixXd plane_basis(const std::vector<cv::Point>& cells)
 {
-    double min_median = core::kInfinity;
+    Eigen::MatrixXd A(Index(cells.size()), 3);
+    for (std::size_t k = 0; k < cells.size(); ++k)
+        A.row(Index(k)) << 1, cells[k].x - cells[0].x, cells[k].y - cells[0].y;
+    return A;
+}
+
+/// Coefficients of the weighted least squares plane through heights.
+Eigen::Vector3d fitted_plane(const Eigen::MatrixXd& A, const Eigen::VectorXd& z, const Eigen::VectorXd& weights)
+{
+    const Eigen::MatrixXd weighted = weights.asDiagonal() * A;
+    return core::solve_ldlt(A.transpose() * weighted, weighted.transpose() * z);
+}
+
+struct TrimmedPlane {
+    double median = core::kInfinity; ///< distance of the heights from it
+    Eigen::VectorXd kept;            ///< 1 for the cells that it was fitted to, else 0
+};
+
+/// The least trimmed squares plane, to which concentration steps converge (Rousseeuw and Van Driessen 1999).
+/// @param kept  1 for the cells of the first step, else 0
+TrimmedPlane trimmed_plane(const Eigen::MatrixXd& A, const Eigen::VectorXd& z, Eigen::VectorXd kept)
+{
+    TrimmedPlane best{core::kInfinity, kept};
     for (int step = 0; step < kMaxSteps; ++step) {
-        const Eigen::VectorXd distance = plane_residuals(cells, z, kept).cwiseAbs();
+        const Eigen::VectorXd distance = (z - A * fitted_plane(A, z, kept)).cwiseAbs();
         const double median = median_of(distance);
-        if (!(median < min_median)) break;
-        min_median = median;
+        if (!(median < best.median)) break;
+        best = {median, kept};
         kept = (distance.array() <= median).cast<double>();
     }
-    return min_median;
+    return best;
 }
 
 } // namespace
 
-double departure_from_plane(const Mask& region, const Image& height, const Image& z)
+Top measure_top(const Mask& region, const Image& height, const Image& z)
 {
     std::vector<cv::Point> cells;
     cv::findNonZero(top_of(region, z), cells);
-    if (Index(cells.size()) < kMinTopCells) return core::kInfinity;
+    if (Index(cells.size()) < kMinTopCells) return {};
+    const Eigen::MatrixXd A = plane_basis(cells);
     const Eigen::VectorXd heights = values_at(height, cells), levels = values_at(z, cells);
-    const Eigen::VectorXd all = Eigen::VectorXd::Ones(heights.size());
     const Eigen::VectorXd upper = (heights.array() >= median_of(heights)).cast<double>();
-    return std::min(trimmed_median_distance(cells, levels, all), trimmed_median_distance(cells, levels, upper));
+    const TrimmedPlane of_all = trimmed_plane(A, levels, Eigen::VectorXd::Ones(heights.size()));
+    const TrimmedPlane of_upper = trimmed_plane(A, levels, upper);
+    const TrimmedPlane& plane = of_upper.median < of_all.median ? of_upper : of_all;
+    return {plane.median, fitted_plane(A, heights, plane.kept).tail<2>().norm()};
 }
 
 Eigen::VectorXd values_at(const Image& image, const std::vector<cv::Point>& cells)
@@ -70,12 +93,8 @@ Eigen::VectorXd values_at(const Image& image, const std::vector<cv::Point>& cell
 Eigen::VectorXd plane_residuals(const std::vector<cv::Point>& cells, const Eigen::VectorXd& z,
                                 const Eigen::VectorXd& weights)
 {
-    Eigen::MatrixXd A(Index(cells.size()), 3);
-    for (std::size_t k = 0; k < cells.size(); ++k)
-        A.row(Index(k)) << 1, cells[k].x - cells[0].x, cells[k].y - cells[0].y;
-    const Eigen::MatrixXd weighted = weights.asDiagonal() * A;
-    const Eigen::Vector3d plane = core::solve_ldlt(A.transpose() * weighted, weighted.transpose() * z);
-    return z - A * plane;
+    const Eigen::MatrixXd A = plane_basis(cells);
+    return z - A * fitted_plane(A, z, weights);
 }
 
 } // namespace fettle::find

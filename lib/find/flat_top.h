@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/constants.h"
 #include "find/image.h"
 
 #include <Eigen/Core>
@@ -8,10 +9,15 @@
 
 namespace fettle::find {
 
-/// How far the top of a region departs from a plane: the median distance of its cells from the plane that the nearer
-/// half of them fits best, mm; infinite for a few cells. Walls, holes and a second level may take the other half.
-/// @param height  over the surface beneath   @param z  of what is seen
-double departure_from_plane(const Mask& region, const Image& height, const Image& z);
+/// The top of a region about the plane that the nearer half of its cells fits best. Walls, holes and a second level may
+/// take the other half.
+struct Top {
+    double departure = core::kInfinity; ///< median distance of its cells from the plane, mm; infinite for a few cells
+    double slope = 0;                   ///< of the plane against the surface beneath it, mm per cell
+};
+
+/// @param height  over the surface beneath, mm   @param z  of what is seen, mm
+Top measure_top(const Mask& region, const Image& height, const Image& z);
 
 /// The values of an image at cells.
 Eigen::VectorXd values_at(const Image& image, const std::vector<cv::Point>& cells);

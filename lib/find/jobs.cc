@@ -110,8 +110,13 @@ double highest_under_wheel(const FoundAnomaly& anomaly, const HeightMap& map, do
     return highest;
 }
 
+// A pass has no sense of direction: half a turn changes nothing on a gantry, but a robot's wrist would flip between
+// jobs whose wheels look opposite ways. So all wheels' axes look along this direction of the part, not against it. It
+// is none that axes of a part's faces and edges are often normal to.
+const Eigen::Vector3d kCommonDirection(3, 2, 1);
+
 /// θ with which the feed's axis runs along the longer side of the smallest rectangle about B, rad.
-double theta_along(const Eigen::Matrix2Xd& boundary, char feed_axis)
+double theta_along(const Eigen::Matrix2Xd& boundary, char feed_axis, const Eigen::Matrix3d& R_part_job)
 {
     std::vector<cv::Point2f> corners;
     for (const auto& corner : boundary.colwise())
@@ -120,7 +125,8 @@ double theta_along(const Eigen::Matrix2Xd& boundary, char feed_axis)
     const double quarter = core::kRadPerDegree * 90;
     const double along = core::kRadPerDegree * double(box.angle) + (box.size.width >= box.size.height ? 0 : quarter);
     const double theta = feed_axis == 'x' ? along : along - quarter;
-    return std::remainder(theta, 2 * quarter); // a pass has no sense of direction: half a turn changes nothing
+    const Eigen::Vector3d axis = R_part_job * Eigen::Vector3d(std::cos(theta), std::sin(theta), 0);
+    return std::remainder(axis.dot(kCommonDirection) < 0 ? theta + 2 * quarter : theta, 4 * quarter);
 }
 
 // A fitted surface is locally more curved than this one, so only these shares of sag and radius are allowed.
@@ -225,7 +231,7 @@ FoundJob job_for(const FoundAnomaly& found, const mesh::CloudMesh& part, const j
     if (beneath) anomaly.sampling = before_edges(anomaly, map, seen, *beneath);
     job::Job job = settings;
     job.T_part_job = anomaly.T_anomaly_part.inverse();
-    job.theta = theta_along(anomaly.boundary, settings.feed.axis);
+    job.theta = theta_along(anomaly.boundary, settings.feed.axis, job.T_part_job->linear());
     job.surface = job::SurfaceType::freeform;
     if (beneath) {
         FoundAnomaly touched = anomaly;

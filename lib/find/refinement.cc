@@ -53,17 +53,36 @@ double thickness_of(const Mask& mask)
 Refinement::Refinement(const HeightMap& map, const Candidate& candidate, const Mask& others, const SearchBounds& bounds)
     : bounds_(bounds), cell_(map.cell), sigma_(map.sigma), thickness_(thickness_of(candidate.mask))
 {
-    const double extent = std::max(candidate.box.width, candidate.box.height);
-    const double width = kRingPerThickness * std::max(thickness_, extent / 2);
-    window_ = grown_box(candidate.box, int(std::clamp(width, kMinRingWidth, double(kMaxMargin))) + kMarginBeyond,
-                        map.z.size());
+    set_window(map, others, candidate.box);
+    region_ = Mask(z_.size(), 0);
+    candidate.mask.copyTo(region_(candidate.box - window_.tl()));
+    core_ = dilated(region_, 1);
+}
+
+void Refinement::set_window(const HeightMap& map, const Mask& others, const cv::Rect& box)
+{
+    const double width = kRingPerThickness * std::max(thickness_, std::max(box.width, box.height) / 2.0);
+    window_ = grown_box(box, int(std::clamp(width, kMinRingWidth, double(kMaxMargin))) + kMarginBeyond, map.z.size());
     z_ = map.z(window_);
     seen_ = map.seen(window_);
     seen_weight_ = smoothing_weight(seen_, kHeightSmoothing);
     others_ = others(window_);
-    region_ = Mask(z_.size(), 0);
-    candidate.mask.copyTo(region_(candidate.box - window_.tl()));
-    core_ = dilated(region_, 1);
+}
+
+bool Refinement::widen(const HeightMap& map, const Mask& others)
+{
+    const cv::Rect before = window_, box = cv::boundingRect(region_) + window_.tl();
+    const cv::Rect needed = grown_box(box, kMarginBeyond, map.z.size());
+    if ((needed & window_) == needed) return false;
+    set_window(map, others, box | before);
+    for (Mask* mask : {&region_, &core_}) {
+        Mask wide(z_.size(), 0);
+        mask->copyTo(wide(before - window_.tl()));
+        *mask = wide;
+    }
+    crease_.reset(); // it lay in the window before
+    crease_searches_ = 0;
+    return true;
 }
 
 Mask Refinement::trimmed() const

@@ -45,6 +45,9 @@ class Refinement {
     /// Fits the surface beneath the region, and segments the region again where the heights rise above it.
     Progress step();
 
+    /// Widens the window if the region has grown to its edge. @return  whether it has
+    bool widen(const HeightMap& map, const Mask& others);
+
     /// The region as a candidate in the map.
     Candidate region() const;
     /// Thickness of the region, cells.
@@ -60,6 +63,9 @@ class Refinement {
     Image surface() const;
 
   private:
+    /// @param box  around which the window has room for the ring
+    void set_window(const HeightMap& map, const Mask& others, const cv::Rect& box);
+
     Mask ring_of(const Image& distance, double width) const;
 
     std::optional<RingFit> fit(const Mask& ring, const Image& distance, double width, int max_degree,

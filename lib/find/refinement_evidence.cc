@@ -141,7 +141,11 @@ Verified Refinement::result(double texture) const
     e.pits = double(cv::countNonZero(beneath_.ring & (beneath_.residual < float(-5 * e.ring_sd)))) /
              cv::countNonZero(beneath_.ring);
     verified.score = score_of(e);
-    if (verified.score >= kMinDoubtfulScore) e.top_departure = departure_from_plane(region_, beneath_.residual, z_);
+    if (verified.score >= kMinDoubtfulScore) {
+        const Top top = measure_top(region_, beneath_.residual, z_);
+        e.top_departure = top.departure;
+        e.top_rise = top.slope * thickness_;
+    }
     return verified;
 }
 

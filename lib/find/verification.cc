@@ -90,7 +90,8 @@ Attempt attempt_at(int level, const std::vector<Level>& levels, const Candidate&
     return {level, Refinement(at.map, candidate, at.others, bounds), Refinement::Progress::changed, {}, false};
 }
 
-/// Segments the region again. A region that has grown thick moves to a coarser level, unless this is the last step.
+/// Segments the region again. Unless this is the last step, a region that has grown thick moves to a coarser level, and
+/// one that has grown to its window's edge gets a wider window.
 void step(Attempt& attempt, const std::vector<Level>& levels, const SearchBounds& bounds, bool is_last)
 {
     attempt.progress = attempt.refinement->step();
@@ -99,7 +100,12 @@ void step(Attempt& attempt, const std::vector<Level>& levels, const SearchBounds
         return;
     }
     attempt.region = attempt.refinement->region();
-    if (is_last || attempt.progress == Refinement::Progress::converged) return;
+    if (is_last) return;
+    const Level& at = levels[std::size_t(attempt.level)];
+    if (attempt.refinement->widen(at.map, at.others))
+        attempt.progress = Refinement::Progress::changed;
+    else if (attempt.progress == Refinement::Progress::converged)
+        return;
     const int level =
         std::min(attempt.level + level_of(attempt.region.box, attempt.refinement->thickness()), int(levels.size()) - 1);
     if (level > attempt.level) {

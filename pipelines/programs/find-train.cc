@@ -1,7 +1,7 @@
 // Weights of the logistic model of fettle-find from evidence that find-evidence has written:
 //
-//     find-train EVIDENCE.csv...      files named PART_NUMBER.csv; capitals and digits after a part's name are views of
-//     it
+//     find-train EVIDENCE.csv...      in folders named PART_CASE, as find.mk makes them; capitals and digits after a
+//     part's name are views of it
 //
 // The model is additive: each feature enters by itself and by min(feature, knot) at three quartiles of the anomalies'
 // values, so that its effect may level off. Candidates that cover an anomaly by more than 0.4 (intersection over union)
@@ -20,6 +20,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <map>
 #include <set>
@@ -53,8 +54,7 @@ constexpr int kSweeps = 60;
 std::vector<Row> read_rows(const std::string& path)
 {
     std::ifstream in(path);
-    std::string scan = path.substr(path.rfind('/') + 1);
-    scan = scan.substr(0, scan.rfind('.'));
+    const std::string scan = std::filesystem::absolute(path).parent_path().filename();
     std::string part = scan.substr(0, scan.find('_'));
     while (part.size() > 2 && !(part.back() >= 'a' && part.back() <= 'z')) part.pop_back();
     std::vector<Row> rows;

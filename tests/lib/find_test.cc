@@ -6,9 +6,11 @@
 #include "find/outline.h"
 #include "find/ring_fit.h"
 #include "find/slow_field.h"
+#include "find/verification.h"
 #include "find/view.h"
 
 #include "core/error.h"
+#include "geometry/uniform_draws.h"
 #include "job/open_side.h"
 
 #include <gtest/gtest.h>
@@ -228,6 +230,26 @@ TEST(Outline, GoesBeyondAMeasuredFoot)
     }
 }
 
+// A bead 120 cells long on a saddle, of which the candidate has the first 50: its window ends 28 cells beyond these.
+TEST(Find, RegionsGrowBeyondTheirWindow)
+{
+    HeightMap map{Image(80, 200, 0.F), 1, {0, 0}, Mask(80, 200, uchar(255)), 0.02};
+    Mask bead(80, 200, uchar(0));
+    bead(cv::Rect(40, 36, 120, 8)) = 255;
+    std::mt19937_64 random(1);
+    for (int y = 0; y < 80; ++y)
+        for (int x = 0; x < 200; ++x)
+            map.z(y, x) = float(1e-4 * (x - 100) * (x - 100) - 2e-4 * (y - 40) * (y - 40) + 3 * (bead(y, x) > 0) +
+                                geometry::draw_normal(random, 0.02));
+    Candidate end{cv::Rect(40, 36, 50, 8), Mask(8, 50, uchar(255)), 10, 400, 0.02};
+    const std::vector<Verified> verified = verify_all(map, {end}, {});
+    ASSERT_EQ(verified.size(), 1u);
+    Mask found(80, 200, uchar(0));
+    verified[0].mask.copyTo(found(verified[0].window));
+    EXPECT_EQ(cv::countNonZero(found & bead), cv::countNonZero(bead));
+    EXPECT_LE(cv::countNonZero(found), 122 * 10); // smoothing raises a cell beside a wall
+}
+
 // Doubtful finds beside a find lower its probability, but not itself, nor the same again at one place.
 TEST(Find, DoubtfulOthersCount)
 {
@@ -265,7 +287,7 @@ TEST(Find, FlatTopsOfOneHeightAreAPattern)
         find.evidence.height = height;
         find.evidence.cells = 81;
         find.evidence.noise = 0.02;
-        find.evidence.top_departure = departure_from_plane(find.mask, find.height, find.height);
+        find.evidence.top_departure = measure_top(find.mask, find.height, find.height).departure;
         find.score = 4;
         return find;
     };
@@ -291,13 +313,14 @@ TEST(Find, DepartureOfTopsFromAPlane)
             pad(y, x) = std::max(std::abs(x - 9.5), std::abs(y - 9.5)) > 8 ? 0.5F : float(r < 2 ? 0.2 : 3 + 0.05 * x);
             dome(y, x) = float(3 - 0.01 * r * r);
         }
-    EXPECT_LT(departure_from_plane(square, pad, pad), 1e-5);
-    EXPECT_GT(departure_from_plane(square, dome, dome), 0.1);
+    EXPECT_LT(measure_top(square, pad, pad).departure, 1e-5);
+    EXPECT_GT(measure_top(square, dome, dome).departure, 0.1);
     Mask stroke(20, 20, uchar(0));
     stroke(cv::Rect(2, 2, 2, 15)).setTo(255);
     stroke(cv::Rect(2, 15, 12, 2)).setTo(255);
-    EXPECT_LT(departure_from_plane(stroke, Image(20, 20, 1.F), Image(20, 20, 1.F)), 1e-5);
-    EXPECT_EQ(departure_from_plane(Mask(20, 20, uchar(0)), pad, pad), std::numeric_limits<double>::infinity());
+    EXPECT_LT(measure_top(stroke, Image(20, 20, 1.F), Image(20, 20, 1.F)).departure, 1e-5);
+    EXPECT_LT(measure_top(stroke, Image(20, 20, 1.F), pad).slope, 1e-9); // parallel to the surface beneath, which leans
+    EXPECT_EQ(measure_top(Mask(20, 20, uchar(0)), pad, pad).departure, std::numeric_limits<double>::infinity());
 }
 
 TEST(Find, FlatTopsTakeFromTheScore)
@@ -313,6 +336,10 @@ TEST(Find, FlatTopsTakeFromTheScore)
     EXPECT_GT(flat, 0);
     evidence.top_departure = 0.03;
     EXPECT_GT(flat_top_score(evidence), flat);
+    const double level = flat_top_score(evidence);
+    evidence.top_rise = 0.2; // a stub's, sawn off
+    EXPECT_LT(flat_top_score(evidence), level);
+    EXPECT_GT(flat_top_score(evidence), 0);
     evidence.noise = 0.3; // which hides how flat it is
     EXPECT_EQ(flat_top_score(evidence), 0);
 }
