@@ -45,8 +45,8 @@ constexpr Term kModelTerms[] = {
 
 // Calibration of the log odds by the score and by the doubtful finds of the view: on parts that were left out of the
 // fit, the share of right finds equals the probability (pipelines/programs/find-calibration.cc).
-constexpr double kCalibrationSlope = 1.61, kCalibrationOffset = 2.54, kCalibrationOthers = -0.28;
-// Scores from kMinDoubtfulScore to this one are probabilities of .02 to .61, if no other find of the view is doubtful.
+constexpr double kCalibrationSlope = 1.6, kCalibrationOffset = 2.4, kCalibrationOthers = -0.6;
+// Scores from kMinDoubtfulScore to this one are probabilities of .02 to .58, if no other find of the view is doubtful.
 constexpr double kMaxDoubtfulScore = -1.3;
 
 // The height of an anomaly is seldom more than exp(2.5), twelve times, the departure of its top from a plane; that of
