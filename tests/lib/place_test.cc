@@ -106,9 +106,9 @@ TEST(Place, TurnsFollowTheMatrixAndTheInverseLeadsBack)
     const place::PlacedPart placed = place::place_part(part, request, 25.4); // lengths of the matrix in inches
     Eigen::Isometry3d inches = kAway;
     inches.translation() *= 25.4;
-    const Eigen::Matrix3Xd expected = Eigen::AngleAxisd(-std::numbers::pi / 6, Eigen::Vector3d::UnitZ()) *
-                                      (Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitX()) *
-                                       (inches * part.points.xyz.colwise().homogeneous()));
+    const Eigen::Isometry3d turns(Eigen::AngleAxisd(-std::numbers::pi / 6, Eigen::Vector3d::UnitZ()) *
+                                  Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitX()));
+    const Eigen::Matrix3Xd expected = (turns * inches) * part.points.xyz.colwise().homogeneous();
     EXPECT_LT((placed.part.points.xyz - expected).cwiseAbs().maxCoeff(), 1e-9);
     const cloud::Cloud back = cloud::transformed(placed.part.points, place::inverse_of(placed.transform), 25.4);
     EXPECT_LT((back.xyz - part.points.xyz).cwiseAbs().maxCoeff(), 1e-9);
