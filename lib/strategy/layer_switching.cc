@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace fettle::strategy {
@@ -16,7 +17,8 @@ constexpr double kRelativeLineTolerance = 1e-6;
 
 LayerSwitching::LayerSwitching(const std::vector<plan::ToolPass>& passes, const Settings& settings,
                                ForcePredictions predictions)
-    : passes_(passes), settings_(settings), predictions_(std::move(predictions))
+    : passes_(passes), settings_(settings), predictions_(std::move(predictions)),
+      remaining_(passes.size(), std::numeric_limits<double>::infinity())
 {
     levels_.push_back({});
 }
@@ -67,10 +69,9 @@ Action LayerSwitching::raise_layer()
 Action LayerSwitching::advance_in_layer_1(double remaining)
 {
     Level& level = levels_.back();
-    const bool finishing = settings_.finish_passes && !roughing_;
-    if (!finishing)
-        max_remaining_ = std::max(max_remaining_, remaining);
-    else if (turn_back(remaining) && strokes_ > settings_.bounds.re_cuts)
+    if (!roughing_ && !settings_.finish_passes)
+        remaining_[level.at.pass] = std::max(remaining_[level.at.pass], remaining);
+    if (!roughing_ && settings_.finish_passes && turn_back(remaining) && strokes_ > settings_.bounds.re_cuts)
         return fail("strokes of a pass " + std::to_string(settings_.bounds.re_cuts));
     const int point = level.at.point + level.direction;
     if (point >= 0 && point <= last_point()) {
@@ -78,7 +79,7 @@ Action LayerSwitching::advance_in_layer_1(double remaining)
         level.at.point = point;
         return act(gap ? Action::Kind::travel : Action::Kind::grind, Event::none);
     }
-    const int next = roughing_ ? farthest_pass(level.at.pass) : level.at.pass + 1;
+    const int next = roughing_ ? farthest_pass(level.at.pass) : unfinished_pass(level.at.pass + 1);
     if (next >= int(passes_.size())) return end_covering();
     const Action action = step_over_to(next, level.direction > 0 ? last_point(next) : 0, true);
     begin_pass();
@@ -92,12 +93,22 @@ Action LayerSwitching::end_covering()
         roughing_ = false;
         return start_covering(Event::roughed);
     }
-    const bool within = max_remaining_ <= settings_.max_remaining;
+    const bool within =
+        settings_.finish_passes || *std::max_element(remaining_.begin(), remaining_.end()) <= settings_.max_remaining;
     if (!within && counts_.coverings + 1 >= settings_.bounds.coverings)
         return fail("coverings of layer 1 " + std::to_string(settings_.bounds.coverings));
     ++counts_.coverings;
     if (within) return act(Action::Kind::finish, Event::finished);
     return start_covering(Event::covering_done);
+}
+
+/// The first pass from `first` on that the covering of layer 1 grinds. There is one at the start of a covering: the one
+/// before it left a pass unfinished, and roughing finishes none.
+int LayerSwitching::unfinished_pass(int first) const
+{
+    const auto is_finished = [&](int pass) { return remaining_[pass] <= settings_.max_remaining; };
+    while (settings_.skip_finished_passes && first < int(passes_.size()) && is_finished(first)) ++first;
+    return first;
 }
 
 /// Implements rule 3.
@@ -168,6 +179,7 @@ bool LayerSwitching::turn_back(double remaining)
 
 void LayerSwitching::begin_pass()
 {
+    if (!roughing_) remaining_[levels_.back().at.pass] = 0;
     strokes_ = 0;
     start_stroke(levels_.back().at.point == 0 ? last_point() : 0);
 }
@@ -206,8 +218,7 @@ bool LayerSwitching::needs_re_cut(const Level& level) const
 
 Action LayerSwitching::start_covering(Event event)
 {
-    levels_.back() = level_from({}, +1, true, 0);
-    max_remaining_ = 0;
+    levels_.back() = level_from({unfinished_pass(0), 0}, +1, true, 0);
     begin_pass();
     ++counts_.passes;
     return act(Action::Kind::travel, event);
@@ -255,7 +266,7 @@ int LayerSwitching::interval_of(int pass, int point) const
     return int(std::upper_bound(starts.begin(), starts.end(), point) - starts.begin());
 }
 
-LayerSwitching::Settings strategy_settings(const plan::Plan& plan, bool finish_passes)
+LayerSwitching::Settings strategy_settings(const plan::Plan& plan)
 {
     // The plan's bound follows from the lowest point of the surface; the start is not below that.
     const double layer_above = plan.start.z() + plan.layers.distance * plan.bounds.layers;
@@ -265,7 +276,6 @@ LayerSwitching::Settings strategy_settings(const plan::Plan& plan, bool finish_p
             .step_over = plan.job.feed.step_over,
             .max_remaining = plan.job.tolerance * (1 - plan::kScallopPerTolerance),
             .ends_at_safe_height = layer_above > plan.job.safe_height,
-            .finish_passes = finish_passes,
             .bounds = plan.bounds};
 }
 

@@ -87,7 +87,7 @@ struct StrategyCounts {
 /// 2. Layer 1 covers all of B. If it has lines closer than the step-over, a covering on lines about a step-over apart
 ///    comes first. A covering that leaves no more than the tolerance finishes the work; else the next one starts. With
 ///    `finish_passes` the wheel instead repeats strokes over the stretch of a pass where more is left, before the next
-///    pass.
+///    pass. With `skip_finished_passes` a covering leaves out the passes on which the one before it left no more.
 /// 3. Above layer 1, F < F_min ends a pass: the wheel steps over and reverses. F < F_min at the beginning of a pass
 ///    ends the cut. If the cut's largest force F_a exceeds F_down, it is repeated from where this layer was entered;
 ///    else the wheel goes down one layer, to the position where that was left, and continues in its direction. A
@@ -105,6 +105,7 @@ class LayerSwitching {
         double max_remaining = 0;                            ///< height that may be left after a covering, mm
         bool ends_at_safe_height = false;                    ///< the layer above the bound is at the safe height
         bool finish_passes = false;                          ///< finish each pass of layer 1 before the next
+        bool skip_finished_passes = false;                   ///< grind only unfinished passes of layer 1 again
         plan::StrategyLimits bounds;
     };
 
@@ -156,6 +157,7 @@ class LayerSwitching {
     bool needs_re_cut(const Level& level) const;
     Action start_covering(Event event);
     Action end_covering();
+    int unfinished_pass(int first) const;
     bool has_close_lines() const;
     Action step_over_to(int pass, int point, bool met_metal);
 
@@ -170,7 +172,7 @@ class LayerSwitching {
     std::vector<Level> levels_; ///< stack of layers 1, 2, …; the last is the current one
     bool cut_ended_ = false;
     bool roughing_ = false;
-    double max_remaining_ = 0; ///< measured in this covering, mm
+    std::vector<double> remaining_; ///< largest height on each pass when it was last covered, mm
     /// State of a pass in layer 1 with finish_passes: first and last point of the current stroke where too much is
     /// left, its end point, and the number of repeated strokes.
     int first_high_ = 0, last_high_ = -1, stroke_end_ = -1, strokes_ = 0;
@@ -178,8 +180,8 @@ class LayerSwitching {
     std::string failure_;
 };
 
-/// Settings of the strategy for a plan. The share plan::kScallopPerTolerance of the tolerance is reserved for
-/// the scallops between the passes.
-LayerSwitching::Settings strategy_settings(const plan::Plan& plan, bool finish_passes);
+/// Settings of the strategy for a plan, with every pass in every covering. The share plan::kScallopPerTolerance of the
+/// tolerance is reserved for the scallops between the passes.
+LayerSwitching::Settings strategy_settings(const plan::Plan& plan);
 
 } // namespace fettle::strategy

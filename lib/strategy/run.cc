@@ -27,13 +27,23 @@ double highest_point(const plan::ToolPath& path)
 Runner::Runner(const plan::Plan& plan, gantry::Gantry& gantry, const RunOptions& options)
     : plan_(plan), options_(options),
       machine_(gantry, plan.job.units, options.previous_trace, options.previous_source, options.journal),
-      path_(plan.job, plan.surface, plan.passes, plan.step), settings_(strategy_settings(plan, single_covering())),
+      path_(plan.job, plan.surface, plan.passes, plan.step),
+      wear_model_(plan.job, strategy_settings(plan).max_remaining, options.known_removal), settings_(settings(plan)),
       strategy_(path_.passes(), settings_, {force_on_passes(StockBound::kMaxHardness), force_on_passes(1)}),
       feed_control_(plan.job, settings_.max_remaining),
-      force_control_(plan.job, settings_.max_remaining, options.known_removal),
-      wear_model_(plan.job, settings_.max_remaining, options.known_removal), bound_(plan.job, highest_point(path_))
+      force_control_(plan.job, settings_.max_remaining, options.known_removal), bound_(plan.job, highest_point(path_))
 {
     if (options.known_stock != nullptr) contact_watch_.emplace(*options.known_stock, plan.job);
+}
+
+/// A known wear tells what is left on a pass when it is ground. Without it nobody knows that until the wheel is
+/// measured, at the end of a covering.
+LayerSwitching::Settings Runner::settings(const plan::Plan& plan) const
+{
+    LayerSwitching::Settings settings = strategy_settings(plan);
+    settings.finish_passes = single_covering();
+    settings.skip_finished_passes = wear_model_.is_known();
+    return settings;
 }
 
 GrindRun Runner::run(const core::Progress& progress)
@@ -137,8 +147,11 @@ void Runner::measure_wheel_if_due(const Action& action)
     const bool covering =
         action.event == Event::start || (action.event == Event::covering_done && !wear_model_.is_known());
     const bool in_pass = action.kind == Action::Kind::grind && action.event == Event::none;
-    const bool due = grinding_time_ - last_touch_off_ >= options_.touch_off_period ||
-                     (compensates_wear() && finishing(action.layer) && wear_model_.measurement_due());
+    // A known wear is measured again where its error may matter, however long that takes.
+    const bool due = wear_model_.is_known()
+                         ? wear_model_.measurement_due()
+                         : grinding_time_ - last_touch_off_ >= options_.touch_off_period ||
+                               (compensates_wear() && finishing(action.layer) && wear_model_.measurement_due());
     if (!covering && !(due && (in_pass || action.kind == Action::Kind::travel))) return;
     measure_wheel(action);
     if (!in_pass) return;

@@ -22,6 +22,7 @@ class Runner {
     GrindRun run(const core::Progress& progress);
 
   private:
+    LayerSwitching::Settings settings(const plan::Plan& plan) const;
     bool single_covering() const { return options_.layer_1 != Layer1::constant; }
     bool compensates_wear() const { return single_covering() || wear_model_.is_known(); }
     bool finishing(int layer) const { return layer == 1 && !strategy_.is_roughing(); }
@@ -32,10 +33,14 @@ class Runner {
         return path_.passes()[position.pass].points[position.point];
     }
     static Recorder::Mark mark(const Action& action, Event event) { return {action.layer, action.to.pass + 1, event}; }
-    /// Height of the stock above the reference surface.
+    /// Height of the stock above the reference surface. A wheel whose wear is known is at its expected height, not as
+    /// low as it is driven, lest it grind too deep. Control by feed and by force presses deeper where more is left, so
+    /// that it takes the lower height.
     double remaining(const gantry::GantryStatus& status) const
     {
-        return status.deflection + height_error_ - force_offset_;
+        const bool expects_wear = wear_model_.is_known() && !single_covering();
+        const double higher = expects_wear ? wear_model_.expected_loss() - wheel_wear_ : 0;
+        return status.deflection + height_error_ - force_offset_ + higher;
     }
 
     void fail(const Action& action, const gantry::GantryFault& fault);
@@ -74,11 +79,11 @@ class Runner {
     RunOptions options_;
     Recorder machine_;
     plan::ToolPath path_;
-    LayerSwitching::Settings settings_;
+    WheelWear wear_model_;
+    LayerSwitching::Settings settings_; ///< by the members before it
     LayerSwitching strategy_;
     FeedControl feed_control_;
     ForceControl force_control_;
-    WheelWear wear_model_;
     std::optional<ContactWatch> contact_watch_;
     StockBound bound_;
     double climb_ = 0;                              ///< steepest slope that the wheel has climbed lately

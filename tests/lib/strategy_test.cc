@@ -118,6 +118,22 @@ TEST(LayerSwitching, CoversLayer1AgainUntilWithinTolerance)
     EXPECT_EQ(s.force(4, 0.1), "done 1 0.2"); // the tolerance itself is within
 }
 
+TEST(LayerSwitching, CoversOnlyUnfinishedPassesAgain)
+{
+    strategy::LayerSwitching::Settings skipping = settings();
+    skipping.skip_finished_passes = true;
+    Script s(square(4, 2), skipping);
+    for (const double remaining : {0.05, 0.1, 0.2, 0.05, 0.1, 0.05, 0.05}) s.force(14, remaining);
+    EXPECT_EQ(s.force(14, 0.2), "covering 1 1.0"); // passes 1 and 3 have more than 0.1
+    s.force(14, 0.1);
+    EXPECT_EQ(s.force(14, 0.1), "step-over 1 3.1");
+    s.force(14, 0.1);
+    EXPECT_EQ(s.force(14, 0.11), "covering 1 3.0");
+    s.force(14, 0.1);
+    EXPECT_EQ(s.force(14, 0.1), "done 1 3.1");
+    EXPECT_EQ(s.strategy().counts().coverings, 3);
+}
+
 // Where the force is expected to stay below F_min a pass is not begun, and one that was begun ends at once.
 TEST(LayerSwitching, LeavesOutPassesThatWouldEndTheCut)
 {
@@ -530,6 +546,9 @@ TEST(Run, MeasuresTheWheelOnItsPeriod)
     options.touch_off_period = 20;
     const strategy::GrindRun result = strategy::run(plan, gantry, options);
     EXPECT_EQ(result.touch_offs, 1 + 3);
+    // A known wear says by itself when it is measured again: without force it is never.
+    options.known_removal = {.removed_volume = 600, .lost_volume = 10, .wear_sigma = 0.04};
+    EXPECT_EQ(strategy::run(plan, gantry, options).touch_offs, 1);
 }
 
 /// A machine that stops for good at its Nth command, like one whose driver dies.
