@@ -68,6 +68,8 @@ sampling_panel       = $(if $(filter default,$(METHOD)),--strategy adaptive)
 margin_of_wang       = --method wang --plane-shift accuracy
 # With 99 % the rough panel's margin alone takes half of its limit, for the one facet in hundreds that may stand highest.
 margin_panel         = $(if $(filter wang,$(METHOD)),,--confidence 0.9)
+# At 99 % one part in a hundred may be ground beneath its metal: in holdout, of 120 runs, one is.
+margin_weld          = $(if $(filter wang,$(METHOD)),,--confidence 0.999)
 comma               := ,
 
 # A path is $(CHAIN)/SEED/CASE/STAGE; % is SEED/CASE.
@@ -194,7 +196,7 @@ define holdout_rule
 $(CHAIN)/%/holdout/$1.json: $(CHAIN)/holdout/$1.json $(CHAIN)/parts/weld.obj $(addprefix $(B)/bin/fettle-,sample fit margin mesh compare)
 	@mkdir -p $$(@D)
 	fettle-sample $$< --on $(CHAIN)/parts/weld.obj --noise $(NOISE_mm) --seed $$* --report $$(@:.json=-sample.json) -q -o $$(@:.json=.pcd)
-	fettle-fit $$< $$(@:.json=.pcd) | fettle-margin $$< -o $$(@:.json=-desired.json)
+	fettle-fit $$< $$(@:.json=.pcd) | fettle-margin $$< $$(margin_weld) -o $$(@:.json=-desired.json)
 	fettle-mesh $$(@:.json=-desired.json) --within $$< --step $(STEP_weld) | fettle-compare - --to $(CHAIN)/parts/weld.obj --mode z --within $$< \
 	    --tolerance $(LIMIT_weld) --report $$@ -o /dev/null || test $$$$? -eq 1
 endef

@@ -17,6 +17,8 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
+#include <set>
 
 namespace fettle::margin {
 
@@ -83,6 +85,14 @@ Index farthest(const std::vector<Vector2d>& places, const Matrix2Xd& touched)
         distance = distance.cwiseMin((all.colwise() - t).colwise().norm().transpose());
     Index best = 0;
     distance.maxCoeff(&best);
+    return best;
+}
+
+/// The candidate nearest to a place.
+Index nearest(const std::vector<Vector2d>& places, const Vector2d& place)
+{
+    Index best = 0;
+    (as_columns(places).colwise() - place).colwise().norm().minCoeff(&best);
     return best;
 }
 
@@ -211,10 +221,23 @@ class AdaptiveSearch {
         std::erase_if(places_, [&](const Vector2d& p) { return (p - place).norm() <= radius; });
     }
 
+    /// A touch that the fit left out, and beside which no other was made since. It may be a slip of the probe, or a
+    /// feature of the surface that the fit does not have; a second touch tells them apart.
+    std::optional<Index> unchecked_outlier() const
+    {
+        for (const Index i : surface_.outliers)
+            if (!checked_.contains(i)) return i;
+        return std::nullopt;
+    }
+
     /// The place to touch next. A sphere through few touches may end inside of S: then distant touches refute it.
-    Index next_place() const
+    Index next_place()
     {
         const bool is_begun = result_.plan.size() >= kInitialTouches;
+        if (const std::optional<Index> outlier = unchecked_outlier(); is_begun && outlier) {
+            checked_.insert(*outlier);
+            return nearest(places_, result_.plan.xy.col(*outlier));
+        }
         if (is_begun && surface::heights(surface_, as_columns(places_)).allFinite())
             return most_informative(surface_, grid_, places_);
         return farthest(places_, result_.plan.xy);
@@ -238,7 +261,8 @@ class AdaptiveSearch {
         surface_ = fit_touches(job_, result_.plan, result_.touches);
         bands_.back() = predicted_band(surface_, job_, limits_.confidence);
         confirmed_ = bands_.back() <= limits_.max_band ? confirmed_ + 1 : 0;
-        result_.band_reached = confirmed_ > kConfirmations && !may_be_chance(surface_, result_.plan.size());
+        result_.band_reached =
+            confirmed_ > kConfirmations && !may_be_chance(surface_, result_.plan.size()) && !unchecked_outlier();
     }
 
     const job::Job& job_;
@@ -251,6 +275,7 @@ class AdaptiveSearch {
     AdaptiveTouches result_;
     std::vector<double> bands_;
     surface::Surface surface_; ///< fit of the touches so far
+    std::set<Index> checked_;  ///< outliers beside which a touch was made
     int confirmed_ = 0;        ///< touches in a row with a band as small as required
 };
 
@@ -266,7 +291,8 @@ AdaptiveTouches extend_layout(const job::Job& job, const sampling::TouchPlan& la
 {
     const surface::Surface surface = fit_touches(job, layout, touches);
     const double band = predicted_band(surface, job, limits.confidence);
-    const bool is_enough = band <= limits.max_band && !may_be_chance(surface, layout.size());
+    const bool is_enough =
+        band <= limits.max_band && !may_be_chance(surface, layout.size()) && surface.outliers.empty();
     if (!is_enough && layout.size() < limits.max_touches && job.sampling.cols() > 0) {
         AdaptiveSearch search(job, limits, probe);
         search.begin(layout, touches, surface, band);
