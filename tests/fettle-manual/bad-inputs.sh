@@ -21,6 +21,7 @@ driven 'ended with status 127' 'no-such-program 2> nothing'
 driven 'ended with status 3' 'exit 3'
 driven 'makes no sense' 'echo hello; sleep 5'
 driven 'speaks another protocol' 'echo 1 ok grbl 1.1; sleep 5'
+refuses 'line 2: longer than 4096 bytes' --machine "$machine" --steer <(echo '0 1 0' && head -c 9000 /dev/zero | tr '\0' 1)
 refuses 'cannot read: Is a directory' --machine "$machine" --steer .
 # The last line of a file may lack its end.
 fettle-manual job.json --stock stock.stl --cell 0.4 --machine "$machine" --steer <(printf '0 1 0\n0.5 1 0\n1 end\n') --report whole.json > ground.pcd

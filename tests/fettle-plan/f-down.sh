@@ -20,5 +20,7 @@ done
 [ "$(sort -g chosen | tr '\n' ' ')" = "$(tr '\n' ' ' < chosen)" ]
 "$HERE/../refuses" '--stock: the part, and --f-down auto, which simulates it, go together' fettle-plan job.json surface.json --f-down auto
 "$HERE/../refuses" '--stock: the part, and --f-down auto, which simulates it, go together' fettle-plan job.json surface.json --stock stock.stl
+"$HERE/../refuses" 'job.json: force.down: the work finishes with no value, with the smallest not because of: ' \
+    fettle-plan job.json surface.json --f-down auto --stock stock.stl --cell 0.4 --removal-factor 1e-3
 jq '.safe_height = 8' job.json > low.json
 "$HERE/../refuses" 'stock.stl: stands at z 8' fettle-plan low.json surface.json --f-down auto --stock stock.stl

@@ -149,6 +149,14 @@ TEST(FeedControl, DoesWithTheFewestStrokes)
     strategy::FeedControl control(job, limit);
     control.update(0, 0, 0.02); // air
     EXPECT_EQ(control.feed(), v);
+    // Stock so hard that a stroke takes a twentieth of what is left: more strokes than are foreseen.
+    job::Job hard;
+    hard.removal_coefficient = 0.05 * hard.wheel.width * v / k;
+    strategy::FeedControl slow(hard, limit);
+    slow.update(1.5 * target, 1.5 * target, 0.02);
+    EXPECT_LT(slow.feed(), v);
+    slow.update(20 * target, 20 * target, 0.02);
+    EXPECT_EQ(slow.feed(), v);
 }
 
 /// Strokes to and fro over a flat stock `high` above the reference until no more than `limit` is left in the

@@ -336,6 +336,16 @@ TEST(Checkpoint, KeepsWhatIsOnTheDisk)
     EXPECT_EQ(kept.rows.back().time, 499);
     EXPECT_EQ(kept.identity.parts, identity.parts);
     EXPECT_FALSE(kept.cut.empty());
+    // A digest that is none.
+    const std::string checkpoint = core::read_file("trace.pcd.checkpoint");
+    std::ofstream("trace.pcd.checkpoint") << "500 0123456789abcde\n";
+    try {
+        station::read_trace_or_checkpoint("trace.pcd", units);
+        FAIL();
+    } catch (const core::InputError& error) {
+        EXPECT_STREQ(error.what(), "trace.pcd: does not say which run wrote it");
+    }
+    std::ofstream("trace.pcd.checkpoint") << checkpoint;
     // What is lost beyond the checkpoint is lost.
     bytes.replace(bytes.size() / 4, bytes.size() / 2, bytes.size() / 2, '\0');
     std::ofstream("trace.pcd") << bytes;

@@ -1,9 +1,11 @@
 #include "gantry_stock.h"
 #include "own_folder.h"
 
+#include "core/descriptor.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "strategy/joystick.h"
+#include "strategy/keys.h"
 #include "strategy/layer_switching.h"
 #include "strategy/run.h"
 #include "strategy/steering.h"
@@ -14,11 +16,14 @@
 
 #include <cmath>
 #include <csignal>
+#include <cstdlib>
+#include <fcntl.h>
 #include <filesystem>
 #include <fstream>
 #include <functional>
 #include <string>
 #include <sys/resource.h>
+#include <utility>
 #include <vector>
 
 namespace fettle {
@@ -568,12 +573,14 @@ class FailingGantry final : public gantry::Gantry {
     double probe(const Eigen::Vector2d& xy, double lowest) override { return gantry_.probe(xy, lowest); }
     gantry::GantryStatus status() const override { return gantry_.status(); }
     double ground = 0;
+    std::function<void()> before_fault; ///< may be empty
 
   private:
     gantry::Gantry& obey()
     {
-        if (left_-- == 0) throw gantry::GantryFault("dead");
-        return gantry_;
+        if (left_-- != 0) return gantry_;
+        if (before_fault) before_fault();
+        throw gantry::GantryFault("dead");
     }
     gantry::Gantry& gantry_;
     int left_;
@@ -627,11 +634,13 @@ class InterruptedGantry final : public gantry::Gantry {
     void change_wheel() override { obey().change_wheel(); }
     double probe(const Eigen::Vector2d& xy, double lowest) override { return gantry_.probe(xy, lowest); }
     gantry::GantryStatus status() const override { return gantry_.status(); }
+    bool dies = false; ///< when it is to be lifted off
 
   private:
     gantry::Gantry& obey()
     {
         if (left_-- == 0) throw gantry::Interrupted();
+        if (dies && left_ < 0) throw gantry::GantryFault("dead");
         return gantry_;
     }
     gantry::Gantry& gantry_;
@@ -670,6 +679,45 @@ TEST(Run, IsStoppedByTheOperatorAndGoesOn)
     }
     EXPECT_GT(stops, 3);
     EXPECT_LE(machine.highest(flat), plan.job.tolerance);
+}
+
+TEST(Run, IsStoppedByTheOperatorAndFailsOnTheWayUp)
+{
+    const plan::Plan plan = square_plan();
+    ColumnGantry machine(flat, plan.job.force.stiffness);
+    InterruptedGantry gantry(machine, 10);
+    gantry.dies = true;
+    const strategy::GrindRun run = strategy::run(plan, gantry);
+    EXPECT_TRUE(run.faulted);
+    EXPECT_FALSE(run.stopped);
+    EXPECT_EQ(run.failure, "dead");
+    EXPECT_EQ(run.trace.back().event, strategy::Event::fault);
+}
+
+// What has failed is the machine: a disk that is full by then is not said instead.
+TEST(Run, SaysTheFaultThatItsJournalHasNoRoomFor)
+{
+    const OwnFolder folder;
+    std::signal(SIGXFSZ, SIG_IGN); // as the tools do
+    rlimit before{};
+    ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+    const plan::Plan plan = square_plan();
+    ColumnGantry machine(flat, plan.job.force.stiffness);
+    FailingGantry gantry(machine, 10);
+    gantry.before_fault = [&before] {
+        const rlimit none{0, before.rlim_max};
+        ::setrlimit(RLIMIT_FSIZE, &none);
+    };
+    strategy::TraceFile journal("trace.pcd", {}, cloud::PcdEncoding::ascii, {});
+    strategy::RunOptions options;
+    options.journal = &journal;
+    const strategy::GrindRun run = strategy::run(plan, gantry, options);
+    ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
+    EXPECT_TRUE(run.faulted);
+    EXPECT_EQ(run.failure, "dead");
+    EXPECT_EQ(run.trace.back().event, strategy::Event::fault);
+    EXPECT_TRUE(journal.has_failed());
+    EXPECT_EQ(strategy::read_trace("trace.pcd", {}).size() + 1, run.trace.size());
 }
 
 // Between the measurement of a worn wheel and the first move: measured, changed, measured.
@@ -768,6 +816,54 @@ TEST(Steering, SeesAStopWhileTheMachineWorks)
     EXPECT_TRUE(steering.at(9).end);
     EXPECT_TRUE(steering.at(9).end);
     EXPECT_THROW(strategy::Steering("steer.txt", "/dev/null"), core::InputError);
+}
+
+/// Both ends of a terminal: what is written to the first is typed at the other.
+struct Terminal {
+    Terminal() : keyboard(::posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC))
+    {
+        if (!keyboard.is_open() || ::grantpt(keyboard.get()) != 0 || ::unlockpt(keyboard.get()) != 0) return;
+        path = ::ptsname(keyboard.get());
+        screen = core::FileDescriptor(::open(path.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC));
+    }
+    core::FileDescriptor keyboard, screen;
+    std::string path; ///< of the screen
+};
+
+TEST(Keys, PushTheButtonsInTheOrderInWhichTheyAreTyped)
+{
+    using strategy::Button;
+    const Terminal terminal;
+    if (!terminal.screen.is_open()) GTEST_SKIP() << "there are no pseudo-terminals";
+    strategy::Keys keys(terminal.screen.get());
+    ASSERT_TRUE(core::write_all(terminal.keyboard, "rnb\b\n am[]x"));
+    const Button buttons[] = {Button::record, Button::next,      Button::back,   Button::back,      Button::start,
+                              Button::stop,   Button::automatic, Button::manual, Button::turn_left, Button::turn_right};
+    EXPECT_TRUE(keys.has_stop());
+    for (const Button button : buttons) {
+        strategy::Stick stick;
+        keys.update(0, stick);
+        EXPECT_EQ(stick.button, button);
+    }
+    strategy::Stick stick;
+    keys.update(0, stick);
+    EXPECT_EQ(stick.button, Button::none);
+    EXPECT_FALSE(keys.has_stop());
+    EXPECT_FALSE(stick.end);
+}
+
+TEST(Steering, RefusesWhatIsNoJoystickBesideTheKeys)
+{
+    const Terminal terminal;
+    if (!terminal.screen.is_open()) GTEST_SKIP() << "there are no pseudo-terminals";
+    for (const auto& [joystick, message] : {std::pair("/no/joystick", "/no/joystick: cannot open: "),
+                                            std::pair("/dev/null", "/dev/null: is no joystick")})
+        try {
+            strategy::Steering(terminal.path, joystick);
+            ADD_FAILURE() << joystick;
+        } catch (const core::InputError& error) {
+            EXPECT_TRUE(std::string(error.what()).starts_with(message)) << error.what();
+        }
 }
 
 TEST(Trace, RefusesEventsThatThereAreNot)

@@ -302,6 +302,13 @@ TEST(Surface, IsTheMeanOfItsAlternatives)
     EXPECT_EQ(back.alternatives.size(), 2U);
     EXPECT_EQ(surface::height(back, {2, 0}), surface::height(surface, {2, 0}));
     EXPECT_EQ(surface::sigma(back, {2, 0}), surface::sigma(surface, {2, 0}));
+    surface.weight = 0.7;
+    try {
+        surface::parse_surface(json::Reader::parse(surface::to_json(surface).text(), "s.json"));
+        FAIL();
+    } catch (const core::InputError& error) {
+        EXPECT_STREQ(error.what(), "s.json: alternatives: weights do not sum up to 1 with that of the fit");
+    }
 }
 
 TEST(Surface, FlatSphereIsAPlane)
