@@ -40,6 +40,15 @@ station two two.txt --gantry virtual --report report.json 2> said || status=$?
 jq -e '.stage == "anomaly"' report.json > ok
 jq -e '.anomaly | length == 2' two/session.json > ok
 
+# A driver that dies in the middle of a move is said, and started anew for the next one.
+printf '0 1 0\n1 0 0\n1 record\n1 end\n' > move.txt
+virtual="fettle-gantry-virtual job.json --stock stock.stl --cell 0.2"
+ends_with 1 fettle-station job.json --session anew --lowest 0 --steer move.txt --patience 5 \
+    --gantry "exec:if [ -e begun ]; then touch begun_again && exec $virtual; else touch begun && exec $HERE/../fettle-grind/faulty-driver dies 6 $virtual; fi"
+grep -q 'was killed by signal 9; stopped' said
+[ -e begun_again ]
+jq -e '.stage == "anomaly" and (.anomaly | length) == 1' anew/session.json > ok
+
 # The anomaly stands higher than probe and wheel travel: touching does not begin, and why is said also where there is no screen.
 make_job 0
 jq '.safe_height = 8' job.json > low.json

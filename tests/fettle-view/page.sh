@@ -30,3 +30,24 @@ for x, value in zip(xs, values):
     x, value = errors["origin"][0] + errors["step"][0] * x, field["origin"] + field["step"] * value
     assert abs(value - (0.1 if x < 20 else -0.1)) < 1e-5, (x, value)
 PYTHON
+# Of classes the legend says the names, counts and colours, and where a value is looked up there is its colour. A name is text, whatever
+# is in it. Reference: the stripes; the colour of "within".
+{ printf '# .PCD v0.7\n# units mm\nVERSION 0.7\nFIELDS x y z class\nSIZE 4 4 4 4\nTYPE F F F F\nCOUNT 1 1 1 1\nWIDTH 900\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 900\nDATA ascii\n'
+    awk 'BEGIN { for (y = 0.5; y < 30; ++y) for (x = 0.5; x < 30; ++x) print x, y, 0, int(x / 10) - 1 }'; } >'<&>.pcd'
+fettle-view '<&>.pcd' --field class -o classes.html
+xmllint --noout --nonet classes.html
+python3 - classes.html <<'PYTHON'
+import base64, json, re, sys
+text = re.search(r'class="scene">(.*?)</script>', open(sys.argv[1]).read(), re.S).group(1)
+assert not set("<>&") & set(text), text
+layer, = json.loads(text)["layers"]
+assert layer["name"] == "<&>.pcd", layer["name"]
+field = next(f for f in layer["fields"] if f["name"] == "class")
+assert [(c["value"], c["name"], c["count"]) for c in field["classes"]] == [(-1, "gouge", 300), (0, "within", 300), (1, "undercut", 300)]
+colours = base64.b64decode(field["colours"])
+assert (field["low"], field["high"], len(colours)) == (-1.5, 1.5, 768)
+for c in field["classes"]:
+    at = int((c["value"] - field["low"]) / 3 * 256)
+    assert list(colours[3 * at : 3 * at + 3]) == c["colour"], c
+assert field["classes"][1]["colour"] == [150, 200, 120]
+PYTHON
