@@ -13,6 +13,12 @@
 namespace fettle::report {
 namespace {
 
+/// Name of the file of that SourceFile::role, for messages.
+const std::string& source_of(const RunFiles& run, const std::string& role)
+{
+    return std::ranges::find(run.sources, role, &SourceFile::role)->name;
+}
+
 /// Picture of a part. @param role  SourceFile::role of the part, for messages
 draw::Html picture_of(const RunFiles& run, const std::string& role, const mesh::MeshOrCloud& part,
                       const draw::PictureOptions& options, const std::string& caption)
@@ -22,7 +28,7 @@ try {
                        [&](int width, int height) -> draw::Sheet& { return sheet.emplace(width, height); });
     return drawing_with_caption(sheet->drawing(caption), caption);
 } catch (const core::InputError& error) {
-    throw core::InputError(std::ranges::find(run.sources, role, &SourceFile::role)->name, error.what());
+    throw core::InputError(source_of(run, role), error.what());
 }
 
 /// One view of the part before, after and its errors, to be turned. Where it cannot be shown the pictures below it
@@ -32,10 +38,11 @@ draw::Html rotatable_view(const RunFiles& run, const draw::PictureOptions& optio
     std::vector<view::Layer> layers;
     if (run.errors) {
         const mesh::CloudMesh part{*run.errors, {}};
-        layers.push_back({"errors", part, view::default_fields(part.points)});
+        layers.push_back({"errors", part, view::default_fields(part.points), source_of(run, "error map")});
     }
-    if (run.before) layers.push_back({"before", mesh::as_cloud_mesh(*run.before), {"z"}});
-    if (run.after) layers.push_back({"after", mesh::as_cloud_mesh(*run.after), {"z"}});
+    if (run.before)
+        layers.push_back({"before", mesh::as_cloud_mesh(*run.before), {"z"}, source_of(run, "part before")});
+    if (run.after) layers.push_back({"after", mesh::as_cloud_mesh(*run.after), {"z"}, source_of(run, "part after")});
     if (layers.empty()) return {};
     view::ViewOptions view;
     view.picture = options;

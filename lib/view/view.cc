@@ -18,6 +18,8 @@ namespace {
 
 using Eigen::Index;
 
+const std::string& source_of(const Layer& layer) { return layer.source.empty() ? layer.name : layer.source; }
+
 /// The scale of a field of a layer by itself.
 draw::PictureScale own_scale(const Layer& layer, const std::string& field, const ViewOptions& options)
 {
@@ -34,7 +36,7 @@ std::map<std::string, draw::PictureScale> shared_scales(const std::vector<Layer>
 {
     std::map<std::string, draw::PictureScale> shared;
     for (const Layer& layer : layers)
-        core::with_error_prefix(layer.name, [&] {
+        core::with_error_prefix(source_of(layer), [&] {
             for (const std::string& field : layer.fields) {
                 const draw::PictureScale own = own_scale(layer, field, options);
                 const auto [known, is_new] = shared.emplace(field, own);
@@ -186,7 +188,7 @@ json::Value described_box(const std::vector<Layer>& layers, std::size_t count, d
             if (p.allFinite()) box.extend(p);
     if (box.isEmpty() && count < layers.size()) return described_box(layers, layers.size(), mm);
     if (box.isEmpty())
-        throw core::InputError(layers.front().name, "no point has a finite x, y and z: there is nothing to draw");
+        throw core::InputError(source_of(layers.front()), "no point has a finite x, y and z: there is nothing to draw");
     return json::Value().set("min", Eigen::VectorXd(box.min() / mm)).set("max", Eigen::VectorXd(box.max() / mm));
 }
 

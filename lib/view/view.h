@@ -17,7 +17,8 @@ struct Layer {
     std::string name; ///< of its button
     mesh::CloudMesh part;
     std::vector<std::string>
-        fields; ///< z, fields of its points, `class`, `rgb`; at least one, the first is shown at first
+        fields;              ///< z, fields of its points, `class`, `rgb`; at least one, the first is shown at first
+    std::string source = {}; ///< name of its file, for messages; empty: `name`
 };
 
 struct ViewOptions {

@@ -35,6 +35,10 @@ done
 "$refuses" '3.pcd: ' fettle-report --job "$job" --samples 3.pcd # mm against in
 printf 'x y z error\nnan nan nan 1\n' >nowhere.xyz
 printf '1 1 0\n2 1 0\n1 2 3\n' >some.xyz
+"$refuses" 'nowhere.xyz: no point has a finite x and y: there is nothing to draw' fettle-report --before some.xyz --after nowhere.xyz
+"$refuses" 'nowhere.xyz: no point has a finite x, y and z: there is nothing to draw' fettle-report --errors nowhere.xyz
+awk 'BEGIN { print "x y z error class"; for (i = 0; i < 30; ++i) print i % 5, i / 5, 0, 0, i }' >classes.xyz
+"$refuses" "classes.xyz: field 'class' has more than 20 different values: these are no classes" fettle-report --errors classes.xyz
 "$refuses" 'nowhere.xyz: no point has a finite x and y: there is nothing to draw' fettle-report --errors nowhere.xyz --after some.xyz
 trace() { # ROW…: t layer event force feed
     printf '# .PCD v0.7\n# units mm N\nVERSION 0.7\nFIELDS x y z t layer event force feed\nSIZE 4 4 4 4 4 4 4 4\nTYPE F F F F F F F F\nCOUNT 1 1 1 1 1 1 1 1\nWIDTH %d\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS %d\nDATA ascii\n' $# $#
