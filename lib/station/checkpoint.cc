@@ -1,5 +1,6 @@
 #include "station/checkpoint.h"
 
+#include "core/digest.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/lines.h"
@@ -81,7 +82,8 @@ strategy::RecordedTrace read_trace_or_checkpoint(const std::string& trace, const
     const std::string text = core::read_file(checkpoint_of(trace));
     const std::vector<std::string_view> words = core::words(std::string_view(text).substr(0, text.find('\n')));
     const auto rows = words.size() == 2 ? core::parse_integer<std::size_t>(words[0]) : std::nullopt;
-    if (!rows) throw core::InputError(checkpoint_of(trace), "is no checkpoint of a trace");
+    if (!rows || words[1].size() != core::kDigestDigits)
+        throw core::InputError(checkpoint_of(trace), "is no checkpoint of a trace");
     return strategy::read_recorded_trace(trace, units, {*rows, std::string(words[1])});
 }
 

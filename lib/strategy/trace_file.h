@@ -33,7 +33,7 @@ class TraceFile {
     /// The rows that have their results, and their digest as the header has it.
     struct Completed {
         std::size_t rows = 0;
-        std::string digest;
+        std::string digest; ///< of these rows, core::kDigestDigits digits
     };
     Completed completed() const { return {count_ - (in_progress_ ? 1 : 0), digest_.text()}; }
     /// True if the last row could not be written. The rows that the file counts are whole nevertheless.

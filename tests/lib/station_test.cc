@@ -343,7 +343,7 @@ TEST(Checkpoint, KeepsWhatIsOnTheDisk)
         station::read_trace_or_checkpoint("trace.pcd", units);
         FAIL();
     } catch (const core::InputError& error) {
-        EXPECT_STREQ(error.what(), "trace.pcd: does not say which run wrote it");
+        EXPECT_STREQ(error.what(), "trace.pcd.checkpoint: is no checkpoint of a trace");
     }
     std::ofstream("trace.pcd.checkpoint") << checkpoint;
     // What is lost beyond the checkpoint is lost.
