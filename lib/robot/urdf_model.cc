@@ -64,8 +64,8 @@ class UrdfReader {
     }
 
   private:
-    // Every link but the root hangs on it: liburdfdom does not see a loop apart from the root, and of two joints that
-    // carry one link it takes the last by name.
+    // Every link but the root hangs on it: liburdfdom sees a second root, but no loop apart from the root, and of two
+    // joints that carry one link it takes the last by name.
     void check_tree() const
     {
         std::map<std::string, std::string> carriers;
@@ -77,9 +77,6 @@ class UrdfReader {
             const urdf::Link* at = link.get();
             for (std::size_t steps = 0; at->getParent() != nullptr; at = at->getParent().get())
                 if (++steps > model_.links_.size()) throw core::InputError("link '" + name + "' is part of a loop");
-            if (at != model_.getRoot().get())
-                throw core::InputError("link '" + name + "' does not hang on the root '" + model_.getRoot()->name +
-                                       "'");
         }
     }
 
@@ -162,9 +159,7 @@ class UrdfReader {
     void read_limits(const urdf::Joint& joint, DhRow& row) const
     {
         row.range = {-kContinuousDegrees * core::kRadPerDegree, kContinuousDegrees * core::kRadPerDegree};
-        if (joint.limits == nullptr && joint.type == urdf::Joint::REVOLUTE)
-            throw core::InputError(of_joint(joint) + "has no limits");
-        if (joint.limits == nullptr) return;
+        if (joint.limits == nullptr) return; // it is continuous: of all others liburdfdom demands them
         if (joint.type == urdf::Joint::REVOLUTE) row.range = {joint.limits->lower, joint.limits->upper};
         const double max = kMaxJointDegrees * core::kRadPerDegree;
         if (!(row.range.min < row.range.max) || row.range.min < -max || row.range.max > max)
@@ -176,7 +171,6 @@ class UrdfReader {
 
     void read_track()
     {
-        if (track_->limits == nullptr) throw core::InputError(of_joint(*track_) + "has no limits");
         const Isometry3d T = place(*model_.getLink(track_->child_link_name));
         const JointRange range = {track_->limits->lower * kMmPerMetre, track_->limits->upper * kMmPerMetre};
         if (!(range.min <= range.max) || std::max(std::abs(range.min), std::abs(range.max)) > kMaxLength)
@@ -232,8 +226,6 @@ class UrdfReader {
         const UrdfFiles files{source_, link.name, options_.packages, options_.exact_meshes};
         std::size_t count = 0;
         for (const auto& collision : link.collision_array) {
-            if (collision == nullptr || collision->geometry == nullptr)
-                throw core::InputError("link '" + link.name + "': a collision has no shape");
             const Isometry3d T = T_root_frame.inverse() * place(link) * urdf_isometry(collision->origin);
             const std::string name = link.name + (count == 0 ? "" : " " + std::to_string(count + 1));
             ++count;

@@ -29,6 +29,7 @@ grep -qF '$TOOL={X 20,Y 0,Z 120,A 0,B 30,C 0}' p.src
 flange rapid rapid mod "$urdf/abb_irb2400.urdf" upright --coupling parallelogram
 grep -qF 'jointtarget begin1 := [[10,15,15,20,30,40]' p.mod
 refuses '--rapid of a URDF needs --coupling serial or parallelogram' fettle-arm "$urdf/abb_irb2400.urdf" --forward joints.pcd --jump 200 --turn-feed 5 --feed 50 --unchecked --rapid q.mod
+refuses '--coupling goes with a URDF: a robot file says it' fettle-arm "$SAMPLES/robots/irb2400.json" --forward joints.pcd --jump 200 --turn-feed 5 --feed 50 --unchecked --coupling serial --krl q.src
 # frames that nobody told
 refuses 'no program can be written: no link is called base' fettle-arm "$urdf/kuka_kr210l150.urdf" --forward joints.pcd --jump 200 --turn-feed 5 --feed 50 --unchecked --krl q.src
 sed 's/"tool0"/"flange0"/' "$urdf/ur5.urdf" >flange0.urdf

@@ -34,6 +34,8 @@ why() { # REASON PATH OPTION...
 { header 2; printf '1000 1000 500 1 0 0 0\n1000 1000 500 0 1 0 0\n'; } >below.pcd
 why 'pose 1: joint 5 would be at [-0-9.]* degrees, out of its range of -115 to 115' below.pcd --track 1000
 why 'pose 0: joint 7 would be at 3000 mm, out of its range of 0 to 2000' below.pcd --track 3000
+{ header 2; printf '1000 1000 500 1 0 0 0\nnan 0 0 1 0 0 0\n'; } >undefined.pcd
+why 'pose 1: is not defined' undefined.pcd --track 1000
 { header 2; printf '1000 1000 500 1 0 0 0\n1000 1000 500 0.7071 0 0 0.7071\n'; } >quarter.pcd
 why 'pose 1: joint [46] jumps by [0-9.]* degrees, from [-0-9.]* to [-0-9.]*' quarter.pcd --track 1000
 jq '.dh[5].max_speed_deg = 1' "$SAMPLES/robots/irb1400.json" >slow.json

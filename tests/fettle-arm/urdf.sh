@@ -29,6 +29,8 @@ refuses '--package ur=DIR says it' fettle-arm mesh.urdf --forward folded.pcd
 refuses 'there is no mesh ./f.stl' fettle-arm mesh.urdf --package ur=. --forward folded.pcd
 printf '<robot><disable_collisions link1="a"/></robot>\n' >half.srdf
 refuses 'disable_collisions needs link1 and link2' fettle-arm "$urdf/ur5.urdf" --srdf half.srdf --forward folded.pcd
+printf '<robot>\n<disable_collisions :link1="a" link2="b"/>\n</robot>\n' >colon.srdf # XML, but its reader wants a letter
+refuses 'colon.srdf: line 2: ' fettle-arm "$urdf/ur5.urdf" --srdf colon.srdf --forward folded.pcd
 # What liburdfdom leaves out or decides by names is refused: a shape that it does not know, half a scale, a collision without a shape, a link
 # with two parents. A mesh in mm is 1000 times too large.
 shape() { sed "s|<link name=\"forearm_link\"/>|<link name=\"forearm_link\"><collision>$1</collision></link>|" "$urdf/ur5.urdf" >shape.urdf; }

@@ -3,6 +3,7 @@ refuses() { "$HERE/../refuses" "$@" </dev/null; }
 cp "$SAMPLES/robots/irb1400.json" robot.json
 cp "$SAMPLES/paths/keel.pcd" path.pcd
 : >empty
+refuses 'robot.json: JSON, expected a mesh' fettle-collide robot.json path.pcd --workpiece robot.json
 refuses 'empty: ' fettle-collide empty path.pcd
 refuses 'empty: ' fettle-collide robot.json empty
 refuses 'empty' fettle-collide robot.json path.pcd --workpiece empty

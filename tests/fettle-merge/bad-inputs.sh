@@ -7,6 +7,13 @@ printf 'VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 0\n
 refuses 'empty.pcd: ' 1.pcd empty.pcd
 for i in $(seq 200); do echo nan nan nan; done >nan.xyz
 refuses 'nan.xyz: nothing is left: 200 invalid' 1.pcd nan.xyz
+n=20000001
+printf 'VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH %d\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS %d\nDATA binary\n' $n $n >large.pcd
+truncate -s "+$((12 * n))" large.pcd
+refuses 'large.pcd: has 20000001 points, more than the 20 million of a scan that can be merged: thin it first' large.pcd 1.pcd
+rm large.pcd
+seq 900 | awk '{ print $1 % 30 / 1000, int($1 / 30) / 1000, 0 } END { print 9000, 0, 0 }' >wide.xyz
+refuses 'wide.xyz: the points extend over more than 2^20 times their distance from each other' wide.xyz wide.xyz
 seq 50 | awk '{ print $1, $1 % 7, $1 % 5 }' >few.xyz
 refuses 'few.xyz: has 50 points; 100 are needed' few.xyz 1.pcd
 seq 2000 | awk '{ print $1 / 10, 0, sin($1 / 100) }' >profile.xyz

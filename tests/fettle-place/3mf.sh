@@ -57,6 +57,7 @@ change 's/<item objectid="2"/<item objectid="9"/' && refuse 'object 9 does not e
 change 's/<component objectid="1"/<component objectid="2"/' && refuse 'nested too deep, or in a circle' bad.3mf
 change 's/<item .*<\/build>/<\/build>/' && refuse 'nothing is built' bad.3mf
 change 's/transform="0 1/transform="1/' && refuse 'a transform has 12 numbers, not 11' bad.3mf
+change 's/transform="0 1/transform="0 l/' && refuse "transform: 'l' is no number" bad.3mf
 change '1a <!DOCTYPE model [<!ENTITY a "aaaa">]>' && refuse 'a document type' bad.3mf
 change 's/<\/build>//' && refuse 'mismatched tag' bad.3mf
 head -c 700 corner.3mf > cut.3mf

@@ -6,6 +6,10 @@ refuses 'missing.pcd: cannot open' missing.pcd
 : > empty
 refuses 'empty: ' empty
 printf '1 1 1\n1 1 1\nnan 1 1\n' > same.xyz
+n=20000001
+printf 'VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH %d\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS %d\nDATA binary\n' $n $n > large.pcd
+truncate -s "+$((12 * n))" large.pcd
+refuses 'large.pcd: 20000001 points are more than can be joined, 20 million: thin them first' large.pcd
 refuses 'same.xyz: 1 different points, three are needed' same.xyz
 refuses 'far.xyz: no three points lie within the gap of 5 mm' far.xyz --max-gap 5
 refuses 'facet.off: is a mesh already' facet.off

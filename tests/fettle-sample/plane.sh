@@ -19,3 +19,7 @@ fettle-sample with_z.json --ascii | rows
 fettle-sample with_z.json --on part.stl --ascii | rows
 fettle-sample without_z.json --on part.stl --ascii | rows
 "$HERE/../refuses" 'without_z.json: touch points without z: name the part to touch, --on SURFACE' fettle-sample without_z.json
+# a safe height that is none
+jq '.safe_height = 6' with_z.json > low.json
+fettle-sample low.json -o low.pcd 2> warning
+grep -qF 'warning: safe_height 6 is below a touch at z 8.2' warning

@@ -11,11 +11,13 @@
 #include "sampling/freeform.h"
 #include "sampling/noise.h"
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
 namespace fettle {
 namespace adaptive_test {
@@ -75,6 +77,22 @@ TEST(Adaptive, TouchesBesideTheAnomalyAndKeepsItsDistance)
         EXPECT_TRUE(job::contains(polygons.sampling, found.plan.xy.col(i)));
         EXPECT_FALSE(job::contains(polygons.anomaly, found.plan.xy.col(i)));
         for (Eigen::Index j = 0; j < i; ++j) EXPECT_GT((found.plan.xy.col(i) - found.plan.xy.col(j)).norm(), 6);
+    }
+}
+
+// A turned square that the anomaly all but fills: the grid of places has none on the strip between them.
+TEST(Adaptive, RefusesJobsWithoutRoomBesideTheAnomaly)
+{
+    job::Job job = square_job();
+    const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    job.anomaly = turn * job.anomaly;
+    job.sampling = 1.0001 * job.anomaly;
+    job.source = "job.json";
+    try {
+        margin::touch_adaptively(job, {}, touching(dome, job, 1));
+        ADD_FAILURE() << "there is no room to touch";
+    } catch (const core::InputError& error) {
+        EXPECT_EQ(std::string(error.what()), "job.json: no room to touch beside the anomaly");
     }
 }
 

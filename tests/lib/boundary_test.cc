@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <random>
 
@@ -188,6 +189,9 @@ TEST(Boundaries, RefusesBadPolygons)
               "job.json: anomaly: not inside the sampling boundary's convex hull, at (4, 4) mm");
     EXPECT_EQ(problem(job_of(kSquare, kSquare)),
               "job.json: sampling: no room between anomaly and sampling boundary, near (0, 0) mm");
+    job::Job unknown = job_of(small, kSquare);
+    unknown.sampling(1, 2) = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_EQ(problem(unknown), "job.json: sampling: a boundary point without x and y");
 }
 
 TEST(Boundaries, ReportsPlacesInTheJobsUnits)

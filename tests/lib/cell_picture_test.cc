@@ -7,9 +7,11 @@
 #include "robot/clearance.h"
 #include "robot/collision.h"
 #include "robot/heterogeneous.h"
+#include "robot/mesh_body.h"
 
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <numbers>
 #include <set>
 #include <string>
@@ -50,6 +52,14 @@ TEST(CellScene, MeshesOfSolidsHaveTheirVolumes)
         const robot::PlacedSolid placed(solid, Isometry3d::Identity());
         for (const auto& p : mesh.vertices.colwise()) EXPECT_NEAR(placed.signed_distance(p).value, 0, 1e-9);
     }
+}
+
+TEST(CellScene, MeshesOfLinksAreDrawnAsTheyAre)
+{
+    const mesh::Mesh hollow = cube(40);
+    const mesh::Mesh drawn = robot::solid_mesh(robot::solid::Triangles{std::make_shared<robot::MeshBody>(hollow)});
+    EXPECT_EQ(drawn.vertices, hollow.vertices);
+    EXPECT_EQ(drawn.triangles, hollow.triangles);
 }
 
 // A small box before a large one, seen along -x.

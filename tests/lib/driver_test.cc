@@ -270,6 +270,46 @@ TEST(Driver, MayNotKnowHowToHalt)
     driver.join();
 }
 
+// A driver whose answer to `halt` cannot be true is stopped as after any other such answer.
+TEST(Driver, MustHaltAsItSays)
+{
+    Sockets sockets;
+    EXPECT_TRUE(core::write_all(sockets.theirs, "1 ok " + kLimits + "\n2 ok 60\n3 ok " + kHome + "\n"));
+    std::string message;
+    {
+        gantry::DriverGantry gantry("driver", std::move(sockets.ours), job(), 1);
+        int asked = 0;
+        gantry.set_interrupt([&](const gantry::GantryStatus& /*now*/) {
+            if (++asked < 3) return false;
+            EXPECT_TRUE(core::write_all(sockets.theirs, "4 ok 2 5 0 30 0 0 0\n5 ok 0.5 5 0 30 0 0 0\n6 ok\n"));
+            return true;
+        });
+        try {
+            gantry.grind({5, 0, 30}, 20);
+        } catch (const gantry::GantryFault& fault) {
+            message = fault.what();
+        }
+        ::shutdown(sockets.theirs.get(), SHUT_WR);
+    }
+    EXPECT_EQ(message, "driver 'driver' goes back in time, to 0.5 s; stopped");
+    std::string read(1000, '\0');
+    read.resize(std::size_t(std::max<ssize_t>(::read(sockets.theirs.get(), read.data(), read.size()), 0)));
+    EXPECT_NE(read.find("\n4 move 5 0 30 20\n5 halt\n6 stop\n"), std::string::npos) << read;
+}
+
+// A machine whose head stands still says so to a job that needs it turned.
+TEST(Driver, MachinesMayNotTurnTheirHeads)
+{
+    SlowGantry slow;
+    gantry::Gantry& machine = slow;
+    try {
+        machine.turn_to(1);
+        ADD_FAILURE() << "it does not turn";
+    } catch (const gantry::GantryFault& fault) {
+        EXPECT_EQ(std::string(fault.what()), "the machine cannot turn its head");
+    }
+}
+
 // One that knows `travel_low` is asked for it; one that does not gets `travel`, and is not asked again.
 TEST(Driver, MayNotKnowHowToTravelLow)
 {

@@ -5,6 +5,7 @@
 #include "core/constants.h"
 #include "cube.h"
 #include "draws.h"
+#include "irb1400.h"
 #include "robot/clearance_tracker.h"
 #include "robot/mesh_body.h"
 #include "robot/mesh_clearance.h"
@@ -15,8 +16,10 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <memory>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace fettle {
@@ -257,6 +260,29 @@ TEST(MeshClearance, ChangesNoMoreThanTheMotion)
         if (at0.inside || at1.inside) continue;
         const double motion = (T1 * of_a.vertices - T0 * of_a.vertices).colwise().norm().maxCoeff();
         EXPECT_LE(std::abs(at1.clearance.distance - at0.clearance.distance), motion + 2 * kClearanceAccuracy) << k;
+    }
+}
+
+// A ball on the tool, whose tip is at (1155, 0, 1095) and whose z points along -x, before a cube on the floor of the
+// cell, in either order of the bodies: the point said is on the first.
+TEST(MeshClearance, BallAndMeshInEitherOrder)
+{
+    const robot::Body ball{"ball", robot::link::kTool, robot::solid::Sphere{{0, 0, 6}, 6}};
+    const robot::Body block{
+        "block", robot::link::kCell,
+        robot::solid::Triangles{std::make_shared<robot::MeshBody>(cube(10, Vector3d(1205, 0.3, 1095.2)))}};
+    for (const bool is_mesh_first : {true, false}) {
+        robot::Robot arm = irb1400();
+        arm.bodies = {ball, block};
+        if (is_mesh_first) std::swap(arm.bodies[0], arm.bodies[1]);
+        const robot::Cell cell(arm, nullptr, {});
+        ASSERT_EQ(cell.active_pairs().size(), 1u);
+        robot::CellState state = cell.place_bodies(robot::CellJoints::Zero());
+        cell.measure_clearance(state, cell.active_pairs()[0]);
+        const robot::CellClearance& found = state.clearances[cell.active_pairs()[0]];
+        EXPECT_NEAR(found.clearance, 40, kClearanceAccuracy);
+        EXPECT_LT((found.point - Vector3d(is_mesh_first ? 1195 : 1155, 0, 1095)).norm(), 1e-6)
+            << found.point.transpose();
     }
 }
 

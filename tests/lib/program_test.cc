@@ -120,6 +120,43 @@ TEST(Program, Hooks)
     EXPECT_EQ(order, "J.L.PLL.FLL.fLLLLL.FL.fL.pL.");
 }
 
+// What each language says of the force where it is switched: once each time, and its end as often.
+TEST(Program, ForceInEachLanguage)
+{
+    program::ProgramOptions options;
+    options.force = 20;
+    const std::vector<double> motions = {1, 0, 0, 1, 0, 0};
+    const program::Program made = program_of(robot_of_tests(), some_joints(6), motions, {}, options);
+    const auto expect_twice = [](const std::string& text, const std::vector<std::string>& parts) {
+        for (const std::string& part : parts) {
+            int count = 0;
+            for (std::size_t at = 0; (at = text.find(part, at)) != std::string::npos; ++at) ++count;
+            EXPECT_EQ(count, 2) << part << "\n" << text;
+        }
+    };
+    expect_twice(program::rapid_text(made), {"FCPress1LStart presses with 20 N along the tool\n", "FCPressEnd\n"});
+    expect_twice(program::krl_text(made, "cell"),
+                 {"press with 20 N along the tool from here\n", "  ; force control: off\n"});
+    expect_twice(program::urscript_text(made, "cell"),
+                 {"    force_mode(get_actual_tcp_pose(), [0, 0, 1, 0, 0, 0], [0.0, 0.0, 20, 0.0, 0.0, 0.0], 2,",
+                  "    end_force_mode()\n"});
+    expect_twice(program::fanuc_files(made, "cell")[1].text, {"!Force Control (option): 20 N", "!Force Control: off"});
+}
+
+TEST(Program, PathsWithObstaclesAreRefused)
+{
+    const robot::Robot& robot = robot_of_tests();
+    robot::CellJointsPath joints = some_joints(3);
+    joints(0, 2) = 171 * kDegree;
+    try {
+        program_of(robot, joints);
+        ADD_FAILURE() << "joint 1 is out of its range";
+    } catch (const core::InputError& error) {
+        EXPECT_EQ(std::string(error.what()),
+                  "pose 2: joint 1 would be at 171 degrees, out of its range of -170 to 170");
+    }
+}
+
 // A routine for each anomaly, called in the order of the path; one that the path comes back to has one each time.
 TEST(Program, OneRoutineForEachAnomaly)
 {
@@ -205,6 +242,30 @@ TEST(Krl, SpeedsInMetresAndExternalAxes)
     EXPECT_TRUE(std::regex_search(text, std::regex(R"(PTP \{E6AXIS: A1 0,.*,E1 1200\.5\})")));
     EXPECT_TRUE(
         std::regex_search(text, std::regex(R"(E1 1200\.5\}\n  \$OUT\[1\]=FALSE\nEND)"))); // the last target is met
+}
+
+// On a table the part lies in the frame of the turning plate, and the table is the axis behind the track's, if there is
+// one.
+TEST(Program, TablesAreExternalAxes)
+{
+    robot::Robot robot = irb1400();
+    robot.table = robot::Table{{1000, 0, 400}, Eigen::Vector3d::UnitZ(), {-360 * kDegree, 360 * kDegree}, {}, ""};
+    robot::CellJointsPath joints = some_joints(2);
+    joints.row(7).setConstant(90 * kDegree);
+    const auto expect_axis = [&](const std::string& krl_axes, const std::string& fanuc_axis) {
+        const program::Program made = program_of(robot, joints);
+        const std::string krl = program::krl_text(made, "cell"), fanuc = program::fanuc_files(made, "cell")[1].text;
+        EXPECT_NE(
+            krl.find("  $BASE=EK(MACHINE_DEF[2].ROOT,MACHINE_DEF[2].MECH_TYPE,{X -1000,Y 0,Z -400,A 0,B 0,C 0})\n"),
+            std::string::npos)
+            << krl;
+        EXPECT_NE(krl.find(krl_axes + "}\n"), std::string::npos) << krl;
+        EXPECT_NE(fanuc.find(fanuc_axis + "\n};"), std::string::npos) << fanuc;
+    };
+    expect_axis(",E1 90", ",\n\tE1 = 90 deg");
+    robot.track = robot::Track{Eigen::Vector3d::UnitY(), {0, 2000}, {}};
+    joints.row(6).setConstant(1200.5);
+    expect_axis(",E1 1200.5,E2 90", ",\n\tE1 = 1200.5 mm,\n\tE2 = 90 deg");
 }
 
 // A blend radius is shorter than half the way to either neighbour, so that no two of them overlap.

@@ -14,6 +14,7 @@
 #include <fstream>
 #include <random>
 #include <string>
+#include <variant>
 #include <vector>
 
 namespace fettle {
@@ -230,6 +231,116 @@ TEST(Urdf, general_arm)
     }
 }
 
+// Its distance from a singularity is the least motion of the flange, lengths over the arm's, that joints can bring
+// about. Reference: differences of the flange; the wrist stretched, where axes 4 and 6 are one.
+TEST(Urdf, singularity_of_a_general_arm)
+{
+    robot::Robot robot = robot_of("ur5");
+    robot.arm_kind = ArmKind::general;
+    const robot::Arm arm(robot);
+    double reach = 1;
+    for (const robot::DhRow& row : robot.dh) reach += std::abs(row.a) + std::abs(row.d);
+    Draws draws;
+    double largest = 0;
+    for (int i = 0; i < 50; ++i) {
+        robot::Joints q = draws.in_range(robot);
+        const double distance = arm.singularity(q).min();
+        largest = std::max(largest, distance);
+        const robot::Joints motion = draws.in_range(robot).normalized();
+        constexpr double kStep = 1e-6;
+        const Eigen::Isometry3d before = arm.flange(q - kStep * motion), after = arm.flange(q + kStep * motion);
+        const double moved = (after.translation() - before.translation()).norm() / (2 * kStep * reach);
+        const double turned = (after.linear() - before.linear()).norm() / (std::sqrt(8.0) * kStep);
+        EXPECT_LE(distance, std::hypot(moved, turned) + 1e-6) << i;
+        q[4] = 0;
+        EXPECT_LT(arm.singularity(q).min(), 1e-9) << i;
+    }
+    EXPECT_GT(largest, 0.02);
+}
+
+// With joint 5 at 0 the pose leaves joints 4 and 6 open but for their sum: joint 6 is taken from the seed.
+TEST(Urdf, stretched_wrist_of_parallel_axes)
+{
+    const robot::Robot robot = robot_of("ur5");
+    const robot::Arm arm(robot);
+    Draws draws;
+    for (int i = 0; i < 20; ++i) {
+        robot::Joints q = draws.in_range(robot);
+        q[4] = i % 2 == 0 ? 0 : std::numbers::pi;
+        const Eigen::Isometry3d target = arm.flange(q);
+        double nearest = 10;
+        for (const robot::ArmSolution& solution : arm.solve(target, q, robot::Ranges::ignore)) {
+            EXPECT_LT(pose_error(arm.flange(solution.joints), target), 1e-7) << i;
+            const robot::Joints off = (solution.joints - q).unaryExpr([](double angle) {
+                return std::abs(std::remainder(angle, 2 * std::numbers::pi));
+            });
+            nearest = std::min(nearest, off.maxCoeff());
+        }
+        EXPECT_LT(nearest, 1e-6) << i;
+    }
+}
+
+// Out of the range of joint 5 alone a pose is within reach; too far away it is not.
+TEST(Urdf, reach_of_parallel_axes)
+{
+    robot::Robot robot = robot_of("ur5");
+    const robot::Joints q = (robot::Joints() << 0.3, -1.2, 1.5, -0.4, 0.9, 0.2).finished();
+    Eigen::Isometry3d target = robot::Arm(robot).flange(q);
+    robot.dh[4].range = {2.9, 3};
+    const robot::Arm arm(robot);
+    const robot::ArmSolutions near = arm.solve(target, q, robot::Ranges::respect);
+    EXPECT_EQ(near.size(), 0u);
+    EXPECT_TRUE(near.reachable);
+    target.translation() *= 3;
+    EXPECT_FALSE(arm.solve(target, q, robot::Ranges::respect).reachable);
+}
+
+// Links of one length, folded so that axis 4 lies on axis 2: any joint 2 will do, and the seed's is taken.
+TEST(Urdf, folded_links_of_parallel_axes)
+{
+    robot::Robot robot = robot_of("ur5");
+    robot.dh[1].a = robot.dh[2].a = -400;
+    for (const std::size_t row : {1u, 2u, 3u, 4u, 5u}) robot.dh[row].d = 0;
+    const robot::Arm arm(robot);
+    const robot::Joints seed = (robot::Joints() << 0.3, -1.2, 0, 0, 0, 0.2).finished();
+    Eigen::Isometry3d target(Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()));
+    target.translation().z() = robot.dh[0].d;
+    const robot::ArmSolutions found = arm.solve(target, seed, robot::Ranges::ignore);
+    ASSERT_GT(found.size(), 0u);
+    for (const robot::ArmSolution& solution : found) {
+        EXPECT_LT(pose_error(arm.flange(solution.joints), target), 1e-9);
+        EXPECT_NEAR(std::remainder(solution.joints[1] - seed[1], 2 * std::numbers::pi), 0, 1e-12);
+    }
+}
+
+// A calibrated arm, whose axes are not quite at right angles: the closed form's solutions are corrected.
+TEST(Urdf, inverse_of_calibrated_arms)
+{
+    Draws draws;
+    for (const char* name : {"ur5", "abb_irb2400"}) {
+        robot::Robot robot = robot_of(name);
+        robot.dh[0].alpha += 3e-4;
+        robot.dh[3].a += 0.1;
+        robot.dh[4].alpha -= 2e-4;
+        const robot::Arm arm(robot);
+        for (int i = 0; i < 50; ++i) {
+            const robot::Joints q = draws.in_range(robot);
+            if (arm.singularity(q).min() < 0.1) continue;
+            const Eigen::Isometry3d target = arm.flange(q);
+            double nearest = 10;
+            for (const robot::ArmSolution& solution : arm.solve(target, q, robot::Ranges::respect)) {
+                EXPECT_LT(pose_error(arm.flange(solution.joints), target), 1e-8) << name;
+                EXPECT_TRUE(arm.in_range(solution.joints)) << name;
+                const robot::Joints off = (solution.joints - q).unaryExpr([](double angle) {
+                    return std::abs(std::remainder(angle, 2 * std::numbers::pi));
+                });
+                nearest = std::min(nearest, off.maxCoeff());
+            }
+            EXPECT_LT(nearest, 1e-8) << name << " " << i;
+        }
+    }
+}
+
 std::string refusal(const std::string& text, const robot::UrdfOptions& options = {})
 {
     try {
@@ -278,7 +389,69 @@ TEST(Urdf, refusals)
         refusal(with_mesh("package://ur/forearm.stl"), {{{"ur", "/nowhere"}}, "", ""}).find("/nowhere/forearm.stl"),
         std::string::npos);
     EXPECT_NE(refusal(with_mesh("forearm.dae")).find("COLLADA"), std::string::npos);
+    EXPECT_NE(refusal(with_mesh("file:///nowhere/forearm.stl")).find("there is no mesh /nowhere/forearm.stl"),
+              std::string::npos);
     EXPECT_NE(refusal(text_of("ur5"), {{}, "", "finger"}).find("--tip: no link is called 'finger'"), std::string::npos);
+    EXPECT_NE(refusal(changed("</robot>", "<link name=\"alone\"/></robot>")).find("Two root links found"),
+              std::string::npos);
+    EXPECT_NE(refusal(changed("effort=\"150\" velocity=\"3.141592653589793\"/>",
+                              "effort=\"150\" velocity=\"3.141592653589793\"/><mimic joint=\"elbow_joint\"/>"))
+                  .find("mimics 'elbow_joint': a joint of the arm must move by itself"),
+              std::string::npos);
+    EXPECT_NE(refusal(changed("upper=\"6.283185307179586\"", "upper=\"-7\"")).find("are no range within 720 degrees"),
+              std::string::npos);
+    EXPECT_NE(refusal(changed("0 0 0.089159", "0 0 101")).find("a place is not finite, or beyond 100 m"),
+              std::string::npos);
+    EXPECT_NE(refusal(changed("rpy=\"1.570796327 0 0\"", "rpy=\"0 0 0\"")).find("the axes of joints 1 and 2 coincide"),
+              std::string::npos);
+    EXPECT_NE(refusal(changed("<link name=\"forearm_link\"/>",
+                              "<link name=\"forearm_link\"><collision><geometry><box size=\"0.1 -0.2 0.3\"/></geometry>"
+                              "</collision></link>"))
+                  .find("link 'forearm_link': a length of its collision shape is -0.2 m"),
+              std::string::npos);
+}
+
+TEST(Urdf, boxes_have_half_their_sides)
+{
+    const robot::Robot robot =
+        robot::parse_urdf(changed("<link name=\"base_link\"/>",
+                                  "<link name=\"base_link\"><collision><origin xyz=\"0 0 0.5\"/><geometry><box "
+                                  "size=\"0.1 0.2 0.3\"/></geometry></collision></link>"),
+                          "box", {});
+    ASSERT_EQ(robot.bodies.size(), 1u);
+    const auto* box = std::get_if<robot::solid::Box>(&robot.bodies[0].solid);
+    ASSERT_NE(box, nullptr);
+    EXPECT_LT((box->half - Eigen::Vector3d(50, 100, 150)).norm(), 1e-9);
+    EXPECT_LT((robot.T_cell_base * box->T_body_box.translation() - Eigen::Vector3d(0, 0, 500)).norm(), 1e-9);
+}
+
+// A prismatic joint before the six is the track: in metres, as URDFs are.
+TEST(Urdf, track)
+{
+    const auto with_track = [](const std::string& limits) {
+        return changed("</robot>",
+                       "<link name=\"rail\"/><joint name=\"slide\" type=\"prismatic\"><parent "
+                       "link=\"rail\"/><child link=\"base_link\"/><axis xyz=\"0 2 0\"/><limit effort=\"1\" " +
+                           limits + "/></joint></robot>");
+    };
+    const robot::Robot robot = robot::parse_urdf(with_track("lower=\"-0.5\" upper=\"2\" velocity=\"0.3\""), "rail", {});
+    ASSERT_TRUE(robot.track);
+    EXPECT_EQ(robot.track->axis, Eigen::Vector3d::UnitY());
+    EXPECT_NEAR(robot.track->range.min, -500, 1e-9);
+    EXPECT_NEAR(robot.track->range.max, 2000, 1e-9);
+    EXPECT_NEAR(robot.track->max_speed.value_or(0), 300, 1e-9);
+    for (const char* limits : {"lower=\"1\" upper=\"0\" velocity=\"1\"", "lower=\"0\" upper=\"101\" velocity=\"1\""})
+        EXPECT_NE(refusal(with_track(limits)).find("joint 'slide': its limits are no range within 100 m"),
+                  std::string::npos);
+}
+
+// Without a URDF's options only a robot file is read, as with them.
+TEST(Urdf, robot_files_without_options)
+{
+    const std::string folder = source_folder();
+    const std::string file = folder + "../irb2400.json";
+    EXPECT_EQ(robot::read_robot(file).digest, robot::read_robot(file, robot::UrdfOptions{}).digest);
+    EXPECT_THROW(robot::read_robot(folder + "ur5.urdf"), core::InputError);
 }
 
 } // namespace urdf_test
