@@ -64,20 +64,22 @@ PoseGraph graph_of(const Scans& scans, const Places& places, const JointFit& fit
     return graph;
 }
 
-/// Drops the pairs whose own pose is far from the graph's, and names them. @return  whether there were any
-bool drop_misfits(std::vector<IndexPair>& pairs, const std::vector<double>& misfits, std::vector<Refusal>& refused)
+/// Drops the pairs whose own pose is far from the graph's, and names them. @return  them
+std::vector<IndexPair> drop_misfits(std::vector<IndexPair>& pairs, const std::vector<double>& misfits,
+                                    std::vector<Refusal>& refused)
 {
-    std::vector<IndexPair> kept;
+    std::vector<IndexPair> kept, dropped;
     for (std::size_t k = 0; k < pairs.size(); ++k) {
         const double misfit = misfits[k] / std::sqrt(6.0);
-        if (misfit <= kMaxMisfit)
+        if (misfit <= kMaxMisfit) {
             kept.push_back(pairs[k]);
-        else
-            refused.push_back({pairs[k].a, pairs[k].b,
-                               "its own pose is " + core::to_short_text(std::round(misfit)) +
-                                   " standard deviations from that of all pairs"});
+            continue;
+        }
+        dropped.push_back(pairs[k]);
+        refused.push_back({pairs[k].a, pairs[k].b,
+                           "its own pose is " + core::to_short_text(std::round(misfit)) +
+                               " standard deviations from that of all pairs"});
     }
-    const bool dropped = kept.size() < pairs.size();
     pairs = std::move(kept);
     return dropped;
 }
@@ -128,7 +130,7 @@ void set_poses(Registration& registration, const Scans& scans, const Places& pla
 /// Fits all pairs at once until the poses stay, and leaves out those that do not fit.
 void fit_all(Registration& registration, const Scans& scans, Places& places, std::size_t fixed, double length)
 {
-    std::vector<IndexPair> pairs = agreeing_pairs(scans, places, length);
+    std::vector<IndexPair> pairs = agreeing_pairs(scans, places, length), dropped;
     JointFit fit;
     PoseGraphSolution solution;
     constexpr int kMovingRounds = 3; // later the places at which the scans are compared stay
@@ -138,9 +140,16 @@ void fit_all(Registration& registration, const Scans& scans, Places& places, std
         fit = fit_jointly(scans, places, pairs, surface, length);
         const bool is_first = round == 0;
         solution = solve_pose_graph(graph_of(scans, places, fit, fixed), is_first ? kRobustWidth : 0);
-        if (is_first && drop_misfits(pairs, solution.misfits, registration.refused)) continue;
+        if (is_first) dropped = drop_misfits(pairs, solution.misfits, registration.refused);
+        if (is_first && !dropped.empty()) continue;
         const double moved = apply(solution, fit.variance_scale, scans, places);
-        if (round == 1) pairs = agreeing_pairs(scans, places, length); // more of them agree in better poses
+        if (round == 1) { // more of them agree in better poses
+            pairs = agreeing_pairs(scans, places, length);
+            std::erase_if(pairs, [&](const IndexPair& pair) {
+                return std::ranges::any_of(
+                    dropped, [&](const IndexPair& other) { return pair.a == other.a && pair.b == other.b; });
+            });
+        }
         registration.converged = solution.converged && round > 1 && moved <= kStepToleranceSigmas;
         if (registration.converged) break;
     }

@@ -4,6 +4,7 @@
 #include "geometry/bounding_box.h"
 #include "mesh/mesh_file.h"
 #include "mesh/polygons.h"
+#include "mesh/stl.h"
 #include "own_folder.h"
 
 #include <Eigen/Geometry>
@@ -133,6 +134,14 @@ TEST(Stl, SizesThatDisagreeAreRefused)
     std::string none = good.substr(0, 84);
     none[80] = 0;
     expect_refused(none, "no triangles", "0 facets");
+    // Who says that it is an STL is told why it is none.
+    try {
+        mesh::MeshRepair repair;
+        mesh::parse_stl(good.substr(0, 83), "short.stl", repair);
+        ADD_FAILURE() << "it has no whole header";
+    } catch (const core::InputError& error) {
+        EXPECT_EQ(std::string(error.what()), "short.stl: binary STL of 83 bytes, expected at least 84");
+    }
 }
 
 TEST(Stl, UndefinedCornersAreDroppedAndCounted)
