@@ -15,6 +15,7 @@ refused() { "$HERE/../refuses" "$@"; }
 refused 'path.pcd: no field force or depth' fettle-belt plate.pcd --wheel wheel.json --path path.pcd
 refused 'one of them' fettle-belt plate.pcd --wheel wheel.json --path path.pcd --force 1 --depth 1
 refused 'away.pcd: point 1: there is nothing under the wheel' fettle-belt plate.pcd --wheel wheel.json --path away.pcd --force 1
+refused 'away.pcd: point 1: there is nothing under the wheel' fettle-belt plate.pcd --wheel wheel.json --path away.pcd --force 1 --learn new.json
 refused 'turned.pcd: point 0' fettle-belt plate.pcd --wheel wheel.json --path turned.pcd --force 1
 refused '--feed' fettle-belt plate.pcd --wheel wheel.json --path path.pcd --force 1 --feed 0
 refused '--model' fettle-belt plate.pcd --wheel wheel.json --path path.pcd --force 1 --model none

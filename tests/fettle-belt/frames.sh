@@ -8,3 +8,8 @@ jq -e '.kind == "frames" and (.frames | length) == 4' f/frames.json >/dev/null
 end=$(tail -n 1 trace.csv | cut -d , -f "$(head -n 1 trace.csv | tr , '\n' | grep -nx t | cut -d : -f 1)")
 jq -e --argjson last "$end" '(.frames[3].t - $last | fabs) < 1e-4' f/frames.json >/dev/null
 ! cmp -s f/001.png f/004.png || exit 1
+# Without a range in the colours of the displacements.
+fettle-belt work.pcd --path path.xyz --wheel wheel.json --force 5 --feed 5 --cells 16 --frames 2 --frames-in g -o ground.pcd -q
+jq -e '.frames | length == 2' g/frames.json >/dev/null
+! cmp -s g/001.png g/002.png || exit 1
+! cmp -s g/002.png f/004.png || exit 1

@@ -57,3 +57,9 @@ refused() { "$HERE/../refuses" "$1" fettle-belt plate.pcd --path rows.pcd --whee
 refused 'rows.json: is no law of a belt that moves along paths' rows.json
 refused 'missing/law.json: cannot write' missing/law.json
 [ ! -e x.pcd ]
+# A wheel with grooves and Preston's law is handed on as it is but for what its law has learnt.
+jq '.serration = {pitch: 10, land: 5, depth: 3, angle_deg: 30} | .law |= {type: "preston", coefficient}' "$wheel" > grooved.json
+awk '/^WIDTH|^POINTS/ { $2 = 20 } { print } /^DATA/ { n = NR } n && NR == n + 20 { exit }' rows.pcd > two-rows.pcd
+fettle-belt plate.pcd --path two-rows.pcd --wheel grooved.json --force 10 --cells 16 --learn grooved-law.json --journal grooved.journal -q -o x.pcd
+jq -e --slurpfile given grooved.json '.radius == $given[0].radius and .law.source == "fettle-belt --learn" and
+    ([.serration | .pitch - 10, .land - 5, .depth - 3, .angle_deg - 30] | map(fabs) | max < 1e-9)' grooved-law.json > ok

@@ -307,6 +307,25 @@ cloud::Cloud scene_of_lumps()
     return scene;
 }
 
+// Of a cloud that many of its points with their normals, each at its own place; a mesh is never thinned.
+TEST(Align, ThinsACloud)
+{
+    const align::OrientedPoints all = scan_of(kBracket, 500, 0, 1);
+    const align::AlignReference reference(all);
+    const std::optional<align::AlignReference> thinned = reference.thinned(100);
+    ASSERT_TRUE(thinned);
+    const align::OrientedPoints& few = thinned->points();
+    ASSERT_EQ(few.xyz.cols(), 100);
+    EXPECT_EQ(few.outward, all.outward);
+    for (Eigen::Index i = 0; i < few.xyz.cols(); ++i) {
+        Eigen::Index same = 0;
+        EXPECT_EQ((all.xyz.colwise() - few.xyz.col(i)).colwise().norm().minCoeff(&same), 0);
+        EXPECT_EQ(few.normals.col(i), all.normals.col(same));
+    }
+    EXPECT_FALSE(reference.thinned(500));
+    EXPECT_FALSE(align::AlignReference(mesh_of(kBracket)).thinned(3));
+}
+
 // A small object among others, of which less than half is seen. Reference: the motion that it was given.
 TEST(Align, ASmallObjectInAScene)
 {
