@@ -53,8 +53,6 @@ std::string surface_of(const TopoDS_Face& face)
         return "sphere";
     case GeomAbs_Torus:
         return "torus";
-    case GeomAbs_BezierSurface:
-        return "Bezier";
     case GeomAbs_BSplineSurface:
         return "B-spline";
     case GeomAbs_SurfaceOfRevolution:

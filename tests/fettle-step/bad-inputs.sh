@@ -18,6 +18,13 @@ refuses 'none.stp: has no solid, and no face' none.stp
 first=$(grep -m 1 -o '^#[0-9]* = ADVANCED_FACE(' good.stp)
 sed "s/^$first/${first%% =*} = ADVANCED_FOCE(/" good.stp > broken.stp
 refuses 'cannot be built' broken.stp --tolerance 1
+# A cone that is .3 mm wider than its edges, where it meets the other faces.
+sed "s/CONICAL_SURFACE('',#495,6.,/CONICAL_SURFACE('',#495,6.3,/" good.stp > wide.stp
+refuses "(cone, of 'clamp/pin') is triangulated to 0.296685 mm only, not to 0.05 mm" wide.stp --tolerance 0.05
+sed "s/CYLINDRICAL_SURFACE('',#313,8.)/CYLINDRICAL_SURFACE('',#313,1E5)/" good.stp > hall.stp
+refuses "(cylinder, of 'clamp/plate') cannot be triangulated" hall.stp --tolerance 0.5
+sed "0,/COLOUR_RGB('',[-0-9.E]*,/s//COLOUR_RGB('',-1.,/" good.stp > colour.stp
+refuses 'colour.stp: OpenCASCADE cannot read it: ' colour.stp
 refuses "'.obj' is no format of this output: .stl, .ply, .pcd, .csv, .vtk" good.stp -o x.obj
 refuses '--exact: is what writes .pcd; triangles go to .stl or .ply' good.stp -o x.pcd
 printf '0 0 0\n1 2 3\n' > points.xyz

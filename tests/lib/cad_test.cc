@@ -3,13 +3,24 @@
 #include "cad/exact_distance.h"
 #include "cad/triangulation.h"
 #include "core/error.h"
+#include "core/file.h"
 
+#include <BRep_Builder.hxx>
+#include <BRep_Tool.hxx>
+#include <BRepBuilderAPI_MakeEdge.hxx>
+#include <BRepBuilderAPI_MakeFace.hxx>
+#include <BRepBuilderAPI_MakeWire.hxx>
 #include <BRepBuilderAPI_NurbsConvert.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCone.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
+#include <BRepPrimAPI_MakePrism.hxx>
 #include <BRepPrimAPI_MakeSphere.hxx>
 #include <BRepPrimAPI_MakeTorus.hxx>
+#include <BRepTools.hxx>
+#include <Geom_OffsetSurface.hxx>
+#include <Geom_SurfaceOfLinearExtrusion.hxx>
+#include <GeomAPI_Interpolate.hxx>
 #include <IGESControl_Writer.hxx>
 #include <Interface_Static.hxx>
 #include <Message.hxx>
@@ -17,9 +28,12 @@
 #include <Quantity_Color.hxx>
 #include <STEPCAFControl_Writer.hxx>
 #include <STEPControl_Writer.hxx>
+#include <TColgp_HArray1OfPnt.hxx>
 #include <TDataStd_Name.hxx>
 #include <TDocStd_Document.hxx>
 #include <TopExp_Explorer.hxx>
+#include <TopoDS.hxx>
+#include <TopoDS_Compound.hxx>
 #include <XCAFApp_Application.hxx>
 #include <XCAFDoc_ColorTool.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
@@ -32,6 +46,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <numbers>
 
@@ -198,6 +213,74 @@ TEST(Cad, OpenFacesAreNoSolid)
     }
 }
 
+/// A wavy ring, and with lids the solid that it is extruded to.
+TopoDS_Shape extruded()
+{
+    const Handle(TColgp_HArray1OfPnt) points = new TColgp_HArray1OfPnt(1, 8);
+    for (int i = 0; i < 8; ++i) {
+        const double r = 10 + i % 2;
+        points->SetValue(i + 1, gp_Pnt(r * std::cos(kPi * i / 4), r * std::sin(kPi * i / 4), 0));
+    }
+    GeomAPI_Interpolate ring(points, true, 1e-6);
+    ring.Perform();
+    const TopoDS_Edge edge = BRepBuilderAPI_MakeEdge(ring.Curve());
+    const TopoDS_Face face = BRepBuilderAPI_MakeFace(BRepBuilderAPI_MakeWire(edge).Wire(), true);
+    return BRepPrimAPI_MakePrism(face, gp_Vec(0, 0, 5)).Shape();
+}
+
+std::vector<std::string> surfaces_of(const cad::Design& design)
+{
+    std::vector<std::string> surfaces;
+    for (const cad::Face& face : design.faces()) surfaces.push_back(face.surface);
+    std::ranges::sort(surfaces);
+    return surfaces;
+}
+
+TEST(Cad, NamesTheKindsOfFreeFormSurfaces)
+{
+    const TopoDS_Shape solid = extruded();
+    const std::vector<std::string> extrusion = {"extrusion", "plane", "plane"}, offset = {"offset", "plane", "plane"};
+    EXPECT_EQ(surfaces_of(cad::read_design(written(solid, "extruded"), 0.01)), extrusion);
+    // One mm outward of the extruded side, with lids of its own.
+    TopoDS_Compound faces;
+    BRep_Builder builder;
+    builder.MakeCompound(faces);
+    for (TopExp_Explorer face(solid, TopAbs_FACE); face.More(); face.Next()) {
+        const Handle(Geom_Surface) surface = BRep_Tool::Surface(TopoDS::Face(face.Current()));
+        if (!surface->IsKind(STANDARD_TYPE(Geom_SurfaceOfLinearExtrusion))) continue;
+        Standard_Real u0, u1, v0, v1;
+        BRepTools::UVBounds(TopoDS::Face(face.Current()), u0, u1, v0, v1);
+        const Handle(Geom_Surface) outer = new Geom_OffsetSurface(surface, 1);
+        const TopoDS_Face side = BRepBuilderAPI_MakeFace(outer, u0, u1, v0, v1, 1e-6);
+        builder.Add(faces, side);
+        for (TopExp_Explorer edge(side, TopAbs_EDGE); edge.More(); edge.Next()) {
+            BRepBuilderAPI_MakeFace lid(BRepBuilderAPI_MakeWire(TopoDS::Edge(edge.Current())).Wire(), true);
+            if (lid.IsDone()) builder.Add(faces, lid.Face()); // the seam has none
+        }
+    }
+    EXPECT_EQ(surfaces_of(cad::read_design(written(faces, "offset"), 0.01)), offset);
+}
+
+TEST(Cad, AnUnknownUnitOfIgesIsRefused)
+{
+    const std::string path = (std::filesystem::temp_directory_path() / "fettle_cad_test_unit.igs").string();
+    IGESControl_Writer writer("MM", 0);
+    writer.AddShape(BRepPrimAPI_MakeSphere(15).Shape());
+    writer.Write(path.c_str());
+    std::string text = core::read_file(path);
+    const std::size_t at = text.find("2,2HMM,1,");
+    ASSERT_NE(at, std::string::npos);
+    text.replace(at, 9, "12,2HMM,1"); // flags end with 11
+    std::ofstream(path) << text;
+    try {
+        cad::read_design(path, 0.01);
+        FAIL();
+    } catch (const core::InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("the unit of length is not known: flag 12, 'MM'"), std::string::npos)
+            << error.what();
+    }
+}
+
 TEST(Cad, AToleranceBelowTheRoundingOfTheFileIsRefused)
 {
     const cad::Design design = cad::read_design(written(BRepPrimAPI_MakeBox(1e3, 1e3, 1e3).Shape(), "box"), 0.01);
@@ -255,10 +338,12 @@ TEST(Cad, ExactDistancesAreThoseOfClosedForms)
         points.rightCols(200) = triangulation.mesh.vertices(
             Eigen::all, Eigen::VectorXi::LinSpaced(200, 0, static_cast<int>(triangulation.mesh.vertices.cols()) - 1));
         points.rightCols(200) += 0.5 * Eigen::Matrix3Xd::Random(3, 200); // at edges, seams, corners and poles
+        points.col(0) = Eigen::Vector3d(0, 0, 25);                       // straight above poles and the apex
         const cad::ExactDistances found = cad::ExactDistance(design, triangulation)(points);
         for (Eigen::Index k = 0; k < points.cols(); ++k) {
             EXPECT_NEAR(found.error[k], cases[i].second(points.col(k)), 1e-6) << points.col(k).transpose();
             EXPECT_NEAR((points.col(k) - found.foot.col(k)).norm(), std::abs(found.error[k]), 1e-12);
+            EXPECT_NEAR(found.normal.col(k).norm(), 1, 1e-9);
             EXPECT_GE(found.face[k], 0);
         }
     }
