@@ -21,6 +21,7 @@ mkdir bad
 ply 's/vertex 4/vertex 99999999999/' >bad/many.ply
 ply 's/vertex 4/vertex -4/' >bad/negative.ply
 ply '/element vertex/d' >bad/no-vertex.ply
+ply 's/^element face 1/element vertex 1/' >bad/two-vertex.ply
 ply 's/^4 0 1 2 3/255 0 1 2 3/' >bad/list-255.ply
 ply 's/^4 0 1 2 3/-1 0 1 2 3/' >bad/list-negative.ply
 ply 's/^4 0 1 2 3/4 0 1 2 7/' >bad/index.ply

@@ -26,3 +26,4 @@ refused 'power.json: law.pressure_exponent' fettle-belt plate.pcd --wheel power.
 # Laws of a belt that were written before the release hold forces, not pressures.
 echo '{"kind": "law", "learnt": {"record": {"pass_work": 1e6, "passes": [[20, 0, 10, 0, 0, 1]]}}}' > old.json
 refused 'old.json: a pass has a pressure of 20 MPa, more than the modulus' fettle-belt plate.pcd --wheel wheel.json --path path.pcd --force 1 --learn old.json
+refused '--ascii: goes with PCD, not with csv' fettle-belt plate.pcd --wheel wheel.json --path path.pcd --force 1 --cells 16 --ascii --format csv

@@ -13,3 +13,6 @@ fettle-belt work.pcd --path path.xyz --wheel wheel.json --force 5 --feed 5 --cel
 jq -e '.frames | length == 2' g/frames.json >/dev/null
 ! cmp -s g/001.png g/002.png || exit 1
 ! cmp -s g/002.png f/004.png || exit 1
+# A folder that cannot be made; anyone but root is told so before the part is ground.
+"$HERE/../refuses" '/proc/pictures: no folder for pictures: ' fettle-belt work.pcd --path path.xyz --wheel wheel.json --force 5 --feed 5 --cells 16 \
+    --frames 2 --frames-in /proc/pictures -o ground.pcd

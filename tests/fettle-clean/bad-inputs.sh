@@ -23,12 +23,19 @@ refuses '--outliers: ' row.xyz --outliers statistical:0,3
 refuses '--crop: expected box:X0,Y0,Z0,X1,Y1,Z1, got 2 numbers' row.xyz --crop box:1,2
 refuses "--crop: 'one' is not a number" row.xyz --crop box:one,2,3,4,5,6
 refuses '--crop: X0, Y0, Z0 of a box must be less' row.xyz --crop box:1,2,3,1,5,6
+refuses '--crop: expected sphere:X,Y,Z,RADIUS, got 3 numbers' row.xyz --crop sphere:1,2,3
+refuses '--crop: expected polygon:Z0,Z1,X1,Y1,X2,Y2,X3,Y3,…, got 7 numbers' row.xyz --crop polygon:0,1,0,0,1,0,0
 refuses '--crop: the radius of a sphere must be positive' row.xyz --crop sphere:1,2,3,-1
 refuses '--crop: Z0 of a polygon must be less than Z1' row.xyz --crop polygon:1,1,0,0,1,0,0,1
 refuses 'nowhere.json: cannot open' row.xyz --crop nowhere.json
 refuses 'left.stl: a cloud is written as PCD, PLY, CSV or VTK, not as stl' row.xyz -o left.stl
 refuses 'left.pcd: a mesh is written as STL or PLY, not as pcd' facet.off -o left.pcd
 refuses '--format: a mesh is written as STL or PLY, not as csv' facet.off --format csv
+refuses "left.ply: '.ply' is not the suffix of --format pcd" row.xyz -o left.ply --format pcd
 refuses '--ascii: goes with PCD' row.xyz --ascii --format ply
 [ ! -e left.stl ]
 [ ! -e left.pcd ]
+[ ! -e left.ply ]
+# What begins with a digit is no suffix of a format.
+fettle-clean row.xyz --ascii -q -o left.2024
+grep -q '^DATA ascii$' left.2024

@@ -67,3 +67,11 @@ refuse 'none.e57: E57: no section of points at 48' fettle-clean none.e57
 change left-out.e57 'xml(b"fileOffset=\"48\" recordCount=\"200\"", b"fileOffset=\"0\" recordCount=\"0\"")'
 fettle-clean left-out.e57 --report report.json > empty.pcd
 jq -e '.points == 0' report.json > ok
+change before.e57 'b[64:72] = struct.pack("<Q", 8)'
+refuse 'before.e57: E57: data packets lie outside of their section' fettle-clean before.e57
+change word.e57 'xml(b"maximum=\"524287\"", b"maximum=\"many\"")'
+refuse "word.e57: XML, line 2: maximum: 'many' is not a number" fettle-clean word.e57
+change half.e57 'xml(b"type=\"ScaledInteger\" minimum=\"-524288\"", b"type=\"Float\" precision=\"half\"")'
+refuse "half.e57: XML, line 2: cartesianX: precision is 'half'" fettle-clean half.e57
+"$HERE/../write-e57" stretched.e57 scaled pose=2,0,0,0,0,0,0 points.txt
+refuse 'stretched.e57: XML, line 2: the rotation of a pose is no unit quaternion' fettle-clean stretched.e57

@@ -32,3 +32,10 @@ fettle-diff --tol 1e-5 <(points_of two.txt) two.xyz
 gzip -k two.e57
 fettle-place - --units mm < two.e57.gz > piped.pcd
 fettle-place two.e57 --units mm | cmp - piped.pcd
+# Normals turn with their scan, and are not shifted.
+printf '1 0 0 1 0 0\n2 0 0 0 0.6 0.8\n' > normals.txt
+"$HERE/../write-e57" normals.e57 double pose=0.7071067811865476,0,0,0.7071067811865476,10,20,30 normals.txt
+fettle-clean normals.e57 --ascii > normals.pcd
+grep -q '^FIELDS x y z normal_x normal_y normal_z$' normals.pcd
+printf '0 1 0\n-0.6 0 0.8\n' > turned.xyz
+sed '1,/^DATA/d' normals.pcd | cut -d ' ' -f 4-6 | fettle-diff --tol 1e-6 - turned.xyz

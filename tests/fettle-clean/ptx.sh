@@ -31,3 +31,5 @@ sed '11s/255/300/' one.ptx > bright.ptx
 refuse 'bright.ptx: line 11: a colour is a number from 0 to 255, got 300' fettle-clean bright.ptx
 sed '1s/.*/16777216/; 2s/.*/16777216/' one.ptx > huge.ptx
 refuse 'huge.ptx: the scan ends after 16 lines' fettle-clean huge.ptx
+sed '19s/.*/0 0/' two.ptx > narrow.ptx
+refuse "narrow.ptx: line 19: expected 3 numbers, got '0 0'" fettle-clean narrow.ptx

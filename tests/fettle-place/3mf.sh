@@ -64,3 +64,10 @@ head -c 700 corner.3mf > cut.3mf
 refuse 'cut.3mf: a ZIP archive that is damaged or ends too early' cut.3mf
 python3 -c 'import zipfile; zipfile.ZipFile("other.zip", "w").writestr("word/document.xml", "<w/>")'
 refuse 'other.zip: a ZIP archive without a 3MF model' other.zip
+# The archive says of each entry whether it is encrypted: the first bit of its flags, which are 8 bytes into its record of the directory.
+python3 -c '
+data = bytearray(open("corner.3mf", "rb").read())
+at = data.rindex(b"PK\1\2")
+data[at + 8] |= 1
+open("locked.3mf", "wb").write(data)'
+"$HERE/../refuses" 'locked.3mf: 3D/3dmodel.model is encrypted' fettle-place locked.3mf -o x.stl

@@ -27,3 +27,10 @@ PYTHON
 sed 's/^FIELDS x y z class rgb/FIELDS x y z class d/; s/^TYPE F F F F U/TYPE F F F F F/' stripes.pcd >patches.pcd
 fettle-render patches.pcd --field class -o patches.png
 ! cmp -s patches.png class.png || exit 1
+# any other classes, up to twenty, by their numbers
+sed '/^DATA/q' stripes.pcd >head
+awk '{ print $1, $2, $3, 5 + int($1 / 2), $5 }' rows | cat head - >numbered.pcd
+fettle-render numbered.pcd --field class -o numbered.png
+! cmp -s numbered.png class.png || exit 1
+awk '{ print $1, $2, $3, 5 + int($1), $5 }' rows | cat head - >many.pcd
+"$HERE/../refuses" "many.pcd: field 'class' has more than 20 different values" fettle-render many.pcd --field class -o many.png
