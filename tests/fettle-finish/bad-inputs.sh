@@ -12,6 +12,7 @@ refused 'plane.off: a step-over of 1e-06 mm' fettle-finish plane.off --cutter fl
 refused 'down.off: no facet of the design faces up' fettle-finish down.off --cutter ball:6 --scallop 0.1
 refused 'empty.stl: empty' fettle-finish empty.stl --cutter ball:6 --scallop 0.1
 refused '--ascii: points are written with --pcd' fettle-finish plane.off --cutter ball:6 --scallop 0.1 --ascii
+refused 'x.pcd: is not written as pcd: points are written with --pcd' fettle-finish plane.off --cutter ball:6 --scallop 0.1 -o x.pcd
 refused '--scallop' fettle-finish plane.off --cutter ball:6 --scallop 0
 refused '--allowance' fettle-finish plane.off --cutter ball:6 --scallop 0.1 --allowance -1
 for option in --scallop --step-over --overhang --feed --clearance --allowance --angle; do

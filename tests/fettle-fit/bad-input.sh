@@ -37,7 +37,7 @@ for i in 1 2 3 4 5 6 7 8; do echo "$i $i $i"; done | touches >line.pcd
 for i in 1 2 3 4 5 6 7 8; do echo 1 2 3; done | touches >same.pcd
 for points in line same; do
     "$refuses" "$points.pcd: touches lie on a line: across it they spread by only" fettle-fit plane.json $points.pcd
-    for method in bspline sphere cylinder swept auto; do
+    for method in bspline bspline-wang sphere cylinder swept auto; do
         "$refuses" "$points.pcd: touches lie on one line in x and y" fettle-fit job.json $points.pcd --method $method
     done
 done
@@ -53,3 +53,11 @@ for curve in nan 1e30; do heights 1 20 1 | sed "s/\$/ 1 $curve/" | pcd x y z rol
 fettle-diff <(fettle-fit job.json nan.pcd) <(fettle-fit job.json 1e30.pcd)
 sed 's,# units in,# units mm,' good.pcd >mm.pcd
 "$refuses" 'mm.pcd' fettle-fit job.json mm.pcd
+# a grid too fine; a boundary of which no height is known; a scan, which shows it itself
+"$refuses" 'good.pcd: the spacing of ' fettle-fit job.json good.pcd --method griddata --spacing 1e-6
+"$refuses" 'good.pcd: no point of role 0, and no boundary point of the job has a z' fettle-fit job.json good.pcd --use-boundary
+printf '0 0 0\n1 0 0\n0 1 0\n0 0 0\n1 0 0\n' | touches >thrice.pcd
+"$refuses" 'thrice.pcd: the B-spline takes from 4 to ' fettle-fit job.json thrice.pcd --method bspline-wang
+heights 1 3000 1 | pcd x y z >scan.pcd
+fettle-fit job.json scan.pcd --use-boundary -o scan.json 2>said
+grep -q 'use-boundary: a scan shows the metal at the boundary itself' said

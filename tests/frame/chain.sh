@@ -71,3 +71,9 @@ refuse 'frame.quaternion: expected a unit quaternion' '.frame.quaternion = [0, 0
 refuse 'frame.quaternion' '.frame.quaternion = [1, 0, 0]'
 refuse 'frame.position: no casting reaches that far' '.frame.position = [1e30, 0, 0]'
 refuse 'frame.pose' '.frame.pose = 1'
+# Touches in the part's frame are moved before they are fitted.
+fettle-place turned.samples.pcd --matrix back.txt -o part.samples.pcd
+if grep -a -q '^# frame' part.samples.pcd; then exit 1; fi
+fettle-fit turned.json turned.samples.pcd -q -o from-job.json
+fettle-fit turned.json part.samples.pcd -q -o from-part.json
+fettle-diff --tol 1e-3 from-job.json from-part.json

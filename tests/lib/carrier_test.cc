@@ -137,6 +137,33 @@ TEST(RobotGantry, RefusesWhatIsNotReachedLater)
     EXPECT_EQ(gantry.lift(25).commanded.z(), 25);
 }
 
+/// Where the last moment has the tool point is where the head says that it stands.
+void expect_recorded(const carrier::RobotGantry& gantry, const Eigen::Isometry3d& T_cell_job)
+{
+    const Eigen::Vector3d there = T_cell_job * gantry.status().commanded;
+    EXPECT_LT((gantry.moments().back().pose.translation() - there).norm(), 1e-6);
+}
+
+TEST(RobotGantry, RecordsADescentThatEndsEarlyAndAWheelThatIsChanged)
+{
+    const robot::Robot robot = irb1400();
+    const Work of = work();
+    carrier::RobotGantry gantry = gantry_of(robot, of);
+    gantry.set_frame(place(900, 100, 500));
+    gantry.travel({0, 0, kTop + 5});
+    gantry.lift(kTop - 4); // guarded: the metal ends it
+    EXPECT_GT(gantry.status().commanded.z(), kTop - 4);
+    EXPECT_LT(gantry.status().commanded.z(), kTop + 5);
+    expect_recorded(gantry, place(900, 100, 500));
+    const std::size_t moved = gantry.moments().size();
+    const double before = gantry.status().time;
+    gantry.change_wheel();
+    EXPECT_GT(gantry.moments().size(), moved);
+    EXPECT_GT(gantry.status().time, before);
+    EXPECT_GT(gantry.status().commanded.z(), kTop + 5);
+    expect_recorded(gantry, place(900, 100, 500));
+}
+
 TEST(RobotGantry, IsNoFasterThanItsJoints)
 {
     robot::Robot robot = irb1400();

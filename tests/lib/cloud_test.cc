@@ -4,6 +4,7 @@
 #include "cloud/fields.h"
 #include "cloud/pcd.h"
 #include "cloud/point_source.h"
+#include "cloud/poses.h"
 #include "core/error.h"
 #include "own_folder.h"
 
@@ -554,6 +555,33 @@ std::string written(const cloud::Cloud& cloud, cloud::CloudFormat format)
 }
 
 // Reference: the names of the types in the VTK user's guide; the numbers by hand, big-endian.
+TEST(Ply, SaysTheFrame)
+{
+    cloud::Cloud cloud;
+    cloud.xyz = Eigen::Vector3d(1, 2, 3);
+    for (const cloud::Frame frame : {cloud::Frame::part, cloud::Frame::job}) {
+        cloud.frame = frame;
+        EXPECT_EQ(cloud::parse_cloud(written(cloud, cloud::CloudFormat::ply), "file").cloud.frame, frame);
+    }
+}
+
+TEST(Poses, MotionsAreGivenOrFollowFromTheStrokes)
+{
+    cloud::Cloud cloud;
+    cloud.xyz = Eigen::Matrix3Xd::Zero(3, 3);
+    using enum cloud::Motion;
+    EXPECT_EQ(cloud::read_motions(cloud), (std::vector<cloud::Motion>{stroke, stroke, stroke}));
+    cloud::set_field(cloud, "stroke", Eigen::Vector3d(0, -1, 1));
+    EXPECT_EQ(cloud::read_motions(cloud), (std::vector<cloud::Motion>{stroke, travel, stroke}));
+    cloud::set_field(cloud, "motion", Eigen::Vector3d(2, 0, 7));
+    try {
+        cloud::read_motions(cloud);
+        FAIL();
+    } catch (const core::InputError& error) {
+        EXPECT_STREQ(error.what(), "point 2: motion is 7, expected 0 to 3");
+    }
+}
+
 TEST(Vtk, HasTheTypesOfTheFields)
 {
     cloud::Cloud cloud;
