@@ -41,7 +41,7 @@ std::string linked_file(std::string_view name)
 
 bool is_linked(std::string_view name) { return !linked_file(name).empty(); }
 
-/// The version in the name of a shared library's file: "1.13" of "libpcl_kdtree.so.1.13".
+/// The version in the name of a shared library's file: "1.13" of "libpcl_common.so.1.13".
 std::string version_of(const std::string& file)
 {
     constexpr std::string_view kBefore = ".so.";
@@ -65,7 +65,7 @@ std::string describe_build()
     if (is_linked("libceres")) text += ", Ceres " CERES_VERSION_STRING;
     if (is_linked("libopencv_core")) text += ", OpenCV " CV_VERSION;
     // Its headers are not at hand where only the demonstration is built.
-    if (const std::string file = linked_file("libpcl_kdtree"); !file.empty()) text += ", PCL " + version_of(file);
+    if (const std::string file = linked_file("libpcl_common"); !file.empty()) text += ", PCL " + version_of(file);
     if (is_linked("libtbb")) text += ", oneTBB " TBB_VERSION_STRING;
     return text;
 }

@@ -23,3 +23,5 @@ refuses 'out.stl: a cloud is written as PCD, PLY, CSV or VTK, not as stl' four.x
 # PCL's search complains of points that are all the same; here only the tool speaks.
 for _ in $(seq 200); do echo 1 2 3; done > same.xyz
 refuses 'same.xyz: ' same.xyz --up plane
+# What it is built with: the point clouds' library by the version in the name of its file.
+fettle-place --version | grep -q ', PCL [0-9]'
