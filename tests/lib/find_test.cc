@@ -2,6 +2,7 @@
 #include "find/doubtful.h"
 #include "find/find.h"
 #include "find/flat_top.h"
+#include "find/image.h"
 #include "find/job_outlines.h"
 #include "find/outline.h"
 #include "find/ring_fit.h"
@@ -36,6 +37,18 @@ TEST(Image, NoiseOfASlopeIsZero)
     for (int y = 0; y < 20; ++y)
         for (int x = 0; x < 20; ++x) z(y, x) = float(x) / 4 + float(y) / 8;
     EXPECT_NEAR(noise_sigma(z), 0, 1e-6);
+}
+
+TEST(Image, TheOutlineIsThatOfTheLargestComponent)
+{
+    Mask mask(20, 20, uchar(0));
+    EXPECT_TRUE(simplified_outline(mask, 0.5).empty());
+    mask(cv::Rect(1, 1, 3, 3)) = 255;
+    mask(cv::Rect(6, 5, 10, 8)) = 255;
+    mask(cv::Rect(2, 16, 4, 2)) = 255;
+    const std::vector<cv::Point> outline = simplified_outline(mask, 0.5);
+    EXPECT_EQ(outline.size(), 4u);
+    EXPECT_EQ(cv::boundingRect(outline), cv::Rect(6, 5, 10, 8));
 }
 
 TEST(Image, DistancesAndHolesAreExact)
