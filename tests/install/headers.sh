@@ -1,5 +1,5 @@
 # All headers of the library stand together in one file, in either order: no two of them give one name to two things, and
-# none leans on what another has included. Each one alone: make includes. Those of cad/ only where OpenCASCADE is; they are not installed.
+# none leans on what another has included. Each one alone: make includes. Those of cad/ only where OpenCASCADE is; they are not installed, nor is job/boost_polygons.h.
 cd "$HERE/../.."
 occt=/usr/include/opencascade
 absent=$([ -e $occt/Standard_Handle.hxx ] || echo '^lib/cad/')

@@ -10,6 +10,8 @@ for tool in bin/*; do
     test -e "share/bash-completion/completions/$name"
 done
 test "$(ls bin)" = "$(ls "$BUILD/bin")"
+# libfettle-dev does not depend on Boost.
+test -z "$(grep -rl '#include <boost/' include)"
 
 # Completion offers options, and the words of an option.
 cat >ask <<'END'
