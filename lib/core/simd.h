@@ -11,8 +11,8 @@
 #pragma GCC diagnostic ignored "-Wpsabi"
 
 /// Compiles a function twice, for any x86-64 and for AVX2; the loader chooses one. With -ffp-contract=off and sums in a
-/// fixed order of lanes both give the same results, bit for bit. The thread sanitizer would count what the loader calls
-/// to choose before it can.
+/// fixed order of lanes both give the same results, bit for bit. With the thread sanitizer there is one: the loader
+/// would choose before the sanitizer has begun, and crash in it.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_THREAD__)
 #define FETTLE_CLONES __attribute__((target_clones("default", "arch=x86-64-v3")))
 #else
