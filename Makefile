@@ -339,7 +339,7 @@ $(B)/packaging/%: packaging/%.in
 	sed 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(patsubst $(PREFIX)/%,$${prefix}/%,$(LIBDIR))|; s|@VERSION@|$(VERSION)|' $< > $@
 
 # For the library's own files alone: users of the others need neither OpenCASCADE's headers nor Boost's.
-PRIVATE := precompiled.h cad/% job/boost_polygons.h
+PRIVATE_HEADERS := precompiled.h cad/% job/boost_polygons.h
 install: build $(B)/libfettle.a $(PAGES) $(B)/completion/fettle $(addprefix $(B)/packaging/,fettle.pc fettleConfigVersion.cmake)
 	install -d $(addprefix $(DESTDIR)$(PREFIX)/,bin include/fettle share/man/man1 share/bash-completion/completions) \
 	    $(addprefix $(DESTDIR)$(LIBDIR)/,pkgconfig cmake/fettle)
@@ -347,7 +347,7 @@ install: build $(B)/libfettle.a $(PAGES) $(B)/completion/fettle $(addprefix $(B)
 	install -m 644 $(PAGES) $(DESTDIR)$(PREFIX)/share/man/man1
 	install -m 644 $(B)/completion/fettle $(DESTDIR)$(PREFIX)/share/bash-completion/completions
 	for tool in $(TOOLS); do ln -sf fettle $(DESTDIR)$(PREFIX)/share/bash-completion/completions/$$tool; done
-	for header in $(filter-out $(PRIVATE),$(patsubst lib/%,%,$(wildcard lib/*/*.h))); do \
+	for header in $(filter-out $(PRIVATE_HEADERS),$(patsubst lib/%,%,$(wildcard lib/*/*.h))); do \
 	    install -m 644 -D lib/$$header $(DESTDIR)$(PREFIX)/include/fettle/$$header || exit 1; done
 	install -m 644 $(B)/libfettle.a $(DESTDIR)$(LIBDIR)
 	install -m 644 $(B)/packaging/fettle.pc $(DESTDIR)$(LIBDIR)/pkgconfig
