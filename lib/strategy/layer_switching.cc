@@ -93,8 +93,7 @@ Action LayerSwitching::end_covering()
         roughing_ = false;
         return start_covering(Event::roughed);
     }
-    const bool within =
-        settings_.finish_passes || *std::max_element(remaining_.begin(), remaining_.end()) <= settings_.max_remaining;
+    const bool within = *std::max_element(remaining_.begin(), remaining_.end()) <= settings_.max_remaining;
     if (!within && counts_.coverings + 1 >= settings_.bounds.coverings)
         return fail("coverings of layer 1 " + std::to_string(settings_.bounds.coverings));
     ++counts_.coverings;

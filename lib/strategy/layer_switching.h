@@ -172,7 +172,8 @@ class LayerSwitching {
     std::vector<Level> levels_; ///< stack of layers 1, 2, …; the last is the current one
     bool cut_ended_ = false;
     bool roughing_ = false;
-    std::vector<double> remaining_; ///< largest height on each pass when it was last covered, mm
+    /// Largest height on each pass when it was last covered, mm; 0 where strokes were repeated until it was finished.
+    std::vector<double> remaining_;
     /// State of a pass in layer 1 with finish_passes: first and last point of the current stroke where too much is
     /// left, its end point, and the number of repeated strokes.
     int first_high_ = 0, last_high_ = -1, stroke_end_ = -1, strokes_ = 0;
