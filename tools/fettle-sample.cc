@@ -47,9 +47,8 @@ struct Options {
         "wang: by his rules; adaptive: one after the other, each where it lowers the predicted error band most, "
         "until that meets the job's tolerance; extended: by his rules, then adaptive while the band exceeds the "
         "tolerance or the fit leaves out a touch, adaptive alone where his rules find no room on one side of the "
-        "anomaly, or go over an edge of "
-        "the part; without --on by his rules alone; hillclimb: by his Appendix A the best subset of many candidates, "
-        "for a SURFACE that is known beneath the anomaly, too");
+        "anomaly, or go over an edge of the part; without --on by his rules alone; hillclimb: by his Appendix A the "
+        "best subset of many candidates, for a SURFACE that is known beneath the anomaly, too");
     const int& max_touches =
         t.count("--max-touches", 60, "Extended, adaptive: maximum number of touches", 6, kMaxTouches);
     const int& touches =

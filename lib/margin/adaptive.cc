@@ -221,8 +221,8 @@ class AdaptiveSearch {
         std::erase_if(places_, [&](const Vector2d& p) { return (p - place).norm() <= radius; });
     }
 
-    /// A touch that the fit left out, and beside which no other was made since. It may be a slip of the probe, or a
-    /// feature of the surface that the fit does not have; a second touch tells them apart.
+    /// An outlier of the fit beside which no other touch was made since. It may be an error of the probe, or a feature
+    /// of the surface that the fit does not have; a second touch distinguishes them.
     std::optional<Index> unchecked_outlier() const
     {
         for (const Index i : surface_.outliers)
@@ -231,13 +231,11 @@ class AdaptiveSearch {
     }
 
     /// The place to touch next. A sphere through few touches may end inside of S: then distant touches refute it.
-    Index next_place()
+    Index next_place() const
     {
-        const bool is_begun = result_.plan.size() >= kInitialTouches;
-        if (const std::optional<Index> outlier = unchecked_outlier(); is_begun && outlier) {
-            checked_.insert(*outlier);
+        if (const std::optional<Index> outlier = unchecked_outlier())
             return nearest(places_, result_.plan.xy.col(*outlier));
-        }
+        const bool is_begun = result_.plan.size() >= kInitialTouches;
         if (is_begun && surface::heights(surface_, as_columns(places_)).allFinite())
             return most_informative(surface_, grid_, places_);
         return farthest(places_, result_.plan.xy);
@@ -254,6 +252,7 @@ class AdaptiveSearch {
         if (!found) result_.unreachable.push_back(place);
         exclude(place, found ? min_distance_ : 0);
         if (!found) return;
+        if (const std::optional<Index> outlier = unchecked_outlier()) checked_.insert(*outlier);
         result_.plan = std::move(longer);
         result_.touches = std::move(touches);
         bands_.push_back(core::kNaN);

@@ -162,23 +162,22 @@ TEST(Adaptive, ExtendsALayoutWhereItIsNotGoodEnough)
     EXPECT_LT(hopeless.plan.size(), 60);
 }
 
-// A touch that the fit leaves out may be a slip of the probe or a feature of the surface: another one is made beside
-// it.
+// An outlier may be an error of the probe or a feature of the surface: another touch is made beside it.
 TEST(Adaptive, ChecksOutliers)
 {
     const job::Job job = square_job();
     const sampling::TouchPlan layout = sampling::plan_freeform(job);
-    constexpr Eigen::Index kSlip = 5;
+    constexpr Eigen::Index kOutlier = 5;
     const margin::ProbeFunction touch = [&](const sampling::TouchPlan& plan) {
         Eigen::Matrix3Xd touches = touching(dome, job, 1)(plan);
-        touches(2, kSlip) += 2;
+        touches(2, kOutlier) += 2;
         return touches;
     };
     margin::AdaptiveLimits limits;
     limits.max_band = 1; // which the layout's fit predicts to be met
     const margin::AdaptiveTouches found = margin::extend_layout(job, layout, touch(layout), limits, touch);
     ASSERT_GT(found.plan.size(), layout.size());
-    const Eigen::Vector2d beside = found.plan.xy.col(layout.size()) - layout.xy.col(kSlip);
+    const Eigen::Vector2d beside = found.plan.xy.col(layout.size()) - layout.xy.col(kOutlier);
     EXPECT_LT(beside.norm(), 80.0 / 20); // S is 80 mm wide
     EXPECT_TRUE(found.band_reached);
     EXPECT_LT(realised_band(job, found, dome), 1);

@@ -307,7 +307,7 @@ cloud::Cloud scene_of_lumps()
     return scene;
 }
 
-// Of a cloud that many of its points with their normals, each at its own place; a mesh is never thinned.
+// A thinned cloud has so many of its points, with their normals; a mesh is never thinned.
 TEST(Align, ThinsACloud)
 {
     const align::OrientedPoints all = scan_of(kBracket, 500, 0, 1);
