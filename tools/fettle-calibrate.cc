@@ -74,11 +74,13 @@ Measurement measure_rows(const Options& o)
 Measurement measure_gantry_trace(const Options& o)
 {
     const job::Job job = job::read_job(o.job);
+    job::Job ground = job;
+    ground.sampling = job.anomaly; // The wheel is where B is: a stock as fettle-grind leaves it covers no more.
     const double cell = gantry::stock_cell_size(job, o.cell ? *o.cell * job.units.mm() : 0);
     const auto height_map = [&](const std::string& file) {
         const std::string name = core::display_name(file);
         const sampling::Scan part = sampling::read_scan(file, job, std::nullopt);
-        for (const std::string& doubt : sampling::scan_warnings(part, job, name)) o.t.warn(doubt);
+        for (const std::string& doubt : sampling::scan_warnings(part, ground, name)) o.t.warn(doubt);
         return removal::stock_from_scan(part, job, cell, name);
     };
     const auto trace = strategy::read_trace(o.input, job.units);

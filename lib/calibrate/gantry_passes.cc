@@ -1,12 +1,14 @@
 #include "calibrate/gantry_passes.h"
 
+#include "calibrate/gantry_replay.h"
 #include "core/cholesky.h"
 #include "core/error.h"
 #include "geometry/quantiles.h"
-#include "removal/wheel.h"
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <iterator>
 #include <limits>
 #include <numbers>
 
@@ -17,66 +19,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using strategy::TraceRow;
-
-/// Distance of two positions of the wheel, as of strategy::replay_removal: a ridge of step² / 8R between them.
-constexpr double kReplayStepCells = 2;
-
-/// A stroke: the wheel grinds along a pass without being lifted.
-struct Stroke {
-    double impulse = 0, duration = 0, volume = 0; ///< N s, s, mm³
-    double radius = 0;                            ///< of the wheel, as measured before, mm
-    double other_volume = 0; ///< that it took without a reading of the force, or in place before the next stroke, mm³
-};
-
-struct Replay {
-    removal::HeightField left;
-    std::vector<Stroke> strokes;
-};
-
-bool is_grinding(const TraceRow& row) { return row.feed > 0; }
-
-double rim_radius(const TraceRow& row, const job::Job& job) { return row.radius > 0 ? row.radius : job.wheel.radius; }
-
-/// @param compliance  of the machine: its rim is higher by that times the force, mm/N
-Replay replay(const std::vector<TraceRow>& trace, const job::Job& job, const removal::HeightField& stock,
-              double compliance)
-{
-    Replay result{stock, {}};
-    removal::WheelInStock wheel(result.left, job.wheel.width);
-    const Eigen::Matrix2d R_working_machine = job::rotation_working_machine(job.theta);
-    for (std::size_t i = 1; i < trace.size(); ++i) {
-        const TraceRow &row = trace[i], &last = trace[i - 1];
-        if (!is_grinding(row)) { // lowered, or lifted, in place: what it cuts there is no stroke's
-            if (!(row.force > 0)) continue;
-            const double z = row.tool.z() + compliance * row.force;
-            wheel.place(R_working_machine * row.tool.head<2>(), rim_radius(row, job), z);
-            if (!result.strokes.empty()) result.strokes.back().other_volume += wheel.overlap(z).volume;
-            wheel.cut(z);
-            continue;
-        }
-        if (!is_grinding(last) || last.pass != row.pass || result.strokes.empty()) result.strokes.emplace_back();
-        Stroke& stroke = result.strokes.back();
-        const Eigen::Vector3d motion = row.tool - last.tool;
-        const int steps = std::max(1, int(std::ceil(motion.norm() / (kReplayStepCells * stock.cell))));
-        double volume = 0;
-        for (int n = 1; n <= steps; ++n) {
-            const double share = double(n) / steps;
-            const double force = last.force + (row.force - last.force) * share;
-            const Eigen::Vector3d at = last.tool + motion * share;
-            const double z = at.z() + compliance * force;
-            wheel.place(R_working_machine * at.head<2>(), rim_radius(row, job), z);
-            volume += wheel.overlap(z).volume;
-            wheel.cut(z);
-        }
-        const double force = (row.force + last.force) / 2, time = row.time - last.time;
-        stroke.radius = rim_radius(row, job);
-        (force > 0 ? stroke.volume : stroke.other_volume) += volume;
-        if (!(force > 0)) continue;
-        stroke.impulse += force * time;
-        stroke.duration += time;
-    }
-    return result;
-}
 
 /// Unknowns of a linear least-squares problem with their covariance.
 struct LinearFit {
@@ -150,9 +92,55 @@ std::vector<WearInterval> wear_intervals(const std::vector<Stroke>& strokes, con
             if (radius < last) intervals.push_back(interval); // otherwise it is a new wheel
             interval = {};
         }
-        interval.removed += strokes[k].volume + strokes[k].other_volume;
+        interval.removed += strokes[k].removed;
     }
     return intervals;
+}
+
+/// Least squares over intervals whose impulses have variances as large as they are.
+LinearFit fit_impulses(const std::vector<Interval>& intervals, const MatrixXd& volumes)
+{
+    VectorXd root(intervals.size());
+    for (Index k = 0; k < root.size(); ++k) root[k] = std::sqrt(intervals[k].impulse);
+    return fit_linear(root.cwiseInverse().asDiagonal() * volumes, root);
+}
+
+/// Is the force that removes material normal to the rim, and the measured one its vertical part? Then
+/// k ∫F dt = Σ V (cos φ + t sin φ) over the slopes φ of the rim (removal::RimForce): a deep cut on the side that the
+/// rim is dragged into removes more than its vertical force tells. Otherwise it is the whole volume.
+/// @return  t, the ratio of the tangential to the normal force; none if slopes explain less than they cost
+std::optional<Measured> fit_tangential(const std::vector<Interval>& intervals)
+{
+    const double count = double(intervals.size());
+    if (count < 3) return std::nullopt;
+    MatrixXd volumes(intervals.size(), 3);
+    for (Index k = 0; k < volumes.rows(); ++k)
+        volumes.row(k) << intervals[k].volume, intervals[k].cosine_volume, intervals[k].sine_volume;
+    const LinearFit plain = fit_impulses(intervals, volumes.leftCols<1>()),
+                    along_normal = fit_impulses(intervals, volumes.rightCols<2>());
+    // By the Bayesian information criterion, whose one parameter more costs ln n.
+    const bool explains = 2 * count * std::log(plain.sigma / along_normal.sigma) > std::log(count);
+    const double scale = along_normal.x[0], t = along_normal.x[1] / scale;
+    if (!explains || !(t > 0)) return std::nullopt;
+    return Measured{t, std::sqrt(along_normal.covariance(1, 1)) / scale};
+}
+
+/// What was ground in the intervals of a stroke. The volume is that which the force explains: on slopes, weighted with
+/// the vertical force of its normal force.
+struct Work {
+    double impulse = 0, duration = 0, volume = 0; ///< N s, s, mm³
+};
+
+std::vector<Work> work_of_strokes(const Replay& run, const std::optional<Measured>& tangential)
+{
+    std::vector<Work> works(run.strokes.size());
+    for (const Interval& interval : run.intervals) {
+        Work& work = works[interval.stroke];
+        work.impulse += interval.impulse;
+        work.duration += interval.duration;
+        work.volume += tangential ? interval.cosine_volume + tangential->value * interval.sine_volume : interval.volume;
+    }
+    return works;
 }
 
 void fit_spring(const std::vector<TraceRow>& trace, GantryLaw& law)
@@ -175,12 +163,12 @@ void fit_spring(const std::vector<TraceRow>& trace, GantryLaw& law)
 }
 
 /// Weighted median of volume over impulse, whose standard deviation is that of a mean of as many, times √(π/2).
-void fit_coefficient(std::vector<Stroke> strokes, GantryLaw& law)
+void fit_coefficient(std::vector<Work> strokes, GantryLaw& law)
 {
-    const auto ratio = [](const Stroke& stroke) { return stroke.volume / stroke.impulse; };
+    const auto ratio = [](const Work& stroke) { return stroke.volume / stroke.impulse; };
     std::ranges::sort(strokes, {}, ratio);
     double total = 0, half = 0, squares = 0;
-    for (const Stroke& stroke : strokes) {
+    for (const Work& stroke : strokes) {
         total += stroke.impulse;
         squares += stroke.impulse * stroke.impulse;
     }
@@ -195,14 +183,14 @@ void fit_coefficient(std::vector<Stroke> strokes, GantryLaw& law)
 
 /// Adds up consecutive strokes to passes of about the same work, so that all are known about as well: the force is read
 /// a few times in a short stroke, and many times in a long one.
-void add_passes(const std::vector<Stroke>& strokes, GantryLaw& law)
+void add_passes(const std::vector<Work>& strokes, GantryLaw& law)
 {
     constexpr double kStrokes = 3; // mean ones in a pass
     double mean_impulse = 0;
-    for (const Stroke& stroke : strokes) mean_impulse += stroke.impulse / strokes.size();
+    for (const Work& stroke : strokes) mean_impulse += stroke.impulse / strokes.size();
     law.pass_work = kStrokes * mean_impulse;
     constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-    Stroke sum;
+    Work sum;
     double work = 0;
     for (std::size_t k = 0; k < strokes.size(); ++k) {
         sum.impulse += strokes[k].impulse;
@@ -242,15 +230,20 @@ GantryLaw measure_gantry(const std::vector<TraceRow>& trace, const job::Job& job
     if (after) fit_compliance(trace, job, before, *after, law);
     constexpr double kSignificantSigmas = 3;
     const bool yields = law.compliance && law.compliance->value > kSignificantSigmas * law.compliance->sigma;
-    std::vector<Stroke> strokes = replay(trace, job, before, yields ? law.compliance->value : 0).strokes;
-    law.wear = wear_intervals(strokes, job);
+    const Replay run = replay(trace, job, before, yields ? law.compliance->value : 0);
+    law.wear = wear_intervals(run.strokes, job);
     if (const auto wear = fit_wear(law.wear))
         law.grinding_ratio = {1 / wear->value, wear->sigma / (wear->value * wear->value)};
     // With less force the wheel rides on ridges, and meets them between the readings.
     constexpr double kMinForceShare = 0.5; // of F_min
-    std::erase_if(strokes, [&](const Stroke& stroke) {
-        return !(stroke.volume > 0 && stroke.impulse > kMinForceShare * job.force.min * stroke.duration);
-    });
+    const auto presses = [&](const auto& ground) {
+        return ground.volume > 0 && ground.impulse > kMinForceShare * job.force.min * ground.duration;
+    };
+    std::vector<Interval> pressed;
+    std::ranges::copy_if(run.intervals, std::back_inserter(pressed), presses);
+    law.tangential = fit_tangential(pressed);
+    std::vector<Work> strokes = work_of_strokes(run, law.tangential);
+    std::erase_if(strokes, std::not_fn(presses));
     if (strokes.empty()) return law;
     add_passes(strokes, law);
     fit_coefficient(strokes, law);

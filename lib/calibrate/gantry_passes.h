@@ -26,8 +26,11 @@ struct GantryLaw {
     /// A pass is some consecutive strokes of the wheel: mean force; the volume of a second of contact, since volumes
     /// add up along a stroke; the prior work is ∫F dt of the passes before.
     std::vector<removal::RemovalTrial> passes;
-    double pass_work = 0;                       ///< ∫F dt of a pass, about, N s
-    std::optional<Measured> coefficient;        ///< Preston's: volume per ∫F dt, mm³/(N s)
+    double pass_work = 0;                ///< ∫F dt of a pass, about, N s
+    std::optional<Measured> coefficient; ///< Preston's: volume per ∫F dt, mm³/(N s)
+    /// Ratio of the tangential to the normal force; none where the slopes that were ground do not tell, and the force
+    /// is taken for that on a horizontal rim.
+    std::optional<Measured> tangential;
     std::optional<Measured> preload, stiffness; ///< of the spring: N, N/mm; none if the deflection was always the same
     /// Volume of stock per volume of wheel, from the radii that were measured; none if less than two intervals between
     /// measurements ground anything.
@@ -44,9 +47,9 @@ struct GantryLaw {
 /// Volume that the wheel lost per volume of stock, by least squares; none of less than two intervals.
 std::optional<Measured> fit_wear(const std::vector<WearInterval>& intervals);
 
-/// Measures a gantry from the trace of a run. The volumes are those that the wheel swept through the stock where the
-/// trace says that it was. The coefficient is their median over ∫F dt, weighted with that: a stroke that begins in the
-/// material has more volume than its readings of the force explain.
+/// Measures a gantry from the trace of a run. The volumes are those of replay(), and where the force is found to
+/// be normal to the rim those that its vertical part explains. The coefficient is the median over the strokes of volume
+/// over ∫F dt, weighted with that.
 /// @param after  on the grid of `before`
 /// @throws InputError if the wheel ground nothing of the stock after; without that, there are no passes then
 GantryLaw measure_gantry(const std::vector<strategy::TraceRow>& trace, const job::Job& job,

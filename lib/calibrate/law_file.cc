@@ -44,6 +44,7 @@ json::Value to_json(const GantryLaw& law)
     add("coefficient", law.coefficient);
     add("preload", law.preload);
     add("stiffness", law.stiffness);
+    add("tangential", law.tangential);
     add("grinding_ratio", law.grinding_ratio);
     add("compliance", law.compliance);
     if (law.cells > 0)
