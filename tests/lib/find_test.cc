@@ -1,5 +1,6 @@
 #include "find/background.h"
 #include "find/doubtful.h"
+#include "find/earlier.h"
 #include "find/find.h"
 #include "find/flat_top.h"
 #include "find/image.h"
@@ -377,6 +378,44 @@ TEST(Find, PersonsWordsCount)
     EXPECT_EQ(result.anomalies[0].number, 2);
     EXPECT_EQ(result.anomalies[0].doubt, "?");
     EXPECT_EQ(result.anomalies[1].doubt, "");
+}
+
+// An anomaly in two parts within one earlier B is one row, with the points and volume of both and that job's B.
+TEST(MatchEarlier, OneRowForWhatOneBoundaryEncloses)
+{
+    mesh::CloudMesh part;
+    part.points.xyz.resize(3, 4);
+    part.points.xyz << 1, 2, 3, 50, 1, 1, 1, 50, 0, 0, 0, 0;
+    FindResult result;
+    result.anomalies.resize(3);
+    const auto found = [&](std::size_t k, std::vector<Eigen::Index> points, Eigen::VectorXd heights, double volume) {
+        FoundAnomaly& one = result.anomalies[k];
+        one.points = std::move(points);
+        one.heights = std::move(heights);
+        one.height = one.heights.maxCoeff();
+        one.volume = one.area = volume;
+        one.probability = 0.9;
+        one.doubt = "?";
+    };
+    found(0, {0, 2}, Eigen::Vector2d(0.5, 0.7), 3);
+    found(1, {1}, Eigen::VectorXd::Constant(1, 0.9), 2);
+    found(2, {3}, Eigen::VectorXd::Constant(1, 0.4), 1);
+    EarlierJob earlier;
+    earlier.file = "jobs/1.json";
+    earlier.job.anomaly.resize(3, 4);
+    earlier.job.anomaly << 0, 5, 5, 0, 0, 0, 5, 5, 0, 0, 0, 0;
+    earlier.job.sampling = 2 * earlier.job.anomaly.array() - 2;
+    match_earlier(result, part, {earlier}, Eigen::Isometry3d::Identity(), 0.95);
+    ASSERT_EQ(result.anomalies.size(), 1); // the third is nobody's, and not probable enough
+    const FoundAnomaly& row = result.anomalies[0];
+    EXPECT_EQ(row.points, (std::vector<Eigen::Index>{0, 1, 2}));
+    EXPECT_EQ(row.heights, Eigen::Vector3d(0.5, 0.9, 0.7));
+    EXPECT_EQ(row.height, 0.9);
+    EXPECT_EQ(row.volume, 5);
+    EXPECT_EQ(row.doubt, "");
+    EXPECT_EQ(row.like, "jobs/1.json");
+    EXPECT_EQ(row.boundary, earlier.job.anomaly.topRows<2>());
+    EXPECT_TRUE(result.absent.empty());
 }
 
 // A polynomial displacement of a curved sheet along its normals is found again, so that the distances vanish.

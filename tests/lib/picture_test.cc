@@ -4,6 +4,7 @@
 #include "core/error.h"
 #include "draw/canvas.h"
 #include "draw/colours.h"
+#include "draw/outline.h"
 #include "draw/png.h"
 #include "draw/raster.h"
 #include "draw/view.h"
@@ -327,6 +328,24 @@ TEST(Raster, SpacingOfAGridIsItsCell)
     line.row(0) << 0, 3, 6, 9, kNaN; // each has a neighbour 3 away and one 6 away; nothing is farther than two shares
     EXPECT_GE(draw::point_spacing(line), 3);
     EXPECT_LE(draw::point_spacing(line), 6);
+}
+
+// A boundary that nobody measured lies on the part; beside the part, where nothing is known, at height 0.
+TEST(Outline, LiesOnThePart)
+{
+    job::Job job;
+    job.anomaly.resize(3, 4);
+    job.anomaly << 10, 20, 20, 10, 10, 10, 20, 20, kNaN, kNaN, kNaN, kNaN;
+    mesh::Mesh part;
+    part.vertices.resize(3, 4);
+    part.vertices << 0, 40, 40, 0, 0, 0, 40, 40, 1, 1, 1, 1;
+    part.triangles.resize(3, 2);
+    part.triangles << 0, 0, 1, 2, 2, 3;
+    const std::vector<draw::Outline> on = draw::outlines_on(part, job);
+    ASSERT_EQ(on.size(), 1);
+    EXPECT_LT((on[0].line.row(2).array() - 1).abs().maxCoeff(), 1e-9);
+    job.anomaly.topRows<2>().array() += 500;
+    EXPECT_TRUE((draw::outlines_on(part, job)[0].line.row(2).array() == 0).all());
 }
 
 } // namespace picture_test

@@ -64,7 +64,7 @@ class ScannerWaves {
 };
 
 /// A scan of the sphere with 5 mm of anomaly inside B.
-cloud::PointSource scan(Index points, const ScannerWaves& waves, double noise, unsigned seed = 1)
+std::shared_ptr<cloud::Cloud> scanned_points(Index points, const ScannerWaves& waves, double noise, unsigned seed)
 {
     std::mt19937_64 random(seed);
     std::uniform_real_distribution<double> place(-kHalfS - 5, kHalfS + 5);
@@ -76,7 +76,12 @@ cloud::PointSource scan(Index points, const ScannerWaves& waves, double noise, u
         const bool on_anomaly = std::max(std::abs(x), std::abs(y)) < kHalfB - 0.5;
         cloud->xyz.col(i) << x, y, sphere(x, y) + waves.at(x, y) + noise * normal(random) + (on_anomaly ? 5 : 0);
     }
-    return cloud::make_point_source(cloud);
+    return cloud;
+}
+
+cloud::PointSource scan(Index points, const ScannerWaves& waves, double noise, unsigned seed = 1)
+{
+    return cloud::make_point_source(scanned_points(points, waves, noise, seed));
 }
 
 fit::DenseFit fit(const cloud::PointSource& points, const std::string& method = "auto")
@@ -170,6 +175,18 @@ TEST(Representatives, are_as_uncertain_as_short_waves_make_them)
     const double sigma = fit::condense(points, fit::fit_robust_spline(points, "scan")).sigma;
     EXPECT_GT(sigma, 0.005);
     EXPECT_LT(sigma, 0.05);
+}
+
+// At a corner of S the scan has nothing but an inner face, 9 mm wide and 8 mm deeper.
+TEST(Representatives, leave_out_what_lies_apart)
+{
+    const std::shared_ptr<cloud::Cloud> cloud = scanned_points(40000, ScannerWaves(0, 8, 1), 0.02, 1);
+    for (auto p : cloud->xyz.colwise())
+        if (p.head<2>().minCoeff() > kHalfS - 9) p.z() -= 8;
+    const fit::DensePoints points = fit::dense_points(cloud::make_point_source(cloud), square_job(), {}, "scan");
+    const fit::Representatives all = fit::condense(points, fit::fit_robust_spline(points, "scan"));
+    EXPECT_GE(all.dropped, 1u);
+    for (const auto& p : all.xyz.colwise()) EXPECT_NEAR(p.z(), sphere(p.x(), p.y()), 0.5);
 }
 
 TEST(ScanFit, threads_do_not_matter)
