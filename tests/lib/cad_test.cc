@@ -213,6 +213,19 @@ TEST(Cad, OpenFacesAreNoSolid)
     }
 }
 
+TEST(Cad, FacesBesideASolidAreLeftOut)
+{
+    const TopoDS_Shape cylinder = BRepPrimAPI_MakeCylinder(8, 30).Shape();
+    TopoDS_Compound both;
+    BRep_Builder builder;
+    builder.MakeCompound(both);
+    builder.Add(both, BRepPrimAPI_MakeSphere(15).Shape());
+    builder.Add(both, TopExp_Explorer(cylinder, TopAbs_FACE).Current());
+    const cad::Design design = cad::read_design(written(both, "beside"), 0.01);
+    EXPECT_EQ(design.loose_faces(), 1);
+    expect_within(design, solids().front());
+}
+
 /// A wavy ring, and with lids the solid that it is extruded to.
 TopoDS_Shape extruded()
 {

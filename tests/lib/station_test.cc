@@ -304,6 +304,21 @@ TEST(Folder, IsUsedByOneSession)
     EXPECT_EQ(core::read_file(folder.file("a")), "text");
 }
 
+TEST(Checkpoint, NeedsATraceThatSaysItsRun)
+{
+    const OwnFolder own;
+    EXPECT_THROW(station::Checkpoint("nowhere.pcd"), core::InputError);
+    const strategy::TraceFile journal("trace.pcd", {}, cloud::PcdEncoding::binary, {{.time = 1}});
+    const std::string bytes = core::read_file("trace.pcd");
+    std::ofstream("plain.pcd") << bytes.substr(bytes.find("VERSION")); // without its comments
+    try {
+        strategy::read_recorded_trace("plain.pcd", {}, {.rows = 1, .digest = "0123456789abcdef"});
+        FAIL();
+    } catch (const core::InputError& error) {
+        EXPECT_STREQ(error.what(), "plain.pcd: does not say which run wrote it");
+    }
+}
+
 // After a power failure the header of a trace may be newer than its rows: zeros where rows were not written yet.
 TEST(Checkpoint, KeepsWhatIsOnTheDisk)
 {
