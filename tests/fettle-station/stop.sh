@@ -40,3 +40,23 @@ done
 station again steer.txt --gantry virtual:dynamic --machine "$machine" --report report.json
 jq -e '.finished and (.stops | length) == 4 and ([.stops[] | .free - .asked] | max) <= 0.25' report.json > ok
 is_flat "$shift" again/ground.pcd
+
+# Stopped while the surface is touched around a smaller B: the touches that were made are kept, the others follow after the next start.
+touched() { # LINE…: steering after the start, which is at 4.15 s
+    { awk 'BEGIN {
+          n = split("-4 -4 4 -4 4 4 -4 4 -7 -7 7 -7 7 7 -7 7", c, " ") / 2
+          for (i = 1; i <= n; ++i) {
+              dx = c[2 * i - 1] - x; dy = c[2 * i] - y
+              printf "%.6f %g %g\n", t, dx, dy
+              t += sqrt(dx * dx + dy * dy) / 20; x += dx; y += dy
+              printf "%.6f record\n", t
+              if (i % 4 == 0) printf "%.6f next\n", t }
+          printf "%.6f start\n", t }'; printf '%s\n' "$@"; } > steer.txt
+}
+touched '14 stop' '14 end'
+ends_with 1 station between steer.txt --gantry virtual:dynamic --machine "$machine"
+jq -e '.stage == "touch" and .stops == [] and (.touches | length | . >= 1 and . < 15)' between/session.json > ok
+touched '14 stop' '14 start' '60 start'
+station goes-on steer.txt --gantry virtual:dynamic --machine "$machine" --report report.json
+jq -e '.finished and .touches == 15' report.json > ok
+jq -e -n --slurpfile a between/session.json --slurpfile b goes-on/session.json '$a[0].touches as $first | $b[0].touches[:$first | length] == $first' > ok
