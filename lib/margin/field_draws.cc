@@ -42,6 +42,7 @@ Eigen::MatrixXd covariance_root(const Eigen::MatrixXd& covariance)
 Eigen::MatrixXd field_root(const Eigen::MatrixXd& gradients, const Eigen::MatrixXd& covariance)
 {
     const Eigen::MatrixXd B = gradients.transpose() * covariance_root(covariance);
+    if (B.cols() == 0) return B; // known exactly
     const core::SymmetricEigen<Eigen::Dynamic> axes = core::symmetric_eigen<Eigen::Dynamic>(B.transpose() * B);
     Eigen::MatrixXd field = B * axes.vectors;
     // The sign of an eigenvector is arbitrary. These weights define it; they have no symmetry, so that they do not
