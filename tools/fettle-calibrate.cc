@@ -129,7 +129,8 @@ int main(int argc, char** argv)
         "Of a belt, from rows of trials: coefficient, and exponents of force, speed, feed and time, with the wear; "
         "from its trace and the surfels before and after: coefficient, and exponents of pressure and feed. Of a "
         "gantry, from its trace and the part before and after: Preston's coefficient, the exponent of the force, the "
-        "spring, the grinding ratio, the machine's yielding. Out: the law with its covariance, how each part of it is "
+        "tangential force, the spring, the grinding ratio, the machine's yielding. Out: the law with its covariance, "
+        "how each part of it is "
         "determined, what could not be told apart, the pass that would tell most, and the passes, from which it can "
         "be learned on. Rows are taken in the order of the belt's work.";
     return cli::tool_main(argc, argv, description, [](cli::Tool& t) {
