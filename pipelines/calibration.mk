@@ -21,7 +21,7 @@ calibration: $(patsubst %,$(CALIBRATION)/%.csv,$(FAMILIES) $(NEAR) $(OTHERS))
 
 include pipelines/step.mk
 
-$(FAMILIES:%=$(CALIBRATION)/%.csv): METHODS := auto
+$(FAMILIES:%=$(CALIBRATION)/%.csv): METHODS := auto auto+scan
 $(NEAR:%=$(CALIBRATION)/%.csv) $(OTHERS:%=$(CALIBRATION)/%.csv): METHODS := auto gp griddata
 
 $(CALIBRATION)/%.csv: $(B)/study/calibration

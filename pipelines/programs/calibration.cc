@@ -3,15 +3,19 @@
 //
 //     calibration KIND CELLS SEED METHOD...       a line a cell and method, CSV
 //
-// Inches, as in the paper. Methods are fettle-fit's, and "gp": a Gaussian process on a quadratic, its hyperparameters
-// by restricted likelihood, what a statistician would take.
+// Inches, as in the paper. Methods are fettle-fit's; "gp": a Gaussian process on a quadratic, its hyperparameters
+// by restricted likelihood, what a statistician would take; "auto+scan": auto, and its margin told a scan around the
+// anomaly, as by fettle-margin --scan.
 #include "cells.h"
 
 #include "core/cholesky.h"
 #include "fit/family.h"
 #include "fit/fit.h"
 #include "margin/error_band.h"
+#include "margin/scan_waves.h"
 #include "margin/shift.h"
+#include "mesh/mesh.h"
+#include "sampling/scan.h"
 #include "surface/surface.h"
 
 #include <cmath>
@@ -86,6 +90,27 @@ double limit(const std::string& family, const fit::FitInput& exact, const Eigen:
     return bands[100];
 }
 
+/// Heights around the anomaly by a mesh of the truth with independent errors of a scanner.
+Eigen::Matrix3Xd scan_around(const job::Job& job, const Cell& cell, const Truth& truth, double sigma,
+                             std::mt19937_64& random)
+{
+    constexpr int kAlong = 81; // vertices along a side: a few for each of the places that the margin takes
+    mesh::Mesh scan;
+    const Eigen::Matrix2Xd xy = inside(cell.a + 2 * cell.d, cell.b + 2 * cell.d, kAlong);
+    scan.vertices.resize(3, xy.cols());
+    scan.vertices << xy * kInch, heights_of(truth, xy).transpose();
+    std::normal_distribution<double> noise(0, sigma);
+    for (double& z : scan.vertices.row(2)) z += noise(random);
+    scan.triangles.resize(3, 2 * (kAlong - 1) * (kAlong - 1));
+    for (int j = 0, k = 0; j + 1 < kAlong; ++j)
+        for (int i = 0; i + 1 < kAlong; ++i, k += 2) {
+            const int corner = j * kAlong + i;
+            scan.triangles.col(k) << corner, corner + 1, corner + kAlong + 1;
+            scan.triangles.col(k + 1) << corner, corner + kAlong + 1, corner + kAlong;
+        }
+    return margin::heights_around_anomaly(sampling::Scan(std::move(scan)), job, "scan");
+}
+
 } // namespace
 
 int main(int argc, char** argv)
@@ -97,7 +122,8 @@ int main(int argc, char** argv)
     const std::string kind = argv[1];
     const int count = std::atoi(argv[2]);
     const std::uint64_t seed = std::strtoull(argv[3], nullptr, 10);
-    std::cout << "kind,cell,touches,R,a,b,d,method,chosen,weight,band,limit,below,predicted,covered,z2\n";
+    std::cout << "kind,cell,touches,R,a,b,d,method,chosen,weight,band,limit,below,predicted,covered,z2,"
+                 "without_waves\n";
     for (int number = 0; number < count; ++number) {
         std::mt19937_64 random(seed * 1000003 + static_cast<std::uint64_t>(number));
         const Cell cell = draw_cell(number, random);
@@ -114,19 +140,27 @@ int main(int argc, char** argv)
             const std::string method = argv[m];
             surface::Surface surface;
             Eigen::VectorXd z;
-            double shift = NAN, predicted = NAN, covered = NAN, z2 = NAN;
+            double shift = NAN, predicted = NAN, covered = NAN, z2 = NAN, without_waves = NAN;
             if (method == "gp") {
                 z = gaussian_process(input, grid * kInch, noise.stddev());
             } else {
+                const bool is_told_scan = method == "auto+scan";
                 fit::FitInput mine = input;
                 if (method == "griddata" || method == "bspline-wang") add_estimated(mine);
-                surface = fit::fit_surface(mine, method).surface;
+                surface = fit::fit_surface(mine, is_told_scan ? "auto" : method).surface;
                 z = surface::heights(surface, grid * kInch);
                 if (surface::has_sigma(surface)) {
-                    const surface::Prediction posterior_prediction =
-                        margin::predict_by_posterior(surface, input.job, 0.99, 1);
-                    shift = posterior_prediction.shift;
-                    predicted = margin::predict_by_posterior(surface, input.job, 0.95, 1).band;
+                    const Eigen::Matrix3Xd around =
+                        is_told_scan ? scan_around(input.job, cell, truth, noise.stddev() / 2, random)
+                                     : Eigen::Matrix3Xd();
+                    const auto predict = [&](double confidence, margin::Tails tails) {
+                        const bool has_waves = tails == margin::Tails::student;
+                        return margin::predict_by_posterior(surface, input.job, confidence, 1, "surface", tails,
+                                                            has_waves ? around : Eigen::Matrix3Xd());
+                    };
+                    shift = predict(0.99, margin::Tails::student).shift;
+                    predicted = predict(0.95, margin::Tails::student).band;
+                    without_waves = predict(0.95, margin::Tails::normal).band;
                     const Eigen::Index one =
                         static_cast<Eigen::Index>(random() % static_cast<std::uint64_t>(grid.cols()));
                     const double error = (z[one] - exact[one]) / surface::sigma(surface, grid.col(one) * kInch);
@@ -141,7 +175,7 @@ int main(int argc, char** argv)
                       << (surface.method.empty() ? method : surface.method) << ',' << surface.weight << ','
                       << band / kInch << ',' << best / kInch << ','
                       << (std::isnan(shift) ? NAN : -(errors.minCoeff() + shift) / kInch) << ',' << predicted / kInch
-                      << ',' << covered << ',' << z2 << "\n";
+                      << ',' << covered << ',' << z2 << ',' << without_waves / kInch << "\n";
         }
     }
 }
