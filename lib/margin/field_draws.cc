@@ -82,16 +82,16 @@ struct Component {
     double freedom;         ///< degrees of freedom of its size
 };
 
-/// Adds waves about a family, the last of the components, whose weight is reduced by theirs.
+/// Adds waves about a member, the last of the components, whose weight is reduced by theirs.
 void add_waves(std::vector<Component>& all, const surface::WeightedShape& member, const surface::Surface& surface,
                const Eigen::Matrix2Xd& xy, const ScanWaves* scan)
 {
-    const Component family = all.back();
+    const Component alone = all.back();
     for (Waves& one : waves_about(member, surface, xy, scan)) {
         if (!one.root.allFinite() || !one.offset.allFinite()) continue;
-        all.back().weight -= one.probability * family.weight;
-        all.insert(all.end() - 1,
-                   {one.probability * family.weight, family.offset + one.offset, std::move(one.root), family.freedom});
+        all.back().weight -= one.probability * alone.weight;
+        all.insert(all.end() - 1, {one.probability * alone.weight, alone.offset + one.offset, std::move(one.root),
+                                   surface.touch_sigma_dof});
     }
 }
 
@@ -119,7 +119,7 @@ Eigen::MatrixXd draw_fields(const surface::Surface& surface, const Eigen::Matrix
                        is_process && tails == Tails::student
                            ? std::min(surface.touch_sigma_dof, process_freedom(surface))
                            : surface.touch_sigma_dof});
-        if (waves == WavesOfFamilies::possible && !is_process)
+        if (waves == WavesOfFamilies::possible && (!is_process || scan_waves))
             add_waves(all, member, surface, xy, scan_waves ? &*scan_waves : nullptr);
     }
     double sum = 0;

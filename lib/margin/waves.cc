@@ -98,6 +98,26 @@ double share_of(const surface::Shape& shape)
     return is_cubic ? kCubicShare : kShare;
 }
 
+/// A shape and the covariance of its parameters.
+struct FittedShape {
+    surface::Shape shape;
+    MatrixXd covariance;
+};
+
+/// The trend of a process (fit_gaussian_process()) by itself: the quadratic of least squares.
+/// @return  nothing if the touches do not determine it
+std::optional<FittedShape> process_trend(const Eigen::Matrix3Xd& touches, double sigma)
+{
+    fit::TouchSet all;
+    all.xyz = touches;
+    all.sigma = sigma;
+    std::optional<fit::FamilySolution> quadratic = fit::solve_family("quadratic", all, fit::all_touches(all));
+    if (!quadratic) return std::nullopt;
+    const core::Cholesky information(quadratic->gradients * quadratic->gradients.transpose() / (sigma * sigma));
+    const Index n = quadratic->gradients.rows();
+    return FittedShape{std::move(quadratic->shape), information.solve(MatrixXd::Identity(n, n))};
+}
+
 /// Touches and the family's trend at them.
 struct Touches {
     Eigen::Matrix2Xd places;
@@ -208,20 +228,8 @@ Waves waves_of(const Model& model, const Eigen::Matrix2Xd& xy, double sigma)
     return {model.probability, sigma * mean, sigma * core::Cholesky(covariance).L()};
 }
 
-} // namespace
-
-std::vector<double> wave_lengths(const surface::Surface& surface)
-{
-    const Eigen::Matrix2Xd places = inliers(surface).topRows<2>();
-    if (places.cols() == 0) return {};
-    const double radius = (places.colwise() - places.rowwise().mean().eval()).colwise().norm().maxCoeff();
-    std::vector<double> lengths;
-    for (const double length : kLengths) lengths.push_back(length * radius);
-    return lengths;
-}
-
-std::vector<Waves> waves_about(const surface::WeightedShape& member, const surface::Surface& surface,
-                               const Eigen::Matrix2Xd& xy, const ScanWaves* scan)
+std::vector<Waves> waves_about_family(const surface::WeightedShape& member, const surface::Surface& surface,
+                                      const Eigen::Matrix2Xd& xy, const ScanWaves* scan)
 {
     const Eigen::Matrix3Xd kept = inliers(surface);
     const double sigma = surface.touch_sigma;
@@ -250,6 +258,31 @@ std::vector<Waves> waves_about(const surface::WeightedShape& member, const surfa
     for (const Model& model : models)
         if (model.probability > kMinProbability) result.push_back(waves_of(model, xy, sigma));
     return result;
+}
+
+} // namespace
+
+std::vector<double> wave_lengths(const surface::Surface& surface)
+{
+    const Eigen::Matrix2Xd places = inliers(surface).topRows<2>();
+    if (places.cols() == 0) return {};
+    const double radius = (places.colwise() - places.rowwise().mean().eval()).colwise().norm().maxCoeff();
+    std::vector<double> lengths;
+    for (const double length : kLengths) lengths.push_back(length * radius);
+    return lengths;
+}
+
+std::vector<Waves> waves_about(const surface::WeightedShape& member, const surface::Surface& surface,
+                               const Eigen::Matrix2Xd& xy, const ScanWaves* scan)
+{
+    if (!std::holds_alternative<surface::Bspline>(member.shape)) return waves_about_family(member, surface, xy, scan);
+    if (scan == nullptr || !(surface.touch_sigma > 0)) return {};
+    const std::optional<FittedShape> trend = process_trend(inliers(surface), surface.touch_sigma);
+    if (!trend) return {};
+    std::vector<Waves> waves = waves_about_family({member.weight, trend->shape, trend->covariance}, surface, xy, scan);
+    const VectorXd offset = surface::heights(trend->shape, xy) - surface::heights(member.shape, xy);
+    for (Waves& one : waves) one.offset += offset;
+    return waves;
 }
 
 } // namespace fettle::margin

@@ -9,11 +9,11 @@
 
 namespace fettle::margin {
 
-/// Waves about a family of surfaces that few touches do not show: a Gaussian process of one amplitude and one
+/// Waves about a member of a fit that few touches do not show: a Gaussian process of one amplitude and one
 /// correlation length.
 struct Waves {
-    double probability = 0; ///< posterior, if the part is of the family
-    Eigen::VectorXd offset; ///< mean of the heights minus those of the family alone, mm
+    double probability = 0; ///< posterior, if the part is as the member says
+    Eigen::VectorXd offset; ///< mean of the heights minus those of the member alone, mm
     Eigen::MatrixXd root;   ///< F with F Fᵀ the heights' covariance
 };
 
@@ -30,10 +30,12 @@ std::vector<double> wave_lengths(const surface::Surface& surface);
 /// waves of 8, 16 and 32 times that deviation are considered, too, each with the prior odds of those of four times.
 /// Without such touches they are not, since they would leave no probability to any family.
 /// A scan of the metal around the anomaly says how large the waves are; then these sizes are the prior instead.
-/// @param member  a family fitted to the surface's touches   @param xy  2xN, M, mm   @param scan  may be null; of the
-///                lengths of wave_lengths()
-/// @return  waves whose probability matters; the remaining probability is that of the family without waves. Nothing
-///          where the touches leave no degree of freedom, or the family is not defined.
+/// A process has waves of its own, whose size it has from the touches. With a scan it is known better: then they are
+/// waves about the process's trend, a quadratic, of the sizes that the scan shows; without one there are none beside.
+/// @param member  a family or a process fitted to the surface's touches   @param xy  2xN, M, mm   @param scan  may be
+///                null; of the lengths of wave_lengths()
+/// @return  waves whose probability matters; the remaining probability is that of the member as it was fitted. Nothing
+///          where the touches leave no degree of freedom, or the member is not defined.
 std::vector<Waves> waves_about(const surface::WeightedShape& member, const surface::Surface& surface,
                                const Eigen::Matrix2Xd& xy, const ScanWaves* scan = nullptr);
 

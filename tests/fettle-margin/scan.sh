@@ -29,6 +29,24 @@ awk -v alone="$alone" -v plain="$plain" -v wavy="$wavy" -v moved="$moved" \
 awk '{ print $1 / 1000, $2 / 1000, $3 / 1000 }' wavy.xyz >metres.xyz
 awk -v metres="$(shift_of --scan metres.xyz --scan-units m)" -v wavy="$wavy" 'BEGIN { exit !(metres > 0.999 * wavy && metres < 1.001 * wavy) }'
 
+hills() { # HEIGHT_OF_WAVES: of no family, mm, with noise of 0.005
+    awk -v waves="$1" 'BEGIN {
+        srand(1)
+        for (y = -28; y <= 28; y += 0.5) for (x = -28; x <= 28; x += 0.5)
+            print x, y, 0.4 * sin(x / 15) * cos(y / 13 + 0.5) + x * x / 500 + waves * sin(x / 3) * cos(y / 3.5) + 0.01 * (rand() + rand() - 1)
+    }'
+}
+hills 0 >hills.xyz
+hills 0.03 >rough.xyz
+fettle-sample job.json --on hills.xyz --noise normal:0.05 --seed 2 >touches.pcd
+fettle-fit job.json touches.pcd --report fit.json >surface.json
+jq -e '.method == "gp"' fit.json
+alone=$(shift_of)
+hills=$(shift_of --scan hills.xyz)
+rough=$(shift_of --scan rough.xyz)
+echo "shift of a process by touches alone $alone, with a scan without waves $hills, with waves $rough" >&2
+awk -v alone="$alone" -v hills="$hills" -v rough="$rough" 'BEGIN { exit !(hills < 0.8 * alone && hills > 0.3 * alone && rough > hills + 0.02) }'
+
 refuses=$HERE/../refuses
 "$refuses" '--scan is for --method posterior' fettle-margin job.json surface.json --method wang --scan wavy.xyz
 "$refuses" '--scan-units goes with --scan' fettle-margin job.json surface.json --scan-units mm

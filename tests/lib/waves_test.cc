@@ -3,9 +3,11 @@
 #include "margin/waves.h"
 
 #include "core/cholesky.h"
+#include "fit/bspline.h"
 #include "fit/correlation.h"
 #include "fit/family.h"
 #include "fit/fit.h"
+#include "fit/process.h"
 
 #include <gtest/gtest.h>
 
@@ -190,6 +192,66 @@ TEST(Waves, of_touches_alone_where_the_family_ends_within_the_scan)
         EXPECT_EQ(with_scan[k].probability, alone[k].probability);
         EXPECT_EQ(with_scan[k].root, alone[k].root);
     }
+}
+
+/// A scan of a surface z(x, y) around B, with noise of 0.01 mm.
+template <class Height>
+margin::ScanWaves scan_of(const Height& z, const surface::Surface& surface)
+{
+    std::mt19937_64 random(5);
+    std::normal_distribution<double> noise(0, 0.01);
+    Eigen::Matrix3Xd heights(3, 150);
+    for (int i = 0; i < 150; ++i) {
+        const double angle = 2.399963 * i, r = 16 + 12.0 * i / 150; // the golden angle
+        const double x = r * std::cos(angle), y = r * std::sin(angle);
+        heights.col(i) << x, y, z(x, y) + noise(random);
+    }
+    return {heights, margin::wave_lengths(surface)};
+}
+
+TEST(Waves, of_a_process_told_a_scan_are_those_about_its_trend)
+{
+    const auto hills = [](double x, double y) { return 0.002 * x * y + 0.4 * std::sin(x / 7) * std::cos(y / 9); };
+    fit::FitInput input = touches_of(hills);
+    input.job.anomaly.resize(3, 4);
+    input.job.anomaly << -10, 10, 10, -10, -10, -10, 10, 10, 0, 0, 0, 0;
+    const surface::Surface quadratic = fitted(input, "quadratic");
+    surface::Surface process = fit::begin_surface(input, "freeform", fit::kSampleRoles, 3);
+    fit::FitCandidate gp =
+        fit::fit_gaussian_process(fit::make_touch_set(process, input.job), fit::spline_grid(input, process.touches))
+            .value();
+    process.shape = std::move(gp.shape);
+    process.covariance = std::move(gp.covariance);
+    ASSERT_TRUE(gp.outliers.empty() && quadratic.outliers.empty());
+    const surface::WeightedShape member{1, process.shape, process.covariance};
+    EXPECT_TRUE(margin::waves_about(member, process, places()).empty()); // by the touches alone it has waves of its own
+    const margin::ScanWaves scan = scan_of(hills, process);
+    const std::vector<margin::Waves> waves = margin::waves_about(member, process, places(), &scan);
+
+    // The sizes that the scan shows, each weighed by the touches: Bayes' rule in full.
+    const MatrixXd F = surface::height_gradients(quadratic.shape, scan.places()).transpose();
+    const VectorXd residuals = scan.z() - surface::heights(quadratic.shape, scan.places());
+    std::vector<std::pair<double, Direct>> expected;
+    double max = -INFINITY, sum = 0;
+    for (const margin::WaveSize& size : scan.sizes(F, residuals, 0.25)) {
+        const double amplitude = size.amplitude / process.touch_sigma;
+        expected.emplace_back(size.probability, direct(quadratic, process.touches, amplitude, size.length));
+        max = std::max(max, expected.back().second.log_evidence);
+    }
+    for (auto& [probability, one] : expected) sum += probability *= std::exp(one.log_evidence - max);
+    const VectorXd above = surface::heights(process.shape, places()) - surface::heights(quadratic.shape, places());
+    std::size_t found = 0;
+    double all = 0;
+    for (const auto& [probability, one] : expected) {
+        if (found == waves.size() || std::abs(probability / sum - waves[found].probability) > 1e-4) continue;
+        const double sigma = std::sqrt(one.covariance.diagonal().maxCoeff());
+        EXPECT_LT((waves[found].offset + above - one.mean).cwiseAbs().maxCoeff(), 1e-3 * sigma);
+        EXPECT_LT((waves[found].root * waves[found].root.transpose() - one.covariance).cwiseAbs().maxCoeff(),
+                  1e-3 * sigma * sigma);
+        all += waves[found++].probability;
+    }
+    EXPECT_EQ(found, waves.size());
+    EXPECT_GT(all, 0.99); // the scan leaves no doubt that there are waves
 }
 
 } // namespace waves_test
