@@ -63,8 +63,10 @@ $D/%/samples.pcd: $D/jobs/%.json $(part_in) $(B)/bin/fettle-sample
 	@mkdir -p $(@D)
 	fettle-sample $< --on $(part_in) --noise $(NOISE) --seed 1 --report $(@D)/sample.json -o $@
 
-$D/%/desired.json: $D/jobs/%.json $D/%/samples.pcd $(B)/bin/fettle-fit $(B)/bin/fettle-margin
-	fettle-fit $< $(@D)/samples.pcd | fettle-margin $< -o $@
+# What the scan shows of the metal's waves the margin of a free-form surface takes in; a plane has none.
+scan_of_job = $$(jq -r 'if (.surface.type // "freeform") == "freeform" then "--scan $(part_in)" else "" end' $<)
+$D/%/desired.json: $D/jobs/%.json $D/%/samples.pcd $(part_in) $(B)/bin/fettle-fit $(B)/bin/fettle-margin
+	fettle-fit $< $(@D)/samples.pcd | fettle-margin $< $(scan_of_job) -o $@
 
 $D/%/plan.json: $D/jobs/%.json $D/%/desired.json $(B)/bin/fettle-plan
 	fettle-plan $< $(@D)/desired.json -o $@

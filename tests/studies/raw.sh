@@ -14,3 +14,11 @@ jq -e '.verdict == "within" and .regions.inside.count > 10000' "raw/hammer/$row/
 [ -s "raw/hammer/$row/report.html" ]
 jq -r '.anomalies[] | select(.job == "") | .doubt' raw/hammer/found.json | while read -r doubt; do grep -q "$doubt\$" table || exit 1; done
 [ "$(wc -l < table)" = $((1 + $(jq '.anomalies | length' raw/hammer/found.json))) ]
+# The margin of a free-form surface goes by the scan, too.
+fettle-part "$SAMPLES/parts/crown.json" -q -o crown.stl
+fettle-part "$SAMPLES/parts/crown.json" --without-anomaly -q -o crown-truth.stl
+make --no-print-directory -s -C "$root" -f pipelines/raw.mk B="$build" RAW="$PWD/raw" part NAME=crown CLEAN=no PART="$PWD/crown.stl" TRUTH="$PWD/crown-truth.stl" \
+    TEMPLATE=samples/jobs/crown.json LIMIT=0.4 > crown-table 2> crown-warnings
+jq -e '.surface.type == "freeform"' raw/crown/jobs/1.json
+jq -e '.verdict == "within"' raw/crown/1/errors.json
+fettle-fit raw/crown/jobs/1.json raw/crown/1/samples.pcd -q | fettle-margin raw/crown/jobs/1.json --scan crown.stl | cmp - raw/crown/1/desired.json
