@@ -16,7 +16,8 @@ enum class Tails {
     student
 };
 
-/// Waves about the families of a fit, too low for the touches to show (margin/waves.h).
+/// Waves about the families of a fit, too low for the touches to show, and with a scan those of its process
+/// (margin/waves.h).
 enum class WavesOfFamilies { none, possible };
 
 /// Draws height errors from the posterior of a fit: from its covariance and its alternatives by their weight, relative

@@ -16,8 +16,7 @@ namespace fettle::margin {
 ///   within an error band (Wang 2007, eq. 4-1) of at most `band`.
 /// The prediction accounts for touch errors and for the prior of the fit, not for a wrong model such as a plane fitted
 /// to a curved surface; the goodness of fit tests for that.
-/// @param scan  of the metal around the anomaly (heights_around_anomaly); it says how large the waves about a family
-/// are
+/// @param scan  of the metal around the anomaly (heights_around_anomaly); it says how large the surface's waves are
 /// @param confidence  inside (0, 1)   @param source  the surface's name in messages
 /// @throws InputError if the surface has no covariance, or only that of an interpolant (surface::has_sigma), or does
 /// not
