@@ -1,11 +1,13 @@
 #include "core/morton.h"
 
 #include "core/parallel_box.h"
+#include "core/uninitialized_vector.h"
 
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 
-#include <utility>
+#include <compare>
+#include <cstdint>
 
 namespace fettle::core {
 
@@ -24,6 +26,14 @@ std::uint64_t spread_bits(std::uint64_t bits)
     return (bits | bits << 2) & 0x1249249249249249;
 }
 
+/// A point by its cell's place along the curve.
+struct Key {
+    std::uint64_t place;
+    std::uint32_t point;
+
+    auto operator<=>(const Key&) const = default;
+};
+
 } // namespace
 
 std::vector<std::uint32_t> morton_order(const Eigen::Matrix3Xd& points)
@@ -35,18 +45,18 @@ std::vector<std::uint32_t> morton_order(const Eigen::Matrix3Xd& points)
     const double extent = box.sizes().maxCoeff();
     const double scale = extent > 0 ? ((1 << kBits) - 1) / extent : 0;
 
-    std::vector<std::pair<std::uint64_t, std::uint32_t>> keys(count);
+    UninitializedVector<Key> keys(count);
     tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
-        std::uint64_t key = kAfterAllCells;
+        std::uint64_t place = kAfterAllCells;
         if (points.col(i).allFinite()) {
             const Eigen::Array3i cell = ((points.col(i) - box.min()) * scale).array().cast<int>();
-            key = spread_bits(cell.x()) | spread_bits(cell.y()) << 1 | spread_bits(cell.z()) << 2;
+            place = spread_bits(cell.x()) | spread_bits(cell.y()) << 1 | spread_bits(cell.z()) << 2;
         }
-        keys[i] = {key, static_cast<std::uint32_t>(i)};
+        keys[i] = {place, static_cast<std::uint32_t>(i)};
     });
     tbb::parallel_sort(keys);
     std::vector<std::uint32_t> order(count);
-    for (std::size_t i = 0; i < count; ++i) order[i] = keys[i].second;
+    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) { order[i] = keys[i].point; });
     return order;
 }
 

@@ -65,11 +65,13 @@ Moments moments(const Image& weight, const Image& z, const Window& window)
         return result;
     };
     Moments result;
-    for (int px = 0; px <= kMaxPower; ++px)
+    tbb::parallel_for(0, kMaxPower + 1, [&](int px) {
         for (int py = 0; px + py <= kMaxPower; ++py)
             result.of_weight[std::size_t(px)][std::size_t(py)] = filter(weight, px, py);
+    });
     const Image product = weight.mul(z);
-    for (std::size_t k = 0; k < kTerms; ++k) result.of_height[k] = filter(product, kPowerX[k], kPowerY[k]);
+    tbb::parallel_for(std::size_t{0}, kTerms,
+                      [&](std::size_t k) { result.of_height[k] = filter(product, kPowerX[k], kPowerY[k]); });
     return result;
 }
 

@@ -2,6 +2,7 @@
 
 #include <opencv2/imgproc.hpp>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <cmath>
@@ -41,9 +42,9 @@ Image slope_of(const Image& z)
     return slope;
 }
 
-void remove_outliers(Image& z, double sigma)
+/// @param median  of the cells around each   @param slope  of the median
+void remove_outliers(Image& z, const Image& median, const Image& slope, double sigma)
 {
-    const Image median = nan_median(z, 2), slope = slope_of(median);
     Mask differs(z.size(), 0);
     for (int y = 0; y < z.rows; ++y)
         for (int x = 0; x < z.cols; ++x)
@@ -92,8 +93,16 @@ Mask coarsened(const Mask& mask, int factor)
 void clean(HeightMap& map, bool fills)
 {
     map.z = map.z.clone();
-    map.sigma = std::max({noise_sigma(map.z), map.sigma, kMinSigmaCells * map.cell});
-    remove_outliers(map.z, map.sigma);
+    Image median, slope;
+    tbb::parallel_invoke(
+        [&] {
+            map.sigma = std::max({noise_sigma(map.z), map.sigma, kMinSigmaCells * map.cell});
+        },
+        [&] {
+            median = nan_median(map.z, 2);
+            slope = slope_of(median);
+        });
+    remove_outliers(map.z, median, slope, map.sigma);
     if (fills) fill_small_holes(map.z);
     const Components pieces = components(finite(map.z));
     for (int y = 0; y < map.z.rows; ++y)

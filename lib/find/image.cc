@@ -40,6 +40,7 @@ Mask finite(const Image& image) { return image == image; }
 double noise_sigma(const Image& z)
 {
     std::vector<double> second_differences;
+    second_differences.reserve(2 * z.total());
     const auto add = [&](float before, float here, float after) {
         const double difference = std::abs(double(before) - 2.0 * here + after);
         if (std::isfinite(difference)) second_differences.push_back(difference);

@@ -4,6 +4,7 @@
 #include "geometry/planar_grid.h"
 #include "geometry/quantiles.h"
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -34,6 +35,7 @@ constexpr int kMinFillRadius = 2, kMaxFillRadius = 8; // of these gaps, cells
 constexpr double kSparseQuantile = 0.9;
 constexpr int kSpacingQueries = 4000; // about
 constexpr double kPointsPerGridCell = 3;
+constexpr Index kGrainSize = 65536; // points for one task
 
 // A mesh has been smoothed and interpolated, so its second differences do not show the noise that remains in waves of a
 // few cells. This is a lower bound of the noise, in cells; scans have 0.03 to 0.1.
@@ -51,7 +53,7 @@ struct Spacing {
 
 /// The spacing over the area: one point is sampled in each square of a grid. Statistics over all points would be those
 /// of dense areas, such as walls seen from the side or the overlaps of merged scans.
-Spacing spacing_of(const Eigen::Matrix2Xd& points)
+Spacing spacing_of(const Eigen::Ref<const Eigen::Matrix2Xd, 0, Eigen::OuterStride<>>& points)
 {
     const geometry::PlanarGrid grid = geometry::planar_grid(points, kPointsPerGridCell);
     const int step = std::max(1, int(std::sqrt(double(grid.count.prod()) / kSpacingQueries)));
@@ -118,9 +120,10 @@ HeightMap map_of_points(const Eigen::Matrix3Xd& placed, const Eigen::AlignedBox2
         return std::size_t(std::clamp(c.y, 0, map.z.rows - 1)) * std::size_t(map.z.cols) +
                std::size_t(std::clamp(c.x, 0, map.z.cols - 1));
     };
-    std::vector<std::uint32_t> begin(map.z.total() + 1, 0);
     std::vector<std::uint32_t> cells(std::size_t(placed.cols()));
-    for (Index i = 0; i < placed.cols(); ++i) ++begin[(cells[std::size_t(i)] = std::uint32_t(cell_of(i))) + 1];
+    tbb::parallel_for(Index{0}, placed.cols(), [&](Index i) { cells[std::size_t(i)] = std::uint32_t(cell_of(i)); });
+    std::vector<std::uint32_t> begin(map.z.total() + 1, 0);
+    for (const std::uint32_t cell : cells) ++begin[cell + 1];
     std::partial_sum(begin.begin(), begin.end(), begin.begin());
     std::vector<float> heights(cells.size());
     std::vector<std::uint32_t> next(begin.begin(), begin.end() - 1);
@@ -188,7 +191,12 @@ HeightMap map_of_mesh(const mesh::CloudMesh& part, const Eigen::Matrix3Xd& place
 
 HeightMap height_map(const mesh::CloudMesh& part, const View& view)
 {
-    Eigen::Matrix3Xd placed = view * part.points.xyz;
+    Eigen::Matrix3Xd placed(3, part.points.size());
+    using Range = tbb::blocked_range<Index>;
+    tbb::parallel_for(Range(0, placed.cols(), kGrainSize), [&](const Range& range) {
+        placed.middleCols(range.begin(), Index(range.size())) =
+            view * part.points.xyz.middleCols(range.begin(), Index(range.size()));
+    });
     if (!part.is_mesh()) {
         const Eigen::VectorXd facing =
             cloud::has_normals(part.points)

@@ -2,6 +2,9 @@
 
 #include "geometry/bounding_box.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -11,7 +14,8 @@ namespace fettle::geometry {
 PlanarGrid planar_grid(const Eigen::Ref<const Eigen::Matrix2Xd, 0, Eigen::OuterStride<>>& points,
                        double points_per_cell)
 {
-    constexpr double kMinSide = 1e-9; // mm, if all points coincide
+    constexpr double kMinSide = 1e-9;          // mm, if all points coincide
+    constexpr Eigen::Index kGrainSize = 65536; // points for one task
     const Eigen::AlignedBox2d box = bounding_box(points);
     const Eigen::Vector2d size = box.sizes();
     const auto n = static_cast<double>(points.cols());
@@ -24,12 +28,15 @@ PlanarGrid planar_grid(const Eigen::Ref<const Eigen::Matrix2Xd, 0, Eigen::OuterS
     // Counting sort. Cells are counted two places on, so that filling them moves each cell's end to where it belongs.
     std::vector<int> cells(points.cols());
     grid.begin.assign(static_cast<std::size_t>(grid.count.x()) * grid.count.y() + 2, 0);
-    for (Eigen::Index i = 0; i < points.cols(); ++i) {
-        // As cell_of(), but no point is beside the grid.
-        const Eigen::Array2i cell = ((points.col(i) - grid.min) / grid.side).array().cast<int>();
-        cells[i] = cell.y() * grid.count.x() + cell.x();
-        ++grid.begin[cells[i] + 2];
-    }
+    using Range = tbb::blocked_range<Eigen::Index>;
+    tbb::parallel_for(Range(0, points.cols(), kGrainSize), [&](const Range& range) {
+        for (Eigen::Index i = range.begin(); i < range.end(); ++i) {
+            // As cell_of(), but no point is beside the grid.
+            const Eigen::Array2i cell = ((points.col(i) - grid.min) / grid.side).array().cast<int>();
+            cells[i] = cell.y() * grid.count.x() + cell.x();
+        }
+    });
+    for (const int cell : cells) ++grid.begin[cell + 2];
     std::partial_sum(grid.begin.begin(), grid.begin.end(), grid.begin.begin());
     grid.order.resize(points.cols());
     for (int i = 0; i < points.cols(); ++i) grid.order[grid.begin[cells[i] + 1]++] = i;

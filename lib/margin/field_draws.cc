@@ -98,7 +98,7 @@ void add_waves(std::vector<Component>& all, const surface::WeightedShape& member
 } // namespace
 
 Eigen::MatrixXd draw_fields(const surface::Surface& surface, const Eigen::Matrix2Xd& xy, int draws, std::uint64_t seed,
-                            Tails tails, WavesOfFamilies waves, const Eigen::Matrix3Xd& scan)
+                            Tails tails, UnseenWaves waves, const Eigen::Matrix3Xd& scan)
 {
     const Eigen::VectorXd mean = surface::heights(surface, xy).array() - surface.shift;
     std::optional<ScanWaves> scan_waves;
@@ -119,7 +119,7 @@ Eigen::MatrixXd draw_fields(const surface::Surface& surface, const Eigen::Matrix
                        is_process && tails == Tails::student
                            ? std::min(surface.touch_sigma_dof, process_freedom(surface))
                            : surface.touch_sigma_dof});
-        if (waves == WavesOfFamilies::possible && (!is_process || scan_waves))
+        if (waves == UnseenWaves::possible && (!is_process || scan_waves))
             add_waves(all, member, surface, xy, scan_waves ? &*scan_waves : nullptr);
     }
     double sum = 0;

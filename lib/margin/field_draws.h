@@ -18,7 +18,7 @@ enum class Tails {
 
 /// Waves about the families of a fit, too low for the touches to show, and with a scan those of its process
 /// (margin/waves.h).
-enum class WavesOfFamilies { none, possible };
+enum class UnseenWaves { none, possible };
 
 /// Draws height errors from the posterior of a fit: from its covariance and its alternatives by their weight, relative
 /// to their common mean. Draws are in antithetic pairs, of opposite sign about a member's mean.
@@ -28,7 +28,7 @@ enum class WavesOfFamilies { none, possible };
 /// @return  N x draws, mm; members that are not defined at all of xy are left out
 /// @throws core::InputError if no member has a finite covariance
 Eigen::MatrixXd draw_fields(const surface::Surface& surface, const Eigen::Matrix2Xd& xy, int draws, std::uint64_t seed,
-                            Tails tails = Tails::normal, WavesOfFamilies waves = WavesOfFamilies::none,
+                            Tails tails = Tails::normal, UnseenWaves waves = UnseenWaves::none,
                             const Eigen::Matrix3Xd& scan = {});
 
 } // namespace fettle::margin

@@ -24,8 +24,8 @@ constexpr int kDraws = 8192; // the 99 % quantile of so many has a relative stan
 /// A free-form surface whose family the job does not state may have waves about it. A fit to a scan, which has no
 /// goodness of fit, follows its waves.
 /// @throws InputError if a scan is to say how large the waves are of a surface that has none
-WavesOfFamilies possible_waves(const surface::Surface& surface, const job::Job& job, Tails tails, bool is_scan_given,
-                               const std::string& source)
+UnseenWaves possible_waves(const surface::Surface& surface, const job::Job& job, Tails tails, bool is_scan_given,
+                           const std::string& source)
 {
     const bool is_of_touches = job.surface == job::SurfaceType::freeform && std::isfinite(surface.goodness);
     if (is_scan_given && !is_of_touches)
@@ -33,7 +33,7 @@ WavesOfFamilies possible_waves(const surface::Surface& surface, const job::Job& 
                                "is no free-form surface fitted to touches with one to spare, so no waves about it "
                                "are predicted from a scan");
     const bool may_wave = tails == Tails::student && is_of_touches && (is_scan_given || !surface.alternatives.empty());
-    return may_wave ? WavesOfFamilies::possible : WavesOfFamilies::none;
+    return may_wave ? UnseenWaves::possible : UnseenWaves::none;
 }
 
 /// @throws InputError if the most probable shape is not defined all over B

@@ -125,7 +125,7 @@ Eigen::AlignedBox3d box_of(const Mesh& mesh)
 
 /// The level above `children`, with their boxes, eight to a node.
 template <typename Child>
-TreeLevel level_over(const std::vector<Child>& children)
+TreeLevel level_over(std::span<const Child> children)
 {
     TreeLevel level;
     level.boxes.resize((children.size() + kBranching - 1) / kBranching);
@@ -243,9 +243,9 @@ void sort_by_subtree(std::span<Item> range)
 }
 
 /// Indices of the triangles in the order of the leaves.
-std::vector<std::uint32_t> leaf_order(const Mesh& mesh, const Eigen::Vector3d& centre)
+core::UninitializedVector<std::uint32_t> leaf_order(const Mesh& mesh, const Eigen::Vector3d& centre)
 {
-    std::vector<Item> items(mesh.triangles.cols());
+    core::UninitializedVector<Item> items(mesh.triangles.cols());
     tbb::parallel_for(std::size_t{0}, items.size(), [&](std::size_t t) {
         const Eigen::Vector3i corners = mesh.triangles.col(t);
         const Eigen::Vector3d sum =
@@ -254,7 +254,7 @@ std::vector<std::uint32_t> leaf_order(const Mesh& mesh, const Eigen::Vector3d& c
         items[t].triangle = static_cast<std::uint32_t>(t);
     });
     sort_by_subtree(items);
-    std::vector<std::uint32_t> order(items.size());
+    core::UninitializedVector<std::uint32_t> order(items.size());
     tbb::parallel_for(std::size_t{0}, order.size(), [&](std::size_t i) { order[i] = items[i].triangle; });
     return order;
 }
@@ -279,8 +279,8 @@ BoxTree::BoxTree(const Mesh& mesh) : box(box_of(mesh))
         }
         leaf_margins[l] = kBoundRoundingError * max_coordinate(box_of(leaves[l]));
     });
-    levels.push_back(level_over(leaves));
-    while (levels.back().boxes.size() > 1) levels.push_back(level_over(levels.back().boxes));
+    levels.push_back(level_over<Triangles8>(leaves));
+    while (levels.back().boxes.size() > 1) levels.push_back(level_over<Boxes8>(levels.back().boxes));
     std::size_t leaves_per_child = 1;
     for (std::size_t l = 0; l < std::min(kDiscLevels, levels.size()); ++l, leaves_per_child *= kBranching)
         add_discs(levels[l], leaves, leaves_per_child);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/uninitialized_vector.h"
 #include "mesh/lanes.h"
 #include "mesh/mesh.h"
 
@@ -79,11 +80,11 @@ struct BoxTree {
         return triangle_order[std::min(std::size_t{8} * leaf + lane, triangle_order.size() - 1)];
     }
 
-    Eigen::AlignedBox3d box;                          ///< bounding box of the mesh, mm
-    Eigen::Vector3d centre = Eigen::Vector3d::Zero(); ///< median of the vertices by axis, of a sample of them
-    std::vector<std::uint32_t> triangle_order;        ///< order[8 l + k] is the mesh's index of triangle k of leaf l
-    std::vector<Triangles8> leaves;                   ///< the last leaf is filled up with copies of the last triangle
-    std::vector<float> leaf_margins;                  ///< kBoundRoundingError of a leaf's largest coordinate, mm
+    Eigen::AlignedBox3d box;                                 ///< bounding box of the mesh, mm
+    Eigen::Vector3d centre = Eigen::Vector3d::Zero();        ///< median of the vertices by axis, of a sample of them
+    core::UninitializedVector<std::uint32_t> triangle_order; ///< at 8 l + k the index of triangle k of leaf l
+    core::UninitializedVector<Triangles8> leaves;  ///< the last leaf is filled up with copies of the last triangle
+    core::UninitializedVector<float> leaf_margins; ///< kBoundRoundingError of a leaf's largest coordinate, mm
     std::vector<TreeLevel> levels;
 };
 

@@ -1,8 +1,11 @@
 #include "mesh/mesh.h"
 
 #include "core/text.h"
+#include "core/uninitialized_vector.h"
 
 #include <Eigen/Geometry>
+#include <tbb/concurrent_vector.h>
+#include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
@@ -84,15 +87,16 @@ std::vector<std::uint32_t> opposite_triangles(const Eigen::Matrix3Xi& triangles)
     std::vector<std::uint32_t> starts(triangles.maxCoeff() + 2, 0);
     for (const auto& corners : triangles.colwise()) ++starts[corners.minCoeff() + 1];
     std::partial_sum(starts.begin(), starts.end(), starts.begin());
-    std::vector<OtherCorners> others(triangles.cols());
+    core::UninitializedVector<OtherCorners> others(triangles.cols());
     for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
         const int a = triangles(0, t), b = triangles(1, t), c = triangles(2, t);
         const int lowest = std::min({a, b, c}), highest = std::max({a, b, c}), middle = a ^ b ^ c ^ lowest ^ highest;
         others[starts[lowest]++] = {middle, highest, static_cast<std::uint32_t>(t)};
     }
-    std::vector<std::uint32_t> opposite;
-    for (std::size_t corner = 0, begin = 0; corner + 1 < starts.size(); begin = starts[corner++]) {
-        const std::span<OtherCorners> here(others.data() + begin, others.data() + starts[corner]);
+    tbb::concurrent_vector<std::uint32_t> opposite;
+    tbb::parallel_for(std::size_t{0}, starts.size() - 1, [&](std::size_t corner) {
+        const std::span<OtherCorners> here(others.data() + (corner == 0 ? 0 : starts[corner - 1]),
+                                           others.data() + starts[corner]);
         std::ranges::sort(here);
         for (std::size_t i = 1, first = 0; i < here.size(); ++i) {
             if (!here[i].same_as(here[first]))
@@ -101,9 +105,10 @@ std::vector<std::uint32_t> opposite_triangles(const Eigen::Matrix3Xi& triangles)
                      runs_down(triangles.col(here[i].triangle)) != runs_down(triangles.col(here[first].triangle)))
                 opposite.push_back(here[i].triangle);
         }
-    }
-    std::ranges::sort(opposite);
-    return opposite;
+    });
+    std::vector<std::uint32_t> sorted(opposite.begin(), opposite.end());
+    std::ranges::sort(sorted);
+    return sorted;
 }
 
 } // namespace fettle::mesh

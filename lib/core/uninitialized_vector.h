@@ -1,0 +1,29 @@
+#pragma once
+
+#include <memory>
+#include <new>
+#include <utility>
+#include <vector>
+
+namespace fettle::core {
+
+/// Allocator of a vector whose elements are not set when it grows without a value for them.
+template <typename T>
+struct UninitializedAllocator : std::allocator<T> {
+    template <typename U, typename... Arguments>
+    void construct(U* element, Arguments&&... arguments)
+    {
+        if constexpr (sizeof...(Arguments) == 0)
+            ::new (static_cast<void*>(element)) U;
+        else
+            ::new (static_cast<void*>(element)) U(std::forward<Arguments>(arguments)...);
+    }
+};
+
+/// A vector for results that several threads fill in: std::vector would first set all of them to 0, by one thread,
+/// which of large memory takes as long as the work, as the pages are mapped then.
+/// @tparam T  without initializers for its members
+template <typename T>
+using UninitializedVector = std::vector<T, UninitializedAllocator<T>>;
+
+} // namespace fettle::core
