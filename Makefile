@@ -168,10 +168,11 @@ $(B)/libfettle.a: $(foreach module,$(filter-out cad,$(ARCHIVES:$(B)/lib/%.a=%)),
 	@rm -f $@
 	$(AR) rcs $@ $^
 
-# How programs take memory: the linker leads their malloc() to tools/memory.cc.
-$(B)/bin/% $(B)/study/% $(B)/bench/%: private override LDFLAGS += -Wl,--wrap=malloc
+# How programs take memory: the linker leads their malloc() to tools/memory.cc. Sanitizers have one of their own.
+MEMORY := $(if $(findstring -fsanitize,$(CXXFLAGS)),,$(B)/tools/memory.o)
+$(B)/bin/% $(B)/study/% $(B)/bench/%: private override LDFLAGS += $(if $(findstring -fsanitize,$(CXXFLAGS)),,-Wl,--wrap=malloc)
 
-$(B)/bin/%: $(B)/tools/%.o $(B)/tools/memory.o $$(call archives,tools/$$*)
+$(B)/bin/%: $(B)/tools/%.o $(MEMORY) $$(call archives,tools/$$*)
 	@mkdir -p $(@D)
 	$(CXX) $(LDFLAGS) -o $@ $^ $(LDLIBS) $(LDLIBS_ALL)
 
@@ -183,7 +184,7 @@ $(LIST): packaging/fettle.in packaging/tool-list packaging/about README.md CHANG
 
 # Programs of the studies: what would be too slow as a chain of tools for each of thousands of cells.
 $(B)/study/%: LDLIBS = $(CERES) $(OPENCV) $(PNG) $(MD) $(URDF)
-$(B)/study/%: $(B)/pipelines/programs/%.o $(B)/tools/memory.o $$(call archives,pipelines/programs/$$*)
+$(B)/study/%: $(B)/pipelines/programs/%.o $(MEMORY) $$(call archives,pipelines/programs/$$*)
 	@mkdir -p $(@D)
 	$(CXX) $(LDFLAGS) -o $@ $^ $(LDLIBS) $(LDLIBS_ALL)
 
@@ -199,7 +200,7 @@ $(B)/bench/%: LDLIBS = $(CERES) $(EMBREE) $(OPENCV) $(PNG) $(MD) $(URDF) -lbench
 $(B)/bench/tool_hull_bench: LDLIBS += $(FCL)
 $(B)/bench/libraries_bench: LDLIBS += $(PCL) -lflann_cpp -llz4
 $(B)/bench/reconstruct_bench: LDLIBS += $(PCL) -lpcl_surface -lpcl_search
-$(B)/bench/%: $(B)/tests/bench/%.o $(B)/tools/memory.o $$(call archives,tests/bench/$$*)
+$(B)/bench/%: $(B)/tests/bench/%.o $(MEMORY) $$(call archives,tests/bench/$$*)
 	@mkdir -p $(@D)
 	$(CXX) $(LDFLAGS) -o $@ $^ $(LDLIBS) $(LDLIBS_ALL)
 
