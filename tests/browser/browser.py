@@ -133,6 +133,17 @@ class Page:
         """Clicks the button with this text."""
         if not self.value(f"(b => b && (b.click(), true))([...document.querySelectorAll('button')].find(b => b.textContent.startsWith({json.dumps(text)})))"):
             raise RuntimeError(f"no button {text}")
+        self.settle()
+
+    def key(self, key, **more):
+        """Types into the view, as a user does who has clicked it."""
+        self.value("document.querySelector('.stage canvas').focus()")
+        self.call("Input.dispatchKeyEvent", type="keyDown", key=key, **more)
+        self.settle()
+
+    def settle(self):
+        """Until what a command changed is laid out and drawn: a view that changes its size fits the part anew in the frame after."""
+        self.value("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => requestAnimationFrame(done))))")
 
     def screenshot(self, path):
         with open(path, "wb") as file:

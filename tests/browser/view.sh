@@ -70,8 +70,7 @@ try:
     reference, test = shown
     assert max(abs(h) for h in reference) < 2e-3 and len(reference) > 60, reference
     assert abs(max(test) - 0.1) < 1e-4 and abs(min(test) + 0.1) < 1e-4
-    page.value("document.querySelector('.stage canvas').focus()")
-    page.call("Input.dispatchKeyEvent", type="keyDown", key="Escape")
+    page.key("Escape")
     assert page.value("document.querySelector('canvas.profile').hidden")
 
     # corners: added, moved, taken back
@@ -91,8 +90,7 @@ try:
         assert max(abs(x - wanted[0]), abs(y - wanted[1])) <= 0.51 and abs(z - (0.1 if x < 20 else -0.1)) < 1e-4, (x, y, z)  # a cell
 
     # another layer by a key, at the same view
-    page.value("document.querySelector('.stage canvas').focus()")
-    page.call("Input.dispatchKeyEvent", type="keyDown", key="2", text="2")
+    page.key("2", text="2")
     page.wait(f"{root}.fettleView.layer.name === 'plate.off'")
     page.screenshot("wide.png")
     page.resize(500, 800)
