@@ -1,6 +1,6 @@
 #include "belt/wave_operator.h"
 
-#include "core/simd.h"
+#include "core/product.h"
 
 #include <cmath>
 #include <numbers>
@@ -60,70 +60,6 @@ const WaveOperator::Waves& WaveOperator::waves(Index count) const
     return waves;
 }
 
-namespace {
-
-using core::Double4;
-constexpr Index kLanes = 4;
-
-/// The columns of a matrix, one after the other.
-struct Columns {
-    const double* data;
-    Index stride; ///< from a column to the next
-};
-
-/// A matrix by its transposed or itself.
-struct Strided {
-    const double* data;
-    Index row, column; ///< strides
-};
-
-/// kBlocks times four rows of kColumns columns of A B.
-template <int kBlocks, int kColumns>
-FETTLE_INLINE void product_block(const Columns& A, const Strided& B, Index inner, double* C, Index stride)
-{
-    Double4 sums[kBlocks][kColumns] = {};
-    for (Index k = 0; k < inner; ++k)
-#pragma GCC unroll 4 // keeps the sums in registers
-        for (int j = 0; j < kColumns; ++j) {
-            const Double4 factor = core::broadcast(B.data[k * B.row + j * B.column]);
-#pragma GCC unroll 4
-            for (int i = 0; i < kBlocks; ++i)
-                sums[i][j] += *reinterpret_cast<const Double4*>(A.data + k * A.stride + i * kLanes) * factor;
-        }
-#pragma GCC unroll 4
-    for (int j = 0; j < kColumns; ++j)
-#pragma GCC unroll 4
-        for (int i = 0; i < kBlocks; ++i) *reinterpret_cast<Double4*>(C + j * stride + i * kLanes) = sums[i][j];
-}
-
-template <int kColumns>
-FETTLE_INLINE void product_of_columns(Columns A, const Strided& B, Index rows, Index inner, double* C, Index stride)
-{
-    const auto advance = [&](Index count) { A.data += count, C += count, rows -= count; };
-    for (; rows >= 4 * kLanes; advance(4 * kLanes)) product_block<4, kColumns>(A, B, inner, C, stride);
-    for (; rows >= 2 * kLanes; advance(2 * kLanes)) product_block<2, kColumns>(A, B, inner, C, stride);
-    for (; rows >= kLanes; advance(kLanes)) product_block<1, kColumns>(A, B, inner, C, stride);
-    for (Index i = 0; i < rows; ++i)
-        for (int j = 0; j < kColumns; ++j) {
-            double sum = 0;
-            for (Index k = 0; k < inner; ++k) sum += A.data[k * A.stride + i] * B.data[k * B.row + j * B.column];
-            C[j * stride + i] = sum;
-        }
-}
-
-/// C = A B. With four lanes where the processor has them, which Eigen, compiled for all, does not use.
-FETTLE_CLONES void multiply(const Columns& A, const Strided& B, Index rows, Index inner, Index columns, double* C,
-                            Index stride)
-{
-    Index j = 0;
-    for (; j + 2 <= columns; j += 2)
-        product_of_columns<2>(A, {B.data + j * B.column, B.row, B.column}, rows, inner, C + j * stride, stride);
-    if (j < columns)
-        product_of_columns<1>(A, {B.data + j * B.column, B.row, B.column}, rows, inner, C + j * stride, stride);
-}
-
-} // namespace
-
 /// Fields are transposed here: cells of a row lie one after the other.
 MatrixXd WaveOperator::displacement(const MatrixXd& pressure) const
 {
@@ -144,22 +80,22 @@ MatrixXd WaveOperator::displacement(const MatrixXd& pressure) const
     // Each wave has a column of cosines and one of sines.
     const Index count = rows_ + 1, pair = 2 * columns;
     MatrixXd pressures(columns, 2 * count), displacements(columns, 2 * count);
-    multiply({folded.data(), columns}, {waves.cosines.data(), 1, even_rows}, columns, even_rows, count,
-             pressures.data(), pair);
-    multiply({odd_folded, columns}, {waves.sines.data(), 1, odd_rows}, columns, odd_rows, count,
-             pressures.data() + columns, pair);
+    core::multiply({folded.data(), columns}, {waves.cosines.data(), 1, even_rows}, columns, even_rows, count,
+                   pressures.data(), pair);
+    core::multiply({odd_folded, columns}, {waves.sines.data(), 1, odd_rows}, columns, odd_rows, count,
+                   pressures.data() + columns, pair);
     for (Index f = 0; f < count; ++f) {
         const double* from = pressures.data() + f * pair;
         double* to = displacements.data() + f * pair;
-        multiply({even_.col(f).data() + first * (even_count_ + 1), even_count_}, {from, 1, columns}, even, even, 2, to,
-                 columns);
-        multiply({odd_.col(f).data() + first * (odd_count_ + 1), odd_count_}, {from + even, 1, columns}, odd, odd, 2,
-                 to + even, columns);
+        core::multiply({even_.col(f).data() + first * (even_count_ + 1), even_count_}, {from, 1, columns}, even, even,
+                       2, to, columns);
+        core::multiply({odd_.col(f).data() + first * (odd_count_ + 1), odd_count_}, {from + even, 1, columns}, odd, odd,
+                       2, to + even, columns);
     }
-    multiply({displacements.data(), pair}, {waves.cosines.data(), even_rows, 1}, columns, count, even_rows,
-             folded.data(), columns);
-    multiply({displacements.data() + columns, pair}, {waves.sines.data(), odd_rows, 1}, columns, count, odd_rows,
-             odd_folded, columns);
+    core::multiply({displacements.data(), pair}, {waves.cosines.data(), even_rows, 1}, columns, count, even_rows,
+                   folded.data(), columns);
+    core::multiply({displacements.data() + columns, pair}, {waves.sines.data(), odd_rows, 1}, columns, count, odd_rows,
+                   odd_folded, columns);
     across.leftCols(even_rows) = folded.leftCols(even_rows);
     across.rightCols(odd_rows) = (folded.leftCols(odd_rows) - folded.rightCols(odd_rows)).rowwise().reverse();
     across.leftCols(odd_rows) += folded.rightCols(odd_rows);

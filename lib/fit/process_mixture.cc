@@ -1,6 +1,7 @@
 #include "fit/process_mixture.h"
 
 #include "core/decompositions.h"
+#include "core/product.h"
 
 #include <Eigen/Geometry>
 #include <tbb/parallel_for.h>
@@ -172,8 +173,8 @@ MatrixXd symmetric_product(const MatrixXd& left, const MatrixXd& right, const Co
     MatrixXd sum(n, n);
     tbb::parallel_for(Index{0}, (n + kStrip - 1) / kStrip, [&](Index k) {
         const Index first = k * kStrip, below = n - first, count = std::min(kStrip, below);
-        sum.block(first, first, below, count).noalias() =
-            left.bottomRows(below) * right.middleRows(first, count).transpose();
+        core::multiply({left.data() + first, n}, {right.data() + first, n, 1}, below, left.cols(), count,
+                       sum.data() + first * n + first, n);
     });
     controls.add_block_toeplitz(sum, by_offset);
     return sum.selfadjointView<Eigen::Lower>();
@@ -197,7 +198,7 @@ std::pair<VectorXd, MatrixXd> mix_processes(const ProcessTouches& touches, const
         const MatrixXd QK = trend.Q.transpose() * correlation_matrix(s.correlation, among_touches);
         Part& part = parts[k];
         part.weight = amplitudes.weight;
-        part.B = (C - trend.F * QK) * s.E;
+        part.B = core::product(C - core::product(trend.F, QK), s.E);
         part.spread = std::move(amplitudes.spread);
         part.mean = trend.mean + part.B * amplitudes.mean;
         part.cross = amplitudes.tau2 * (trend.F * (QK * trend.Q) / 2 - C * trend.Q) +
@@ -222,7 +223,8 @@ std::pair<VectorXd, MatrixXd> mix_processes(const ProcessTouches& touches, const
     right.leftCols(2 * p) << trend.F, cross;
     tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t k) {
         const Part& part = parts[k];
-        left.middleCols(2 * p + columns * k, columns) << part.B * part.spread, part.weight * (part.mean - mean);
+        left.middleCols(2 * p + columns * k, columns) << core::product(part.B, part.spread),
+            part.weight * (part.mean - mean);
         right.middleCols(2 * p + columns * k, columns) << part.B, part.mean - mean;
     });
     return {mean, symmetric_product(left, right, controls, by_offset) / sum};

@@ -1,6 +1,7 @@
 #include "fit/process_spectrum.h"
 
 #include "core/decompositions.h"
+#include "core/product.h"
 
 #include <Eigen/Core>
 #include <tbb/parallel_for.h>
@@ -28,6 +29,21 @@ constexpr double kRatioStep = 1.6487212707001282; // factor √e
 double radius_of(const Eigen::Matrix2Xd& xy)
 {
     return (xy.colwise() - xy.rowwise().mean().eval()).colwise().norm().maxCoeff();
+}
+
+/// The correlation matrix of some places, by one half of it: the other is the same.
+MatrixXd symmetric_correlation(const Correlation& correlation, const MatrixXd& squared)
+{
+    const Index n = squared.rows();
+    Eigen::ArrayXd half(n * (n + 1) / 2);
+    for (Index j = 0, k = 0; j < n; k += n - j, ++j) half.segment(k, n - j) = squared.col(j).tail(n - j).array();
+    half = correlation_at(correlation, half);
+    MatrixXd result(n, n);
+    for (Index j = 0, k = 0; j < n; k += n - j, ++j) {
+        result.col(j).tail(n - j) = half.segment(k, n - j).matrix();
+        result.row(j).tail(n - j) = half.segment(k, n - j).matrix().transpose();
+    }
+    return result;
 }
 
 /// Σ ln of numbers in (0, 1], by few logarithms.
@@ -70,7 +86,7 @@ std::vector<Spectrum> compute_spectra(const ProcessTouches& touches)
     const double radius = radius_of(touches.xy);
     const Index n = touches.F.rows(), p = touches.F.cols();
     const MatrixXd Q = core::householder_qr(touches.F, n).Q;
-    const MatrixXd rest = Q.rightCols(n - p);
+    const MatrixXd rest = Q.rightCols(n - p), rest_transposed = rest.transpose();
     const MatrixXd squared = squared_distances(touches.xy, touches.xy);
     constexpr std::size_t kLengths = kRelativeLengths.size();
     std::vector<Spectrum> all(2 * kLengths);
@@ -78,10 +94,10 @@ std::vector<Spectrum> compute_spectra(const ProcessTouches& touches)
         Spectrum& s = all[k];
         s.correlation = {k < kLengths ? Kernel::squared_exponential : Kernel::matern52,
                          kRelativeLengths[k % kLengths] * radius};
-        const MatrixXd K = correlation_matrix(s.correlation, squared);
+        const MatrixXd K = symmetric_correlation(s.correlation, squared);
         const core::SymmetricEigen<Eigen::Dynamic> eigen =
-            core::symmetric_eigen<Eigen::Dynamic>(rest.transpose() * K * rest);
-        s.E = rest * eigen.vectors;
+            core::symmetric_eigen<Eigen::Dynamic>(core::product(core::product(rest_transposed, K), rest));
+        s.E = core::product(rest, eigen.vectors);
         s.lambda = eigen.values.cwiseMax(0);
         s.y = s.E.transpose() * touches.z / touches.sigma;
         set_scores(s, 1, p);

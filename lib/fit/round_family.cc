@@ -31,7 +31,7 @@ std::vector<int> free_parameters(RoundFamily family, bool given_direction)
 struct WeightedDistances {
     RoundFamily family;
     std::vector<int> free;
-    Matrix3Xd points; ///< in the frame
+    Eigen::MatrixX3d points; ///< in the frame, one in each row
     VectorXd weight;
 
     surface::RevolutionParameters theta(const double* x) const
@@ -46,25 +46,21 @@ struct WeightedDistances {
     {
         // There is no distance beyond the centre of curvature; this residual makes the solver reject the step.
         constexpr double kRejectedDistance = 1e6;
-        const surface::Revolution surface = surface::make_revolution(theta(x));
-        for (Index i = 0; i < points.cols(); ++i) {
-            if (jacobian == nullptr) {
-                const double d = surface::distance(surface, points.col(i));
-                residuals[i] = weight[i] * (std::isnan(d) ? kRejectedDistance : d);
-                continue;
-            }
-            surface::RevolutionDistance d = surface::distance_with_gradients(surface, points.col(i));
-            if (std::isnan(d.value))
-                d = {kRejectedDistance, Eigen::Vector3d::Zero(), surface::RevolutionParameters::Zero()};
+        const Index n = points.rows();
+        surface::RevolutionJacobian by_parameters(jacobian == nullptr ? 0 : n, surface::kRevolutionParameterCount);
+        surface::distances(surface::make_revolution(theta(x)), points, residuals,
+                           jacobian == nullptr ? nullptr : &by_parameters);
+        if (jacobian != nullptr) {
             if (family == RoundFamily::sphere)
-                d.parameter_gradient[surface::kCurvatureAround] += d.parameter_gradient[surface::kCurvatureAlong];
-            residuals[i] = weight[i] * d.value;
-            double* slope = jacobian + i;
-            for (const int k : free) {
-                *slope = weight[i] * d.parameter_gradient[k];
-                slope += points.cols();
-            }
+                by_parameters.col(surface::kCurvatureAround) += by_parameters.col(surface::kCurvatureAlong);
+            for (Index i = 0; i < n; ++i)
+                if (std::isnan(residuals[i])) by_parameters.row(i).setZero();
+            for (std::size_t k = 0; k < free.size(); ++k)
+                VectorXd::Map(jacobian + static_cast<Index>(k) * n, n) =
+                    weight.cwiseProduct(by_parameters.col(free[k]));
         }
+        for (Index i = 0; i < n; ++i)
+            residuals[i] = weight[i] * (std::isnan(residuals[i]) ? kRejectedDistance : residuals[i]);
     }
 };
 
@@ -75,7 +71,7 @@ struct ScaledProblem {
 
     ResidualFunction residuals() const
     {
-        return {static_cast<int>(distances.points.cols()), static_cast<int>(distances.free.size()),
+        return {static_cast<int>(distances.points.rows()), static_cast<int>(distances.free.size()),
                 std::cref(distances)};
     }
 };
@@ -83,10 +79,9 @@ struct ScaledProblem {
 ScaledProblem scaled(RoundFamily family, const RoundProblem& problem)
 {
     ScaledProblem result{{family, free_parameters(family, problem.given_direction), {}, {}}, 0};
-    Matrix3Xd& points = result.distances.points;
-    points = problem.frame.axes.transpose() * (problem.touches.colwise() - problem.frame.point);
+    const Matrix3Xd points = problem.frame.axes.transpose() * (problem.touches.colwise() - problem.frame.point);
     result.extent = points.cwiseAbs().maxCoeff();
-    points /= result.extent;
+    result.distances.points = points.transpose() / result.extent;
     result.distances.weight = problem.weight * result.extent;
     return result;
 }

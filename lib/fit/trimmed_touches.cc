@@ -1,9 +1,9 @@
 #include "fit/trimmed_touches.h"
 
-#include "core/cholesky.h"
 #include "core/decompositions.h"
 #include "fit/family.h"
 
+#include <Eigen/Cholesky>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -32,9 +32,13 @@ struct Subset {
 /// @param basis  orthonormal functions of the polynomial at the touches, a column for each touch
 void concentrate(const MatrixXd& basis, const VectorXd& z, Subset& subset)
 {
+    // Without the heap, which takes as long as the step itself.
+    constexpr int kMaxTerms = 6; // of a quadratic
+    using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMaxTerms, kMaxTerms>;
+    using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxTerms, 1>;
     const Index terms = basis.rows();
-    MatrixXd A = MatrixXd::Zero(terms, terms); // lower half
-    VectorXd b = VectorXd::Zero(terms);
+    Matrix A = Matrix::Zero(terms, terms); // lower half
+    Vector b = Vector::Zero(terms);
     for (const Index touch : subset.touches) {
         const double* const functions = basis.col(touch).data();
         for (Index k = 0; k < terms; ++k) {
@@ -42,8 +46,10 @@ void concentrate(const MatrixXd& basis, const VectorXd& z, Subset& subset)
             b[k] += z[touch] * functions[k];
         }
     }
-    const VectorXd theta = core::solve_ldlt(A, b);
-    const VectorXd squares = (z - basis.transpose() * theta).cwiseAbs2();
+    const Vector theta = Eigen::LDLT<Matrix>(A).solve(b);
+    VectorXd squares = z;
+    squares.noalias() -= basis.transpose() * theta;
+    squares = squares.cwiseAbs2();
     subset.touches.resize(z.size());
     std::iota(subset.touches.begin(), subset.touches.end(), Index{0});
     const auto end = subset.touches.begin() + (3 * z.size() + 3) / 4;

@@ -48,4 +48,14 @@ struct RevolutionDistance {
 /// distance() with its derivatives, all NaN where no distance is defined.
 RevolutionDistance distance_with_gradients(const Revolution& surface, const Eigen::Vector3d& point);
 
+/// A column for each parameter, a row for each point.
+using RevolutionJacobian = Eigen::Matrix<double, Eigen::Dynamic, kRevolutionParameterCount>;
+
+/// distance() of many points, four at once, with the same digits.
+/// @param points  one in each row, mm   @param values  as many, to be filled
+/// @param by_parameters  is filled with the derivatives as distance_with_gradients() gives them; null: they are not
+/// wanted
+void distances(const Revolution& surface, const Eigen::MatrixX3d& points, double* values,
+               RevolutionJacobian* by_parameters);
+
 } // namespace fettle::surface

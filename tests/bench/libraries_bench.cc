@@ -7,6 +7,7 @@
 #include "belt/gridding.h"
 #include "clean/neighbour_distances.h"
 #include "cloud/pcl.h"
+#include "core/product.h"
 #include "geometry/point_index.h"
 #include "mesh/equal_corners.h"
 #include "surface/basis.h"
@@ -22,6 +23,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <random>
 #include <utility>
 #include <vector>
@@ -292,5 +294,26 @@ void basis_by_eigen(benchmark::State& state)
     state.counters["difference"] = (ours - library).cwiseAbs().maxCoeff();
 }
 BENCHMARK(basis_by_eigen)->Unit(benchmark::kMillisecond);
+
+// --- products of small matrices -------------------------------------------------------------------------------------
+
+/// A mixture of processes of 30 touches on 170 control heights: what a fit multiplies for one correlation.
+void product_by_eigen(benchmark::State& state)
+{
+    constexpr int kRepetitions = 1000;
+    std::srand(1); // Eigen's random numbers
+    const MatrixXd A = MatrixXd::Random(170, 30), B = MatrixXd::Random(30, 24), C = MatrixXd::Random(170, 24);
+    MatrixXd ours, library;
+    const auto repeated = [&](const auto& multiply) {
+        return [&] {
+            for (int k = 0; k < kRepetitions; ++k) multiply();
+            return 0;
+        };
+    };
+    race(state, repeated([&] { ours = core::product_with_transposed(core::product(A, B), C); }),
+         repeated([&] { library = A * B * C.transpose(); }));
+    state.counters["difference"] = (ours - library).cwiseAbs().maxCoeff();
+}
+BENCHMARK(product_by_eigen)->Iterations(3)->Unit(benchmark::kMillisecond);
 
 } // namespace

@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "surface/griddata.h"
 #include "surface/precision.h"
+#include "surface/revolution.h"
 #include "surface/shapes.h"
 #include "surface/surface_grid.h"
 
@@ -12,6 +13,7 @@
 
 #include <cmath>
 #include <functional>
+#include <random>
 
 namespace fettle {
 namespace surface_test {
@@ -224,6 +226,33 @@ TEST(Surface, SphereAndCylinderByCentreAndRadius)
         // Along the axis the height rises by 4/3.
         EXPECT_NEAR(surface::height(cylinder, {31, 5}) - surface::height(cylinder, {31, 2}), 4, 1e-12);
         EXPECT_TRUE(std::isnan(surface::height(cylinder, {52, 2})));
+    }
+}
+
+// Four distances at once, and those that remain: the digits of each alone, also where there is none.
+TEST(Surface, ManyDistancesFromARevolution)
+{
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> coordinate(-1, 1);
+    for (int draw = 0; draw < 50; ++draw) {
+        const surface::RevolutionParameters theta =
+            surface::RevolutionParameters::NullaryExpr([&] { return coordinate(random); });
+        const surface::Revolution revolution = surface::make_revolution(theta);
+        const Eigen::MatrixX3d points = Eigen::MatrixX3d::NullaryExpr(draw % 12, 3, [&] { return coordinate(random); });
+        Eigen::VectorXd values(points.rows()), again = values;
+        surface::RevolutionJacobian jacobian(points.rows(), surface::kRevolutionParameterCount);
+        surface::distances(revolution, points, values.data(), &jacobian);
+        surface::distances(revolution, points, again.data(), nullptr);
+        for (Eigen::Index i = 0; i < points.rows(); ++i) {
+            const surface::RevolutionDistance alone = surface::distance_with_gradients(revolution, points.row(i));
+            const bool is_defined = !std::isnan(alone.value);
+            EXPECT_EQ(is_defined, !std::isnan(values[i]));
+            EXPECT_EQ(is_defined, !std::isnan(again[i]));
+            if (!is_defined) continue;
+            EXPECT_EQ(values[i], alone.value);
+            EXPECT_EQ(again[i], alone.value);
+            EXPECT_EQ(jacobian.row(i).transpose(), alone.parameter_gradient);
+        }
     }
 }
 
