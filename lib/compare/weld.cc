@@ -50,6 +50,7 @@ double float_rounding(double coordinate)
 double median_coordinate(const Eigen::Matrix3Xd& vertices)
 {
     std::vector<double> largest;
+    largest.reserve(static_cast<std::size_t>(vertices.cols()));
     for (const auto& vertex : vertices.colwise())
         if (vertex.allFinite()) largest.push_back(vertex.cwiseAbs().maxCoeff());
     if (largest.empty()) return 0;

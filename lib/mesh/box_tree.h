@@ -35,8 +35,8 @@ struct Discs8 {
 
 /// All nodes of the same height in the tree.
 struct TreeLevel {
-    std::vector<Boxes8> boxes;
-    std::vector<Discs8> discs; ///< empty at levels whose children are too large to be flat
+    core::UninitializedVector<Boxes8> boxes;
+    core::UninitializedVector<Discs8> discs; ///< empty at levels whose children are too large to be flat
 };
 
 /// Eight triangles; the indices of `corner` are corner and axis.

@@ -1,5 +1,7 @@
 #include "mesh/equal_corners.h"
 
+#include "core/uninitialized_vector.h"
+
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
@@ -148,7 +150,7 @@ std::vector<Piece<T>> weld_pieces(std::size_t facets, const CornerSource<T>& cor
 /// The distinct corners of all pieces, sorted by partition, within a partition in the order of the pieces.
 template <typename T>
 struct Partitions {
-    std::vector<NumberedCorner<T>> corners;
+    core::UninitializedVector<NumberedCorner<T>> corners;
     std::array<std::size_t, kPartitions + 1> first{}; ///< position of each partition's first corner, and the total
 };
 
@@ -178,9 +180,9 @@ Partitions<T> partition_by_hash(std::vector<Piece<T>>& pieces)
 
 /// For each corner number, the lowest number of an equal corner.
 template <typename T>
-std::vector<std::uint32_t> find_first_equal(const Partitions<T>& partitions)
+core::UninitializedVector<std::uint32_t> find_first_equal(const Partitions<T>& partitions)
 {
-    std::vector<std::uint32_t> first(partitions.first[kPartitions]);
+    core::UninitializedVector<std::uint32_t> first(partitions.first[kPartitions]);
     tbb::enumerable_thread_specific<CornerSet<std::uint32_t>> thread_sets;
     tbb::parallel_for(std::size_t{0}, kPartitions, [&](std::size_t p) {
         const NumberedCorner<T>* const corners = partitions.corners.data() + partitions.first[p];
@@ -244,7 +246,7 @@ Mesh weld_facets(std::size_t facets, const CornerSource<T>& corners, MeshRepair&
     Mesh mesh;
     mesh.triangles.resize(3, facets);
     std::vector<Piece<T>> pieces = weld_pieces(facets, corners, mesh.triangles);
-    std::vector<std::uint32_t> first = find_first_equal(partition_by_hash(pieces));
+    core::UninitializedVector<std::uint32_t> first = find_first_equal(partition_by_hash(pieces));
     mesh.vertices = make_vertices(pieces, first.data());
     tbb::parallel_for(std::size_t{0}, pieces.size(), [&](std::size_t p) {
         to_vertex_indices(pieces[p], first.data(), mesh.triangles.data() + 3 * p * kPieceFacets);
