@@ -64,12 +64,4 @@ MatrixXd product(const Eigen::Ref<const MatrixXd>& A, const Eigen::Ref<const Mat
     return result;
 }
 
-MatrixXd product_with_transposed(const Eigen::Ref<const MatrixXd>& A, const Eigen::Ref<const MatrixXd>& B)
-{
-    MatrixXd result(A.rows(), B.rows());
-    multiply({A.data(), A.outerStride()}, {B.data(), B.outerStride(), 1}, A.rows(), A.cols(), B.rows(), result.data(),
-             A.rows());
-    return result;
-}
-
 } // namespace fettle::core

@@ -5,7 +5,7 @@
 namespace fettle::core {
 
 // Products of matrices by four numbers at a time where the processor has instructions for them: Eigen, compiled for
-// all, uses two, and takes about twice as long (tests/bench/libraries_bench.cc).
+// all, uses two, and takes 1.7 times as long (tests/bench/libraries_bench.cc).
 
 /// A matrix whose columns lie one after the other.
 struct Columns {
@@ -27,9 +27,5 @@ void multiply(const Columns& A, const Strided& B, Eigen::Index rows, Eigen::Inde
 
 /// A B
 Eigen::MatrixXd product(const Eigen::Ref<const Eigen::MatrixXd>& A, const Eigen::Ref<const Eigen::MatrixXd>& B);
-
-/// A Bᵀ
-Eigen::MatrixXd product_with_transposed(const Eigen::Ref<const Eigen::MatrixXd>& A,
-                                        const Eigen::Ref<const Eigen::MatrixXd>& B);
 
 } // namespace fettle::core

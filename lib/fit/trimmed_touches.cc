@@ -32,7 +32,7 @@ struct Subset {
 /// @param basis  orthonormal functions of the polynomial at the touches, a column for each touch
 void concentrate(const MatrixXd& basis, const VectorXd& z, Subset& subset)
 {
-    // Without the heap, which takes as long as the step itself.
+    // On the stack: a fit takes hundreds of these steps, which otherwise wait for the heap.
     constexpr int kMaxTerms = 6; // of a quadratic
     using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMaxTerms, kMaxTerms>;
     using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxTerms, 1>;

@@ -18,10 +18,10 @@ Vector3d derivative_of_unit(const Vector3d& unit, double norm, const Vector3d& c
     return (change - unit.dot(change) * unit) / norm;
 }
 
+using core::cwise_sqrt;
 using core::Double4;
 
 FETTLE_INLINE double cwise_sqrt(double a) { return std::sqrt(a); }
-FETTLE_INLINE Double4 cwise_sqrt(const Double4& a) { return core::cwise_sqrt(a); }
 
 /// Signed distance f of a point x from the circle (or line) of curvature k through the origin with unit normal n: with
 /// q = k/2 |x|² + n·x it is f = 2q / (1 + r), r = √(1 + 2kq), so that ∂f/∂q = 1/r and ∂f/∂k = -f²/2r.

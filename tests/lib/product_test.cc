@@ -26,8 +26,6 @@ TEST(Product, IsThatOfEigen)
                 const Eigen::MatrixXd expected = A * B;
                 EXPECT_TRUE(core::product(A, B).isApprox(expected, kRounding))
                     << rows << ' ' << inner << ' ' << columns;
-                const Eigen::MatrixXd transposed = B.transpose();
-                EXPECT_EQ(core::product_with_transposed(A, transposed), core::product(A, B));
             }
 }
 
@@ -36,6 +34,14 @@ TEST(Product, TakesPartsOfMatrices)
     const Eigen::MatrixXd A = random_matrix(20, 20), B = random_matrix(20, 20);
     const Eigen::MatrixXd a = A.block(3, 2, 9, 7), b = B.block(5, 1, 7, 11);
     EXPECT_EQ(core::product(A.block(3, 2, 9, 7), B.block(5, 1, 7, 11)), core::product(a, b));
+}
+
+TEST(Product, TakesATransposedMatrixByItsStrides)
+{
+    const Eigen::MatrixXd A = random_matrix(13, 6), B = random_matrix(5, 6);
+    Eigen::MatrixXd C(13, 5);
+    core::multiply({A.data(), 13}, {B.data(), 5, 1}, 13, 6, 5, C.data(), 13);
+    EXPECT_EQ(C, core::product(A, Eigen::MatrixXd(B.transpose())));
 }
 
 } // namespace product_test

@@ -229,30 +229,50 @@ TEST(Surface, SphereAndCylinderByCentreAndRadius)
     }
 }
 
-// Four distances at once, and those that remain: the digits of each alone, also where there is none.
+/// Distances of many points are those of each alone, to the last digit. @return  number of points without a distance
+int expect_distances_of_each(const surface::RevolutionParameters& theta, const Eigen::MatrixX3d& points)
+{
+    const surface::Revolution revolution = surface::make_revolution(theta);
+    Eigen::VectorXd values(points.rows()), again = values;
+    surface::RevolutionJacobian jacobian(points.rows(), surface::kRevolutionParameterCount);
+    surface::distances(revolution, points, values.data(), &jacobian);
+    surface::distances(revolution, points, again.data(), nullptr);
+    int without = 0;
+    for (Eigen::Index i = 0; i < points.rows(); ++i) {
+        const surface::RevolutionDistance alone = surface::distance_with_gradients(revolution, points.row(i));
+        if (std::isnan(alone.value)) {
+            EXPECT_TRUE(std::isnan(values[i]) && std::isnan(again[i]));
+            ++without;
+            continue;
+        }
+        EXPECT_EQ(values[i], alone.value);
+        EXPECT_EQ(again[i], alone.value);
+        EXPECT_EQ(jacobian.row(i).transpose(), alone.parameter_gradient);
+    }
+    return without;
+}
+
+// Four at once, and those that remain.
 TEST(Surface, ManyDistancesFromARevolution)
 {
     std::mt19937 random(1);
     std::uniform_real_distribution<double> coordinate(-1, 1);
     for (int draw = 0; draw < 50; ++draw) {
-        const surface::RevolutionParameters theta =
-            surface::RevolutionParameters::NullaryExpr([&] { return coordinate(random); });
-        const surface::Revolution revolution = surface::make_revolution(theta);
-        const Eigen::MatrixX3d points = Eigen::MatrixX3d::NullaryExpr(draw % 12, 3, [&] { return coordinate(random); });
-        Eigen::VectorXd values(points.rows()), again = values;
-        surface::RevolutionJacobian jacobian(points.rows(), surface::kRevolutionParameterCount);
-        surface::distances(revolution, points, values.data(), &jacobian);
-        surface::distances(revolution, points, again.data(), nullptr);
-        for (Eigen::Index i = 0; i < points.rows(); ++i) {
-            const surface::RevolutionDistance alone = surface::distance_with_gradients(revolution, points.row(i));
-            const bool is_defined = !std::isnan(alone.value);
-            EXPECT_EQ(is_defined, !std::isnan(values[i]));
-            EXPECT_EQ(is_defined, !std::isnan(again[i]));
-            if (!is_defined) continue;
-            EXPECT_EQ(values[i], alone.value);
-            EXPECT_EQ(again[i], alone.value);
-            EXPECT_EQ(jacobian.row(i).transpose(), alone.parameter_gradient);
-        }
+        const auto theta = surface::RevolutionParameters::NullaryExpr([&] { return coordinate(random); });
+        expect_distances_of_each(theta,
+                                 Eigen::MatrixX3d::NullaryExpr(draw % 12, 3, [&] { return coordinate(random); }));
+    }
+}
+
+// The centre of a sphere has none, whichever point it is.
+TEST(Surface, ManyDistancesWithoutThatOfTheCentre)
+{
+    surface::RevolutionParameters sphere = surface::RevolutionParameters::Zero();
+    sphere[surface::kCurvatureAround] = sphere[surface::kCurvatureAlong] = -1;
+    for (const Eigen::Index at : {1, 3, 4, 5}) {
+        Eigen::MatrixX3d points = Eigen::MatrixX3d::Constant(6, 3, 0.25);
+        points.row(at) << 0, 0, 1;
+        EXPECT_EQ(expect_distances_of_each(sphere, points), 1);
     }
 }
 
