@@ -122,12 +122,14 @@ class Page:
     def click(self, x, y):
         self.mouse("mousePressed", x, y, "left")
         self.mouse("mouseReleased", x, y, "left")
+        self.settle()
 
     def drag(self, start, end, steps=8):
         self.mouse("mousePressed", *start, "left")
         for k in range(1, steps + 1):
             self.mouse("mouseMoved", *(a + (b - a) * k / steps for a, b in zip(start, end)), "left")
         self.mouse("mouseReleased", *end, "left")
+        self.settle()
 
     def press(self, text):
         """Clicks the button with this text."""

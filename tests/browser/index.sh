@@ -51,9 +51,12 @@ finally:
 page = Page("run.html")
 try:
     page.wait("document.querySelector('.player') && document.querySelector('.player').dataset.shown === '2'")
+    # The page itself notes each frame as it is shown: a busy machine may look only when the last one is there again.
+    page.value("window.played = []; new MutationObserver(() => played.push(document.querySelector('.player').dataset.shown))"
+               ".observe(document.querySelector('.player'), {attributeFilter: ['data-shown']})")
     page.press("\u25b6 Play")
-    page.wait("document.querySelector('.player').dataset.shown === '0' || document.querySelector('.player').dataset.shown === '1'")
-    page.wait("document.querySelector('.player').dataset.shown === '2'")
+    page.wait("played.length >= 3")
+    assert page.value("played") == ["0", "1", "2"], page.value("played")
     ended = [frame["t"] for frame in json.load(open("pictures/frames.json"))["frames"]]
     assert page.value("document.querySelector('.player output').textContent") == f"{ended[-1]:.1f} s"
     # The cursor on the force trace stands where the frame's time does: at last at its end, at first before.

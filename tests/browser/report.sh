@@ -16,10 +16,10 @@ try:
     assert page.value(f"{root}.fettleView.layer.name") == "errors"
     page.press("before")
     page.wait(f"{root}.fettleView.layer.name === 'before'")
-    page.value("new Promise(r => setTimeout(r, 400))")
+    page.settle()
     page.screenshot("report.png")
     page.resize(500, 900)
-    page.value("new Promise(r => setTimeout(r, 400))")
+    page.settle()
     page.screenshot("report-narrow.png")
     assert page.errors == [] and page.requests == [], (page.errors, page.requests)
 finally:

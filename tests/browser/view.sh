@@ -47,7 +47,7 @@ try:
         return page.value("(c => { const d = c.getContext('2d'); c.width = c.height = 1;"
                           f"d.drawImage(document.querySelector('.stage canvas'), -{round(x)}, -{round(y)}); return [...d.getImageData(0, 0, 1, 1).data].slice(0, 3) }})"
                           "(document.createElement('canvas'))")
-    page.value("new Promise(r => setTimeout(r, 400))")
+    page.settle()
     left, cut = colour([12.25, 12.25, 0.1]), colour([26.25, 12.25, -0.1])
     assert left[2] > 80 and left[2] > 1.3 * left[0] and cut[0] > 80 and cut[0] > 1.3 * cut[2], (left, cut)
 
@@ -57,7 +57,7 @@ try:
     page.drag((stage[0] + 500, stage[1] + 300), (stage[0] + 700, stage[1] + 200))
     page.wait(f"{root}.dataset.frames > {frames}")
     assert page.value(f"{root}.fettleView.camera.azimuth") < -1
-    page.value("new Promise(r => setTimeout(r, 400))")
+    page.settle()
     assert picture() != before
 
     # a section across the step: the profile of test and reference
@@ -94,7 +94,7 @@ try:
     page.wait(f"{root}.fettleView.layer.name === 'plate.off'")
     page.screenshot("wide.png")
     page.resize(500, 800)
-    page.value("new Promise(r => setTimeout(r, 400))")
+    page.settle()
     page.screenshot("narrow.png")
     assert page.value("document.documentElement.scrollWidth") <= 500
     assert page.errors == [] and page.requests == [], (page.errors, page.requests)
