@@ -7,7 +7,7 @@ FUZZ_TARGETS := $(patsubst tests/fuzz/%.cc,%,$(wildcard tests/fuzz/*.cc))
 FUZZ_SOURCES := $(wildcard $(addprefix lib/,$(addsuffix /*.cc,core geometry units json cloud job surface plan removal))) \
     $(addprefix lib/,$(addsuffix .cc,$(addprefix mesh/,mesh mesh_file shape_file three_mf stl obj off polygons equal_corners box_tree closed mesh_index triangle) \
     $(addprefix gantry/,protocol serve driver driver_checks driver_halt head_check child machine virtual_gantry quasi_static) \
-    $(addprefix strategy/,trace trace_file run_identity steering joystick keys) align/rigid compare/comparison_report \
+    $(addprefix strategy/,trace trace_file run_identity steering joystick keys) align/rigid compare/comparison_report reconstruct/ordered \
     $(addprefix belt/,contact_wheel belt_journal_file assess running_error) \
     $(addprefix calibrate/,law_belief law_record trials_csv) \
     $(addprefix machining/,nc_block nc_arc nc_program nc_writer cutter_path cutter limits tilt) \

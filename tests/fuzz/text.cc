@@ -1,14 +1,20 @@
-// Small texts: XYZ points, PTX scans, points that were picked in a viewer, transforms, and what the operator's stick
-// did.
+// Small texts: XYZ points, those of a profiler with its profiles, PTX scans, points that were picked in a viewer,
+// transforms, and what the operator's stick did.
 
 #include "align/rigid.h"
+#include "cloud/profiles.h"
 #include "cloud/ptx.h"
 #include "cloud/xyz.h"
 #include "job/picked.h"
 #include "memory_file.h"
+#include "reconstruct/ordered.h"
 #include "strategy/steering.h"
 
+#include <algorithm>
+#include <functional>
+#include <optional>
 #include <sstream>
+#include <vector>
 
 using namespace fettle;
 
@@ -46,13 +52,28 @@ void check_corners(std::string_view text)
     if (all > 0 && job::holds_both_boundaries(text)) fuzz::require(of_B > 0 && of_S > 0, "both have corners");
 }
 
+/// The profiles of points hold each of them once, and the triangles between them no other.
+void check_profiles(std::string_view text)
+{
+    cloud::Cloud cloud;
+    if (!fuzz::is_read([&] { cloud = cloud::parse_xyz(text, "file"); }) || !cloud.xyz.allFinite()) return;
+    const std::optional<cloud::Profiles> profiles = cloud::find_profiles(cloud.xyz);
+    if (!profiles) return;
+    const std::vector<Eigen::Index>& first = profiles->first;
+    fuzz::require(first.front() == 0 && first.back() == cloud.size() &&
+                      std::ranges::adjacent_find(first, std::greater_equal()) == first.end(),
+                  "each point belongs to one profile");
+    for (const Eigen::Vector3i& corners : reconstruct::profile_triangles(cloud.xyz, *profiles).triangles)
+        fuzz::require(corners.minCoeff() >= 0 && corners.maxCoeff() < cloud.size(), "a triangle's corners are points");
+}
+
 } // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {
     static fuzz::MemoryFile memory;
     const std::string_view text = fuzz::text_of(data, size);
-    fuzz::is_read([&] { cloud::parse_xyz(text, "file"); });
+    check_profiles(text);
     fuzz::is_read([&] { cloud::parse_ptx(text, "file"); });
     fuzz::is_read([&] { job::parse_picked_points(text, "file"); });
     check_corners(text);
