@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 namespace fettle::cloud {
 namespace {
@@ -160,9 +161,14 @@ Cloud parse_e57(std::string_view bytes, const std::string& source)
     const E57Pages pages(bytes, source);
     const std::vector<E57Scan> scans = parse_e57_scans(pages.xml(), source);
     if (scans.empty()) throw core::InputError(source, "E57 without points");
-    std::vector<Records> records;
+    std::vector<Records> records; // of the scans that have points: one without says nothing of fields either
     Eigen::Index points = 0;
-    for (const E57Scan& scan : scans) points += records.emplace_back(pages, scan, source).size();
+    for (const E57Scan& scan : scans) {
+        Records read(pages, scan, source);
+        if (read.size() == 0) continue;
+        points += read.size();
+        records.push_back(std::move(read));
+    }
     Cloud cloud;
     if (const E57Scan& scan = scans.front(); scans.size() == 1 && scan.has_pose)
         set_viewpoint(cloud, scan.T_file_scanner.translation(), Eigen::Quaterniond(scan.T_file_scanner.linear()));
