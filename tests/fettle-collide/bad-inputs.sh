@@ -36,5 +36,5 @@ refuses 'twice' fettle-collide robot.json path.pcd --avoid --avoid smooth
 printf 'OFF\n4 2 0\n-200 -200 20\n200 -200 20\n200 200 20\n-200 200 20\n3 0 1 2\n3 0 2 3\n' >sheet.off
 jq '.bodies += [{name: "sheet", link: 7, shape: "hull", file: "sheet.off"}]' robot.json >sheet.json
 fettle-part "$SAMPLES/parts/keel.json" >keel.stl
-timeout 20 fettle-collide sheet.json path.pcd --workpiece keel.stl --report sheet-report.json -q -o /dev/null || test $? -eq 1
+timeout $((20 * ${FETTLE_PATIENCE:-1})) fettle-collide sheet.json path.pcd --workpiece keel.stl --report sheet-report.json -q -o /dev/null || test $? -eq 1
 jq -e '.min.clearance <= 0 and .min.clearance > -1e-3 and (.min.pair | index("sheet") != null)' sheet-report.json >/dev/null

@@ -24,7 +24,7 @@ for name in $names; do
         case ${command[i]} in *.nc | *.txt) wish=S ;; *) wish=R ;; esac # a text of lines may end after any
         for part in 0 $(($(stat -c %s "${command[i]}") / 2)); do
             head -c "$part" "${command[i]}" >early &
-            try $wish early timeout 20 "fettle-$name" "${words[@]}" "${side[@]}" -q
+            try $wish early timeout $((20 * ${FETTLE_PATIENCE:-1})) "fettle-$name" "${words[@]}" "${side[@]}" -q
             kill $! 2>killed || true
         done
     done
@@ -40,7 +40,7 @@ for name in $names; do
     command_of "$name"
     "fettle-$name" --help | grep -q 'stdin if it is - or missing' || continue
     elsewhere none nowhere
-    on_terminal timeout 20 "fettle-$name" "${command[@]:0:${#command[@]}-1}" "${named[@]}"
+    on_terminal timeout $((20 * ${FETTLE_PATIENCE:-1})) "fettle-$name" "${command[@]:0:${#command[@]}-1}" "${named[@]}"
 done
 on_terminal fettle-path work.pcd
 on_terminal fettle-render good.pcd
