@@ -22,6 +22,7 @@ class Records {
     {
     }
 
+    const E57Scan& scan() const { return scan_; }
     Eigen::Index size() const { return values_.cols(); }
 
     std::optional<Eigen::Index> find(std::string_view name) const
@@ -170,8 +171,10 @@ Cloud parse_e57(std::string_view bytes, const std::string& source)
         records.push_back(std::move(read));
     }
     Cloud cloud;
-    if (const E57Scan& scan = scans.front(); scans.size() == 1 && scan.has_pose)
+    if (records.size() == 1 && records.front().scan().has_pose) {
+        const E57Scan& scan = records.front().scan();
         set_viewpoint(cloud, scan.T_file_scanner.translation(), Eigen::Quaterniond(scan.T_file_scanner.linear()));
+    }
     cloud.xyz.resize(3, points);
     FieldCollector fields(points);
     Eigen::Index first = 0;

@@ -11,7 +11,7 @@ namespace fettle::cloud {
 /// file's order. Coordinates may be floats, scaled integers or integers, Cartesian or spherical; points whose flag says
 /// that they are invalid become NaN. The checksums of all pages are verified. Fields, where the scans have them:
 /// intensity, row, column, normal_x, normal_y, normal_z (NaN where a scan has none), and rgb where all have colours.
-/// The viewpoint is the scanner's, if the file has one scan and states its pose: points without were put together.
+/// The viewpoint is the scanner's, if one scan of the file has points and states its pose; several together have none.
 /// Pictures and other extensions are left out. The cloud is in metres, as E57 is.
 ///
 /// libE57Format is not in Debian 12, and needs Xerces, which takes as long to load as a tool may take to start.

@@ -75,9 +75,11 @@ change half.e57 'xml(b"type=\"ScaledInteger\" minimum=\"-524288\"", b"type=\"Flo
 refuse "half.e57: XML, line 2: cartesianX: precision is 'half'" fettle-clean half.e57
 "$HERE/../write-e57" stretched.e57 scaled pose=2,0,0,0,0,0,0 points.txt
 refuse 'stretched.e57: XML, line 2: the rotation of a pose is no unit quaternion' fettle-clean stretched.e57
-# A scan without points and colours takes nothing from the other.
+# A scan without points and colours takes nothing from the other, neither its colours nor its viewpoint.
+"$HERE/../write-e57" good.e57 scaled pose=0.5,0.5,0.5,0.5,10,20,30 points.txt
 fettle-clean good.e57 > alone.pcd
-"$HERE/../write-e57" good.e57 scaled points.txt points.txt
+grep -aq '^VIEWPOINT 10 20 30 0.5 0.5 0.5 0.5$' alone.pcd
+"$HERE/../write-e57" good.e57 scaled pose=0.5,0.5,0.5,0.5,10,20,30 points.txt points.txt
 change empty-scan.e57 'import re; last = list(re.finditer(rb"fileOffset=.\d+. recordCount=.\d+.", b))[-1][0]; at = b.rindex(last)
 red = b.rindex(b"<colorRed "); b[red + 1:red + 9] = b"colorOld"
 new = b"fileOffset=\"0\" recordCount=\"0\""; b[at:at + len(last)] = new + b" " * (len(last) - len(new))'
