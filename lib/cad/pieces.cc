@@ -21,7 +21,7 @@
 namespace fettle::cad {
 namespace {
 
-constexpr double kSamePlace = 1e-7; // mm: OpenCASCADE's own tolerance of points
+constexpr double kPointTolerance = 1e-7; // mm: OpenCASCADE's own tolerance of points
 
 /// +1, or -1 if the outward side is that of -du x dv.
 double outward_sign(const TopoDS_Face& face)
@@ -35,7 +35,7 @@ Eigen::Vector3d sum_of_normals(const std::vector<FaceTriangle>& triangles, const
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     for (const FaceTriangle& t : triangles)
         for (int k = 0; k < 3; ++k) {
-            if ((t.corners.col(k) - place).norm() > kSamePlace) continue;
+            if ((t.corners.col(k) - place).norm() > kPointTolerance) continue;
             const Eigen::Vector3d a = t.corners.col((k + 1) % 3) - place, b = t.corners.col((k + 2) % 3) - place;
             const Eigen::Vector3d cross = a.cross(b);
             if (cross.norm() > 0) sum += std::atan2(cross.norm(), a.dot(b)) * cross.normalized();

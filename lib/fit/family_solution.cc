@@ -189,12 +189,12 @@ std::vector<Attempt> attempts_from_minima(RoundFamily family, const RoundProblem
 /// The local minima that may become the global one if a touch is added or left out, and `best`.
 std::vector<RoundMinimum> competing_minima(const std::vector<Attempt>& attempts, const Attempt& best)
 {
-    constexpr double kMaxCostRatio = 2;       // to the global one: one touch seldom compensates more
-    constexpr double kSameMinimum = 1 + 1e-6; // ratio of costs: the solver's tolerance is smaller
+    constexpr double kMaxCostRatio = 2;        // to the global one: one touch seldom compensates more
+    constexpr double kMinCostRatio = 1 + 1e-6; // below it two minima are one: the solver's tolerance is smaller
     std::vector<RoundMinimum> minima;
     for (const Attempt& one : attempts) {
         const double ratio = one.solution.cost / best.solution.cost;
-        const bool competes = one.solution.converged && ratio > kSameMinimum && ratio < kMaxCostRatio;
+        const bool competes = one.solution.converged && ratio > kMinCostRatio && ratio < kMaxCostRatio;
         if (&one == &best || competes) minima.push_back({one.problem.frame.axes.col(0), one.solution.theta});
     }
     return minima;

@@ -4,9 +4,8 @@ FUZZ_RUNS ?= -1
 FUZZ_SECONDS ?= $(if $(filter -1,$(FUZZ_RUNS)),60,0)
 FUZZ_TARGETS := $(patsubst tests/fuzz/%.cc,%,$(wildcard tests/fuzz/*.cc))
 # What the readers are made of: whole modules, and of the others the files that the targets call.
-FUZZ_SOURCES := $(wildcard $(addprefix lib/,$(addsuffix /*.cc,core geometry units json cloud job surface plan removal))) \
-    $(addprefix lib/,$(addsuffix .cc,$(addprefix mesh/,mesh mesh_file shape_file three_mf stl obj off polygons equal_corners box_tree closed mesh_index triangle) \
-    $(addprefix gantry/,protocol serve driver driver_checks driver_halt head_check child machine virtual_gantry quasi_static) \
+FUZZ_SOURCES := $(wildcard $(addprefix lib/,$(addsuffix /*.cc,core geometry units json cloud mesh job surface plan removal))) \
+    $(addprefix lib/,$(addsuffix .cc,$(addprefix gantry/,protocol serve driver driver_checks driver_halt head_check child machine virtual_gantry quasi_static) \
     $(addprefix strategy/,trace trace_file run_identity steering joystick keys) align/rigid compare/comparison_report reconstruct/ordered \
     $(addprefix belt/,contact_wheel belt_journal_file assess running_error) \
     $(addprefix calibrate/,law_belief law_record trials_csv) \
@@ -14,7 +13,7 @@ FUZZ_SOURCES := $(wildcard $(addprefix lib/,$(addsuffix /*.cc,core geometry unit
     $(addprefix part/,spec surface anomalies outline profile) $(addprefix sampling/,noise scan point_surface triangle_grid) \
     $(addprefix report/,summary_reader tool_reports) $(addprefix robot/,robot body_json mesh_body workpiece workpiece_search clearance deepest_point depth placed_solid round_solid hull_points simplex urdf urdf_model urdf_shapes srdf dh_from_axes arm arm_newton arm_parallel)))
 # Not what belongs to the command line: a bundle is linked as a whole.
-FUZZ_SOURCES := $(filter-out $(shell grep -l '"cli/' $(FUZZ_SOURCES) /dev/null),$(FUZZ_SOURCES))
+FUZZ_SOURCES := $(filter-out $(patsubst %.h,%.cc,$(shell grep -ls '"cli/' $(FUZZ_SOURCES) $(FUZZ_SOURCES:.cc=.h))),$(FUZZ_SOURCES))
 # Compiled in bundles, as the library is.
 ifneq ($(filter $(B)/fuzz/%,$(MAKECMDGOALS)),)
 include $(B)/fuzz/archives.mk
