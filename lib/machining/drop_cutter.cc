@@ -142,10 +142,10 @@ FETTLE_CLONES unsigned candidates(const mesh::Boxes8& boxes, const CutterQuery& 
     tips = tip_upper_bounds(boxes.min, boxes.max, query);
     return mesh::lane_bits(tips > found);
 }
-FETTLE_CLONES unsigned candidates(const mesh::Triangles8& triangles, float margin, const CutterQuery& query,
-                                  float found, mesh::Float8& tips)
+FETTLE_CLONES unsigned candidates(const mesh::PackedTriangles8& leaf, const CutterQuery& query, float found,
+                                  mesh::Float8& tips)
 {
-    const mesh::Boxes8 boxes = mesh::enlarged(mesh::boxes_of(triangles), margin);
+    const mesh::Boxes8 boxes = mesh::enlarged(mesh::boxes_of(unpack(leaf)), mesh::margin(leaf));
     tips = tip_upper_bounds(boxes.min, boxes.max, query);
     return mesh::lane_bits(tips > found);
 }
@@ -187,7 +187,7 @@ Touch highest_touch(const mesh::BoxTree& tree, const mesh::Mesh& mesh, const std
             stack.push(lanes, -tips, next.level - 1, next.index);
             continue;
         }
-        const unsigned lanes = candidates(tree.leaves[next.index], tree.leaf_margins[next.index], query, found(), tips);
+        const unsigned lanes = candidates(tree.leaves[next.index], query, found(), tips);
         for (mesh::LaneIterator left{lanes}; left.any(); left.next()) {
             const Eigen::Index t = tree.triangle(next.index, left.first());
             if (tips[left.first()] > found()) test_triangle(touch, mesh, t, owned[t]);

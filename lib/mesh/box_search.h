@@ -9,6 +9,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 namespace fettle::mesh {
 
@@ -19,6 +20,9 @@ inline constexpr float kTriangleRoundingError = static_cast<float>(16 * kMaxRoun
 
 // Each visited node is replaced by at most eight children, and a tree over 2^32 triangles has at most eleven levels.
 inline constexpr std::size_t kMaxStackSize = 7 * 11 + 1;
+
+/// Means "no triangle yet". It is larger than any index, so that every triangle wins a tie against it.
+inline constexpr Eigen::Index kNoTriangle = std::numeric_limits<Eigen::Index>::max();
 
 /// Squared distances from a point to eight boxes; infinite for empty boxes.
 FETTLE_INLINE Float8 squared_distance(const Boxes8& boxes, const float (&point)[3])
@@ -89,6 +93,18 @@ FETTLE_INLINE Bounds8 squared_distances(const Triangles8& triangles, const float
     // at most 3 k d² + k longest².
     const Float8 error = kTriangleRoundingError * (3 * squared + longest2);
     return {accurate ? squared - error : broadcast(-1.0f), squared + error};
+}
+
+/// Bounds of the squared distances from a point to eight triangles as they are, not as they are packed.
+FETTLE_INLINE Bounds8 squared_distances(const PackedTriangles8& packed, const float (&point)[3])
+{
+    const float from_origin[3] = {point[0] - packed.origin[0], point[1] - packed.origin[1],
+                                  point[2] - packed.origin[2]};
+    const Bounds8 squared = squared_distances(unpack_at_origin(packed), from_origin);
+    // The corners, and with them the triangle, lie within the packing's error e: (d ± e)² is within 2 d e + e² of d².
+    const float error = packing_error(packed);
+    const Float8 change = cwise_sqrt(squared.upper) * (2 * error) + error * error;
+    return {squared.lower - change, squared.upper + change};
 }
 
 /// A node still to be visited; at level -1, a leaf.

@@ -46,7 +46,14 @@ Box box_of(const Boxes8& boxes)
     return box;
 }
 
-Box box_of(const Triangles8& triangles) { return box_of(boxes_of(triangles)); }
+/// Bounding box of the triangles as they are, not as they are packed.
+FETTLE_CLONES Box box_of(const PackedTriangles8& packed)
+{
+    Box box = box_of(boxes_of(unpack(packed)));
+    box.min -= packing_error(packed);
+    box.max += packing_error(packed);
+    return box;
+}
 
 Box box_of(const Boxes8& boxes, std::size_t k)
 {
@@ -70,6 +77,24 @@ Box enlarged(Box box)
     return box;
 }
 
+/// The triangles in the nearest steps.
+FETTLE_CLONES PackedTriangles8 packed(const Triangles8& triangles)
+{
+    const Box box = box_of(boxes_of(triangles));
+    constexpr float kMaxNumber = PackedTriangles8::kMaxNumber;
+    PackedTriangles8 result;
+    Eigen::Array3f::Map(result.origin) = box.min;
+    // A denormal step would lose its digits; below it all corners are the origin.
+    result.step = std::max((box.max - box.min).maxCoeff() / kMaxNumber, std::numeric_limits<float>::min());
+    for (int c = 0; c < 3; ++c)
+        for (int axis = 0; axis < 3; ++axis) {
+            const Float8 steps = (triangles.corner[c][axis] - box.min[axis]) / result.step + 0.5f;
+            result.corner[c][axis] = __builtin_convertvector(
+                __builtin_convertvector(cwise_min(steps, broadcast(kMaxNumber)), Mask8), PackedTriangles8::Number8);
+        }
+    return result;
+}
+
 struct Disc {
     Eigen::Vector3f centre, normal;
     float radius, half;
@@ -87,10 +112,11 @@ void set(Discs8& discs, std::size_t k, const Disc& disc)
 
 /// Bounding disc of the triangles of some leaves, normal to the sum of their area vectors.
 /// @param box  bounding box of the leaves
-FETTLE_CLONES Disc bounding_disc(std::span<const Triangles8> leaves, const Box& box)
+FETTLE_CLONES Disc bounding_disc(std::span<const PackedTriangles8> leaves, const Box& box)
 {
     Point8 area = {};
-    for (const Triangles8& t : leaves) {
+    for (const PackedTriangles8& leaf : leaves) {
+        const Triangles8 t = unpack_at_origin(leaf);
         const Point8 a = corner(t, 0);
         area = area + cross(corner(t, 1) - a, corner(t, 2) - a);
     }
@@ -100,7 +126,10 @@ FETTLE_CLONES Disc bounding_disc(std::span<const Triangles8> leaves, const Box& 
     const Eigen::Vector3f middle = (box.min + box.max) / 2;
     const Point8 normal = broadcast(disc.normal.data()), origin = broadcast(middle.data());
     Float8 lowest = broadcast(std::numeric_limits<float>::infinity()), highest = -lowest, radial2 = {};
-    for (const Triangles8& t : leaves)
+    float rounding = kBoundRoundingError * max_coordinate(box);
+    for (const PackedTriangles8& leaf : leaves) {
+        const Triangles8 t = unpack(leaf);
+        rounding = std::max(rounding, margin(leaf));
         for (int k = 0; k < 3; ++k) {
             const Point8 from_middle = corner(t, k) - origin;
             const Float8 axial = dot(from_middle, normal);
@@ -108,8 +137,8 @@ FETTLE_CLONES Disc bounding_disc(std::span<const Triangles8> leaves, const Box& 
             highest = cwise_max(highest, axial);
             radial2 = cwise_max(radial2, dot(from_middle, from_middle) * (1 + kBoundRoundingError) - axial * axial);
         }
+    }
     const float low = min_lane(lowest), high = max_lane(highest);
-    const float rounding = kBoundRoundingError * max_coordinate(box);
     disc.centre = middle + disc.normal * ((low + high) / 2);
     disc.radius = std::sqrt(max_lane(radial2)) + rounding;
     disc.half = (high - low) / 2 + rounding;
@@ -139,7 +168,7 @@ TreeLevel level_over(std::span<const Child> children)
 
 /// Adds the discs of the children of a level.
 /// @param leaves_per_child  the last child may have fewer
-void add_discs(TreeLevel& level, std::span<const Triangles8> leaves, std::size_t leaves_per_child)
+void add_discs(TreeLevel& level, std::span<const PackedTriangles8> leaves, std::size_t leaves_per_child)
 {
     level.discs.resize(level.boxes.size());
     tbb::parallel_for(std::size_t{0}, level.discs.size(), [&](std::size_t i) {
@@ -268,18 +297,18 @@ BoxTree::BoxTree(const Mesh& mesh) : box(box_of(mesh))
     centre = geometry::sampled_median(mesh.vertices);
     triangle_order = leaf_order(mesh, centre);
     leaves.resize((count + kBranching - 1) / kBranching);
-    leaf_margins.resize(leaves.size());
     tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t l) {
+        Triangles8 triangles;
         for (std::size_t k = 0; k < kBranching; ++k) {
             const std::uint32_t t = triangle_order[std::min(kBranching * l + k, count - 1)];
             for (int c = 0; c < 3; ++c) {
                 const Eigen::Vector3f position = (mesh.vertices.col(mesh.triangles(c, t)) - centre).cast<float>();
-                for (int axis = 0; axis < 3; ++axis) leaves[l].corner[c][axis][k] = position[axis];
+                for (int axis = 0; axis < 3; ++axis) triangles.corner[c][axis][k] = position[axis];
             }
         }
-        leaf_margins[l] = kBoundRoundingError * max_coordinate(box_of(leaves[l]));
+        leaves[l] = packed(triangles);
     });
-    levels.push_back(level_over<Triangles8>(leaves));
+    levels.push_back(level_over<PackedTriangles8>(leaves));
     while (levels.back().boxes.size() > 1) levels.push_back(level_over<Boxes8>(levels.back().boxes));
     std::size_t leaves_per_child = 1;
     for (std::size_t l = 0; l < std::min(kDiscLevels, levels.size()); ++l, leaves_per_child *= kBranching)

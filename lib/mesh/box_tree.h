@@ -8,8 +8,11 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace fettle::mesh {
@@ -66,6 +69,56 @@ FETTLE_INLINE Boxes8 enlarged(Boxes8 boxes, float margin)
     return boxes;
 }
 
+/// Eight triangles in 18 bytes each. A corner's coordinate is origin + step · number: the origin is the lowest corner
+/// of the triangles' bounding box, and kMaxNumber steps are its longest side.
+struct PackedTriangles8 {
+    static constexpr std::uint16_t kMaxNumber = std::numeric_limits<std::uint16_t>::max();
+    using Number8 = std::uint16_t __attribute__((vector_size(16), aligned(2)));
+
+    Number8 corner[3][3]; ///< the indices are corner and axis
+    float origin[3], step;
+};
+
+FETTLE_INLINE Float8 to_float(PackedTriangles8::Number8 numbers)
+{
+    // GCC converts to int in two halves, and a shuffle that puts zeros between the numbers in one instruction.
+    const auto widened = __builtin_shufflevector(numbers, PackedTriangles8::Number8{}, //
+                                                 0, 8, 1, 9, 2, 10, 3, 11, 4, 12, 5, 13, 6, 14, 7, 15);
+    return __builtin_convertvector(std::bit_cast<Mask8>(widened), Float8);
+}
+
+/// The triangles relative to the origin of their numbers.
+FETTLE_INLINE Triangles8 unpack_at_origin(const PackedTriangles8& packed)
+{
+    Triangles8 triangles;
+#pragma GCC unroll 9
+    for (int k = 0; k < 9; ++k) triangles.corner[k / 3][k % 3] = to_float(packed.corner[k / 3][k % 3]) * packed.step;
+    return triangles;
+}
+
+/// The triangles relative to the tree's centre.
+FETTLE_INLINE Triangles8 unpack(const PackedTriangles8& packed)
+{
+    Triangles8 triangles = unpack_at_origin(packed);
+#pragma GCC unroll 3
+    for (auto& corner : triangles.corner)
+        for (int axis = 0; axis < 3; ++axis) corner[axis] += packed.origin[axis];
+    return triangles;
+}
+
+/// Bound on the distance from a corner to where unpack_at_origin() puts it, mm: half a step along each axis and .016 of
+/// it for the roundings of numbers up to 2^16 in float, all times √3.
+FETTLE_INLINE float packing_error(const PackedTriangles8& packed) { return 0.9f * packed.step; }
+
+/// Margin by which what is measured of unpack() is uncertain, mm: the packing's and kBoundRoundingError of the largest
+/// coordinate.
+FETTLE_INLINE float margin(const PackedTriangles8& packed)
+{
+    const auto& [x, y, z] = packed.origin;
+    const float far = std::max({std::abs(x), std::abs(y), std::abs(z)}) + PackedTriangles8::kMaxNumber * packed.step;
+    return packing_error(packed) + kBoundRoundingError * far;
+}
+
 /// Bounding volume hierarchy over the triangles of a mesh, eight triangles to a leaf and eight children to a node: a
 /// packed tree without pointers (Kamel & Faloutsos, On packing R-trees, 1993), in the order of a k-d tree. Node i of
 /// level l holds the bounds of its children, nodes 8 i to 8 i + 7 of level l - 1, or leaves for level 0; the last level
@@ -83,8 +136,7 @@ struct BoxTree {
     Eigen::AlignedBox3d box;                                 ///< bounding box of the mesh, mm
     Eigen::Vector3d centre = Eigen::Vector3d::Zero();        ///< median of the vertices by axis, of a sample of them
     core::UninitializedVector<std::uint32_t> triangle_order; ///< at 8 l + k the index of triangle k of leaf l
-    core::UninitializedVector<Triangles8> leaves;  ///< the last leaf is filled up with copies of the last triangle
-    core::UninitializedVector<float> leaf_margins; ///< kBoundRoundingError of a leaf's largest coordinate, mm
+    core::UninitializedVector<PackedTriangles8> leaves;      ///< the last is filled up with copies of the last triangle
     std::vector<TreeLevel> levels;
 };
 

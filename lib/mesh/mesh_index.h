@@ -17,7 +17,7 @@ struct BoxTree;
 /// equally near triangles the one with the lowest index is returned. Thread-safe.
 class MeshIndex {
   public:
-    /// @param mesh  must outlive the index, which takes another 48 bytes per triangle
+    /// @param mesh  must outlive the index, which takes another 32 bytes per triangle
     explicit MeshIndex(const Mesh& mesh);
     MeshIndex(MeshIndex&&) noexcept;
     ~MeshIndex();

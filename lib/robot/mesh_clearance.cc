@@ -114,11 +114,14 @@ struct PairSearch {
 
     FETTLE_INLINE void scan_leaves(std::uint32_t leaf_a, std::uint32_t leaf_b)
     {
-        const mesh::Triangles8 &of_a = tree_a.leaves[leaf_a], &of_b = tree_b.leaves[leaf_b];
-        const float margin = tree_a.leaf_margins[leaf_a] + tree_b.leaf_margins[leaf_b];
+        const mesh::PackedTriangles8 &packed_a = tree_a.leaves[leaf_a], &packed_b = tree_b.leaves[leaf_b];
+        const float margin = mesh::margin(packed_a) + mesh::margin(packed_b);
+        // Relative to the origin of b's numbers.
+        const mesh::Triangles8 of_a = unpack_at_origin(packed_a), of_b = unpack_at_origin(packed_b);
+        const WideMotion motion = to_b.between(packed_a.origin, packed_b.origin);
         mesh::Triangles8 moved;
         for (int k = 0; k < 3; ++k) {
-            const mesh::Point8 p = to_b(mesh::corner(of_a, k));
+            const mesh::Point8 p = motion(mesh::corner(of_a, k));
             moved.corner[k][0] = p.x;
             moved.corner[k][1] = p.y;
             moved.corner[k][2] = p.z;

@@ -33,6 +33,16 @@ struct WideMotion {
         return {q[0], q[1], q[2]};
     }
 
+    /// The motion of coordinates relative to a point, to such relative to another.
+    FETTLE_INLINE WideMotion between(const float (&from)[3], const float (&to)[3]) const
+    {
+        WideMotion motion = *this;
+        for (int k = 0; k < 3; ++k)
+            motion.translation[k] +=
+                rotation[k][0] * from[0] + rotation[k][1] * from[1] + rotation[k][2] * from[2] - to[k];
+        return motion;
+    }
+
     float rotation[3][3], translation[3];
 };
 

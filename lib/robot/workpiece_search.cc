@@ -125,9 +125,10 @@ struct TreeSearch {
 
     FETTLE_INLINE void scan_leaf(std::uint32_t leaf)
     {
-        MinDistance8 distances = min_distances(wide, tree.leaves[leaf]);
-        distances.lower -= tree.leaf_margins[leaf];
-        distances.upper += tree.leaf_margins[leaf];
+        const float margin = mesh::margin(tree.leaves[leaf]);
+        MinDistance8 distances = min_distances(wide, unpack(tree.leaves[leaf]));
+        distances.lower -= margin;
+        distances.upper += margin;
         if (bounds_only) {
             for (mesh::LaneIterator lanes{mesh::lane_bits(distances.lower < upper_bound)}; lanes.any(); lanes.next()) {
                 const float lower = distances.lower[lanes.first()];

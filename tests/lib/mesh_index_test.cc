@@ -142,6 +142,33 @@ TEST(MeshIndex, ClosestIsThatOfBruteForceOnSoups)
         }
 }
 
+// Triangles of a micrometre beside such of a metre, which leaves hold in steps of the largest one's.
+TEST(MeshIndex, ClosestOfTrianglesOfAllSizesIsThatOfBruteForce)
+{
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> place(-1, 1), exponent(-3, 3);
+    for (int round = 0; round < 20; ++round) {
+        mesh::Mesh mesh = soup(100, 1, random);
+        for (int t = 0; t < 100; ++t) {
+            const double size = std::pow(10, exponent(random));
+            const Eigen::Vector3d middle =
+                std::min(size, 1.0) * Eigen::Vector3d(place(random), place(random), place(random));
+            for (int k = 0; k < 3; ++k) mesh.vertices.col(3 * t + k) = middle + size * mesh.vertices.col(3 * t + k);
+        }
+        const mesh::MeshIndex index(mesh);
+        for (int i = 0; i < 300; ++i) {
+            const double off = std::pow(10, exponent(random));
+            const Eigen::Vector3d point =
+                mesh.vertices.col(i) + off * Eigen::Vector3d(place(random), place(random), place(random));
+            const auto [triangle, nearest] = closest_of_all(mesh, point);
+            const auto found = index.closest(point, std::numeric_limits<double>::infinity());
+            ASSERT_TRUE(found);
+            EXPECT_EQ(found->triangle, triangle);
+            EXPECT_EQ(found->point, nearest.point);
+        }
+    }
+}
+
 // All facets within a distance, and only such whose boxes are; at distance 0 those at a vertex.
 TEST(MeshIndex, NearbyIsThatOfBruteForceOnSoups)
 {
