@@ -168,11 +168,6 @@ Revolution make_revolution(const RevolutionParameters& theta)
     return surface;
 }
 
-double distance(const Revolution& surface, const Vector3d& point)
-{
-    return profile<double>(surface, {point.x(), point.y(), point.z()}).along.f;
-}
-
 RevolutionDistance distance_with_gradients(const Revolution& surface, const Vector3d& point)
 {
     const Profile<double> p = profile<double>(surface, {point.x(), point.y(), point.z()});

@@ -34,24 +34,22 @@ struct Revolution {
 Revolution make_revolution(const RevolutionParameters& theta);
 
 /// Signed orthogonal distance of a point from the surface, mm, in terms of curvatures (Lukács, Martin and Marshall
-/// 1998), which is free of cancellation for nearly flat surfaces. The profile plane has the coordinates w·d and g, the
-/// distance from the cylinder about w through the frame's origin; the profile is the circle of curvature `along`
-/// through the origin of that plane, with the normal (cos lean, sin lean).
-/// @param point  in the frame (a, b, n), mm   @return  NaN beyond the centre or axis, where no distance is defined
-double distance(const Revolution& surface, const Eigen::Vector3d& point);
-
+/// 1998), which is free of cancellation for nearly flat surfaces, and its derivatives. The profile plane has the
+/// coordinates w·d and g, the distance from the cylinder about w through the frame's origin; the profile is the circle
+/// of curvature `along` through the origin of that plane, with the normal (cos lean, sin lean). All are NaN beyond the
+/// centre or axis, where no distance is defined.
 struct RevolutionDistance {
     double value = 0;
     Eigen::Vector3d gradient;                ///< derivative by the point
     RevolutionParameters parameter_gradient; ///< derivative by the parameters
 };
-/// distance() with its derivatives, all NaN where no distance is defined.
+/// @param point  in the frame (a, b, n), mm
 RevolutionDistance distance_with_gradients(const Revolution& surface, const Eigen::Vector3d& point);
 
 /// A column for each parameter, a row for each point.
 using RevolutionJacobian = Eigen::Matrix<double, Eigen::Dynamic, kRevolutionParameterCount>;
 
-/// distance() of many points, four at once, with the same digits.
+/// The distances of many points, four at once, with the digits of distance_with_gradients().
 /// @param points  one in each row, mm   @param values  as many, to be filled
 /// @param by_parameters  is filled with the derivatives as distance_with_gradients() gives them; null: they are not
 /// wanted
