@@ -20,11 +20,15 @@ using Eigen::Index;
 // If two finds share more than this of either's points, the one with the higher rank is kept.
 constexpr double kMaxOverlap = 0.1;
 
+// A find is part of another that has so much of its points, and is hardly less probable.
+constexpr double kMinContained = 0.9, kMaxRankDifference = 0.05;
+
 /// A find of a side, described in the part.
 struct Entry {
     const Verified* find;
     const SeenSide* side;
     FoundAnomaly found;
+    bool is_part = false; ///< of another find
 };
 
 /// How well a side shows a find. Against a reference nearly all finds are probable, and the enclosure decides: a side
@@ -33,6 +37,25 @@ double rank_in_part(const Entry& entry)
 {
     const double probability = entry.find->probability;
     return entry.side->is_along_normal ? probability * entry.find->evidence.enclosure : probability;
+}
+
+/// Leaves out finds whose region was still growing when the steps ended, inside another that has converged: a part of
+/// an anomaly may be as probable as the whole.
+void leave_out_parts(std::vector<Entry>& entries, Index points)
+{
+    for (const Entry& whole : entries) {
+        if (!whole.find->is_converged) continue;
+        std::vector<bool> is_in_whole(std::size_t(points), false);
+        for (const Index i : whole.found.points) is_in_whole[std::size_t(i)] = true;
+        for (Entry& entry : entries) {
+            const auto shared =
+                std::ranges::count_if(entry.found.points, [&](Index i) { return bool(is_in_whole[std::size_t(i)]); });
+            entry.is_part |= !entry.find->is_converged &&
+                             rank_in_part(entry) - rank_in_part(whole) < kMaxRankDifference &&
+                             double(shared) >= kMinContained * double(entry.found.points.size());
+        }
+    }
+    std::erase_if(entries, [](const Entry& entry) { return entry.is_part; });
 }
 
 /// Selects finds by descending rank, without those that share points with a selected one. @return  most probable first
@@ -97,6 +120,7 @@ FindResult merge(const mesh::CloudMesh& part, const std::vector<SeenSide>& sides
                           [&](std::size_t i) { entries[i].found = describe(part, side, cells, *entries[i].find); });
     }
     std::erase_if(entries, [&](const Entry& entry) { return entry.found.height < min_height; });
+    leave_out_parts(entries, part.points.size());
     entries = without_overlaps(std::move(entries), part.points.size());
     set_all_outlines(entries);
     FindResult result;

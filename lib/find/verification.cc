@@ -149,6 +149,7 @@ std::optional<Verified> plausible_result(const Attempt& attempt, const std::vect
 {
     Verified verified = attempt.refinement->result(texture);
     if (!is_plausible(verified.evidence, bounds)) return std::nullopt;
+    verified.is_converged = attempt.progress == Refinement::Progress::converged;
     if (attempt.level == 0) return verified;
     return in_full_resolution(levels[0].map, std::move(verified), attempt.refinement->surface(), 1 << attempt.level);
 }

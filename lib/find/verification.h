@@ -22,6 +22,7 @@ struct Verified {
     double probability = 0;
     double probability_by_evidence = 0; ///< without these signs; set by set_probabilities()
     bool has_crease = false;            ///< in the surface beneath
+    bool is_converged = false;          ///< the region hardly changed in the last step
     int alike = 0; ///< finds of the view that are like it, a pattern of the part; set by set_probabilities()
 };
 
