@@ -106,9 +106,9 @@ FETTLE_INLINE Triangles8 unpack(const PackedTriangles8& packed)
     return triangles;
 }
 
-/// Bound on the distance from a corner to where unpack_at_origin() puts it, mm: half a step along each axis and .016 of
-/// it for the roundings of numbers up to 2^16 in float, all times √3.
-FETTLE_INLINE float packing_error(const PackedTriangles8& packed) { return 0.9f * packed.step; }
+/// Bound on the distance from a corner to where unpack_at_origin() puts it, mm: √3 times half a step and .02 of it, for
+/// five roundings of numbers up to 2^16 in float, one of them of a point that is moved to the origin.
+FETTLE_INLINE float packing_error(const PackedTriangles8& packed) { return 0.91f * packed.step; }
 
 /// Margin by which what is measured of unpack() is uncertain, mm: the packing's and kBoundRoundingError of the largest
 /// coordinate.
