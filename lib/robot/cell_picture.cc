@@ -19,7 +19,7 @@ using Align = draw::Sheet::Align;
 using Eigen::Vector2d, Eigen::Vector3d;
 
 // Layout of the sheet, pixels.
-constexpr double kEdge = 24, kGap = 16, kCaptionHeight = 28, kKeyHeight = 34;
+constexpr double kEdge = 24, kGap = 16, kCaptionHeight = 28, kLegendHeight = 34;
 constexpr int kWholeWidth = 700, kCloseUpWidth = 520, kHeight = 520;
 // Samples of the scene per pixel in each direction: the mean of nine smooths the edges.
 constexpr int kSamplesPerPixel = 3;
@@ -194,16 +194,36 @@ Eigen::Matrix3Xd tips_in_cell(const Robot& robot, const CellJointsPath& joints, 
     return tips;
 }
 
-void draw_key(draw::Sheet& sheet, const Vector2d& at)
+// An entry of the picture's legend.
+struct LegendEntry {
+    const char* name;
+    draw::Rgb colour;
+    bool is_drawn; ///< entries of which nothing is drawn are left out
+};
+
+std::vector<LegendEntry> legend_entries(const Robot& robot, const mesh::Mesh* workpiece, const CheckedPath& checked,
+                                        const CellPictureOptions& options)
+{
+    const auto is_fixture = [](const Body& body) { return body.link == link::kCell || body.link == link::kTable; };
+    const auto is_tool = [](const Body& body) { return body.link == link::kTool; };
+    const auto collides = [&](std::size_t pose) { return checked.at_poses[pose].clearance < -options.tolerance; };
+    return {{"arm", kArm, true},
+            {"tool", kTool, std::ranges::any_of(robot.bodies, is_tool)},
+            {"fixtures", kFixture, std::ranges::any_of(robot.bodies, is_fixture)},
+            {"part", kPart, workpiece != nullptr},
+            {"cuboids", kCuboids, options.model != nullptr},
+            {"collides", kCollides, std::ranges::any_of(options.poses, collides)},
+            {"path", kPathColour, true}};
+}
+
+void draw_legend(draw::Sheet& sheet, const Vector2d& at, const std::vector<LegendEntry>& entries)
 {
     constexpr double kSquare = 14, kSpacing = 96;
-    using Entry = std::pair<const char*, draw::Rgb>;
     Vector2d place = at;
-    for (const auto& [name, colour] :
-         {Entry("arm", kArm), Entry("tool", kTool), Entry("fixtures", kFixture), Entry("part", kPart),
-          Entry("cuboids", kCuboids), Entry("collides", kCollides), Entry("path", kPathColour)}) {
-        sheet.box(place - Vector2d(0, kSquare / 2), {kSquare, kSquare}, colour);
-        sheet.text(name, place + Vector2d(kSquare + 6, 0), draw::kSmallCapitals);
+    for (const LegendEntry& entry : entries) {
+        if (!entry.is_drawn) continue;
+        sheet.box(place - Vector2d(0, kSquare / 2), {kSquare, kSquare}, entry.colour);
+        sheet.text(entry.name, place + Vector2d(kSquare + 6, 0), draw::kSmallCapitals);
         place.x() += kSpacing;
     }
     sheet.text("squares of the floor: 500 mm", place, draw::kSmallCapitals, draw::kTextGrey);
@@ -275,13 +295,13 @@ std::string draw_cell_picture(const Robot& robot, const mesh::Mesh* workpiece, c
     }
     const double row = kCaptionHeight + kHeight + kGap;
     draw::Canvas canvas(int(2 * kEdge + kWholeWidth + kGap + kCloseUpWidth),
-                        int(kEdge + row * double(options.poses.size()) + kKeyHeight));
+                        int(kEdge + row * double(options.poses.size()) + kLegendHeight));
     Vector2d corner(kEdge, kEdge);
     for (const std::size_t pose : options.poses) {
         draw_pose(canvas, corner, robot, workpiece, joints, checked.at_poses[pose], pose, options);
         corner.y() += row;
     }
-    draw_key(canvas, corner + Vector2d(0, 4));
+    draw_legend(canvas, corner + Vector2d(0, 4), legend_entries(robot, workpiece, checked, options));
     return canvas.png();
 }
 

@@ -25,7 +25,8 @@ struct CellPictureOptions {
 };
 
 /// Draws the cell with arm, tool, fixtures, part and path at some poses, each as a whole and around the tool. Bodies
-/// that collide are red, and the nearest or deepest point is marked. The squares of the floor have sides of 500 mm.
+/// that collide are red, and the nearest or deepest point is marked. The legend names what is drawn. The squares of the
+/// floor have sides of 500 mm.
 /// @param workpiece  in the part's frame; nullptr: none
 /// @param joints, checked  of the whole path, see check_path()
 /// @return  the bytes of a PNG, the same for the same input

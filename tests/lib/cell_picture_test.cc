@@ -10,11 +10,15 @@
 #include "robot/mesh_body.h"
 
 #include <gtest/gtest.h>
+#include <png.h>
 
+#include <algorithm>
+#include <array>
 #include <memory>
 #include <numbers>
 #include <set>
 #include <string>
+#include <vector>
 
 namespace fettle {
 
@@ -132,6 +136,26 @@ TEST(CellScene, AModelIsDrawnAsItCounts)
     EXPECT_EQ(parts.cuboids.triangles.cols(), 0);
 }
 
+using Colour = std::array<png_byte, 3>;
+
+// The pixels of a picture, row by row.
+struct Pixels {
+    std::vector<Colour> above_legend, legend;
+};
+
+Pixels decode(const std::string& picture)
+{
+    constexpr std::size_t kLegendRows = 34;
+    png_image image{};
+    image.version = PNG_IMAGE_VERSION;
+    EXPECT_NE(png_image_begin_read_from_memory(&image, picture.data(), picture.size()), 0) << image.message;
+    image.format = PNG_FORMAT_RGB;
+    std::vector<Colour> all(std::size_t(image.width) * image.height);
+    EXPECT_NE(png_image_finish_read(&image, nullptr, all.data(), 0, nullptr), 0) << image.message;
+    const auto split = all.end() - std::ptrdiff_t(kLegendRows * image.width);
+    return {{all.begin(), split}, {split, all.end()}};
+}
+
 // A box and a slope, and what counts of them beside the tool: cuboids in their colour, and of the slope a step. What
 // they are AModelIsDrawnAsItCounts tests.
 TEST(CellPicture, ShowsTheModel)
@@ -148,7 +172,7 @@ TEST(CellPicture, ShowsTheModel)
                 (k & 4 ? tip.z() - (k & 1 ? low : 0) : tip.z() - 300);
         return box;
     };
-    std::set<std::string> pictures;
+    std::set<std::vector<Colour>> pictures;
     for (const double low : {0.0, 150.0}) {
         const mesh::Mesh mesh = part(low);
         const robot::Workpiece workpiece(mesh);
@@ -160,11 +184,40 @@ TEST(CellPicture, ShowsTheModel)
         const std::string plain = robot::draw_cell_picture(robot, &mesh, joints, checked, options);
         options.model = &model;
         const std::string drawn = robot::draw_cell_picture(robot, &mesh, joints, checked, options);
-        pictures.insert(plain);
-        pictures.insert(drawn);
+        pictures.insert(decode(plain).above_legend);
+        pictures.insert(decode(drawn).above_legend);
         EXPECT_EQ(robot::draw_cell_picture(robot, &mesh, joints, checked, options), drawn);
     }
     EXPECT_EQ(pictures.size(), 4u);
+}
+
+TEST(CellPicture, NamesInItsLegendWhatIsDrawn)
+{
+    const Colour part = {198, 176, 130}, cuboids = {226, 218, 196}, collides = {200, 30, 40};
+    robot::Robot robot = irb1400();
+    robot.bodies = {{"ball", robot::link::kTool, robot::solid::Sphere{{0, 0, 6}, 6}}};
+    const robot::CellJointsPath joints = robot::CellJointsPath::Zero(8, 1);
+    robot::CheckedPath checked = robot::check_path(robot, nullptr, joints, {});
+    robot::CellPictureOptions options;
+    options.poses = {0};
+    const mesh::Mesh box = cube(1);
+    const auto named = [&](const mesh::Mesh* workpiece) {
+        const std::vector<Colour> legend =
+            decode(robot::draw_cell_picture(robot, workpiece, joints, checked, options)).legend;
+        std::vector<Colour> found;
+        for (const Colour& colour : {part, cuboids, collides})
+            if (std::ranges::find(legend, colour) != legend.end()) found.push_back(colour);
+        return found;
+    };
+    EXPECT_EQ(named(nullptr), std::vector<Colour>());
+    EXPECT_EQ(named(&box), std::vector<Colour>({part}));
+    const robot::Workpiece workpiece(box);
+    const std::vector<Vector3d> up = {Vector3d::UnitZ()};
+    const robot::HeterogeneousModel model(workpiece, up, {.cell_size = 100});
+    options.model = &model;
+    EXPECT_EQ(named(&box), std::vector<Colour>({part, cuboids}));
+    checked.at_poses[0].clearance = -1;
+    EXPECT_EQ(named(&box), std::vector<Colour>({part, cuboids, collides}));
 }
 
 TEST(CellPicture, RefusesPosesThatAreNotThere)
