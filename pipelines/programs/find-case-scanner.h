@@ -42,8 +42,10 @@ inline Image scanned(const find::HeightMap& map, double sigma, Random& random)
         }
     const auto blocks = int(geometry::draw_index(random, 3));
     for (int k = 0; k < blocks; ++k) {
-        const cv::Point at(int(geometry::draw_index(random, std::size_t(z.cols))),
-                           int(geometry::draw_index(random, std::size_t(z.rows))));
+        // Statements are evaluated in their order, the arguments of a call in one that the compiler chooses.
+        const auto row = int(geometry::draw_index(random, std::size_t(z.rows)));
+        const auto column = int(geometry::draw_index(random, std::size_t(z.cols)));
+        const cv::Point at(column, row);
         const int r = 1 + int(geometry::draw_index(random, 3));
         z(cv::Rect(at.x - r, at.y - r, 2 * r, 2 * r) & cv::Rect({0, 0}, z.size())).setTo(core::kNaN);
     }

@@ -42,9 +42,12 @@ Eigen::Vector3d view_direction(int index, int count)
 Eigen::Isometry3d random_motion(std::mt19937_64& random, double reach)
 {
     const auto normal = [&] { return geometry::draw_normal(random, 1); };
+    // Declarations are evaluated in their order, the arguments of a call in one that the compiler chooses.
+    const double qz = normal(), qy = normal(), qx = normal(), qw = normal();
+    const double z = normal(), y = normal(), x = normal();
     Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
-    motion.linear() = Eigen::Quaterniond(normal(), normal(), normal(), normal()).normalized().toRotationMatrix();
-    motion.translation() = reach * Eigen::Vector3d(normal(), normal(), normal());
+    motion.linear() = Eigen::Quaterniond(qw, qx, qy, qz).normalized().toRotationMatrix();
+    motion.translation() = reach * Eigen::Vector3d(x, y, z);
     return motion;
 }
 
