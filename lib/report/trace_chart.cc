@@ -19,6 +19,8 @@ using Eigen::Vector2d;
 
 constexpr double kWidth = 720, kLeft = 52, kRight = 646;
 constexpr double kForceTop = 46, kForceBottom = 196, kGap = 30, kFeedHeight = 44;
+// About so many labels: a step is up to 2.5 times as long as that asks for, so that with three one lies above 0.
+constexpr int kFeedTicks = 3;
 constexpr double kMinAxisLength = 1e-9; // instead of 0
 constexpr double kPixelsPerLayer = 12, kMinLayerHeight = 34, kMaxLayerHeight = 110;
 
@@ -209,7 +211,7 @@ draw::Html trace_chart(const cloud::Cloud& trace, const std::optional<job::Job>&
     html += draw::svg::ticks_left(layer_y, x.begin, x.end, static_cast<int>(std::min(4.0, layers)));
     html += draw::svg::text({x.begin, layer_top - 6}, "layer", Anchor::start, "panel");
     html += draw::svg::path(steps(time, layer, x, layer_y), "layer");
-    html += draw::svg::ticks_left(feed_y, x.begin, x.end, 2);
+    html += draw::svg::ticks_left(feed_y, x.begin, x.end, kFeedTicks);
     html += draw::svg::text({x.begin, feed_top - 6}, "feed, " + units::to_string(units.length) + "/s", Anchor::start,
                             "panel");
     html += draw::svg::path(steps(time, feed / units.mm(), x, feed_y), "feed");

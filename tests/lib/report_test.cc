@@ -5,6 +5,7 @@
 #include "draw/html.h"
 #include "draw/svg.h"
 #include "draw/svg_sheet.h"
+#include "report/charts.h"
 
 #include <gtest/gtest.h>
 
@@ -115,6 +116,26 @@ TEST(Svg, TicksAreRoundAndInside)
         draw::svg::text({0, 0}, "F_max 15").bytes(),
         "<text x=\"0\" y=\"0\" text-anchor=\"start\">F<tspan dy=\"3\">max</tspan><tspan dy=\"-3\" class=\"line\"> "
         "15</tspan></text>\n"); // copied, each text is a line
+}
+
+// A reader of the chart has to see how fast the feed is: its axis has a label beside 0, whatever the largest feed.
+TEST(TraceChart, LabelsTheFeedAboveZero)
+{
+    cloud::Cloud trace;
+    trace.xyz = Eigen::Matrix3Xd::Zero(3, 2);
+    cloud::set_field(trace, "t", Eigen::Vector2d(1, 2));
+    for (const char* name : {"force", "layer", "event"}) cloud::set_field(trace, name, Eigen::Vector2d(1, 1));
+    for (double feed = 1; feed < 11; feed *= 1.07) {
+        cloud::set_field(trace, "feed", Eigen::Vector2d(0, feed));
+        const std::string chart = report::trace_chart(trace, std::nullopt, units::Units{}).bytes();
+        // The labels of an axis come before the name of its panel.
+        const std::size_t begin = chart.find(">layer<"), end = chart.find(">feed, ");
+        ASSERT_TRUE(begin < end && end != std::string::npos);
+        int labels = 0;
+        for (std::size_t at = begin; (at = chart.find("text-anchor=\"end\"", at + 1)) < end;) ++labels;
+        EXPECT_GE(labels, 2) << feed;
+        EXPECT_LE(labels, 4) << feed; // more would overlap
+    }
 }
 
 } // namespace report_test
