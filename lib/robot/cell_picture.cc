@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <ranges>
 
 namespace fettle::robot {
 
@@ -46,6 +47,8 @@ draw::Rgb colour_of(const Robot& robot, std::size_t body)
     if (on == link::kTool) return kTool;
     return on == link::kCell || on == link::kTable ? kFixture : kArm;
 }
+
+bool collides(const CellClearance& c, const CellPictureOptions& options) { return c.clearance < -options.tolerance; }
 
 // A scene with the colours and the direction of a view.
 struct ShadedScene {
@@ -154,14 +157,14 @@ void draw_mark(draw::Sheet& sheet, const Vector2d& at)
     sheet.line(ring, kMark, 1.6, true);
 }
 
-std::string caption(const Robot& robot, const std::vector<CellPair>& pairs, const CellClearance& c, double tolerance,
-                    const units::Units& units)
+std::string caption(const Robot& robot, const std::vector<CellPair>& pairs, const CellClearance& c,
+                    const CellPictureOptions& options)
 {
     if (!std::isfinite(c.clearance)) return "clear of everything";
     const std::string who = body_name(robot, pairs[c.pair].a) + " and " + body_name(robot, pairs[c.pair].b);
     const std::string length =
-        draw::number_text(std::abs(c.clearance) / units.mm()) + " " + units::to_string(units.length);
-    if (c.clearance < -tolerance) return who + " collide by " + length;
+        draw::number_text(std::abs(c.clearance) / options.units.mm()) + " " + units::to_string(options.units.length);
+    if (collides(c, options)) return who + " collide by " + length;
     return who + (c.clearance < 0 ? " touch, " : " are nearest, ") + length + (c.clearance < 0 ? " deep" : " apart");
 }
 
@@ -204,15 +207,17 @@ struct LegendEntry {
 std::vector<LegendEntry> legend_entries(const Robot& robot, const mesh::Mesh* workpiece, const CheckedPath& checked,
                                         const CellPictureOptions& options)
 {
-    const auto is_fixture = [](const Body& body) { return body.link == link::kCell || body.link == link::kTable; };
-    const auto is_tool = [](const Body& body) { return body.link == link::kTool; };
-    const auto collides = [&](std::size_t pose) { return checked.at_poses[pose].clearance < -options.tolerance; };
-    return {{"arm", kArm, true},
-            {"tool", kTool, std::ranges::any_of(robot.bodies, is_tool)},
-            {"fixtures", kFixture, std::ranges::any_of(robot.bodies, is_fixture)},
+    const auto some_body_is = [&](const draw::Rgb& colour) {
+        return std::ranges::any_of(std::views::iota(std::size_t{0}, robot.bodies.size()),
+                                   [&](std::size_t body) { return colour_of(robot, body) == colour; });
+    };
+    const auto collides_at = [&](std::size_t pose) { return collides(checked.at_poses[pose], options); };
+    return {{"arm", kArm, some_body_is(kArm)},
+            {"tool", kTool, some_body_is(kTool)},
+            {"fixtures", kFixture, some_body_is(kFixture)},
             {"part", kPart, workpiece != nullptr},
             {"cuboids", kCuboids, options.model != nullptr},
-            {"collides", kCollides, std::ranges::any_of(options.poses, collides)},
+            {"collides", kCollides, std::ranges::any_of(options.poses, collides_at)},
             {"path", kPathColour, true}};
 }
 
@@ -252,24 +257,21 @@ void draw_pose(draw::Sheet& sheet, const Vector2d& corner, const Robot& robot, c
 {
     const std::vector<CellPair> pairs = checked_pairs(robot);
     const CellJoints q = joints.col(pose);
-    const bool collides = c.clearance < -options.tolerance;
     std::vector<std::size_t> colliding;
-    if (collides) colliding = {pairs[c.pair].a, pairs[c.pair].b};
+    if (collides(c, options)) colliding = {pairs[c.pair].a, pairs[c.pair].b};
     HeterogeneousModel::Geometry parts;
     if (options.model != nullptr)
         parts = options.model->geometry(
             options.model->tool_zone(robot, part_in_cell(robot, q[7]).inverse() * tool_in_cell(robot, q)));
-    const mesh::Mesh *const part = options.model == nullptr ? workpiece : &parts.triangles, *const cuboids =
-                                                                                                options.model == nullptr
-                                                                                                    ? nullptr
-                                                                                                    : &parts.cuboids;
+    const mesh::Mesh* const part = options.model == nullptr ? workpiece : &parts.triangles;
+    const mesh::Mesh* const cuboids = options.model == nullptr ? nullptr : &parts.cuboids;
     const ShadedScene picture = shaded_scene(robot, part, cuboids, q, options.towards_eye, colliding);
     const Eigen::Matrix3Xd tips = tips_in_cell(robot, joints, pose);
     const std::string title = "Pose " + std::to_string(pose);
     sheet.text(title, corner + Vector2d(0, 12), draw::kLabelCapitals + 1, draw::Sheet::kInk, Align::left, true);
     const Vector2d beside(sheet.text_width(title, draw::kLabelCapitals + 1, true) + 2 * kGap, 12);
-    sheet.text(caption(robot, pairs, c, options.tolerance, options.units), corner + beside, draw::kLabelCapitals,
-               collides ? kCollides : draw::Sheet::kInk);
+    sheet.text(caption(robot, pairs, c, options), corner + beside, draw::kLabelCapitals,
+               colliding.empty() ? draw::Sheet::kInk : kCollides);
     for (const bool close_up : {false, true}) {
         const draw::View view = close_up ? close_up_view(robot, picture, q) : whole_view(picture);
         const Vector2d at = corner + Vector2d(close_up ? kWholeWidth + kGap : 0, kCaptionHeight);
