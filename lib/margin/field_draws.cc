@@ -95,10 +95,9 @@ void add_waves(std::vector<Component>& all, const surface::WeightedShape& member
     }
 }
 
-} // namespace
-
-Eigen::MatrixXd draw_fields(const surface::Surface& surface, const Eigen::Matrix2Xd& xy, int draws, std::uint64_t seed,
-                            Tails tails, UnseenWaves waves, const Eigen::Matrix3Xd& scan)
+/// All members of the mixture that are defined at all of xy.
+std::vector<Component> make_components(const surface::Surface& surface, const Eigen::Matrix2Xd& xy, Tails tails,
+                                       UnseenWaves waves, const Eigen::Matrix3Xd& scan)
 {
     const Eigen::VectorXd mean = surface::heights(surface, xy).array() - surface.shift;
     std::optional<ScanWaves> scan_waves;
@@ -122,28 +121,62 @@ Eigen::MatrixXd draw_fields(const surface::Surface& surface, const Eigen::Matrix
         if (waves == UnseenWaves::possible && (!is_process || scan_waves))
             add_waves(all, member, surface, xy, scan_waves ? &*scan_waves : nullptr);
     }
+    return all;
+}
+
+struct Random {
+    std::mt19937_64 engine;
+    std::normal_distribution<double> normal = {};
+};
+
+/// Visits pairs of draws from one component.
+void visit_pairs(const Component& one, Eigen::Index pairs, Random& random, const FieldVisitor& visit)
+{
+    constexpr Eigen::Index kBlock = 32; // pairs at a time, whose fields stay in the cache
+    Eigen::MatrixXd unit(one.root.cols(), pairs);
+    for (double& number : unit.reshaped()) number = random.normal(random.engine);
+    Eigen::MatrixXd about;
+    Eigen::VectorXd field;
+    for (Eigen::Index first = 0; first < pairs; first += kBlock) {
+        about.noalias() = one.root * unit.middleCols(first, std::min(kBlock, pairs - first));
+        for (const auto& error : about.colwise()) {
+            const double noise = draw_noise_factor(one.freedom, random.engine);
+            field = one.offset + noise * error;
+            visit(field);
+            field = one.offset - noise * error;
+            visit(field);
+        }
+    }
+}
+
+} // namespace
+
+void visit_fields(const surface::Surface& surface, const Eigen::Matrix2Xd& xy, int draws, std::uint64_t seed,
+                  Tails tails, UnseenWaves waves, const Eigen::Matrix3Xd& scan, const FieldVisitor& visit)
+{
+    const std::vector<Component> all = make_components(surface, xy, tails, waves, scan);
     double sum = 0;
     for (const Component& one : all) sum += one.weight;
     if (!(sum > 0) || !std::isfinite(sum)) // the squares of the heights overflow or underflow
         throw core::InputError("touches", "the surface fitted to them has no finite covariance, so its error cannot be "
                                           "predicted");
-    std::mt19937_64 random(seed);
-    std::normal_distribution<double> normal;
-    Eigen::MatrixXd fields = Eigen::MatrixXd::Zero(xy.cols(), draws);
+    Random random{std::mt19937_64(seed)};
     double due = 0; // cumulative number of pairs of draws up to this component, before rounding
-    Eigen::Index column = 0;
+    Eigen::Index visited = 0;
     for (const Component& one : all) {
         due += one.weight / sum * draws / 2;
-        const Eigen::Index count = std::lround(due) - column / 2;
-        Eigen::MatrixXd unit(one.root.cols(), count);
-        for (double& number : unit.reshaped()) number = normal(random);
-        const Eigen::MatrixXd about = one.root * unit;
-        for (Eigen::Index k = 0; k < count; ++k) {
-            const double noise = draw_noise_factor(one.freedom, random);
-            fields.col(column++) = one.offset + noise * about.col(k);
-            fields.col(column++) = one.offset - noise * about.col(k);
-        }
+        const Eigen::Index pairs = std::lround(due) - visited;
+        visit_pairs(one, pairs, random, visit);
+        visited += pairs;
     }
+}
+
+Eigen::MatrixXd draw_fields(const surface::Surface& surface, const Eigen::Matrix2Xd& xy, int draws, std::uint64_t seed)
+{
+    Eigen::MatrixXd fields(xy.cols(), draws);
+    Eigen::Index column = 0;
+    visit_fields(surface, xy, draws, seed, Tails::normal, UnseenWaves::none, {},
+                 [&](const Eigen::VectorXd& field) { fields.col(column++) = field; });
     return fields;
 }
 

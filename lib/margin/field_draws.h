@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 
 #include <cstdint>
+#include <functional>
 
 namespace fettle::margin {
 
@@ -20,15 +21,20 @@ enum class Tails {
 /// (margin/waves.h).
 enum class UnseenWaves { none, possible };
 
+/// A draw: height errors at the places asked for, mm.
+using FieldVisitor = std::function<void(const Eigen::VectorXd& field)>;
+
 /// Draws height errors from the posterior of a fit: from its covariance and its alternatives by their weight, relative
-/// to their common mean. Draws are in antithetic pairs, of opposite sign about a member's mean.
-/// @param xy  2xN, M, mm   @param draws  even
+/// to their common mean. Draws are in antithetic pairs, of opposite sign about a member's mean. Each draw is visited
+/// and forgotten: thousands of them need no more memory than one.
+/// @param xy  2xN, M, mm; members that are not defined at all of them are left out   @param draws  even
 /// @param scan  of the metal around the anomaly, which says how large the waves are: 3xN, M, mm; none: the touches
 /// alone
-/// @return  N x draws, mm; members that are not defined at all of xy are left out
 /// @throws core::InputError if no member has a finite covariance
-Eigen::MatrixXd draw_fields(const surface::Surface& surface, const Eigen::Matrix2Xd& xy, int draws, std::uint64_t seed,
-                            Tails tails = Tails::normal, UnseenWaves waves = UnseenWaves::none,
-                            const Eigen::Matrix3Xd& scan = {});
+void visit_fields(const surface::Surface& surface, const Eigen::Matrix2Xd& xy, int draws, std::uint64_t seed,
+                  Tails tails, UnseenWaves waves, const Eigen::Matrix3Xd& scan, const FieldVisitor& visit);
+
+/// Draws with normal tails and without waves, as visit_fields(). @return  N x draws, mm
+Eigen::MatrixXd draw_fields(const surface::Surface& surface, const Eigen::Matrix2Xd& xy, int draws, std::uint64_t seed);
 
 } // namespace fettle::margin

@@ -73,13 +73,12 @@ surface::Prediction predict_by_posterior(const surface::Surface& surface, const 
         throw core::InputError(source, "the covariance of an interpolant (" + surface.method +
                                            ") holds the touches' noise, not what it misses between them, so its error "
                                            "cannot be predicted; use the method wang");
-    const Eigen::MatrixXd fields = draw_fields(surface, grid, kDraws, seed, tails,
-                                               possible_waves(surface, job, tails, scan.cols() > 0, source), scan);
     std::vector<double> shifts, bands;
-    for (const auto& field : fields.colwise()) {
-        shifts.push_back(field.maxCoeff()); // the fitted surface's error is the negative field
-        bands.push_back(error_band(field));
-    }
+    visit_fields(surface, grid, kDraws, seed, tails, possible_waves(surface, job, tails, scan.cols() > 0, source), scan,
+                 [&](const Eigen::VectorXd& field) {
+                     shifts.push_back(field.maxCoeff()); // the fitted surface's error is the negative field
+                     bands.push_back(error_band(field));
+                 });
     // The quantiles of the band and the shift at this share of the draws.
     const auto rank = static_cast<std::size_t>(std::ceil(confidence * bands.size())) - 1;
     return {"posterior", confidence, geometry::nth_smallest(bands, rank), geometry::nth_smallest(shifts, rank), false};
