@@ -78,18 +78,44 @@ ScaleHistogram scale_histogram(const Eigen::VectorXd& numbers, const PictureScal
     return counts;
 }
 
-void draw_histogram(Sheet& sheet, const Bar& bar, const Eigen::ArrayXd& bins)
+/// Draws a bar that does not fit, broken, with what it stands for behind it.
+void draw_broken_bar(Sheet& sheet, const Vector2d& corner, double length, double height, const Rgb& colour,
+                     const std::string& words)
 {
-    const double left = bar.corner.x() + kBarWidth + bar.ticks_width, max = bins.maxCoeff(),
-                 half = bar.height / double(bins.size()) / 2;
+    constexpr double kBreak = 4, kBehindBreak = 8, kTextGap = 6;
+    sheet.box(corner, {length, height}, colour);
+    sheet.box(corner + Vector2d(length + kBreak, 0), {kBehindBreak, height}, colour);
+    sheet.text(words, corner + Vector2d(length + kBreak + kBehindBreak + kTextGap, height / 2), kSmallCapitals,
+               kTextGrey);
+}
+
+/// Draws the bins as bars beside the colour bar. Where one bin has most values, as that of the sound metal in a map of
+/// what stands on it, its bar is broken and its share of all values written, so that the others can be read.
+void draw_histogram(Sheet& sheet, const Bar& bar, const ScaleHistogram& counts)
+{
+    constexpr double kMaxOverNext = 5;                      // from there the longest bar is broken
+    constexpr double kNextLength = 0.5, kBreakLength = 0.6; // of the width: the next bar, and the longest to its break
+    const double left = bar.corner.x() + kBarWidth + bar.ticks_width,
+                 half = bar.height / double(counts.bins.size()) / 2;
     const double width = std::clamp(kBesideBar - bar.ticks_width, kMinHistogramWidth, kMaxHistogramWidth);
-    for (Index i = 0; i < bins.size(); ++i) {
-        if (!(bins[i] > 0)) continue;
-        const double value = std::lerp(bar.scale.low, bar.scale.high, (double(i) + 0.5) / double(bins.size()));
+    Index longest = 0;
+    const double max = counts.bins.maxCoeff(&longest);
+    Eigen::ArrayXd others = counts.bins;
+    others[longest] = 0;
+    const double next = others.maxCoeff();
+    const bool is_broken = next > 0 && max > kMaxOverNext * next;
+    const double scale = is_broken ? kNextLength * width / next : width / max;
+    for (Index i = 0; i < counts.bins.size(); ++i) {
+        if (!(counts.bins[i] > 0)) continue;
+        const double value = std::lerp(bar.scale.low, bar.scale.high, (double(i) + 0.5) / double(counts.bins.size()));
         const double upper = std::round(bar.row_of(value) - half), lower = std::round(bar.row_of(value) + half);
         Rgb colour = bar.scale(value);
         for (std::uint8_t& c : colour) c = static_cast<std::uint8_t>(0.9 * c); // keeps the palest visible on white
-        sheet.box({left, upper}, {std::max(1.0, width * bins[i] / max), lower - upper - 2}, colour);
+        if (is_broken && i == longest)
+            draw_broken_bar(sheet, {left, upper}, std::round(kBreakLength * width), lower - upper - 2, colour,
+                            std::to_string(std::lround(100 * max / double(counts.all))) + " %");
+        else
+            sheet.box({left, upper}, {std::max(1.0, scale * counts.bins[i]), lower - upper - 2}, colour);
     }
     sheet.box({left - 1, bar.corner.y()}, {0, bar.height}, kFrameGrey);
 }
@@ -158,7 +184,7 @@ void draw_legend(Sheet& sheet, const Layout& layout, const PictureValues& values
     constexpr double kRelativeTolerance = 0.01;
     const double tolerance = kRelativeTolerance * (scale.high - scale.low);
     const ScaleHistogram counts = scale_histogram(values.numbers, scale);
-    draw_histogram(sheet, bar, counts.bins);
+    draw_histogram(sheet, bar, counts);
     draw_end(sheet, bar, true, counts.above, counts.all, values.max_shown > scale.high + tolerance);
     draw_end(sheet, bar, false, counts.below, counts.all, values.min_shown < scale.low - tolerance);
 }

@@ -228,6 +228,27 @@ TEST(Picture, MarksTheEndsThatValuesExceed)
     EXPECT_EQ(at(within, middle, top), white);
 }
 
+// Where most values are in one bin, its bar is broken and the next takes half of the width; else the longest takes all.
+TEST(Picture, BreaksABarOfTheHistogramThatHidesTheOthers)
+{
+    constexpr int kBar = kSide - 2 * 62, kBarTop = kTop + 62, left = 84 + 900 + 40 + 22 + 70;
+    const auto length = [&](const Sheet& sheet, int row) {
+        int column = left + 1;
+        while (at(sheet, column, row) != draw::Rgb{255, 255, 255}) ++column;
+        return column - left;
+    };
+    const auto sheet_of = [](double low_columns) { // the error is 0.01 there, else 0.51, which is in another bin
+        return drawn(grid([=](const Eigen::Vector2d& p) { return p.x() < 2 * low_columns - 1 ? 0.01 : 0.51; }),
+                     errors_to(1));
+    };
+    const int row_of_low = kBarTop + kBar / 2 - kBar / 120, row_of_high = kBarTop + kBar / 4 - kBar / 120;
+    const Sheet equal = sheet_of(10), few = sheet_of(2);
+    EXPECT_NEAR(length(equal, row_of_low), 150, 2);
+    EXPECT_NEAR(length(equal, row_of_high), 150, 2);
+    EXPECT_NEAR(length(few, row_of_low), 75, 2);  // 2 columns of points beside 18
+    EXPECT_NEAR(length(few, row_of_high), 90, 2); // up to the break
+}
+
 // Outlines beyond the part belong to the picture: they lie in the frame, and the part where it is.
 TEST(Picture, BoundariesAreInTheFrame)
 {
