@@ -143,12 +143,15 @@ $(CHAIN)/%/cylindricity.json: $$(call job,$$*) $(CHAIN)/%/ground.pcd $(B)/bin/fe
 	fettle-form cylindricity $(@D)/ground.pcd --within $< -o $@
 
 # --- pictures ---------------------------------------------------------------------------------------------------------
-$(CHAIN)/%/before.png: $$(call job,$$*) $$(call part,$$*) $(B)/bin/fettle-render
-	@mkdir -p $(@D)
-	fettle-render $(call part,$*) --file-units $(call units,$*) --within $< --title "$(call case,$*): before" -o $@
+# Each says what it shows; a picture's letters have no superscript.
+before_title = $$(jq -r '[.removed_volume, .units.length] | @tsv' $(@D)/grind.json | awk '{ printf "%.3g cubic %s to grind off", $$1, $$2 }')
+after_title  = $$(jq -r '[.layers, .machine_time / 60] | @tsv' $(@D)/grind.json | awk '{ printf "ground in %d layer%s and %.1f minutes", $$1, $$1 == 1 ? "" : "s", $$2 }')
+
+$(CHAIN)/%/before.png: $$(call job,$$*) $$(call part,$$*) $(CHAIN)/%/ground.pcd $(B)/bin/fettle-render
+	fettle-render $(call part,$*) --file-units $(call units,$*) --within $< --title "$(call case,$*), before: $(before_title)" -o $@
 
 $(CHAIN)/%/after.png: $$(call job,$$*) $(CHAIN)/%/ground.pcd $(B)/bin/fettle-render
-	fettle-render $(@D)/ground.pcd --field z --within $< --title "$(call case,$*): after" -o $@
+	fettle-render $(@D)/ground.pcd --field z --within $< --title "$(call case,$*), after: $(after_title)" -o $@
 
 $(CHAIN)/%/errors.png: $$(call job,$$*) $(CHAIN)/%/errors.pcd $(B)/bin/fettle-render
 	fettle-render $(@D)/errors.pcd --within $< \

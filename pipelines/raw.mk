@@ -56,7 +56,8 @@ $D/found.json: $(part_in) $(TEMPLATE) $(B)/bin/fettle-find
 # The part as the job sees it.
 $D/%/found.png: $D/jobs/%.json $D/found.json $(B)/bin/fettle-render
 	@mkdir -p $(@D)
-	fettle-render $D/found.pcd --field height --within $< --title "$(NAME), row $*: height over the surface beneath" -o $@
+	fettle-render $D/found.pcd --field height --within $< -o $@ \
+	    --title "$(NAME), row $*: up to $$(jq --argjson row $* '.anomalies[] | select(.anomaly == $$row).height * 100 | round / 100' $D/found.json) mm over the surface beneath"
 
 # --- each row ------------------------------------------------------------------------------------------------------------
 $D/%/samples.pcd: $D/jobs/%.json $(part_in) $(B)/bin/fettle-sample
