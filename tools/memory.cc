@@ -17,6 +17,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <cerrno>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -42,12 +43,16 @@ std::uintptr_t heap_end() { return reinterpret_cast<std::uintptr_t>(sbrk(0)); }
     mallopt(M_TOP_PAD, kHeapStep);
 }
 
-/// Asks for huge pages in what a range holds of them. Where the kernel has none, nothing changes.
+/// Asks for huge pages in what a range holds of them. Where the kernel has none, or part of the range is not mapped,
+/// madvise() fails and that part stays as it is; errno is restored, as a caller may be about to say what it was.
 void ask_for_huge_pages(std::uintptr_t begin, std::uintptr_t end)
 {
     begin = (begin + kHugePage - 1) / kHugePage * kHugePage;
     end = end / kHugePage * kHugePage;
-    if (begin < end) madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);
+    if (begin >= end) return;
+    const int error = errno;
+    madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);
+    errno = error;
 }
 
 /// Asks for huge pages in what the main thread's heap has grown by since the last call.

@@ -21,7 +21,7 @@ enum class Tails {
 /// (margin/waves.h).
 enum class UnseenWaves { none, possible };
 
-/// A draw: height errors at the places asked for, mm.
+/// Takes a draw: height errors at the places asked for, mm.
 using FieldVisitor = std::function<void(const Eigen::VectorXd& field)>;
 
 /// Draws height errors from the posterior of a fit: from its covariance and its alternatives by their weight, relative
