@@ -2,7 +2,6 @@
 
 #include <memory>
 #include <new>
-#include <utility>
 #include <vector>
 
 namespace fettle::core {
@@ -10,13 +9,10 @@ namespace fettle::core {
 /// Allocator of a vector whose elements are not set when it grows without a value for them.
 template <typename T>
 struct UninitializedAllocator : std::allocator<T> {
-    template <typename U, typename... Arguments>
-    void construct(U* element, Arguments&&... arguments)
+    template <typename U>
+    void construct(U* element)
     {
-        if constexpr (sizeof...(Arguments) == 0)
-            ::new (static_cast<void*>(element)) U;
-        else
-            ::new (static_cast<void*>(element)) U(std::forward<Arguments>(arguments)...);
+        ::new (static_cast<void*>(element)) U;
     }
 };
 

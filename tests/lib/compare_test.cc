@@ -468,6 +468,11 @@ TEST(Areas, OfATurnedGridAreItsCells)
     EXPECT_EQ(areas[18], areas[40000]);
 }
 
+TEST(Areas, AreZeroWhereNoPointIsFinite)
+{
+    EXPECT_EQ(areas_of(Eigen::Matrix3Xd::Constant(3, 40, kNaN)), Eigen::VectorXd::Zero(40));
+}
+
 // The sum over a scattered cloud is the area it covers, but for half a square of 16 points along the border: 1 %.
 TEST(Areas, OfAScatteredCloudSumUp)
 {

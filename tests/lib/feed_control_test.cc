@@ -237,6 +237,28 @@ TEST(ForceControl, SetsTheForceByTheEstimatedRate)
     EXPECT_EQ(control.next_force_offset(1, 1), 0);
 }
 
+TEST(ForceControl, TakesWhatTheLastPassTaughtNearby)
+{
+    // The last pass met stock four times as soft as in the job. Where it was, this one begins with less force; far from
+    // it, with that of the learnt law.
+    const job::Job job;
+    const double limit = 0.05, q = job.removal_coefficient / job.wheel.width;
+    const auto first_offset = [&](bool taught, double start) {
+        strategy::ForceControl control(job, limit, strategy::KnownRemoval{.coefficient_sigma = 0.05});
+        if (taught) {
+            control.begin_pass({0, 0.5, 1, 1.5});
+            for (const int n : {0, 1, 2, 3}) control.record(n, 0.4, 1);
+            for (const int n : {2, 1, 0}) control.record(n, 0.3, 0.1 * 0.5 / (4 * q));
+        }
+        control.begin_pass({start, start + 5});
+        for (const int n : {0, 1}) control.record(n, 0.2, 1);
+        return control.next_force_offset(0, -1);
+    };
+    EXPECT_GT(first_offset(false, 0), 0);
+    EXPECT_LT(first_offset(true, 0), 0.5 * first_offset(false, 0));
+    EXPECT_EQ(first_offset(true, 100), first_offset(false, 100));
+}
+
 TEST(WheelWear, LearnsAndStaysCautious)
 {
     job::Job job;
