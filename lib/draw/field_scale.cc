@@ -134,8 +134,9 @@ std::string unit_of_field(const std::string& field, const units::Units& units)
     const std::string length = units::to_string(units.length), force = units::to_string(units.force);
     if (d.force_power == 0 && d.length_power == 0) return "";
     if (d.force_power == 0 && field == "feed") return length + "/s";
-    if (d.force_power == 0) return length;
-    return force + (d.length_power == 0 ? "" : "/" + length + std::to_string(-d.length_power));
+    const auto to_the = [&](int power) { return length + (power == 1 ? "" : std::to_string(power)); };
+    if (d.force_power == 0) return to_the(d.length_power);
+    return d.length_power == 0 ? force : force + "/" + to_the(-d.length_power);
 }
 
 Eigen::VectorXd numbers_inside(const Eigen::Matrix3Xd& points, const Eigen::VectorXd& numbers,

@@ -196,7 +196,11 @@ void draw_numbers(Sheet& sheet, const Layout& layout, const PictureValues& value
     // Numbers below this share of the largest are shown as 0: rounding.
     constexpr double kMinRelative = 1e-4;
     const double largest = std::max(std::abs(s.min), std::abs(s.max));
-    const auto text = [&](double value) { return number_text(std::abs(value) < kMinRelative * largest ? 0 : value); };
+    // Of a narrow range far from 0, as of heights after grinding, the same three digits would stand for every number.
+    constexpr double kRangeShare = 0.1;
+    const auto text = [&](double value) {
+        return number_text(std::abs(value) < kMinRelative * largest ? 0 : value, kRangeShare * (s.max - s.min));
+    };
     std::vector<std::pair<std::string, std::string>> items = {{"mean", text(s.mean)}};
     if (values.name == "error") items.insert(items.end(), {{"mean |error|", text(s.mean_abs)}, {"rms", text(s.rms)}});
     items.insert(items.end(), {{"min", text(s.min)}, {"max", text(s.max)}});

@@ -103,14 +103,23 @@ std::vector<Eigen::Matrix2Xd> visible_pieces(const Layout& layout, const Raster&
 
 } // namespace
 
-std::string number_text(double value)
+std::string number_text(double value, double resolution)
 {
     if (std::isnan(value)) return "-";
+    if (value == 0) return "0"; // without a sign
+    constexpr int kSignificantDigits = 3, kMaxSignificantDigits = 9;
+    const auto place = [](double number) { return static_cast<int>(std::floor(std::log10(std::abs(number)))); };
+    int digits = kSignificantDigits;
+    if (resolution > 0 && std::isfinite(value))
+        digits = std::clamp(place(value) - place(resolution) + 1, digits, kMaxSignificantDigits);
     // Four to six digits before the point are read more easily than an exponent.
     constexpr double kMinWhole = 999.5, kMaxWhole = 1e6;
     const bool is_whole = std::abs(value) >= kMinWhole && std::abs(value) < kMaxWhole;
     char buffer[64];
-    std::snprintf(buffer, sizeof buffer, is_whole ? "%.0f" : "%.3g", value == 0 ? 0.0 : value);
+    if (is_whole && digits <= place(value) + 1)
+        std::snprintf(buffer, sizeof buffer, "%.0f", value);
+    else
+        std::snprintf(buffer, sizeof buffer, "%.*g", digits, value);
     return buffer;
 }
 

@@ -32,8 +32,8 @@ struct Layout {
 inline constexpr double kTitleCapitals = 15, kLabelCapitals = 10.5, kSmallCapitals = 9.5;
 inline constexpr Rgb kTextGrey = {120, 120, 120}, kFrameGrey = {170, 170, 170};
 
-/// Text with three significant digits.
-std::string number_text(double value);
+/// Text with three significant digits, or with as many more as show a difference of `resolution`.
+std::string number_text(double value, double resolution = 0);
 /// Corners of a box, 2x4, for a closed line.
 Eigen::Matrix2Xd rectangle_corners(const Eigen::Vector2d& corner, const Eigen::Vector2d& size);
 

@@ -4,7 +4,9 @@
 #include "core/error.h"
 #include "draw/canvas.h"
 #include "draw/colours.h"
+#include "draw/field_scale.h"
 #include "draw/outline.h"
+#include "draw/picture_parts.h"
 #include "draw/png.h"
 #include "draw/raster.h"
 #include "draw/view.h"
@@ -16,6 +18,7 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <tuple>
 
 namespace fettle {
 namespace picture_test {
@@ -80,6 +83,33 @@ draw::PictureOptions errors_to(double limit)
 
 // A square map of 680 pixels is in the middle of the frame of 900 x 680 whose corner is (84, 36).
 constexpr int kLeft = 84 + 110, kTop = 36, kSide = 680;
+
+TEST(FieldScale, NamesTheUnitOfAField)
+{
+    const units::Units metric, imperial{units::Units::Length::in, units::Units::Force::lbf};
+    for (const auto& [field, in_mm, in_inch] :
+         {std::tuple("z", "mm", "in"), std::tuple("error", "mm", "in"), std::tuple("area", "mm2", "in2"),
+          std::tuple("removed_volume", "mm3", "in3"), std::tuple("force", "N", "lbf"),
+          std::tuple("feed", "mm/s", "in/s"), std::tuple("pressure", "N/mm2", "lbf/in2"),
+          std::tuple("class", "", "")}) {
+        EXPECT_EQ(draw::unit_of_field(field, metric), in_mm);
+        EXPECT_EQ(draw::unit_of_field(field, imperial), in_inch);
+    }
+}
+
+TEST(Picture, WritesNumbersThatTellTheirRangeApart)
+{
+    EXPECT_EQ(draw::number_text(0.75352), "0.754");
+    EXPECT_EQ(draw::number_text(0.75352, 3e-4), "0.7535"); // heights of a face that was ground, 3 µm from 0.7502
+    EXPECT_EQ(draw::number_text(0.7502, 3e-4), "0.7502");
+    EXPECT_EQ(draw::number_text(-1.25, 0.2), "-1.25"); // a range as wide as the number needs no more
+    EXPECT_EQ(draw::number_text(999.7), "1000");
+    EXPECT_EQ(draw::number_text(12345.6), "12346");
+    EXPECT_EQ(draw::number_text(1234.56, 0.2), "1234.6");
+    EXPECT_EQ(draw::number_text(1234567), "1.23e+06");
+    EXPECT_EQ(draw::number_text(-0.0), "0");
+    EXPECT_EQ(draw::number_text(kNaN), "-");
+}
 
 TEST(Picture, EachPointIsItsCellWithTheColourOfItsValue)
 {
