@@ -81,7 +81,8 @@ MatrixXd covariance_of_family(const ProcessTouches& touches, const MatrixXd& wav
     return from_heights * heights * from_heights.transpose();
 }
 
-/// f + g as a spline; nothing where f is not defined around the grid.
+/// f + g as a spline; nothing where f is not defined around the grid, or where it has parameters that no height depends
+/// on, as the cone and the torus nearest to a plane.
 std::optional<FitCandidate> spline_with_waves(const FamilySolution& family, const ProcessTouches& touches,
                                               const std::vector<Spectrum>& spectra, const ProcessWeights& weights,
                                               const surface::Bspline& grid)
@@ -95,6 +96,7 @@ std::optional<FitCandidate> spline_with_waves(const FamilySolution& family, cons
     FitCandidate candidate;
     VectorXd above;
     std::tie(above, candidate.covariance) = mix_processes(touches, controls, trend, spectra, weights.relative);
+    if (!above.allFinite() || !candidate.covariance.allFinite()) return std::nullopt;
     const VectorXd sum = controls.from_values(heights) + above;
     spline.heights = sum.reshaped(spline.heights.rows(), spline.heights.cols());
     candidate.shape = std::move(spline);

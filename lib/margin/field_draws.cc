@@ -158,8 +158,8 @@ void visit_fields(const surface::Surface& surface, const Eigen::Matrix2Xd& xy, i
     double sum = 0;
     for (const Component& one : all) sum += one.weight;
     if (!(sum > 0) || !std::isfinite(sum)) // the squares of the heights overflow or underflow
-        throw core::InputError("touches", "the surface fitted to them has no finite covariance, so its error cannot be "
-                                          "predicted");
+        throw core::InputError("touches", "the surface fitted to them has no covariance that is finite all over the "
+                                          "anomaly, so its error cannot be predicted");
     Random random{std::mt19937_64(seed)};
     double due = 0; // cumulative number of pairs of draws up to this component, before rounding
     Eigen::Index visited = 0;

@@ -22,3 +22,8 @@ sed 's/plane/freeform/' job.json | sed 's/"anomaly"/"sampling": [[0, 0], [20, 0]
 jq '.shape = {"type": "griddata", "points": [[0, 0, 5], [10, 0, 5], [0, 10, 5]], "spacing": 0, "angle_deg": 0}' \
     surface.json > short.json
 "$refuses" 'short.json: the surface does not cover the anomaly: it is not defined at (15, 5) mm' fettle-margin job.json short.json
+# all of the probability is with a shape that ends inside the anomaly
+jq '.fit = {"method": "plane", "touch_sigma": 0.05, "rms": 0, "ignored": 0, "weight": 0} | .alternatives = [{"method": "short", "score": 0,
+    "weight": 1, "shape": {"type": "griddata", "points": [[0, 0, 5], [10, 0, 5], [0, 10, 5]], "spacing": 0, "angle_deg": 0},
+    "covariance": [1, 0, 0, 0, 0, 0]}]' surface.json > elsewhere.json
+"$refuses" 'touches: the surface fitted to them has no covariance that is finite all over the anomaly' fettle-margin job.json elsewhere.json

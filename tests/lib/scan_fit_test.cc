@@ -136,6 +136,25 @@ TEST(ScanFit, finds_the_family_without_waves)
     EXPECT_LT(outcome.largest, 0.003); // a micrometre of noise, and the sphere's curvature within a group
 }
 
+// A flat without any noise, as a simulated scan has it: the cone and the torus nearest to it have parameters that no
+// height depends on, and no number that is none may come of them.
+TEST(ScanFit, fits_a_perfect_flat)
+{
+    for (const double height : {0.0, 5.0}) {
+        const std::shared_ptr<cloud::Cloud> flat = scanned_points(100, ScannerWaves(0, 8, 1), 0, 1);
+        flat->xyz.row(2).setConstant(height);
+        const surface::Surface surface = fit(cloud::make_point_source(flat)).fit.surface;
+        const Eigen::Matrix2Xd xy = margin::anomaly_grid(square_job(), 16);
+        for (const surface::WeightedShape& member : surface::weighted_shapes(surface)) {
+            EXPECT_TRUE(member.covariance.allFinite());
+            EXPECT_LT((surface::heights(member.shape, xy).array() - height).abs().maxCoeff(), 1e-4);
+        }
+        const double shift = margin::predict_by_posterior(surface, square_job(), 0.99, 1).shift;
+        EXPECT_GE(shift, 0);
+        EXPECT_LT(shift, 1e-4);
+    }
+}
+
 // Every method takes the representatives, so that none hangs on the number of points.
 TEST(ScanFit, no_method_sees_more_than_the_representatives)
 {
