@@ -157,7 +157,8 @@ void visit_fields(const surface::Surface& surface, const Eigen::Matrix2Xd& xy, i
     const std::vector<Component> all = make_components(surface, xy, tails, waves, scan);
     double sum = 0;
     for (const Component& one : all) sum += one.weight;
-    if (!(sum > 0) || !std::isfinite(sum)) // the squares of the heights overflow or underflow
+    // No member that has weight is defined at all of xy, or the squares of the heights overflow or underflow.
+    if (!(sum > 0) || !std::isfinite(sum))
         throw core::InputError("touches", "the surface fitted to them has no covariance that is finite all over the "
                                           "anomaly, so its error cannot be predicted");
     Random random{std::mt19937_64(seed)};

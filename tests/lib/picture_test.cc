@@ -100,7 +100,7 @@ TEST(FieldScale, NamesTheUnitOfAField)
 TEST(Picture, WritesNumbersThatTellTheirRangeApart)
 {
     EXPECT_EQ(draw::number_text(0.75352), "0.754");
-    EXPECT_EQ(draw::number_text(0.75352, 3e-4), "0.7535"); // heights of a face that was ground, 3 µm from 0.7502
+    EXPECT_EQ(draw::number_text(0.75352, 3e-4), "0.7535"); // a ground face, 0.003 in over the lowest
     EXPECT_EQ(draw::number_text(0.7502, 3e-4), "0.7502");
     EXPECT_EQ(draw::number_text(-1.25, 0.2), "-1.25"); // a range as wide as the number needs no more
     EXPECT_EQ(draw::number_text(999.7), "1000");
