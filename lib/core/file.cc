@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "core/gzip.h"
 #include "core/lines.h"
+#include "core/uninitialized_vector.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -112,12 +113,13 @@ std::string read_file(const std::string& path, std::size_t max)
     const FileDescriptor file = open_to_read(path);
     const std::size_t expected = remaining_bytes(file);
     GzipReader reader(file, path);
-    std::string bytes, chunk(kChunkBytes, '\0');
+    std::string bytes;
+    UninitializedVector<char> chunk(kChunkBytes);
     for (;;) {
         const std::size_t got = reader.read(chunk.data(), chunk.size());
         if (got == 0) return bytes;
         const bool was_short = bytes.size() <= kMaxFirstLine;
-        bytes.append(chunk, 0, got);
+        bytes.append(chunk.data(), got);
         if (was_short && bytes.size() > kMaxFirstLine) max = max_size_of(bytes, max, path);
         check_size(std::max(bytes.size(), expected), max, bytes, path);
         if (expected == 0 || reader.is_compressed()) check_stream_size(bytes.size(), path);
@@ -147,7 +149,7 @@ void InputFile::copy_stream()
 {
     constexpr std::size_t kMaxMemoryBytes = 1 << 20;
     FileDescriptor copy;
-    std::string chunk(kChunkBytes, '\0');
+    UninitializedVector<char> chunk(kChunkBytes);
     std::string head;
     std::size_t max = std::string::npos;
     GzipReader reader(file_, path_);

@@ -1,5 +1,6 @@
 #include "core/error.h"
 #include "core/file.h"
+#include "core/uninitialized_vector.h"
 
 #include <array>
 #include <atomic>
@@ -71,7 +72,7 @@ class SpillBuffer : public std::streambuf {
 
     std::string name_;
     std::string action_ = "cannot write"; ///< what has failed, for messages
-    std::vector<char> buffer_;
+    UninitializedVector<char> buffer_;    ///< to set it would take a quarter of a tool's start
     FileDescriptor file_;
 };
 

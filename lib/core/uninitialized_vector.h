@@ -16,8 +16,8 @@ struct UninitializedAllocator : std::allocator<T> {
     }
 };
 
-/// A vector for results that several threads fill in: std::vector would first set all of them to 0, by one thread,
-/// which of large memory takes as long as the work, as the pages are mapped then.
+/// A vector for results that several threads fill in, or for a buffer that is seldom full: std::vector would first set
+/// all of it to 0, by one thread, which of large memory takes as long as the work, as the pages are mapped then.
 /// @tparam T  without initializers for its members
 template <typename T>
 using UninitializedVector = std::vector<T, UninitializedAllocator<T>>;
