@@ -11,7 +11,7 @@ for name in $names; do
     command_of "$name"
     elsewhere none nowhere
     rest=("${command[@]}" "${named[@]:2*${#bulk[@]}}")
-    option() { : >"./$1"; try R "./$1" "$tool" "${rest[@]}" "${@:2}"; rm "./$1"; } # the message names the option
+    option() { : >"./$1"; try R "./$1" "$tool" "${rest[@]}" "${@:2}"; } # the message names the option
     status=0
     "$tool" "${rest[@]}" -q >reference 2>err <<<"$lines" || status=$?
     [ $status -le 1 ] || say "status $status: $(cat err)" "$tool" "${rest[@]}"
@@ -27,6 +27,7 @@ for name in $names; do
         case " ${command[*]} --threads --seed --avoid " in *" $name_of "*) continue ;; esac
         option "$name_of" "$name_of" nan
     done < <("$tool" --help | sed -nE 's/^ +(-[a-z],)?(--[a-z0-9-]+) ([^ =]+).*/\2 \3/p')
+    rm ./--*
     # none of the inputs is what it should be
     for ((i = 0; i < ${#command[@]}; i++)); do
         [ -f "${command[i]}" ] || continue

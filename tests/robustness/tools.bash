@@ -100,7 +100,9 @@ elsewhere() { # OPTION PLACE: into `named`
     done
 }
 
-# A refusal: status 2, one line on stderr that has the text in it, nothing on stdout.
+# A refusal: status 2, one line on stderr that has the text in it, nothing on stdout. By builtins, as `try`.
 is_refusal() { # STATUS TEXT
-    [ "$1" = 2 ] && [ ! -s out ] && [ "$(wc -l <err)" = 1 ] && grep -qF -- "$2" err
+    local lines
+    mapfile lines <err
+    [ "$1" = 2 ] && [ ! -s out ] && [ ${#lines[@]} = 1 ] && [[ ${lines[0]} == *"$2"*$'\n' ]]
 }
