@@ -72,7 +72,7 @@ class SpillBuffer : public std::streambuf {
 
     std::string name_;
     std::string action_ = "cannot write"; ///< what has failed, for messages
-    UninitializedVector<char> buffer_;    ///< to set it would take a quarter of a tool's start
+    UninitializedVector<char> buffer_;    ///< to set it would take up to a third of a tool's start
     FileDescriptor file_;
 };
 
