@@ -65,7 +65,7 @@ BUNDLE ?= 8
 
 .DELETE_ON_ERROR:
 .SECONDARY:
-.PHONY: fettle $(TOOLS) all build deps coverage test test-all test-linuxcnc test-browser test-cad tests-built run-cases demo figures bench bless docs lint includes install clean
+.PHONY: fettle $(TOOLS) all build deps coverage test test-all test-ready test-linuxcnc test-browser test-cad tests-built run-cases demo figures bench bless docs lint includes install clean
 
 all: deps
 	@$(MAKE) --no-print-directory -j$(JOBS) build
@@ -241,12 +241,14 @@ BROWSER_RUNS := $(patsubst %.sh,%.case,$(sort $(wildcard tests/browser/*.sh)))
 test: export FETTLE_DRAWS ?= $(if $(filter test-all,$(MAKECMDGOALS)),all,few)
 test-all: test
 # While what only tests need is installed, the tools that do without it are built: one of two processors had nothing to do.
-test:
+test: test-ready
+	@rm -rf $(B)/results
+	@$(MAKE) --no-print-directory -j$$(($(JOBS) + 2)) -k -s run-cases $(TEST_RUNS) 2>/dev/null; tests/summary $(B)/results
+
+test-ready:
 	@.ci/install-packages packages.txt --for-demo
 	@.ci/install-packages packages.txt $(if $(TOOL),,& $(MAKE) --no-print-directory -j$(JOBS) $(DEMO_TOOLS); status=$$?; wait $$! && exit $$status)
-	@rm -rf $(B)/results && mkdir -p $(B)/results
 	@$(MAKE) --no-print-directory -j$(JOBS) $(if $(TOOL),$(call tools_named_in,$(CASES)),build tests-built)
-	@$(MAKE) --no-print-directory -j$$(($(JOBS) + 2)) -k -s run-cases $(TEST_RUNS) 2>/dev/null; tests/summary $(B)/results
 
 tests-built: $(TESTS)
 
@@ -266,22 +268,25 @@ test-cad: deps
 # One after the other: each has a machine that wants the computer for itself.
 test-linuxcnc: deps
 	@.ci/install-packages packages-linuxcnc.txt
-	@mkdir -p $(B)/results && rm -f $(B)/results/linuxcnc__*
+	@rm -rf $(B)/results-linuxcnc
 	@$(MAKE) --no-print-directory -j$(JOBS) build
-	@$(MAKE) --no-print-directory -j1 -k -s $(LINUXCNC_RUNS) 2>/dev/null; tests/summary $(B)/results || \
-	    [ -z "$$(find $(B)/results -name '*.failed')" ] # where namespaces are not allowed all are skipped
+	@$(MAKE) --no-print-directory -j1 -k -s $(LINUXCNC_RUNS) 2>/dev/null; tests/summary $(B)/results-linuxcnc || \
+	    [ -z "$$(find $(B)/results-linuxcnc -name '*.failed')" ] # where namespaces are not allowed all are skipped
 
 # One after the other: frames are timed.
 test-browser: deps
 	@.ci/install-packages packages-browser.txt
-	@mkdir -p $(B)/results && rm -f $(B)/results/browser__*
+	@rm -rf $(B)/results-browser
 	@$(MAKE) --no-print-directory -j$(JOBS) $(call tools_named_in,$(wildcard tests/browser/*.sh))
-	@$(MAKE) --no-print-directory -j1 -k -s $(BROWSER_RUNS) 2>/dev/null; tests/summary $(B)/results
+	@$(MAKE) --no-print-directory -j1 -k -s $(BROWSER_RUNS) 2>/dev/null; tests/summary $(B)/results-browser
 
 # A case during which the computer stood still is tried again, and each try takes as long as the machine works.
 $(LINUXCNC_RUNS): export FETTLE_PATIENCE ?= 2
+# What has a target of its own has results of its own, too: both can run at once.
+$(LINUXCNC_RUNS): RESULTS = $(B)/results-linuxcnc
+$(BROWSER_RUNS): RESULTS = $(B)/results-browser
 $(CASE_RUNS) $(LINUXCNC_RUNS) $(BROWSER_RUNS): %.case: %.sh
-	tests/run $(B) $<
+	tests/run $(B) $< $(RESULTS)
 
 $(TEST_RUNS): %.run: %
 	tests/run $(B) $<
