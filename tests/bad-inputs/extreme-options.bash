@@ -5,9 +5,10 @@
 # shellcheck source=tests/robustness/tools.bash
 . "$HERE/../robustness/tools.bash"
 inputs
-# With FETTLE_DRAWS=few (make test) each option gets one of the ends, another one than its neighbour.
+kTime=$((20 * ${FETTLE_PATIENCE:-1})) # s: what waits for a processor takes longer than the 10 s it may have of one
 kMemory=2000000 # KiB of addresses: libraries and two threads reserve less than half
-turn=0
+# With FETTLE_DRAWS=few (make test) each option gets one of the ends, another one than its neighbour, and with each FETTLE_SEED, a number, another.
+turn=${FETTLE_SEED:-0}
 place=0
 values=(0 -1 1e-300 1e300 1e15 1e-9 nan inf '')
 ordinary=(5 20 1 0.5 300)
@@ -84,7 +85,7 @@ within_bounds() { # COMMAND…: sets `status`; complains of anything but an answ
     local lines_of_err
     status=0
     tried=$((tried + 1))
-    (ulimit -v $kMemory -t 10; exec timeout 20 "$@") >out 2>err <<<"$lines" || status=$?
+    (ulimit -v $kMemory -t 10; exec timeout $kTime "$@") >out 2>err <<<"$lines" || status=$?
     mapfile lines_of_err <err
     case $status in
     # A machine's fault is said, with -q too.

@@ -9,13 +9,14 @@
 #   all_tried                 fails if a try has, or if there were fewer than MIN_COUNT
 #
 # With FETTLE_DRAWS=few (make test) an eighth of the bad files' tries is made: drawn, so that over the files of a case each place has some.
+# FETTLE_SEED, a number, draws another.
 #
 # In all cases: no signal, at most 10 s of processor time, and no more memory than the tool itself needs and ten times the file, of a large one three times.
 kOwnMemory=250000 # KiB: libraries and their threads; PCL and OpenCV alone map half of it
 tried=0
 left=0 # to make test-all
 failed=0
-RANDOM=1
+RANDOM=${FETTLE_SEED:-1}
 
 say() {
     failed=$((failed + 1))
