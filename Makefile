@@ -242,7 +242,7 @@ test: export FETTLE_DRAWS ?= $(if $(filter test-all,$(MAKECMDGOALS)),all,few)
 test-all: test
 # While what only tests need is installed, the tools that do without it are built: one of two processors had nothing to do.
 test: test-ready
-	@rm -rf $(B)/results
+	@rm -rf $(B)/results && mkdir -p $(B)/results
 	@$(MAKE) --no-print-directory -j$$(($(JOBS) + 2)) -k -s run-cases $(TEST_RUNS) 2>/dev/null; tests/summary $(B)/results
 
 test-ready:
