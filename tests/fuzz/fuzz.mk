@@ -23,7 +23,7 @@ $(B)/fuzz/archives.mk: lib/archives Makefile tests/fuzz/fuzz.mk $(FUZZ_SOURCES)
 	@ALONE="$(ALONE)" LEFT_OUT="$(filter-out $(FUZZ_SOURCES),$(wildcard lib/*/*.cc))" lib/archives $(B)/fuzz $(BUNDLE) | sed 's/^/FUZZ_/' > $@
 FUZZ_LIBRARY = $(foreach module,$(sort $(foreach source,$(FUZZ_SOURCES),$(word 2,$(subst /, ,$(source))))),$(FUZZ_OBJECTS_$(module)))
 FUZZ_FLAGS = $(filter-out -O% -DNDEBUG --param ggc-%,$(CXXFLAGS)) -O1 -fsanitize=address,undefined,float-cast-overflow -fno-sanitize-recover=all \
-    -Wno-psabi -Wno-unused-const-variable
+    -fsanitize-ignorelist=tests/fuzz/unchecked.txt -Wno-psabi -Wno-unused-const-variable
 
 .PHONY: fuzz fuzz-run $(FUZZ_TARGETS:%=%.fuzz)
 
@@ -42,7 +42,7 @@ $(FUZZ_TARGETS:%=%.fuzz): %.fuzz: $(B)/fuzz/%
 
 $(B)/fuzz/precompiled.h.pch: lib/precompiled.h
 	@mkdir -p $(@D)
-	$(FUZZ_CXX) $(CPPFLAGS) $(FUZZ_FLAGS) -fsanitize=fuzzer-no-link -MMD -MP -x c++-header -c $< -o $@
+	$(FUZZ_CXX) $(CPPFLAGS) $(FUZZ_FLAGS) -fsanitize=fuzzer-no-link -fpch-instantiate-templates -MMD -MP -x c++-header -c $< -o $@
 
 define fuzz_compile
 	@mkdir -p $(@D)

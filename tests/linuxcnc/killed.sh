@@ -11,10 +11,11 @@ fettle-stock-linuxcnc light.json --stock stock.stl --cell 0.2 > before
 start before
 record
 RANDOM=1
+mapfile -t ys < <(seq -5.9 0.1 0)
 for k in {1..50}; do
     talk_to light.json
     send "travel 0 -6 $(printf '4.%02d' $((80 - k)))"
-    for i in $(seq -59 $((RANDOM % 30 - 30))); do send "move 0 $(awk -v i="$i" 'BEGIN { print i / 10 }') 4.3 20"; done
+    for y in "${ys[@]:0:$((RANDOM % 30 + 30))}"; do send "move 0 $y 4.3 20"; done
     kill_driver light.json
     sleep 0.6
 done

@@ -16,11 +16,12 @@ for _ in $(seq $((2 * $(nproc)))); do
 done
 trap 'kill "${load[@]}"; [ -e machine/run/stop ] || "$machine/stop" machine' EXIT
 talk_to light.json
+mapfile -t ys < <(seq -5.9 0.1 6)
 end=$((SECONDS + 60 * ${MINUTES:-1}))
 passes=0
 while [ $SECONDS -lt $end ]; do
     send "travel $((passes % 10 - 5)) -6 4.8"
-    for i in {-59..60}; do send "move $((passes % 10 - 5)) $(awk -v i="$i" 'BEGIN { print i / 10 }') 4.8 20"; done
+    for y in "${ys[@]}"; do send "move $((passes % 10 - 5)) $y 4.8 20"; done
     passes=$((passes + 1))
 done
 send quit

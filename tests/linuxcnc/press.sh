@@ -19,10 +19,11 @@ awk -v lbf=4.4482216 '{ f = $4 / lbf } f > 0.5 { ++n; if (f >= 9 && f <= 11) ++g
     END { print n " ms, " good / n; exit !(n > 20000 && good >= 0.95 * n) }' record
 
 job=$SAMPLES/jobs/wang1.json
+mapfile -t ys < <(seq 10 0.25 30)
 for k in {1..5}; do
     talk_to "$job"
     send 'travel 20 10 50'
-    for i in {0..80}; do send "press 20 $(awk -v i="$i" 'BEGIN { print 10 + i / 4 }') 0 25 44.5"; done
+    for y in "${ys[@]}"; do send "press 20 $y 0 25 44.5"; done
     kill_driver "$job"
     sleep 0.6
 done
