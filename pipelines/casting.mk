@@ -144,7 +144,7 @@ $(CHAIN)/%/cylindricity.json: $$(call job,$$*) $(CHAIN)/%/ground.pcd $(B)/bin/fe
 
 # --- pictures ---------------------------------------------------------------------------------------------------------
 # Each says what it shows; a picture's letters have no superscript.
-before_title = $$(jq -r '[.removed_volume, .units.length] | @tsv' $(@D)/grind.json | awk '{ printf "%.3g cubic %s to grind off", $$1, $$2 }')
+before_title = $$(jq -r '[.removed_volume, .units.length] | @tsv' $(@D)/grind.json | awk '{ printf ($$1 < 999.5 ? "%.3g" : "%.0f") " cubic %s to grind off", $$1, $$2 }')
 after_title  = $$(jq -r '[.layers, .machine_time / 60] | @tsv' $(@D)/grind.json | awk '{ printf "ground in %d layer%s and %.1f minutes", $$1, $$1 == 1 ? "" : "s", $$2 }')
 
 $(CHAIN)/%/before.png: $$(call job,$$*) $$(call part,$$*) $(CHAIN)/%/ground.pcd $(B)/bin/fettle-render
