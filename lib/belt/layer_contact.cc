@@ -1,5 +1,6 @@
 #include "belt/layer_contact.h"
 
+#include "belt/contact_preconditioner.h"
 #include "core/error.h"
 
 #include <algorithm>
@@ -37,6 +38,28 @@ constexpr int kMaxIterations = 1000;
 constexpr int kMaxIterationsFromStart = 100;
 
 using Mask = Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic>;
+
+/// Slope of what is removed, own_gap(), weighted with the squares of the pressure, mm/MPa.
+double mean_slope(const ArrayXXd& pressure, const ArrayXXd& own, const RemovalStep& removal)
+{
+    const double squares = pressure.square().sum();
+    return squares > 0 ? removal.exponent * (own * pressure).sum() / squares : 0;
+}
+
+/// Preconditioned gap of the active cells, and its product with the gap. Neither has a mean where the force is known:
+/// steps along them do not change it.
+std::pair<ArrayXXd, double> preconditioned_gap(const ContactPreconditioner& preconditioner, const ArrayXXd& gap,
+                                               const Mask& active, bool is_force_known)
+{
+    const auto on_active = [&](const ArrayXXd& field) -> ArrayXXd {
+        const double mean = is_force_known ? active.select(field, 0).sum() / active.count() : 0;
+        return active.select(field - mean, 0);
+    };
+    const ArrayXXd residual = on_active(gap);
+    ArrayXXd direction = on_active(preconditioner(residual));
+    const double energy = (residual * direction).sum();
+    return {std::move(direction), energy};
+}
 
 /// First index and length of a window's side: the extent of the mask plus a margin, rounded up to a multiple of
 /// kSizeMultiple so that few sizes of convolutions occur.
@@ -157,7 +180,10 @@ bool LayerContact::iterate(const MatrixXd& gap, const Window& window, double tol
         workpiece.coverage = (share > 0).select(share, 1);
         workpiece.compliance = border_compliance(workpiece.coverage);
     }
-    double last_squares = 0; // sum of squared gaps; 0: restart along the gradient
+    ContactPreconditioner preconditioner; // of finite elements: they are softest to waves along both rows and columns
+    if (!surface_.fem())
+        preconditioner = ContactPreconditioner(surface_.influence().topLeftCorner(window.rows, window.columns));
+    double last_energy = 0; // 0: restart along the gradient
     bool is_displacement_valid = false;
     for (; contact.iterations < max_iterations; ++contact.iterations) {
         auto p = pressure.array();
@@ -173,9 +199,10 @@ bool LayerContact::iterate(const MatrixXd& gap, const Window& window, double tol
             return true;
         }
         const Mask active = p > 0 || g < 0;
-        const double squares = active.select(g.square(), 0).sum();
-        step = active.select((last_squares > 0 ? squares / last_squares : 0) * step.array() - g, 0).matrix();
-        last_squares = squares;
+        preconditioner.fit(workpiece.yields() ? mean_slope(p, own, removal) : 0);
+        const auto [direction, energy] = preconditioned_gap(preconditioner, g, active, is_force_known);
+        step = active.select((last_energy > 0 ? energy / last_energy : 0) * step.array() - direction, 0).matrix();
+        last_energy = energy;
         step_displacement = surface_.of_window(step);
         ArrayXXd gradient_change = step_displacement.array();
         if (is_force_known) gradient_change -= active.select(gradient_change, 0).sum() / active.count();
@@ -187,7 +214,7 @@ bool LayerContact::iterate(const MatrixXd& gap, const Window& window, double tol
         if (pressure.minCoeff() < 0) {
             pressure = pressure.cwiseMax(0);
             is_displacement_valid = false;
-            last_squares = 0;
+            last_energy = 0;
         } else {
             displacement += length * step_displacement;
         }

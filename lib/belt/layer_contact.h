@@ -17,8 +17,8 @@ struct Contact {
 };
 
 /// Frictionless unilateral contact (Signorini) of a layer with a workpiece: pressure ≥ 0, gap ≥ 0, pressure · gap = 0.
-/// Solved by constrained conjugate gradients (after Polonsky and Keer 1999). A step costs the
-/// displacement under one pressure, on a window just larger than the contact. Not thread-safe.
+/// Solved by constrained conjugate gradients (after Polonsky and Keer 1999), preconditioned (contact_preconditioner.h).
+/// A step costs the displacement under one pressure, on a window just larger than the contact. Not thread-safe.
 ///
 /// While a belt grinds, the workpiece recedes by what the pressure removes. Taking the pressure at the end of the step
 /// for a depth r(p) of it adds that depth to the gap: g = gap + K p + r(p) - indentation. With r all of the step's

@@ -37,6 +37,9 @@ class LayerDisplacement {
     double cell_area() const { return cell_area_; } ///< mm²
     /// Influence of a cell's pressure at the cell that it lifts most, mm/MPa: < 0 where rubber bulges.
     double min_influence() const { return min_influence_; }
+    /// Of the flat layer, without free sides: of a cell on others so many rows and columns away, mm/MPa; none of finite
+    /// elements.
+    const Eigen::MatrixXd& influence() const { return influence_; }
     bool has_sides() const { return side_influence_.size() > 0; }
     /// Finite elements of a round layer; null: the layer is flat.
     const FemLayer* fem() const { return fem_ ? &*fem_ : nullptr; }
@@ -46,7 +49,7 @@ class LayerDisplacement {
 
     ElasticLayer layer_;
     double cell_area_;
-    Eigen::MatrixXd influence_; ///< of a cell on others so many rows and columns away
+    Eigen::MatrixXd influence_;
     double min_influence_;
     Eigen::MatrixXd side_influence_; ///< with the wheel's sides, of each column on each (row), rows away (column)
     using Size = std::pair<Eigen::Index, Eigen::Index>;
