@@ -5,6 +5,8 @@
 #include "find/design.h"
 #include "find/outline.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -89,11 +91,16 @@ CellPoints points_by_cell(const mesh::CloudMesh& part, const SeenSide& side)
     const Index count = part.points.size();
     CellPoints cells{cv::Mat1i(map.z.size(), -1), std::vector<Index>(std::size_t(count), -1)};
     const cv::Rect all({0, 0}, map.z.size());
-    for (Index i = count; i-- > 0;) {
-        if (!part.points.xyz.col(i).allFinite()) continue;
+    const cv::Point beside(-1, -1);
+    std::vector<cv::Point> places(std::size_t(count), beside);
+    tbb::parallel_for(Index{0}, count, [&](Index i) {
+        if (!part.points.xyz.col(i).allFinite()) return;
         const Eigen::Vector3d p = side.view * Eigen::Vector3d(part.points.xyz.col(i));
-        const cv::Point cell = map.cell_of(p.head<2>());
-        if (!all.contains(cell)) continue;
+        if (const cv::Point cell = map.cell_of(p.head<2>()); all.contains(cell)) places[std::size_t(i)] = cell;
+    });
+    for (Index i = count; i-- > 0;) {
+        const cv::Point cell = places[std::size_t(i)];
+        if (cell == beside) continue;
         cells.next[std::size_t(i)] = cells.first(cell);
         cells.first(cell) = int(i);
     }

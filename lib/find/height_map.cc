@@ -46,10 +46,11 @@ Image slope_of(const Image& z)
 void remove_outliers(Image& z, const Image& median, const Image& slope, double sigma)
 {
     Mask differs(z.size(), 0);
-    for (int y = 0; y < z.rows; ++y)
+    tbb::parallel_for(0, z.rows, [&](int y) {
         for (int x = 0; x < z.cols; ++x)
             if (std::abs(z(y, x) - median(y, x)) > kOutlierSigmas * sigma + kOutlierSlopes * slope(y, x))
                 differs(y, x) = 255;
+    });
     const Components groups = components(differs, 8);
     for (int y = 0; y < z.rows; ++y)
         for (int x = 0; x < z.cols; ++x)

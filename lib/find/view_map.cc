@@ -51,13 +51,29 @@ struct Spacing {
     double sparse; // kSparseQuantile
 };
 
+using Places = Eigen::Ref<const Eigen::Matrix2Xd, 0, Eigen::OuterStride<>>;
+
+/// Squared distance of a point to the nearest one that is not at the same place; infinite if there is none in the
+/// square around it of which `reach` is half a side. Most have one in a cell beside theirs.
+double squared_distance_to_nearest(const geometry::PlanarGrid& grid, const Places& points, Index point, double reach)
+{
+    const Eigen::Array2d p = points.col(point).array();
+    for (double half = std::min(grid.side, reach);; half = std::min(2 * half, reach)) {
+        double squared = std::numeric_limits<double>::infinity();
+        geometry::visit_cells(grid, p - half, p + half, [&](Index k) {
+            const double other = (points.col(grid.order[std::size_t(k)]) - points.col(point)).squaredNorm();
+            if (other > 0) squared = std::min(squared, other);
+        });
+        if (squared <= half * half || half >= reach) return squared;
+    }
+}
+
 /// The spacing over the area: one point is sampled in each square of a grid. Statistics over all points would be those
 /// of dense areas, such as walls seen from the side or the overlaps of merged scans.
-Spacing spacing_of(const Eigen::Ref<const Eigen::Matrix2Xd, 0, Eigen::OuterStride<>>& points)
+Spacing spacing_of(const Places& points)
 {
     const geometry::PlanarGrid grid = geometry::planar_grid(points, kPointsPerGridCell);
     const int step = std::max(1, int(std::sqrt(double(grid.count.prod()) / kSpacingQueries)));
-    const Eigen::Array2d square(step * grid.side, step * grid.side);
     std::vector<double> nearest;
     for (int y = 0; y < grid.count.y(); y += step)
         for (int x = 0; x < grid.count.x(); x += step) {
@@ -67,12 +83,7 @@ Spacing spacing_of(const Eigen::Ref<const Eigen::Matrix2Xd, 0, Eigen::OuterStrid
                 if (chosen < 0) chosen = grid.order[std::size_t(k)];
             });
             if (chosen < 0) continue;
-            double squared = std::numeric_limits<double>::infinity();
-            const Eigen::Array2d p = points.col(chosen).array();
-            geometry::visit_cells(grid, p - square, p + square, [&](Index k) {
-                const double other = (points.col(grid.order[std::size_t(k)]) - points.col(chosen)).squaredNorm();
-                if (other > 0) squared = std::min(squared, other);
-            });
+            const double squared = squared_distance_to_nearest(grid, points, chosen, step * grid.side);
             if (std::isfinite(squared)) nearest.push_back(std::sqrt(squared));
         }
     if (nearest.empty()) throw core::InputError("no surface: the points lie far apart, or all at one place");
