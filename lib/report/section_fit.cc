@@ -1,6 +1,9 @@
 #include "draw/figures.h"
 #include "report/sections.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace fettle::report {
 namespace {
 
@@ -15,11 +18,25 @@ std::string method_name(const std::string& method)
     return method == "gp" ? "smooth (Gaussian process)" : method == "bspline" ? "B-spline" : method;
 }
 
+constexpr double kMinShownP = 1e-4; // smaller p-values are not told apart
+
 /// Text of a p-value; very small ones are given as a bound.
-std::string p_text(double p)
+std::string p_text(double p) { return p < kMinShownP ? "< " + draw::short_text(kMinShownP) : draw::short_text(p); }
+
+/// What a low goodness of fit says; empty of one that is not.
+draw::Html goodness_note(const surface::Surface& surface)
 {
-    constexpr double kMinShown = 1e-4;
-    return p < kMinShown ? "< " + draw::short_text(kMinShown) : draw::short_text(p);
+    constexpr double kLow = 0.01; // one good fit in a hundred
+    const double p = surface.goodness;
+    if (!(p > 0 && p < kLow)) return {};
+    if (!surface.outliers.empty())
+        return draw::element("p", {{"class", "note"}}, "The outliers count in the goodness of fit.");
+    return draw::element(
+        "p", {{"class", "note"}},
+        "Of touches as accurate as the probe is said to be, " +
+            (p < kMinShownP ? "fewer than one fit in " : std::string("one fit in ")) +
+            draw::count_text(std::round(1 / std::max(p, kMinShownP))) +
+            " has residuals as large: the surface may be of another type, or the touches less accurate.");
 }
 
 /// Table of the fitted surface types, the most probable first, with their weights as bars.
@@ -85,7 +102,7 @@ draw::Html fit_section(const RunFiles& run)
     if (surface.goodness > 0)
         rows.emplace_back("Goodness of fit (p of \u03C7\u00B2)",
                           draw::number_element("surface.fit.goodness", surface.goodness, p_text(surface.goodness)));
-    draw::Html html = property_table(rows);
+    draw::Html html = draw::element("div", property_table(rows) + goodness_note(surface));
     if (!surface.alternatives.empty())
         html = draw::element("div", {{"class", "columns"}}, html + surface_types(surface));
     return section("fit", "Touches and fit", html + outlier_table(surface, units));

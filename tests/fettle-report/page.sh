@@ -35,6 +35,12 @@ fettle-report --job swept.json | grep -q 'swept, rulings 30°'
 # outliers are named
 jq '.fit.outliers = [2]' desired.json >outlier.json
 fettle-report --job "$job" --surface outlier.json | grep -q 'Outliers, left out</th><td>1<.*>touch 2<'
+# a low goodness of fit is explained, and that of a fit that left a touch out
+explained() { jq ".fit.goodness = $1 | .fit.outliers = $2" desired.json >goodness.json && fettle-report --job "$job" --surface goodness.json; }
+explained 0.0004 '[]' | grep -q 'one fit in 2.*500 has residuals as large'
+explained 1e-9 '[]' | grep -q 'fewer than one fit in 10.*000 has residuals as large'
+explained 1e-9 '[2]' | grep -q 'The outliers count in the goodness of fit'
+! explained 0.02 '[]' | grep -qE 'one fit in|outliers count' || exit 1
 # files of one run agree; those of another are reported
 fettle-report --job "$job" --surface desired.json --plan plan.json -o /dev/null 2>err
 test ! -s err
