@@ -44,6 +44,7 @@ for name in $names; do
     done
     # Temporary files left by a killed run with this number are harmless.
     [ ${#bulk[@]} = 1 ] || continue
+    rm -rf place/* place/.[!.]*
     elsewhere -o place/-o
     bash -c ': >place/.fettle-$$--o; exec "$@"' - "fettle-$name" "${command[@]}" "${named[@]}" -q >out 2>err || say "$(cat err)" "$name"
     cmp -s place/-o once/-o && [ -z "$(find place -name '.*--o')" ] || say 'is hindered by what was left' "$name"
