@@ -32,6 +32,7 @@ ContactPreconditioner::ContactPreconditioner(const Eigen::MatrixXd& influence)
 {
     // An incompressible layer hardly yields to waves that are long both ways.
     compliance_(0, 0) = std::max(compliance_(0, 0), compliance_(1, 1));
+    fit(0);
 }
 
 void ContactPreconditioner::fit(double own)

@@ -12,19 +12,19 @@ namespace fettle::belt {
 class ContactPreconditioner {
   public:
     /// Of a layer that yields to all waves alike: the gaps' directions stay as they are.
-    ContactPreconditioner() : compliance_(Eigen::Array22d::Ones()) {}
+    ContactPreconditioner() : compliance_(Eigen::Array22d::Ones()) { fit(0); }
     /// @param influence  displacement of a cell under the pressure of one so many rows and columns away, mm/MPa
     explicit ContactPreconditioner(const Eigen::MatrixXd& influence);
 
-    /// Fits the stencil.
-    /// @param own  mean compliance of the cells beside the layer's, mm/MPa, ≥ 0: slope of the depth that is ground off
+    /// Fits the stencil to the layer and what yields beside it.
+    /// @param own  mean compliance of the cells' own, mm/MPa, ≥ 0: slope of the depth that is ground off; at first 0
     void fit(double own);
     /// @param gap  on the cells, 0 where they are not in contact, mm   @return  pressure, MPa
     Eigen::ArrayXXd operator()(const Eigen::ArrayXXd& gap) const;
 
   private:
-    Eigen::Array22d compliance_;                            ///< to the longest and the shortest waves, mm/MPa
-    double middle_ = 0, row_ = 0, column_ = 0, corner_ = 0; ///< of the stencil, MPa/mm
+    Eigen::Array22d compliance_;            ///< to the longest and the shortest waves, mm/MPa
+    double middle_, row_, column_, corner_; ///< of the stencil, MPa/mm
 };
 
 } // namespace fettle::belt

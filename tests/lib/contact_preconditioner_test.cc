@@ -84,8 +84,7 @@ TEST(ContactPreconditioner, IsSymmetricAndPositiveDefiniteOnAnyCells)
 
 TEST(ContactPreconditioner, LeavesWavesAsTheyAreWithoutALayer)
 {
-    belt::ContactPreconditioner preconditioner;
-    preconditioner.fit(0);
+    const belt::ContactPreconditioner preconditioner;
     const ArrayXXd any = ArrayXXd::Random(7, 5);
     EXPECT_LE((preconditioner(any) - any).abs().maxCoeff(), 1e-15);
 }
